@@ -1,0 +1,33 @@
+/* memory.h - checked allocation, growable arrays and an arena. */
+#ifndef DALCS_MEMORY_H
+#define DALCS_MEMORY_H
+
+#include "status.h"
+
+/* n zeroed objects of `size` bytes; NULL when out of memory or when n * size overflows. n = 0 gives
+ * a unique non-NULL pointer. Release with free(). */
+void *dalcs_alloc(size_t n, size_t size);
+
+/* Makes room for at least `need` items in *array (item size `size`, present capacity *capacity).
+ * Growth is geometric and new items are zeroed. On failure *array and *capacity are unchanged. */
+enum dalcs_status dalcs_grow(void *array, size_t *capacity, size_t need, size_t size)
+    DALCS_MUST_CHECK;
+
+/* An arena: many small objects that die together. Zero-initialise; finish frees everything. */
+struct dalcs_arena {
+    struct dalcs_arena_block *head;
+};
+
+/* Zeroed, aligned for any type; NULL when out of memory. */
+void *dalcs_arena_alloc(struct dalcs_arena *arena, size_t n, size_t size);
+
+/* A NUL-terminated copy of text[0..length-1]; NULL when out of memory. */
+char *dalcs_arena_copy(struct dalcs_arena *arena, const char *text, size_t length);
+
+/* printf into the arena; NULL when out of memory. */
+char *dalcs_arena_printf(struct dalcs_arena *arena, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+void dalcs_arena_finish(struct dalcs_arena *arena);
+
+#endif

@@ -1,0 +1,126 @@
+/* circuit.h - devices on nodes: what a netlist means, before any equation is written.
+ *
+ * Built once from a netlist, then const. Node 0 is ground. Names are lower case. Currents through a
+ * two-terminal device flow from node[0] to node[1] inside it, as in SPICE. */
+#ifndef DALCS_CIRCUIT_H
+#define DALCS_CIRCUIT_H
+
+#include "diag.h"
+#include "stimulus.h"
+
+enum dalcs_device_kind {
+    DALCS_RESISTOR,  /* R a b value; value 0 is a short */
+    DALCS_INDUCTOR,  /* L a b value [IC=] */
+    DALCS_CAPACITOR, /* C a b value [IC=] */
+    DALCS_VSOURCE,   /* V a b stimulus */
+    DALCS_ISOURCE,   /* I a b stimulus: current flows a -> b inside the source */
+    DALCS_VCVS,      /* E a b ca cb gain */
+    DALCS_CCCS,      /* F a b Vname gain */
+    DALCS_VCCS,      /* G a b ca cb gain */
+    DALCS_CCVS,      /* H a b Vname gain */
+    DALCS_DIODE,     /* D anode cathode model */
+    DALCS_SWITCH     /* S a b ca cb model [ON|OFF] */
+};
+
+struct dalcs_device {
+    enum dalcs_device_kind kind;
+    const char *name;              /* "d1" */
+    int node[4];                   /* terminals, then controlling nodes for E, G, S */
+    double value;                  /* ohm, H, F, or gain */
+    double initial;                /* IC=: V for C, A for L */
+    bool has_initial;
+    bool initially_on;             /* S ... ON */
+    bool has_initial_state;        /* S carries ON or OFF */
+    int stimulus;                  /* V, I: index into circuit->stimulus, else -1 */
+    int control;                   /* F, H: index of the controlling V device, else -1 */
+    int model;                     /* D: index into diode_model; S: into switch_model; else -1 */
+    struct dalcs_location where;   /* the element's card */
+};
+
+/* Forward branch: ideal + Vfwd + Ron; optional parallel Roff; optional reverse branch Vrev + Rrev.
+ * Ron = 0 is complementarity, Roff = INFINITY exactly open, Vrev = INFINITY no breakdown. */
+struct dalcs_diode_model {
+    const char *name;
+    double ron, roff, vfwd, vrev, rrev; /* ohm, ohm, V, V, ohm */
+};
+
+/* Closes when the control rises through vt + vh, opens when it falls through vt - vh. Ron = 0 is a
+ * wire, Roff = INFINITY a cut. */
+struct dalcs_switch_model {
+    const char *name;
+    double ron, roff, vt, vh; /* ohm, ohm, V, V */
+};
+
+/* Mutual inductance k sqrt(L1 L2) between inductor devices, |k| <= 1. */
+struct dalcs_coupling {
+    const char *name;
+    int inductor[2];
+    double k;
+    struct dalcs_location where;
+};
+
+/* .ic v(a[,b]) = value */
+struct dalcs_initial_condition {
+    int node[2]; /* second is 0 for v(a) */
+    double value;
+    struct dalcs_location where;
+};
+
+/* One signal that .save or .print names, or a default one. */
+enum dalcs_signal_kind { DALCS_SIGNAL_VOLTAGE, DALCS_SIGNAL_CURRENT };
+
+struct dalcs_signal {
+    enum dalcs_signal_kind kind;
+    const char *name; /* "v(out)", "v(a,b)", "i(d1)" */
+    int node[2];      /* voltage: node[0] - node[1] */
+    int device;       /* current: index of the device, else -1 */
+};
+
+/* What .tran asks for; times in s. */
+struct dalcs_transient {
+    bool present;
+    double step, stop, start, max_step; /* max_step 0: not given */
+    bool use_initial_conditions;        /* uic */
+    struct dalcs_location where;
+};
+
+struct dalcs_circuit {
+    const char *title;
+    int n_nodes; /* ground included */
+    const char **node_name;
+    int n_devices;
+    struct dalcs_device *device;
+    int n_stimuli;
+    struct dalcs_stimulus *stimulus;
+    int n_diode_models;
+    struct dalcs_diode_model *diode_model;
+    int n_switch_models;
+    struct dalcs_switch_model *switch_model;
+    int n_couplings;
+    struct dalcs_coupling *coupling;
+    int n_initial_conditions;
+    struct dalcs_initial_condition *initial_condition;
+    int n_signals; /* default: every node voltage, then currents of V, L, D, S, E, H */
+    struct dalcs_signal *signal;
+    struct dalcs_transient transient;
+    bool operating_point; /* .op */
+    struct dalcs_circuit_options {
+        double reltol, abstol, vntol; /* 0: not given */
+        const char *method;           /* NULL: not given */
+        double step;                  /* 0: not given */
+    } options;
+    struct dalcs_arena arena; /* owns everything above, source text of locations included */
+};
+
+struct dalcs_netlist;
+
+/* Builds *circuit from the netlist. Every user error goes to diag; then the result is
+ * DALCS_E_NETLIST and *circuit is zeroed: nothing to free. The circuit is self-contained: the
+ * netlist may be finished afterwards. */
+enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
+                                      const struct dalcs_netlist *netlist,
+                                      struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
+void dalcs_circuit_finish(struct dalcs_circuit *circuit);
+
+#endif

@@ -1,0 +1,208 @@
+/* dalcs.h - the public interface of libdalcs.
+ *
+ * A session holds one netlist: read it, run it, ask for results. Nothing is global: two sessions
+ * may live in two threads. Every call that can fail returns an enum dalcs_status; what a person
+ * should read about a failure is in the session's diagnostics.
+ *
+ * Units are SI throughout: seconds, volts, amperes, coulombs, webers.
+ */
+#ifndef DALCS_H
+#define DALCS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* 0 is success, > 0 a numerical failure that a smaller step may cure, < 0 is final. */
+#define DALCS_STATUS_LIST(ENTRY)                                                                   \
+    ENTRY(DALCS_OK, 0, "ok")                                                                       \
+    ENTRY(DALCS_SINGULAR, 1, "singular matrix")                                                    \
+    ENTRY(DALCS_NOT_CONVERGED, 2, "no certified solution of the one-step problem was found")       \
+    ENTRY(DALCS_INFEASIBLE, 3, "the one-step problem has no solution")                             \
+    ENTRY(DALCS_E_NOMEM, -1, "out of memory")                                                      \
+    ENTRY(DALCS_E_IO, -2, "input/output error")                                                    \
+    ENTRY(DALCS_E_NETLIST, -3, "error in the netlist")                                             \
+    ENTRY(DALCS_E_OPTION, -4, "invalid option")                                                    \
+    ENTRY(DALCS_E_LIMIT, -5, "problem too large")                                                  \
+    ENTRY(DALCS_E_CANCELLED, -6, "cancelled")
+
+enum dalcs_status {
+#define DALCS_STATUS_ENUM(name, value, text) name = (value),
+    DALCS_STATUS_LIST(DALCS_STATUS_ENUM)
+#undef DALCS_STATUS_ENUM
+};
+
+#if defined(__GNUC__)
+#define DALCS_MUST_CHECK __attribute__((warn_unused_result))
+#else
+#define DALCS_MUST_CHECK
+#endif
+
+/* A short English phrase for a status; never NULL, never freed. */
+const char *dalcs_status_text(enum dalcs_status status);
+
+/* "0.1.0" */
+const char *dalcs_version(void);
+
+/* ---- Reading ------------------------------------------------------------------------------- */
+
+struct dalcs_session;
+
+/* Makes an empty session in *session; on failure *session is NULL. The caller destroys it. */
+enum dalcs_status dalcs_session_create(struct dalcs_session **session) DALCS_MUST_CHECK;
+
+/* Accepts NULL. Everything that a session handed out dies with it. */
+void dalcs_session_destroy(struct dalcs_session *session);
+
+/* Reads a netlist from a file, or from text[0..length-1] that messages call `name`. A session reads
+ * one netlist, once. Errors in the netlist: DALCS_E_NETLIST, all of them in the messages. */
+enum dalcs_status dalcs_session_read_file(struct dalcs_session *session,
+                                          const char *path) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_session_read_text(struct dalcs_session *session, const char *name,
+                                          const char *text, size_t length) DALCS_MUST_CHECK;
+
+enum dalcs_level { DALCS_LEVEL_NOTE, DALCS_LEVEL_WARNING, DALCS_LEVEL_ERROR };
+
+/* The messages so far, oldest first. Text has no final newline and lives as long as the session. */
+size_t dalcs_session_n_messages(const struct dalcs_session *session);
+const char *dalcs_session_message(const struct dalcs_session *session, size_t index,
+                                  enum dalcs_level *level);
+
+/* What the netlist asks for; times in s, 0 where not given. */
+struct dalcs_request {
+    bool operating_point;
+    bool transient;
+    double step, stop, start, max_step;
+};
+struct dalcs_request dalcs_session_request(const struct dalcs_session *session);
+
+/* ---- Running ------------------------------------------------------------------------------- */
+
+enum dalcs_analysis { DALCS_OPERATING_POINT, DALCS_TRANSIENT };
+enum dalcs_unit { DALCS_VOLT, DALCS_AMPERE };
+
+/* One table of results. Borrowed: valid until the session is destroyed. */
+struct dalcs_plot {
+    enum dalcs_analysis analysis;
+    const char *title;        /* the netlist's title line */
+    size_t n_signals;         /* time not counted */
+    const char *const *name;  /* [n_signals] "v(out)", "i(d1)" */
+    const enum dalcs_unit *unit; /* [n_signals] */
+};
+
+/* Receives results while they are made. Any callback may return a status other than DALCS_OK, which
+ * ends the run with that status. */
+struct dalcs_sink {
+    void *user;
+    enum dalcs_status (*begin)(void *user, const struct dalcs_plot *plot);
+    /* Times ascend; two rows of equal time are the two sides of a discontinuity. */
+    enum dalcs_status (*row)(void *user, double time, const double *value /* [n_signals] */);
+    enum dalcs_status (*end)(void *user);
+    /* May be NULL. Called now and then, not more than every few thousand steps. Return DALCS_OK to
+     * go on, DALCS_E_CANCELLED to stop. */
+    enum dalcs_status (*progress)(void *user, double time, double stop);
+};
+
+struct dalcs_run_options {
+    const char *method; /* "euler", the papers' implicit Euler; NULL: the netlist's or the default */
+    double step;        /* s; 0: the netlist's .tran tmax, else tstep */
+    const double *at;   /* [n_at] ascending output times in s; NULL: the .tran grid */
+    size_t n_at;
+    bool record;        /* keep events and jumps for the report */
+
+    /* Tolerances of the certificate and of the OSNSP; see doc/methods.md. All dimensionless. */
+    double certificate_tolerance; /* residual over its physical scale, 2e-13 */
+    double proximal_weight[3];    /* the eps ladder 1e-8, 1e-7, 1e-6 */
+    double rcond_min;             /* a mode with a smaller estimate counts as singular, 1e-14 */
+    int max_outer;                /* proximal iterations per rung, 40 */
+    int max_pivots;               /* per solve, on top of twice the number of pairs, 200 */
+    size_t cache_bytes;           /* bound on factorisations kept over all components, 256 MiB */
+    int dense_limit;              /* components up to this many unknowns use dense step maps, 64 */
+    size_t max_events;            /* events and jumps kept when recording, 1e6 */
+    const char *dump_path;        /* where to write an OSNSP that failed; NULL: nowhere */
+};
+
+struct dalcs_run_options dalcs_run_options_default(void);
+
+/* Runs .op and/or .tran. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the messages name the time and the
+ * elements; rows already handed to the sink stay true. */
+enum dalcs_status dalcs_session_run(struct dalcs_session *session,
+                                    const struct dalcs_run_options *options,
+                                    const struct dalcs_sink *sink) DALCS_MUST_CHECK;
+
+/* ---- The report ---------------------------------------------------------------------------- */
+
+struct dalcs_event {
+    double time;         /* s */
+    const char *element; /* "d1", "s1" */
+    bool on;
+};
+
+struct dalcs_jump {
+    double time; /* s */
+    size_t n_states;
+    const struct dalcs_jump_state {
+        const char *element;  /* "c1": V, "l1": A */
+        double before, after;
+    } *state;
+    size_t n_impulses;
+    const struct dalcs_impulse {
+        const char *element; /* diode or switch */
+        bool is_flux;        /* Wb across it; else C through it */
+        double value;
+    } *impulse;
+    double energy_lost; /* J, 1/2 |dx|^2 in the storage metric */
+};
+
+/* What a run did. Strings and arrays are borrowed from the session. */
+struct dalcs_report {
+    const char *netlist; /* path or name */
+    const char *title;
+    const char *method;
+    double step; /* s, the step used in .tran; 0 when there was none */
+    double stop; /* s */
+    struct {
+        int nodes, x, z, lambda, switches, components;
+    } size;
+    struct {
+        long steps;          /* accepted time steps */
+        long osnsp;          /* one-step problems solved, over all components */
+        long pivots;         /* mode changes tried */
+        long factorizations; /* of KLU and LAPACK */
+        long cache_hits;
+        long singular;       /* problems in a singular mode, answered by the least-norm solution */
+        double cpu_s, wall_s;
+    } work;
+    struct {
+        double worst; /* largest scaled residual of any accepted step */
+        double time;  /* s */
+        const char *where; /* "KCL at out", "branch v1", "complementarity of d1" */
+    } certificate;
+    size_t n_states;
+    const char *const *state_name; /* [n_states] element names of capacitors and inductors */
+    const double *start;           /* [n_states] just after t = 0: V, A */
+    const double *final;           /* [n_states] */
+    size_t n_events, n_events_dropped;
+    const struct dalcs_event *event;
+    size_t n_jumps, n_jumps_dropped;
+    const struct dalcs_jump *jump;
+    struct {
+        bool present;
+        double time;      /* s */
+        const char *kind; /* "loop", "cutset" or "mode" */
+        size_t n_elements;
+        const char *const *element;
+    } infeasible;
+};
+
+/* Valid after dalcs_session_run, whatever its status; NULL before. */
+const struct dalcs_report *dalcs_session_report(const struct dalcs_session *session);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

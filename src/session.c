@@ -1,0 +1,2 @@
+/* session.c - the whole flow behind dalcs.h. */
+#include "dalcs.h"
