@@ -47,6 +47,10 @@ const char *dalcs_status_text(enum dalcs_status status);
 /* "0.1.0" */
 const char *dalcs_version(void);
 
+/* A number as SPICE writes it, "1u", "2.5meg", "10kOhm". DALCS_E_OPTION when text is something else
+ * or has anything after it; *value is then unchanged. */
+enum dalcs_status dalcs_parse_number(const char *text, double *value) DALCS_MUST_CHECK;
+
 /* ---- Reading ------------------------------------------------------------------------------- */
 
 struct dalcs_session;

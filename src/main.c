@@ -1,1 +1,49 @@
-int main(void) { return 0; }
+/* main.c - the program: options in, status out. The only file that knows stdout, stderr, signals
+ * and the exit status; all the rest is told where to print. */
+#include "cli.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The signal that asks the run to stop; 0: none yet. */
+static volatile sig_atomic_t interrupted;
+
+static void note_signal(int number) {
+    interrupted = number;
+}
+
+/* The first signal ends the run with its results so far in files; a second one ends the program. */
+static void catch_signals(void) {
+    struct sigaction action = {.sa_handler = note_signal, .sa_flags = (int)SA_RESETHAND};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    sigaction(SIGHUP, &action, NULL);
+    action = (struct sigaction){.sa_handler = SIG_IGN};
+    sigaction(SIGPIPE, &action, NULL); /* a reader that left is a write error */
+    sigaction(SIGXFSZ, &action, NULL); /* so is a file that grew too large */
+}
+
+int main(int argc, char **argv) {
+    catch_signals();
+    const struct dalcs_cli cli = {
+        .out = stdout,
+        .err = stderr,
+        .err_is_terminal = isatty(STDERR_FILENO) == 1,
+        .interrupted = &interrupted,
+    };
+    errno = 0;
+    int result = dalcs_cli_eval(&cli, argc, argv);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        dalcs_cli_error(&cli, "cannot write to standard output: %s",
+                        strerror(errno != 0 ? errno : EIO));
+        result = result == DALCS_EXIT_OK ? DALCS_EXIT_IO : result;
+    }
+    if (interrupted && result == DALCS_EXIT_RUN) {
+        /* Die of the signal, so that a shell running a loop stops as well. */
+        signal((int)interrupted, SIG_DFL);
+        raise((int)interrupted);
+    }
+    return result;
+}

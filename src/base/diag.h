@@ -10,36 +10,50 @@
 
 enum dalcs_severity { DALCS_NOTE, DALCS_WARNING, DALCS_ERROR };
 
-/* A place in a netlist. line and column count from 1; line 0 means "no place". */
+/* A place in a netlist. line and column count from 1; line 0 means "no place in the file". */
 struct dalcs_location {
     const char *file;        /* borrowed: lives as long as the netlist or circuit that made it */
     const char *source_line; /* borrowed: the physical line's text without its newline, or NULL */
     int line;
-    int column;
+    int column; /* in characters (UTF-8 code points), as an editor counts */
     int length; /* characters to underline, at least 1 */
 };
 
 struct dalcs_diagnostic {
     enum dalcs_severity severity;
-    int line;
+    int line; /* 0: no place */
     int column;
     char *text; /* the whole formatted message: "file:line:col: error: ...", source line, caret,
                    hint; ends without a newline */
 };
 
+/* Zero-initialise; finish frees everything. */
 struct dalcs_diag {
     struct dalcs_diagnostic *item;
     size_t n;
     size_t capacity;
-    size_t n_errors;
+    size_t n_errors; /* all of them, kept or not */
+    size_t n_other;  /* notes and warnings, kept or not */
     bool out_of_memory; /* a message was lost */
 };
 
+/* Messages kept: a flood of warnings must not push out an error. When one kind is full, a last
+ * message says that there were more. */
+enum { DALCS_DIAG_MAX_ERRORS = 800, DALCS_DIAG_MAX_OTHER = 200 };
+
 /* Adds a message. `where` may be NULL or have line 0. `hint` (may be NULL) is printed on its own
- * line as "  hint: ...". At most 1000 messages are kept; a last one says that there were more. */
+ * line as "  hint: ...". */
 void dalcs_diag_add(struct dalcs_diag *diag, enum dalcs_severity severity,
                     const struct dalcs_location *where, const char *hint, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
+
+void dalcs_diag_add_list(struct dalcs_diag *diag, enum dalcs_severity severity,
+                         const struct dalcs_location *where, const char *hint, const char *format,
+                         va_list arguments) __attribute__((format(printf, 5, 0)));
+
+/* Sorts by line and column, messages without a place last; equal places keep their order. Several
+ * passes over a netlist find its errors in no order that a reader would expect. */
+void dalcs_diag_sort(struct dalcs_diag *diag);
 
 void dalcs_diag_finish(struct dalcs_diag *diag);
 

@@ -4,6 +4,8 @@
 
 #include "status.h"
 
+#include <stdarg.h>
+
 /* n zeroed objects of `size` bytes; NULL when out of memory or when n * size overflows. n = 0 gives
  * a unique non-NULL pointer. Release with free(). */
 void *dalcs_alloc(size_t n, size_t size);
@@ -27,6 +29,8 @@ char *dalcs_arena_copy(struct dalcs_arena *arena, const char *text, size_t lengt
 /* printf into the arena; NULL when out of memory. */
 char *dalcs_arena_printf(struct dalcs_arena *arena, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+char *dalcs_arena_printf_list(struct dalcs_arena *arena, const char *format, va_list arguments)
+    __attribute__((format(printf, 2, 0)));
 
 void dalcs_arena_finish(struct dalcs_arena *arena);
 

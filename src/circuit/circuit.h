@@ -107,6 +107,7 @@ struct dalcs_circuit {
     struct dalcs_circuit_options {
         double reltol, abstol, vntol; /* 0: not given */
         const char *method;           /* NULL: not given */
+        struct dalcs_location method_where;
         double step;                  /* 0: not given */
     } options;
     struct dalcs_arena arena; /* owns everything above, source text of locations included */

@@ -2,7 +2,10 @@
  *
  * A stimulus is piecewise smooth. Edges (breakpoints of value or slope) are computed from integer
  * period counts, never accumulated; a PULSE with zero rise time is a true discontinuity, whose left
- * and right limits both exist. */
+ * and right limits both exist.
+ *
+ * A time within a few roundings of an edge is that edge: everywhere here "at t" means closer than
+ * 4 DBL_EPSILON max(|t|, |delay|). Edges closer together than that are one edge. */
 #ifndef DALCS_STIMULUS_H
 #define DALCS_STIMULUS_H
 
@@ -21,18 +24,26 @@ enum dalcs_side { DALCS_LEFT, DALCS_RIGHT };
 
 struct dalcs_stimulus {
     enum dalcs_stimulus_kind kind;
-    double dc; /* value in .op when the source has an explicit DC value; see has_dc */
+    double dc; /* the card's DC value; see has_dc */
     bool has_dc;
     union {
+        /* offset + amplitude exp(-damping (t - delay)) sin(2 pi frequency (t - delay) + phase);
+         * before the delay offset + amplitude sin(phase) */
         struct {
             double offset, amplitude, frequency, delay, damping, phase; /* V or A, Hz, s, 1/s, deg */
         } sine;
+        /* low until the delay; then in each period: rise, high for `width`, fall, low. A pulse
+         * longer than its period is cut by the next one. */
         struct {
-            double low, high, delay, rise, fall, width, period; /* V or A, s; period INFINITY: once */
+            double low, high, delay, rise, fall, width, period; /* V or A, s; width or period
+                                                                   INFINITY: for ever, once */
         } pulse;
+        /* low + (high - low) (r - f), r = 1 - exp(-(t - rise_delay) / rise_tau) after rise_delay,
+         * f likewise after fall_delay (INFINITY: never); a tau of 0 is a jump */
         struct {
             double low, high, rise_delay, rise_tau, fall_delay, fall_tau;
         } exponential;
+        /* straight lines; constant before the first and after the last point */
         struct {
             int n; /* points, n >= 1; times ascending, equal times are a jump */
             const double *t;
@@ -45,15 +56,15 @@ struct dalcs_stimulus {
  * dalcs_stimulus_next_edge the limits are exact: rounding of t never picks the wrong side. */
 double dalcs_stimulus_value(const struct dalcs_stimulus *s, double t, enum dalcs_side side);
 
-/* The first edge strictly after t (beyond rounding: > t + 4 ulp(t)), INFINITY when there is none.
- * An edge is a jump of the value or of the slope. */
+/* The first edge strictly after t (beyond rounding, see above), INFINITY when there is none. An
+ * edge is a jump of the value or of the slope. */
 double dalcs_stimulus_next_edge(const struct dalcs_stimulus *s, double t);
 
-/* Does the value itself jump at the edge t? */
+/* Does the value itself jump at time t? */
 bool dalcs_stimulus_jumps_at(const struct dalcs_stimulus *s, double t);
 
-/* The value for the operating point: the DC value when the card has one and no time function was
- * given for t = 0, else the right limit at t = 0 (as ngspice: the transient value at 0). */
+/* The value for the operating point, as ngspice chooses it: for a plain .op the card's DC value
+ * when it has one; for the start of a transient, or without a DC value, the right limit at 0. */
 double dalcs_stimulus_operating_value(const struct dalcs_stimulus *s, bool transient_follows);
 
 #endif

@@ -1,0 +1,207 @@
+/* diag.c - formats and keeps the messages that a person reads.
+ *
+ *     bridge.cir:4:10: error: 'abc' is not a number
+ *     R1 in out abc
+ *               ^~~
+ *       hint: ...
+ *
+ * A message is one string, made when it is added, so it needs nothing of the netlist afterwards.
+ * Very long source lines are shown as an excerpt around the caret. */
+#include "diag.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { EXCERPT_BEFORE = 60, EXCERPT_AFTER = 90, LINE_MAX_SHOWN = 160 };
+
+/* A growing string; after a failed allocation `failed` is set and appending does nothing. */
+struct text {
+    char *data;
+    size_t length;
+    size_t capacity;
+    bool failed;
+};
+
+static void append(struct text *text, const char *piece, size_t length) {
+    if (text->failed ||
+        dalcs_grow(&text->data, &text->capacity, text->length + length + 1, 1) != DALCS_OK) {
+        text->failed = true;
+        return;
+    }
+    memcpy(text->data + text->length, piece, length);
+    text->length += length;
+    text->data[text->length] = '\0';
+}
+
+static void append_text(struct text *text, const char *piece) {
+    append(text, piece, strlen(piece));
+}
+
+static void append_format_list(struct text *text, const char *format, va_list arguments) {
+    va_list again;
+    va_copy(again, arguments);
+    const int length = vsnprintf(NULL, 0, format, again);
+    va_end(again);
+    if (length < 0 || text->failed ||
+        dalcs_grow(&text->data, &text->capacity, text->length + (size_t)length + 1, 1) !=
+            DALCS_OK) {
+        text->failed = true;
+        return;
+    }
+    vsnprintf(text->data + text->length, (size_t)length + 1, format, arguments);
+    text->length += (size_t)length;
+}
+
+static void append_format(struct text *text, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static void append_format(struct text *text, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    append_format_list(text, format, arguments);
+    va_end(arguments);
+}
+
+static bool starts_character(char c) {
+    return ((unsigned char)c & 0xC0) != 0x80;
+}
+
+/* The byte where character number `index` (from 0) starts; the end when there are fewer. */
+static const char *character_at(const char *line, int index) {
+    while (*line != '\0' && index > 0) {
+        line++;
+        if (starts_character(*line)) {
+            index--;
+        }
+    }
+    return line;
+}
+
+static int count_characters(const char *line) {
+    int n = 0;
+    for (; *line != '\0'; line++) {
+        n += starts_character(*line);
+    }
+    return n;
+}
+
+/* The source line and the line with the caret under it. Tabs are repeated in the caret's line, so
+ * that it stands right whatever their width. */
+static void append_excerpt(struct text *text, const struct dalcs_location *where) {
+    const int n = count_characters(where->source_line);
+    const int caret = where->column > 0 ? where->column - 1 : 0;
+    const bool whole = n <= LINE_MAX_SHOWN;
+    int first = 0;
+    int last = n;
+    if (!whole) {
+        first = caret > EXCERPT_BEFORE ? caret - EXCERPT_BEFORE : 0;
+        last = caret < n - EXCERPT_AFTER ? caret + EXCERPT_AFTER : n;
+    }
+    const char *begin = character_at(where->source_line, first);
+    const char *end = character_at(begin, last - first);
+    append_text(text, first > 0 ? "\n..." : "\n");
+    append(text, begin, (size_t)(end - begin));
+    append_text(text, last < n ? "...\n" : "\n");
+
+    append_text(text, first > 0 ? "   " : "");
+    const char *p = begin;
+    for (int k = first; k < caret; k++) {
+        append_text(text, *p == '\t' ? "\t" : " ");
+        p = *p == '\0' ? p : character_at(p, 1);
+    }
+    append_text(text, "^");
+    for (int k = caret + 1; k < caret + where->length && k < last; k++) {
+        append_text(text, "~");
+    }
+}
+
+/* Takes over text->data. */
+static void keep(struct dalcs_diag *diag, enum dalcs_severity severity,
+                 const struct dalcs_location *where, struct text *text) {
+    if (text->failed ||
+        dalcs_grow(&diag->item, &diag->capacity, diag->n + 1, sizeof *diag->item) != DALCS_OK) {
+        free(text->data);
+        diag->out_of_memory = true;
+        return;
+    }
+    struct dalcs_diagnostic *item = &diag->item[diag->n++];
+    item->severity = severity;
+    item->line = where != NULL ? where->line : 0;
+    item->column = where != NULL ? where->column : 0;
+    item->text = text->data;
+}
+
+void dalcs_diag_add_list(struct dalcs_diag *diag, enum dalcs_severity severity,
+                         const struct dalcs_location *where, const char *hint, const char *format,
+                         va_list arguments) {
+    static const char *const label[] = {"note", "warning", "error"};
+    size_t *count = severity == DALCS_ERROR ? &diag->n_errors : &diag->n_other;
+    const size_t limit = severity == DALCS_ERROR ? DALCS_DIAG_MAX_ERRORS : DALCS_DIAG_MAX_OTHER;
+    ++*count;
+    if (*count > limit) {
+        return;
+    }
+    struct text text = {0};
+    if (*count == limit) {
+        append_text(&text, severity == DALCS_ERROR ? "error: more errors than are shown here"
+                                                   : "note: more warnings than are shown here");
+        keep(diag, severity, NULL, &text);
+        return;
+    }
+    if (where != NULL && where->file != NULL) {
+        append_format(&text, "%s:", where->file);
+        if (where->line > 0) {
+            append_format(&text, "%d:", where->line);
+        }
+        if (where->line > 0 && where->column > 0) {
+            append_format(&text, "%d:", where->column);
+        }
+        append_text(&text, " ");
+    }
+    append_format(&text, "%s: ", label[severity]);
+    append_format_list(&text, format, arguments);
+    if (where != NULL && where->line > 0 && where->source_line != NULL) {
+        append_excerpt(&text, where);
+    }
+    if (hint != NULL) {
+        append_format(&text, "\n  hint: %s", hint);
+    }
+    keep(diag, severity, where, &text);
+}
+
+void dalcs_diag_add(struct dalcs_diag *diag, enum dalcs_severity severity,
+                    const struct dalcs_location *where, const char *hint, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    dalcs_diag_add_list(diag, severity, where, hint, format, arguments);
+    va_end(arguments);
+}
+
+static bool comes_before(const struct dalcs_diagnostic *a, const struct dalcs_diagnostic *b) {
+    if ((a->line == 0) != (b->line == 0)) {
+        return b->line == 0;
+    }
+    return a->line != b->line ? a->line < b->line : a->column < b->column;
+}
+
+void dalcs_diag_sort(struct dalcs_diag *diag) {
+    /* Insertion: stable, needs no memory, and there are at most a thousand items, nearly sorted. */
+    for (size_t k = 1; k < diag->n; k++) {
+        const struct dalcs_diagnostic item = diag->item[k];
+        size_t place = k;
+        while (place > 0 && comes_before(&item, &diag->item[place - 1])) {
+            diag->item[place] = diag->item[place - 1];
+            place--;
+        }
+        diag->item[place] = item;
+    }
+}
+
+void dalcs_diag_finish(struct dalcs_diag *diag) {
+    for (size_t k = 0; k < diag->n; k++) {
+        free(diag->item[k].text);
+    }
+    free(diag->item);
+    *diag = (struct dalcs_diag){0};
+}

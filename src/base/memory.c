@@ -1,0 +1,141 @@
+/* memory.c - checked allocation, growable arrays and an arena.
+ *
+ * Every size is checked for overflow before it is multiplied, and every failure comes back as NULL
+ * or DALCS_E_NOMEM with nothing changed. The arena is a list of blocks; small objects share one,
+ * an object larger than a quarter of a block gets its own. */
+#include "memory.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct dalcs_arena_block {
+    struct dalcs_arena_block *next;
+    size_t size; /* bytes in data */
+    size_t used;
+    _Alignas(max_align_t) unsigned char data[];
+};
+
+/* Blocks double from the first size to the last, so that a small netlist stays small and a huge one
+ * makes few calls to the allocator. */
+enum { FIRST_BLOCK = 4096, LAST_BLOCK = 1 << 20 };
+
+void *dalcs_alloc(size_t n, size_t size) {
+    if (n == 0 || size == 0) {
+        return calloc(1, 1);
+    }
+    if (n > PTRDIFF_MAX / size) {
+        return NULL;
+    }
+    return calloc(n, size);
+}
+
+enum dalcs_status dalcs_grow(void *array, size_t *capacity, size_t need, size_t size) {
+    if (need <= *capacity) {
+        return DALCS_OK;
+    }
+    size_t bigger = *capacity < 8 ? 16 : *capacity + *capacity / 2;
+    if (bigger < need) {
+        bigger = need;
+    }
+    if (bigger > PTRDIFF_MAX / size) {
+        return DALCS_E_NOMEM;
+    }
+    /* The caller's pointer may have any object type; only its bytes are portable to read. */
+    void *old;
+    memcpy(&old, array, sizeof old);
+    void *grown = realloc(old, bigger * size);
+    if (grown == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    memset((unsigned char *)grown + *capacity * size, 0, (bigger - *capacity) * size);
+    memcpy(array, &grown, sizeof grown);
+    *capacity = bigger;
+    return DALCS_OK;
+}
+
+static struct dalcs_arena_block *make_block(size_t size) {
+    if (size > PTRDIFF_MAX - sizeof(struct dalcs_arena_block)) {
+        return NULL;
+    }
+    struct dalcs_arena_block *block = calloc(1, sizeof *block + size);
+    if (block != NULL) {
+        block->size = size;
+    }
+    return block;
+}
+
+static void *take(struct dalcs_arena *arena, size_t bytes, size_t align) {
+    struct dalcs_arena_block *head = arena->head;
+    if (head != NULL) {
+        const size_t start = (head->used + align - 1) / align * align;
+        if (start <= head->size && bytes <= head->size - start) {
+            head->used = start + bytes;
+            return head->data + start;
+        }
+    }
+    size_t block_size = head == NULL ? FIRST_BLOCK : head->size * 2;
+    block_size = block_size > LAST_BLOCK ? LAST_BLOCK : block_size;
+    const bool own = bytes > block_size / 4;
+    struct dalcs_arena_block *block = make_block(own ? bytes : block_size);
+    if (block == NULL) {
+        return NULL;
+    }
+    block->used = bytes;
+    if (own && head != NULL) {
+        /* Behind the head, whose free room stays in use. */
+        block->next = head->next;
+        head->next = block;
+    } else {
+        block->next = head;
+        arena->head = block;
+    }
+    return block->data;
+}
+
+void *dalcs_arena_alloc(struct dalcs_arena *arena, size_t n, size_t size) {
+    if (n != 0 && size > PTRDIFF_MAX / n) {
+        return NULL;
+    }
+    const size_t bytes = n * size;
+    return take(arena, bytes == 0 ? 1 : bytes, _Alignof(max_align_t));
+}
+
+char *dalcs_arena_copy(struct dalcs_arena *arena, const char *text, size_t length) {
+    char *copy = length < PTRDIFF_MAX ? take(arena, length + 1, 1) : NULL;
+    if (copy != NULL && length > 0) {
+        memcpy(copy, text, length);
+    }
+    return copy;
+}
+
+char *dalcs_arena_printf_list(struct dalcs_arena *arena, const char *format, va_list arguments) {
+    va_list again;
+    va_copy(again, arguments);
+    const int length = vsnprintf(NULL, 0, format, again);
+    va_end(again);
+    char *text = length < 0 ? NULL : take(arena, (size_t)length + 1, 1);
+    if (text != NULL) {
+        vsnprintf(text, (size_t)length + 1, format, arguments);
+    }
+    return text;
+}
+
+char *dalcs_arena_printf(struct dalcs_arena *arena, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    char *text = dalcs_arena_printf_list(arena, format, arguments);
+    va_end(arguments);
+    return text;
+}
+
+void dalcs_arena_finish(struct dalcs_arena *arena) {
+    struct dalcs_arena_block *block = arena->head;
+    while (block != NULL) {
+        struct dalcs_arena_block *next = block->next;
+        free(block);
+        block = next;
+    }
+    arena->head = NULL;
+}

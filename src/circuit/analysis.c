@@ -1,0 +1,117 @@
+/* analysis.c - .tran and .op: what is to be computed. */
+#include "builder.h"
+
+static const char TRAN_USAGE[] = ".tran tstep tstop [tstart [tmax]] [uic]";
+
+enum { TSTEP, TSTOP, TSTART, TMAX, N_TIMES };
+
+/* A second .tran or .op is an error. */
+static bool is_first(struct dalcs_builder *builder, const struct dalcs_card *card,
+                     const struct dalcs_token **first) {
+    if (*first == NULL) {
+        *first = card->token;
+        return true;
+    }
+    dalcs_builder_error(builder, card->token, NULL, "a second %s, the first at %s",
+                        card->token->text, dalcs_builder_place(builder, *first));
+    return false;
+}
+
+static bool check_times(struct dalcs_builder *builder, const struct dalcs_transient *transient,
+                        const struct dalcs_token *const *place) {
+    if (transient->stop <= 0) {
+        dalcs_builder_error(builder, place[TSTOP], TRAN_USAGE,
+                            "the stop time must be positive");
+        return false;
+    }
+    if (transient->step < 0) {
+        dalcs_builder_error(builder, place[TSTEP], TRAN_USAGE, "the step cannot be negative");
+        return false;
+    }
+    if (transient->step > transient->stop) {
+        dalcs_builder_warn(builder, place[TSTEP],
+                           dalcs_builder_hint(builder, "the order is: %s", TRAN_USAGE),
+                           "the step of %g s is longer than the run of %g s", transient->step,
+                           transient->stop);
+    }
+    if (place[TSTART] != NULL && (transient->start < 0 || transient->start >= transient->stop)) {
+        dalcs_builder_error(builder, place[TSTART], TRAN_USAGE,
+                            "the start time must lie between 0 and the stop time");
+        return false;
+    }
+    if (place[TMAX] != NULL && transient->max_step <= 0) {
+        dalcs_builder_error(builder, place[TMAX], TRAN_USAGE,
+                            "the largest step must be positive");
+        return false;
+    }
+    return true;
+}
+
+/* A word on the .tran card that is no time; false ends the card. */
+static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *transient) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    struct dalcs_builder *builder = reader->builder;
+    if (dalcs_reader_take_word(reader, "uic")) {
+        transient->use_initial_conditions = true;
+        return true;
+    }
+    if (dalcs_reader_take_word(reader, "nodiscard")) {
+        dalcs_builder_note(builder, token, NULL, "'%s' has no meaning here and is ignored",
+                           token->text);
+        return true;
+    }
+    if (dalcs_reader_take_word(reader, "startup") || dalcs_reader_take_word(reader, "steady") ||
+        dalcs_reader_take_word(reader, "step")) {
+        dalcs_builder_error(builder, token, TRAN_USAGE, "'%s' is not supported yet", token->text);
+        return false;
+    }
+    dalcs_reader_unexpected(reader);
+    return false;
+}
+
+void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct dalcs_transient *transient = &builder->circuit->transient;
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, TRAN_USAGE);
+    if (!is_first(builder, card, &builder->tran)) {
+        return;
+    }
+    transient->where = dalcs_builder_keep_location(builder, card->token);
+
+    double time[N_TIMES] = {0};
+    const struct dalcs_token *place[N_TIMES] = {NULL};
+    int n = 0;
+    while (!dalcs_reader_at_end(&reader)) {
+        const struct dalcs_token *token = dalcs_reader_peek(&reader, 0);
+        if (dalcs_reader_is_number(token) && n < N_TIMES) {
+            if (!dalcs_reader_list_number(&reader, DALCS_SECOND, "a time", &time[n])) {
+                return;
+            }
+            place[n++] = token;
+        } else if (!read_word(&reader, transient)) {
+            return;
+        }
+    }
+    if (n == 0) {
+        dalcs_reader_missing(&reader, "a stop time");
+        return;
+    }
+    if (n == 1) {
+        dalcs_builder_note(builder, place[0], TRAN_USAGE,
+                           "the only time on .tran is the stop time");
+        time[TSTOP] = time[TSTEP];
+        place[TSTOP] = place[TSTEP];
+        time[TSTEP] = 0;
+    }
+    transient->step = time[TSTEP];
+    transient->stop = time[TSTOP];
+    transient->start = time[TSTART];
+    transient->max_step = time[TMAX];
+    transient->present = check_times(builder, transient, place);
+}
+
+void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, ".op takes no values");
+    if (is_first(builder, card, &builder->op)) {
+        builder->circuit->operating_point = dalcs_reader_end(&reader);
+    }
+}

@@ -1,0 +1,230 @@
+/* builder.c - names and messages while a circuit is being built.
+ *
+ * Names and places that the finished circuit shows are copied into its arena: the netlist dies
+ * before it. Running out of memory is remembered in out_of_memory and ends the build. */
+#include "builder.h"
+
+#include <string.h>
+
+/* A list of names longer than this is no help in a hint. */
+enum { MOST_NAMES_IN_HINT = 8 };
+
+static bool note_memory(struct dalcs_builder *builder, bool ok) {
+    builder->out_of_memory = builder->out_of_memory || !ok;
+    return ok;
+}
+
+/* ---- Messages ------------------------------------------------------------------------------ */
+
+void dalcs_builder_error_at(struct dalcs_builder *builder, const struct dalcs_location *where,
+                            const char *hint, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    dalcs_diag_add_list(builder->diag, DALCS_ERROR, where, hint, format, arguments);
+    va_end(arguments);
+    builder->failed = true;
+}
+
+void dalcs_builder_error(struct dalcs_builder *builder, const struct dalcs_token *token,
+                         const char *hint, const char *format, ...) {
+    const struct dalcs_location where = dalcs_token_location(token);
+    va_list arguments;
+    va_start(arguments, format);
+    dalcs_diag_add_list(builder->diag, DALCS_ERROR, &where, hint, format, arguments);
+    va_end(arguments);
+    builder->failed = true;
+}
+
+void dalcs_builder_warn(struct dalcs_builder *builder, const struct dalcs_token *token,
+                        const char *hint, const char *format, ...) {
+    const struct dalcs_location where = dalcs_token_location(token);
+    va_list arguments;
+    va_start(arguments, format);
+    dalcs_diag_add_list(builder->diag, DALCS_WARNING, &where, hint, format, arguments);
+    va_end(arguments);
+}
+
+void dalcs_builder_note(struct dalcs_builder *builder, const struct dalcs_token *token,
+                        const char *hint, const char *format, ...) {
+    const struct dalcs_location where = dalcs_token_location(token);
+    va_list arguments;
+    va_start(arguments, format);
+    dalcs_diag_add_list(builder->diag, DALCS_NOTE, &where, hint, format, arguments);
+    va_end(arguments);
+}
+
+const char *dalcs_builder_hint(struct dalcs_builder *builder, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const char *hint = dalcs_arena_printf_list(&builder->scratch, format, arguments);
+    va_end(arguments);
+    note_memory(builder, hint != NULL);
+    return hint;
+}
+
+const char *dalcs_builder_suggest(struct dalcs_builder *builder, const struct dalcs_names *names,
+                                  const char *name, const char *plural) {
+    /* A thousand errors in a million names would take minutes to guess at. */
+    if (builder->diag->n_errors > 20) {
+        return NULL;
+    }
+    const char *nearest = dalcs_names_nearest(names, name);
+    if (nearest != NULL) {
+        return dalcs_builder_hint(builder, "did you mean '%s'?", nearest);
+    }
+    const char *list = dalcs_names_join(names, MOST_NAMES_IN_HINT, &builder->scratch);
+    return list != NULL ? dalcs_builder_hint(builder, "the %s are: %s", plural, list) : NULL;
+}
+
+const char *dalcs_builder_place(struct dalcs_builder *builder, const struct dalcs_token *token) {
+    const struct dalcs_location where = dalcs_token_location(token);
+    const char *text =
+        dalcs_builder_hint(builder, "%s:%d:%d", where.file, where.line, where.column);
+    return text != NULL ? text : where.file;
+}
+
+struct dalcs_location dalcs_builder_keep_location(struct dalcs_builder *builder,
+                                                  const struct dalcs_token *token) {
+    struct dalcs_arena *arena = &builder->circuit->arena;
+    if (builder->kept_file == NULL) {
+        const char *file = token->line->file;
+        builder->kept_file = dalcs_arena_copy(arena, file, strlen(file));
+        note_memory(builder, builder->kept_file != NULL);
+    }
+    if (builder->kept_line != token->line) {
+        const char *text = token->line->text;
+        builder->kept_line = token->line;
+        builder->kept_text = dalcs_arena_copy(arena, text, strlen(text));
+        note_memory(builder, builder->kept_text != NULL);
+    }
+    struct dalcs_location where = dalcs_token_location(token);
+    where.file = builder->kept_file;
+    where.source_line = builder->kept_text;
+    return where;
+}
+
+/* ---- Nodes --------------------------------------------------------------------------------- */
+
+static bool is_ground(const char *name) {
+    return strcmp(name, "0") == 0 || strcmp(name, "gnd") == 0;
+}
+
+int dalcs_builder_node(struct dalcs_builder *builder, const struct dalcs_token *token) {
+    if (is_ground(token->text)) {
+        return 0;
+    }
+    const int known = dalcs_names_find(&builder->nodes, token->text);
+    if (known >= 0) {
+        return known;
+    }
+    const int node = builder->circuit->n_nodes;
+    const size_t need = (size_t)node + 1;
+    const char *name = dalcs_arena_copy(&builder->circuit->arena, token->text,
+                                        strlen(token->text));
+    if (!note_memory(builder, name != NULL &&
+                                  dalcs_grow(&builder->node_name, &builder->node_name_capacity,
+                                             need, sizeof *builder->node_name) == DALCS_OK &&
+                                  dalcs_grow(&builder->node_token, &builder->node_token_capacity,
+                                             need, sizeof *builder->node_token) == DALCS_OK &&
+                                  dalcs_names_add(&builder->nodes, name, node) == DALCS_OK)) {
+        return -1;
+    }
+    builder->node_name[node] = name;
+    builder->node_token[node] = token;
+    builder->circuit->n_nodes++;
+    return node;
+}
+
+int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_token *token) {
+    if (is_ground(token->text)) {
+        return 0;
+    }
+    const int node = dalcs_names_find(&builder->nodes, token->text);
+    if (node < 0) {
+        builder->failed = true;
+        if (!builder->incomplete) {
+            dalcs_builder_error(
+                builder, token,
+                dalcs_builder_suggest(builder, &builder->nodes, token->text, "nodes"),
+                "no element is connected to a node '%s'", token->text);
+        }
+    }
+    return node;
+}
+
+/* ---- Devices ------------------------------------------------------------------------------- */
+
+int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_token *token) {
+    const int device = dalcs_names_find(&builder->devices, token->text);
+    if (device >= 0 && device < builder->n_device_cards) {
+        return device;
+    }
+    builder->failed = true;
+    if (device >= 0) {
+        dalcs_builder_error(builder, token, NULL, "'%s' is a coupling, which has no terminals",
+                            token->text);
+    } else if (!builder->incomplete) {
+        dalcs_builder_error(
+            builder, token,
+            dalcs_builder_suggest(builder, &builder->devices, token->text, "elements"),
+            "there is no element '%s'", token->text);
+    }
+    return -1;
+}
+
+void dalcs_builder_add_name(struct dalcs_builder *builder, const struct dalcs_token *name,
+                            int value) {
+    const int first = dalcs_names_find(&builder->devices, name->text);
+    if (first < 0) {
+        note_memory(builder, dalcs_names_add(&builder->devices, name->text, value) == DALCS_OK);
+        return;
+    }
+    dalcs_builder_error(builder, name, "give it another name",
+                        "there are two elements '%s', the first at %s", name->text,
+                        dalcs_builder_place(builder, builder->device_token[first]));
+}
+
+struct dalcs_device *dalcs_builder_add_device(struct dalcs_builder *builder,
+                                              enum dalcs_device_kind kind,
+                                              const struct dalcs_token *name) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    struct dalcs_device *device = &circuit->device[circuit->n_devices];
+    device->kind = kind;
+    device->stimulus = -1;
+    device->control = -1;
+    device->model = -1;
+    device->name = dalcs_arena_copy(&circuit->arena, name->text, strlen(name->text));
+    device->where = dalcs_builder_keep_location(builder, name);
+    if (!note_memory(builder, device->name != NULL)) {
+        return NULL;
+    }
+    builder->device_token[circuit->n_devices] = name;
+    dalcs_builder_add_name(builder, name, circuit->n_devices);
+    circuit->n_devices++;
+    return device;
+}
+
+const char *dalcs_builder_kind_text(enum dalcs_device_kind kind) {
+    switch (kind) {
+    case DALCS_RESISTOR:
+        return "a resistor";
+    case DALCS_INDUCTOR:
+        return "an inductor";
+    case DALCS_CAPACITOR:
+        return "a capacitor";
+    case DALCS_VSOURCE:
+        return "a voltage source";
+    case DALCS_ISOURCE:
+        return "a current source";
+    case DALCS_VCVS:
+    case DALCS_CCCS:
+    case DALCS_VCCS:
+    case DALCS_CCVS:
+        return "a controlled source";
+    case DALCS_DIODE:
+        return "a diode";
+    case DALCS_SWITCH:
+        return "a switch";
+    }
+    return "an element";
+}

@@ -1,0 +1,230 @@
+/* builder.h - what the parsers of all device families share while a circuit is being built: names,
+ * messages, and a reader that walks over one card. Private to this folder. */
+#ifndef DALCS_BUILDER_H
+#define DALCS_BUILDER_H
+
+#include "circuit.h"
+#include "names.h"
+#include "netlist.h"
+
+enum dalcs_model_kind {
+    DALCS_MODEL_DIODE,
+    DALCS_MODEL_SWITCH,
+    DALCS_MODEL_OTHER, /* of a device that does not exist here */
+    DALCS_MODEL_WRONG  /* had errors: a use of it is no second error */
+};
+
+struct dalcs_model {
+    enum dalcs_model_kind kind;
+    int index; /* in diode_model or switch_model */
+    const struct dalcs_token *name;
+    const struct dalcs_token *type;
+};
+
+struct dalcs_builder {
+    struct dalcs_circuit *circuit;
+    const struct dalcs_netlist *netlist;
+    struct dalcs_diag *diag;
+    struct dalcs_arena scratch; /* hints and the like: dies with the builder */
+    bool failed;                /* an error was reported */
+    bool incomplete;            /* a card that may define things was refused: a name that is missing
+                                   is then no further error */
+    bool out_of_memory;
+
+    struct dalcs_names nodes; /* name -> index; ground is not in it */
+    const char **node_name;   /* [n_nodes], heap */
+    size_t node_name_capacity;
+    const struct dalcs_token **node_token; /* [n_nodes] where a node was named first, heap */
+    size_t node_token_capacity;
+
+    struct dalcs_names devices;              /* name -> index, K cards follow from n_device_cards on */
+    const struct dalcs_token **device_token; /* where they are, by the same index */
+    int n_device_cards;
+    int n_couplings_seen;     /* K cards so far, right or wrong */
+    struct dalcs_names pairs; /* "3 7": coils 3 and 7 are coupled */
+    int ideal_diode; /* the model of diodes without one, -1 before the first */
+
+    struct dalcs_names models; /* name -> index of model */
+    struct dalcs_model *model;
+    int n_models;
+
+    const struct dalcs_token *tran; /* the first .tran and .op, NULL before */
+    const struct dalcs_token *op;
+
+    struct dalcs_names initial_pairs; /* "0 4": index of the condition on nodes 0 and 4 */
+    struct dalcs_names signals; /* name -> index of signal */
+    struct dalcs_signal *signal; /* heap */
+    size_t n_signals;
+    size_t signal_capacity;
+    struct dalcs_initial_condition *initial_condition; /* heap */
+    size_t n_initial_conditions;
+    size_t initial_condition_capacity;
+
+    const struct dalcs_source_line *kept_line; /* the last line copied by keep_location */
+    const char *kept_text;
+    const char *kept_file;
+};
+
+/* ---- builder.c ----------------------------------------------------------------------------- */
+
+/* Reports an error or a warning or note at a token. The hint may be NULL. */
+void dalcs_builder_error(struct dalcs_builder *builder, const struct dalcs_token *token,
+                         const char *hint, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+void dalcs_builder_error_at(struct dalcs_builder *builder, const struct dalcs_location *where,
+                            const char *hint, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+void dalcs_builder_warn(struct dalcs_builder *builder, const struct dalcs_token *token,
+                        const char *hint, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+void dalcs_builder_note(struct dalcs_builder *builder, const struct dalcs_token *token,
+                        const char *hint, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* A hint made by printf, or NULL. */
+const char *dalcs_builder_hint(struct dalcs_builder *builder, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* "did you mean 'out'?", or "the nodes are: a, b" when there are few, or NULL. */
+const char *dalcs_builder_suggest(struct dalcs_builder *builder, const struct dalcs_names *names,
+                                  const char *name, const char *plural);
+
+/* "bridge.cir:3:1", in scratch; never NULL. */
+const char *dalcs_builder_place(struct dalcs_builder *builder, const struct dalcs_token *token);
+
+/* A location that lives as long as the circuit. */
+struct dalcs_location dalcs_builder_keep_location(struct dalcs_builder *builder,
+                                                  const struct dalcs_token *token);
+
+/* The index of a node, made when new; -1 when out of memory. */
+int dalcs_builder_node(struct dalcs_builder *builder, const struct dalcs_token *token);
+
+/* The index of a node that an element names; else an error, and -1. */
+int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_token *token);
+
+/* The index of a device; else an error, and -1. */
+int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_token *token);
+
+/* Adds the device that a card names; a second use of the name is an error. NULL when out of
+ * memory. */
+struct dalcs_device *dalcs_builder_add_device(struct dalcs_builder *builder,
+                                              enum dalcs_device_kind kind,
+                                              const struct dalcs_token *name);
+
+/* Registers an element's name under `value` or reports its first use. */
+void dalcs_builder_add_name(struct dalcs_builder *builder, const struct dalcs_token *name,
+                            int value);
+
+/* "a resistor", by kind */
+const char *dalcs_builder_kind_text(enum dalcs_device_kind kind);
+
+/* ---- reader.c: walks over the tokens of one card --------------------------------------------- */
+
+struct dalcs_reader {
+    struct dalcs_builder *builder;
+    const struct dalcs_card *card;
+    int at;            /* the next token */
+    const char *usage; /* "R1 a b value": the hint when the card's shape is wrong */
+};
+
+/* What a number stands for: decides which suffixes are probably meant otherwise. */
+enum dalcs_quantity {
+    DALCS_PLAIN,
+    DALCS_OHM,
+    DALCS_FARAD,
+    DALCS_HENRY,
+    DALCS_VOLTAGE,
+    DALCS_CURRENT,
+    DALCS_SECOND,
+    DALCS_HERTZ
+};
+
+/* Starts after the card's first token. */
+struct dalcs_reader dalcs_reader_start(struct dalcs_builder *builder,
+                                       const struct dalcs_card *card, const char *usage);
+
+/* The token `ahead` places from here, or NULL. */
+const struct dalcs_token *dalcs_reader_peek(const struct dalcs_reader *reader, int ahead);
+
+/* The last token read. */
+const struct dalcs_token *dalcs_reader_previous(const struct dalcs_reader *reader);
+
+bool dalcs_reader_at_end(const struct dalcs_reader *reader);
+
+/* Takes the next token when it is this word or of this kind. */
+bool dalcs_reader_take_word(struct dalcs_reader *reader, const char *word);
+bool dalcs_reader_take(struct dalcs_reader *reader, enum dalcs_token_kind kind);
+
+/* Takes `name =` and returns the name; NULL, nothing taken, when no parameter comes next. */
+const struct dalcs_token *dalcs_reader_take_parameter(struct dalcs_reader *reader);
+
+/* Does a token look like a number (it starts as one)? */
+bool dalcs_reader_is_number(const struct dalcs_token *token);
+
+/* The functions below report what is wrong and return false.
+ *
+ * A number; `what` ("a resistance") is for the message when it is missing. A list's numbers may have
+ * commas between them; elsewhere 1,5 is an error. */
+bool dalcs_reader_number(struct dalcs_reader *reader, enum dalcs_quantity quantity,
+                         const char *what, double *value);
+bool dalcs_reader_list_number(struct dalcs_reader *reader, enum dalcs_quantity quantity,
+                              const char *what, double *value);
+
+/* A number, or inf. */
+bool dalcs_reader_number_or_infinity(struct dalcs_reader *reader, enum dalcs_quantity quantity,
+                                     const char *what, double *value);
+
+/* A name (any word). */
+bool dalcs_reader_name(struct dalcs_reader *reader, const char *what,
+                       const struct dalcs_token **name);
+
+/* n nodes, made when new; parentheses around them are ignored. */
+bool dalcs_reader_nodes(struct dalcs_reader *reader, int n, int *node /* [n] out */);
+
+/* Nothing may follow. */
+bool dalcs_reader_end(struct dalcs_reader *reader);
+
+/* Reports that something is missing after the last token read. */
+void dalcs_reader_missing(struct dalcs_reader *reader, const char *what);
+
+/* Reports the next token as not understood. */
+void dalcs_reader_unexpected(struct dalcs_reader *reader);
+
+/* ---- One file per family; each takes a whole card -------------------------------------------- */
+
+void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
+                         enum dalcs_device_kind kind);
+void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_coupling_check(struct dalcs_builder *builder);
+void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
+                        enum dalcs_device_kind kind);
+/* What needs .tran: a missing frequency, periods too short to resolve. */
+void dalcs_source_check(struct dalcs_builder *builder);
+/* PULSE, SIN, ...: the function whose name is the next token, into *stimulus; false when an error
+ * was reported. */
+bool dalcs_waveform_card_is_name(const char *word);
+bool dalcs_waveform_card_parse(struct dalcs_reader *reader, enum dalcs_quantity quantity,
+                               struct dalcs_stimulus *stimulus);
+void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
+                            enum dalcs_device_kind kind);
+/* Finds the V source of an F or H, when all devices are known. */
+void dalcs_controlled_resolve(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+bool dalcs_diode_parse_model(struct dalcs_reader *reader, struct dalcs_diode_model *model);
+void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+bool dalcs_switch_parse_model(struct dalcs_reader *reader, struct dalcs_switch_model *model);
+void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* The index (in diode_model or switch_model) of a model of this kind; else an error, and -1. */
+int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *name,
+                     enum dalcs_model_kind kind);
+void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_initial_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* .save, .print, .plot and .probe */
+void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_signals_add_default(struct dalcs_builder *builder);
+/* Warnings about the whole network. */
+void dalcs_topology_check(struct dalcs_builder *builder);
+
+#endif

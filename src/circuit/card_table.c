@@ -1,0 +1,256 @@
+/* card_table.c - which card is whose, and which are not for this simulator.
+ *
+ * What other simulators know is named as such: "not supported yet", or not the business of a
+ * simulator of ideal diodes. The cards inside a refused .subckt or .if are not looked at. */
+#include "card_table.h"
+
+#include "number.h"
+
+#include <string.h>
+
+struct dot_card {
+    const char *name;
+    enum dalcs_card_class class;
+    const char *refused; /* what it is, when it is not supported yet */
+    const char *hint;
+    const char *block_end; /* the card that ends the block it starts */
+};
+
+static const struct dot_card DOT_CARDS[] = {
+    {".model", DALCS_CARD_MODEL, NULL, NULL, NULL},
+    {".tran", DALCS_CARD_TRAN, NULL, NULL, NULL},
+    {".op", DALCS_CARD_OP, NULL, NULL, NULL},
+    {".options", DALCS_CARD_OPTIONS, NULL, NULL, NULL},
+    {".option", DALCS_CARD_OPTIONS, NULL, NULL, NULL},
+    {".opt", DALCS_CARD_OPTIONS, NULL, NULL, NULL},
+    {".ic", DALCS_CARD_IC, NULL, NULL, NULL},
+    {".save", DALCS_CARD_SIGNALS, NULL, NULL, NULL},
+    {".print", DALCS_CARD_SIGNALS, NULL, NULL, NULL},
+    {".plot", DALCS_CARD_SIGNALS, NULL, NULL, NULL},
+    {".probe", DALCS_CARD_SIGNALS, NULL, NULL, NULL},
+    {".backanno", DALCS_CARD_NONE, NULL, NULL, NULL},
+
+    {".param", DALCS_CARD_NONE, "parameters", "write the numbers in place", NULL},
+    {".params", DALCS_CARD_NONE, "parameters", "write the numbers in place", NULL},
+    {".csparam", DALCS_CARD_NONE, "parameters", "write the numbers in place", NULL},
+    {".global_param", DALCS_CARD_NONE, "parameters", "write the numbers in place", NULL},
+    {".func", DALCS_CARD_NONE, "functions", "write the numbers in place", NULL},
+    {".subckt", DALCS_CARD_NONE, "subcircuits", "write its elements in place", ".ends"},
+    {".ends", DALCS_CARD_NONE, "subcircuits", NULL, NULL},
+    {".global", DALCS_CARD_NONE, "global nodes", NULL, NULL},
+    {".include", DALCS_CARD_NONE, "included files", "paste the file's lines here", NULL},
+    {".incl", DALCS_CARD_NONE, "included files", "paste the file's lines here", NULL},
+    {".inc", DALCS_CARD_NONE, "included files", "paste the file's lines here", NULL},
+    {".lib", DALCS_CARD_NONE, "libraries", "paste the models that are used here", NULL},
+    {".endl", DALCS_CARD_NONE, "libraries", NULL, NULL},
+    {".if", DALCS_CARD_NONE, "conditions", "keep the branch that is wanted", ".endif"},
+    {".elseif", DALCS_CARD_NONE, "conditions", NULL, NULL},
+    {".else", DALCS_CARD_NONE, "conditions", NULL, NULL},
+    {".endif", DALCS_CARD_NONE, "conditions", NULL, NULL},
+    {".control", DALCS_CARD_NONE, "control blocks",
+     "write the analysis as a card, such as: .tran 10u 20m", NULL},
+    {".endc", DALCS_CARD_NONE, "control blocks", NULL, NULL},
+    {".meas", DALCS_CARD_NONE, "measurements", NULL, NULL},
+    {".measure", DALCS_CARD_NONE, "measurements", NULL, NULL},
+    {".four", DALCS_CARD_NONE, "Fourier analysis", NULL, NULL},
+    {".fourier", DALCS_CARD_NONE, "Fourier analysis", NULL, NULL},
+    {".step", DALCS_CARD_NONE, "parameter sweeps", NULL, NULL},
+    {".data", DALCS_CARD_NONE, "parameter sweeps", NULL, ".enddata"},
+    {".enddata", DALCS_CARD_NONE, "parameter sweeps", NULL, NULL},
+    {".dc", DALCS_CARD_NONE, "DC sweeps", "write .op for one operating point", NULL},
+    {".ac", DALCS_CARD_NONE, "AC analysis", NULL, NULL},
+    {".nodeset", DALCS_CARD_NONE, "node sets",
+     "the operating point needs no guess; .ic sets a start", NULL},
+    {".wave", DALCS_CARD_NONE, "sound output", NULL, NULL},
+    {".alter", DALCS_CARD_NONE, "altered runs", NULL, NULL},
+};
+
+/* Without a meaning for ideal elements; accepted. */
+static const char *const IGNORED[] = {".temp", ".width", ".noopt", ".prot", ".unprot", ".hdl"};
+
+/* Analyses that this simulator will not have. */
+static const char *const NEVER[] = {".noise", ".pz",   ".disto", ".tf", ".sens", ".sp",
+                                    ".pss",   ".hb",   ".net",   ".mc", ".wcase", ".machine",
+                                    ".stab",  ".ferret", ".sampling", ".preprocess"};
+
+/* Elements by letter that are not supported. */
+static const char *refused_element(char letter) {
+    switch (letter) {
+    case 'a':
+        return "XSPICE and special function blocks";
+    case 'b':
+        return "behavioural sources";
+    case 'j':
+    case 'm':
+    case 'q':
+    case 'z':
+        return "transistors";
+    case 'n':
+        return "compiled models";
+    case 'o':
+    case 't':
+    case 'u':
+    case 'y':
+    case 'p':
+        return "transmission lines";
+    case 'w':
+        return "current controlled switches";
+    case 'x':
+        return "subcircuit calls";
+    default:
+        return NULL;
+    }
+}
+
+static const char *hint_of_element(char letter) {
+    switch (letter) {
+    case 'j':
+    case 'm':
+    case 'q':
+    case 'z':
+        return "write an ideal switch S, with a diode D across it for a body diode";
+    case 'w':
+        return "write H to turn the current into a voltage, and a switch S";
+    case 'x':
+        return "write its elements in place";
+    default:
+        return NULL;
+    }
+}
+
+static bool is_one_of(const char *name, const char *const *list, size_t n) {
+    for (size_t k = 0; k < n; k++) {
+        if (strcmp(name, list[k]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void report_unknown(struct dalcs_builder *builder, const struct dalcs_token *name) {
+    const char *names[sizeof DOT_CARDS / sizeof DOT_CARDS[0]];
+    const size_t n = sizeof DOT_CARDS / sizeof DOT_CARDS[0];
+    for (size_t k = 0; k < n; k++) {
+        names[k] = DOT_CARDS[k].name;
+    }
+    const char *nearest = dalcs_names_nearest_of(names, n, name->text);
+    dalcs_builder_error(builder, name,
+                        nearest != NULL
+                            ? dalcs_builder_hint(builder, "did you mean '%s'?", nearest)
+                            : NULL,
+                        "unknown card '%s'", name->text);
+}
+
+static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
+                                          const struct dalcs_token *name) {
+    struct dalcs_builder *builder = table->builder;
+    for (size_t k = 0; k < sizeof DOT_CARDS / sizeof DOT_CARDS[0]; k++) {
+        const struct dot_card *card = &DOT_CARDS[k];
+        if (strcmp(card->name, name->text) != 0) {
+            continue;
+        }
+        if (card->refused != NULL) {
+            dalcs_builder_error(builder, name, card->hint, "%s are not supported yet (%s)",
+                                card->refused, card->name);
+            builder->incomplete = true;
+            table->block_begin = card->name;
+            table->block_end = card->block_end;
+            table->block_depth = card->block_end != NULL;
+        }
+        return card->class;
+    }
+    if (is_one_of(name->text, IGNORED, sizeof IGNORED / sizeof IGNORED[0])) {
+        dalcs_builder_note(builder, name, NULL, "%s has no meaning here and is ignored",
+                           name->text);
+    } else if (is_one_of(name->text, NEVER, sizeof NEVER / sizeof NEVER[0])) {
+        dalcs_builder_error(builder, name, "use .tran or .op",
+                            "%s is not an analysis of ideal-diode circuits", name->text);
+        builder->incomplete = true;
+    } else {
+        report_unknown(builder, name);
+        builder->incomplete = true;
+    }
+    return DALCS_CARD_NONE;
+}
+
+static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
+                                              const struct dalcs_token *name) {
+    struct dalcs_builder *builder = table->builder;
+    const char letter = name->text[0];
+    if (letter == 'k') {
+        return DALCS_CARD_COUPLING;
+    }
+    if (strchr("rlcviefghds", letter) != NULL) {
+        table->n_stimuli += strchr("vic", letter) != NULL;
+        return DALCS_CARD_ELEMENT;
+    }
+    const char *what = refused_element(letter);
+    builder->incomplete = true;
+    if (what != NULL) {
+        dalcs_builder_error(builder, name, hint_of_element(letter),
+                            "%s are not supported yet ('%s')", what, name->text);
+    } else {
+        dalcs_builder_error(builder, name, "'*' starts a comment line, '+' continues a card",
+                            "'%s' is neither an element nor a card that starts with '.'",
+                            name->text);
+    }
+    return DALCS_CARD_NONE;
+}
+
+enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
+                                                const struct dalcs_card *card) {
+    const struct dalcs_token *name = card->token;
+    if (name->kind != DALCS_TOKEN_WORD) {
+        if (table->block_end == NULL && name->kind != DALCS_TOKEN_BAD) {
+            dalcs_builder_error(table->builder, name, NULL, "a card cannot start with '%s'",
+                                name->text);
+        }
+        table->builder->incomplete = true;
+        return DALCS_CARD_NONE;
+    }
+    if (table->block_end != NULL) {
+        table->block_depth += strcmp(name->text, table->block_begin) == 0;
+        table->block_depth -= strcmp(name->text, table->block_end) == 0;
+        if (table->block_depth == 0) {
+            table->block_end = NULL;
+        }
+        return DALCS_CARD_NONE;
+    }
+    return name->text[0] == '.' ? classify_dot(table, name) : classify_element(table, name);
+}
+
+/* Word number `index` of a line, as a NUL-terminated copy of at most `size` - 1 bytes. */
+static void copy_word(const char *line, int index, char *word, size_t size) {
+    const char *blank = " \t";
+    const char *p = line + strspn(line, blank);
+    for (; index > 0; index--) {
+        p += strcspn(p, blank);
+        p += strspn(p, blank);
+    }
+    size_t n = strcspn(p, blank);
+    n = n < size - 1 ? n : size - 1;
+    memcpy(word, p, n);
+    word[n] = '\0';
+}
+
+void dalcs_card_table_check_title(struct dalcs_builder *builder) {
+    const struct dalcs_source_line *line = builder->netlist->title_line;
+    char first[32];
+    char value[32];
+    struct dalcs_number number;
+    if (line == NULL) {
+        return;
+    }
+    copy_word(line->text, 0, first, sizeof first);
+    copy_word(line->text, 3, value, sizeof value);
+    /* A digit tells R1 from Rectifier. */
+    const bool is_element = first[0] != '\0' && strchr("RLCVIrlcvi", first[0]) != NULL &&
+                            strpbrk(first, "0123456789") != NULL &&
+                            dalcs_number_parse(value, &number) == DALCS_NUMBER_OK;
+    const bool is_card = first[0] == '.' && first[1] >= 'A';
+    if (is_element || is_card) {
+        const struct dalcs_token token = {.line = line, .length = (int)strlen(line->text)};
+        dalcs_builder_warn(builder, &token, "put a title before it",
+                           "the first line is always the title, though it looks like a card");
+    }
+}

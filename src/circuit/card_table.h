@@ -1,0 +1,36 @@
+/* card_table.h - which card is whose, and which are not for this simulator. */
+#ifndef DALCS_CARD_TABLE_H
+#define DALCS_CARD_TABLE_H
+
+#include "builder.h"
+
+enum dalcs_card_class {
+    DALCS_CARD_NONE, /* nothing more to do: refused, skipped or without meaning */
+    DALCS_CARD_ELEMENT,
+    DALCS_CARD_COUPLING,
+    DALCS_CARD_MODEL,
+    DALCS_CARD_TRAN,
+    DALCS_CARD_OP,
+    DALCS_CARD_OPTIONS,
+    DALCS_CARD_IC,
+    DALCS_CARD_SIGNALS,
+    DALCS_N_CARD_CLASSES
+};
+
+/* Zero-initialise all but builder. */
+struct dalcs_card_table {
+    struct dalcs_builder *builder;
+    const char *block_end; /* inside a refused block: the card that ends it, else NULL */
+    const char *block_begin;
+    int block_depth;
+    size_t n_stimuli; /* V and I, and C, which may turn into one */
+};
+
+/* Call once for each card in order. Reports cards that are not supported, once for a block. */
+enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
+                                                const struct dalcs_card *card);
+
+/* Warns when the first line looks like a card: it is the title all the same. */
+void dalcs_card_table_check_title(struct dalcs_builder *builder);
+
+#endif

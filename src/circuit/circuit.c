@@ -1,0 +1,238 @@
+/* circuit.c - from cards to a circuit: which card is whose, and in which order they are read.
+ *
+ *     classify   every card once: whose it is, how much room it needs, is it supported at all
+ *     models     .model, .tran, .op, .options: what elements refer to
+ *     elements   devices and nodes
+ *     references K, F, H, .ic, .save: what refers to elements
+ *     checks     of the whole
+ *
+ * Every pass goes on after an error, so that a person sees all of them. */
+#include "builder.h"
+
+#include "card_table.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Counts what the arrays must hold, reports what is not supported. */
+static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned char *class_of) {
+    const struct dalcs_netlist *netlist = builder->netlist;
+    size_t count[DALCS_N_CARD_CLASSES] = {0};
+    struct dalcs_card_table table = {.builder = builder};
+    for (size_t k = 0; k < netlist->n_cards; k++) {
+        const enum dalcs_card_class c = dalcs_card_table_classify(&table, &netlist->card[k]);
+        class_of[k] = (unsigned char)c;
+        count[c]++;
+    }
+    struct dalcs_circuit *circuit = builder->circuit;
+    struct dalcs_arena *arena = &circuit->arena;
+    const size_t n_couplings = count[DALCS_CARD_COUPLING];
+    const size_t n_devices = count[DALCS_CARD_ELEMENT];
+    const size_t n_models = count[DALCS_CARD_MODEL];
+    builder->n_device_cards = (int)n_devices;
+    circuit->device = dalcs_arena_alloc(arena, n_devices, sizeof *circuit->device);
+    circuit->stimulus = dalcs_arena_alloc(arena, table.n_stimuli, sizeof *circuit->stimulus);
+    circuit->coupling = dalcs_arena_alloc(arena, n_couplings, sizeof *circuit->coupling);
+    circuit->diode_model = dalcs_arena_alloc(arena, n_models + 1, sizeof *circuit->diode_model);
+    circuit->switch_model = dalcs_arena_alloc(arena, n_models, sizeof *circuit->switch_model);
+    builder->model = dalcs_arena_alloc(&builder->scratch, n_models, sizeof *builder->model);
+    builder->device_token = dalcs_arena_alloc(&builder->scratch, n_devices + n_couplings,
+                                              sizeof *builder->device_token);
+    const bool ok = circuit->device != NULL && circuit->stimulus != NULL &&
+                    circuit->coupling != NULL && circuit->diode_model != NULL &&
+                    circuit->switch_model != NULL && builder->model != NULL &&
+                    builder->device_token != NULL;
+    return ok ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+static void read_element(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    switch (card->token->text[0]) {
+    case 'r':
+        dalcs_passive_parse(builder, card, DALCS_RESISTOR);
+        return;
+    case 'l':
+        dalcs_passive_parse(builder, card, DALCS_INDUCTOR);
+        return;
+    case 'c':
+        dalcs_passive_parse(builder, card, DALCS_CAPACITOR);
+        return;
+    case 'v':
+        dalcs_source_parse(builder, card, DALCS_VSOURCE);
+        return;
+    case 'i':
+        dalcs_source_parse(builder, card, DALCS_ISOURCE);
+        return;
+    case 'e':
+        dalcs_controlled_parse(builder, card, DALCS_VCVS);
+        return;
+    case 'f':
+        dalcs_controlled_parse(builder, card, DALCS_CCCS);
+        return;
+    case 'g':
+        dalcs_controlled_parse(builder, card, DALCS_VCCS);
+        return;
+    case 'h':
+        dalcs_controlled_parse(builder, card, DALCS_CCVS);
+        return;
+    case 'd':
+        dalcs_diode_parse(builder, card);
+        return;
+    default:
+        dalcs_switch_parse(builder, card);
+        return;
+    }
+}
+
+/* What a card means in a pass; cards of other passes are left alone. */
+enum pass { MODELS, ELEMENTS, REFERENCES };
+
+static void read_card(struct dalcs_builder *builder, const struct dalcs_card *card,
+                      enum dalcs_card_class c, enum pass pass) {
+    if (pass == MODELS) {
+        if (c == DALCS_CARD_MODEL) {
+            dalcs_model_parse(builder, card);
+        } else if (c == DALCS_CARD_TRAN) {
+            dalcs_analysis_parse_tran(builder, card);
+        } else if (c == DALCS_CARD_OP) {
+            dalcs_analysis_parse_op(builder, card);
+        } else if (c == DALCS_CARD_OPTIONS) {
+            dalcs_options_parse(builder, card);
+        }
+    } else if (pass == ELEMENTS) {
+        if (c == DALCS_CARD_ELEMENT) {
+            read_element(builder, card);
+        }
+    } else if (c == DALCS_CARD_COUPLING) {
+        dalcs_coupling_parse(builder, card);
+    } else if (c == DALCS_CARD_ELEMENT &&
+               (card->token->text[0] == 'f' || card->token->text[0] == 'h')) {
+        dalcs_controlled_resolve(builder, card);
+    } else if (c == DALCS_CARD_IC) {
+        dalcs_initial_parse(builder, card);
+    } else if (c == DALCS_CARD_SIGNALS) {
+        dalcs_signals_parse(builder, card);
+    }
+}
+
+static enum dalcs_status read_cards(struct dalcs_builder *builder,
+                                    const unsigned char *class_of) {
+    for (enum pass pass = MODELS; pass <= REFERENCES; pass++) {
+        for (size_t k = 0; k < builder->netlist->n_cards; k++) {
+            read_card(builder, &builder->netlist->card[k], (enum dalcs_card_class)class_of[k],
+                      pass);
+            if (builder->out_of_memory) {
+                return DALCS_E_NOMEM;
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
+/* Errors that are nowhere: something that every netlist has is missing. */
+static void check_presence(struct dalcs_builder *builder) {
+    const struct dalcs_circuit *circuit = builder->circuit;
+    const struct dalcs_location where = {.file = builder->netlist->name};
+    if (builder->incomplete || builder->netlist->has_errors) {
+        return;
+    }
+    if (builder->n_device_cards == 0) {
+        dalcs_builder_error_at(builder, &where, "the first line is the title, never an element",
+                               "the netlist has no elements");
+    }
+    if (builder->tran == NULL && builder->op == NULL && !circuit->operating_point) {
+        dalcs_builder_error_at(builder, &where, "add a line such as: .tran 10u 20m",
+                               "the netlist asks for nothing: no .tran and no .op");
+    }
+}
+
+/* Moves what grew on the heap into the circuit's arena. */
+static enum dalcs_status collect(struct dalcs_builder *builder) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    struct dalcs_arena *arena = &circuit->arena;
+    const size_t n_nodes = (size_t)circuit->n_nodes;
+    circuit->node_name = dalcs_arena_alloc(arena, n_nodes, sizeof *circuit->node_name);
+    circuit->signal = dalcs_arena_alloc(arena, builder->n_signals, sizeof *circuit->signal);
+    circuit->initial_condition = dalcs_arena_alloc(arena, builder->n_initial_conditions,
+                                                   sizeof *circuit->initial_condition);
+    circuit->title =
+        dalcs_arena_copy(arena, builder->netlist->title, strlen(builder->netlist->title));
+    if (circuit->node_name == NULL || circuit->signal == NULL ||
+        circuit->initial_condition == NULL || circuit->title == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    circuit->node_name[0] = "0";
+    for (size_t k = 1; k < n_nodes; k++) {
+        circuit->node_name[k] = builder->node_name[k];
+    }
+    circuit->n_signals = (int)builder->n_signals;
+    for (size_t k = 0; k < builder->n_signals; k++) {
+        circuit->signal[k] = builder->signal[k];
+    }
+    circuit->n_initial_conditions = (int)builder->n_initial_conditions;
+    for (size_t k = 0; k < builder->n_initial_conditions; k++) {
+        circuit->initial_condition[k] = builder->initial_condition[k];
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status build(struct dalcs_builder *builder) {
+    const size_t n_cards = builder->netlist->n_cards;
+    unsigned char *class_of = dalcs_arena_alloc(&builder->scratch, n_cards, 1);
+    if (class_of == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    dalcs_card_table_check_title(builder);
+    DALCS_TRY(classify_cards(builder, class_of));
+    DALCS_TRY(read_cards(builder, class_of));
+    check_presence(builder);
+    if (builder->n_signals == 0) {
+        dalcs_signals_add_default(builder);
+    }
+    if (builder->out_of_memory) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(collect(builder));
+    /* Checks of the whole make no sense of a half. */
+    if (!builder->failed && !builder->netlist->has_errors) {
+        dalcs_coupling_check(builder);
+        dalcs_source_check(builder);
+        dalcs_topology_check(builder);
+    }
+    return builder->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
+}
+
+enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
+                                      const struct dalcs_netlist *netlist,
+                                      struct dalcs_diag *diag) {
+    struct dalcs_builder builder = {
+        .circuit = circuit, .netlist = netlist, .diag = diag, .ideal_diode = -1};
+    *circuit = (struct dalcs_circuit){.n_nodes = 1};
+
+    enum dalcs_status status = build(&builder);
+    if (status == DALCS_OK && (builder.failed || netlist->has_errors)) {
+        status = DALCS_E_NETLIST;
+    }
+    dalcs_diag_sort(diag);
+
+    dalcs_names_finish(&builder.nodes);
+    dalcs_names_finish(&builder.devices);
+    dalcs_names_finish(&builder.models);
+    dalcs_names_finish(&builder.pairs);
+    dalcs_names_finish(&builder.initial_pairs);
+    dalcs_names_finish(&builder.signals);
+    dalcs_arena_finish(&builder.scratch);
+    free(builder.node_name);
+    free(builder.node_token);
+    free(builder.signal);
+    free(builder.initial_condition);
+    if (status != DALCS_OK) {
+        dalcs_circuit_finish(circuit);
+    }
+    return status;
+}
+
+void dalcs_circuit_finish(struct dalcs_circuit *circuit) {
+    struct dalcs_arena arena = circuit->arena;
+    *circuit = (struct dalcs_circuit){0};
+    dalcs_arena_finish(&arena);
+}

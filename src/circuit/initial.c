@@ -1,0 +1,133 @@
+/* initial.c - .ic v(node)=value v(a,b)=value i(inductor)=value.
+ *
+ * i(l1)=value is the inductor's IC=. Saying two values for one thing is an error, for there is no
+ * telling which was meant. */
+#include "builder.h"
+
+#include <string.h>
+
+static const char USAGE[] = ".ic v(node)=volts i(inductor)=amperes ...";
+
+static void add_voltage(struct dalcs_builder *builder, const struct dalcs_token *place,
+                        const int *node, double value) {
+    if (node[0] == node[1]) {
+        if (value != 0) {
+            dalcs_builder_error(builder, place, NULL, "this voltage is 0 always");
+        }
+        return;
+    }
+    /* v(a,b) and v(b,a) are one voltage. */
+    const char *key = node[0] < node[1]
+                          ? dalcs_builder_hint(builder, "%d %d", node[0], node[1])
+                          : dalcs_builder_hint(builder, "%d %d", node[1], node[0]);
+    const int place_of_new = (int)builder->n_initial_conditions;
+    if (key == NULL) {
+        return;
+    }
+    const int first = dalcs_names_find(&builder->initial_pairs, key);
+    if (first >= 0) {
+        const struct dalcs_initial_condition *known = &builder->initial_condition[first];
+        const bool same = known->value == (known->node[0] == node[0] ? value : -value);
+        if (!same) {
+            dalcs_builder_error(builder, place, NULL,
+                                "this voltage has another initial value at line %d",
+                                known->where.line);
+        }
+        return;
+    }
+    if (dalcs_names_add(&builder->initial_pairs, key, place_of_new) != DALCS_OK ||
+        dalcs_grow(&builder->initial_condition, &builder->initial_condition_capacity,
+                   builder->n_initial_conditions + 1,
+                   sizeof *builder->initial_condition) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return;
+    }
+    builder->initial_condition[builder->n_initial_conditions++] =
+        (struct dalcs_initial_condition){{node[0], node[1]},
+                                         value,
+                                         dalcs_builder_keep_location(builder, place)};
+}
+
+static bool read_value(struct dalcs_reader *reader, enum dalcs_quantity quantity,
+                       double *value) {
+    dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+    return dalcs_reader_number(reader, quantity, "an initial value", value);
+}
+
+static bool read_voltage(struct dalcs_reader *reader, const struct dalcs_token *place) {
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *name[2] = {NULL, NULL};
+    if (!dalcs_reader_name(reader, "a node", &name[0])) {
+        return false;
+    }
+    const bool is_pair = !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE);
+    if (is_pair && !dalcs_reader_name(reader, "a node", &name[1])) {
+        return false;
+    }
+    if (is_pair && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        dalcs_reader_missing(reader, "')'");
+        return false;
+    }
+    double value;
+    int node[2] = {dalcs_builder_find_node(builder, name[0]), 0};
+    if (is_pair) {
+        node[1] = dalcs_builder_find_node(builder, name[1]);
+    }
+    if (!read_value(reader, DALCS_VOLTAGE, &value)) {
+        return false;
+    }
+    if (node[0] >= 0 && node[1] >= 0) {
+        add_voltage(builder, place, node, value);
+    }
+    return true;
+}
+
+static bool read_current(struct dalcs_reader *reader) {
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *name;
+    double value;
+    if (!dalcs_reader_name(reader, "the name of an inductor", &name)) {
+        return false;
+    }
+    if (!dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        dalcs_reader_missing(reader, "')'");
+        return false;
+    }
+    const int index = dalcs_builder_find_device(builder, name);
+    if (!read_value(reader, DALCS_CURRENT, &value)) {
+        return false;
+    }
+    if (index < 0) {
+        return true;
+    }
+    struct dalcs_device *device = &builder->circuit->device[index];
+    if (device->kind != DALCS_INDUCTOR) {
+        dalcs_builder_error(builder, name, USAGE, "'%s' is %s: only an inductor keeps a current",
+                            name->text, dalcs_builder_kind_text(device->kind));
+    } else if (device->has_initial && device->initial != value) {
+        dalcs_builder_error(builder, name, NULL, "'%s' has another initial current, %g A",
+                            name->text, device->initial);
+    }
+    device->has_initial = true;
+    device->initial = value;
+    return true;
+}
+
+void dalcs_initial_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
+    while (!dalcs_reader_at_end(&reader)) {
+        const struct dalcs_token *place = dalcs_reader_peek(&reader, 0);
+        const bool is_voltage = dalcs_reader_take_word(&reader, "v");
+        if (!is_voltage && !dalcs_reader_take_word(&reader, "i")) {
+            dalcs_reader_missing(&reader, "v(node)");
+            return;
+        }
+        if (!dalcs_reader_take(&reader, DALCS_TOKEN_OPEN)) {
+            dalcs_reader_missing(&reader, "'('");
+            return;
+        }
+        if (!(is_voltage ? read_voltage(&reader, place) : read_current(&reader))) {
+            return;
+        }
+    }
+}

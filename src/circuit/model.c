@@ -1,0 +1,158 @@
+/* model.c - .model cards, and finding the model that an element names.
+ *
+ * Models are read before the elements, so they may stand anywhere in the netlist. */
+#include "builder.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char USAGE[] = "a model is: .model name D|SW [(parameter=value ...)]";
+
+struct type {
+    const char *name;
+    enum dalcs_model_kind kind;
+    const char *what;
+};
+
+static const struct type *find_type(const char *name) {
+    static const struct type types[] = {
+        {"d", DALCS_MODEL_DIODE, "diode"},
+        {"sw", DALCS_MODEL_SWITCH, "switch"},
+        {"csw", DALCS_MODEL_OTHER, "current controlled switch"},
+        {"vswitch", DALCS_MODEL_OTHER, "smooth switch"},
+        {"iswitch", DALCS_MODEL_OTHER, "smooth current controlled switch"},
+        {"aswitch", DALCS_MODEL_OTHER, "smooth switch"},
+        {"sidiode", DALCS_MODEL_OTHER, "XSPICE diode"},
+        {"npn", DALCS_MODEL_OTHER, "transistor"},
+        {"pnp", DALCS_MODEL_OTHER, "transistor"},
+        {"lpnp", DALCS_MODEL_OTHER, "transistor"},
+        {"njf", DALCS_MODEL_OTHER, "transistor"},
+        {"pjf", DALCS_MODEL_OTHER, "transistor"},
+        {"nmos", DALCS_MODEL_OTHER, "transistor"},
+        {"pmos", DALCS_MODEL_OTHER, "transistor"},
+        {"vdmos", DALCS_MODEL_OTHER, "transistor"},
+        {"nmf", DALCS_MODEL_OTHER, "transistor"},
+        {"pmf", DALCS_MODEL_OTHER, "transistor"},
+        {"r", DALCS_MODEL_OTHER, "resistor"},
+        {"res", DALCS_MODEL_OTHER, "resistor"},
+        {"c", DALCS_MODEL_OTHER, "capacitor"},
+        {"cap", DALCS_MODEL_OTHER, "capacitor"},
+        {"l", DALCS_MODEL_OTHER, "inductor"},
+        {"ind", DALCS_MODEL_OTHER, "inductor"},
+        {"core", DALCS_MODEL_OTHER, "magnetic core"},
+        {"ltra", DALCS_MODEL_OTHER, "transmission line"},
+        {"urc", DALCS_MODEL_OTHER, "transmission line"},
+    };
+    for (size_t k = 0; k < sizeof types / sizeof types[0]; k++) {
+        if (strcmp(types[k].name, name) == 0) {
+            return &types[k];
+        }
+    }
+    return NULL;
+}
+
+/* Reads the parameters of a D or SW into the circuit; false when an error was reported. */
+static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *model) {
+    struct dalcs_circuit *circuit = reader->builder->circuit;
+    const char *text = model->name->text;
+    const char *name = dalcs_arena_copy(&circuit->arena, text, strlen(text));
+    if (name == NULL) {
+        reader->builder->out_of_memory = true;
+        return false;
+    }
+    const struct dalcs_token *open = dalcs_reader_peek(reader, 0);
+    const bool opened = dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
+    bool ok;
+    if (model->kind == DALCS_MODEL_DIODE) {
+        model->index = circuit->n_diode_models++;
+        circuit->diode_model[model->index].name = name;
+        ok = dalcs_diode_parse_model(reader, &circuit->diode_model[model->index]);
+    } else {
+        model->index = circuit->n_switch_models++;
+        circuit->switch_model[model->index].name = name;
+        ok = dalcs_switch_parse_model(reader, &circuit->switch_model[model->index]);
+    }
+    if (!ok) {
+        return false;
+    }
+    if (opened && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        if (dalcs_reader_at_end(reader)) {
+            dalcs_builder_error(reader->builder, open, NULL, "parenthesis is never closed");
+        } else {
+            dalcs_reader_missing(reader, "parameter=value");
+        }
+        return false;
+    }
+    return dalcs_reader_end(reader);
+}
+
+void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
+    const struct dalcs_token *name;
+    const struct dalcs_token *type;
+    if (!dalcs_reader_name(&reader, "the name of the model", &name)) {
+        return;
+    }
+    const int first = dalcs_names_find(&builder->models, name->text);
+    if (first >= 0) {
+        dalcs_builder_error(builder, name, "give it another name",
+                            "there are two models '%s', the first at %s", name->text,
+                            dalcs_builder_place(builder, builder->model[first].name));
+        return;
+    }
+    struct dalcs_model *model = &builder->model[builder->n_models];
+    model->kind = DALCS_MODEL_WRONG;
+    model->name = name;
+    if (dalcs_names_add(&builder->models, name->text, builder->n_models) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return;
+    }
+    builder->n_models++;
+    if (!dalcs_reader_name(&reader, "the type of the model", &type)) {
+        return;
+    }
+    const struct type *known = find_type(type->text);
+    model->type = type;
+    if (known == NULL) {
+        dalcs_builder_error(builder, type, USAGE, "there is no model type '%s'", type->text);
+        return;
+    }
+    model->kind = known->kind;
+    if (known->kind == DALCS_MODEL_OTHER) {
+        dalcs_builder_warn(builder, type, NULL, "%s models are not supported: '%s' is ignored",
+                           known->what, name->text);
+        return;
+    }
+    if (!read_parameters(&reader, model)) {
+        model->kind = DALCS_MODEL_WRONG;
+    }
+}
+
+int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *name,
+                     enum dalcs_model_kind kind) {
+    const int index = dalcs_names_find(&builder->models, name->text);
+    if (index < 0) {
+        builder->failed = true;
+        if (!builder->incomplete) {
+            dalcs_builder_error(
+                builder, name,
+                builder->n_models > 0
+                    ? dalcs_builder_suggest(builder, &builder->models, name->text, "models")
+                    : dalcs_builder_hint(builder, "add a line: .model %s %s", name->text,
+                                         kind == DALCS_MODEL_DIODE ? "D" : "SW(Vt=0.5)"),
+                "there is no model '%s'", name->text);
+        }
+        return -1;
+    }
+    const struct dalcs_model *model = &builder->model[index];
+    if (model->kind == DALCS_MODEL_WRONG) {
+        return -1;
+    }
+    if (model->kind != kind) {
+        dalcs_builder_error(builder, name, NULL, "model '%s' is of type %s, here %s is wanted",
+                            name->text, model->type->text,
+                            kind == DALCS_MODEL_DIODE ? "D" : "SW");
+        return -1;
+    }
+    return model->index;
+}

@@ -1,0 +1,133 @@
+/* options.c - .options cards.
+ *
+ * Options of other simulators that steer what does not exist here are accepted with a note each, so
+ * that netlists need no change; a name that no simulator knows is probably a spelling mistake, and
+ * silently ignoring those has cost people days. */
+#include "builder.h"
+
+#include <string.h>
+
+/* Known here. */
+static const char *const OURS[] = {"reltol", "abstol", "vntol", "method", "step"};
+
+static const char *const FOREIGN[] = {
+    "itl1",       "itl2",        "itl3",      "itl4",         "itl5",         "itl6",
+    "gmin",       "trtol",       "chgtol",    "pivtol",       "pivrel",       "maxord",
+    "numdgt",     "temp",        "tnom",      "acct",         "noacct",       "list",
+    "nomod",      "nopage",      "node",      "opts",         "noopts",       "noinit",
+    "klu",        "sparse",      "cshunt",    "rshunt",       "gshunt",       "gfarad",
+    "gminsteps",  "srcsteps",    "defl",      "defw",         "defad",        "defas",
+    "defpd",      "defps",       "scale",     "plotwinsize",  "ramptime",     "ramptol",
+    "trytocompact", "keepopinfo", "savecurrents", "autostop", "bypass",       "lvltim",
+    "limpts",     "cptime",      "limtim",    "maxstep",      "mindiv",       "maxevtiter",
+    "noopiter",   "noopalter",   "sollim",    "xmu",          "mu",           "measdgt",
+    "topologycheck", "fastaccess", "interp",  "oldlimit",     "badmos3",      "minbreak",
+    "convstep",   "convabsstep", "dgmin",     "gdsmin",       "delmax",       "absdv",
+    "reldv",      "mxsolve",     "ingold",    "post",         "probe",        "csdf",
+    "brief",      "co",          "width",     "seed",         "seedinfo",     "sim",
+    "digits",     "accurate",    "runlvl",    "rawfile",      "ibisdc",       "warn",
+    "stepgmin",   "ptrantau",    "ptranmax",  "skipgmin",     "solver",       "altinit",
+    "gear",       "trap",        "newtol",    "nopointtol",   "nomarch",      "thev_induc",
+    "baudrate",   "ascii",       "meascplxfmt", "flagloads",  "mindeltagmin", "dptran",
+    "timeint",    "parser",      "output",    "device",       "linsol",       "nonlin"};
+
+enum { N_OURS = sizeof OURS / sizeof OURS[0], N_FOREIGN = sizeof FOREIGN / sizeof FOREIGN[0] };
+
+static bool is_one_of(const char *name, const char *const *list, size_t n) {
+    for (size_t k = 0; k < n; k++) {
+        if (strcmp(name, list[k]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void report_unknown(struct dalcs_builder *builder, const struct dalcs_token *name) {
+    const char *nearest = dalcs_names_nearest_of(OURS, N_OURS, name->text);
+    if (nearest == NULL) {
+        nearest = dalcs_names_nearest_of(FOREIGN, N_FOREIGN, name->text);
+    }
+    dalcs_builder_warn(builder, name,
+                       nearest != NULL
+                           ? dalcs_builder_hint(builder, "did you mean '%s'?", nearest)
+                           : NULL,
+                       "unknown option '%s' is ignored", name->text);
+}
+
+static bool read_positive(struct dalcs_reader *reader, enum dalcs_quantity quantity,
+                          double *value) {
+    if (!dalcs_reader_number(reader, quantity, "a value", value)) {
+        return false;
+    }
+    if (*value <= 0) {
+        dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
+                            "this option must be positive");
+        return false;
+    }
+    return true;
+}
+
+static bool read_method(struct dalcs_reader *reader) {
+    static const char *const theirs[] = {"trap", "trapezoidal", "gear", "bdf"};
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *method;
+    if (!dalcs_reader_name(reader, "the name of a method", &method)) {
+        return false;
+    }
+    if (is_one_of(method->text, theirs, sizeof theirs / sizeof theirs[0])) {
+        dalcs_builder_note(builder, method, NULL,
+                           "method '%s' of other simulators is ignored", method->text);
+        return true;
+    }
+    struct dalcs_circuit_options *options = &builder->circuit->options;
+    options->method =
+        dalcs_arena_copy(&builder->circuit->arena, method->text, strlen(method->text));
+    options->method_where = dalcs_builder_keep_location(builder, method);
+    builder->out_of_memory = builder->out_of_memory || options->method == NULL;
+    return true;
+}
+
+/* The value of a known option; `=` is optional, as in SPICE. */
+static bool read_ours(struct dalcs_reader *reader, const char *name) {
+    struct dalcs_circuit_options *options = &reader->builder->circuit->options;
+    dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+    if (strcmp(name, "reltol") == 0) {
+        return read_positive(reader, DALCS_PLAIN, &options->reltol);
+    }
+    if (strcmp(name, "abstol") == 0) {
+        return read_positive(reader, DALCS_CURRENT, &options->abstol);
+    }
+    if (strcmp(name, "vntol") == 0) {
+        return read_positive(reader, DALCS_VOLTAGE, &options->vntol);
+    }
+    if (strcmp(name, "step") == 0) {
+        return read_positive(reader, DALCS_SECOND, &options->step);
+    }
+    return read_method(reader);
+}
+
+void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct dalcs_reader reader =
+        dalcs_reader_start(builder, card, ".options name=value name=value ...");
+    while (!dalcs_reader_at_end(&reader)) {
+        const struct dalcs_token *name;
+        if (!dalcs_reader_name(&reader, "the name of an option", &name)) {
+            return;
+        }
+        if (is_one_of(name->text, OURS, N_OURS)) {
+            if (!read_ours(&reader, name->text)) {
+                return;
+            }
+            continue;
+        }
+        if (is_one_of(name->text, FOREIGN, N_FOREIGN)) {
+            dalcs_builder_note(builder, name, NULL, "option '%s' has no meaning here",
+                               name->text);
+        } else {
+            report_unknown(builder, name);
+        }
+        if (dalcs_reader_take(&reader, DALCS_TOKEN_EQUAL) && !dalcs_reader_at_end(&reader)) {
+            reader.at++;
+        }
+    }
+}

@@ -1,0 +1,160 @@
+/* passive.c - R, L and C: two nodes, a value, an initial condition.
+ *
+ * R = 0 is a short. An inductor of 0 H is one too and becomes a resistor of 0 ohm; a capacitor of
+ * 0 F is open and becomes a current source of 0 A: neither has a state. */
+#include "builder.h"
+
+#include <string.h>
+
+/* What belongs to one of the three letters. */
+struct family {
+    const char *usage;
+    const char *value; /* what the value is called when it is missing */
+    const char *names[3]; /* of the value when written as a parameter */
+    enum dalcs_quantity quantity;
+};
+
+static const struct family *family_of(enum dalcs_device_kind kind) {
+    static const struct family resistor = {"a resistor is: Rname node node ohms",
+                                           "a resistance",
+                                           {"r", "resistance", NULL},
+                                           DALCS_OHM};
+    static const struct family inductor = {"an inductor is: Lname node node henries [IC=amperes]",
+                                           "an inductance",
+                                           {"l", "inductance", "ind"},
+                                           DALCS_HENRY};
+    static const struct family capacitor = {"a capacitor is: Cname node node farads [IC=volts]",
+                                            "a capacitance",
+                                            {"c", "capacitance", "cap"},
+                                            DALCS_FARAD};
+    return kind == DALCS_RESISTOR   ? &resistor
+           : kind == DALCS_INDUCTOR ? &inductor
+                                    : &capacitor;
+}
+
+static bool is_value_name(const struct family *family, const char *name) {
+    for (int k = 0; k < 3 && family->names[k] != NULL; k++) {
+        if (strcmp(name, family->names[k]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_one_of(const char *name, const char *const *list) {
+    for (; *list != NULL; list++) {
+        if (strcmp(name, *list) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The value of a parameter after the card's value. False ends the card. */
+static bool read_parameter(struct dalcs_reader *reader, const struct family *family,
+                           const struct dalcs_token *name, struct dalcs_device *device,
+                           bool *has_value) {
+    static const char *const temperature[] = {"tc", "tc1", "tc2", "temp", "dtemp", "noisy",
+                                              "noise", NULL};
+    static const char *const parasitic[] = {"rser", "rpar", "lser", "cpar", "rlshunt", NULL};
+    struct dalcs_builder *builder = reader->builder;
+    double ignored;
+    if (is_value_name(family, name->text) && !*has_value) {
+        *has_value = true;
+        return dalcs_reader_number(reader, family->quantity, family->value, &device->value);
+    }
+    if (strcmp(name->text, "ic") == 0 && device->kind != DALCS_RESISTOR) {
+        if (device->has_initial) {
+            dalcs_builder_error(builder, name, NULL, "a second initial condition");
+            return false;
+        }
+        const bool is_inductor = device->kind == DALCS_INDUCTOR;
+        device->has_initial = true;
+        return dalcs_reader_number(reader, is_inductor ? DALCS_CURRENT : DALCS_VOLTAGE,
+                                   is_inductor ? "a current" : "a voltage", &device->initial);
+    }
+    if (is_one_of(name->text, temperature)) {
+        dalcs_builder_note(builder, name, NULL, "'%s' has no meaning here and is ignored",
+                           name->text);
+        while (dalcs_reader_peek(reader, 0) != NULL &&
+               dalcs_reader_is_number(dalcs_reader_peek(reader, 0))) {
+            if (!dalcs_reader_list_number(reader, DALCS_PLAIN, "a number", &ignored)) {
+                return false;
+            }
+        }
+        return true;
+    }
+    if (is_one_of(name->text, parasitic)) {
+        dalcs_builder_error(builder, name, "write it as an element of its own",
+                            "parasitic '%s' is not supported yet", name->text);
+        return false;
+    }
+    if (strcmp(name->text, "m") == 0) {
+        dalcs_builder_error(builder, name, "put the total into the value",
+                            "multiplier 'm' is not supported yet");
+        return false;
+    }
+    dalcs_builder_error(builder, name, family->usage, "%s has no parameter '%s'",
+                        dalcs_builder_kind_text(device->kind), name->text);
+    return false;
+}
+
+/* Replaces a device without a state by one that does the same. */
+static void replace_zero(struct dalcs_builder *builder, struct dalcs_device *device,
+                         const struct dalcs_token *value) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    const bool is_inductor = device->kind == DALCS_INDUCTOR;
+    dalcs_builder_note(builder, value, NULL, "%s of 0 is %s",
+                       is_inductor ? "an inductance" : "a capacitance",
+                       is_inductor ? "a short" : "open");
+    device->has_initial = false;
+    if (is_inductor) {
+        device->kind = DALCS_RESISTOR;
+        return;
+    }
+    device->kind = DALCS_ISOURCE;
+    device->stimulus = circuit->n_stimuli++;
+    circuit->stimulus[device->stimulus] =
+        (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .has_dc = true};
+}
+
+void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
+                         enum dalcs_device_kind kind) {
+    const struct family *family = family_of(kind);
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, family->usage);
+    struct dalcs_device *device = dalcs_builder_add_device(builder, kind, card->token);
+    if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node)) {
+        return;
+    }
+    bool has_value = false;
+    const struct dalcs_token *equal = dalcs_reader_peek(&reader, 1);
+    if (equal == NULL || equal->kind != DALCS_TOKEN_EQUAL) {
+        if (!dalcs_reader_number(&reader, family->quantity, family->value, &device->value)) {
+            return;
+        }
+        has_value = true;
+    }
+    const struct dalcs_token *value = dalcs_reader_previous(&reader);
+    const struct dalcs_token *name;
+    while ((name = dalcs_reader_take_parameter(&reader)) != NULL) {
+        const bool had_value = has_value;
+        if (!read_parameter(&reader, family, name, device, &has_value)) {
+            return;
+        }
+        value = has_value && !had_value ? dalcs_reader_previous(&reader) : value;
+    }
+    if (!dalcs_reader_end(&reader)) {
+        return;
+    }
+    if (!has_value) {
+        dalcs_reader_missing(&reader, family->value);
+        return;
+    }
+    if (device->value < 0 && kind != DALCS_RESISTOR) {
+        dalcs_builder_error(builder, value, NULL, "%s cannot be negative", family->value);
+        return;
+    }
+    if (device->value == 0 && kind != DALCS_RESISTOR) {
+        replace_zero(builder, device, value);
+    }
+}

@@ -1,0 +1,168 @@
+/* signals.c - what is recorded: .save, .print, .plot and .probe, or the default.
+ *
+ * The default is every node voltage and the currents of V, L, D, S, E and H. Naming signals
+ * replaces it, `all` adds it. Each signal is recorded once. */
+#include "builder.h"
+
+#include <string.h>
+
+static const char USAGE[] = "signals are: v(node) v(a,b) i(element) all";
+
+/* Adds a signal; `name` is in the circuit's arena or NULL when memory ran out. */
+static void add_signal(struct dalcs_builder *builder, const char *name,
+                       struct dalcs_signal signal) {
+    if (name != NULL && dalcs_names_find(&builder->signals, name) >= 0) {
+        return;
+    }
+    signal.name = name;
+    if (name == NULL || dalcs_names_add(&builder->signals, name, 0) != DALCS_OK ||
+        dalcs_grow(&builder->signal, &builder->signal_capacity, builder->n_signals + 1,
+                   sizeof *builder->signal) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return;
+    }
+    builder->signal[builder->n_signals++] = signal;
+}
+
+static const char *node_text(const struct dalcs_builder *builder, int node) {
+    return node == 0 ? "0" : builder->node_name[node];
+}
+
+static void add_voltage(struct dalcs_builder *builder, int a, int b, bool is_pair) {
+    struct dalcs_arena *arena = &builder->circuit->arena;
+    const char *name =
+        is_pair ? dalcs_arena_printf(arena, "v(%s,%s)", node_text(builder, a),
+                                     node_text(builder, b))
+                : dalcs_arena_printf(arena, "v(%s)", node_text(builder, a));
+    add_signal(builder, name,
+               (struct dalcs_signal){
+                   .kind = DALCS_SIGNAL_VOLTAGE, .node = {a, b}, .device = -1});
+}
+
+static void add_current(struct dalcs_builder *builder, int device) {
+    const char *name = dalcs_arena_printf(&builder->circuit->arena, "i(%s)",
+                                          builder->circuit->device[device].name);
+    add_signal(builder, name,
+               (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .device = device});
+}
+
+void dalcs_signals_add_default(struct dalcs_builder *builder) {
+    const struct dalcs_circuit *circuit = builder->circuit;
+    for (int k = 1; k < circuit->n_nodes; k++) {
+        add_voltage(builder, k, 0, false);
+    }
+    /* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
+    for (int k = 0; k < circuit->n_devices; k++) {
+        if (strchr("vldseh", circuit->device[k].name[0]) != NULL) {
+            add_current(builder, k);
+        }
+    }
+}
+
+/* After `v (`: a node or two, and the closing parenthesis. */
+static bool read_voltage(struct dalcs_reader *reader) {
+    const struct dalcs_token *name[2];
+    if (!dalcs_reader_name(reader, "a node", &name[0])) {
+        return false;
+    }
+    const int a = dalcs_builder_find_node(reader->builder, name[0]);
+    int b = 0;
+    const bool is_pair = !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE);
+    if (is_pair) {
+        if (!dalcs_reader_name(reader, "')' or a second node", &name[1])) {
+            return false;
+        }
+        b = dalcs_builder_find_node(reader->builder, name[1]);
+        if (!dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+            dalcs_reader_missing(reader, "')'");
+            return false;
+        }
+    }
+    if (a >= 0 && b >= 0) {
+        add_voltage(reader->builder, a, b, is_pair);
+    }
+    return true;
+}
+
+static bool read_current(struct dalcs_reader *reader) {
+    const struct dalcs_token *name;
+    if (!dalcs_reader_name(reader, "the name of an element", &name)) {
+        return false;
+    }
+    if (!dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        dalcs_reader_missing(reader, "')'");
+        return false;
+    }
+    const int device = dalcs_builder_find_device(reader->builder, name);
+    if (device >= 0) {
+        add_current(reader->builder, device);
+    }
+    return true;
+}
+
+/* A word without a parenthesis: in ngspice a node's voltage. */
+static bool read_plain_node(struct dalcs_reader *reader) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    const int node = dalcs_names_find(&reader->builder->nodes, token->text);
+    if (node < 0) {
+        dalcs_builder_error(reader->builder, token, USAGE, "'%s' is not a signal", token->text);
+        return false;
+    }
+    reader->at++;
+    add_voltage(reader->builder, node, 0, false);
+    return true;
+}
+
+static bool read_signal(struct dalcs_reader *reader) {
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    if (token->kind != DALCS_TOKEN_WORD) {
+        dalcs_reader_unexpected(reader);
+        return false;
+    }
+    if (next == NULL || next->kind != DALCS_TOKEN_OPEN) {
+        if (dalcs_reader_take_word(reader, "all")) {
+            dalcs_signals_add_default(builder);
+            return true;
+        }
+        return read_plain_node(reader);
+    }
+    if (strcmp(token->text, "v") == 0 || strcmp(token->text, "i") == 0) {
+        reader->at += 2;
+        return token->text[0] == 'v' ? read_voltage(reader) : read_current(reader);
+    }
+    dalcs_builder_error(builder, token, USAGE, "'%s(...)' is not a signal", token->text);
+    return false;
+}
+
+void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    static const char *const other[] = {"ac", "dc", "noise", "sens", "hb", "four"};
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
+    const struct dalcs_token *type = dalcs_reader_peek(&reader, 0);
+    const bool is_print = strcmp(card->token->text, ".save") != 0;
+    for (size_t k = 0; is_print && k < sizeof other / sizeof other[0]; k++) {
+        if (dalcs_reader_take_word(&reader, other[k])) {
+            dalcs_builder_note(builder, type, NULL, "there is no %s analysis: this is ignored",
+                               type->text);
+            return;
+        }
+    }
+    if (is_print && !dalcs_reader_take_word(&reader, "tran")) {
+        dalcs_reader_take_word(&reader, "op");
+    }
+    if (dalcs_reader_at_end(&reader)) {
+        /* A bare .probe records everything, as in PSpice. */
+        if (strcmp(card->token->text, ".probe") == 0) {
+            dalcs_signals_add_default(builder);
+        } else {
+            dalcs_reader_missing(&reader, "a signal");
+        }
+        return;
+    }
+    while (!dalcs_reader_at_end(&reader)) {
+        if (!read_signal(&reader)) {
+            return;
+        }
+    }
+}

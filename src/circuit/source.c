@@ -1,0 +1,150 @@
+/* source.c - independent sources V and I: a DC value and at most one function of time.
+ *
+ * AC magnitude and phase are read and ignored. Checks that need .tran (the frequency that a SIN may
+ * leave out is 1/tstop, as in SPICE) are made when all cards are read. */
+#include "builder.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char USAGE[] =
+    "a source is: Vname node node [DC value] [SIN(...), PULSE(...), PWL(...) or EXP(...)]";
+
+static void skip_ac(struct dalcs_reader *reader) {
+    double ignored;
+    dalcs_builder_note(reader->builder, dalcs_reader_previous(reader), NULL,
+                       "there is no AC analysis: AC values are ignored");
+    dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+    for (int k = 0; k < 2; k++) {
+        const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
+        if (next == NULL || !dalcs_reader_is_number(next) ||
+            !dalcs_reader_list_number(reader, DALCS_PLAIN, "a number", &ignored)) {
+            return;
+        }
+    }
+}
+
+static bool read_dc(struct dalcs_reader *reader, enum dalcs_quantity quantity,
+                    struct dalcs_stimulus *stimulus) {
+    if (stimulus->has_dc) {
+        dalcs_builder_error(reader->builder, dalcs_reader_peek(reader, 0), USAGE,
+                            "a second DC value");
+        return false;
+    }
+    stimulus->has_dc = true;
+    return dalcs_reader_number(reader, quantity, "a value", &stimulus->dc);
+}
+
+/* A word that is neither DC, AC nor the name of a function. */
+static void report_word(struct dalcs_reader *reader, const struct dalcs_token *token) {
+    static const char *const later[] = {"sffm", "am", "trnoise", "trrandom", "external", "port",
+                                        "r", "td", "value", "poly", "table", "laplace"};
+    static const char *const known[] = {"sin", "pulse", "pwl", "exp", "dc", "ac"};
+    struct dalcs_builder *builder = reader->builder;
+    for (size_t k = 0; k < sizeof later / sizeof later[0]; k++) {
+        if (strcmp(token->text, later[k]) == 0) {
+            dalcs_builder_error(builder, token, NULL, "source function '%s' is not supported yet",
+                                token->text);
+            return;
+        }
+    }
+    const char *nearest =
+        dalcs_names_nearest_of(known, sizeof known / sizeof known[0], token->text);
+    dalcs_builder_error(builder, token,
+                        nearest != NULL ? dalcs_builder_hint(builder, "did you mean %s?", nearest)
+                                        : USAGE,
+                        "'%s' is neither a value nor a source function", token->text);
+}
+
+static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantity,
+                        struct dalcs_stimulus *stimulus) {
+    bool has_function = false;
+    const struct dalcs_token *token;
+    while ((token = dalcs_reader_peek(reader, 0)) != NULL) {
+        if (dalcs_reader_take_word(reader, "dc")) {
+            dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+            if (!read_dc(reader, quantity, stimulus)) {
+                return;
+            }
+        } else if (dalcs_reader_take_word(reader, "ac")) {
+            skip_ac(reader);
+        } else if (token->kind == DALCS_TOKEN_WORD && dalcs_waveform_card_is_name(token->text)) {
+            if (has_function) {
+                dalcs_builder_error(reader->builder, token, NULL, "a second source function");
+                return;
+            }
+            has_function = true;
+            if (!dalcs_waveform_card_parse(reader, quantity, stimulus)) {
+                return;
+            }
+        } else if (dalcs_reader_is_number(token)) {
+            if (!read_dc(reader, quantity, stimulus)) {
+                return;
+            }
+        } else if (token->kind == DALCS_TOKEN_WORD) {
+            report_word(reader, token);
+            return;
+        } else {
+            dalcs_reader_unexpected(reader);
+            return;
+        }
+    }
+    if (!stimulus->has_dc && !has_function) {
+        stimulus->has_dc = true;
+        dalcs_builder_warn(reader->builder, reader->card->token, NULL,
+                           "source '%s' has no value: it is 0", reader->card->token->text);
+    }
+}
+
+void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
+                        enum dalcs_device_kind kind) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
+    struct dalcs_device *device = dalcs_builder_add_device(builder, kind, card->token);
+    if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node)) {
+        return;
+    }
+    device->stimulus = circuit->n_stimuli++;
+    read_source(&reader, kind == DALCS_VSOURCE ? DALCS_VOLTAGE : DALCS_CURRENT,
+                &circuit->stimulus[device->stimulus]);
+}
+
+static void check_pulse(struct dalcs_builder *builder, const struct dalcs_token *name,
+                        const struct dalcs_stimulus *s) {
+    const double length = s->u.pulse.rise + s->u.pulse.width + s->u.pulse.fall;
+    const double period = s->u.pulse.period;
+    const double stop = builder->circuit->transient.stop;
+    if (length > period * (1 + 1e-12)) {
+        dalcs_builder_warn(builder, name, NULL,
+                           "the pulse lasts %g s, longer than its period of %g s: each is cut by "
+                           "the next",
+                           length, period);
+    }
+    /* Edges are told apart to 1e-15 of the time; leave room for a few points in between. */
+    if (builder->circuit->transient.present && period < stop * 1e-13) {
+        dalcs_builder_error(builder, name, NULL,
+                            "a period of %g s cannot be told apart at times up to %g s", period,
+                            stop);
+    }
+}
+
+void dalcs_source_check(struct dalcs_builder *builder) {
+    const struct dalcs_circuit *circuit = builder->circuit;
+    for (int k = 0; k < circuit->n_devices; k++) {
+        const struct dalcs_device *device = &circuit->device[k];
+        if (device->stimulus < 0) {
+            continue;
+        }
+        struct dalcs_stimulus *s = &circuit->stimulus[device->stimulus];
+        if (s->kind == DALCS_STIMULUS_SIN && s->u.sine.frequency == 0 &&
+            circuit->transient.present) {
+            s->u.sine.frequency = 1 / circuit->transient.stop;
+            dalcs_builder_note(builder, builder->device_token[k], NULL,
+                               "SIN without a frequency: it is 1/tstop = %g Hz",
+                               s->u.sine.frequency);
+        }
+        if (s->kind == DALCS_STIMULUS_PULSE) {
+            check_pulse(builder, builder->device_token[k], s);
+        }
+    }
+}

@@ -1,0 +1,269 @@
+/* stimulus.c - values, edges and jumps of DC, SIN, PULSE, PWL and EXP sources.
+ *
+ * A PULSE is a row of edges, delay + n period + offset with n an integer, each followed by a
+ * segment (rise, high, fall, low). Every question is answered from the few edges around t: edges at
+ * the same time within rounding form a cluster, whose left limit is the end of the segment before it
+ * and whose right limit is the start of the segment after it, both exact values of the card. */
+#include "stimulus.h"
+
+#include <float.h>
+#include <math.h>
+
+static const double PI = 3.14159265358979323846;
+
+/* How far from an edge a time may be and still mean it. An edge is computed with three roundings and
+ * a caller's time grid with about as many. */
+static double tolerance(double t, double delay) {
+    return 4 * DBL_EPSILON * fmax(fabs(t), fabs(delay));
+}
+
+/* ---- SIN ----------------------------------------------------------------------------------- */
+
+/* sin(2 pi x), exact at quarters: reducing x rather than 2 pi x makes the zeros of a mains voltage
+ * zeros, which is where rectifiers are most degenerate. */
+static double sin_of_cycles(double x) {
+    double r = x - floor(x + 0.5); /* -1/2 .. 1/2 */
+    if (r > 0.25) {
+        r = 0.5 - r;
+    } else if (r < -0.25) {
+        r = -0.5 - r;
+    }
+    return sin(2 * PI * r);
+}
+
+static double sine_value(const struct dalcs_stimulus *s, double t) {
+    const double since = t - s->u.sine.delay;
+    const double phase = s->u.sine.phase / 360;
+    if (since <= 0) {
+        return s->u.sine.offset + s->u.sine.amplitude * sin_of_cycles(phase);
+    }
+    /* The product's rounding error, which grows with the number of cycles, is put back. */
+    const double cycles = s->u.sine.frequency * since;
+    const double lost = fma(s->u.sine.frequency, since, -cycles);
+    double value = s->u.sine.amplitude * sin_of_cycles((cycles - floor(cycles)) + (phase + lost));
+    if (s->u.sine.damping != 0) {
+        value *= exp(-s->u.sine.damping * since);
+    }
+    return s->u.sine.offset + value;
+}
+
+/* ---- PULSE --------------------------------------------------------------------------------- */
+
+enum segment { BEFORE = -1, RISE = 0, HIGH = 1, FALL = 2, LOW = 3 };
+
+/* An edge and the segment that follows it. */
+struct edge {
+    double time;
+    enum segment segment;
+};
+
+/* The edges of the periods around a time, ascending: at most four in each of three periods. */
+struct edges {
+    struct edge item[12];
+    int n;
+};
+
+static void collect_edges(const struct dalcs_stimulus *s, double t, struct edges *edges) {
+    const double rise_end = s->u.pulse.rise;
+    const double fall_start = rise_end + s->u.pulse.width;
+    const double offset[4] = {0, rise_end, fall_start, fall_start + s->u.pulse.fall};
+    double period = s->u.pulse.period;
+    if (rise_end == 0 && fall_start >= period) {
+        period = INFINITY; /* high for ever: the restarts change nothing */
+    }
+    /* An offset equal to the period but for rounding is the next period's start, not an edge of its
+     * own a hair away from it. */
+    const double end = isinf(period) ? INFINITY : period * (1 - 4 * DBL_EPSILON);
+
+    double first = isinf(period) ? 0 : floor((t - s->u.pulse.delay) / period) - 1;
+    first = first < 0 ? 0 : first;
+    const int n_periods = isinf(period) ? 1 : 3;
+    edges->n = 0;
+    for (int k = 0; k < n_periods; k++) {
+        const double n = first + k;
+        const double start = n == 0 ? s->u.pulse.delay : s->u.pulse.delay + n * period;
+        for (int j = 0; j < 4 && offset[j] < end; j++) {
+            edges->item[edges->n++] = (struct edge){start + offset[j], (enum segment)j};
+        }
+    }
+}
+
+/* The edges at t are item[first..last-1]; none when the two are equal, and then t lies in the
+ * segment of item[first - 1]. */
+static void find_cluster(const struct dalcs_stimulus *s, const struct edges *edges, double t,
+                         int *first, int *last) {
+    const double near = tolerance(t, s->u.pulse.delay);
+    int k = 0;
+    while (k < edges->n && edges->item[k].time < t - near) {
+        k++;
+    }
+    *first = k;
+    while (k < edges->n && edges->item[k].time <= t + near) {
+        k++;
+    }
+    *last = k;
+}
+
+static double segment_start(const struct dalcs_stimulus *s, enum segment segment) {
+    return segment == HIGH || segment == FALL ? s->u.pulse.high : s->u.pulse.low;
+}
+
+static double segment_end(const struct dalcs_stimulus *s, enum segment segment) {
+    return segment == RISE || segment == HIGH ? s->u.pulse.high : s->u.pulse.low;
+}
+
+static double within_segment(const struct dalcs_stimulus *s, enum segment segment, double since,
+                             double near) {
+    const double length = segment == RISE ? s->u.pulse.rise : s->u.pulse.fall;
+    if (segment == BEFORE || segment == HIGH || segment == LOW || since >= length - near) {
+        return segment_end(s, segment);
+    }
+    const double from = segment_start(s, segment);
+    return from + (segment_end(s, segment) - from) * (since / length);
+}
+
+static double pulse_value(const struct dalcs_stimulus *s, double t, enum dalcs_side side) {
+    struct edges edges;
+    int first;
+    int last;
+    collect_edges(s, t, &edges);
+    find_cluster(s, &edges, t, &first, &last);
+    if (last > first && side == DALCS_RIGHT) {
+        return segment_start(s, edges.item[last - 1].segment);
+    }
+    if (first == 0) {
+        return s->u.pulse.low;
+    }
+    const struct edge *before = &edges.item[first - 1];
+    const bool follows = last > first && edges.item[first].segment == before->segment + 1;
+    if (follows) {
+        return segment_end(s, before->segment);
+    }
+    /* Inside a segment, or at its end where the next period cuts it short. */
+    const double end = last > first ? edges.item[first].time : t;
+    return within_segment(s, before->segment, end - before->time,
+                          tolerance(t, s->u.pulse.delay));
+}
+
+static double pulse_next_edge(const struct dalcs_stimulus *s, double t) {
+    if (s->u.pulse.low == s->u.pulse.high) {
+        return INFINITY;
+    }
+    struct edges edges;
+    int first;
+    int last;
+    collect_edges(s, t, &edges);
+    find_cluster(s, &edges, t, &first, &last);
+    return last < edges.n ? edges.item[last].time : INFINITY;
+}
+
+/* ---- EXP ----------------------------------------------------------------------------------- */
+
+/* 1 - exp(-(t - delay) / tau) after the delay, 0 before. */
+static double approach(double t, double delay, double tau, enum dalcs_side side) {
+    const double near = tolerance(t, 0);
+    const bool is_jump = tau <= near;
+    if (t < delay - near) {
+        return 0;
+    }
+    if (t <= delay + near) {
+        return is_jump && side == DALCS_RIGHT ? 1 : 0;
+    }
+    return is_jump ? 1 : -expm1(-(t - delay) / tau);
+}
+
+static double exponential_value(const struct dalcs_stimulus *s, double t, enum dalcs_side side) {
+    const double rise = approach(t, s->u.exponential.rise_delay, s->u.exponential.rise_tau, side);
+    const double fall = approach(t, s->u.exponential.fall_delay, s->u.exponential.fall_tau, side);
+    return s->u.exponential.low +
+           (s->u.exponential.high - s->u.exponential.low) * (rise - fall);
+}
+
+/* ---- PWL ----------------------------------------------------------------------------------- */
+
+/* The first point with a time > limit, or with a time >= limit; n when there is none. */
+static int pwl_search(const struct dalcs_stimulus *s, double limit, bool or_equal) {
+    int low = 0;
+    int high = s->u.pwl.n;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        const double time = s->u.pwl.t[middle];
+        if (time > limit || (or_equal && time == limit)) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    return low;
+}
+
+static double pwl_value(const struct dalcs_stimulus *s, double t, enum dalcs_side side) {
+    const double *time = s->u.pwl.t;
+    const double *value = s->u.pwl.v;
+    const double near = tolerance(t, 0);
+    const int first = pwl_search(s, t - near, true);
+    const int last = pwl_search(s, t + near, false);
+    if (last > first) {
+        return side == DALCS_LEFT ? value[first] : value[last - 1];
+    }
+    if (first == 0) {
+        return value[0];
+    }
+    if (first == s->u.pwl.n) {
+        return value[first - 1];
+    }
+    const double part = (t - time[first - 1]) / (time[first] - time[first - 1]);
+    return value[first - 1] + (value[first] - value[first - 1]) * part;
+}
+
+/* ---- The interface ------------------------------------------------------------------------- */
+
+double dalcs_stimulus_value(const struct dalcs_stimulus *s, double t, enum dalcs_side side) {
+    switch (s->kind) {
+    case DALCS_STIMULUS_DC:
+        return s->dc;
+    case DALCS_STIMULUS_SIN:
+        return sine_value(s, t);
+    case DALCS_STIMULUS_PULSE:
+        return pulse_value(s, t, side);
+    case DALCS_STIMULUS_PWL:
+        return pwl_value(s, t, side);
+    case DALCS_STIMULUS_EXP:
+        return exponential_value(s, t, side);
+    }
+    return 0;
+}
+
+static double if_after(double edge, double t, double near) {
+    return edge > t + near ? edge : INFINITY;
+}
+
+double dalcs_stimulus_next_edge(const struct dalcs_stimulus *s, double t) {
+    switch (s->kind) {
+    case DALCS_STIMULUS_DC:
+        return INFINITY;
+    case DALCS_STIMULUS_SIN:
+        return if_after(s->u.sine.delay, t, tolerance(t, 0));
+    case DALCS_STIMULUS_PULSE:
+        return pulse_next_edge(s, t);
+    case DALCS_STIMULUS_PWL: {
+        const int next = pwl_search(s, t + tolerance(t, 0), false);
+        return next < s->u.pwl.n ? s->u.pwl.t[next] : INFINITY;
+    }
+    case DALCS_STIMULUS_EXP:
+        return fmin(if_after(s->u.exponential.rise_delay, t, tolerance(t, 0)),
+                    if_after(s->u.exponential.fall_delay, t, tolerance(t, 0)));
+    }
+    return INFINITY;
+}
+
+bool dalcs_stimulus_jumps_at(const struct dalcs_stimulus *s, double t) {
+    return dalcs_stimulus_value(s, t, DALCS_LEFT) != dalcs_stimulus_value(s, t, DALCS_RIGHT);
+}
+
+double dalcs_stimulus_operating_value(const struct dalcs_stimulus *s, bool transient_follows) {
+    if (s->has_dc && !transient_follows) {
+        return s->dc;
+    }
+    return dalcs_stimulus_value(s, 0, DALCS_RIGHT);
+}

@@ -1,0 +1,173 @@
+/* arguments.c - getopt_long, then checks that need no file: formats by name, numbers, repeats. */
+#include "arguments.h"
+
+#include "figure.h"
+#include "memory.h"
+#include "names.h"
+#include "table.h"
+
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { METHOD = 256, STEP, AT, REPORT, PLOT, ALL_SIGNALS };
+
+static const struct option option[] = {
+    {"output", required_argument, NULL, 'o'},
+    {"method", required_argument, NULL, METHOD},
+    {"step", required_argument, NULL, STEP},
+    {"at", required_argument, NULL, AT},
+    {"report", required_argument, NULL, REPORT},
+    {"plot", required_argument, NULL, PLOT},
+    {"all-signals", no_argument, NULL, ALL_SIGNALS},
+    {"quiet", no_argument, NULL, 'q'},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
+};
+
+enum { N_OPTIONS = sizeof option / sizeof option[0] - 1 };
+
+/* What getopt_long stumbled over: argv[optind - 1], or a letter in optopt. */
+static enum dalcs_status refuse(const struct dalcs_cli *cli, int code, char **argv) {
+    const char *word = argv[optind - 1];
+    bool is_long = strncmp(word, "--", 2) == 0;
+    if (code == ':') {
+        dalcs_cli_error(cli, "option '%s' needs a value; see 'dalcs run --help'", word);
+    } else if (is_long && strchr(word, '=') && optopt != 0) {
+        dalcs_cli_error(cli, "option '%.*s' takes no value", (int)strcspn(word, "="), word);
+    } else if (is_long) {
+        const char *name[N_OPTIONS];
+        for (int i = 0; i < N_OPTIONS; i++) {
+            name[i] = option[i].name;
+        }
+        char typed[64];
+        snprintf(typed, sizeof typed, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+        const char *nearest = dalcs_names_nearest_of(name, N_OPTIONS, typed);
+        dalcs_cli_error(cli, "unknown option '--%s'%s%s%s", typed,
+                        nearest ? "; did you mean '--" : "", nearest ? nearest : "",
+                        nearest ? "'?" : "; see 'dalcs run --help'");
+    } else {
+        dalcs_cli_error(cli, "unknown option '-%c'; see 'dalcs run --help'", optopt);
+    }
+    return DALCS_E_OPTION;
+}
+
+static enum dalcs_status add_output(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
+                                    const char *path) {
+    if (!dalcs_table_find_format(path)) {
+        dalcs_cli_error(cli, "cannot tell the format of '%s': name it .csv or .raw", path);
+        return DALCS_E_OPTION;
+    }
+    arguments->output[arguments->n_outputs++] = path;
+    return DALCS_OK;
+}
+
+static enum dalcs_status parse_step(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
+                                    const char *text) {
+    if (dalcs_parse_number(text, &arguments->step) != DALCS_OK) {
+        dalcs_cli_error(cli, "--step: '%s' is not a number; write 1u or 1e-6", text);
+        return DALCS_E_OPTION;
+    }
+    if (!(arguments->step > 0.0)) {
+        dalcs_cli_error(cli, "--step: '%s' must be greater than 0", text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status take(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
+                              int code, char **argv) {
+    switch (code) {
+    case 'o':
+        return add_output(arguments, cli, optarg);
+    case METHOD:
+        arguments->method = optarg;
+        return DALCS_OK;
+    case STEP:
+        return parse_step(arguments, cli, optarg);
+    case AT:
+        arguments->at = optarg;
+        return DALCS_OK;
+    case REPORT:
+        arguments->report = optarg;
+        return DALCS_OK;
+    case PLOT:
+        arguments->plot = optarg;
+        if (!dalcs_figure_can_write(optarg)) {
+            dalcs_cli_error(cli, "--plot: cannot tell the format of '%s': name it .svg or .png",
+                            optarg);
+            return DALCS_E_OPTION;
+        }
+        return DALCS_OK;
+    case ALL_SIGNALS:
+        arguments->all_signals = true;
+        return DALCS_OK;
+    case 'q':
+        arguments->quiet = true;
+        return DALCS_OK;
+    case 'h':
+        arguments->help = true;
+        return DALCS_OK;
+    default:
+        return refuse(cli, code, argv);
+    }
+}
+
+static const char *result_path(const struct dalcs_arguments *arguments, size_t i) {
+    if (i < arguments->n_outputs) {
+        return arguments->output[i];
+    }
+    return i == arguments->n_outputs ? arguments->report : arguments->plot;
+}
+
+/* Two results must not overwrite each other. */
+static enum dalcs_status check_repeats(const struct dalcs_arguments *arguments,
+                                       const struct dalcs_cli *cli) {
+    for (size_t i = 0; i < arguments->n_outputs + 2; i++) {
+        const char *path = result_path(arguments, i);
+        for (size_t j = 0; path && j < i; j++) {
+            const char *other = result_path(arguments, j);
+            if (other && strcmp(path, other) == 0) {
+                dalcs_cli_error(cli, "'%s' is given for two results", path);
+                return DALCS_E_OPTION;
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli, int argc, char **argv) {
+    *arguments = (struct dalcs_arguments){0};
+    arguments->output = dalcs_alloc((size_t)argc, sizeof *arguments->output);
+    if (!arguments->output) {
+        return DALCS_E_NOMEM;
+    }
+    enum dalcs_status status = DALCS_OK;
+    optind = 0; /* glibc: start afresh */
+    opterr = 0;
+    for (int code; status == DALCS_OK && !arguments->help &&
+                   (code = getopt_long(argc, argv, ":o:qh", option, NULL)) != -1;) {
+        status = take(arguments, cli, code, argv);
+    }
+    if (status == DALCS_OK && !arguments->help) {
+        if (optind != argc - 1) {
+            dalcs_cli_error(cli, optind == argc ? "no netlist given; see 'dalcs run --help'"
+                                                : "one netlist at a time: '%s' is one too many",
+                            argv[argc - 1]);
+            status = DALCS_E_OPTION;
+        } else {
+            arguments->netlist = argv[optind];
+            status = check_repeats(arguments, cli);
+        }
+    }
+    if (status != DALCS_OK) {
+        dalcs_arguments_finish(arguments);
+    }
+    return status;
+}
+
+void dalcs_arguments_finish(struct dalcs_arguments *arguments) {
+    free(arguments->output);
+    *arguments = (struct dalcs_arguments){0};
+}

@@ -1,0 +1,26 @@
+/* arguments.h - the command line of `dalcs run`. */
+#ifndef DALCS_ARGUMENTS_H
+#define DALCS_ARGUMENTS_H
+
+#include "cli.h"
+
+/* Strings are borrowed from argv. */
+struct dalcs_arguments {
+    const char *netlist;
+    const char **output; /* [n_outputs]; owned array */
+    size_t n_outputs;
+    const char *method; /* NULL: the netlist's */
+    double step;        /* s; 0: the netlist's */
+    const char *at, *report, *plot;
+    bool quiet, all_signals;
+    bool help; /* asked for: nothing else is set */
+};
+
+/* DALCS_E_OPTION with a message on cli->err when the command line makes no sense. */
+enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli, int argc,
+                                        char **argv) DALCS_MUST_CHECK;
+
+void dalcs_arguments_finish(struct dalcs_arguments *arguments);
+
+#endif

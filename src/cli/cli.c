@@ -1,0 +1,100 @@
+/* cli.c - finds the verb; help and version. */
+#include "cli.h"
+
+#include "names.h"
+
+#include <stdarg.h>
+#include <string.h>
+#include <unistd.h>
+
+static const struct {
+    const char *name, *purpose;
+    enum dalcs_exit (*function)(const struct dalcs_cli *cli, int argc, char **argv);
+} verb[] = {
+    {"run", "simulate a netlist and write its waveforms", dalcs_cli_run},
+};
+
+enum { N_VERBS = sizeof verb / sizeof verb[0] };
+
+enum dalcs_exit dalcs_cli_exit(enum dalcs_status status) {
+    switch (status) {
+    case DALCS_OK:
+        return DALCS_EXIT_OK;
+    case DALCS_E_NETLIST:
+        return DALCS_EXIT_NETLIST;
+    case DALCS_E_OPTION:
+        return DALCS_EXIT_USAGE;
+    case DALCS_E_IO:
+        return DALCS_EXIT_IO;
+    default:
+        return DALCS_EXIT_RUN;
+    }
+}
+
+void dalcs_cli_error(const struct dalcs_cli *cli, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    fputs("dalcs: error: ", cli->err);
+    vfprintf(cli->err, format, arguments);
+    fputc('\n', cli->err);
+    va_end(arguments);
+}
+
+static void write_help(FILE *stream) {
+    fputs("dalcs simulates circuits with ideal diodes and switches.\n"
+          "\n"
+          "usage: dalcs VERB [options]\n"
+          "\n",
+          stream);
+    for (int i = 0; i < N_VERBS; i++) {
+        fprintf(stream, "  %-10s %s\n", verb[i].name, verb[i].purpose);
+    }
+    fputs("\n"
+          "  dalcs VERB --help    the options of a verb\n"
+          "  dalcs --version\n"
+          "\n"
+          "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n",
+          stream);
+}
+
+static enum dalcs_exit refuse_verb(const struct dalcs_cli *cli, const char *word) {
+    const char *name[N_VERBS];
+    for (int i = 0; i < N_VERBS; i++) {
+        name[i] = verb[i].name;
+    }
+    if (word[0] == '-') {
+        static const char *const option[] = {"--help", "--version"};
+        const char *nearest = dalcs_names_nearest_of(option, 2, word);
+        dalcs_cli_error(cli, "unknown option '%s'%s%s%s", word, nearest ? "; did you mean '" : "",
+                        nearest ? nearest : "", nearest ? "'?" : "");
+    } else if (access(word, F_OK) == 0) {
+        dalcs_cli_error(cli, "'%s' is not a verb; did you mean 'dalcs run %s'?", word, word);
+    } else {
+        const char *nearest = dalcs_names_nearest_of(name, N_VERBS, word);
+        dalcs_cli_error(cli, "unknown verb '%s'%s%s%s", word, nearest ? "; did you mean '" : "",
+                        nearest ? nearest : "", nearest ? "'?" : "; see 'dalcs --help'");
+    }
+    return DALCS_EXIT_USAGE;
+}
+
+enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **argv) {
+    if (argc < 2) {
+        write_help(cli->err);
+        return DALCS_EXIT_USAGE;
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
+        strcmp(argv[1], "help") == 0) {
+        write_help(cli->out);
+        return DALCS_EXIT_OK;
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        fprintf(cli->out, "dalcs %s\n", dalcs_version());
+        return DALCS_EXIT_OK;
+    }
+    for (int i = 0; i < N_VERBS; i++) {
+        if (strcmp(argv[1], verb[i].name) == 0) {
+            return verb[i].function(cli, argc - 1, argv + 1);
+        }
+    }
+    return refuse_verb(cli, argv[1]);
+}

@@ -1,0 +1,38 @@
+/* cli.h - the command line: verbs, what they print to, how they end. */
+#ifndef DALCS_CLI_H
+#define DALCS_CLI_H
+
+#include "dalcs.h"
+
+#include <signal.h>
+#include <stdio.h>
+
+/* The process's exit status. */
+enum dalcs_exit {
+    DALCS_EXIT_OK = 0,
+    DALCS_EXIT_RUN = 1,     /* the run failed: numerical, infeasible, cancelled, out of memory */
+    DALCS_EXIT_USAGE = 2,
+    DALCS_EXIT_NETLIST = 3,
+    DALCS_EXIT_IO = 4,
+};
+
+/* Borrowed from main(). Results go to out, everything else to err. */
+struct dalcs_cli {
+    FILE *out, *err;
+    bool err_is_terminal;
+    const volatile sig_atomic_t *interrupted; /* not 0: stop soon */
+};
+
+enum dalcs_exit dalcs_cli_exit(enum dalcs_status status);
+
+/* Runs the verb in argv[1]. */
+enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **argv);
+
+/* "dalcs: error: ..." and a newline on err. */
+void dalcs_cli_error(const struct dalcs_cli *cli, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* One verb each; argv[0] is the verb. */
+enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv);
+
+#endif

@@ -1,0 +1,55 @@
+/* measure.c - measures a piecewise linear waveform through the rows, exactly: between a and b over
+ * dt the integral is dt (a + b) / 2 and that of the square dt (a^2 + a b + b^2) / 3. */
+#include "measure.h"
+
+#include "memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum dalcs_status dalcs_measure_begin(struct dalcs_measure *measure,
+                                      const struct dalcs_plot *plot) {
+    dalcs_measure_finish(measure);
+    measure->plot = plot;
+    measure->signal = dalcs_alloc(plot->n_signals, sizeof *measure->signal);
+    return measure->signal ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+void dalcs_measure_row(struct dalcs_measure *measure, double time, const double *value) {
+    struct dalcs_measure_signal *signal = measure->signal;
+    bool first = measure->n_rows++ == 0;
+    double dt = first ? 0.0 : time - measure->last_time;
+    if (first) {
+        measure->first_time = time;
+    }
+    measure->last_time = time;
+    for (size_t i = 0; i < measure->plot->n_signals; i++) {
+        double v = value[i], before = signal[i].final;
+        signal[i].final = v;
+        if (first) {
+            signal[i].min = signal[i].max = v;
+            continue;
+        }
+        signal[i].min = v < signal[i].min ? v : signal[i].min;
+        signal[i].max = v > signal[i].max ? v : signal[i].max;
+        signal[i].integral += dt * (before + v) / 2.0;
+        signal[i].square_integral += dt * (before * before + before * v + v * v) / 3.0;
+    }
+}
+
+double dalcs_measure_average(const struct dalcs_measure *measure, size_t signal) {
+    double duration = measure->last_time - measure->first_time;
+    const struct dalcs_measure_signal *s = &measure->signal[signal];
+    return duration > 0.0 ? s->integral / duration : s->final;
+}
+
+double dalcs_measure_rms(const struct dalcs_measure *measure, size_t signal) {
+    double duration = measure->last_time - measure->first_time;
+    const struct dalcs_measure_signal *s = &measure->signal[signal];
+    return duration > 0.0 ? sqrt(s->square_integral / duration) : fabs(s->final);
+}
+
+void dalcs_measure_finish(struct dalcs_measure *measure) {
+    free(measure->signal);
+    *measure = (struct dalcs_measure){0};
+}

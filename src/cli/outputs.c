@@ -1,0 +1,217 @@
+/* outputs.c - hands each row to all outputs; ends their files well or as partial ones. */
+#include "outputs.h"
+
+#include "memory.h"
+#include "report.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* "dir/bridge.cir" -> "bridge.raw", in the current folder. */
+static char *name_default(const char *netlist) {
+    const char *slash = strrchr(netlist, '/');
+    const char *base = slash ? slash + 1 : netlist;
+    const char *dot = strrchr(base, '.');
+    size_t stem = dot && dot != base ? (size_t)(dot - base) : strlen(base);
+    char *name = dalcs_alloc(stem + sizeof ".raw", 1);
+    if (name) {
+        memcpy(name, base, stem);
+        strcpy(name + stem, ".raw");
+    }
+    return name;
+}
+
+static enum dalcs_status init_tables(struct dalcs_outputs *outputs,
+                                     const struct dalcs_arguments *arguments,
+                                     const struct dalcs_request *request) {
+    const char *const *path = arguments->output;
+    size_t n = arguments->n_outputs;
+    if (n == 0) {
+        outputs->default_path = name_default(arguments->netlist);
+        if (!outputs->default_path) {
+            return DALCS_E_NOMEM;
+        }
+        path = (const char *const *)&outputs->default_path;
+        n = 1;
+    }
+    outputs->table = dalcs_alloc(n, sizeof *outputs->table);
+    if (!outputs->table) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t i = 0; i < n; i++) {
+        enum dalcs_status status =
+            dalcs_table_init(&outputs->table[outputs->n_tables++], path[i], request->transient);
+        if (status != DALCS_OK) {
+            return status;
+        }
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
+                                     const struct dalcs_arguments *arguments,
+                                     const struct dalcs_request *request, double start,
+                                     double stop) {
+    *outputs = (struct dalcs_outputs){.report_path = arguments->report};
+    enum dalcs_status status = init_tables(outputs, arguments, request);
+    if (status != DALCS_OK) {
+        dalcs_outputs_finish(outputs);
+        return status;
+    }
+    if (arguments->plot && request->transient) {
+        outputs->has_figure = true;
+        dalcs_figure_init(&outputs->figure, arguments->plot, start, stop);
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs,
+                                      const struct dalcs_plot *plot) {
+    outputs->analysis = plot->analysis;
+    for (size_t i = 0; i < outputs->n_tables; i++) {
+        enum dalcs_status status = dalcs_table_begin(&outputs->table[i], plot);
+        if (status != DALCS_OK) {
+            return status;
+        }
+    }
+    if (outputs->has_figure) {
+        enum dalcs_status status = dalcs_figure_begin(&outputs->figure, plot);
+        if (status != DALCS_OK) {
+            return status;
+        }
+    }
+    if (outputs->report_path && !outputs->report.stream) {
+        enum dalcs_status status =
+            dalcs_atomic_file_open(&outputs->report, outputs->report_path);
+        if (status != DALCS_OK) {
+            return status;
+        }
+    }
+    return dalcs_measure_begin(&outputs->measure[plot->analysis], plot);
+}
+
+enum dalcs_status dalcs_outputs_row(struct dalcs_outputs *outputs, double time,
+                                    const double *value) {
+    outputs->time = time;
+    outputs->n_rows++;
+    dalcs_measure_row(&outputs->measure[outputs->analysis], time, value);
+    if (outputs->has_figure && outputs->analysis == DALCS_TRANSIENT) {
+        dalcs_figure_row(&outputs->figure, time, value);
+    }
+    for (size_t i = 0; i < outputs->n_tables; i++) {
+        enum dalcs_status status = dalcs_table_row(&outputs->table[i], time, value);
+        if (status != DALCS_OK) {
+            return status;
+        }
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_outputs_end(struct dalcs_outputs *outputs) {
+    for (size_t i = 0; i < outputs->n_tables; i++) {
+        enum dalcs_status status = dalcs_table_end(&outputs->table[i]);
+        if (status != DALCS_OK) {
+            return status;
+        }
+    }
+    return DALCS_OK;
+}
+
+/* One line about one file; returns `status` or what was wrong before the run stopped. */
+static enum dalcs_status tell(const struct dalcs_cli *cli, FILE *out, const char *path,
+                              int error, enum dalcs_status status, bool complete,
+                              const char *left_at) {
+    if (error != 0) {
+        dalcs_cli_error(cli, "cannot write '%s': %s", path, strerror(error));
+        return DALCS_E_IO;
+    }
+    if (left_at) {
+        fprintf(cli->err, "dalcs: what was computed is in '%s'", left_at);
+        fprintf(cli->err, access(path, F_OK) == 0 ? "; '%s' is of an earlier run\n" : "\n", path);
+    } else if (complete && status == DALCS_OK && out) {
+        fprintf(out, "  wrote     %s\n", path);
+    }
+    return status;
+}
+
+static enum dalcs_status close_table(struct dalcs_table *table, const struct dalcs_cli *cli,
+                                     FILE *out, bool complete) {
+    char *left_at = NULL;
+    bool written = table->file.stream != NULL;
+    enum dalcs_status status =
+        complete ? dalcs_table_commit(table) : dalcs_table_keep(table, &left_at);
+    status = tell(cli, out, table->path, table->file.error, status, complete && written, left_at);
+    free(left_at);
+    return status;
+}
+
+static enum dalcs_status close_figure(struct dalcs_figure *figure, const struct dalcs_cli *cli,
+                                      FILE *out, bool complete) {
+    char *left_at = NULL;
+    bool written = figure->file.stream != NULL;
+    enum dalcs_status status =
+        figure->file.error != 0 ? DALCS_E_IO : dalcs_figure_draw(figure, complete ? NULL : &left_at);
+    if (figure->message[0]) {
+        dalcs_cli_error(cli, "cannot draw '%s': %s", figure->path, figure->message);
+        return DALCS_E_IO;
+    }
+    status = tell(cli, out, figure->path, figure->file.error, status, complete && written, left_at);
+    free(left_at);
+    return status;
+}
+
+/* A failed run has a report as well: that is where one looks for the reason. */
+static enum dalcs_status close_report(struct dalcs_outputs *outputs, const struct dalcs_cli *cli,
+                                      FILE *out, const struct dalcs_report *report,
+                                      enum dalcs_status run) {
+    struct dalcs_atomic_file *file = &outputs->report;
+    enum dalcs_status status = DALCS_OK;
+    if (!report) {
+        dalcs_atomic_file_discard(file);
+    } else if (file->error == 0) {
+        if (!file->stream) {
+            status = dalcs_atomic_file_open(file, outputs->report_path);
+        }
+        if (status == DALCS_OK) {
+            dalcs_report_write(file->stream, report, run);
+            status = dalcs_atomic_file_commit(file);
+        }
+    }
+    return tell(cli, out, outputs->report_path, file->error, status, report != NULL, NULL);
+}
+
+enum dalcs_status dalcs_outputs_close(struct dalcs_outputs *outputs, const struct dalcs_cli *cli,
+                                      FILE *out, const struct dalcs_report *report,
+                                      enum dalcs_status run) {
+    enum dalcs_status worst = DALCS_OK;
+    bool complete = run == DALCS_OK;
+    for (size_t i = 0; i < outputs->n_tables; i++) {
+        enum dalcs_status status = close_table(&outputs->table[i], cli, out, complete);
+        worst = status != DALCS_OK ? status : worst;
+    }
+    if (outputs->has_figure) {
+        enum dalcs_status status = close_figure(&outputs->figure, cli, out, complete);
+        worst = status != DALCS_OK ? status : worst;
+    }
+    if (outputs->report_path) {
+        enum dalcs_status status = close_report(outputs, cli, out, report, run);
+        worst = status != DALCS_OK ? status : worst;
+    }
+    return worst;
+}
+
+void dalcs_outputs_finish(struct dalcs_outputs *outputs) {
+    for (size_t i = 0; i < outputs->n_tables; i++) {
+        dalcs_table_finish(&outputs->table[i]);
+    }
+    free(outputs->table);
+    free(outputs->default_path);
+    if (outputs->has_figure) {
+        dalcs_figure_finish(&outputs->figure);
+    }
+    dalcs_atomic_file_discard(&outputs->report);
+    dalcs_measure_finish(&outputs->measure[0]);
+    dalcs_measure_finish(&outputs->measure[1]);
+    *outputs = (struct dalcs_outputs){0};
+}

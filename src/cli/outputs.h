@@ -1,0 +1,47 @@
+/* outputs.h - everything that one run writes: tables, figure, report file, measurements. */
+#ifndef DALCS_OUTPUTS_H
+#define DALCS_OUTPUTS_H
+
+#include "arguments.h"
+#include "figure.h"
+#include "measure.h"
+#include "table.h"
+
+struct dalcs_outputs {
+    struct dalcs_table *table; /* [n_tables] */
+    size_t n_tables;
+    char *default_path; /* of table[0] when no -o was given; NULL otherwise */
+    bool has_figure;
+    struct dalcs_figure figure;
+    const char *report_path; /* NULL: none */
+    struct dalcs_atomic_file report;
+    struct dalcs_measure measure[2]; /* by enum dalcs_analysis */
+    enum dalcs_analysis analysis;    /* of the plot being received */
+    double time;                     /* of the last row, s */
+    size_t n_rows;
+};
+
+/* Touches no file. Times of the transient plot run from start to stop. */
+enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
+                                     const struct dalcs_arguments *arguments,
+                                     const struct dalcs_request *request, double start,
+                                     double stop) DALCS_MUST_CHECK;
+
+/* The callbacks of struct dalcs_sink. Begin opens all files, so that a path which cannot be
+ * written ends the run before it starts. */
+enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs, const struct dalcs_plot *plot);
+enum dalcs_status dalcs_outputs_row(struct dalcs_outputs *outputs, double time,
+                                    const double *value);
+enum dalcs_status dalcs_outputs_end(struct dalcs_outputs *outputs);
+
+/* Ends every file: under its name when `complete`, else under one that says it is partial. The
+ * report keeps its name in both cases; `report` may be NULL. Names what was written on `out` (NULL:
+ * nowhere) and what is partial or failed on cli->err. Returns DALCS_E_IO when a file failed. */
+enum dalcs_status dalcs_outputs_close(struct dalcs_outputs *outputs, const struct dalcs_cli *cli,
+                                      FILE *out, const struct dalcs_report *report,
+                                      enum dalcs_status run) DALCS_MUST_CHECK;
+
+/* Accepts a zeroed one. Files that were not closed are removed. */
+void dalcs_outputs_finish(struct dalcs_outputs *outputs);
+
+#endif

@@ -1,0 +1,23 @@
+/* progress.h - one line on a terminal that says how far a long run is. */
+#ifndef DALCS_PROGRESS_H
+#define DALCS_PROGRESS_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+struct dalcs_progress {
+    FILE *stream;       /* borrowed; NULL: show nothing */
+    double start, last; /* s on a monotonic clock */
+    bool shown;
+};
+
+/* stream NULL shows nothing. */
+void dalcs_progress_init(struct dalcs_progress *progress, FILE *stream);
+
+/* Simulated time of stop, in s. Redraws at most five times a second. */
+void dalcs_progress_update(struct dalcs_progress *progress, double time, double stop);
+
+/* Erases the line. */
+void dalcs_progress_finish(struct dalcs_progress *progress);
+
+#endif

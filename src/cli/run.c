@@ -1,0 +1,263 @@
+/* run.c - `dalcs run`: read the netlist, run it, stream the results, say what happened. */
+#include "cli.h"
+
+#include "arguments.h"
+#include "outputs.h"
+#include "progress.h"
+#include "quantity.h"
+#include "summary.h"
+#include "times.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* The state behind the sink. */
+struct run {
+    const struct dalcs_cli *cli;
+    struct dalcs_outputs outputs;
+    struct dalcs_progress progress;
+};
+
+static const char help[] =
+    "usage: dalcs run FILE [options]\n"
+    "\n"
+    "Runs the .op and .tran of a SPICE netlist. Diodes and switches are ideal unless the netlist\n"
+    "says otherwise.\n"
+    "\n"
+    "  -o, --output FILE   write waveforms; the format is that of the name, .csv or .raw (may be\n"
+    "                      repeated; without it FILE's name with .raw, in the current folder)\n"
+    "      --method NAME   integration method: euler\n"
+    "      --step H        time step in s, SPICE suffixes allowed: 1u (default: from .tran)\n"
+    "      --at FILE       print at exactly the times in FILE, one a line\n"
+    "      --report FILE   write what the run did as JSON\n"
+    "      --plot FILE     draw the waveforms with gnuplot, .svg or .png\n"
+    "      --all-signals   print the measurements of all signals, not of the first 24\n"
+    "  -q, --quiet         print nothing but warnings and errors\n"
+    "  -h, --help          this text\n"
+    "\n"
+    "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n";
+
+/* ---- The sink ------------------------------------------------------------------------------- */
+
+static enum dalcs_status check_interrupt(const struct run *run) {
+    return *run->cli->interrupted ? DALCS_E_CANCELLED : DALCS_OK;
+}
+
+static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
+    struct run *run = user;
+    return dalcs_outputs_begin(&run->outputs, plot);
+}
+
+static enum dalcs_status row(void *user, double time, const double *value) {
+    struct run *run = user;
+    enum dalcs_status status = dalcs_outputs_row(&run->outputs, time, value);
+    return status == DALCS_OK ? check_interrupt(run) : status;
+}
+
+static enum dalcs_status end(void *user) {
+    struct run *run = user;
+    return dalcs_outputs_end(&run->outputs);
+}
+
+static enum dalcs_status progress(void *user, double time, double stop) {
+    struct run *run = user;
+    dalcs_progress_update(&run->progress, time, stop);
+    return check_interrupt(run);
+}
+
+/* ---- Before the run ------------------------------------------------------------------------- */
+
+/* Prints the messages that came since the last call; notes are not for --quiet. */
+static void write_messages(const struct dalcs_cli *cli, const struct dalcs_session *session,
+                           size_t *n_written, bool quiet) {
+    for (size_t n = dalcs_session_n_messages(session); *n_written < n; ++*n_written) {
+        enum dalcs_level level = DALCS_LEVEL_NOTE;
+        const char *text = dalcs_session_message(session, *n_written, &level);
+        if (!quiet || level != DALCS_LEVEL_NOTE) {
+            fprintf(cli->err, "%s\n", text);
+        }
+    }
+}
+
+static enum dalcs_status check_readable(const struct dalcs_cli *cli, const char *path,
+                                        struct stat *netlist) {
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    int error = descriptor < 0 ? errno : 0;
+    if (error == 0 && fstat(descriptor, netlist) != 0) {
+        error = errno;
+    } else if (error == 0 && S_ISDIR(netlist->st_mode)) {
+        error = EISDIR;
+    }
+    if (descriptor >= 0) {
+        close(descriptor);
+    }
+    if (error != 0) {
+        dalcs_cli_error(cli, "cannot read '%s': %s", path, strerror(error));
+        return DALCS_E_IO;
+    }
+    return DALCS_OK;
+}
+
+/* No result may overwrite the netlist. */
+static enum dalcs_status check_not_netlist(const struct dalcs_cli *cli,
+                                           const struct stat *netlist, const char *path) {
+    struct stat result;
+    if (path && stat(path, &result) == 0 && result.st_dev == netlist->st_dev &&
+        result.st_ino == netlist->st_ino) {
+        dalcs_cli_error(cli, "'%s' is the netlist itself", path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status check_files(const struct dalcs_cli *cli,
+                                     const struct dalcs_arguments *arguments) {
+    struct stat netlist;
+    enum dalcs_status status = check_readable(cli, arguments->netlist, &netlist);
+    for (size_t i = 0; status == DALCS_OK && i < arguments->n_outputs; i++) {
+        status = check_not_netlist(cli, &netlist, arguments->output[i]);
+    }
+    if (status == DALCS_OK) {
+        status = check_not_netlist(cli, &netlist, arguments->report);
+    }
+    return status == DALCS_OK ? check_not_netlist(cli, &netlist, arguments->plot) : status;
+}
+
+/* What was asked for on the command line and cannot apply to this netlist. */
+static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_arguments *arguments,
+                        const struct dalcs_request *request) {
+    const struct {
+        const char *name;
+        bool given;
+    } option[] = {{"--step", arguments->step > 0.0},
+                  {"--at", arguments->at != NULL},
+                  {"--plot", arguments->plot != NULL}};
+    for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
+        if (option[i].given && !request->transient) {
+            fprintf(cli->err, "dalcs: warning: the netlist has no .tran: %s has no effect\n",
+                    option[i].name);
+        }
+    }
+}
+
+/* ---- The run -------------------------------------------------------------------------------- */
+
+static void write_summary(const struct run *run, const struct dalcs_arguments *arguments,
+                          const struct dalcs_report *report, enum dalcs_status status) {
+    FILE *out = run->cli->out;
+    if (arguments->quiet || !report || (status != DALCS_OK && run->outputs.n_rows == 0)) {
+        return;
+    }
+    dalcs_summary_write_run(out, report);
+    if (status != DALCS_OK) {
+        char text[DALCS_QUANTITY_SIZE];
+        fprintf(out, "  stopped   at %s: %s\n",
+                dalcs_quantity_write(text, run->outputs.time, "s", 6), dalcs_status_text(status));
+    }
+    dalcs_summary_write_signals(out, &run->outputs.measure[DALCS_OPERATING_POINT],
+                                arguments->all_signals);
+    dalcs_summary_write_signals(out, &run->outputs.measure[DALCS_TRANSIENT],
+                                arguments->all_signals);
+    dalcs_summary_write_jumps(out, report);
+    fputc('\n', out);
+}
+
+/* Runs a session that has read its netlist and ends all files. */
+static enum dalcs_status run_session(struct run *run, struct dalcs_session *session,
+                                     const struct dalcs_arguments *arguments,
+                                     const struct dalcs_times *times, size_t *n_written) {
+    struct dalcs_run_options options = dalcs_run_options_default();
+    options.method = arguments->method;
+    options.step = arguments->step;
+    options.at = times->time;
+    options.n_at = times->n;
+    options.record = arguments->report || !arguments->quiet;
+    const struct dalcs_sink sink = {run, begin, row, end, progress};
+    dalcs_progress_init(&run->progress, run->cli->err_is_terminal ? run->cli->err : NULL);
+    enum dalcs_status status = dalcs_session_run(session, &options, &sink);
+    dalcs_progress_finish(&run->progress);
+
+    size_t n_before = *n_written;
+    write_messages(run->cli, session, n_written, arguments->quiet);
+    if (status == DALCS_E_CANCELLED) {
+        char text[DALCS_QUANTITY_SIZE];
+        fprintf(run->cli->err, "dalcs: interrupted at t = %s\n",
+                dalcs_quantity_write(text, run->outputs.time, "s", 6));
+    } else if (status != DALCS_OK && status != DALCS_E_IO && *n_written == n_before) {
+        dalcs_cli_error(run->cli, "%s", dalcs_status_text(status));
+    }
+    const struct dalcs_report *report = dalcs_session_report(session);
+    write_summary(run, arguments, report, status);
+    enum dalcs_status files = dalcs_outputs_close(
+        &run->outputs, run->cli, arguments->quiet ? NULL : run->cli->out, report, status);
+    return status == DALCS_OK ? files : status;
+}
+
+static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
+                                     const struct dalcs_arguments *arguments,
+                                     struct dalcs_session *session) {
+    size_t n_written = 0;
+    enum dalcs_status status = dalcs_session_read_file(session, arguments->netlist);
+    write_messages(cli, session, &n_written, arguments->quiet);
+    if (status != DALCS_OK) {
+        if (n_written == 0) {
+            dalcs_cli_error(cli, "%s: %s", arguments->netlist, dalcs_status_text(status));
+        }
+        return status;
+    }
+    const struct dalcs_request request = dalcs_session_request(session);
+    if (!request.operating_point && !request.transient) {
+        dalcs_cli_error(cli, "%s: nothing to do: the netlist has no .tran and no .op",
+                        arguments->netlist);
+        return DALCS_E_NETLIST;
+    }
+    warn_unused(cli, arguments, &request);
+    struct dalcs_times times = {0};
+    if (arguments->at) {
+        status = dalcs_times_read(&times, cli, arguments->at);
+        if (status != DALCS_OK) {
+            return status;
+        }
+    }
+    struct run run = {.cli = cli};
+    bool at = times.n > 0;
+    status = dalcs_outputs_init(&run.outputs, arguments, &request,
+                                at ? times.time[0] : request.start,
+                                at ? times.time[times.n - 1] : request.stop);
+    if (status == DALCS_OK) {
+        status = run_session(&run, session, arguments, &times, &n_written);
+        dalcs_outputs_finish(&run.outputs);
+    } else {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+    }
+    dalcs_times_finish(&times);
+    return status;
+}
+
+enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv) {
+    struct dalcs_arguments arguments;
+    enum dalcs_status status = dalcs_arguments_parse(&arguments, cli, argc, argv);
+    if (status != DALCS_OK) {
+        return dalcs_cli_exit(status);
+    }
+    if (arguments.help) {
+        fputs(help, cli->out);
+    } else {
+        status = check_files(cli, &arguments);
+    }
+    if (status == DALCS_OK && !arguments.help) {
+        struct dalcs_session *session = NULL;
+        status = dalcs_session_create(&session);
+        if (status == DALCS_OK) {
+            status = run_netlist(cli, &arguments, session);
+        } else {
+            dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+        }
+        dalcs_session_destroy(session);
+    }
+    dalcs_arguments_finish(&arguments);
+    return dalcs_cli_exit(status);
+}

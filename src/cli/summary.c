@@ -1,0 +1,154 @@
+/* summary.c - the run in a few lines: the circuit, the work, the proof, a table of signals, the
+ * jumps. */
+#include "summary.h"
+
+#include "quantity.h"
+
+#include <math.h>
+#include <string.h>
+
+#define INVISIBLE 1e-12
+
+enum { MAX_SIGNALS = 24, MAX_JUMPS = 5, MAX_PARTS = 6, DIGITS = 4 };
+
+static const char *plural(long n) {
+    return n == 1 ? "" : "s";
+}
+
+static void write_size(FILE *out, const struct dalcs_report *report) {
+    fprintf(out, "  circuit   %d node%s, %d state%s (x), %d algebraic (z), %d diode%s (lambda)",
+            report->size.nodes, plural(report->size.nodes), report->size.x, plural(report->size.x),
+            report->size.z, report->size.lambda, plural(report->size.lambda));
+    if (report->size.switches > 0) {
+        fprintf(out, ", %d switch%s", report->size.switches,
+                report->size.switches == 1 ? "" : "es");
+    }
+    if (report->size.components > 1) {
+        fprintf(out, ", %d components", report->size.components);
+    }
+    fputc('\n', out);
+}
+
+static void write_work(FILE *out, const struct dalcs_report *report) {
+    char text[DALCS_QUANTITY_SIZE];
+    if (report->step > 0.0) {
+        fprintf(out, "  method    %s, step %s: %ld step%s\n", report->method ? report->method : "?",
+                dalcs_quantity_write(text, report->step, "s", DIGITS), report->work.steps,
+                plural(report->work.steps));
+    }
+    fprintf(out, "  work      %ld one-step problem%s, %ld pivot%s, %ld factorisation%s",
+            report->work.osnsp, plural(report->work.osnsp), report->work.pivots,
+            plural(report->work.pivots), report->work.factorizations,
+            plural(report->work.factorizations));
+    fprintf(out, ", %ld cache hit%s", report->work.cache_hits, plural(report->work.cache_hits));
+    if (report->work.singular > 0) {
+        fprintf(out, ", %ld in a singular mode", report->work.singular);
+    }
+    fprintf(out, "\n  time      %s cpu", dalcs_quantity_write(text, report->work.cpu_s, "s", 3));
+    fprintf(out, ", %s wall\n", dalcs_quantity_write(text, report->work.wall_s, "s", 3));
+}
+
+static void write_certificate(FILE *out, const struct dalcs_report *report) {
+    char text[DALCS_QUANTITY_SIZE];
+    fprintf(out, "  proof     worst residual %.2g", report->certificate.worst);
+    if (report->certificate.where && report->certificate.where[0]) {
+        fprintf(out, " at %s (%s)",
+                dalcs_quantity_write(text, report->certificate.time, "s", DIGITS),
+                report->certificate.where);
+    }
+    fputc('\n', out);
+}
+
+void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report) {
+    fprintf(out, "%s\n", report->title ? report->title : "");
+    write_size(out, report);
+    write_work(out, report);
+    write_certificate(out, report);
+}
+
+static const char *unit_name(enum dalcs_unit unit) {
+    return unit == DALCS_VOLT ? "V" : "A";
+}
+
+/* What is round-off beside the signal's own size is shown as 0. */
+static void write_cell(FILE *out, const struct dalcs_measure_signal *signal, double value,
+                       enum dalcs_unit unit) {
+    char text[DALCS_QUANTITY_SIZE];
+    if (fabs(value) <= INVISIBLE * fmax(fabs(signal->min), fabs(signal->max))) {
+        value = 0.0;
+    }
+    fprintf(out, " %11s", dalcs_quantity_write_column(text, value, unit_name(unit), DIGITS));
+}
+
+void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure, bool all) {
+    const struct dalcs_plot *plot = measure->plot;
+    if (!plot || measure->n_rows == 0 || plot->n_signals == 0) {
+        return;
+    }
+    size_t n = all || plot->n_signals <= MAX_SIGNALS ? plot->n_signals : MAX_SIGNALS;
+    int width = 9;
+    for (size_t i = 0; i < n; i++) {
+        int length = (int)strlen(plot->name[i]);
+        width = length > width ? length : width;
+    }
+    bool transient = plot->analysis == DALCS_TRANSIENT;
+    if (transient) {
+        fprintf(out, "\n  %-*s %11s %11s %11s %11s %11s\n", width, "signal", "min", "max",
+                "average", "rms", "final");
+    } else {
+        fprintf(out, "\n  %-*s %11s\n", width, "signal", "op");
+    }
+    for (size_t i = 0; i < n; i++) {
+        const struct dalcs_measure_signal *signal = &measure->signal[i];
+        fprintf(out, "  %-*s", width, plot->name[i]);
+        if (transient) {
+            write_cell(out, signal, signal->min, plot->unit[i]);
+            write_cell(out, signal, signal->max, plot->unit[i]);
+            write_cell(out, signal, dalcs_measure_average(measure, i), plot->unit[i]);
+            write_cell(out, signal, dalcs_measure_rms(measure, i), plot->unit[i]);
+        }
+        write_cell(out, signal, signal->final, plot->unit[i]);
+        fputc('\n', out);
+    }
+    if (n < plot->n_signals) {
+        fprintf(out, "  ... and %zu more: --all-signals\n", plot->n_signals - n);
+    }
+}
+
+static void write_jump(FILE *out, const struct dalcs_jump *jump) {
+    char a[DALCS_QUANTITY_SIZE], b[DALCS_QUANTITY_SIZE];
+    fprintf(out, "  jump at t=%s:",
+            jump->time == 0.0 ? "0" : dalcs_quantity_write(a, jump->time, "s", 6));
+    for (size_t i = 0; i < jump->n_states && i < MAX_PARTS; i++) {
+        const struct dalcs_jump_state *state = &jump->state[i];
+        const char *unit = state->element[0] == 'l' ? "A" : "V";
+        fprintf(out, "%s %s %s -> %s", i > 0 ? "," : "", state->element,
+                dalcs_quantity_write(a, state->before, unit, DIGITS),
+                dalcs_quantity_write(b, state->after, unit, DIGITS));
+    }
+    if (jump->n_states > MAX_PARTS) {
+        fprintf(out, ", %zu more", jump->n_states - MAX_PARTS);
+    }
+    for (size_t i = 0; i < jump->n_impulses && i < MAX_PARTS; i++) {
+        const struct dalcs_impulse *impulse = &jump->impulse[i];
+        fprintf(out, "%s %s %s", i > 0 ? "," : ";",
+                impulse->is_flux ? "flux across" : "charge through", impulse->element);
+        fprintf(out, " %s",
+                dalcs_quantity_write(a, impulse->value, impulse->is_flux ? "Wb" : "C", DIGITS));
+    }
+    fprintf(out, "; %s lost\n", dalcs_quantity_write(a, jump->energy_lost, "J", DIGITS));
+}
+
+void dalcs_summary_write_jumps(FILE *out, const struct dalcs_report *report) {
+    size_t n = report->n_jumps < MAX_JUMPS ? report->n_jumps : MAX_JUMPS;
+    if (n > 0) {
+        fputc('\n', out);
+    }
+    for (size_t i = 0; i < n; i++) {
+        write_jump(out, &report->jump[i]);
+    }
+    size_t more = report->n_jumps + report->n_jumps_dropped - n;
+    if (more > 0) {
+        fprintf(out, "  ... and %zu more jump%s: --report\n", more, plural((long)more));
+    }
+}

@@ -1,0 +1,18 @@
+/* summary.h - what a person reads after a run. */
+#ifndef DALCS_SUMMARY_H
+#define DALCS_SUMMARY_H
+
+#include "measure.h"
+
+#include <stdio.h>
+
+/* Title, size, work, certificate; three or four lines. */
+void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report);
+
+/* A table, of the first 24 signals or of all; nothing when there were no rows. */
+void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure, bool all);
+
+/* The first few jumps, a sentence each. */
+void dalcs_summary_write_jumps(FILE *out, const struct dalcs_report *report);
+
+#endif

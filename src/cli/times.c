@@ -1,0 +1,71 @@
+/* times.c - reads output times, one a line. */
+#include "times.h"
+
+#include "memory.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char blank[] = " \t\r\n";
+
+static enum dalcs_status add_line(struct dalcs_times *times, size_t *capacity,
+                                  const struct dalcs_cli *cli, const char *path, long line,
+                                  char *text) {
+    text += strspn(text, blank);
+    text[strcspn(text, blank)] = '\0'; /* the first word: the rest may be other columns */
+    if (*text == '\0' || *text == '#' || *text == '*') {
+        return DALCS_OK;
+    }
+    double time = 0.0;
+    if (dalcs_parse_number(text, &time) != DALCS_OK || time < 0.0) {
+        dalcs_cli_error(cli, "%s:%ld: '%s' is not a time", path, line, text);
+        return DALCS_E_OPTION;
+    }
+    if (times->n > 0 && time <= times->time[times->n - 1]) {
+        dalcs_cli_error(cli, "%s:%ld: '%s' does not come after the time before it", path, line,
+                        text);
+        return DALCS_E_OPTION;
+    }
+    enum dalcs_status status =
+        dalcs_grow(&times->time, capacity, times->n + 1, sizeof *times->time);
+    if (status == DALCS_OK) {
+        times->time[times->n++] = time;
+    }
+    return status;
+}
+
+enum dalcs_status dalcs_times_read(struct dalcs_times *times, const struct dalcs_cli *cli,
+                                   const char *path) {
+    *times = (struct dalcs_times){0};
+    FILE *file = fopen(path, "r");
+    if (!file) {
+        dalcs_cli_error(cli, "cannot read '%s': %s", path, strerror(errno));
+        return DALCS_E_IO;
+    }
+    enum dalcs_status status = DALCS_OK;
+    size_t capacity = 0, size = 0;
+    char *text = NULL;
+    errno = 0;
+    for (long line = 1; status == DALCS_OK && getline(&text, &size, file) >= 0; line++) {
+        status = add_line(times, &capacity, cli, path, line, text);
+    }
+    if (status == DALCS_OK && ferror(file)) {
+        dalcs_cli_error(cli, "cannot read '%s': %s", path, strerror(errno != 0 ? errno : EIO));
+        status = DALCS_E_IO;
+    } else if (status == DALCS_OK && times->n == 0) {
+        dalcs_cli_error(cli, "'%s' holds no times", path);
+        status = DALCS_E_OPTION;
+    }
+    free(text);
+    fclose(file);
+    if (status != DALCS_OK) {
+        dalcs_times_finish(times);
+    }
+    return status;
+}
+
+void dalcs_times_finish(struct dalcs_times *times) {
+    free(times->time);
+    *times = (struct dalcs_times){0};
+}

@@ -1,0 +1,19 @@
+/* times.h - the file of output times of `--at`. */
+#ifndef DALCS_TIMES_H
+#define DALCS_TIMES_H
+
+#include "cli.h"
+
+struct dalcs_times {
+    double *time; /* [n] ascending, s */
+    size_t n;
+};
+
+/* One time a line, SPICE suffixes allowed; blank lines and lines starting with # or * are skipped.
+ * Messages go to cli->err. */
+enum dalcs_status dalcs_times_read(struct dalcs_times *times, const struct dalcs_cli *cli,
+                                   const char *path) DALCS_MUST_CHECK;
+
+void dalcs_times_finish(struct dalcs_times *times);
+
+#endif

@@ -1,0 +1,662 @@
+/* assemble.c - modified nodal analysis written as a DALCS.
+ *
+ *   x   voltages of capacitors, (magnetising) currents of coils
+ *   z   node voltages; currents of V, E, H; of capacitors that close a loop of capacitors or are
+ *       asked for; of coils that perfect coupling makes dependent
+ *   lambda   currents of diodes and switches
+ *
+ * KCL, currents leaving. At a node of the capacitor forest (its root apart) KCL is the differential
+ * equation of a capacitor, C x' = -(the other currents), so that no capacitor current is an unknown;
+ * the KCL of a root is summed over its tree, where the capacitor currents cancel. A_I = 0 for RLC.
+ *
+ * Signs are chosen for passivity: with rows in the order of `dual`, -A is skew but for conductances
+ * and resistances on its diagonal blocks. */
+#include "assemble.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct stamps {
+    struct dalcs_layout *layout;
+    struct dalcs_system *s;
+    struct dalcs_triplets P, A, E, C, F, storage, control, direct_control;
+    int n_tree;   /* capacitors in the forest: rows and columns 0..n_tree-1 of x */
+    int next_x;   /* next x column (= row of I) after the forest's */
+    int next_z;   /* next z column after the node voltages */
+    int next_row; /* next row of II after KCL */
+    int next_pair, next_input;
+    double *initial;
+};
+
+static int column_of_node(const struct dalcs_layout *l, int node) {
+    int n = l->topology.node_of[node];
+    return n == 0 ? -1 : l->node_column[n];
+}
+
+/* Adds to a matrix whose columns are the system's; ground (-1) vanishes. */
+static enum dalcs_status add(struct dalcs_triplets *t, int row, int column, double value) {
+    if (column < 0 || value == 0.0) {
+        return DALCS_OK;
+    }
+    return dalcs_triplets_add(t, row, column, value);
+}
+
+/* A current leaving `node`: coefficient * column. */
+static enum dalcs_status leave(struct stamps *b, struct dalcs_triplets *t, int node, int column,
+                               double value) {
+    const struct dalcs_layout *l = b->layout;
+    int n = l->topology.node_of[node];
+    if (n == 0) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(add(t, l->kcl_row[n], column, -value));
+    int root = l->topology.forest_root[n];
+    if (root != n && root != 0) {
+        DALCS_TRY(add(t, l->kcl_row[root], column, -value));
+    }
+    return DALCS_OK;
+}
+
+/* A branch current through a device from its first to its second terminal. */
+static enum dalcs_status branch_current(struct stamps *b, const struct dalcs_device *d, int column,
+                                        double value) {
+    DALCS_TRY(leave(b, &b->A, d->node[0], column, value));
+    return leave(b, &b->A, d->node[1], column, -value);
+}
+
+/* row of t += value * (v(first) - v(second)) */
+static enum dalcs_status add_voltage(struct stamps *b, struct dalcs_triplets *t, int row, int first,
+                                     int second, double value) {
+    DALCS_TRY(add(t, row, column_of_node(b->layout, first), value));
+    return add(t, row, column_of_node(b->layout, second), -value);
+}
+
+/* The current gain * (v(c) - v(d)) leaving node a and entering node b. */
+static enum dalcs_status transconductance(struct stamps *b, int first, int second, int plus,
+                                          int minus, double gain) {
+    int c = column_of_node(b->layout, plus);
+    int d = column_of_node(b->layout, minus);
+    DALCS_TRY(leave(b, &b->A, first, c, gain));
+    DALCS_TRY(leave(b, &b->A, first, d, -gain));
+    DALCS_TRY(leave(b, &b->A, second, c, -gain));
+    return leave(b, &b->A, second, d, gain);
+}
+
+static enum dalcs_status conductance(struct stamps *b, const struct dalcs_device *d, double g) {
+    return transconductance(b, d->node[0], d->node[1], d->node[0], d->node[1], g);
+}
+
+static int new_input(struct stamps *b, int device) {
+    struct dalcs_system *s = b->s;
+    const struct dalcs_circuit *c = b->layout->circuit;
+    int input = b->next_input++;
+    s->stimulus[input] = c->device[device].stimulus;
+    s->input_element[input] = c->device[device].name;
+    b->layout->input[device] = input;
+    return input;
+}
+
+/* A z column for the current of `device` and the row of II that is its branch equation. */
+static void new_branch(struct stamps *b, int device, int *column, int *row) {
+    struct dalcs_system *s = b->s;
+    *column = s->n_x + b->next_z++;
+    *row = s->n_x + b->next_row++;
+    s->dual[*row] = *column;
+    s->column_is_current[*column] = true;
+    s->row_is_current[*row] = false;
+    const char *name = b->layout->circuit->device[device].name;
+    s->column[*column] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
+    s->row[*row] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
+    b->layout->current_column[device] = *column;
+    b->layout->branch_row[device] = *row;
+}
+
+/* An x column whose differential equation has a row of its own, with the same number. */
+static int new_state(struct stamps *b, const char *name, bool is_current) {
+    struct dalcs_system *s = b->s;
+    int x = b->next_x++;
+    s->column_is_current[x] = is_current;
+    s->row_is_current[x] = !is_current;
+    s->column[x] = (struct dalcs_label){name, DALCS_LABEL_STATE};
+    s->row[x] = (struct dalcs_label){name, DALCS_LABEL_STATE};
+    s->dual[x] = x;
+    return x;
+}
+
+static double initial_voltage(const struct dalcs_circuit *c, const struct dalcs_device *d) {
+    if (d->has_initial) {
+        return d->initial;
+    }
+    double v[2] = {0.0, 0.0};
+    for (int k = 0; k < c->n_initial_conditions; k++) {
+        const struct dalcs_initial_condition *ic = &c->initial_condition[k];
+        if (ic->node[1] == 0) {
+            for (int e = 0; e < 2; e++) {
+                v[e] = d->node[e] == ic->node[0] ? ic->value : v[e];
+            }
+        } else if (d->node[0] == ic->node[0] && d->node[1] == ic->node[1]) {
+            return ic->value;
+        } else if (d->node[0] == ic->node[1] && d->node[1] == ic->node[0]) {
+            return -ic->value;
+        }
+    }
+    return v[0] - v[1];
+}
+
+static enum dalcs_status stamp_capacitor(struct stamps *b, int device, int forest_column) {
+    struct dalcs_layout *l = b->layout;
+    struct dalcs_system *s = b->s;
+    const struct dalcs_device *d = &l->circuit->device[device];
+    int x = forest_column;
+    if (l->topology.in_forest[device]) {
+        /* P x' sums C v' over the capacitors at a node; the alias 0 = v - x has its own row. */
+        int row = s->n_x + b->next_row++;
+        for (int e = 0; e < 2; e++) {
+            int n = l->topology.node_of[d->node[e]];
+            if (n != l->topology.forest_root[n]) {
+                DALCS_TRY(add(&b->P, l->kcl_row[n], x, e == 0 ? d->value : -d->value));
+            }
+        }
+        DALCS_TRY(add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));
+        DALCS_TRY(add(&b->A, row, x, -1.0));
+        s->dual[row] = x;
+        s->column_is_current[x] = false;
+        s->row_is_current[row] = false;
+        s->column[x] = (struct dalcs_label){d->name, DALCS_LABEL_STATE};
+        s->row[row] = (struct dalcs_label){d->name, DALCS_LABEL_BRANCH};
+    } else {
+        x = new_state(b, d->name, false);
+        int column;
+        int row;
+        new_branch(b, device, &column, &row);
+        DALCS_TRY(add(&b->P, x, x, d->value));
+        DALCS_TRY(add(&b->A, x, column, 1.0));
+        DALCS_TRY(add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));
+        DALCS_TRY(add(&b->A, row, x, -1.0));
+        DALCS_TRY(branch_current(b, d, column, 1.0));
+    }
+    l->state_column[device] = x;
+    b->initial[x] = initial_voltage(l->circuit, d);
+    return add(&b->storage, x, x, d->value);
+}
+
+static enum dalcs_status stamp_coil(struct stamps *b, int device) {
+    struct dalcs_layout *l = b->layout;
+    const struct dalcs_device *d = &l->circuit->device[device];
+    int x = new_state(b, d->name, true);
+    l->state_column[device] = x;
+    b->initial[x] = d->initial;
+    DALCS_TRY(add(&b->P, x, x, d->value));
+    DALCS_TRY(add(&b->storage, x, x, d->value));
+    DALCS_TRY(add_voltage(b, &b->A, x, d->node[0], d->node[1], 1.0));
+    return branch_current(b, d, x, 1.0);
+}
+
+static double mutual(const struct dalcs_circuit *c, int first, int second) {
+    const double *value[2] = {&c->device[first].value, &c->device[second].value};
+    if (first == second) {
+        return *value[0];
+    }
+    double k = 0.0;
+    for (int i = 0; i < c->n_couplings; i++) {
+        const struct dalcs_coupling *m = &c->coupling[i];
+        if ((m->inductor[0] == first && m->inductor[1] == second) ||
+            (m->inductor[0] == second && m->inductor[1] == first)) {
+            k += m->k;
+        }
+    }
+    return k * sqrt(*value[0] * *value[1]);
+}
+
+/* All coils of a group, when its first one is met. */
+static enum dalcs_status stamp_group(struct stamps *b, const struct coil_group *g) {
+    struct dalcs_layout *l = b->layout;
+    const struct dalcs_circuit *c = l->circuit;
+    int rank = g->split.rank;
+    int n_dependent = g->n - rank;
+    for (int i = 0; i < rank; i++) {
+        int device = g->device[g->split.coil[i]];
+        int x = new_state(b, c->device[device].name, true);
+        l->state_column[device] = x;
+        b->initial[x] = c->device[device].initial;
+        DALCS_TRY(add_voltage(b, &b->A, x, c->device[device].node[0], c->device[device].node[1], 1.0));
+    }
+    for (int i = 0; i < rank; i++) {
+        int first = g->device[g->split.coil[i]];
+        for (int j = 0; j < rank; j++) {
+            int second = g->device[g->split.coil[j]];
+            double L = mutual(c, first, second);
+            DALCS_TRY(add(&b->P, l->state_column[first], l->state_column[second], L));
+            DALCS_TRY(add(&b->storage, l->state_column[first], l->state_column[second], L));
+        }
+    }
+    for (int k = 0; k < n_dependent; k++) {
+        int device = g->device[g->split.coil[rank + k]];
+        const struct dalcs_device *d = &c->device[device];
+        int column;
+        int row;
+        new_branch(b, device, &column, &row);
+        DALCS_TRY(add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));
+        for (int i = 0; i < rank; i++) {
+            int independent = g->device[g->split.coil[i]];
+            const struct dalcs_device *e = &c->device[independent];
+            double ratio = g->split.ratio[i * n_dependent + k];
+            DALCS_TRY(add_voltage(b, &b->A, row, e->node[0], e->node[1], -ratio));
+            b->initial[l->state_column[independent]] += ratio * d->initial;
+        }
+    }
+    int *column = dalcs_alloc((size_t)g->n + 1, sizeof(*column));
+    double *coefficient = dalcs_alloc((size_t)g->n + 1, sizeof(*coefficient));
+    enum dalcs_status status = column == NULL || coefficient == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    for (int i = 0; i < g->n && status == DALCS_OK; i++) {
+        int n_terms = dalcs_layout_coil_current(l, g->device[i], column, coefficient);
+        for (int k = 0; k < n_terms && status == DALCS_OK; k++) {
+            status = branch_current(b, &c->device[g->device[i]], column[k], coefficient[k]);
+        }
+    }
+    free(column);
+    free(coefficient);
+    return status;
+}
+
+int dalcs_layout_coil_current(const struct dalcs_layout *l, int device, int *column,
+                              double *coefficient) {
+    if (l->state_column[device] < 0) {
+        column[0] = l->current_column[device];
+        coefficient[0] = 1.0;
+        return 1;
+    }
+    column[0] = l->state_column[device];
+    coefficient[0] = 1.0;
+    int n = 1;
+    if (l->group_of[device] >= 0) {
+        const struct coil_group *g = &l->group[l->group_of[device]];
+        int n_dependent = g->n - g->split.rank;
+        for (int i = 0; i < g->split.rank; i++) {
+            for (int k = 0; g->device[g->split.coil[i]] == device && k < n_dependent; k++) {
+                column[n] = l->current_column[g->device[g->split.coil[g->split.rank + k]]];
+                coefficient[n++] = -g->split.ratio[i * n_dependent + k];
+            }
+        }
+    }
+    return n;
+}
+
+/* V, E, H and shorts whose current is asked for: 0 = v(a) - v(b) - (what drives it). */
+static enum dalcs_status stamp_voltage_branch(struct stamps *b, int device) {
+    struct dalcs_layout *l = b->layout;
+    const struct dalcs_device *d = &l->circuit->device[device];
+    int column;
+    int row;
+    new_branch(b, device, &column, &row);
+    DALCS_TRY(branch_current(b, d, column, 1.0));
+    DALCS_TRY(add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));
+    switch (d->kind) {
+    case DALCS_VSOURCE:
+        return dalcs_triplets_add(&b->E, row, new_input(b, device), -1.0);
+    case DALCS_VCVS:
+        return add_voltage(b, &b->A, row, d->node[2], d->node[3], -d->value);
+    default:
+        return DALCS_OK;
+    }
+}
+
+/* Pairs: w = v(cathode) - v(anode) + Vfwd + Ron lambda >= 0. */
+static enum dalcs_status stamp_pair(struct stamps *b, int anode, int cathode, double threshold,
+                                    double ron, struct dalcs_pair pair) {
+    struct dalcs_system *s = b->s;
+    int k = b->next_pair++;
+    int column = s->n_x + s->n_z + k;
+    s->pair[k] = pair;
+    s->column_is_current[column] = true;
+    DALCS_TRY(leave(b, &b->A, anode, column, 1.0));
+    DALCS_TRY(leave(b, &b->A, cathode, column, -1.0));
+    DALCS_TRY(add_voltage(b, &b->C, k, cathode, anode, 1.0));
+    DALCS_TRY(add(&b->C, k, column, ron));
+    return threshold == 0.0 ? DALCS_OK : dalcs_triplets_add(&b->F, k, 0, threshold);
+}
+
+static enum dalcs_status stamp_diode(struct stamps *b, int device) {
+    const struct dalcs_circuit *c = b->layout->circuit;
+    const struct dalcs_device *d = &c->device[device];
+    const struct dalcs_diode_model *m = &c->diode_model[d->model];
+    b->layout->pair[device] = b->next_pair;
+    struct dalcs_pair pair = {.kind = DALCS_PAIR_DIODE, .element = d->name};
+    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], m->vfwd, m->ron, pair));
+    if (isfinite(m->vrev)) {
+        pair.is_breakdown = true;
+        DALCS_TRY(stamp_pair(b, d->node[1], d->node[0], m->vrev, m->rrev, pair));
+    }
+    return isfinite(m->roff) ? conductance(b, d, 1.0 / m->roff) : DALCS_OK;
+}
+
+static bool is_direct(const struct dalcs_layout *l, int node) {
+    int n = l->topology.node_of[node];
+    return n == 0 || l->topology.potential_source[n] >= 0;
+}
+
+/* A switch with finite Roff is Roff in parallel with a branch that makes up Ron when closed. */
+static enum dalcs_status stamp_switch(struct stamps *b, int device) {
+    const struct dalcs_circuit *c = b->layout->circuit;
+    const struct dalcs_device *d = &c->device[device];
+    const struct dalcs_switch_model *m = &c->switch_model[d->model];
+    double g_off = isfinite(m->roff) ? 1.0 / m->roff : 0.0;
+    double r_branch = m->ron == 0.0 ? 0.0 : 1.0 / (1.0 / m->ron - g_off);
+    if (r_branch < 0.0) {
+        b->s->monotone = false;
+    }
+    struct dalcs_pair pair = {.kind = DALCS_PAIR_SWITCH,
+                              .element = d->name,
+                              .initially_on = d->initially_on,
+                              .turn_on = m->vt + m->vh,
+                              .turn_off = m->vt - m->vh};
+    b->layout->pair[device] = b->next_pair;
+    DALCS_TRY(add_voltage(b, &b->control, b->next_pair, d->node[2], d->node[3], 1.0));
+    pair.is_direct = is_direct(b->layout, d->node[2]) && is_direct(b->layout, d->node[3]);
+    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], 0.0, r_branch, pair));
+    return g_off != 0.0 ? conductance(b, d, g_off) : DALCS_OK;
+}
+
+static enum dalcs_status stamp_device(struct stamps *b, int device, int *next_forest) {
+    struct dalcs_layout *l = b->layout;
+    const struct dalcs_device *d = &l->circuit->device[device];
+    switch (d->kind) {
+    case DALCS_RESISTOR:
+        if (d->value == 0.0) {
+            return stamp_voltage_branch(b, device);
+        }
+        b->s->monotone = b->s->monotone && d->value > 0.0;
+        return conductance(b, d, 1.0 / d->value);
+    case DALCS_INDUCTOR:
+        if (l->group_of[device] < 0) {
+            return stamp_coil(b, device);
+        }
+        return l->group[l->group_of[device]].device[0] == device
+                   ? stamp_group(b, &l->group[l->group_of[device]])
+                   : DALCS_OK;
+    case DALCS_CAPACITOR:
+        return stamp_capacitor(b, device, l->topology.in_forest[device] ? (*next_forest)++ : -1);
+    case DALCS_VSOURCE:
+        return stamp_voltage_branch(b, device);
+    case DALCS_ISOURCE: {
+        int input = new_input(b, device);
+        DALCS_TRY(leave(b, &b->E, d->node[0], input, 1.0));
+        return leave(b, &b->E, d->node[1], input, -1.0);
+    }
+    case DALCS_VCVS:
+    case DALCS_CCVS:
+        b->s->monotone = false;
+        return stamp_voltage_branch(b, device);
+    case DALCS_VCCS:
+        b->s->monotone = false;
+        return transconductance(b, d->node[0], d->node[1], d->node[2], d->node[3], d->value);
+    case DALCS_CCCS:
+        b->s->monotone = false;
+        return DALCS_OK;
+    case DALCS_DIODE:
+        return stamp_diode(b, device);
+    case DALCS_SWITCH:
+        return stamp_switch(b, device);
+    }
+    return DALCS_OK;
+}
+
+/* The controlling voltages that V sources fix, once every source has its input. */
+static enum dalcs_status stamp_direct_controls(struct stamps *b, int n_devices,
+                                               const int *device) {
+    const struct dalcs_layout *l = b->layout;
+    const struct dalcs_topology *t = &l->topology;
+    for (int i = 0; i < n_devices; i++) {
+        const struct dalcs_device *d = &l->circuit->device[device[i]];
+        if (d->kind != DALCS_SWITCH || !b->s->pair[l->pair[device[i]]].is_direct) {
+            continue;
+        }
+        for (int e = 0; e < 2; e++) {
+            double sign = e == 0 ? 1.0 : -1.0;
+            for (int n = t->node_of[d->node[2 + e]]; n != 0;) {
+                int source = t->potential_source[n];
+                const struct dalcs_device *v = &l->circuit->device[source];
+                bool upward = t->node_of[v->node[0]] == n;
+                DALCS_TRY(dalcs_triplets_add(&b->direct_control, l->pair[device[i]],
+                                             l->input[source], upward ? sign : -sign));
+                n = t->node_of[v->node[upward ? 1 : 0]];
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
+/* F and H wait until every current column is known. */
+static enum dalcs_status stamp_current_controls(struct stamps *b, int n_devices,
+                                                const int *device) {
+    struct dalcs_layout *l = b->layout;
+    for (int i = 0; i < n_devices; i++) {
+        const struct dalcs_device *d = &l->circuit->device[device[i]];
+        if (d->kind == DALCS_CCCS) {
+            DALCS_TRY(branch_current(b, d, l->current_column[d->control], d->value));
+        } else if (d->kind == DALCS_CCVS) {
+            DALCS_TRY(add(&b->A, l->branch_row[device[i]], l->current_column[d->control],
+                          -d->value));
+        }
+    }
+    return DALCS_OK;
+}
+
+/* v(node) = 0 and a current into the reference that must come out as zero. */
+static enum dalcs_status stamp_references(struct stamps *b, int n_nodes, const int *node) {
+    struct dalcs_system *s = b->s;
+    for (int i = 0; i < n_nodes; i++) {
+        if (!b->layout->topology.is_reference[node[i]]) {
+            continue;
+        }
+        int column = s->n_x + b->next_z++;
+        int row = s->n_x + b->next_row++;
+        const char *name = b->layout->circuit->node_name[node[i]];
+        s->dual[row] = column;
+        s->column_is_current[column] = true;
+        s->row_is_current[row] = false;
+        s->column[column] = (struct dalcs_label){name, DALCS_LABEL_REFERENCE};
+        s->row[row] = (struct dalcs_label){name, DALCS_LABEL_REFERENCE};
+        DALCS_TRY(leave(b, &b->A, node[i], column, 1.0));
+        DALCS_TRY(add_voltage(b, &b->A, row, node[i], 0, 1.0));
+    }
+    return DALCS_OK;
+}
+
+/* .ic voltages held by sources while the operating point is sought, as SPICE does. */
+static enum dalcs_status stamp_clamps(struct stamps *b, int component) {
+    struct dalcs_layout *l = b->layout;
+    struct dalcs_system *s = b->s;
+    const struct dalcs_circuit *c = l->circuit;
+    for (int k = 0; k < c->n_initial_conditions; k++) {
+        const struct dalcs_initial_condition *ic = &c->initial_condition[k];
+        if (l->topology.node_component[l->topology.node_of[ic->node[0]]] != component) {
+            continue;
+        }
+        int column = s->n_x + b->next_z++;
+        int row = s->n_x + b->next_row++;
+        const char *name = c->node_name[ic->node[0]];
+        s->dual[row] = column;
+        s->column_is_current[column] = true;
+        s->row_is_current[row] = false;
+        s->column[column] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
+        s->row[row] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
+        DALCS_TRY(leave(b, &b->A, ic->node[0], column, 1.0));
+        DALCS_TRY(leave(b, &b->A, ic->node[1], column, -1.0));
+        DALCS_TRY(add_voltage(b, &b->A, row, ic->node[0], ic->node[1], 1.0));
+        if (ic->value != 0.0) {
+            DALCS_TRY(dalcs_triplets_add(&b->E, row, 0, -ic->value));
+        }
+    }
+    return DALCS_OK;
+}
+
+/* How many unknowns of each sort the component needs: everything else follows from the counts. */
+static void count(struct stamps *b, int n_devices, const int *device, int n_nodes,
+                  const int *node, int component) {
+    const struct dalcs_layout *l = b->layout;
+    const struct dalcs_circuit *c = l->circuit;
+    struct dalcs_system *s = b->s;
+    s->n_z = n_nodes;
+    s->n_inputs = 1;
+    for (int i = 0; i < n_nodes; i++) {
+        s->n_z += l->topology.is_reference[node[i]] ? 1 : 0;
+    }
+    for (int i = 0; i < n_devices; i++) {
+        const struct dalcs_device *d = &c->device[device[i]];
+        switch (d->kind) {
+        case DALCS_RESISTOR:
+            s->n_z += d->value == 0.0 ? 1 : 0;
+            break;
+        case DALCS_CAPACITOR:
+            s->n_x++;
+            b->n_tree += l->topology.in_forest[device[i]] ? 1 : 0;
+            s->n_z += l->topology.in_forest[device[i]] ? 0 : 1;
+            break;
+        case DALCS_INDUCTOR:
+            if (l->group_of[device[i]] < 0) {
+                s->n_x++;
+            } else if (l->group[l->group_of[device[i]]].device[0] == device[i]) {
+                const struct coil_group *g = &l->group[l->group_of[device[i]]];
+                s->n_x += g->split.rank;
+                s->n_z += g->n - g->split.rank;
+            }
+            break;
+        case DALCS_VSOURCE:
+            s->n_inputs++;
+            s->n_z++;
+            break;
+        case DALCS_ISOURCE:
+            s->n_inputs++;
+            break;
+        case DALCS_VCVS:
+        case DALCS_CCVS:
+            s->n_z++;
+            break;
+        case DALCS_DIODE:
+            s->n_pairs += isfinite(c->diode_model[d->model].vrev) ? 2 : 1;
+            break;
+        case DALCS_SWITCH:
+            s->n_pairs++;
+            break;
+        case DALCS_CCCS:
+        case DALCS_VCCS:
+            break;
+        }
+    }
+    for (int k = 0; l->options->clamp_initial_conditions && k < c->n_initial_conditions; k++) {
+        int n = l->topology.node_of[c->initial_condition[k].node[0]];
+        s->n_z += l->topology.node_component[n] == component ? 1 : 0;
+    }
+}
+
+static enum dalcs_status allocate(struct stamps *b) {
+    struct dalcs_system *s = b->s;
+    size_t n_equations = (size_t)dalcs_system_n_equations(s);
+    s->dual = dalcs_alloc(n_equations, sizeof(*s->dual));
+    s->column_is_current = dalcs_alloc((size_t)dalcs_system_n_columns(s), sizeof(bool));
+    s->row_is_current = dalcs_alloc(n_equations, sizeof(bool));
+    s->row = dalcs_alloc(n_equations, sizeof(*s->row));
+    s->column = dalcs_alloc(n_equations, sizeof(*s->column));
+    s->pair = dalcs_alloc((size_t)s->n_pairs, sizeof(*s->pair));
+    s->stimulus = dalcs_alloc((size_t)s->n_inputs, sizeof(*s->stimulus));
+    s->input_element = dalcs_alloc((size_t)s->n_inputs, sizeof(*s->input_element));
+    b->initial = dalcs_alloc((size_t)s->n_x, sizeof(*b->initial));
+    if (s->dual == NULL || s->column_is_current == NULL || s->row_is_current == NULL ||
+        s->row == NULL || s->column == NULL || s->pair == NULL || s->stimulus == NULL ||
+        s->input_element == NULL || b->initial == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    s->stimulus[0] = -1;
+    b->next_input = 1;
+    return DALCS_OK;
+}
+
+/* Node voltages are the first z; KCL rows: forest nodes in I, the others first in II. */
+static void number_nodes(struct stamps *b, int n_nodes, const int *node) {
+    struct dalcs_layout *l = b->layout;
+    struct dalcs_system *s = b->s;
+    int next_tree = 0;
+    for (int i = 0; i < n_nodes; i++) {
+        int column = s->n_x + i;
+        bool differential = l->topology.forest_root[node[i]] != node[i];
+        int row = differential ? next_tree++ : s->n_x + b->next_row++;
+        l->node_column[node[i]] = column;
+        l->kcl_row[node[i]] = row;
+        s->dual[row] = column;
+        s->column_is_current[column] = false;
+        s->row_is_current[row] = true;
+        const char *name = l->circuit->node_name[node[i]];
+        s->column[column] = (struct dalcs_label){name, DALCS_LABEL_NODE};
+        s->row[row] = (struct dalcs_label){name, DALCS_LABEL_NODE};
+    }
+    b->next_z = n_nodes;
+    b->next_x = b->n_tree;
+}
+
+enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_devices,
+                                           const int *device, int n_nodes, const int *node,
+                                           struct dalcs_system *system, double **initial) {
+    *system = (struct dalcs_system){.monotone = true};
+    struct stamps b = {.layout = layout, .s = system};
+    int component = layout->topology.device_component[device[0]];
+    enum dalcs_status status = DALCS_OK;
+    count(&b, n_devices, device, n_nodes, node, component);
+    status = allocate(&b);
+    if (status != DALCS_OK) {
+        goto done;
+    }
+    number_nodes(&b, n_nodes, node);
+    int next_forest = 0;
+    for (int i = 0; i < n_devices && status == DALCS_OK; i++) {
+        status = stamp_device(&b, device[i], &next_forest);
+    }
+    if (status == DALCS_OK) {
+        status = stamp_current_controls(&b, n_devices, device);
+    }
+    if (status == DALCS_OK) {
+        status = stamp_direct_controls(&b, n_devices, device);
+    }
+    if (status == DALCS_OK) {
+        status = stamp_references(&b, n_nodes, node);
+    }
+    if (status == DALCS_OK && layout->options->clamp_initial_conditions) {
+        status = stamp_clamps(&b, component);
+    }
+    int n_equations = dalcs_system_n_equations(system);
+    int n_columns = dalcs_system_n_columns(system);
+    const struct {
+        struct dalcs_csr *matrix;
+        int n_rows, n_columns;
+        const struct dalcs_triplets *entries;
+    } part[] = {
+        {&system->P, system->n_x, system->n_x, &b.P},
+        {&system->A, n_equations, n_columns, &b.A},
+        {&system->E, n_equations, system->n_inputs, &b.E},
+        {&system->C, system->n_pairs, n_columns, &b.C},
+        {&system->F, system->n_pairs, system->n_inputs, &b.F},
+        {&system->storage, system->n_x, system->n_x, &b.storage},
+        {&system->control, system->n_pairs, n_columns, &b.control},
+        {&system->direct_control, system->n_pairs, system->n_inputs, &b.direct_control},
+    };
+    for (size_t k = 0; k < sizeof(part) / sizeof(part[0]) && status == DALCS_OK; k++) {
+        status = dalcs_csr_compress(part[k].matrix, part[k].n_rows, part[k].n_columns,
+                                    part[k].entries);
+    }
+done:
+    dalcs_triplets_finish(&b.P);
+    dalcs_triplets_finish(&b.A);
+    dalcs_triplets_finish(&b.E);
+    dalcs_triplets_finish(&b.C);
+    dalcs_triplets_finish(&b.F);
+    dalcs_triplets_finish(&b.storage);
+    dalcs_triplets_finish(&b.control);
+    dalcs_triplets_finish(&b.direct_control);
+    if (status != DALCS_OK) {
+        free(b.initial);
+        b.initial = NULL;
+        dalcs_system_finish(system);
+    }
+    *initial = b.initial;
+    return status;
+}

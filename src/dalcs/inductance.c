@@ -1,0 +1,90 @@
+/* inductance.c - rank-revealing split of coupled coils by pivoted Cholesky (LAPACK dpstrf) of the
+ * matrix of coupling factors, whose diagonal is 1 so that the rank decision has no units. */
+#include "inductance.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* 1 - k^2 below this is perfect coupling: the leakage would be lost in the rounding of the netlist's
+ * own numbers. */
+static const double perfect_coupling = 1e-13;
+
+enum dalcs_status dalcs_inductance_split(struct dalcs_inductance *group, int n, const double *L,
+                                         bool *valid) {
+    *group = (struct dalcs_inductance){.n = n};
+    *valid = true;
+    size_t order = (size_t)n;
+    enum dalcs_status status = DALCS_E_NOMEM;
+    double *U = dalcs_alloc(order * order, sizeof(*U));
+    lapack_int *pivot = dalcs_alloc(order, sizeof(*pivot));
+    group->coil = dalcs_alloc(order, sizeof(*group->coil));
+    if (U == NULL || pivot == NULL || group->coil == NULL) {
+        goto done;
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            U[i * n + j] = i == j ? 1.0 : L[i * n + j] / sqrt(L[i * n + i] * L[j * n + j]);
+        }
+    }
+    lapack_int rank = 0;
+    lapack_int info =
+        LAPACKE_dpstrf(LAPACK_ROW_MAJOR, 'U', n, U, n, pivot, &rank, perfect_coupling);
+    if (info < 0) {
+        goto done;
+    }
+    group->rank = rank;
+    for (int i = 0; i < n; i++) {
+        group->coil[i] = pivot[i] - 1;
+    }
+    /* What dpstrf left out must vanish; a negative remainder is a coupling no coils can have. */
+    for (int a = rank; a < n; a++) {
+        for (int b = rank; b < n; b++) {
+            int i = group->coil[a];
+            int j = group->coil[b];
+            double rest = i == j ? 1.0 : L[i * n + j] / sqrt(L[i * n + i] * L[j * n + j]);
+            for (int k = 0; k < rank; k++) {
+                rest -= U[k * n + a] * U[k * n + b];
+            }
+            if (fabs(rest) > 1e-10) {
+                *valid = false;
+            }
+        }
+    }
+    group->ratio = dalcs_alloc(order * order, sizeof(*group->ratio));
+    if (group->ratio == NULL) {
+        goto done;
+    }
+    /* N = U_II^-1 U_IJ for unit coils, by back substitution, then scaled by sqrt(L_J / L_I). */
+    int n_dependent = n - rank;
+    for (int b = 0; b < n_dependent; b++) {
+        for (int i = rank - 1; i >= 0; i--) {
+            double sum = U[i * n + rank + b];
+            for (int k = i + 1; k < rank; k++) {
+                sum -= U[i * n + k] * group->ratio[k * n_dependent + b];
+            }
+            group->ratio[i * n_dependent + b] = sum / U[i * n + i];
+        }
+    }
+    for (int i = 0; i < rank; i++) {
+        int ci = group->coil[i];
+        for (int b = 0; b < n_dependent; b++) {
+            int cj = group->coil[rank + b];
+            group->ratio[i * n_dependent + b] *= sqrt(L[cj * n + cj] / L[ci * n + ci]);
+        }
+    }
+    status = DALCS_OK;
+done:
+    free(U);
+    free(pivot);
+    if (status != DALCS_OK) {
+        dalcs_inductance_finish(group);
+    }
+    return status;
+}
+
+void dalcs_inductance_finish(struct dalcs_inductance *group) {
+    free(group->coil);
+    free(group->ratio);
+    *group = (struct dalcs_inductance){0};
+}

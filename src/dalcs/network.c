@@ -1,0 +1,448 @@
+/* network.c - the whole circuit: coil groups, components, and the probes that read the results. */
+#include "network.h"
+
+#include "assemble.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static void layout_finish(struct dalcs_layout *l) {
+    dalcs_topology_finish(&l->topology);
+    for (int g = 0; g < l->n_groups; g++) {
+        free(l->group[g].device);
+        dalcs_inductance_finish(&l->group[g].split);
+    }
+    free(l->group);
+    free(l->group_of);
+    free(l->node_column);
+    free(l->kcl_row);
+    free(l->state_column);
+    free(l->current_column);
+    free(l->branch_row);
+    free(l->pair);
+    free(l->input);
+    *l = (struct dalcs_layout){0};
+}
+
+static enum dalcs_status layout_allocate(struct dalcs_layout *l) {
+    size_t n_nodes = (size_t)l->circuit->n_nodes;
+    size_t n_devices = (size_t)l->circuit->n_devices;
+    int **per_node[] = {&l->node_column, &l->kcl_row};
+    int **per_device[] = {&l->state_column, &l->current_column, &l->branch_row,
+                          &l->pair,         &l->input,          &l->group_of};
+    for (size_t k = 0; k < sizeof(per_node) / sizeof(per_node[0]); k++) {
+        *per_node[k] = dalcs_alloc(n_nodes, sizeof(int));
+        if (*per_node[k] == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        for (size_t i = 0; i < n_nodes; i++) {
+            (*per_node[k])[i] = -1;
+        }
+    }
+    for (size_t k = 0; k < sizeof(per_device) / sizeof(per_device[0]); k++) {
+        *per_device[k] = dalcs_alloc(n_devices, sizeof(int));
+        if (*per_device[k] == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        for (size_t i = 0; i < n_devices; i++) {
+            (*per_device[k])[i] = -1;
+        }
+    }
+    return DALCS_OK;
+}
+
+static int group_find(int *parent, int i) {
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    return i;
+}
+
+static enum dalcs_status split_group(const struct dalcs_circuit *c, struct coil_group *g,
+                                     const int *position, bool *valid) {
+    size_t n = (size_t)g->n;
+    double *L = dalcs_alloc(n * n, sizeof(*L));
+    if (L == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < g->n; i++) {
+        L[i * g->n + i] = c->device[g->device[i]].value;
+    }
+    for (int k = 0; k < c->n_couplings; k++) {
+        const struct dalcs_coupling *m = &c->coupling[k];
+        int i = position[m->inductor[0]];
+        int j = position[m->inductor[1]];
+        if (i < 0 || i >= g->n || g->device[i] != m->inductor[0]) {
+            continue; /* a coupling of another group */
+        }
+        double mutual = m->k * sqrt(L[i * g->n + i] * L[j * g->n + j]);
+        L[i * g->n + j] += mutual;
+        L[j * g->n + i] += mutual;
+    }
+    enum dalcs_status status = dalcs_inductance_split(&g->split, g->n, L, valid);
+    free(L);
+    return status;
+}
+
+/* Groups of coils that couplings join, each split into independent and dependent ones. */
+static enum dalcs_status find_groups(struct dalcs_layout *l, struct dalcs_diag *diag) {
+    const struct dalcs_circuit *c = l->circuit;
+    if (c->n_couplings == 0) {
+        return DALCS_OK;
+    }
+    enum dalcs_status status = DALCS_E_NOMEM;
+    int *parent = dalcs_alloc((size_t)c->n_devices, sizeof(*parent));
+    int *position = dalcs_alloc((size_t)c->n_devices, sizeof(*position));
+    l->group = dalcs_alloc((size_t)c->n_couplings, sizeof(*l->group));
+    if (parent == NULL || position == NULL || l->group == NULL) {
+        goto done;
+    }
+    for (int i = 0; i < c->n_devices; i++) {
+        parent[i] = i;
+        position[i] = -1;
+    }
+    for (int k = 0; k < c->n_couplings; k++) {
+        int a = group_find(parent, c->coupling[k].inductor[0]);
+        int b = group_find(parent, c->coupling[k].inductor[1]);
+        parent[a > b ? a : b] = a > b ? b : a;
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        for (int g = 0; pass == 1 && g < l->n_groups; g++) {
+            l->group[g].device = dalcs_alloc((size_t)l->group[g].n, sizeof(int));
+            if (l->group[g].device == NULL) {
+                goto done;
+            }
+            l->group[g].n = 0;
+        }
+        for (int i = 0; i < c->n_devices; i++) {
+            if (c->device[i].kind != DALCS_INDUCTOR) {
+                continue;
+            }
+            int root = group_find(parent, i);
+            if (pass == 0 && root != i) {
+                if (l->group_of[root] < 0) {
+                    l->group_of[root] = l->n_groups++;
+                    l->group[l->group_of[root]].n = 1;
+                }
+                l->group_of[i] = l->group_of[root];
+                l->group[l->group_of[i]].n++;
+            } else if (pass == 1 && l->group_of[i] >= 0) {
+                struct coil_group *g = &l->group[l->group_of[i]];
+                position[i] = g->n;
+                g->device[g->n++] = i;
+            }
+        }
+    }
+    status = DALCS_OK;
+    for (int g = 0; g < l->n_groups && status == DALCS_OK; g++) {
+        bool valid;
+        status = split_group(c, &l->group[g], position, &valid);
+        if (status == DALCS_OK && !valid) {
+            const struct dalcs_device *first = &c->device[l->group[g].device[0]];
+            dalcs_diag_add(diag, DALCS_ERROR, &first->where,
+                           "the matrix of coupling factors must be positive semidefinite",
+                           "the couplings among %s and the %d coils coupled to it are not possible "
+                           "together",
+                           first->name, l->group[g].n - 1);
+            status = DALCS_E_NETLIST;
+        }
+    }
+done:
+    free(parent);
+    free(position);
+    return status;
+}
+
+/* Lists the members of each component, by a counting sort: items keep their order. */
+static enum dalcs_status list_members(int n_items, const int *component, int n_components,
+                                      int **start, int **item) {
+    *start = dalcs_alloc((size_t)n_components + 2, sizeof(**start));
+    *item = dalcs_alloc((size_t)n_items, sizeof(**item));
+    if (*start == NULL || *item == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < n_items; i++) {
+        if (component[i] >= 0) {
+            (*start)[component[i] + 2]++;
+        }
+    }
+    for (int k = 0; k < n_components; k++) {
+        (*start)[k + 2] += (*start)[k + 1];
+    }
+    for (int i = 0; i < n_items; i++) {
+        if (component[i] >= 0) {
+            (*item)[(*start)[component[i] + 1]++] = i;
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status assemble_all(struct dalcs_network *network, struct dalcs_layout *l) {
+    const struct dalcs_circuit *c = l->circuit;
+    int n = l->topology.n_components;
+    int *device_start = NULL;
+    int *device = NULL;
+    int *node_start = NULL;
+    int *node = NULL;
+    int *representative = dalcs_alloc((size_t)c->n_nodes, sizeof(*representative));
+    network->system = dalcs_alloc((size_t)n, sizeof(*network->system));
+    network->initial = dalcs_alloc((size_t)n, sizeof(*network->initial));
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (representative == NULL || network->system == NULL || network->initial == NULL) {
+        goto done;
+    }
+    for (int i = 0; i < c->n_nodes; i++) {
+        representative[i] = l->topology.node_of[i] == i ? l->topology.node_component[i] : -1;
+    }
+    status = list_members(c->n_devices, l->topology.device_component, n, &device_start, &device);
+    if (status == DALCS_OK) {
+        status = list_members(c->n_nodes, representative, n, &node_start, &node);
+    }
+    for (int k = 0; k < n && status == DALCS_OK; k++) {
+        status = dalcs_assemble_component(
+            l, device_start[k + 1] - device_start[k], device + device_start[k],
+            node_start[k + 1] - node_start[k], node + node_start[k], &network->system[k],
+            &network->initial[k]);
+        network->n_systems = k + 1;
+    }
+done:
+    free(device_start);
+    free(device);
+    free(node_start);
+    free(node);
+    free(representative);
+    return status;
+}
+
+/* ---- Probes -------------------------------------------------------------------------------- */
+
+struct probe_terms {
+    int n;
+    struct dalcs_probe_term term[16];
+};
+
+static void put(struct probe_terms *t, int column, double coefficient) {
+    if (column >= 0) {
+        t->term[t->n++] = (struct dalcs_probe_term){column, coefficient};
+    }
+}
+
+static enum dalcs_status keep_probe(struct dalcs_network *network, struct dalcs_probe *probe,
+                                    int system, const struct dalcs_probe_term *term, int n_terms,
+                                    int n_inputs) {
+    if (n_terms + n_inputs == 0) {
+        *probe = (struct dalcs_probe){.system = -1};
+        return DALCS_OK;
+    }
+    *probe = (struct dalcs_probe){.system = system, .n_terms = n_terms, .n_inputs = n_inputs};
+    size_t n = (size_t)(n_terms + n_inputs);
+    probe->term = dalcs_arena_alloc(&network->arena, n, sizeof(*probe->term));
+    if (probe->term == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k < n; k++) {
+        probe->term[k] = term[k];
+    }
+    return DALCS_OK;
+}
+
+static int node_column(const struct dalcs_layout *l, int node) {
+    int n = l->topology.node_of[node];
+    return n == 0 ? -1 : l->node_column[n];
+}
+
+static void put_voltage(const struct dalcs_layout *l, struct probe_terms *t, int first, int second,
+                        double coefficient) {
+    put(t, node_column(l, first), coefficient);
+    put(t, node_column(l, second), -coefficient);
+}
+
+static enum dalcs_status current_probe(struct dalcs_network *network, const struct dalcs_layout *l,
+                                       int device, struct dalcs_probe *probe) {
+    const struct dalcs_circuit *c = l->circuit;
+    const struct dalcs_device *d = &c->device[device];
+    int system = l->topology.device_component[device];
+    struct probe_terms t = {0};
+    int n_inputs = 0;
+    if (system < 0) {
+        return keep_probe(network, probe, -1, t.term, 0, 0);
+    }
+    const struct dalcs_system *s = &network->system[system];
+    int first_pair = s->n_x + s->n_z + l->pair[device];
+    switch (d->kind) {
+    case DALCS_RESISTOR:
+        if (d->value == 0.0) {
+            put(&t, l->current_column[device], 1.0);
+        } else {
+            put_voltage(l, &t, d->node[0], d->node[1], 1.0 / d->value);
+        }
+        break;
+    case DALCS_INDUCTOR: {
+        size_t n = l->group_of[device] < 0 ? 1 : (size_t)l->group[l->group_of[device]].n + 1;
+        int *column = dalcs_arena_alloc(&network->arena, n, sizeof(*column));
+        double *coefficient = dalcs_arena_alloc(&network->arena, n, sizeof(*coefficient));
+        struct dalcs_probe_term *term = dalcs_arena_alloc(&network->arena, n, sizeof(*term));
+        if (column == NULL || coefficient == NULL || term == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        int n_terms = dalcs_layout_coil_current(l, device, column, coefficient);
+        for (int k = 0; k < n_terms; k++) {
+            term[k] = (struct dalcs_probe_term){column[k], coefficient[k]};
+        }
+        return keep_probe(network, probe, system, term, n_terms, 0);
+    }
+    case DALCS_VCCS:
+        put_voltage(l, &t, d->node[2], d->node[3], d->value);
+        break;
+    case DALCS_CCCS:
+        put(&t, l->current_column[d->control], d->value);
+        break;
+    case DALCS_ISOURCE:
+        t.term[t.n] = (struct dalcs_probe_term){l->input[device], 1.0};
+        n_inputs = 1;
+        break;
+    case DALCS_DIODE: {
+        const struct dalcs_diode_model *m = &c->diode_model[d->model];
+        put(&t, first_pair, 1.0);
+        if (isfinite(m->vrev)) {
+            put(&t, first_pair + 1, -1.0);
+        }
+        if (isfinite(m->roff)) {
+            put_voltage(l, &t, d->node[0], d->node[1], 1.0 / m->roff);
+        }
+        break;
+    }
+    case DALCS_SWITCH: {
+        const struct dalcs_switch_model *m = &c->switch_model[d->model];
+        put(&t, first_pair, 1.0);
+        if (isfinite(m->roff)) {
+            put_voltage(l, &t, d->node[0], d->node[1], 1.0 / m->roff);
+        }
+        break;
+    }
+    default: /* C, V, E, H: the current is an unknown */
+        put(&t, l->current_column[device], 1.0);
+        break;
+    }
+    return keep_probe(network, probe, system, t.term, t.n, n_inputs);
+}
+
+static enum dalcs_status node_probe(struct dalcs_network *network, const struct dalcs_layout *l,
+                                    int node, struct dalcs_probe *probe) {
+    struct probe_terms t = {0};
+    put(&t, node_column(l, node), 1.0);
+    int system = l->topology.node_component[l->topology.node_of[node]];
+    return keep_probe(network, probe, system, t.term, t.n, 0);
+}
+
+static enum dalcs_status build_outputs(struct dalcs_network *network,
+                                       const struct dalcs_layout *l) {
+    const struct dalcs_circuit *c = l->circuit;
+    network->n_outputs = c->n_signals;
+    network->output =
+        dalcs_arena_alloc(&network->arena, (size_t)c->n_signals, sizeof(*network->output));
+    if (network->output == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < c->n_signals; i++) {
+        const struct dalcs_signal *signal = &c->signal[i];
+        struct dalcs_output *out = &network->output[i];
+        out->name = signal->name;
+        out->is_current = signal->kind == DALCS_SIGNAL_CURRENT;
+        out->plus.system = -1;
+        out->minus.system = -1;
+        if (out->is_current) {
+            DALCS_TRY(current_probe(network, l, signal->device, &out->plus));
+        } else {
+            DALCS_TRY(node_probe(network, l, signal->node[0], &out->plus));
+            DALCS_TRY(node_probe(network, l, signal->node[1], &out->minus));
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status build_states(struct dalcs_network *network, const struct dalcs_layout *l) {
+    const struct dalcs_circuit *c = l->circuit;
+    for (int i = 0; i < c->n_devices; i++) {
+        network->n_states += c->device[i].kind == DALCS_CAPACITOR ||
+                                     c->device[i].kind == DALCS_INDUCTOR
+                                 ? 1
+                                 : 0;
+    }
+    network->state =
+        dalcs_arena_alloc(&network->arena, (size_t)network->n_states, sizeof(*network->state));
+    if (network->state == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    int k = 0;
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        if (d->kind == DALCS_CAPACITOR) {
+            struct dalcs_state *state = &network->state[k++];
+            state->element = d->name;
+            struct probe_terms t = {0};
+            put(&t, l->state_column[i], 1.0);
+            DALCS_TRY(keep_probe(network, &state->probe, l->topology.device_component[i], t.term,
+                                 t.n, 0));
+        } else if (d->kind == DALCS_INDUCTOR) {
+            struct dalcs_state *state = &network->state[k++];
+            state->element = d->name;
+            state->is_current = true;
+            DALCS_TRY(current_probe(network, l, i, &state->probe));
+        }
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_network_build(struct dalcs_network *network,
+                                      const struct dalcs_circuit *circuit,
+                                      const struct dalcs_network_options *options,
+                                      struct dalcs_diag *diag) {
+    *network = (struct dalcs_network){.n_nodes = circuit->n_nodes - 1};
+    struct dalcs_layout layout = {.circuit = circuit, .options = options};
+    enum dalcs_status status = DALCS_E_NOMEM;
+    bool *wants_current = dalcs_alloc((size_t)circuit->n_devices, sizeof(*wants_current));
+    if (wants_current == NULL) {
+        goto done;
+    }
+    for (int i = 0; i < circuit->n_signals; i++) {
+        if (circuit->signal[i].kind == DALCS_SIGNAL_CURRENT) {
+            wants_current[circuit->signal[i].device] = true;
+        }
+    }
+    status = layout_allocate(&layout);
+    if (status == DALCS_OK) {
+        status = dalcs_topology_build(&layout.topology, circuit, wants_current);
+    }
+    if (status == DALCS_OK) {
+        status = find_groups(&layout, diag);
+    }
+    if (status == DALCS_OK) {
+        status = assemble_all(network, &layout);
+    }
+    if (status == DALCS_OK) {
+        status = build_outputs(network, &layout);
+    }
+    if (status == DALCS_OK) {
+        status = build_states(network, &layout);
+    }
+done:
+    free(wants_current);
+    layout_finish(&layout);
+    if (status != DALCS_OK) {
+        dalcs_network_finish(network);
+    }
+    return status;
+}
+
+void dalcs_network_finish(struct dalcs_network *network) {
+    for (int k = 0; k < network->n_systems; k++) {
+        dalcs_system_finish(&network->system[k]);
+        free(network->initial[k]);
+    }
+    free(network->system);
+    free(network->initial);
+    dalcs_arena_finish(&network->arena);
+    *network = (struct dalcs_network){0};
+}

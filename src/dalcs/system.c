@@ -1,0 +1,24 @@
+/* system.c - the life of a DALCS. */
+#include "system.h"
+
+#include <stdlib.h>
+
+void dalcs_system_finish(struct dalcs_system *system) {
+    dalcs_csr_finish(&system->P);
+    dalcs_csr_finish(&system->A);
+    dalcs_csr_finish(&system->E);
+    dalcs_csr_finish(&system->C);
+    dalcs_csr_finish(&system->F);
+    dalcs_csr_finish(&system->storage);
+    dalcs_csr_finish(&system->control);
+    dalcs_csr_finish(&system->direct_control);
+    free(system->dual);
+    free(system->column_is_current);
+    free(system->row_is_current);
+    free(system->row);
+    free(system->column);
+    free(system->pair);
+    free(system->stimulus);
+    free(system->input_element);
+    *system = (struct dalcs_system){0};
+}

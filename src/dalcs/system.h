@@ -1,0 +1,84 @@
+/* system.h - one DALCS: the semi-explicit differential-algebraic linear complementarity system
+ *
+ *     P_I x' = A_I  x + B_I  z + Bbar_I  lambda + E_I(t)
+ *          0 = A_II x + B_II z + Bbar_II lambda + E_II(t)
+ *          w = C_I  x + C_II z + D       lambda + F(t),     0 <= lambda _|_ w >= 0
+ *
+ * of Brogliato, SIAM J. Control Optim. 60(4), 2022, eq. (2.1). The engine sees only this; a netlist
+ * is one way to make one.
+ *
+ * The columns are numbered x, then z, then lambda, and the blocks are kept side by side:
+ *     A = [A_I B_I Bbar_I; A_II B_II Bbar_II],   C = [C_I C_II D],
+ * so a row of the system is a row of one matrix. Sources are linear in the inputs s(t), of which
+ * the first is the constant 1: (E_I; E_II) = E s(t), F = F s(t).
+ *
+ * A pair (lambda, w) is a complementarity (diode) or a commanded two-state element (ideal switch:
+ * closed w = 0, open lambda = 0, no signs). The set of pairs with w = 0 is the mode. */
+#ifndef DALCS_SYSTEM_H
+#define DALCS_SYSTEM_H
+
+#include "sparse.h"
+
+enum dalcs_pair_kind { DALCS_PAIR_DIODE, DALCS_PAIR_SWITCH };
+
+/* A labelled column or row. `element` is the name a person knows: an element or, for voltages and
+ * KCL, a node. */
+struct dalcs_label {
+    const char *element;
+    enum dalcs_label_kind {
+        DALCS_LABEL_STATE,   /* column: capacitor voltage or inductor current; row: its branch */
+        DALCS_LABEL_NODE,    /* column: node voltage; row: KCL at the node */
+        DALCS_LABEL_BRANCH,  /* column: branch current; row: branch equation */
+        DALCS_LABEL_REFERENCE /* column: current into the reference of a floating island, must be
+                                 zero; row: voltage of the reference node */
+    } kind;
+};
+
+struct dalcs_pair {
+    enum dalcs_pair_kind kind;
+    const char *element;     /* "d1", "s1" */
+    bool is_breakdown;       /* the reverse branch of a diode with Vrev */
+    bool initially_on;       /* switches */
+    bool is_direct;          /* switches: use direct_control, known before the step is solved */
+    double turn_on, turn_off; /* switches: control thresholds vt + vh and vt - vh, in V */
+};
+
+struct dalcs_system {
+    int n_x, n_z, n_pairs, n_inputs;
+    struct dalcs_csr P;       /* [n_x][n_x], nonsingular */
+    struct dalcs_csr A;       /* [n_x + n_z][n_columns], rows I then rows II */
+    struct dalcs_csr E;       /* [n_x + n_z][n_inputs] */
+    struct dalcs_csr C;       /* [n_pairs][n_columns] */
+    struct dalcs_csr F;       /* [n_pairs][n_inputs] */
+    struct dalcs_csr storage; /* [n_x][n_x] symmetric: the stored energy is 1/2 x' storage x */
+    struct dalcs_csr control; /* [n_pairs][n_columns] controlling voltage of a switch; else empty */
+    struct dalcs_csr direct_control; /* [n_pairs][n_inputs] the same as a sum of sources, where V
+                                        sources alone fix it */
+
+    /* dual[row] is the column that a row is paired with, so that with rows in this order the matrix
+     * of (sigma P - A, C) has a positive semidefinite symmetric part when the circuit is passive:
+     * KCL with its node's voltage, a branch equation with its current. A permutation of the x and z
+     * columns. */
+    int *dual;              /* [n_x + n_z] */
+    bool *column_is_current; /* [n_columns] unit A, else V */
+    bool *row_is_current;    /* [n_x + n_z] unit of the row's equation */
+    struct dalcs_label *row;    /* [n_x + n_z] */
+    struct dalcs_label *column; /* [n_x + n_z] */
+    struct dalcs_pair *pair;    /* [n_pairs] */
+    int *stimulus;              /* [n_inputs] index in the circuit; -1 for the constant 1 */
+    const char **input_element; /* [n_inputs] name of the source; NULL for the constant 1 */
+    bool monotone;              /* R, L, C, K, independent sources, diodes and switches only, all
+                                   passive: the OSNSP is solvable iff feasible */
+};
+
+static inline int dalcs_system_n_equations(const struct dalcs_system *s) {
+    return s->n_x + s->n_z;
+}
+
+static inline int dalcs_system_n_columns(const struct dalcs_system *s) {
+    return s->n_x + s->n_z + s->n_pairs;
+}
+
+void dalcs_system_finish(struct dalcs_system *system);
+
+#endif

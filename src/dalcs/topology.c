@@ -1,0 +1,220 @@
+/* topology.c - shorts, independent parts, floating islands and the capacitor forest, each by one
+ * union-find over the nodes. */
+#include "topology.h"
+
+#include <stdlib.h>
+
+static int find(int *parent, int i) {
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    return i;
+}
+
+/* The smaller index stays the representative: ground wins, then the earlier node. */
+static bool join(int *parent, int a, int b) {
+    a = find(parent, a);
+    b = find(parent, b);
+    if (a == b) {
+        return false;
+    }
+    if (a < b) {
+        parent[b] = a;
+    } else {
+        parent[a] = b;
+    }
+    return true;
+}
+
+static void reset(int *parent, int n) {
+    for (int i = 0; i < n; i++) {
+        parent[i] = i;
+    }
+}
+
+static bool is_short(const struct dalcs_device *d) {
+    return d->kind == DALCS_RESISTOR && d->value == 0.0;
+}
+
+static int controlling_nodes(const struct dalcs_device *d) {
+    return d->kind == DALCS_VCVS || d->kind == DALCS_VCCS || d->kind == DALCS_SWITCH ? 2 : 0;
+}
+
+/* Does the device tie the voltages of its two terminals, in some mode or at some step? Current
+ * sources do not: an island that hangs on them alone floats. */
+static bool conducts(const struct dalcs_device *d) {
+    return d->kind != DALCS_ISOURCE && d->kind != DALCS_CCCS && d->kind != DALCS_VCCS;
+}
+
+static void merge_shorts(struct dalcs_topology *t, const struct dalcs_circuit *c,
+                         const bool *wants_current, int *parent) {
+    reset(parent, c->n_nodes);
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        if (is_short(d)) {
+            t->has_current[i] = wants_current[i];
+            if (!wants_current[i]) {
+                join(parent, d->node[0], d->node[1]);
+            }
+        }
+    }
+    for (int n = 0; n < c->n_nodes; n++) {
+        t->node_of[n] = find(parent, n);
+    }
+}
+
+/* Components hang together through anything but ground. Devices are vertices too, so that one
+ * between ground and ground, or one that a coupling or a current control reaches, has its place. */
+static void find_components(struct dalcs_topology *t, const struct dalcs_circuit *c,
+                            int *parent, int *number /* both [n_nodes + n_devices] */) {
+    reset(parent, c->n_nodes + c->n_devices);
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        for (int k = 0; k < 2 + controlling_nodes(d); k++) {
+            int n = t->node_of[d->node[k]];
+            if (n != 0) {
+                join(parent, n, c->n_nodes + i);
+            }
+        }
+        if (d->kind == DALCS_CCCS || d->kind == DALCS_CCVS) {
+            join(parent, c->n_nodes + i, c->n_nodes + d->control);
+        }
+    }
+    for (int k = 0; k < c->n_couplings; k++) {
+        join(parent, c->n_nodes + c->coupling[k].inductor[0],
+             c->n_nodes + c->coupling[k].inductor[1]);
+    }
+    for (int n = 0; n < c->n_nodes; n++) {
+        t->node_component[n] = -1;
+    }
+    /* Number them in the order of their first device. */
+    for (int n = 0; n < c->n_nodes + c->n_devices; n++) {
+        number[n] = -1;
+    }
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        t->device_component[i] = -1;
+        bool merged = is_short(d) && !t->has_current[i];
+        if (merged || (d->kind == DALCS_CAPACITOR && d->value == 0.0 && !t->has_current[i])) {
+            continue;
+        }
+        int *slot = &number[find(parent, c->n_nodes + i)];
+        if (*slot < 0) {
+            *slot = t->n_components++;
+        }
+        t->device_component[i] = *slot;
+        for (int k = 0; k < 2 + controlling_nodes(d); k++) {
+            int n = t->node_of[d->node[k]];
+            if (n != 0) {
+                t->node_component[n] = *slot;
+            }
+        }
+    }
+}
+
+static void find_references(struct dalcs_topology *t, const struct dalcs_circuit *c, int *parent) {
+    reset(parent, c->n_nodes);
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        if (t->device_component[i] >= 0 && conducts(d)) {
+            join(parent, t->node_of[d->node[0]], t->node_of[d->node[1]]);
+        }
+    }
+    for (int n = 1; n < c->n_nodes; n++) {
+        t->is_reference[n] = t->node_component[n] >= 0 && t->node_of[n] == n && find(parent, n) == n;
+    }
+}
+
+/* Nodes whose voltage is a sum of V sources on the way from ground. Rounds over the sources: as many
+ * as the longest stack of them, which is short. */
+static void find_potentials(struct dalcs_topology *t, const struct dalcs_circuit *c,
+                            bool *known /* work [n_nodes] */) {
+    for (int n = 0; n < c->n_nodes; n++) {
+        t->potential_source[n] = -1;
+        known[n] = n == 0;
+    }
+    for (bool more = true; more;) {
+        more = false;
+        for (int i = 0; i < c->n_devices; i++) {
+            const struct dalcs_device *d = &c->device[i];
+            int a = t->node_of[d->node[0]];
+            int b = t->node_of[d->node[1]];
+            if (d->kind == DALCS_VSOURCE && known[a] != known[b]) {
+                t->potential_source[known[a] ? b : a] = i;
+                known[known[a] ? b : a] = true;
+                more = true;
+            }
+        }
+    }
+}
+
+static void build_forest(struct dalcs_topology *t, const struct dalcs_circuit *c,
+                         const bool *wants_current, int *parent) {
+    reset(parent, c->n_nodes);
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        if (d->kind != DALCS_CAPACITOR || t->device_component[i] < 0) {
+            continue;
+        }
+        t->in_forest[i] =
+            !wants_current[i] && join(parent, t->node_of[d->node[0]], t->node_of[d->node[1]]);
+        t->has_current[i] = !t->in_forest[i];
+    }
+    for (int n = 0; n < c->n_nodes; n++) {
+        t->forest_root[n] = find(parent, n);
+    }
+}
+
+enum dalcs_status dalcs_topology_build(struct dalcs_topology *t,
+                                       const struct dalcs_circuit *circuit,
+                                       const bool *wants_current) {
+    size_t n_nodes = (size_t)circuit->n_nodes;
+    size_t n_devices = (size_t)circuit->n_devices;
+    *t = (struct dalcs_topology){
+        .node_of = dalcs_alloc(n_nodes, sizeof(int)),
+        .node_component = dalcs_alloc(n_nodes, sizeof(int)),
+        .device_component = dalcs_alloc(n_devices, sizeof(int)),
+        .is_reference = dalcs_alloc(n_nodes, sizeof(bool)),
+        .in_forest = dalcs_alloc(n_devices, sizeof(bool)),
+        .has_current = dalcs_alloc(n_devices, sizeof(bool)),
+        .potential_source = dalcs_alloc(n_nodes, sizeof(int)),
+        .forest_root = dalcs_alloc(n_nodes, sizeof(int)),
+    };
+    int *parent = dalcs_alloc(n_nodes + n_devices, sizeof(*parent));
+    int *number = dalcs_alloc(n_nodes + n_devices, sizeof(*number));
+    bool *known = dalcs_alloc(n_nodes, sizeof(*known));
+    if (known == NULL || t->potential_source == NULL || t->node_of == NULL || t->node_component == NULL || t->device_component == NULL ||
+        t->is_reference == NULL || t->in_forest == NULL || t->has_current == NULL ||
+        t->forest_root == NULL || parent == NULL || number == NULL) {
+        free(parent);
+        free(number);
+        free(known);
+        dalcs_topology_finish(t);
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < circuit->n_devices; i++) {
+        t->has_current[i] = circuit->device[i].kind == DALCS_CAPACITOR && wants_current[i];
+    }
+    merge_shorts(t, circuit, wants_current, parent);
+    find_components(t, circuit, parent, number);
+    find_references(t, circuit, parent);
+    find_potentials(t, circuit, known);
+    build_forest(t, circuit, wants_current, parent);
+    free(known);
+    free(parent);
+    free(number);
+    return DALCS_OK;
+}
+
+void dalcs_topology_finish(struct dalcs_topology *t) {
+    free(t->node_of);
+    free(t->node_component);
+    free(t->device_component);
+    free(t->is_reference);
+    free(t->in_forest);
+    free(t->has_current);
+    free(t->potential_source);
+    free(t->forest_root);
+    *t = (struct dalcs_topology){0};
+}

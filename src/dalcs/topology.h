@@ -1,0 +1,29 @@
+/* topology.h - what the graph of a circuit says before any number is written: which parts are
+ * independent, which islands float, which capacitors form a forest. */
+#ifndef DALCS_TOPOLOGY_H
+#define DALCS_TOPOLOGY_H
+
+#include "circuit.h"
+
+struct dalcs_topology {
+    int *node_of;        /* [n_nodes] representative after merging the two ends of every short */
+    int n_components;
+    int *node_component; /* [n_nodes], of representatives; -1 for ground */
+    int *device_component; /* [n_devices], -1 for a device that leaves no equation */
+    bool *is_reference;  /* [n_nodes] the node whose voltage is 0 by convention in an island that
+                            nothing ties to ground: its first node in the netlist */
+    bool *in_forest;     /* [n_devices] capacitors whose current is eliminated */
+    bool *has_current;   /* [n_devices] shorts and capacitors whose current is an unknown */
+    int *potential_source; /* [n_nodes] V device between a node and one nearer to ground, when V
+                              sources alone fix the node's voltage; else -1 */
+    int *forest_root;    /* [n_nodes] root of the capacitor tree that a node is in; itself if none */
+};
+
+/* wants_current[n_devices]: a signal asks for i(device). */
+enum dalcs_status dalcs_topology_build(struct dalcs_topology *topology,
+                                       const struct dalcs_circuit *circuit,
+                                       const bool *wants_current) DALCS_MUST_CHECK;
+
+void dalcs_topology_finish(struct dalcs_topology *topology);
+
+#endif

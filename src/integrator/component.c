@@ -1,0 +1,138 @@
+/* component.c - sampling the sources and commanding the switches around one OSNSP. */
+#include "component.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Rounds in which switches may follow voltages that depend on them. */
+enum { MAX_COMMAND_ROUNDS = 20 };
+
+enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
+                                        const struct dalcs_circuit *circuit,
+                                        const struct dalcs_system *system,
+                                        const struct dalcs_osnsp_options *options) {
+    *c = (struct dalcs_component){.system = system, .circuit = circuit};
+    DALCS_TRY(dalcs_osnsp_setup(&c->osnsp, system, options));
+    size_t n_u = (size_t)(system->n_x + system->n_inputs);
+    size_t n_columns = (size_t)dalcs_system_n_columns(system);
+    c->u = dalcs_alloc(n_u, sizeof(double));
+    c->probe_u = dalcs_alloc(n_u, sizeof(double));
+    c->probe_y = dalcs_alloc(n_columns, sizeof(double));
+    c->y = dalcs_alloc(n_columns, sizeof(double));
+    c->y_before = dalcs_alloc(n_columns, sizeof(double));
+    c->scratch = dalcs_alloc(n_columns, sizeof(double));
+    c->saved_mode = dalcs_alloc((size_t)c->osnsp.n_words, sizeof(*c->saved_mode));
+    c->varying = dalcs_alloc((size_t)system->n_inputs, sizeof(int));
+    c->switch_pair = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
+    if (c->u == NULL || c->probe_u == NULL || c->probe_y == NULL || c->y == NULL || c->y_before == NULL ||
+        c->scratch == NULL || c->saved_mode == NULL || c->varying == NULL ||
+        c->switch_pair == NULL) {
+        dalcs_component_finish(c);
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 1; k < system->n_inputs; k++) {
+        if (circuit->stimulus[system->stimulus[k]].kind != DALCS_STIMULUS_DC) {
+            c->varying[c->n_varying++] = k;
+        }
+    }
+    for (int d = 0; d < system->n_pairs; d++) {
+        if (system->pair[d].kind == DALCS_PAIR_SWITCH) {
+            c->switch_pair[c->n_switches++] = d;
+            dalcs_osnsp_command(&c->osnsp, d, system->pair[d].initially_on);
+        }
+    }
+    c->is_static = system->n_x == 0 && c->n_varying == 0;
+    dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->u);
+    dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->probe_u);
+    return DALCS_OK;
+}
+
+void dalcs_component_finish(struct dalcs_component *c) {
+    if (c->system != NULL) {
+        dalcs_osnsp_finish(&c->osnsp);
+    }
+    free(c->u);
+    free(c->probe_u);
+    free(c->probe_y);
+    free(c->y);
+    free(c->y_before);
+    free(c->scratch);
+    free(c->saved_mode);
+    free(c->varying);
+    free(c->switch_pair);
+    *c = (struct dalcs_component){0};
+}
+
+void dalcs_component_sample(const struct dalcs_component *c, double t, enum dalcs_side side,
+                            double *u) {
+    const struct dalcs_system *s = c->system;
+    double *inputs = u + s->n_x;
+    inputs[0] = 1.0;
+    if (t == 0.0) {
+        for (int k = 1; k < s->n_inputs; k++) {
+            inputs[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+        }
+        return;
+    }
+    for (int i = 0; i < c->n_varying; i++) {
+        int k = c->varying[i];
+        inputs[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+    }
+}
+
+void dalcs_component_sample_operating(const struct dalcs_component *c, bool transient_follows,
+                                      double *u) {
+    const struct dalcs_system *s = c->system;
+    double *inputs = u + s->n_x;
+    inputs[0] = 1.0;
+    for (int k = 1; k < s->n_inputs; k++) {
+        inputs[k] = dalcs_stimulus_operating_value(&c->circuit->stimulus[s->stimulus[k]],
+                                                   transient_follows);
+    }
+}
+
+/* Compares a control with the switch's thresholds; true when the switch has to move. */
+static bool obey(struct dalcs_component *c, int pair, double control) {
+    const struct dalcs_pair *s = &c->system->pair[pair];
+    bool is_on = dalcs_osnsp_is_on(&c->osnsp, pair);
+    bool want = is_on ? !(control < s->turn_off) : control > s->turn_on;
+    if (want != is_on) {
+        dalcs_osnsp_command(&c->osnsp, pair, want);
+        c->commanded = true;
+    }
+    return want != is_on;
+}
+
+enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma, const double *u,
+                                        double *y) {
+    const struct dalcs_system *s = c->system;
+    c->commanded = false;
+    int n_indirect = 0;
+    for (int i = 0; i < c->n_switches; i++) {
+        int d = c->switch_pair[i];
+        if (s->pair[d].is_direct) {
+            obey(c, d, dalcs_csr_row_dot(&s->direct_control, d, u + s->n_x));
+        } else {
+            n_indirect++;
+        }
+    }
+    DALCS_TRY(dalcs_osnsp_solve(&c->osnsp, sigma, u, y));
+    for (int round = 0; n_indirect > 0; round++) {
+        bool moved = false;
+        for (int i = 0; i < c->n_switches; i++) {
+            int d = c->switch_pair[i];
+            if (!s->pair[d].is_direct && obey(c, d, dalcs_csr_row_dot(&s->control, d, y))) {
+                moved = true;
+            }
+        }
+        if (!moved) {
+            break;
+        }
+        DALCS_TRY(dalcs_osnsp_solve(&c->osnsp, sigma, u, y));
+        if (round == MAX_COMMAND_ROUNDS) {
+            c->delayed_commands++; /* the present command stands until the next step */
+            break;
+        }
+    }
+    return DALCS_OK;
+}

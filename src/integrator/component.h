@@ -1,0 +1,51 @@
+/* component.h - one system on its way through time: its OSNSP, inputs, commands and state. */
+#ifndef DALCS_COMPONENT_H
+#define DALCS_COMPONENT_H
+
+#include "network.h"
+#include "osnsp.h"
+
+struct dalcs_component {
+    const struct dalcs_system *system;
+    const struct dalcs_circuit *circuit;
+    struct dalcs_osnsp osnsp;
+    double *u;        /* [n_x + n_inputs] x_k and the inputs of the step being made */
+    double *y;        /* [n_columns] the present answer */
+    double *y_before; /* [n_columns] the answer at the beginning of the last step */
+    double *scratch;  /* [n_columns] */
+    double *probe_u;  /* [n_x + n_inputs] */
+    double *probe_y;  /* [n_columns] */
+    uint64_t *saved_mode;
+    int n_varying; /* inputs that are not constant in time */
+    int *varying;
+    int n_switches;
+    int *switch_pair;
+    double failed_sigma; /* the problem of the last failed solve, for the dump */
+    const double *failed_u;
+    bool is_static; /* nothing depends on time or history */
+    bool commanded; /* the last solve changed a switch */
+    long delayed_commands; /* switches whose control did not settle within a step */
+};
+
+enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
+                                        const struct dalcs_circuit *circuit,
+                                        const struct dalcs_system *system,
+                                        const struct dalcs_osnsp_options *options)
+    DALCS_MUST_CHECK;
+
+void dalcs_component_finish(struct dalcs_component *c);
+
+/* Puts the inputs at time t into u[n_x + n_inputs]. */
+void dalcs_component_sample(const struct dalcs_component *c, double t, enum dalcs_side side,
+                            double *u);
+
+/* The inputs for an operating point. */
+void dalcs_component_sample_operating(const struct dalcs_component *c, bool transient_follows,
+                                      double *u);
+
+/* Commands the switches and solves at sigma; y gets the answer. Switches that sources control are
+ * set first, the others follow their controlling voltage until they agree with the answer. */
+enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma, const double *u,
+                                        double *y) DALCS_MUST_CHECK;
+
+#endif

@@ -1,0 +1,248 @@
+/* euler.c - the time loop of implicit Euler over all components, and the micro-steps that tell what
+ * happens at a discontinuity. */
+#include "euler.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Length of a micro-step over h. Two of them, extrapolated, leave an error of its square. */
+static const double micro_part = 1e-6;
+
+/* A quantity jumps when its change survives extrapolation to a step of 0 (regular changes halve with
+ * the micro-step, impulsive ones do not) and is more than rounding. */
+static const double jump_part = 0.5;
+static const double jump_floor = 1e-9;
+
+enum dalcs_status dalcs_euler_setup(struct dalcs_euler *e, const struct dalcs_circuit *circuit,
+                                    const struct dalcs_network *network,
+                                    const struct dalcs_osnsp_options *options, double h,
+                                    double stop) {
+    *e = (struct dalcs_euler){
+        .circuit = circuit, .network = network, .h = h, .failed_system = -1, .worst = {.where = -1}};
+    size_t n = (size_t)network->n_systems;
+    size_t columns = 1;
+    size_t pairs = 1;
+    enum dalcs_status status = DALCS_OK;
+    e->component = dalcs_alloc(n, sizeof(*e->component));
+    if (e->component == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    struct dalcs_osnsp_options share = *options;
+    share.cache_bytes = options->cache_bytes / (n > 0 ? n : 1);
+    for (int k = 0; k < network->n_systems && status == DALCS_OK; k++) {
+        const struct dalcs_system *s = &network->system[k];
+        size_t n_columns = (size_t)dalcs_system_n_columns(s);
+        columns = n_columns > columns ? n_columns : columns;
+        pairs = (size_t)s->n_pairs > pairs ? (size_t)s->n_pairs : pairs;
+        status = dalcs_component_setup(&e->component[k], circuit, s, &share);
+        e->n_components = k + 1;
+    }
+    e->after = dalcs_alloc(columns, sizeof(double));
+    e->charge = dalcs_alloc(pairs, sizeof(double));
+    e->flux = dalcs_alloc(pairs, sizeof(double));
+    if (status == DALCS_OK && (e->after == NULL || e->charge == NULL || e->flux == NULL)) {
+        status = DALCS_E_NOMEM;
+    }
+    if (status != DALCS_OK) {
+        dalcs_euler_finish(e);
+        return status;
+    }
+    dalcs_grid_init(&e->grid, h, stop, circuit->n_stimuli, circuit->stimulus);
+    return DALCS_OK;
+}
+
+void dalcs_euler_finish(struct dalcs_euler *e) {
+    for (int k = 0; k < e->n_components; k++) {
+        dalcs_component_finish(&e->component[k]);
+    }
+    free(e->component);
+    free(e->after);
+    free(e->charge);
+    free(e->flux);
+    *e = (struct dalcs_euler){0};
+}
+
+static enum dalcs_status solve(struct dalcs_euler *e, int k, double sigma, const double *u,
+                               double *y) {
+    struct dalcs_component *c = &e->component[k];
+    enum dalcs_status status = dalcs_component_solve(c, sigma, u, y);
+    if (status != DALCS_OK) {
+        c->failed_sigma = sigma;
+        c->failed_u = u;
+        e->failed_system = k;
+        e->failed_time = e->t;
+        e->failed_h = sigma > 0.0 ? 1.0 / sigma : e->h;
+        return status;
+    }
+    if (c->osnsp.certificate.worst > e->worst.worst) {
+        e->worst = c->osnsp.certificate;
+        e->worst_time = e->t;
+        e->worst_system = k;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_euler_operating_point(struct dalcs_euler *e, bool transient_follows) {
+    e->at_operating_point = true;
+    for (int k = 0; k < e->n_components; k++) {
+        struct dalcs_component *c = &e->component[k];
+        dalcs_component_sample_operating(c, transient_follows, c->u);
+        DALCS_TRY(solve(e, k, 0.0, c->u, c->y));
+        memcpy(c->u, c->y, (size_t)c->system->n_x * sizeof(double));
+    }
+    e->at_operating_point = false;
+    return DALCS_OK;
+}
+
+static double largest_state(const struct dalcs_system *s, const double *y, bool currents) {
+    double largest = 0.0;
+    for (int x = 0; x < s->n_x; x++) {
+        largest = s->column_is_current[x] == currents ? fmax(largest, fabs(y[x])) : largest;
+    }
+    return largest;
+}
+
+/* 1/2 d' storage d for d = after - before: what a jump dissipates. */
+static double jump_energy(const struct dalcs_system *s, const double *before,
+                          const double *after) {
+    double energy = 0.0;
+    for (int i = 0; i < s->n_x; i++) {
+        for (int k = s->storage.p[i]; k < s->storage.p[i + 1]; k++) {
+            int j = s->storage.j[k];
+            energy += 0.5 * s->storage.x[k] * (after[i] - before[i]) * (after[j] - before[j]);
+        }
+    }
+    return energy;
+}
+
+/* Solves micro-steps from u (whose x is x-) into y: the values just after a discontinuity. Where the
+ * state jumps it is reported, and y is solved again from the state after the jump, so that its
+ * currents are those after the impulse. u is left as it was. */
+static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *before, double *u,
+                                    double *y) {
+    struct dalcs_component *c = &e->component[k];
+    const struct dalcs_system *s = c->system;
+    size_t n_x = (size_t)s->n_x;
+    if (s->n_x == 0) {
+        return solve(e, k, 0.0, u, y);
+    }
+    double h = micro_part * e->grid.h;
+    int n_equations = dalcs_system_n_equations(s);
+    DALCS_TRY(solve(e, k, 1.0 / h, u, y));
+    double limit[2];
+    bool moved = false;
+    for (int unit = 0; unit < 2; unit++) {
+        limit[unit] = jump_floor * fmax(largest_state(s, u, unit), largest_state(s, y, unit));
+    }
+    for (int x = 0; x < s->n_x; x++) {
+        moved = moved || fabs(y[x] - u[x]) > limit[s->column_is_current[x]];
+    }
+    if (!moved) {
+        return DALCS_OK;
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        e->charge[d] = h * y[n_equations + d];
+        e->flux[d] = h * c->osnsp.w[d];
+    }
+    DALCS_TRY(solve(e, k, 2.0 / h, u, c->scratch));
+    bool jumps = false;
+    memcpy(e->after, c->scratch, (size_t)dalcs_system_n_columns(s) * sizeof(double));
+    for (int x = 0; x < s->n_x; x++) {
+        double whole = y[x] - u[x];
+        double limit_of_0 = 2.0 * (c->scratch[x] - u[x]) - whole;
+        e->after[x] = u[x] + limit_of_0;
+        jumps = jumps || (fabs(limit_of_0) > jump_part * fabs(whole) &&
+                          fabs(limit_of_0) > limit[s->column_is_current[x]]);
+    }
+    if (!jumps) {
+        return DALCS_OK;
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        double *impulse[2] = {&e->charge[d], &e->flux[d]};
+        double half[2] = {0.5 * h * c->scratch[n_equations + d], 0.5 * h * c->osnsp.w[d]};
+        for (int i = 0; i < 2; i++) {
+            double limit_of_0 = 2.0 * half[i] - *impulse[i];
+            bool impulsive = fabs(limit_of_0) > jump_part * fabs(*impulse[i]);
+            *impulse[i] = impulsive ? limit_of_0 : 0.0;
+        }
+    }
+    if (e->on_jump != NULL) {
+        DALCS_TRY(e->on_jump(e->jump_user, &(struct dalcs_euler_jump){
+                                               .time = e->t,
+                                               .system = k,
+                                               .before = before,
+                                               .after = e->after,
+                                               .charge = e->charge,
+                                               .flux = e->flux,
+                                               .energy_lost = jump_energy(s, before, e->after),
+                                           }));
+    }
+    memcpy(c->probe_u, e->after, n_x * sizeof(double));
+    memcpy(c->probe_u + n_x, u + n_x, (size_t)s->n_inputs * sizeof(double));
+    DALCS_TRY(solve(e, k, 1.0 / h, c->probe_u, y));
+    memcpy(y, e->after, n_x * sizeof(double));
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initial) {
+    for (int k = 0; k < e->n_components; k++) {
+        struct dalcs_component *c = &e->component[k];
+        size_t n_x = (size_t)c->system->n_x;
+        dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->u);
+        if (initial != NULL) {
+            memcpy(c->u, initial[k], n_x * sizeof(double));
+            memset(c->y_before, 0, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
+            memcpy(c->y_before, c->u, n_x * sizeof(double));
+            DALCS_TRY(look_after(e, k, c->y_before, c->u, c->y));
+        }
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
+    e->t_before = e->t;
+    double h = dalcs_grid_advance(&e->grid, &e->at_jump);
+    e->t = e->grid.t;
+    e->h = h;
+    double sigma = 1.0 / h;
+    for (int k = 0; k < e->n_components; k++) {
+        struct dalcs_component *c = &e->component[k];
+        if (c->is_static) {
+            continue;
+        }
+        double *swap = c->y_before;
+        c->y_before = c->y;
+        c->y = swap;
+        size_t n_x = (size_t)c->system->n_x;
+        dalcs_component_sample(c, e->t, DALCS_LEFT, c->u);
+        DALCS_TRY(solve(e, k, n_x > 0 ? sigma : 0.0, c->u, c->y));
+        if (e->detect_jumps && c->commanded && n_x > 0) {
+            size_t mode_bytes = (size_t)c->osnsp.n_words * sizeof(uint64_t);
+            memcpy(c->saved_mode, c->osnsp.mode, mode_bytes);
+            DALCS_TRY(look_after(e, k, c->y_before, c->u, c->probe_y));
+            memcpy(c->osnsp.mode, c->saved_mode, mode_bytes);
+        }
+        memcpy(c->u, c->y, n_x * sizeof(double));
+    }
+    e->steps++;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) {
+    for (int k = 0; k < e->n_components; k++) {
+        struct dalcs_component *c = &e->component[k];
+        dalcs_component_sample(c, e->t, DALCS_RIGHT, c->probe_u);
+        bool changes = false;
+        for (int i = 0; i < c->n_varying; i++) {
+            int input = c->system->n_x + c->varying[i];
+            changes = changes || c->probe_u[input] != c->u[input];
+        }
+        if (changes) {
+            dalcs_component_sample(c, e->t, DALCS_RIGHT, c->u);
+            memcpy(c->probe_y, c->y, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
+            DALCS_TRY(look_after(e, k, c->probe_y, c->u, c->y));
+        }
+    }
+    return DALCS_OK;
+}

@@ -1,0 +1,67 @@
+/* euler.h - implicit Euler with a fixed step, the scheme of Brogliato 2022, eq. (3.1).
+ *
+ * Sources are sampled at the end of a step, and edges are landed on exactly. State jumps need no
+ * special case: the step computes them. What a jump was, and the values just after a discontinuity,
+ * are found by solving two steps of a millionth of h from the same state and extrapolating to 0;
+ * they are reported, the trajectory itself stays the scheme's. */
+#ifndef DALCS_EULER_H
+#define DALCS_EULER_H
+
+#include "component.h"
+#include "grid.h"
+
+/* Called when a component's state jumps: x before and after, impulses of lambda (C) and w (Wb). */
+struct dalcs_euler_jump {
+    double time;
+    int system;
+    const double *before, *after; /* [n_columns], x and z and lambda just before and after */
+    const double *charge, *flux;  /* [n_pairs] */
+    double energy_lost;           /* J */
+};
+
+struct dalcs_euler {
+    const struct dalcs_circuit *circuit;
+    const struct dalcs_network *network;
+    int n_components;
+    struct dalcs_component *component;
+    struct dalcs_grid grid;
+    double t, t_before; /* s */
+    double h;           /* length of the last step */
+    bool at_jump;       /* a source jumps at t: dalcs_euler_cross comes next */
+    long steps;
+    struct dalcs_certificate worst;
+    double worst_time;
+    int worst_system;
+    int failed_system; /* after a failure: which component, at which time */
+    double failed_time, failed_h;
+    bool at_operating_point; /* the failure was there */
+    bool detect_jumps; /* also where a circuit's own voltage moves a switch */
+    void *jump_user;
+    enum dalcs_status (*on_jump)(void *user, const struct dalcs_euler_jump *jump); /* may be NULL */
+    double *after, *charge, *flux; /* work, the largest component */
+};
+
+/* Sets up for a transient with step h (s). network and circuit must outlive it. */
+enum dalcs_status dalcs_euler_setup(struct dalcs_euler *e, const struct dalcs_circuit *circuit,
+                                    const struct dalcs_network *network,
+                                    const struct dalcs_osnsp_options *options, double h,
+                                    double stop) DALCS_MUST_CHECK;
+
+void dalcs_euler_finish(struct dalcs_euler *e);
+
+/* Solves the operating point (sigma = 0) into every component's y. */
+enum dalcs_status dalcs_euler_operating_point(struct dalcs_euler *e,
+                                              bool transient_follows) DALCS_MUST_CHECK;
+
+/* Starts at t = 0. initial[k][n_x] is the state x(0-) of component k, which may be inconsistent; y
+ * becomes the values just after t = 0. NULL: the operating point in y is the start. */
+enum dalcs_status dalcs_euler_start(struct dalcs_euler *e,
+                                    double *const *initial) DALCS_MUST_CHECK;
+
+/* One step: y moves to y_before, y is the answer at e->t. */
+enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) DALCS_MUST_CHECK;
+
+/* At a jump of the sources: y becomes the values just after e->t; the state stays. */
+enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) DALCS_MUST_CHECK;
+
+#endif

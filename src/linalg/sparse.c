@@ -1,0 +1,103 @@
+/* sparse.c - triplets and compressed rows. Compression is a counting sort by column, then a stable
+ * one by row: linear in the entries and the same order on every machine. */
+#include "sparse.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum dalcs_status dalcs_triplets_add(struct dalcs_triplets *t, int row, int column, double value) {
+    DALCS_TRY(dalcs_grow(&t->entry, &t->capacity, t->n + 1, sizeof(*t->entry)));
+    t->entry[t->n++] = (struct dalcs_triplet){row, column, value};
+    return DALCS_OK;
+}
+
+void dalcs_triplets_finish(struct dalcs_triplets *t) {
+    free(t->entry);
+    *t = (struct dalcs_triplets){0};
+}
+
+enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_columns,
+                                     const struct dalcs_triplets *t) {
+    *a = (struct dalcs_csr){.n_rows = n_rows, .n_columns = n_columns};
+    if (t->n > INT_MAX / 2) {
+        return DALCS_E_LIMIT;
+    }
+    enum dalcs_status status = DALCS_E_NOMEM;
+    int *start = dalcs_alloc((size_t)n_columns + 1, sizeof(*start));
+    int *order = dalcs_alloc(t->n, sizeof(*order));
+    a->p = dalcs_alloc((size_t)n_rows + 1, sizeof(*a->p));
+    a->j = dalcs_alloc(t->n, sizeof(*a->j));
+    a->x = dalcs_alloc(t->n, sizeof(*a->x));
+    if (start == NULL || order == NULL || a->p == NULL || a->j == NULL || a->x == NULL) {
+        goto done;
+    }
+    for (size_t k = 0; k < t->n; k++) {
+        start[t->entry[k].column + 1]++;
+        a->p[t->entry[k].row + 1]++;
+    }
+    for (int c = 0; c < n_columns; c++) {
+        start[c + 1] += start[c];
+    }
+    for (int r = 0; r < n_rows; r++) {
+        a->p[r + 1] += a->p[r];
+    }
+    for (size_t k = 0; k < t->n; k++) {
+        order[start[t->entry[k].column]++] = (int)k;
+    }
+    for (size_t k = 0; k < t->n; k++) {
+        const struct dalcs_triplet *e = &t->entry[order[k]];
+        int slot = a->p[e->row]++;
+        a->j[slot] = e->column;
+        a->x[slot] = e->value;
+    }
+    /* p[r] now holds the end of row r: walk forward, merge duplicates, drop what cancelled. */
+    int out = 0;
+    int begin = 0;
+    for (int r = 0; r < n_rows; r++) {
+        int end = a->p[r];
+        a->p[r] = out;
+        for (int k = begin; k < end;) {
+            int column = a->j[k];
+            double sum = 0.0;
+            for (; k < end && a->j[k] == column; k++) {
+                sum += a->x[k];
+            }
+            if (sum != 0.0) {
+                a->j[out] = column;
+                a->x[out++] = sum;
+            }
+        }
+        begin = end;
+    }
+    a->p[n_rows] = out;
+    status = DALCS_OK;
+done:
+    free(start);
+    free(order);
+    if (status != DALCS_OK) {
+        dalcs_csr_finish(a);
+    }
+    return status;
+}
+
+void dalcs_csr_finish(struct dalcs_csr *a) {
+    free(a->p);
+    free(a->j);
+    free(a->x);
+    *a = (struct dalcs_csr){0};
+}
+
+double dalcs_csr_row_dot(const struct dalcs_csr *a, int i, const double *v) {
+    double sum = 0.0;
+    for (int k = a->p[i]; k < a->p[i + 1]; k++) {
+        sum += a->x[k] * v[a->j[k]];
+    }
+    return sum;
+}
+
+void dalcs_csr_multiply(const struct dalcs_csr *a, const double *v, double *y) {
+    for (int i = 0; i < a->n_rows; i++) {
+        y[i] = dalcs_csr_row_dot(a, i, v);
+    }
+}

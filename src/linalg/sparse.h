@@ -1,0 +1,44 @@
+/* sparse.h - sparse matrices: triplets to collect, compressed rows to use.
+ *
+ * One type per representation. Indices are int (KLU's choice); sizes are checked once, where a
+ * matrix is compressed. */
+#ifndef DALCS_SPARSE_H
+#define DALCS_SPARSE_H
+
+#include "memory.h"
+
+/* Entries in any order; duplicates add up when compressed. Zero-initialise. */
+struct dalcs_triplets {
+    size_t n, capacity;
+    struct dalcs_triplet {
+        int row, column;
+        double value;
+    } *entry;
+};
+
+enum dalcs_status dalcs_triplets_add(struct dalcs_triplets *t, int row, int column,
+                                     double value) DALCS_MUST_CHECK;
+
+void dalcs_triplets_finish(struct dalcs_triplets *t);
+
+/* Compressed rows, columns ascending within a row. */
+struct dalcs_csr {
+    int n_rows, n_columns;
+    int *p;    /* [n_rows + 1] */
+    int *j;    /* [p[n_rows]] */
+    double *x; /* [p[n_rows]] */
+};
+
+/* Sums duplicates; entries that cancel to exactly 0 are dropped. On failure *a is zeroed. */
+enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_columns,
+                                     const struct dalcs_triplets *t) DALCS_MUST_CHECK;
+
+void dalcs_csr_finish(struct dalcs_csr *a);
+
+/* Row i of a, times v. */
+double dalcs_csr_row_dot(const struct dalcs_csr *a, int i, const double *v /* [n_columns] */);
+
+/* y[n_rows] = a v[n_columns] */
+void dalcs_csr_multiply(const struct dalcs_csr *a, const double *v, double *y);
+
+#endif

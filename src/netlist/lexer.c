@@ -1,0 +1,294 @@
+/* lexer.c - physical lines to cards.
+ *
+ * Works in place: a word is lower-cased and ended with a NUL in the `low` copy of the text, so that
+ * tokens need no memory of their own, while `raw` keeps the line as written for messages. What can
+ * end a word is therefore always read from `raw`. */
+#include "lexer.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Stands in `low` for a byte that is no text; `raw` shows it as '?'. */
+static const char INVALID = '\x01';
+
+static bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+static bool ends_word(char c) {
+    return c == '\0' || is_blank(c) || c == ',' || c == '=' || c == '(' || c == ')' || c == ';';
+}
+
+/* The length of the UTF-8 character at p (n bytes follow), 0 when it is not one. */
+static size_t utf8_length(const unsigned char *p, size_t n) {
+    size_t length;
+    unsigned least;
+    unsigned code;
+    if (p[0] < 0xC2) {
+        return 0;
+    } else if (p[0] < 0xE0) {
+        length = 2;
+        least = 0x80;
+        code = p[0] & 0x1FU;
+    } else if (p[0] < 0xF0) {
+        length = 3;
+        least = 0x800;
+        code = p[0] & 0x0FU;
+    } else if (p[0] < 0xF5) {
+        length = 4;
+        least = 0x10000;
+        code = p[0] & 0x07U;
+    } else {
+        return 0;
+    }
+    if (n < length) {
+        return 0;
+    }
+    for (size_t k = 1; k < length; k++) {
+        if ((p[k] & 0xC0) != 0x80) {
+            return 0;
+        }
+        code = code << 6 | (p[k] & 0x3FU);
+    }
+    const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
+    return code < least || code > 0x10FFFF || surrogate ? 0 : length;
+}
+
+/* Lower-cases the line into `low` and marks what is no text. A no-break space, which comes with text
+ * copied from web pages, becomes blanks. */
+static void clean_line(struct dalcs_lexer *lexer, size_t begin, size_t end) {
+    char *raw = lexer->raw;
+    char *low = lexer->low;
+    size_t k = begin;
+    while (k < end) {
+        const char c = raw[k];
+        const unsigned char byte = (unsigned char)c;
+        if (byte >= 0x80) {
+            const size_t length = utf8_length((const unsigned char *)raw + k, end - k);
+            if (length == 2 && byte == 0xC2 && (unsigned char)raw[k + 1] == 0xA0) {
+                raw[k] = raw[k + 1] = low[k] = low[k + 1] = ' ';
+                k += 2;
+                continue;
+            }
+            if (length > 0) {
+                memcpy(low + k, raw + k, length);
+                k += length;
+                continue;
+            }
+        }
+        if (byte >= 0x80 || byte == 0x7F || (byte < 0x20 && !is_blank(c))) {
+            raw[k] = '?';
+            low[k] = INVALID;
+        } else if (is_blank(c) && c != '\t') {
+            raw[k] = low[k] = ' ';
+        } else {
+            low[k] = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+        }
+        k++;
+    }
+    raw[end] = '\0';
+    low[end] = '\0';
+}
+
+static enum dalcs_status need_line(struct dalcs_lexer *lexer, size_t begin) {
+    if (lexer->line != NULL) {
+        return DALCS_OK;
+    }
+    struct dalcs_source_line *line = dalcs_arena_alloc(&lexer->netlist->arena, 1, sizeof *line);
+    if (line == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    line->file = lexer->netlist->name;
+    line->text = lexer->raw + begin;
+    line->number = lexer->line_number;
+    lexer->line = line;
+    return DALCS_OK;
+}
+
+static void report(struct dalcs_lexer *lexer, const struct dalcs_token *token, const char *hint,
+                   const char *what) {
+    const struct dalcs_location where = dalcs_token_location(token);
+    dalcs_diag_add(lexer->diag, DALCS_ERROR, &where, hint, "%s", what);
+    lexer->netlist->has_errors = true;
+}
+
+static enum dalcs_status add_token(struct dalcs_lexer *lexer, const struct dalcs_token *token) {
+    DALCS_TRY(dalcs_grow(&lexer->token, &lexer->capacity, lexer->n_tokens + 1,
+                         sizeof *lexer->token));
+    lexer->token[lexer->n_tokens++] = *token;
+    return DALCS_OK;
+}
+
+/* The token that starts at raw[p]; the result is the first byte after it. */
+static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
+                         struct dalcs_token *token) {
+    const char *raw = lexer->raw;
+    char *low = lexer->low;
+    const char c = raw[p];
+    size_t q = p + 1;
+    token->line = lexer->line;
+    token->offset = (int)(p - begin);
+
+    if (c == '=' || c == '(' || c == ')') {
+        token->kind = c == '='   ? DALCS_TOKEN_EQUAL
+                      : c == '(' ? DALCS_TOKEN_OPEN
+                                 : DALCS_TOKEN_CLOSE;
+        token->text = c == '=' ? "=" : c == '(' ? "(" : ")";
+        token->length = 1;
+        return q;
+    }
+
+    bool closed = true;
+    if (c == '\'' || c == '"') {
+        token->kind = DALCS_TOKEN_STRING;
+        while (raw[q] != '\0' && raw[q] != c) {
+            q++;
+        }
+        closed = raw[q] == c;
+        memcpy(low + p + 1, raw + p + 1, q - p - 1);
+        token->text = low + p + 1;
+    } else if (c == '{') {
+        token->kind = DALCS_TOKEN_EXPRESSION;
+        int depth = 1;
+        for (; raw[q] != '\0'; q++) {
+            depth += (raw[q] == '{') - (raw[q] == '}');
+            if (depth == 0) {
+                break;
+            }
+        }
+        closed = depth == 0;
+        token->text = low + p + 1;
+    } else {
+        token->kind = DALCS_TOKEN_WORD;
+        while (!ends_word(raw[q])) {
+            q++;
+        }
+        token->text = low + p;
+    }
+    const bool invalid = memchr(low + p, INVALID, q - p) != NULL;
+    low[q] = '\0';
+    if (token->kind != DALCS_TOKEN_WORD && closed) {
+        q++;
+    }
+    token->length = (int)(q - p);
+
+    if (invalid) {
+        report(lexer, token, "save the netlist as UTF-8 text", "byte that is not text (shown as ?)");
+        token->kind = DALCS_TOKEN_BAD;
+    } else if (!closed) {
+        report(lexer, token, NULL, c == '{' ? "brace is never closed" : "quote is never closed");
+        token->kind = DALCS_TOKEN_BAD;
+    }
+    return q;
+}
+
+static enum dalcs_status read_tokens(struct dalcs_lexer *lexer, size_t p, size_t begin) {
+    const char *raw = lexer->raw;
+    bool after_comma = false;
+    for (;;) {
+        while (is_blank(raw[p]) || raw[p] == ',') {
+            after_comma = after_comma || raw[p] == ',';
+            p++;
+        }
+        if (raw[p] == '\0' || raw[p] == ';') {
+            return DALCS_OK;
+        }
+        if (raw[p] == '$' && (p == begin || is_blank(raw[p - 1])) &&
+            (raw[p + 1] == '\0' || is_blank(raw[p + 1]))) {
+            return DALCS_OK;
+        }
+        DALCS_TRY(need_line(lexer, begin));
+        struct dalcs_token token;
+        memset(&token, 0, sizeof token);
+        token.after_comma = after_comma;
+        after_comma = false;
+        p = read_token(lexer, p, begin, &token);
+        DALCS_TRY(add_token(lexer, &token));
+    }
+}
+
+/* Does the line at p start with this word? */
+static bool starts_with_word(const struct dalcs_lexer *lexer, size_t p, const char *word) {
+    const size_t length = strlen(word);
+    return strncmp(lexer->low + p, word, length) == 0 && ends_word(lexer->raw[p + length]);
+}
+
+static enum dalcs_status read_title(struct dalcs_lexer *lexer, size_t begin, size_t end) {
+    while (begin < end && is_blank(lexer->raw[begin])) {
+        begin++;
+    }
+    while (end > begin && is_blank(lexer->raw[end - 1])) {
+        end--;
+    }
+    lexer->netlist->title =
+        dalcs_arena_copy(&lexer->netlist->arena, lexer->raw + begin, end - begin);
+    return lexer->netlist->title != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+static enum dalcs_status continue_card(struct dalcs_lexer *lexer, size_t plus, size_t begin) {
+    if (lexer->n_tokens > 0) {
+        return read_tokens(lexer, plus + 1, begin);
+    }
+    DALCS_TRY(need_line(lexer, begin));
+    const struct dalcs_token token = {.line = lexer->line, .offset = (int)(plus - begin),
+                                      .length = 1};
+    report(lexer, &token, "a line that starts with + continues the card before it",
+           "there is no card to continue");
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin, size_t end) {
+    lexer->line_number++;
+    lexer->line = NULL;
+    clean_line(lexer, begin, end);
+    if (lexer->line_number == 1) {
+        DALCS_TRY(need_line(lexer, begin));
+        lexer->netlist->title_line = lexer->line;
+        return read_title(lexer, begin, end);
+    }
+    size_t p = begin;
+    while (is_blank(lexer->raw[p])) {
+        p++;
+    }
+    if (lexer->in_control) {
+        lexer->in_control = !starts_with_word(lexer, p, ".endc");
+        return DALCS_OK;
+    }
+    if (p == end || lexer->raw[p] == '*' || lexer->raw[p] == ';') {
+        return DALCS_OK;
+    }
+    if (lexer->raw[p] == '+') {
+        return continue_card(lexer, p, begin);
+    }
+    DALCS_TRY(dalcs_lexer_flush(lexer));
+    if (starts_with_word(lexer, p, ".end")) {
+        lexer->ended = true;
+        return DALCS_OK;
+    }
+    if (starts_with_word(lexer, p, ".title")) {
+        return read_title(lexer, p + strlen(".title"), end);
+    }
+    lexer->in_control = starts_with_word(lexer, p, ".control");
+    return read_tokens(lexer, p, begin);
+}
+
+enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
+    struct dalcs_netlist *netlist = lexer->netlist;
+    if (lexer->n_tokens == 0) {
+        return DALCS_OK;
+    }
+    if (lexer->n_tokens > INT_MAX / 2) {
+        return DALCS_E_LIMIT;
+    }
+    struct dalcs_token *token = dalcs_arena_alloc(&netlist->arena, lexer->n_tokens, sizeof *token);
+    if (token == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    memcpy(token, lexer->token, lexer->n_tokens * sizeof *token);
+    DALCS_TRY(dalcs_grow(&netlist->card, &netlist->capacity, netlist->n_cards + 1,
+                         sizeof *netlist->card));
+    netlist->card[netlist->n_cards++] = (struct dalcs_card){token, (int)lexer->n_tokens};
+    lexer->n_tokens = 0;
+    return DALCS_OK;
+}

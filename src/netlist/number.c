@@ -1,0 +1,182 @@
+/* number.c - SPICE numbers to doubles, correctly rounded.
+ *
+ * The digits are copied without their decimal point and the suffix becomes part of the exponent, so
+ * that strtod sees "4700e-1" for 4.7e2: one rounding, and no decimal point for a locale to mistake.
+ * `mil` (25.4e-6) is the one suffix that multiplies. */
+#include "number.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Enough digits to round any decimal number correctly (767 decide a double); of those beyond only
+ * whether one is not 0 matters. */
+enum { MAX_DIGITS = 800 };
+
+static bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+static char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+/* A letter of a unit: ASCII, or any part of a UTF-8 character such as the ohm sign. */
+static bool is_unit_letter(char c) {
+    return (lower(c) >= 'a' && lower(c) <= 'z') || (unsigned char)c >= 0x80;
+}
+
+static bool starts_with(const char *text, const char *prefix) {
+    while (*prefix != '\0' && lower(*text) == *prefix) {
+        text++;
+        prefix++;
+    }
+    return *prefix == '\0';
+}
+
+/* The suffix at text: its length, its letter in *suffix and its power of ten in *power. */
+static int read_suffix(const char *text, char *suffix, int *power) {
+    static const struct {
+        const char *text;
+        char suffix;
+        int power;
+    } table[] = {
+        /* The longer spellings first. */
+        {"meg", 'x', 6}, {"mil", 'i', 0},       {"t", 't', 12},       {"g", 'g', 9},
+        {"k", 'k', 3},   {"m", 'm', -3},        {"u", 'u', -6},       {"n", 'n', -9},
+        {"p", 'p', -12}, {"f", 'f', -15},       {"a", 'a', -18},      {"\xC2\xB5", 'u', -6},
+        {"\xCE\xBC", 'u', -6}, /* the micro sign and the Greek mu */
+    };
+    for (size_t k = 0; k < sizeof table / sizeof table[0]; k++) {
+        if (starts_with(text, table[k].text)) {
+            *suffix = table[k].suffix;
+            *power = table[k].power;
+            return (int)strlen(table[k].text);
+        }
+    }
+    *suffix = 0;
+    *power = 0;
+    return 0;
+}
+
+/* The significant digits of a mantissa, as text, and the power of ten of its last digit. */
+struct mantissa {
+    char digit[MAX_DIGITS + 1];
+    int n;
+    long long power;
+    bool sticky; /* a digit beyond MAX_DIGITS is not 0 */
+};
+
+static void add_digit(struct mantissa *m, char c, bool after_point) {
+    if (m->n == 0 && c == '0') {
+        m->power -= after_point; /* a leading zero only moves the point */
+        return;
+    }
+    if (m->n < MAX_DIGITS) {
+        m->digit[m->n++] = c;
+        m->power -= after_point;
+        return;
+    }
+    m->sticky = m->sticky || c != '0';
+    m->power += !after_point;
+}
+
+/* Reads digits with at most one point; the first byte after them, or NULL when there is no digit or
+ * a second point follows. */
+static const char *read_mantissa(const char *p, struct mantissa *m) {
+    bool any = false;
+    bool after_point = false;
+    for (;; p++) {
+        if (is_digit(*p)) {
+            any = true;
+            add_digit(m, *p, after_point);
+        } else if (*p == '.' && !after_point) {
+            after_point = true;
+        } else {
+            break;
+        }
+    }
+    return any && *p != '.' ? p : NULL;
+}
+
+/* Reads e[+-]digits when it is there and saturates far outside any double. */
+static const char *read_exponent(const char *p, long long *exponent) {
+    const char *q = p + 1;
+    if (lower(*p) != 'e') {
+        return p;
+    }
+    const bool negative = *q == '-';
+    q += *q == '-' || *q == '+';
+    if (!is_digit(*q)) {
+        return p;
+    }
+    for (; is_digit(*q); q++) {
+        if (*exponent < 1000000000000LL) {
+            *exponent = *exponent * 10 + (*q - '0');
+        }
+    }
+    *exponent = negative ? -*exponent : *exponent;
+    return q;
+}
+
+static double convert(const struct mantissa *m, long long power, bool negative) {
+    char buffer[MAX_DIGITS + 40];
+    if (m->n == 0) {
+        return negative ? -0.0 : 0.0;
+    }
+    power = power > 1000000 ? 1000000 : power < -1000000 ? -1000000 : power;
+    /* One more digit stands for everything that was cut off: rounding only asks whether it is 0. */
+    snprintf(buffer, sizeof buffer, "%s%.*s%se%lld", negative ? "-" : "", m->n, m->digit,
+             m->sticky ? "1" : "", m->sticky ? power - 1 : power);
+    return strtod(buffer, NULL);
+}
+
+enum dalcs_number_status dalcs_number_parse(const char *text, struct dalcs_number *number) {
+    const char *p = text;
+    const bool negative = *p == '-';
+    p += *p == '-' || *p == '+';
+
+    struct mantissa m;
+    m.n = 0;
+    m.power = 0;
+    m.sticky = false;
+    p = read_mantissa(p, &m);
+    if (p == NULL) {
+        return DALCS_NUMBER_MALFORMED;
+    }
+    long long exponent = 0;
+    p = read_exponent(p, &exponent);
+    if (p - text > INT_MAX / 2) {
+        return DALCS_NUMBER_MALFORMED;
+    }
+    struct dalcs_number result = {.digits = (int)(p - text)};
+
+    int suffix_power;
+    const char *suffix = p;
+    p += read_suffix(p, &result.suffix, &suffix_power);
+    result.tail = (int)(p - text);
+    while (is_unit_letter(*p)) {
+        p++;
+    }
+    if (is_digit(*p)) {
+        return DALCS_NUMBER_RKM;
+    }
+    if (*p != '\0' || (lower(*suffix) == 'e' && suffix[1] == '\0')) {
+        return DALCS_NUMBER_MALFORMED;
+    }
+
+    result.value = convert(&m, m.power + exponent + suffix_power, negative);
+    if (result.suffix == 'i') {
+        result.value *= 25.4e-6;
+    }
+    if (isinf(result.value)) {
+        return DALCS_NUMBER_OVERFLOW;
+    }
+    if (result.value == 0 && m.n > 0) {
+        return DALCS_NUMBER_UNDERFLOW;
+    }
+    *number = result;
+    return DALCS_NUMBER_OK;
+}

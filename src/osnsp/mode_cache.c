@@ -1,0 +1,237 @@
+/* mode_cache.c - factors by (mode, sigma), bounded in bytes, least recently used out first.
+ *
+ * Each mode has its own compressed matrix and its own analysis: diodes that block have no unknown,
+ * and a pattern shared by all modes would cost several times the fill. */
+#include "osnsp_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Step sizes remembered: the regular step, the pieces of a few edges, the micro-steps. */
+enum { MAX_FORMS = 32 };
+
+static void unlink_entry(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
+    *(e->newer != NULL ? &e->newer->older : &p->newest) = e->older;
+    *(e->older != NULL ? &e->older->newer : &p->oldest) = e->newer;
+    e->newer = NULL;
+    e->older = NULL;
+}
+
+static void link_newest(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
+    e->older = p->newest;
+    e->newer = NULL;
+    *(p->newest != NULL ? &p->newest->newer : &p->oldest) = e;
+    p->newest = e;
+}
+
+static void entry_destroy(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
+    dalcs_lu_finish(&e->lu, &p->klu);
+    free(e->key);
+    free(e->on);
+    free(e->map);
+    free(e);
+}
+
+static void remove_entry(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
+    HASH_DELETE(hh, p->entries, e);
+    unlink_entry(p, e);
+    p->entry_bytes -= e->bytes;
+    entry_destroy(p, e);
+}
+
+/* Never below a handful: the entries that one solve holds at a time stay valid. */
+enum { MIN_ENTRIES = 4 };
+
+static void make_room(struct dalcs_osnsp *p, const struct dalcs_mode_entry *keep) {
+    while (p->entry_bytes > p->options.cache_bytes && HASH_COUNT(p->entries) > MIN_ENTRIES &&
+           p->oldest != keep) {
+        remove_entry(p, p->oldest);
+    }
+}
+
+void dalcs_modes_grew(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry, size_t bytes) {
+    entry->bytes += bytes;
+    p->entry_bytes += bytes;
+    make_room(p, entry);
+}
+
+static void remove_form(struct dalcs_osnsp *p, int k) {
+    for (struct dalcs_mode_entry *e = p->newest; e != NULL;) {
+        struct dalcs_mode_entry *next = e->older;
+        if ((uint32_t)(e->key[p->n_words] >> 8) == p->form_id[k]) {
+            remove_entry(p, e);
+        }
+        e = next;
+    }
+    dalcs_step_form_finish(p->form[k]);
+    free(p->form[k]);
+}
+
+enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) {
+    int k = 0;
+    while (k < p->n_forms && p->form[k]->sigma != sigma) {
+        k++;
+    }
+    struct dalcs_step_form *form;
+    uint32_t id;
+    if (k < p->n_forms) {
+        form = p->form[k];
+        id = p->form_id[k];
+    } else {
+        form = dalcs_alloc(1, sizeof(*form));
+        if (form == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        enum dalcs_status status = dalcs_step_form_build(form, p->system, sigma);
+        if (status != DALCS_OK) {
+            free(form);
+            return status;
+        }
+        id = p->next_form_id++;
+        if (p->n_forms == MAX_FORMS) {
+            remove_form(p, --p->n_forms);
+        }
+        k = p->n_forms++;
+    }
+    memmove(p->form + 1, p->form, (size_t)k * sizeof(*p->form));
+    memmove(p->form_id + 1, p->form_id, (size_t)k * sizeof(*p->form_id));
+    p->form[0] = form;
+    p->form_id[0] = id;
+    return DALCS_OK;
+}
+
+/* The plain matrix of the mode: equations and the w rows of conducting pairs. */
+static enum dalcs_status factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
+    const struct dalcs_step_form *f = p->form[0];
+    int order = f->n + e->n_on;
+    int *slot = dalcs_alloc((size_t)(f->n + f->n_pairs), sizeof(*slot));
+    int *start = dalcs_alloc((size_t)order + 1, sizeof(*start));
+    int *row = NULL;
+    double *value = NULL;
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (slot == NULL || start == NULL) {
+        goto done;
+    }
+    for (int i = 0; i < f->n; i++) {
+        slot[i] = i;
+    }
+    for (int d = 0; d < f->n_pairs; d++) {
+        slot[f->n + d] = -1;
+    }
+    for (int k = 0; k < e->n_on; k++) {
+        slot[f->n + e->on[k]] = f->n + k;
+    }
+    size_t n_entries = 0;
+    for (int c = 0; c < f->n + f->n_pairs; c++) {
+        n_entries += slot[c] >= 0 ? (size_t)(f->K.p[c + 1] - f->K.p[c]) : 0;
+    }
+    row = dalcs_alloc(n_entries, sizeof(*row));
+    value = dalcs_alloc(n_entries, sizeof(*value));
+    if (row == NULL || value == NULL) {
+        goto done;
+    }
+    int out = 0;
+    for (int c = 0; c < f->n + f->n_pairs; c++) {
+        if (slot[c] < 0) {
+            continue;
+        }
+        for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
+            if (slot[f->K.j[k]] >= 0) {
+                row[out] = slot[f->K.j[k]];
+                value[out++] = f->K.x[k];
+            }
+        }
+        start[slot[c] + 1] = out;
+    }
+    status = dalcs_lu_factor(&e->lu, &p->klu, order, start, row, value, p->options.rcond_min);
+done:
+    free(slot);
+    free(start);
+    free(row);
+    free(value);
+    return status;
+}
+
+static enum dalcs_status entry_create(struct dalcs_osnsp *p, int kind,
+                                      struct dalcs_mode_entry **entry) {
+    struct dalcs_mode_entry *e = dalcs_alloc(1, sizeof(*e));
+    *entry = NULL;
+    if (e == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    int n_pairs = p->system->n_pairs;
+    for (int d = 0; d < n_pairs; d++) {
+        e->n_on += dalcs_osnsp_is_on(p, d) ? 1 : 0;
+    }
+    e->key = dalcs_alloc((size_t)p->n_words + 1, sizeof(*e->key));
+    e->on = dalcs_alloc((size_t)e->n_on, sizeof(*e->on));
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (e->key != NULL && e->on != NULL) {
+        memcpy(e->key, p->key, ((size_t)p->n_words + 1) * sizeof(*e->key));
+        int n = 0;
+        for (int d = 0; d < n_pairs; d++) {
+            if (dalcs_osnsp_is_on(p, d)) {
+                e->on[n++] = d;
+            }
+        }
+        p->counters.factorizations++;
+        status = kind == DALCS_PLAIN
+                     ? factor_plain(p, e)
+                     : dalcs_proximal_factor(p, e, p->options.proximal_weight[kind - 1]);
+        if (status == DALCS_SINGULAR) {
+            e->singular = true;
+            status = DALCS_OK;
+        }
+    }
+    if (status != DALCS_OK) {
+        entry_destroy(p, e);
+        return status;
+    }
+    e->bytes = sizeof(*e) + ((size_t)p->n_words + 1) * sizeof(uint64_t) +
+               (size_t)e->n_on * sizeof(int) + dalcs_lu_bytes(&e->lu);
+    *entry = e;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
+                                  struct dalcs_mode_entry **entry) {
+    size_t words = (size_t)p->n_words;
+    memcpy(p->key, p->mode, words * sizeof(*p->key));
+    p->key[words] = (uint64_t)p->form_id[0] << 8 | (uint64_t)kind;
+    size_t key_bytes = (words + 1) * sizeof(*p->key);
+    if (p->newest != NULL && memcmp(p->newest->key, p->key, key_bytes) == 0) {
+        *entry = p->newest;
+        p->counters.cache_hits++;
+        return DALCS_OK;
+    }
+    struct dalcs_mode_entry *e;
+    HASH_FIND(hh, p->entries, p->key, key_bytes, e);
+    if (e != NULL) {
+        p->counters.cache_hits++;
+        unlink_entry(p, e);
+        link_newest(p, e);
+    } else {
+        DALCS_TRY(entry_create(p, kind, &e));
+        HASH_ADD_KEYPTR(hh, p->entries, e->key, key_bytes, e);
+        if (e->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
+            entry_destroy(p, e);
+            return DALCS_E_NOMEM;
+        }
+        link_newest(p, e);
+        p->entry_bytes += e->bytes;
+        make_room(p, e);
+    }
+    *entry = e;
+    return DALCS_OK;
+}
+
+void dalcs_modes_finish(struct dalcs_osnsp *p) {
+    while (p->oldest != NULL) {
+        remove_entry(p, p->oldest);
+    }
+    for (int k = 0; k < p->n_forms; k++) {
+        dalcs_step_form_finish(p->form[k]);
+        free(p->form[k]);
+    }
+    p->n_forms = 0;
+}

@@ -1,0 +1,318 @@
+/* osnsp.c - finding the mode: the last one first, then block principal pivoting, then the proximal
+ * method for singular modes, and for small systems every mode as a last resort. */
+#include "osnsp_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rounds without fewer wrong signs before pivots become single (Judice and Pires 1994). */
+enum { PATIENCE = 10 };
+
+/* Pairs up to which a system that pivoting cannot solve is searched mode by mode. */
+enum { ENUMERATION_LIMIT = 12 };
+
+/* Iterative refinements of an answer whose residual is too large. */
+enum { MAX_REFINEMENTS = 3 };
+
+static enum dalcs_status list_pair_rows(struct dalcs_osnsp *p) {
+    const struct dalcs_system *s = p->system;
+    int n_equations = dalcs_system_n_equations(s);
+    p->pair_rows_p = dalcs_alloc((size_t)s->n_pairs + 2, sizeof(int));
+    p->pair_rows = dalcs_alloc((size_t)s->A.p[n_equations], sizeof(int));
+    if (p->pair_rows_p == NULL || p->pair_rows == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < s->A.p[n_equations]; k++) {
+        if (s->A.j[k] >= n_equations) {
+            p->pair_rows_p[s->A.j[k] - n_equations + 2]++;
+        }
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        p->pair_rows_p[d + 2] += p->pair_rows_p[d + 1];
+    }
+    for (int r = 0; r < n_equations; r++) {
+        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
+            if (s->A.j[k] >= n_equations) {
+                p->pair_rows[p->pair_rows_p[s->A.j[k] - n_equations + 1]++] = r;
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status list_references(struct dalcs_osnsp *p) {
+    const struct dalcs_system *s = p->system;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int c = 0; c < n_equations; c++) {
+        p->n_references += s->column[c].kind == DALCS_LABEL_REFERENCE ? 1 : 0;
+    }
+    p->reference = dalcs_alloc((size_t)p->n_references, sizeof(int));
+    p->reference_row = dalcs_alloc((size_t)p->n_references, sizeof(int));
+    if (p->reference == NULL || p->reference_row == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    int n = 0;
+    for (int r = 0; r < n_equations; r++) {
+        if (s->row[r].kind == DALCS_LABEL_REFERENCE) {
+            p->reference[n] = s->dual[r];
+            p->reference_row[n++] = r;
+        }
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_system *system,
+                                    const struct dalcs_osnsp_options *options) {
+    *p = (struct dalcs_osnsp){.system = system, .options = *options};
+    dalcs_lu_common_init(&p->klu);
+    size_t n_pairs = (size_t)system->n_pairs;
+    size_t n_columns = (size_t)dalcs_system_n_columns(system);
+    p->n_words = (system->n_pairs + 63) / 64;
+    size_t words = (size_t)p->n_words;
+    p->mode = dalcs_alloc(words, sizeof(*p->mode));
+    p->key = dalcs_alloc(words + 1, sizeof(*p->key));
+    p->w = dalcs_alloc(n_pairs, sizeof(double));
+    p->form = dalcs_alloc(33, sizeof(*p->form));
+    p->form_id = dalcs_alloc(33, sizeof(*p->form_id));
+    p->difference = dalcs_alloc((size_t)system->n_x, sizeof(double));
+    p->magnitude = dalcs_alloc((size_t)dalcs_system_n_equations(system), sizeof(double));
+    p->violating = dalcs_alloc(n_pairs, sizeof(int));
+    p->mapped = dalcs_alloc(n_columns + 8, sizeof(double));
+    p->right = dalcs_alloc(n_columns, sizeof(double));
+    p->scaled = dalcs_alloc(n_columns, sizeof(double));
+    p->rhs = dalcs_alloc(n_columns, sizeof(double));
+    p->centre = dalcs_alloc(n_columns, sizeof(double));
+    p->centre_w = dalcs_alloc(n_pairs, sizeof(double));
+    p->step_before = dalcs_alloc(n_columns + n_pairs, sizeof(double));
+    p->step_now = dalcs_alloc(n_columns + n_pairs, sizeof(double));
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (p->mode != NULL && p->key != NULL && p->w != NULL && p->form != NULL &&
+        p->form_id != NULL && p->difference != NULL && p->magnitude != NULL &&
+        p->violating != NULL && p->mapped != NULL && p->right != NULL && p->scaled != NULL && p->rhs != NULL &&
+        p->centre != NULL && p->centre_w != NULL && p->step_before != NULL &&
+        p->step_now != NULL) {
+        status = list_pair_rows(p);
+        if (status == DALCS_OK) {
+            status = list_references(p);
+        }
+    }
+    if (status != DALCS_OK) {
+        dalcs_osnsp_finish(p);
+    }
+    return status;
+}
+
+void dalcs_osnsp_finish(struct dalcs_osnsp *p) {
+    if (p->form != NULL) {
+        dalcs_modes_finish(p);
+    }
+    free(p->form);
+    free(p->form_id);
+    free(p->mode);
+    free(p->key);
+    free(p->w);
+    free(p->pair_rows_p);
+    free(p->pair_rows);
+    free(p->reference);
+    free(p->reference_row);
+    free(p->difference);
+    free(p->magnitude);
+    free(p->violating);
+    free(p->mapped);
+    free(p->right);
+    free(p->scaled);
+    free(p->rhs);
+    free(p->centre);
+    free(p->centre_w);
+    free(p->step_before);
+    free(p->step_now);
+    free(p->witness.element);
+    *p = (struct dalcs_osnsp){0};
+}
+
+void dalcs_osnsp_unscale(const struct dalcs_osnsp *p, double *y) {
+    const struct dalcs_step_form *f = p->form[0];
+    int n_equations = dalcs_system_n_equations(p->system);
+    for (int i = 0; i < f->n; i++) {
+        y[f->column_of[i]] = f->scale[i] * p->scaled[i];
+    }
+    for (int d = 0; d < f->n_pairs; d++) {
+        y[n_equations + d] = f->scale[f->n + d] * p->scaled[f->n + d];
+    }
+}
+
+/* Solves in the mode of entry for the right-hand side in mode order, into p->scaled (+=). */
+static void solve_in_mode(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e) {
+    const struct dalcs_step_form *f = p->form[0];
+    dalcs_lu_solve(&e->lu, &p->klu, 1, p->rhs);
+    for (int i = 0; i < f->n; i++) {
+        p->scaled[i] += p->rhs[i];
+    }
+    for (int k = 0; k < e->n_on; k++) {
+        p->scaled[f->n + e->on[k]] += p->rhs[f->n + k];
+    }
+}
+
+static void gather_right(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e) {
+    const struct dalcs_step_form *f = p->form[0];
+    memcpy(p->rhs, p->right, (size_t)f->n * sizeof(double));
+    for (int k = 0; k < e->n_on; k++) {
+        p->rhs[f->n + k] = p->right[f->n + e->on[k]];
+    }
+}
+
+/* One step of iterative refinement: solve for the residual of the condensed rows. */
+static void refine(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e) {
+    const struct dalcs_step_form *f = p->form[0];
+    int n = f->n + f->n_pairs;
+    double *residual = p->centre; /* not in use outside the proximal method */
+    memcpy(residual, p->right, (size_t)n * sizeof(double));
+    for (int c = 0; c < n; c++) {
+        for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
+            residual[f->K.j[k]] -= f->K.x[k] * p->scaled[c];
+        }
+    }
+    memcpy(p->rhs, residual, (size_t)f->n * sizeof(double));
+    for (int k = 0; k < e->n_on; k++) {
+        p->rhs[f->n + k] = residual[f->n + e->on[k]];
+    }
+    solve_in_mode(p, e);
+}
+
+/* Solves and evaluates in p->mode. DALCS_SINGULAR: no plain factors and no map for this mode. */
+static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double *y,
+                                  bool *have_right, bool *sources_clash) {
+    struct dalcs_mode_entry *e;
+    DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
+    double tolerance = p->options.certificate_tolerance;
+    p->least_norm = e->singular;
+    if (e->map == NULL && !e->singular && e->n_uses++ > 2 && dalcs_step_map_pays(p)) {
+        DALCS_TRY(dalcs_step_map_build(p, e, 0.0));
+    }
+    if (e->map != NULL) {
+        dalcs_step_map_apply(p, e, u, y);
+        dalcs_certificate_evaluate(p, u, y, sources_clash);
+        if (p->n_violating > 0 || p->certificate.worst <= tolerance) {
+            return DALCS_OK;
+        }
+    }
+    if (e->singular) {
+        return DALCS_SINGULAR;
+    }
+    if (!*have_right) {
+        dalcs_csr_multiply(&p->form[0]->R, u, p->right);
+        *have_right = true;
+    }
+    int n = p->form[0]->n + p->form[0]->n_pairs;
+    memset(p->scaled, 0, (size_t)n * sizeof(double));
+    gather_right(p, e);
+    solve_in_mode(p, e);
+    dalcs_osnsp_unscale(p, y);
+    dalcs_certificate_evaluate(p, u, y, sources_clash);
+    for (int k = 0; k < MAX_REFINEMENTS && p->certificate.worst > tolerance; k++) {
+        refine(p, e);
+        dalcs_osnsp_unscale(p, y);
+        dalcs_certificate_evaluate(p, u, y, sources_clash);
+    }
+    return DALCS_OK;
+}
+
+static void flip(struct dalcs_osnsp *p, int pair) {
+    p->mode[pair / 64] ^= (uint64_t)1 << (pair % 64);
+}
+
+/* From p->mode by block principal pivoting. DALCS_SINGULAR or DALCS_NOT_CONVERGED: try otherwise. */
+static enum dalcs_status pivot(struct dalcs_osnsp *p, const double *u, double *y) {
+    int fewest = p->system->n_pairs + 1;
+    int patience = PATIENCE;
+    bool have_right = false;
+    int limit = p->options.max_pivots + 2 * p->system->n_pairs;
+    for (int round = 0; round <= limit; round++) {
+        bool sources_clash;
+        DALCS_TRY(try_mode(p, u, y, &have_right, &sources_clash));
+        if (p->n_violating == 0) {
+            if (sources_clash) {
+                dalcs_witness_from_clash(p);
+                return DALCS_INFEASIBLE;
+            }
+            return p->certificate.worst <= p->options.certificate_tolerance ? DALCS_OK
+                                                                            : DALCS_NOT_CONVERGED;
+        }
+        p->counters.pivots++;
+        if (p->n_violating < fewest) {
+            fewest = p->n_violating;
+            patience = PATIENCE;
+        } else {
+            patience--;
+        }
+        if (patience > 0) {
+            for (int k = 0; k < p->n_violating; k++) {
+                flip(p, p->violating[k]);
+            }
+        } else {
+            flip(p, p->violating[p->n_violating - 1]); /* Murty: ascending list, largest index */
+        }
+    }
+    return DALCS_NOT_CONVERGED;
+}
+
+/* Every mode of the diodes, from the present one on. */
+static enum dalcs_status enumerate(struct dalcs_osnsp *p, const double *u, double *y) {
+    const struct dalcs_system *s = p->system;
+    int diode[ENUMERATION_LIMIT];
+    int n = 0;
+    for (int d = 0; d < s->n_pairs; d++) {
+        if (s->pair[d].kind == DALCS_PAIR_DIODE) {
+            if (n == ENUMERATION_LIMIT) {
+                return DALCS_NOT_CONVERGED;
+            }
+            diode[n++] = d;
+        }
+    }
+    bool have_right = false;
+    for (unsigned code = 1; code <= 1u << n; code++) {
+        /* Gray code: one flip from mode to mode, and the last flip closes the cycle. */
+        int bit = code < 1u << n ? __builtin_ctz(code) : n - 1;
+        if (n > 0) {
+            flip(p, diode[bit]);
+        }
+        bool sources_clash;
+        enum dalcs_status status = try_mode(p, u, y, &have_right, &sources_clash);
+        if (status == DALCS_OK && p->n_violating == 0 && !sources_clash &&
+            p->certificate.worst <= p->options.certificate_tolerance) {
+            return DALCS_OK;
+        }
+        if (status < DALCS_OK) {
+            return status;
+        }
+        p->counters.pivots++;
+    }
+    return DALCS_NOT_CONVERGED;
+}
+
+enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
+                                    double *y) {
+    p->counters.solved++;
+    if (p->n_forms == 0 || p->form[0]->sigma != sigma) {
+        DALCS_TRY(dalcs_forms_get(p, sigma));
+    }
+    enum dalcs_status status = pivot(p, u, y);
+    if (status > DALCS_OK && status != DALCS_INFEASIBLE) {
+        status = dalcs_proximal_solve(p, u, y);
+        if (status == DALCS_OK && p->least_norm == false) {
+            /* the proximal method ended in a regular mode: its answer is the mode's own */
+            status = pivot(p, u, y);
+        }
+        if (status > DALCS_OK && (status != DALCS_INFEASIBLE || !p->system->monotone)) {
+            enum dalcs_status otherwise = enumerate(p, u, y);
+            if (otherwise == DALCS_NOT_CONVERGED && !p->system->monotone) {
+                dalcs_witness_from_modes(p);
+                otherwise = DALCS_INFEASIBLE;
+            }
+            status = otherwise;
+        }
+    }
+    p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;
+    return status;
+}

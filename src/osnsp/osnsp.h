@@ -1,0 +1,115 @@
+/* osnsp.h - the one-step nonsmooth problem of one system: solve it, prove it, remember it.
+ *
+ * Given sigma = 1/h, the state x_k and the inputs s(t_{k+1}), find (x+, z+, lambda+) and w with
+ *     sigma P (x+ - x_k) = A_I (x+, z+, lambda+) + E_I s,   0 = A_II (x+, z+, lambda+) + E_II s,
+ *     0 <= lambda+ _|_ w >= 0            (Brogliato 2022, eq. (3.1), sources at t_{k+1}).
+ *
+ * In a mode (the set of pairs with w = 0, the others have lambda = 0) this is one linear system. It
+ * is solved in the last mode; where signs are wrong, block principal pivoting (Judice and Pires
+ * 1994) with a least-index fallback (Murty 1974) changes the mode. Each (mode, sigma) keeps its
+ * factors in a bounded cache. A mode whose matrix is singular is solved by proximal iteration, which
+ * also gives the least-norm choice where the answer is not unique. Whatever the way, an answer is
+ * accepted only with a certificate recomputed from the system's own matrices. */
+#ifndef DALCS_OSNSP_H
+#define DALCS_OSNSP_H
+
+#include "lu.h"
+#include "step_form.h"
+
+#include <stdint.h>
+
+struct dalcs_osnsp_options {
+    double certificate_tolerance; /* accepted residual over its physical scale */
+    double proximal_weight[3];    /* the eps ladder */
+    double rcond_min;             /* below this a balanced mode matrix counts as singular */
+    int max_outer;                /* proximal iterations per rung */
+    int max_pivots;               /* mode changes per solve, on top of twice the number of pairs */
+    size_t cache_bytes;           /* factors and maps kept */
+    int dense_limit;              /* unknowns up to which recurring modes use a dense map */
+};
+
+struct dalcs_osnsp_counters {
+    long solved, pivots, factorizations, cache_hits, singular;
+};
+
+/* How good an answer is. */
+struct dalcs_certificate {
+    double worst; /* largest residual over its physical scale: KCL, branch equations, signs and
+                     complementarity */
+    int where;    /* row of the system; n_equations + d for pair d; -1: none */
+};
+
+/* Why there is no answer: a direction along which nothing resists and sources push, reduced to
+ * elements (Farkas' alternative; Heemels, Schumacher and Weiland 1999, sec. 6). */
+struct dalcs_witness {
+    enum dalcs_witness_kind {
+        DALCS_WITNESS_LOOP,   /* currents around voltage sources, diodes, closed switches */
+        DALCS_WITNESS_CUTSET, /* voltages across current sources, diodes, open switches */
+        DALCS_WITNESS_MODE    /* no mode of a system that is not passive fits */
+    } kind;
+    int n_elements, capacity;
+    const char **element; /* borrowed names */
+};
+
+struct dalcs_mode_entry;
+
+struct dalcs_osnsp {
+    const struct dalcs_system *system;
+    struct dalcs_osnsp_options options;
+    klu_common klu;
+    int n_words;
+    uint64_t *mode; /* [n_words] bit d: w_d = 0 */
+    double *w;      /* [n_pairs] of the last answer */
+    struct dalcs_certificate certificate;
+    struct dalcs_osnsp_counters counters;
+    struct dalcs_witness witness;
+    bool least_norm; /* the last answer is the least-norm one of a singular mode */
+
+    struct dalcs_step_form **form; /* most recently used first */
+    int n_forms;
+    uint32_t *form_id; /* [n_forms] */
+    uint32_t next_form_id;
+    struct dalcs_mode_entry *entries; /* uthash */
+    struct dalcs_mode_entry *newest, *oldest;
+    size_t entry_bytes;
+
+    int *pair_rows_p, *pair_rows; /* rows of A that hold lambda_d */
+    int n_references;             /* columns that must vanish, and their rows */
+    int *reference, *reference_row;
+    double *difference;           /* [n_x] x+ - x_k */
+    double *magnitude;            /* [n_equations] sum of |terms| of a row */
+    int *violating;               /* [n_pairs] */
+    int n_violating;
+    double *mapped; /* [n + n_pairs, padded to 8] what a map gave */
+    double *right;  /* [n + n_pairs] scaled R u */
+    double *scaled; /* [n + n_pairs] scaled y */
+    double *rhs;    /* [n + n_pairs] in mode order */
+    double *centre; /* [n + n_pairs] proximal centre, scaled */
+    double *centre_w; /* [n_pairs] */
+    double *step_before, *step_now; /* [n + 2 n_pairs] displacements of the proximal iteration */
+    uint64_t *key;    /* [n_words + 1] */
+};
+
+/* Allocates everything; the system must outlive it. On failure *p is zeroed. */
+enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_system *system,
+                                    const struct dalcs_osnsp_options *options) DALCS_MUST_CHECK;
+
+/* Solves at sigma (1/s; 0: operating point). u[n_x + n_inputs] = (x_k, s). On DALCS_OK y[n_columns] =
+ * (x+, z+, lambda+), with p->w, p->mode and p->certificate. DALCS_INFEASIBLE: see p->witness.
+ * DALCS_NOT_CONVERGED: nothing could be certified. Switches are commanded: their bits in p->mode are
+ * input. Allocates only for a (mode, sigma) not in the cache. */
+enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
+                                    double *y) DALCS_MUST_CHECK;
+
+static inline bool dalcs_osnsp_is_on(const struct dalcs_osnsp *p, int pair) {
+    return (p->mode[pair / 64] >> (pair % 64) & 1) != 0;
+}
+
+static inline void dalcs_osnsp_command(struct dalcs_osnsp *p, int pair, bool on) {
+    uint64_t bit = (uint64_t)1 << (pair % 64);
+    p->mode[pair / 64] = on ? p->mode[pair / 64] | bit : p->mode[pair / 64] & ~bit;
+}
+
+void dalcs_osnsp_finish(struct dalcs_osnsp *p);
+
+#endif

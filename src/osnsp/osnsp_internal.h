@@ -1,0 +1,92 @@
+/* osnsp_internal.h - what the files of src/osnsp share. */
+#ifndef DALCS_OSNSP_INTERNAL_H
+#define DALCS_OSNSP_INTERNAL_H
+
+#include "osnsp.h"
+
+#define HASH_NONFATAL_OOM 1
+#include <uthash.h>
+
+enum { DALCS_PLAIN = 0 }; /* kind of an entry; 1 + rung for the proximal matrices */
+
+/* A mode at a step size: its factors, and for a small recurring one the map from u to y. */
+struct dalcs_mode_entry {
+    UT_hash_handle hh;
+    struct dalcs_mode_entry *newer, *older;
+    uint64_t *key; /* mode words, then form id and kind */
+    bool singular; /* no factors: remembered so that it is not tried again */
+    int n_on;
+    int *on; /* [n_on] ascending */
+    struct dalcs_lu lu;
+    double *map; /* see step_map.h; NULL until the mode has recurred */
+    int n_uses;
+    size_t bytes;
+};
+
+/* ---- mode_cache.c -------------------------------------------------------------------------- */
+
+/* The form of sigma, condensed now if it is new; it becomes p->form[0]. */
+enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) DALCS_MUST_CHECK;
+
+/* The entry of (p->mode, p->form[0], kind), factored now if it is new; entry->singular is no
+ * failure. Older entries make room, never this one. */
+enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
+                                  struct dalcs_mode_entry **entry) DALCS_MUST_CHECK;
+
+/* Counts the bytes of a map that was just added to the entry. */
+void dalcs_modes_grew(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry, size_t bytes);
+
+void dalcs_modes_finish(struct dalcs_osnsp *p);
+
+/* ---- certificate.c ------------------------------------------------------------------------- */
+
+/* Recovers x+ in y from z+ and lambda+, evaluates every row of the system and every pair, fills p->w,
+ * p->certificate (equations and complementarity) and the list of pairs with a wrong sign. The
+ * reference of a floating island that has to carry current makes *sources_clash true. */
+void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *y,
+                                bool *sources_clash);
+
+/* ---- proximal.c ---------------------------------------------------------------------------- */
+
+enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u,
+                                       double *y) DALCS_MUST_CHECK;
+
+/* Factors the regularised matrix of p->mode; the columns are all n + n_pairs. */
+enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
+                                        double eps) DALCS_MUST_CHECK;
+
+/* Solves one regularised problem around (centre, centre_w) in the mode of entry, into p->scaled. */
+void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry, double eps);
+
+double dalcs_proximal_on_weight(const struct dalcs_osnsp *p, int pair, double eps);
+double dalcs_proximal_off_weight(const struct dalcs_osnsp *p, int pair, double eps);
+double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair);
+
+/* ---- step_map.c ---------------------------------------------------------------------------- */
+
+bool dalcs_step_map_pays(const struct dalcs_osnsp *p);
+
+enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
+                                       double eps) DALCS_MUST_CHECK;
+
+/* y's z and lambda from u. */
+void dalcs_step_map_apply(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
+                          const double *u, double *y);
+
+/* ---- witness.c ----------------------------------------------------------------------------- */
+
+/* Is the displacement p->step_now of the proximal iteration a ray? Then p->witness names it. */
+bool dalcs_witness_from_ray(struct dalcs_osnsp *p);
+
+/* The current sources that feed a floating island. */
+void dalcs_witness_from_clash(struct dalcs_osnsp *p);
+
+/* Every pair of a system that no mode fits. */
+void dalcs_witness_from_modes(struct dalcs_osnsp *p);
+
+/* ---- osnsp.c ------------------------------------------------------------------------------- */
+
+/* p->scaled to y's z and lambda. */
+void dalcs_osnsp_unscale(const struct dalcs_osnsp *p, double *y);
+
+#endif

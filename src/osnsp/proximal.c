@@ -1,0 +1,249 @@
+/* proximal.c - singular modes by the proximal-point iteration (Rockafellar 1976) on the monotone
+ * mixed LCP: each problem adds small weights around the last answer,
+ *     closed pair:  w + (eps/G) (lambda - lambda') = 0      (a series resistance with memory)
+ *     open pair:    lambda + (eps G) (w - w') = 0           (a leak with memory)
+ *     unknown z_i:  + mu eps (z_i - z_i')                   on the balanced diagonal,
+ * has exactly one solution with a nonsingular matrix, and the iterates converge to a solution of the
+ * problem itself: the weights vanish with the differences. From centre 0 that is, as eps -> 0, the
+ * least-norm one, the limit of equal small r_on and g_off. If there is no solution, the differences
+ * converge to a ray that says why (Pazy 1971): see witness.c. */
+#include "osnsp_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Unknowns are held far more weakly than pairs, so that diodes decide what is not determined. */
+static const double node_weight = 1e-3;
+
+/* A sign is wrong when it is so by more than this of the largest unknown (balanced units). */
+static const double sign_tolerance = 1e-13;
+
+/* How far the local conductance of a pair may pull its weight from the common one. */
+static const double weight_spread = 1e3;
+
+/* Displacements that differ by less than this, relatively, count as a ray, if they are also a part of
+ * the way gone so far that only running away can be. */
+static const double ray_tolerance = 1e-3;
+static const double ray_part = 1e-2;
+
+static double local_ratio(const struct dalcs_osnsp *p, int pair) {
+    const struct dalcs_step_form *f = p->form[0];
+    double s = f->scale[f->n + pair];
+    return fmin(fmax(s * s / f->pair_conductance, 1.0 / weight_spread), weight_spread);
+}
+
+double dalcs_proximal_on_weight(const struct dalcs_osnsp *p, int pair, double eps) {
+    return eps * local_ratio(p, pair);
+}
+
+double dalcs_proximal_off_weight(const struct dalcs_osnsp *p, int pair, double eps) {
+    return eps / local_ratio(p, pair);
+}
+
+/* w of a pair in balanced units, from p->scaled and p->right. */
+double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair) {
+    const struct dalcs_step_form *f = p->form[0];
+    double w = -p->right[f->n + pair];
+    for (int k = f->W.p[pair]; k < f->W.p[pair + 1]; k++) {
+        w += f->W.x[k] * p->scaled[f->W.j[k]];
+    }
+    return w;
+}
+
+enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
+                                        double eps) {
+    const struct dalcs_step_form *f = p->form[0];
+    int n = f->n + f->n_pairs;
+    size_t capacity = (size_t)f->K.p[n] + (size_t)n;
+    int *start = dalcs_alloc((size_t)n + 1, sizeof(*start));
+    int *row = dalcs_alloc(capacity, sizeof(*row));
+    double *value = dalcs_alloc(capacity, sizeof(*value));
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (start != NULL && row != NULL && value != NULL) {
+        int out = 0;
+        for (int c = 0; c < n; c++) {
+            double diagonal = node_weight * eps;
+            if (c >= f->n) {
+                int d = c - f->n;
+                diagonal =
+                    dalcs_osnsp_is_on(p, d) ? dalcs_proximal_on_weight(p, d, eps) : 1.0;
+            }
+            bool seen = false;
+            for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
+                int r = f->K.j[k];
+                double a = f->K.x[k];
+                if (r >= f->n && !dalcs_osnsp_is_on(p, r - f->n)) {
+                    a *= dalcs_proximal_off_weight(p, r - f->n, eps);
+                }
+                seen = seen || r == c;
+                row[out] = r;
+                value[out++] = r == c ? a + diagonal : a;
+            }
+            if (!seen) {
+                row[out] = c;
+                value[out++] = diagonal;
+            }
+            start[c + 1] = out;
+        }
+        /* The weights make it nonsingular; only an exact zero pivot is refused. */
+        status = dalcs_lu_factor(&entry->lu, &p->klu, n, start, row, value, 0.0);
+    }
+    free(start);
+    free(row);
+    free(value);
+    return status;
+}
+
+void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry, double eps) {
+    const struct dalcs_step_form *f = p->form[0];
+    for (int i = 0; i < f->n; i++) {
+        p->scaled[i] = p->right[i] + node_weight * eps * p->centre[i];
+    }
+    for (int d = 0; d < f->n_pairs; d++) {
+        double right = p->right[f->n + d];
+        p->scaled[f->n + d] =
+            dalcs_osnsp_is_on(p, d)
+                ? right + dalcs_proximal_on_weight(p, d, eps) * p->centre[f->n + d]
+                : dalcs_proximal_off_weight(p, d, eps) * (right + p->centre_w[d]);
+    }
+    dalcs_lu_solve(&entry->lu, &p->klu, 1, p->scaled);
+}
+
+/* The pairs whose regularised sign is wrong: closed with lambda + eps G (w - w') < 0, open with
+ * w + eps/G (lambda - lambda') < 0. */
+static void find_violations(struct dalcs_osnsp *p, double eps) {
+    const struct dalcs_step_form *f = p->form[0];
+    double largest = 0.0;
+    for (int i = 0; i < f->n + f->n_pairs; i++) {
+        largest = fmax(largest, fabs(p->scaled[i]));
+    }
+    p->n_violating = 0;
+    for (int d = 0; d < f->n_pairs; d++) {
+        if (p->system->pair[d].kind != DALCS_PAIR_DIODE) {
+            continue;
+        }
+        double w = dalcs_proximal_scaled_w(p, d);
+        double lambda = p->scaled[f->n + d];
+        double sign = dalcs_osnsp_is_on(p, d)
+                          ? lambda + dalcs_proximal_off_weight(p, d, eps) * (w - p->centre_w[d])
+                          : w + dalcs_proximal_on_weight(p, d, eps) * (lambda - p->centre[f->n + d]);
+        if (sign < -sign_tolerance * largest) {
+            p->violating[p->n_violating++] = d;
+        }
+    }
+}
+
+/* One regularised problem around the centre, from p->mode, by block pivoting. Its matrix is a
+ * P-matrix when the system is monotone: the least-index fallback ends it. */
+static enum dalcs_status solve_regularised(struct dalcs_osnsp *p, int rung, bool *mode_changed) {
+    double eps = p->options.proximal_weight[rung];
+    int fewest = p->system->n_pairs + 1;
+    int patience = 10;
+    *mode_changed = false;
+    int limit = p->options.max_pivots + 2 * p->system->n_pairs;
+    for (int round = 0; round <= limit; round++) {
+        struct dalcs_mode_entry *e;
+        DALCS_TRY(dalcs_modes_get(p, 1 + rung, &e));
+        if (e->singular) {
+            return DALCS_NOT_CONVERGED;
+        }
+        dalcs_proximal_step(p, e, eps);
+        find_violations(p, eps);
+        if (p->n_violating == 0) {
+            return DALCS_OK;
+        }
+        *mode_changed = true;
+        p->counters.pivots++;
+        if (p->n_violating < fewest) {
+            fewest = p->n_violating;
+            patience = 10;
+        } else {
+            patience--;
+        }
+        int first = patience > 0 ? 0 : p->n_violating - 1;
+        for (int k = first; k < p->n_violating; k++) {
+            int d = p->violating[k];
+            p->mode[d / 64] ^= (uint64_t)1 << (d % 64);
+        }
+    }
+    return DALCS_NOT_CONVERGED;
+}
+
+/* Moves the centre to the answer; returns the size of the displacement, how much it differs from the
+ * one before, and the size of the centre. */
+static double move_centre(struct dalcs_osnsp *p, double *change, double *way) {
+    const struct dalcs_step_form *f = p->form[0];
+    int n = f->n + f->n_pairs;
+    double size = 0.0;
+    double *swap = p->step_before;
+    p->step_before = p->step_now;
+    p->step_now = swap;
+    *change = 0.0;
+    *way = 0.0;
+    for (int i = 0; i < n + f->n_pairs; i++) {
+        double *centre = i < n ? &p->centre[i] : &p->centre_w[i - n];
+        double now = i < n ? p->scaled[i] : dalcs_proximal_scaled_w(p, i - n);
+        p->step_now[i] = now - *centre;
+        *centre = now;
+        size = fmax(size, fabs(p->step_now[i]));
+        *way = fmax(*way, fabs(now));
+        *change = fmax(*change, fabs(p->step_now[i] - p->step_before[i]));
+    }
+    return size;
+}
+
+static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const double *u, double *y) {
+    const struct dalcs_step_form *f = p->form[0];
+    memset(p->centre, 0, (size_t)(f->n + f->n_pairs) * sizeof(double));
+    memset(p->centre_w, 0, (size_t)f->n_pairs * sizeof(double));
+    memset(p->step_now, 0, (size_t)(f->n + 2 * f->n_pairs) * sizeof(double));
+    int n_equations = dalcs_system_n_equations(p->system);
+    for (int outer = 0; outer < p->options.max_outer; outer++) {
+        bool mode_changed;
+        DALCS_TRY(solve_regularised(p, rung, &mode_changed));
+        dalcs_osnsp_unscale(p, y);
+        for (int d = 0; d < f->n_pairs; d++) {
+            if (!dalcs_osnsp_is_on(p, d)) {
+                y[n_equations + d] = 0.0;
+            }
+        }
+        bool sources_clash;
+        dalcs_certificate_evaluate(p, u, y, &sources_clash);
+        if (p->n_violating == 0 && !sources_clash &&
+            p->certificate.worst <= p->options.certificate_tolerance) {
+            return DALCS_OK;
+        }
+        double change;
+        double way;
+        double size = move_centre(p, &change, &way);
+        if (outer >= 2 && !mode_changed && size > ray_part * way &&
+            change <= ray_tolerance * size && dalcs_witness_from_ray(p)) {
+            return DALCS_INFEASIBLE;
+        }
+        if (sources_clash && outer >= 2) {
+            dalcs_witness_from_clash(p);
+            return DALCS_INFEASIBLE;
+        }
+    }
+    return DALCS_NOT_CONVERGED;
+}
+
+enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, double *y) {
+    dalcs_csr_multiply(&p->form[0]->R, u, p->right);
+    enum dalcs_status status = DALCS_NOT_CONVERGED;
+    for (int rung = 0; rung < 3 && status == DALCS_NOT_CONVERGED; rung++) {
+        status = climb_rung(p, rung, u, y);
+        if (status != DALCS_OK) {
+            continue;
+        }
+        struct dalcs_mode_entry *plain;
+        DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
+        p->least_norm = plain->singular;
+        if (plain->singular && plain->map == NULL && plain->n_uses++ > 2 &&
+            dalcs_step_map_pays(p)) {
+            status = dalcs_step_map_build(p, plain, p->options.proximal_weight[rung]);
+        }
+    }
+    return status;
+}

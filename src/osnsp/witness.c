@@ -1,0 +1,136 @@
+/* witness.c - why a problem has no solution, in elements.
+ *
+ * In an infeasible monotone problem the proximal iterates run away along a ray d: K d = 0 in the
+ * mode's rows, currents only forward, voltages only reverse, and sources that do work along it
+ * (d'b > 0, which the running away itself shows). Its nonzero entries are a loop of elements that
+ * carry current without resistance, or a cutset of elements that block. */
+#include "osnsp_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Entries of a ray below this part of the largest are rounding. */
+static const double zero_part = 1e-6;
+
+/* K d is 0 when it is below this part of its terms. An ill-conditioned but solvable problem drifts
+ * along a direction in which K d is small, not zero. */
+static const double ray_residual = 1e-12;
+
+static void add_element(struct dalcs_osnsp *p, const char *name) {
+    struct dalcs_witness *w = &p->witness;
+    for (int k = 0; k < w->n_elements; k++) {
+        if (strcmp(w->element[k], name) == 0) {
+            return;
+        }
+    }
+    size_t capacity = (size_t)w->capacity;
+    if (dalcs_grow(&w->element, &capacity, (size_t)w->n_elements + 1, sizeof(*w->element)) !=
+        DALCS_OK) {
+        return; /* one name less in a message is better than no message */
+    }
+    w->capacity = (int)capacity;
+    w->element[w->n_elements++] = name;
+}
+
+/* Sources whose terms do not vanish along d[n + n_pairs] (balanced). */
+static void add_sources(struct dalcs_osnsp *p, const double *d, double largest) {
+    const struct dalcs_system *s = p->system;
+    const struct dalcs_step_form *f = p->form[0];
+    for (int input = 1; input < s->n_inputs; input++) {
+        double work = 0.0;
+        double size = 0.0;
+        for (int i = 0; i < f->n + f->n_pairs; i++) {
+            for (int k = f->R.p[i]; k < f->R.p[i + 1]; k++) {
+                if (f->R.j[k] == s->n_x + input) {
+                    work += f->R.x[k] * d[i];
+                    size += fabs(f->R.x[k]);
+                }
+            }
+        }
+        if (fabs(work) > zero_part * largest * size) {
+            add_element(p, s->input_element[input]);
+        }
+    }
+}
+
+bool dalcs_witness_from_ray(struct dalcs_osnsp *p) {
+    const struct dalcs_system *s = p->system;
+    const struct dalcs_step_form *f = p->form[0];
+    int n = f->n + f->n_pairs;
+    const double *d = p->step_now;
+    const double *d_w = d + n;
+    double largest = 0.0;
+    for (int i = 0; i < n + f->n_pairs; i++) {
+        largest = fmax(largest, fabs(d[i]));
+    }
+    double *residual = p->rhs;
+    double *size = p->step_before;
+    memset(residual, 0, (size_t)n * sizeof(double));
+    memset(size, 0, (size_t)n * sizeof(double));
+    for (int c = 0; c < n; c++) {
+        for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
+            residual[f->K.j[k]] += f->K.x[k] * d[c];
+            size[f->K.j[k]] += fabs(f->K.x[k] * d[c]);
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        bool must_vanish = i < f->n || dalcs_osnsp_is_on(p, i - f->n);
+        if (must_vanish && fabs(residual[i]) > ray_residual * fmax(size[i], largest)) {
+            return false;
+        }
+    }
+    for (int k = 0; k < f->n_pairs; k++) {
+        bool is_diode = s->pair[k].kind == DALCS_PAIR_DIODE;
+        if (is_diode && (d[f->n + k] < -zero_part * largest || d_w[k] < -zero_part * largest)) {
+            return false;
+        }
+    }
+    p->witness.n_elements = 0;
+    double current = 0.0;
+    double voltage = 0.0;
+    for (int i = 0; i < f->n; i++) {
+        double *unit = s->column_is_current[f->column_of[i]] ? &current : &voltage;
+        *unit = fmax(*unit, fabs(d[i]));
+    }
+    for (int k = 0; k < f->n_pairs; k++) {
+        current = fmax(current, fabs(d[f->n + k]));
+        voltage = fmax(voltage, fabs(d_w[k]));
+    }
+    p->witness.kind = current >= voltage ? DALCS_WITNESS_LOOP : DALCS_WITNESS_CUTSET;
+    add_sources(p, d, largest);
+    for (int i = 0; i < f->n; i++) {
+        int c = f->column_of[i];
+        enum dalcs_label_kind kind = s->column[c].kind;
+        if (s->column_is_current[c] && fabs(d[i]) > zero_part * largest &&
+            kind != DALCS_LABEL_REFERENCE) {
+            add_element(p, s->column[c].element);
+        }
+    }
+    for (int k = 0; k < f->n_pairs; k++) {
+        if (fmax(fabs(d[f->n + k]), fabs(d_w[k])) > zero_part * largest) {
+            add_element(p, s->pair[k].element);
+        }
+    }
+    return true;
+}
+
+void dalcs_witness_from_clash(struct dalcs_osnsp *p) {
+    const struct dalcs_system *s = p->system;
+    p->witness.n_elements = 0;
+    p->witness.kind = DALCS_WITNESS_CUTSET;
+    for (int r = 0; r < dalcs_system_n_equations(s); r++) {
+        for (int k = s->E.p[r]; s->row_is_current[r] && k < s->E.p[r + 1]; k++) {
+            if (s->E.j[k] > 0) {
+                add_element(p, s->input_element[s->E.j[k]]);
+            }
+        }
+    }
+}
+
+void dalcs_witness_from_modes(struct dalcs_osnsp *p) {
+    p->witness.n_elements = 0;
+    p->witness.kind = DALCS_WITNESS_MODE;
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        add_element(p, p->system->pair[d].element);
+    }
+}

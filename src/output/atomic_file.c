@@ -1,0 +1,188 @@
+/* atomic_file.c - write to a temporary name in the same folder, rename when complete.
+ *
+ * A run that fails leaves an earlier good file alone; what it had goes under a name that says so.
+ * No fsync: results can be computed again, a power cut is not worth the wait. */
+#include "atomic_file.h"
+
+#include "memory.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#define BUFFER_BYTES ((size_t)1 << 18)
+#define NAME_TRIES   100
+
+static enum dalcs_status fail(struct dalcs_atomic_file *file, int error) {
+    dalcs_atomic_file_discard(file);
+    file->error = error;
+    return error == ENOMEM ? DALCS_E_NOMEM : DALCS_E_IO;
+}
+
+/* The permissions of the file to be replaced, or what the umask grants a new one. */
+static int check_target(const char *path, mode_t *mode) {
+    struct stat target;
+    *mode = 0;
+    if (stat(path, &target) != 0) {
+        return errno == ENOENT ? 0 : errno;
+    }
+    if (S_ISDIR(target.st_mode)) {
+        return EISDIR;
+    }
+    if (!S_ISREG(target.st_mode)) {
+        return EINVAL;
+    }
+    if (access(path, W_OK) != 0) {
+        return errno;
+    }
+    *mode = target.st_mode & 07777;
+    return 0;
+}
+
+static void name_temporary(char *text, size_t size, const char *path, unsigned attempt) {
+    static const char letter[] = "abcdefghijklmnopqrstuvwxyz0123456789";
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    uint64_t seed = ((uint64_t)now.tv_nsec << 20) ^ ((uint64_t)getpid() << 4) ^ attempt;
+    char suffix[7] = "";
+    for (int i = 0; i < 6; i++) {
+        seed = seed * 6364136223846793005u + 1442695040888963407u;
+        suffix[i] = letter[(seed >> 33) % (sizeof letter - 1)];
+    }
+    snprintf(text, size, "%s.partial-%s", path, suffix);
+}
+
+static int open_temporary(struct dalcs_atomic_file *file) {
+    size_t size = strlen(file->path) + sizeof ".partial-XXXXXX";
+    file->temporary = dalcs_alloc(size, 1);
+    if (!file->temporary) {
+        errno = ENOMEM;
+        return -1;
+    }
+    int descriptor = -1;
+    for (unsigned attempt = 0; descriptor < 0 && attempt < NAME_TRIES; attempt++) {
+        name_temporary(file->temporary, size, file->path, attempt);
+        descriptor = open(file->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor < 0 && errno != EEXIST) {
+            break;
+        }
+    }
+    if (descriptor < 0) {
+        int error = errno;
+        free(file->temporary); /* it is not ours to remove */
+        file->temporary = NULL;
+        errno = error;
+    }
+    return descriptor;
+}
+
+enum dalcs_status dalcs_atomic_file_open(struct dalcs_atomic_file *file, const char *path) {
+    *file = (struct dalcs_atomic_file){0};
+    char *target = realpath(path, NULL);
+    file->path = target ? target : strdup(path);
+    if (!file->path) {
+        return fail(file, ENOMEM);
+    }
+    mode_t mode = 0;
+    int error = check_target(file->path, &mode);
+    if (error != 0) {
+        return fail(file, error);
+    }
+    int descriptor = open_temporary(file);
+    if (descriptor < 0) {
+        return fail(file, errno);
+    }
+    file->stream = fdopen(descriptor, "w+b");
+    if (!file->stream) {
+        error = errno;
+        close(descriptor);
+        return fail(file, error);
+    }
+    if (mode != 0 && fchmod(descriptor, mode) != 0) {
+        return fail(file, errno);
+    }
+    file->buffer = malloc(BUFFER_BYTES); /* a nicety: without it stdio has its own */
+    if (file->buffer) {
+        setvbuf(file->stream, file->buffer, _IOFBF, BUFFER_BYTES);
+    }
+    return DALCS_OK;
+}
+
+/* Every byte is with the system when this returns 0; otherwise an errno. */
+static int close_stream(struct dalcs_atomic_file *file) {
+    errno = 0;
+    bool good = !ferror(file->stream) && fflush(file->stream) == 0;
+    int error = good ? 0 : (errno != 0 ? errno : EIO);
+    if (fclose(file->stream) != 0 && error == 0) {
+        error = errno != 0 ? errno : EIO;
+    }
+    file->stream = NULL;
+    return error;
+}
+
+static enum dalcs_status move_to(struct dalcs_atomic_file *file, const char *name) {
+    int error = close_stream(file);
+    if (error == 0 && rename(file->temporary, name) != 0) {
+        error = errno;
+    }
+    if (error != 0) {
+        return fail(file, error);
+    }
+    free(file->temporary);
+    file->temporary = NULL;
+    dalcs_atomic_file_discard(file);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_atomic_file_commit(struct dalcs_atomic_file *file) {
+    return move_to(file, file->path);
+}
+
+/* "dir/out.csv" -> "dir/out.partial.csv" */
+static char *name_partial(const char *path) {
+    static const char word[] = ".partial";
+    const char *slash = strrchr(path, '/');
+    const char *base = slash ? slash + 1 : path;
+    const char *dot = strrchr(base, '.');
+    size_t stem = dot && dot != base ? (size_t)(dot - path) : strlen(path);
+    char *name = dalcs_alloc(strlen(path) + sizeof word, 1);
+    if (name) {
+        memcpy(name, path, stem);
+        strcpy(name + stem, word);
+        strcat(name, path + stem);
+    }
+    return name;
+}
+
+enum dalcs_status dalcs_atomic_file_keep(struct dalcs_atomic_file *file, char **left_at) {
+    *left_at = NULL;
+    char *name = name_partial(file->path);
+    if (!name) {
+        return fail(file, ENOMEM);
+    }
+    enum dalcs_status status = move_to(file, name);
+    if (status != DALCS_OK) {
+        free(name);
+        return status;
+    }
+    *left_at = name;
+    return DALCS_OK;
+}
+
+void dalcs_atomic_file_discard(struct dalcs_atomic_file *file) {
+    if (file->stream) {
+        fclose(file->stream);
+    }
+    if (file->temporary) {
+        unlink(file->temporary);
+    }
+    free(file->temporary);
+    free(file->path);
+    free(file->buffer);
+    *file = (struct dalcs_atomic_file){.error = file->error};
+}

@@ -1,0 +1,80 @@
+/* csv.c - comma-separated values: one header line, then 17 significant digits, the decimal point a
+ * point whatever the locale. An operating point alone is one row at time 0. */
+#include "decimal.h"
+#include "memory.h"
+#include "table.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct csv {
+    struct dalcs_decimal decimal;
+    size_t n_signals;
+    char *line; /* room for one row */
+};
+
+/* Names with a comma or a quote, v(a,b), are quoted as RFC 4180 says. */
+static void write_name(FILE *stream, const char *name) {
+    if (!strpbrk(name, ",\"")) {
+        fputs(name, stream);
+        return;
+    }
+    fputc('"', stream);
+    for (const char *c = name; *c; c++) {
+        if (*c == '"') {
+            fputc('"', stream);
+        }
+        fputc(*c, stream);
+    }
+    fputc('"', stream);
+}
+
+static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plot *plot) {
+    struct csv *csv = state;
+    dalcs_decimal_init(&csv->decimal);
+    csv->n_signals = plot->n_signals;
+    free(csv->line);
+    csv->line = dalcs_alloc(plot->n_signals + 1, DALCS_DECIMAL_SIZE);
+    if (!csv->line) {
+        return DALCS_E_NOMEM;
+    }
+    fputs("time", stream);
+    for (size_t i = 0; i < plot->n_signals; i++) {
+        fputc(',', stream);
+        write_name(stream, plot->name[i]);
+    }
+    fputc('\n', stream);
+    return DALCS_OK;
+}
+
+static void row(void *state, FILE *stream, double time, const double *value) {
+    const struct csv *csv = state;
+    char *c = csv->line;
+    c += dalcs_decimal_write(&csv->decimal, time, c);
+    for (size_t i = 0; i < csv->n_signals; i++) {
+        *c++ = ',';
+        c += dalcs_decimal_write(&csv->decimal, value[i], c);
+    }
+    *c++ = '\n';
+    fwrite(csv->line, 1, (size_t)(c - csv->line), stream);
+}
+
+static void end(void *state, FILE *stream) {
+    (void)state;
+    (void)stream;
+}
+
+static void finish(void *state) {
+    struct csv *csv = state;
+    free(csv->line);
+}
+
+const struct dalcs_table_format dalcs_csv_format = {
+    .extension = ".csv",
+    .state_size = sizeof(struct csv),
+    .one_plot = true,
+    .begin = begin,
+    .row = row,
+    .end = end,
+    .finish = finish,
+};

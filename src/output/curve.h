@@ -1,0 +1,39 @@
+/* curve.h - one curve of a figure: a bounded number of points whatever the length of the run. */
+#ifndef DALCS_CURVE_H
+#define DALCS_CURVE_H
+
+#include "dalcs.h"
+
+enum { DALCS_CURVE_COLUMNS = 1000 }; /* about the width of a figure in pixels */
+
+struct dalcs_curve_point {
+    long row;
+    double time, value;
+};
+
+/* What of a pixel column's points can be seen. */
+struct dalcs_curve_column {
+    bool used;
+    struct dalcs_curve_point first, lowest, highest, last;
+};
+
+struct dalcs_curve {
+    double start, stop;
+    long n_rows;
+    double lowest, highest; /* of the finite values; lowest > highest when there are none */
+    struct dalcs_curve_column *column; /* [DALCS_CURVE_COLUMNS] */
+};
+
+enum dalcs_status dalcs_curve_init(struct dalcs_curve *curve, double start,
+                                   double stop) DALCS_MUST_CHECK;
+
+/* Times ascend. Values that are not finite leave a gap of one point. */
+void dalcs_curve_add(struct dalcs_curve *curve, double time, double value);
+
+/* The points of a column in their order; returns how many, 0 to 4. */
+int dalcs_curve_column_points(const struct dalcs_curve_column *column,
+                              struct dalcs_curve_point point[4]);
+
+void dalcs_curve_finish(struct dalcs_curve *curve);
+
+#endif

@@ -1,0 +1,22 @@
+/* decimal.h - doubles as text with 17 significant digits, fast and whatever the locale. */
+#ifndef DALCS_DECIMAL_H
+#define DALCS_DECIMAL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { DALCS_DECIMAL_MIN_POWER = -292, DALCS_DECIMAL_MAX_POWER = 341, DALCS_DECIMAL_SIZE = 32 };
+
+/* Powers of ten: 10^k = significand * 2^exponent, the significand's top bit set. */
+struct dalcs_decimal {
+    uint64_t significand[DALCS_DECIMAL_MAX_POWER - DALCS_DECIMAL_MIN_POWER + 1];
+    int16_t exponent[DALCS_DECIMAL_MAX_POWER - DALCS_DECIMAL_MIN_POWER + 1];
+};
+
+void dalcs_decimal_init(struct dalcs_decimal *decimal);
+
+/* Writes what printf("%.17g") gives in the C locale (a nan has no sign), returns the length. */
+size_t dalcs_decimal_write(const struct dalcs_decimal *decimal, double value,
+                           char text[DALCS_DECIMAL_SIZE]);
+
+#endif

@@ -1,0 +1,143 @@
+/* report.c - struct dalcs_report as JSON. The keys are an interface: see doc/netlist.md before
+ * changing one. SI units throughout. */
+#include "report.h"
+
+#include "json.h"
+
+static void write_method(struct dalcs_json *json, const struct dalcs_report *report) {
+    dalcs_json_open(json, "method", '{', false);
+    for (int i = 0; i < report->size.components; i++) {
+        char component[32];
+        snprintf(component, sizeof component, "component %d", i + 1);
+        dalcs_json_string(json, component, report->method);
+    }
+    dalcs_json_close(json, '}');
+}
+
+static void write_size(struct dalcs_json *json, const struct dalcs_report *report) {
+    dalcs_json_open(json, "size", '{', true);
+    dalcs_json_integer(json, "nodes", report->size.nodes);
+    dalcs_json_integer(json, "x", report->size.x);
+    dalcs_json_integer(json, "z", report->size.z);
+    dalcs_json_integer(json, "lambda", report->size.lambda);
+    dalcs_json_integer(json, "switches", report->size.switches);
+    dalcs_json_integer(json, "components", report->size.components);
+    dalcs_json_close(json, '}');
+}
+
+static void write_work(struct dalcs_json *json, const struct dalcs_report *report) {
+    dalcs_json_open(json, "work", '{', false);
+    dalcs_json_integer(json, "steps", report->work.steps);
+    dalcs_json_integer(json, "osnsp", report->work.osnsp);
+    dalcs_json_integer(json, "pivots", report->work.pivots);
+    dalcs_json_integer(json, "factorizations", report->work.factorizations);
+    dalcs_json_integer(json, "cache_hits", report->work.cache_hits);
+    dalcs_json_integer(json, "singular", report->work.singular);
+    dalcs_json_number(json, "cpu_s", report->work.cpu_s);
+    dalcs_json_number(json, "wall_s", report->work.wall_s);
+    dalcs_json_close(json, '}');
+}
+
+static void write_certificate(struct dalcs_json *json, const struct dalcs_report *report) {
+    dalcs_json_open(json, "certificate", '{', true);
+    dalcs_json_number(json, "worst", report->certificate.worst);
+    dalcs_json_number(json, "time", report->certificate.time);
+    dalcs_json_string(json, "where", report->certificate.where);
+    dalcs_json_close(json, '}');
+}
+
+static void write_states(struct dalcs_json *json, const char *key,
+                         const struct dalcs_report *report, const double *value) {
+    dalcs_json_open(json, key, '{', false);
+    for (size_t i = 0; value && i < report->n_states; i++) {
+        dalcs_json_number(json, report->state_name[i], value[i]);
+    }
+    dalcs_json_close(json, '}');
+}
+
+static void write_events(struct dalcs_json *json, const struct dalcs_report *report) {
+    dalcs_json_open(json, "events", '[', false);
+    for (size_t i = 0; i < report->n_events; i++) {
+        const struct dalcs_event *event = &report->event[i];
+        dalcs_json_open(json, NULL, '{', true);
+        dalcs_json_number(json, "time", event->time);
+        dalcs_json_string(json, "element", event->element);
+        dalcs_json_string(json, "state", event->on ? "on" : "off");
+        dalcs_json_close(json, '}');
+    }
+    dalcs_json_close(json, ']');
+    if (report->n_events_dropped > 0) {
+        dalcs_json_integer(json, "events_dropped", (long)report->n_events_dropped);
+    }
+}
+
+static void write_jump(struct dalcs_json *json, const struct dalcs_jump *jump) {
+    dalcs_json_open(json, NULL, '{', false);
+    dalcs_json_number(json, "time", jump->time);
+    dalcs_json_open(json, "states", '{', false);
+    for (size_t i = 0; i < jump->n_states; i++) {
+        dalcs_json_open(json, jump->state[i].element, '{', true);
+        dalcs_json_number(json, "before", jump->state[i].before);
+        dalcs_json_number(json, "after", jump->state[i].after);
+        dalcs_json_close(json, '}');
+    }
+    dalcs_json_close(json, '}');
+    dalcs_json_open(json, "impulses", '{', false);
+    for (size_t i = 0; i < jump->n_impulses; i++) {
+        const struct dalcs_impulse *impulse = &jump->impulse[i];
+        dalcs_json_open(json, impulse->element, '{', true);
+        dalcs_json_number(json, impulse->is_flux ? "flux" : "charge", impulse->value);
+        dalcs_json_close(json, '}');
+    }
+    dalcs_json_close(json, '}');
+    dalcs_json_number(json, "energy_lost", jump->energy_lost);
+    dalcs_json_close(json, '}');
+}
+
+static void write_jumps(struct dalcs_json *json, const struct dalcs_report *report) {
+    dalcs_json_open(json, "jumps", '[', false);
+    for (size_t i = 0; i < report->n_jumps; i++) {
+        write_jump(json, &report->jump[i]);
+    }
+    dalcs_json_close(json, ']');
+    if (report->n_jumps_dropped > 0) {
+        dalcs_json_integer(json, "jumps_dropped", (long)report->n_jumps_dropped);
+    }
+}
+
+static void write_infeasible(struct dalcs_json *json, const struct dalcs_report *report) {
+    if (!report->infeasible.present) {
+        return;
+    }
+    dalcs_json_open(json, "infeasible", '{', false);
+    dalcs_json_number(json, "time", report->infeasible.time);
+    dalcs_json_open(json, "elements", '[', true);
+    for (size_t i = 0; i < report->infeasible.n_elements; i++) {
+        dalcs_json_string(json, NULL, report->infeasible.element[i]);
+    }
+    dalcs_json_close(json, ']');
+    dalcs_json_string(json, "kind", report->infeasible.kind);
+    dalcs_json_close(json, '}');
+}
+
+void dalcs_report_write(FILE *stream, const struct dalcs_report *report,
+                        enum dalcs_status status) {
+    struct dalcs_json json;
+    dalcs_json_init(&json, stream);
+    dalcs_json_open(&json, NULL, '{', false);
+    dalcs_json_string(&json, "netlist", report->netlist);
+    dalcs_json_string(&json, "title", report->title);
+    dalcs_json_string(&json, "status", dalcs_status_text(status));
+    write_method(&json, report);
+    dalcs_json_number(&json, "step", report->step);
+    dalcs_json_number(&json, "stop", report->stop);
+    write_size(&json, report);
+    write_work(&json, report);
+    write_certificate(&json, report);
+    write_states(&json, "start", report, report->start);
+    write_states(&json, "final", report, report->final);
+    write_events(&json, report);
+    write_jumps(&json, report);
+    write_infeasible(&json, report);
+    dalcs_json_close(&json, '}');
+}

@@ -1,0 +1,57 @@
+/* table.h - the rows of a run, streamed into a file in one of several formats. */
+#ifndef DALCS_TABLE_H
+#define DALCS_TABLE_H
+
+#include "atomic_file.h"
+
+/* A file format. The stream is seekable; errors stay in it, and the table looks. `state` is
+ * state_size zeroed bytes. */
+struct dalcs_table_format {
+    const char *extension; /* ".csv" */
+    size_t state_size;
+    bool one_plot; /* can hold a single table: the transient one when there are two */
+    enum dalcs_status (*begin)(void *state, FILE *stream, const struct dalcs_plot *plot);
+    void (*row)(void *state, FILE *stream, double time, const double *value);
+    /* Also called when the run was cut short, so that what is there can be read. */
+    void (*end)(void *state, FILE *stream);
+    void (*finish)(void *state);
+};
+
+extern const struct dalcs_table_format dalcs_csv_format;
+extern const struct dalcs_table_format dalcs_raw_format;
+
+struct dalcs_table {
+    const struct dalcs_table_format *format;
+    const char *path; /* borrowed, as given */
+    struct dalcs_atomic_file file;
+    void *state;
+    size_t n_rows; /* over all plots */
+    bool in_plot;
+    bool skipping; /* this plot is not for this file */
+    bool transient_expected;
+};
+
+/* The format for a file name, by its extension in any case; NULL when there is none. */
+const struct dalcs_table_format *dalcs_table_find_format(const char *path);
+
+/* Touches no file: that waits for the first row of results. transient_expected: a transient plot
+ * will come, so a format with room for one plot leaves an operating point out. */
+enum dalcs_status dalcs_table_init(struct dalcs_table *table, const char *path,
+                                   bool transient_expected) DALCS_MUST_CHECK;
+
+/* The callbacks of struct dalcs_sink. After DALCS_E_IO, table->file.error is the errno. */
+enum dalcs_status dalcs_table_begin(struct dalcs_table *table, const struct dalcs_plot *plot);
+enum dalcs_status dalcs_table_row(struct dalcs_table *table, double time, const double *value);
+enum dalcs_status dalcs_table_end(struct dalcs_table *table);
+
+/* Gives the complete file its name. */
+enum dalcs_status dalcs_table_commit(struct dalcs_table *table) DALCS_MUST_CHECK;
+
+/* Leaves what an interrupted run had under a name that says so; *left_at (free() it) is NULL when
+ * there was nothing or it could not be written. */
+enum dalcs_status dalcs_table_keep(struct dalcs_table *table, char **left_at) DALCS_MUST_CHECK;
+
+/* Accepts a zeroed table. A file neither committed nor kept is removed. */
+void dalcs_table_finish(struct dalcs_table *table);
+
+#endif

@@ -1,0 +1,260 @@
+/* recorder.c - scheduling rows, and keeping events and jumps in bounded memory. */
+#include "recorder.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Output times this close to a step's end, over the step, are at its end. */
+static const double same_time = 1e-9;
+
+enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
+                                       const struct dalcs_network *network,
+                                       const struct dalcs_circuit *circuit,
+                                       const struct dalcs_sink *sink,
+                                       const struct dalcs_schedule *schedule, bool keep,
+                                       size_t limit) {
+    *r = (struct dalcs_recorder){.network = network,
+                                 .circuit = circuit,
+                                 .sink = sink,
+                                 .schedule = *schedule,
+                                 .keep = keep,
+                                 .limit = limit};
+    size_t n = (size_t)network->n_outputs;
+    r->now = dalcs_alloc(n, sizeof(double));
+    r->before = dalcs_alloc(n, sizeof(double));
+    r->row = dalcs_alloc(n, sizeof(double));
+    r->seen = dalcs_alloc((size_t)network->n_systems, sizeof(*r->seen));
+    bool complete = r->now != NULL && r->before != NULL && r->row != NULL && r->seen != NULL;
+    for (int k = 0; complete && k < network->n_systems; k++) {
+        size_t words = ((size_t)network->system[k].n_pairs + 63) / 64;
+        r->seen[k] = dalcs_alloc(words, sizeof(uint64_t));
+        complete = r->seen[k] != NULL;
+    }
+    if (!complete) {
+        dalcs_recorder_finish(r);
+        return DALCS_E_NOMEM;
+    }
+    return DALCS_OK;
+}
+
+void dalcs_recorder_finish(struct dalcs_recorder *r) {
+    for (int k = 0; r->seen != NULL && k < r->network->n_systems; k++) {
+        free(r->seen[k]);
+    }
+    free(r->seen);
+    free(r->now);
+    free(r->before);
+    free(r->row);
+    free(r->event);
+    free(r->jump);
+    dalcs_arena_finish(&r->arena);
+    *r = (struct dalcs_recorder){0};
+}
+
+static double probe(const struct dalcs_probe *p, const struct dalcs_euler *e) {
+    if (p->system < 0) {
+        return 0.0;
+    }
+    const struct dalcs_component *c = &e->component[p->system];
+    return dalcs_probe_value(p, c->y, c->u + c->system->n_x);
+}
+
+void dalcs_recorder_evaluate(const struct dalcs_network *network, const struct dalcs_euler *e,
+                             double *value) {
+    for (int i = 0; i < network->n_outputs; i++) {
+        const struct dalcs_output *out = &network->output[i];
+        value[i] = probe(&out->plus, e) - (out->minus.system < 0 ? 0.0 : probe(&out->minus, e));
+    }
+}
+
+void dalcs_recorder_states(const struct dalcs_network *network, const struct dalcs_euler *e,
+                           double *value) {
+    for (int i = 0; i < network->n_states; i++) {
+        value[i] = probe(&network->state[i].probe, e);
+    }
+}
+
+/* The next time a row is due, INFINITY when none is. */
+static double next_output(const struct dalcs_schedule *s) {
+    switch (s->kind) {
+    case DALCS_ON_GRID:
+        return s->start + (double)s->next * s->step;
+    case DALCS_AT_TIMES:
+        return s->next < s->n_at ? s->at[s->next] : INFINITY;
+    case DALCS_EVERY_STEP:
+        return s->start;
+    }
+    return INFINITY;
+}
+
+static enum dalcs_status emit(struct dalcs_recorder *r, double time, const double *value) {
+    return r->sink->row(r->sink->user, time, value);
+}
+
+/* Modes that changed since last time become events. */
+static enum dalcs_status note_events(struct dalcs_recorder *r, const struct dalcs_euler *e,
+                                     bool record) {
+    for (int k = 0; k < e->n_components; k++) {
+        const struct dalcs_osnsp *p = &e->component[k].osnsp;
+        for (int word = 0; word < p->n_words; word++) {
+            uint64_t changed = r->seen[k][word] ^ p->mode[word];
+            if (changed == 0) {
+                continue;
+            }
+            r->seen[k][word] = p->mode[word];
+            for (int bit = 0; record && bit < 64; bit++) {
+                if ((changed >> bit & 1) == 0) {
+                    continue;
+                }
+                if (r->n_events == r->limit) {
+                    r->n_events_dropped++;
+                    continue;
+                }
+                int d = 64 * word + bit;
+                DALCS_TRY(
+                    dalcs_grow(&r->event, &r->event_capacity, r->n_events + 1, sizeof(*r->event)));
+                r->event[r->n_events++] =
+                    (struct dalcs_event){.time = e->t,
+                                         .element = p->system->pair[d].element,
+                                         .on = dalcs_osnsp_is_on(p, d)};
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_recorder_start(struct dalcs_recorder *r, const struct dalcs_euler *e) {
+    if (r->keep) {
+        DALCS_TRY(note_events(r, e, false));
+    }
+    dalcs_recorder_evaluate(r->network, e, r->now);
+    r->have_before = true;
+    if (next_output(&r->schedule) <= 0.0) {
+        DALCS_TRY(emit(r, 0.0, r->now));
+        r->schedule.next++;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_recorder_step(struct dalcs_recorder *r, const struct dalcs_euler *e) {
+    if (r->keep) {
+        DALCS_TRY(note_events(r, e, true));
+    }
+    struct dalcs_schedule *s = &r->schedule;
+    double due = next_output(s);
+    double near = same_time * e->h;
+    if (s->kind == DALCS_EVERY_STEP) {
+        if (e->t < s->start - near) {
+            return DALCS_OK;
+        }
+        dalcs_recorder_evaluate(r->network, e, r->now);
+        return emit(r, e->t, r->now);
+    }
+    /* Signals are needed at both ends of a step that an output time falls into. */
+    if (due > e->t + 2.0 * e->grid.h) {
+        r->have_before = false;
+        return DALCS_OK;
+    }
+    double *swap = r->before;
+    r->before = r->now;
+    r->now = swap;
+    dalcs_recorder_evaluate(r->network, e, r->now);
+    int n = r->network->n_outputs;
+    for (; due <= e->t + near; due = next_output(s)) {
+        if (due >= e->t - near || !r->have_before) {
+            DALCS_TRY(emit(r, s->kind == DALCS_AT_TIMES ? due : e->t, r->now));
+        } else {
+            double part = (due - e->t_before) / (e->t - e->t_before);
+            for (int i = 0; i < n; i++) {
+                r->row[i] = r->before[i] + part * (r->now[i] - r->before[i]);
+            }
+            DALCS_TRY(emit(r, due, r->row));
+        }
+        s->next++;
+    }
+    r->have_before = true;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_recorder_cross(struct dalcs_recorder *r, const struct dalcs_euler *e) {
+    if (r->keep) {
+        DALCS_TRY(note_events(r, e, true));
+    }
+    struct dalcs_schedule *s = &r->schedule;
+    double near = same_time * e->h;
+    bool wanted = s->kind != DALCS_AT_TIMES && e->t >= s->start - near;
+    if (wanted) {
+        /* Both sides of the discontinuity, on the grid or not. */
+        double last = s->kind == DALCS_ON_GRID && s->next > 0
+                          ? s->start + (double)(s->next - 1) * s->step
+                          : e->t;
+        if (fabs(last - e->t) > near && r->have_before) {
+            DALCS_TRY(emit(r, e->t, r->now));
+        }
+    }
+    dalcs_recorder_evaluate(r->network, e, r->now);
+    r->have_before = true;
+    return wanted ? emit(r, e->t, r->now) : DALCS_OK;
+}
+
+/* Which states and pairs of a jump are worth a line: those that changed by more than rounding. */
+static bool is_noticeable(double change, double largest) {
+    return fabs(change) > 1e-9 * largest;
+}
+
+enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump *j) {
+    struct dalcs_recorder *r = user;
+    if (!r->keep) {
+        return DALCS_OK;
+    }
+    if (r->n_jumps == r->limit) {
+        r->n_jumps_dropped++;
+        return DALCS_OK;
+    }
+    const struct dalcs_system *s = &r->network->system[j->system];
+    struct dalcs_jump_state *state =
+        dalcs_arena_alloc(&r->arena, (size_t)r->network->n_states, sizeof(*state));
+    struct dalcs_impulse *impulse =
+        dalcs_arena_alloc(&r->arena, 2 * (size_t)s->n_pairs, sizeof(*impulse));
+    DALCS_TRY(dalcs_grow(&r->jump, &r->jump_capacity, r->n_jumps + 1, sizeof(*r->jump)));
+    if (state == NULL || impulse == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    static const double no_inputs[1] = {1.0}; /* states are columns only */
+    size_t n_states = 0;
+    for (int i = 0; i < r->network->n_states; i++) {
+        const struct dalcs_state *x = &r->network->state[i];
+        if (x->probe.system != j->system) {
+            continue;
+        }
+        double before = dalcs_probe_value(&x->probe, j->before, no_inputs);
+        double after = dalcs_probe_value(&x->probe, j->after, no_inputs);
+        if (is_noticeable(after - before, fmax(fabs(before), fabs(after)))) {
+            state[n_states++] =
+                (struct dalcs_jump_state){.element = x->element, .before = before, .after = after};
+        }
+    }
+    double largest[2] = {0.0, 0.0};
+    for (int d = 0; d < s->n_pairs; d++) {
+        largest[0] = fmax(largest[0], fabs(j->charge[d]));
+        largest[1] = fmax(largest[1], fabs(j->flux[d]));
+    }
+    size_t n_impulses = 0;
+    for (int d = 0; d < s->n_pairs; d++) {
+        const double value[2] = {j->charge[d], j->flux[d]};
+        for (int i = 0; i < 2; i++) {
+            if (value[i] != 0.0 && is_noticeable(value[i], largest[i])) {
+                impulse[n_impulses++] = (struct dalcs_impulse){
+                    .element = s->pair[d].element, .is_flux = i == 1, .value = value[i]};
+            }
+        }
+    }
+    r->jump[r->n_jumps++] = (struct dalcs_jump){.time = j->time,
+                                                .n_states = n_states,
+                                                .state = state,
+                                                .n_impulses = n_impulses,
+                                                .impulse = impulse,
+                                                .energy_lost = j->energy_lost};
+    return DALCS_OK;
+}

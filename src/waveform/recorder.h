@@ -1,0 +1,71 @@
+/* recorder.h - from the engine's answers to rows of signals, events and jumps.
+ *
+ * Rows appear on a schedule of output times; between steps a signal is interpolated linearly. */
+#ifndef DALCS_RECORDER_H
+#define DALCS_RECORDER_H
+
+#include "euler.h"
+
+struct dalcs_schedule {
+    enum dalcs_schedule_kind {
+        DALCS_EVERY_STEP, /* from `start` on */
+        DALCS_ON_GRID,    /* start + k * step */
+        DALCS_AT_TIMES    /* the listed times */
+    } kind;
+    double start, step;
+    const double *at; /* [n_at] ascending, borrowed */
+    size_t n_at;
+    size_t next; /* grid point or list entry to come */
+};
+
+struct dalcs_recorder {
+    const struct dalcs_network *network;
+    const struct dalcs_circuit *circuit;
+    const struct dalcs_sink *sink;
+    struct dalcs_schedule schedule;
+    double *now, *before, *row; /* [n_outputs] at the end and the beginning of the step */
+    bool have_before;
+
+    bool keep; /* events and jumps */
+    size_t limit;
+    uint64_t **seen; /* [n_systems] modes last seen */
+    struct dalcs_event *event;
+    size_t n_events, event_capacity, n_events_dropped;
+    struct dalcs_jump *jump;
+    size_t n_jumps, jump_capacity, n_jumps_dropped;
+    struct dalcs_arena arena; /* what jumps point to */
+};
+
+enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
+                                       const struct dalcs_network *network,
+                                       const struct dalcs_circuit *circuit,
+                                       const struct dalcs_sink *sink,
+                                       const struct dalcs_schedule *schedule, bool keep,
+                                       size_t limit) DALCS_MUST_CHECK;
+
+void dalcs_recorder_finish(struct dalcs_recorder *r);
+
+/* After the start: the row at t = 0 and the modes to compare with. */
+enum dalcs_status dalcs_recorder_start(struct dalcs_recorder *r,
+                                       const struct dalcs_euler *e) DALCS_MUST_CHECK;
+
+/* After a step: the rows due in (t_before, t]. */
+enum dalcs_status dalcs_recorder_step(struct dalcs_recorder *r,
+                                      const struct dalcs_euler *e) DALCS_MUST_CHECK;
+
+/* After crossing a discontinuity: a second row at t. */
+enum dalcs_status dalcs_recorder_cross(struct dalcs_recorder *r,
+                                       const struct dalcs_euler *e) DALCS_MUST_CHECK;
+
+/* dalcs_euler's on_jump; user is the recorder. */
+enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump *jump);
+
+/* Every output's present value. */
+void dalcs_recorder_evaluate(const struct dalcs_network *network, const struct dalcs_euler *e,
+                             double *value /* [n_outputs] */);
+
+/* Every state's present value, by element. */
+void dalcs_recorder_states(const struct dalcs_network *network, const struct dalcs_euler *e,
+                           double *value /* [n_states] */);
+
+#endif

@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""Makes every allocation of a run fail, one after the other, and then all from there on.
+
+usage: every_allocation.py PROGRAM LIBRARY CASE
+
+Whatever fails, the program ends by itself with a status of 1 to 4 and a message, or with the right
+output if it could do without that memory; the output's final name never holds half a result.
+"""
+
+import pathlib
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "support")]
+from dalcs_program import Checker  # noqa: E402
+from preload import run_preloaded  # noqa: E402
+
+CASES = {  # netlist and status without a failure
+    "start": ("""Two capacitors and a diode: a jump at t = 0
+C1 1 0 1u ic=10
+C2 2 0 3u ic=2
+R1 2 0 1k
+D1 1 2
+.tran 100u 1m uic
+.end
+""", 0),
+    "bridge": ("""Full bridge on a floating DC side
+V1 a b SIN(0 10 50)
+R0 b 0 1
+D1 a p
+D2 b p
+D3 m a
+D4 m b
+C1 p m 100u
+R1 p m 1k
+.tran 1m 30m uic
+.op
+.save v(p,m) i(d1)
+.end
+""", 0),
+    "switched": ("""Coupled inductors, controlled sources, an ideal switch
+Vin in 0 12
+Vg g 0 PULSE(0 1 0 0 0 4u 10u)
+L1 in a 100u
+L2 0 b 100u
+K1 L1 L2 1
+S1 a 0 g 0 sm
+D1 b out DI
+C1 out 0 10u
+E1 e 0 out 0 2
+R1 e 0 1k
+F1 0 out Vin 1m
+R2 out 0 10
+.model sm SW(Ron=0 Vt=0.5)
+.model DI D(Ron=1m Vfwd=0.3)
+.ic v(out)=1
+.tran 1u 20u uic
+.end
+""", 0),
+    "refused": ("""A diode across a source
+V1 1 0 PWL(0 -1 1m 1)
+D1 1 0
+.tran 100u 1m
+.end
+""", 1),
+    "mistaken": ("""Several mistakes
+R1 1 0 1kk2
+C1 1 0
+Q1 1 2 3 model
+D1 1 0 nowhere
+.tran 1u 1m
+.end
+""", 3),
+}
+OLD = b"from an earlier run\n"
+
+
+class Case:
+    def __init__(self, program, library, name, folder):
+        self.library, self.folder = library, pathlib.Path(folder)
+        netlist, self.status = CASES[name]
+        (self.folder / "circuit.cir").write_text(netlist)
+        self.output = self.folder / "out.csv"
+        self.command = [program, "run", "circuit.cir", "--method", "euler", "-o", "out.csv",
+                        "--report", "report.json"]
+        self.checker = Checker(name)
+
+    def run(self, **variables):
+        self.output.write_bytes(OLD)
+        return run_preloaded(self.library, self.command, self.folder, **variables)
+
+    def judge(self, done, tally, wanted, where):
+        """Checks one run in which tally.refused allocations failed."""
+        check = self.checker.check
+        error = done.stderr.decode(errors="replace")
+        if not check(done.returncode >= 0, f"{where}: signal {-done.returncode}\n{error}"):
+            return
+        if done.returncode == 0:
+            check(self.output.read_bytes() == wanted, f"{where}: status 0 but another output")
+        else:
+            check(1 <= done.returncode <= 4, f"{where}: status {done.returncode}")
+            check(self.output.read_bytes() == OLD, f"{where}: failed, yet touched the output")
+            check(tally.refused == 0 or error.strip(), f"{where}: failed without a word")
+
+    def every(self, variable):
+        done, whole = self.run()
+        error = done.stderr.decode(errors="replace")
+        if not self.checker.check(done.returncode == self.status and whole.refused == 0,
+                                  f"status {done.returncode}, not {self.status}:\n{error}"):
+            return
+        wanted = self.output.read_bytes()
+        self.checker.check((wanted == OLD) == (self.status != 0), "the output was not as expected")
+        failed = 0
+        for number in range(1, 10 * whole.calls):
+            done, tally = self.run(**{variable: number})
+            if tally.refused == 0:
+                break
+            self.judge(done, tally, wanted, f"{variable}={number}")
+            failed += done.returncode != 0
+        self.checker.check(number > 1 and tally.refused == 0, "the failures never ended")
+        self.checker.check(failed > number // 2 or self.status != 0,
+                           f"only {failed} of {number - 1} failures were noticed")
+        print(f"{variable}: {number - 1} allocations, {failed} runs ended with an error")
+
+
+def main():
+    program, library, name = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as folder:
+        case = Case(program, library, name, folder)
+        for variable in ("DALCS_FAIL_AT", "DALCS_FAIL_FROM"):
+            case.every(variable)
+        return case.checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,207 @@
+#!/usr/bin/env python3
+"""Runs one hard case of netlists/hard and compares it with tests/hard/expected.json.
+
+usage: hard_case.py PROGRAM CASE
+
+Kinds of entries, all for `--method euler`:
+  be          the value at time t, exact at every step: checked for h, h/2 and h/5. A string is an
+              expression in h, t and n = t/h (a closed form of the implicit Euler sequence).
+  diff        the same, to 1e-6: a combination of quantities that the least-norm choice fixes
+  tran        the value at time t with a first-order error: tol at h, tol/2 at h/2, tol/5 at h/5
+  mean, sum   time average over the whole run; sum of h times the value over all steps
+  range, op   an operating point, or the value at time t: inside an interval, and at the
+              least-norm value when one is given; exactly the value
+  rcp         just after t = 0: x_NAME state, q_NAME charge, f_NAME flux impulse, loss in J
+  event       an element turns on or off at t, up to two steps; t null: it never does
+  infeasible  the run is refused with exit status 1, naming the elements
+  multi       the final value is one of those listed
+  hmax        runs with a step of a tenth of the largest one
+Without "tol" the tolerance is 1e-12 of the value, or of the scale (the largest voltage or current
+of the run, or "scale") where the value is zero.
+"""
+
+import json
+import math
+import pathlib
+import re
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "support"))
+from dalcs_program import NETLISTS, Checker, run  # noqa: E402
+
+EXACT = 1e-12        # relative, h-exact values
+CERTIFIED = 2e-13    # scaled residual of every step
+JUMP = 1e-9          # relative, states after jumps and impulses
+LEAST_NORM = 1e-6    # of the scale, least-norm values
+FRACTIONS = (1, 2, 5)
+
+
+class HardCase:
+    def __init__(self, program, name, entries):
+        self.program = program
+        self.netlist = NETLISTS / "hard" / f"{name}.cir"
+        self.entries = entries
+        self.checker = Checker(name)
+        self.runs = {}
+
+    def stop(self):
+        """The stop time of .tran, None when there is only .op."""
+        card = re.search(r"^\.tran\s+(\S+)\s+(\S+)", self.netlist.read_text(), re.M | re.I)
+        if card is None:
+            return None
+        number = re.fullmatch(r"([0-9.]+)([munp]?)", card.group(2))
+        return float(number.group(1)) * {"": 1, "m": 1e-3, "u": 1e-6, "n": 1e-9,
+                                         "p": 1e-12}[number.group(2)]
+
+    def run(self, step=None, grid=None):
+        """One accepted run, kept for other entries; rows at the multiples of grid."""
+        key = (step, grid)
+        if key not in self.runs:
+            at = None
+            if grid is not None:
+                stop = self.stop()
+                count = min(round(stop / grid), 20000)
+                at = [min(k * grid, stop) for k in range(count + 1)]
+            result = run(self.program, self.netlist, step=step, at=at)
+            if not self.checker.check(result.status == 0 and result.rows,
+                                      f"exit {result.status} at step {step}: {result.stderr}"):
+                raise SystemExit(self.checker.finish())
+            worst = result.report["certificate"]["worst"]
+            self.checker.check(worst <= CERTIFIED, f"certificate {worst:.2e} at step {step}")
+            self.checker.check(all(math.isfinite(x) for row in result.rows for x in row),
+                               f"a value is not finite at step {step}")
+            self.runs[key] = result
+        return self.runs[key]
+
+    def stepped(self, entry):
+        """Runs at h, h/2 and h/5, on the output grid of h."""
+        h = entry["h"]
+        return [(h / part, self.run(h / part, h)) for part in FRACTIONS]
+
+    def value_of(self, entry, step):
+        value = entry["val"]
+        if isinstance(value, str):
+            names = {name: getattr(math, name) for name in ("sin", "exp", "pi")}
+            names.update(t=entry["t"], h=step, n=round(entry["t"] / step),
+                         max=max, min=min, abs=abs)
+            value = eval(value, {"__builtins__": {}}, names)  # our own file
+        return float(value)
+
+    def be(self, entry):
+        for step, result in self.stepped(entry):
+            wanted = self.value_of(entry, step)
+            size = abs(wanted) or max(result.scale(entry["q"]), entry.get("scale", 0))
+            self.checker.close(result.at(entry["q"], entry["t"]), wanted,
+                               entry.get("tol", EXACT * size),
+                               f"{entry['q']} at {entry['t']} with step {step:g}")
+
+    def diff(self, entry):
+        for step, result in self.stepped(entry):
+            size = abs(entry["val"]) or result.scale(entry["q"])
+            self.checker.close(result.at(entry["q"], entry["t"]), entry["val"], LEAST_NORM * size,
+                               f"{entry['q']} at {entry['t']} with step {step:g}")
+
+    def tran(self, entry):
+        for step, result in self.stepped(entry):
+            self.checker.close(result.at(entry["q"], entry["t"]), entry["val"],
+                               entry["tol"] * step / entry["h"],
+                               f"{entry['q']} at {entry['t']} with step {step:g}")
+
+    def mean(self, entry):
+        result = self.run(entry["h"], entry["h"])
+        time, value = result.time, result.column(entry["q"])
+        area = sum((time[k + 1] - time[k]) * (value[k] + value[k + 1]) / 2
+                   for k in range(len(time) - 1))
+        self.checker.close(area / (time[-1] - time[0]), entry["val"], entry["tol"],
+                           f"mean of {entry['q']}")
+
+    def sum(self, entry):
+        for step in (entry["h"] / part for part in FRACTIONS):
+            result = self.run(step, step)
+            self.checker.close(step * sum(result.column(entry["q"])[1:]), entry["val"],
+                               EXACT * abs(entry["val"]), f"sum of h {entry['q']}, step {step:g}")
+
+    def range(self, entry):
+        low, high = (float(bound) for bound in entry["val"])
+        results = [self.run()] if "t" not in entry else [r for _, r in self.stepped(entry)]
+        for result in results:
+            value = (result.at(entry["q"], entry["t"]) if "t" in entry
+                     else result.column(entry["q"])[-1])
+            scale = result.scale(entry["q"])
+            slack = EXACT * max(scale, *(abs(b) for b in (low, high) if math.isfinite(b)), 0)
+            if "least_norm" in entry:
+                slack = max(slack, LEAST_NORM * scale)
+                self.checker.close(value, entry["least_norm"], slack, f"least-norm {entry['q']}")
+            self.checker.check(low - slack <= value <= high + slack,
+                               f"{entry['q']} = {value!r} is outside [{low}, {high}]")
+
+    def op(self, entry):
+        result = self.run()
+        size = abs(entry["val"]) or max(result.scale(entry["q"]), entry.get("scale", 0))
+        self.checker.close(result.column(entry["q"])[-1], entry["val"], EXACT * size, entry["q"])
+
+    def rcp(self, entry):
+        result = self.run()
+        if entry["q"] == "loss":
+            found = result.loss()
+        else:
+            kind, element = entry["q"].split("_", 1)
+            found = {"x": lambda: result.report["start"][element],
+                     "q": lambda: result.impulse(element, "charge"),
+                     "f": lambda: result.impulse(element, "flux")}[kind]()
+        others = [abs(e["val"]) for e in self.entries if e["kind"] == "rcp"]
+        size = abs(entry["val"]) or max(others + [1e-3])
+        self.checker.close(found, entry["val"], JUMP * size, f"{entry['q']} after t = 0")
+
+    def event(self, entry):
+        state = "on" if entry["on"] else "off"
+        for step, result in self.stepped(entry):
+            times = [event["time"] for event in result.report["events"]
+                     if event["element"] == entry["q"] and event["state"] == state]
+            if entry["t"] is None:
+                self.checker.check(not times, f"{entry['q']} turns {state} at {times[:3]}")
+            else:
+                nearest = min(times, key=lambda t: abs(t - entry["t"]), default=math.inf)
+                self.checker.close(nearest, entry["t"], 2 * step,
+                                   f"time when {entry['q']} turns {state}, step {step:g}")
+
+    def infeasible(self, entry):
+        result = run(self.program, self.netlist, step=entry.get("step"))
+        self.checker.check(result.status == 1, f"exit {result.status}, not refused")
+        self.checker.check(result.output is None, "an output file was left")
+        for element in entry["elements"]:
+            self.checker.check(re.search(rf"\b{element}\b", result.stderr, re.I),
+                               f"{element} is not named: {result.stderr}")
+        if not self.checker.check(result.report is not None and "infeasible" in result.report,
+                                  "the report has no key 'infeasible'"):
+            return
+        refused = result.report["infeasible"]
+        self.checker.check(set(entry["elements"]) <= set(refused["elements"]),
+                           f"the report names {refused['elements']}")
+        self.checker.check(0 <= refused["time"] <= entry.get("t", entry.get("step", 0)),
+                           f"refused at {refused['time']}")
+
+    def multi(self, entry):
+        value = self.run().column(entry["q"])[-1]
+        error = min(abs(value - wanted) for wanted in entry["val"])
+        self.checker.check(error <= EXACT, f"{entry['q']} = {value!r}, not in {entry['val']}")
+
+    def hmax(self, entry):
+        self.run(0.1 * entry["val"])
+
+    def finish(self):
+        for entry in self.entries:
+            getattr(self, entry["kind"])(entry)
+        return self.checker.finish()
+
+
+def main():
+    program, name = sys.argv[1:]
+    entries = json.loads((HERE / "expected.json").read_text())
+    entries = [entry for entry in entries if entry["case"] == name]
+    return HardCase(program, name, entries).finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,133 @@
+"""Runs the dalcs program for the tests and reads back what it wrote."""
+
+import csv
+import json
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+NETLISTS = ROOT / "netlists"
+
+
+class Run:
+    """The outcome of one `dalcs run`."""
+
+    def __init__(self, status, stderr, output, report):
+        self.status = status
+        self.stderr = stderr
+        self.output = output  # the CSV as bytes, None when there is none
+        self.report = report  # the parsed report, None when there is none
+        self.rows = []
+        self.names = []
+        if output is not None:
+            lines = csv.reader(output.decode("ascii").splitlines())
+            self.names = next(lines)
+            self.rows = [[float(field) for field in line] for line in lines]
+
+    @property
+    def time(self):
+        return self.column("time")
+
+    def column(self, name):
+        """One signal over all rows; also v(a,b) and signed sums such as i(d1)-i(d3)."""
+        terms = re.findall(r"([+-]?)((?:time)|[vi]\([^()]*\))", name)
+        if "".join(sign + signal for sign, signal in terms) != name:
+            raise ValueError(f"cannot read the signal {name}")
+        total = [0.0] * len(self.rows)
+        for sign, signal in terms:
+            for place, value in enumerate(self._plain(signal)):
+                total[place] += -value if sign == "-" else value
+        return total
+
+    def _plain(self, name):
+        if name in self.names:
+            index = self.names.index(name)
+            return [row[index] for row in self.rows]
+        pair = re.fullmatch(r"v\(([^,()]+),([^,()]+)\)", name)
+        if pair:
+            first, second = (self._node(node) for node in pair.groups())
+            return [a - b for a, b in zip(first, second)]
+        raise KeyError(f"no signal {name} among {', '.join(self.names)}")
+
+    def _node(self, node):
+        return [0.0] * len(self.rows) if node == "0" else self._plain(f"v({node})")
+
+    def at(self, name, time):
+        """The value at a time of the grid; the right-hand side at a discontinuity."""
+        best = min(range(len(self.rows)), key=lambda k: (abs(self.rows[k][0] - time), -k))
+        if abs(self.rows[best][0] - time) > 1e-9 * max(abs(time), self.rows[-1][0]):
+            raise ValueError(f"no row at {time}")
+        return self.column(name)[best]
+
+    def scale(self, name):
+        """The largest voltage or current of the run, as the unit of `name` asks."""
+        kind = "v(" if "v(" in name else "i("
+        chosen = [k for k, signal in enumerate(self.names) if signal.startswith(kind)]
+        return max((abs(row[k]) for row in self.rows for k in chosen), default=0.0)
+
+    def impulse(self, element, key, time=0.0):
+        """Sum of an element's impulses at one time; key is 'charge' or 'flux'. 0 without a jump."""
+        return sum(jump["impulses"].get(element, {}).get(key, 0.0)
+                   for jump in self.report.get("jumps", []) if jump["time"] == time)
+
+    def loss(self, time=0.0):
+        return sum(jump["energy_lost"] for jump in self.report.get("jumps", [])
+                   if jump["time"] == time)
+
+
+def run(program, netlist, step=None, at=None, options=(), report=True, environment=None):
+    """Runs a netlist (a path, or text) and returns a Run. `at` lists the output times."""
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        if "\n" in str(netlist):
+            path = folder / "circuit.cir"
+            path.write_text(netlist)
+        else:
+            path = pathlib.Path(netlist)
+        output, saved_report = folder / "out.csv", folder / "report.json"
+        command = [program, "run", str(path), "--method", "euler", "-o", str(output), "--quiet"]
+        if report:
+            command += ["--report", str(saved_report)]
+        if step is not None:
+            command += ["--step", repr(float(step))]
+        if at is not None:
+            (folder / "at.txt").write_text("".join(f"{t!r}\n" for t in at))
+            command += ["--at", str(folder / "at.txt")]
+        done = subprocess.run(command + list(options), stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True, check=False,
+                              env={**os.environ, **(environment or {})})
+        if done.returncode < 0:
+            raise AssertionError(f"{path.name}: ended by signal {-done.returncode}\n{done.stderr}")
+        return Run(done.returncode, done.stderr,
+                   output.read_bytes() if output.exists() else None,
+                   json.loads(saved_report.read_text()) if saved_report.exists() else None)
+
+
+class Checker:
+    """Counts what fails, and says it."""
+
+    def __init__(self, name):
+        self.name = name
+        self.checks = 0
+        self.failures = 0
+
+    def check(self, condition, message):
+        self.checks += 1
+        if not condition:
+            self.failures += 1
+            print(f"FAIL {self.name}: {message}")
+        return condition
+
+    def close(self, found, wanted, tolerance, what):
+        error = abs(found - wanted)
+        return self.check(error <= tolerance,  # a NaN fails
+                          f"{what} = {found!r}, not {wanted!r}: off by {error:.3e}, "
+                          f"allowed {tolerance:.3e}")
+
+    def finish(self):
+        """The exit status: 0 when something was checked and nothing failed."""
+        print(f"{self.name}: {self.checks} checks, {self.failures} failed")
+        return 0 if self.checks > 0 and self.failures == 0 else 1

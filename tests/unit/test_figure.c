@@ -1,0 +1,111 @@
+/* test_figure.c - which points and which signals a figure shows, and how gnuplot is told. */
+#include "figure.h"
+#include "gnuplot.h"
+#include "sample_plot.h"
+
+#include <math.h>
+
+/* A spike of one row among a million is still there, and there are never more than 4 points a
+ * column. */
+START_TEST(test_curve_keeps_extremes) {
+    struct dalcs_curve curve;
+    ck_assert_int_eq(dalcs_curve_init(&curve, 0.0, 1.0), DALCS_OK);
+    const long n = 1000000;
+    for (long i = 0; i <= n; i++) {
+        dalcs_curve_add(&curve, (double)i / (double)n, i == 123456 ? 7.0 : i == 123457 ? -9.0 : 1.0);
+    }
+    ck_assert_double_eq(curve.highest, 7.0);
+    ck_assert_double_eq(curve.lowest, -9.0);
+    struct dalcs_curve_point point[4];
+    ck_assert_int_eq(dalcs_curve_column_points(&curve.column[123], point), 4);
+    ck_assert_double_eq(point[1].value, 7.0);
+    ck_assert_double_eq(point[2].value, -9.0);
+    ck_assert_double_eq(point[1].time, 0.123456);
+    ck_assert_double_eq(point[0].time, 0.123);
+    ck_assert_double_eq(point[3].time, 0.123999);
+    ck_assert_int_eq(dalcs_curve_column_points(&curve.column[7], point), 2);
+    dalcs_curve_finish(&curve);
+}
+END_TEST
+
+/* Both sides of a discontinuity have the same time and must stay in order. */
+START_TEST(test_curve_keeps_order) {
+    struct dalcs_curve curve;
+    ck_assert_int_eq(dalcs_curve_init(&curve, 0.0, 1.0), DALCS_OK);
+    const double value[] = {5.0, 1.0, NAN, 9.0, 4.0};
+    for (int i = 0; i < 5; i++) {
+        dalcs_curve_add(&curve, 0.5, value[i]);
+    }
+    struct dalcs_curve_point point[4];
+    ck_assert_int_eq(dalcs_curve_column_points(&curve.column[500], point), 4);
+    ck_assert_double_eq(point[0].value, 5.0);
+    ck_assert_double_eq(point[1].value, 1.0);
+    ck_assert_double_eq(point[2].value, 9.0);
+    ck_assert_double_eq(point[3].value, 4.0);
+    dalcs_curve_finish(&curve);
+}
+END_TEST
+
+START_TEST(test_choice_of_signals) {
+    static const char *const name[] = {"v(n1)", "v(n2)", "i(v1)", "v(n3)", "v(n4)", "v(n5)",
+                                       "v(n6)", "v(n7)", "i(l1)", "v(n8)", "v(out)"};
+    enum { N = sizeof name / sizeof name[0] };
+    enum dalcs_unit unit[N];
+    for (int i = 0; i < N; i++) {
+        unit[i] = name[i][0] == 'v' ? DALCS_VOLT : DALCS_AMPERE;
+    }
+    const struct dalcs_plot plot = {DALCS_TRANSIENT, "t", N, name, unit};
+    struct dalcs_figure figure;
+    dalcs_figure_init(&figure, "a.svg", 0.0, 1.0);
+    ck_assert_int_eq(dalcs_figure_begin(&figure, &plot), DALCS_OK);
+    ck_assert_int_eq(figure.panel[0].n, 8);
+    ck_assert_uint_eq(figure.panel[0].n_left_out, 1);
+    ck_assert_uint_eq(figure.panel[0].signal[0], 0);
+    ck_assert_uint_eq(figure.panel[0].signal[6], 7);
+    ck_assert_uint_eq(figure.panel[0].signal[7], 10); /* v(out) instead of v(n8) */
+    ck_assert_int_eq(figure.panel[1].n, 2);
+    ck_assert_uint_eq(figure.panel[1].signal[1], 8);
+    dalcs_figure_finish(&figure);
+}
+END_TEST
+
+static char *write_script(const char *title, const char *signal) {
+    const enum dalcs_unit unit = DALCS_AMPERE;
+    const struct dalcs_plot plot = {DALCS_TRANSIENT, title, 1, &signal, &unit};
+    struct dalcs_figure figure;
+    dalcs_figure_init(&figure, "a.png", 0.0, 2e-5);
+    ck_assert_int_eq(dalcs_figure_begin(&figure, &plot), DALCS_OK);
+    const double value[] = {0.0, 0.25, 0.002};
+    for (int i = 0; i < 3; i++) {
+        dalcs_figure_row(&figure, 1e-5 * i, &value[i]);
+    }
+    char *text = NULL;
+    size_t length = 0;
+    FILE *stream = open_memstream(&text, &length);
+    ck_assert_ptr_nonnull(stream);
+    dalcs_gnuplot_write(stream, &figure);
+    ck_assert_int_eq(fclose(stream), 0);
+    dalcs_figure_finish(&figure);
+    return text;
+}
+
+/* Nothing in a netlist may become a command. */
+START_TEST(test_quoting) {
+    char *text = write_script("it's\n`id` \"x\" caf\303\251 \351", "i(d')");
+    ck_assert_ptr_nonnull(strstr(text, "'it''s?`id` \"x\" caf\303\251 ?'"));
+    ck_assert_ptr_nonnull(strstr(text, "title 'i(d'')'"));
+    free(text);
+}
+END_TEST
+
+START_TEST(test_units) {
+    char *text = write_script("t", "i(d1)");
+    ck_assert_ptr_nonnull(strstr(text, "'current (mA)'"));
+    ck_assert_ptr_nonnull(strstr(text, "'time (\302\265s)'"));
+    ck_assert_ptr_nonnull(strstr(text, "\n0 0\n10 250\n20 2\n"));
+    free(text);
+}
+END_TEST
+
+RUN_SUITE("figure", test_curve_keeps_extremes, test_curve_keeps_order, test_choice_of_signals,
+          test_quoting, test_units)

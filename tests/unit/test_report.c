@@ -1,0 +1,137 @@
+/* test_report.c - the report's keys, numbers and escapes, byte by byte. */
+#include "report.h"
+#include "sample_plot.h"
+
+#include <math.h>
+
+static const char *const state_name[] = {"c1", "l1"};
+static const double start[] = {4.0, -0.1}, final[] = {NAN, -INFINITY};
+static const struct dalcs_event event[] = {{0.005, "d1", true}, {0.25, "s1", false}};
+static const struct dalcs_jump_state jump_state[] = {{"c1", 10.0, 4.0}};
+static const struct dalcs_impulse impulse[] = {{"d1", false, 6e-6}, {"d2", true, 0.001}};
+static const struct dalcs_jump jump[] = {{0.0, 1, jump_state, 2, impulse, 24e-6}};
+static const char *const element[] = {"v1", "d1"};
+
+static void check_report(const struct dalcs_report *report, enum dalcs_status status,
+                         const char *expected) {
+    FILE *stream = fopen("report.json", "wb");
+    ck_assert_ptr_nonnull(stream);
+    dalcs_report_write(stream, report, status);
+    ck_assert_int_eq(fclose(stream), 0);
+    check_contents("report.json", expected);
+}
+
+START_TEST(test_everything) {
+    const struct dalcs_report report = {
+        .netlist = "a \"b\".cir",
+        .title = "caf\303\251 \\ \377\tend",
+        .method = "euler",
+        .step = 1e-6,
+        .stop = 0.5,
+        .size = {1, 2, 3, 4, 5, 2},
+        .work = {11, 12, 13, 14, 15, 16, 0.5, 0.75},
+        .certificate = {1e-15, 0.125, "KCL at out"},
+        .n_states = 2,
+        .state_name = state_name,
+        .start = start,
+        .final = final,
+        .n_events = 2,
+        .event = event,
+        .n_events_dropped = 7,
+        .n_jumps = 1,
+        .jump = jump,
+        .infeasible = {true, 0.5, "loop", 2, element},
+    };
+    check_report(&report, DALCS_INFEASIBLE,
+                 "{\n"
+                 "  \"netlist\": \"a \\\"b\\\".cir\",\n"
+                 "  \"title\": \"caf\303\251 \\\\ \\ufffd\\u0009end\",\n"
+                 "  \"status\": \"the one-step problem has no solution\",\n"
+                 "  \"method\": {\n"
+                 "    \"component 1\": \"euler\",\n"
+                 "    \"component 2\": \"euler\"\n"
+                 "  },\n"
+                 "  \"step\": 9.9999999999999995e-07,\n"
+                 "  \"stop\": 0.5,\n"
+                 "  \"size\": {\"nodes\": 1, \"x\": 2, \"z\": 3, \"lambda\": 4, \"switches\": 5, "
+                 "\"components\": 2},\n"
+                 "  \"work\": {\n"
+                 "    \"steps\": 11,\n"
+                 "    \"osnsp\": 12,\n"
+                 "    \"pivots\": 13,\n"
+                 "    \"factorizations\": 14,\n"
+                 "    \"cache_hits\": 15,\n"
+                 "    \"singular\": 16,\n"
+                 "    \"cpu_s\": 0.5,\n"
+                 "    \"wall_s\": 0.75\n"
+                 "  },\n"
+                 "  \"certificate\": {\"worst\": 1.0000000000000001e-15, \"time\": 0.125, "
+                 "\"where\": \"KCL at out\"},\n"
+                 "  \"start\": {\n"
+                 "    \"c1\": 4,\n"
+                 "    \"l1\": -0.10000000000000001\n"
+                 "  },\n"
+                 "  \"final\": {\n"
+                 "    \"c1\": \"nan\",\n"
+                 "    \"l1\": \"-inf\"\n"
+                 "  },\n"
+                 "  \"events\": [\n"
+                 "    {\"time\": 0.0050000000000000001, \"element\": \"d1\", \"state\": \"on\"},\n"
+                 "    {\"time\": 0.25, \"element\": \"s1\", \"state\": \"off\"}\n"
+                 "  ],\n"
+                 "  \"events_dropped\": 7,\n"
+                 "  \"jumps\": [\n"
+                 "    {\n"
+                 "      \"time\": 0,\n"
+                 "      \"states\": {\n"
+                 "        \"c1\": {\"before\": 10, \"after\": 4}\n"
+                 "      },\n"
+                 "      \"impulses\": {\n"
+                 "        \"d1\": {\"charge\": 6.0000000000000002e-06},\n"
+                 "        \"d2\": {\"flux\": 0.001}\n"
+                 "      },\n"
+                 "      \"energy_lost\": 2.4000000000000001e-05\n"
+                 "    }\n"
+                 "  ],\n"
+                 "  \"infeasible\": {\n"
+                 "    \"time\": 0.5,\n"
+                 "    \"elements\": [\"v1\", \"d1\"],\n"
+                 "    \"kind\": \"loop\"\n"
+                 "  }\n"
+                 "}\n");
+}
+END_TEST
+
+/* A run that failed before it knew anything. */
+START_TEST(test_nothing) {
+    const struct dalcs_report report = {.method = "euler"};
+    check_report(&report, DALCS_OK,
+                 "{\n"
+                 "  \"netlist\": null,\n"
+                 "  \"title\": null,\n"
+                 "  \"status\": \"ok\",\n"
+                 "  \"method\": {},\n"
+                 "  \"step\": 0,\n"
+                 "  \"stop\": 0,\n"
+                 "  \"size\": {\"nodes\": 0, \"x\": 0, \"z\": 0, \"lambda\": 0, \"switches\": 0, "
+                 "\"components\": 0},\n"
+                 "  \"work\": {\n"
+                 "    \"steps\": 0,\n"
+                 "    \"osnsp\": 0,\n"
+                 "    \"pivots\": 0,\n"
+                 "    \"factorizations\": 0,\n"
+                 "    \"cache_hits\": 0,\n"
+                 "    \"singular\": 0,\n"
+                 "    \"cpu_s\": 0,\n"
+                 "    \"wall_s\": 0\n"
+                 "  },\n"
+                 "  \"certificate\": {\"worst\": 0, \"time\": 0, \"where\": null},\n"
+                 "  \"start\": {},\n"
+                 "  \"final\": {},\n"
+                 "  \"events\": [],\n"
+                 "  \"jumps\": []\n"
+                 "}\n");
+}
+END_TEST
+
+RUN_SUITE("report", test_everything, test_nothing)

@@ -1,0 +1,92 @@
+"""Runs ngspice in batch mode and reads its raw file."""
+
+import array
+import dataclasses
+import shutil
+import subprocess
+import sys
+import time
+
+NGSPICE = "ngspice"
+
+
+class NoNgspice(Exception):
+    """ngspice is not installed."""
+
+
+@dataclasses.dataclass
+class Table:
+    """Columns by name; "time" is the first for a transient analysis."""
+
+    names: list
+    columns: list  # of array('d')
+
+    def column(self, name):
+        return self.columns[self.names.index(name)]
+
+    @property
+    def n_rows(self):
+        return len(self.columns[0]) if self.columns else 0
+
+
+def read_raw(path):
+    """The last plot of a binary raw file with real values."""
+    data = path.read_bytes()
+    place, table = 0, None
+    while place < len(data):
+        marker = data.find(b"Binary:\n", place)
+        if marker < 0:
+            break
+        header = data[place:marker].decode("utf-8", "replace").splitlines()
+        fields = dict(line.split(":", 1) for line in header if ":" in line and line[0] != "\t")
+        n_names, n_points = int(fields["No. Variables"]), int(fields["No. Points"])
+        names = [line.split("\t")[2].lower() for line in header if line.startswith("\t")]
+        start = marker + len(b"Binary:\n")
+        place = start + 8 * n_names * n_points
+        values = array.array("d")
+        values.frombytes(data[start:place][:8 * n_names * ((len(data) - start) // (8 * n_names))])
+        if sys.byteorder != "little":
+            values.byteswap()
+        table = Table(names, [values[k::n_names] for k in range(n_names)])
+    return table
+
+
+@dataclasses.dataclass
+class Outcome:
+    table: Table  # None when it failed
+    seconds: float
+    reason: str  # why it failed, in ngspice's words
+
+
+def reason_in(log):
+    for line in log.splitlines():
+        low = line.lower()
+        if any(word in low for word in ("timestep too small", "singular", "error", "fatal",
+                                        "no convergence", "aborted")):
+            return line.strip()
+    return "no reason given"
+
+
+def run(netlist_text, folder, stop, timeout):
+    """Simulates; `stop` is the time that the results must reach, None for an operating point."""
+    if not shutil.which(NGSPICE):
+        raise NoNgspice
+    netlist, raw = folder / "ngspice.cir", folder / "ngspice.raw"
+    netlist.write_text(netlist_text)
+    raw.unlink(missing_ok=True)
+    started = time.perf_counter()
+    try:
+        done = subprocess.run([NGSPICE, "-n", "-b", "-r", str(raw), str(netlist)], cwd=folder,
+                              stdin=subprocess.DEVNULL, capture_output=True, timeout=timeout,
+                              check=False)
+    except subprocess.TimeoutExpired:
+        return Outcome(None, timeout, f"no end within {timeout:g} s")
+    seconds = time.perf_counter() - started
+    log = (done.stdout + done.stderr).decode("utf-8", "replace")
+    table = read_raw(raw) if raw.exists() else None
+    if table is None or table.n_rows == 0:
+        return Outcome(None, seconds, reason_in(log))
+    if stop is not None and table.column("time")[-1] < stop * (1 - 1e-9):
+        return Outcome(None, seconds, f"stopped at {table.column('time')[-1]:.4g} s: "
+                                      f"{reason_in(log)}")
+    return Outcome(table, seconds, "")

@@ -1,0 +1,44 @@
+# shellcheck shell=bash
+# packages.sh - the Debian 12 packages that each part of the project needs. Sourced, not run.
+#
+#   source tools/packages.sh
+#   need_packages build test      installs what is missing of these groups
+
+packages_of() {
+    case $1 in
+        build) echo gcc libc6-dev meson ninja-build pkg-config libsuitesparse-dev liblapacke-dev \
+            uthash-dev ;;
+        test) echo check python3 ;;
+        plot) echo gnuplot-nox ;;
+        crosscheck) echo ngspice python3 ;;
+        ci) echo clang libclang-rt-14-dev llvm valgrind clang-format cppcheck shellcheck ;;
+        *)
+            echo "packages.sh: no package group '$1'" >&2
+            return 1
+            ;;
+    esac
+}
+
+package_is_installed() {
+    [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
+}
+
+need_packages() {
+    local group names package missing=() as_root=()
+    for group in "$@"; do
+        names=$(packages_of "$group") || return 1
+        for package in $names; do
+            package_is_installed "$package" || missing+=("$package")
+        done
+    done
+    if ((${#missing[@]} == 0)); then
+        return 0
+    fi
+    echo "Installing the Debian packages ${missing[*]}" >&2
+    if ((EUID != 0)); then
+        as_root=(sudo)
+    fi
+    "${as_root[@]}" apt-get -q update >&2
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+        apt-get -q install -y --no-install-recommends "${missing[@]}" >&2
+}
