@@ -32,8 +32,8 @@ struct dalcs_diag {
     struct dalcs_diagnostic *item;
     size_t n;
     size_t capacity;
-    size_t n_errors; /* all of them, kept or not */
-    size_t n_other;  /* notes and warnings, kept or not */
+    size_t n_errors;    /* all of them, kept or not */
+    size_t n_other;     /* notes and warnings, kept or not */
     bool out_of_memory; /* a message was lost */
 };
 

@@ -12,8 +12,8 @@ void *dalcs_alloc(size_t n, size_t size);
 
 /* Makes room for at least `need` items in *array (item size `size`, present capacity *capacity).
  * Growth is geometric and new items are zeroed. On failure *array and *capacity are unchanged. */
-enum dalcs_status dalcs_grow(void *array, size_t *capacity, size_t need, size_t size)
-    DALCS_MUST_CHECK;
+enum dalcs_status dalcs_grow(void *array, size_t *capacity, size_t need,
+                             size_t size) DALCS_MUST_CHECK;
 
 /* An arena: many small objects that die together. Zero-initialise; finish frees everything. */
 struct dalcs_arena {

@@ -7,16 +7,19 @@
 #include "memory.h"
 
 struct dalcs_names {
-    struct dalcs_names_entry *head; /* a uthash table, in the order of insertion */
-    struct dalcs_arena arena;       /* its entries */
+    struct dalcs_names_entry *entry; /* [n] in the order of insertion */
+    size_t n;
+    size_t capacity;
+    struct dalcs_names_slot *slot; /* [n_slots] hash table of entries */
+    size_t n_slots;                /* a power of two, or 0 */
 };
 
 /* The value of a name, or -1. */
 int dalcs_names_find(const struct dalcs_names *names, const char *name);
 
 /* Adds a name that is not in the table yet; value >= 0. */
-enum dalcs_status dalcs_names_add(struct dalcs_names *names, const char *name, int value)
-    DALCS_MUST_CHECK;
+enum dalcs_status dalcs_names_add(struct dalcs_names *names, const char *name,
+                                  int value) DALCS_MUST_CHECK;
 
 /* The name most like this one, were it mistyped: a distance of at most 2 edits (insert, delete,
  * change, swap neighbours) and at most a third of the length; NULL when there is none. */

@@ -20,8 +20,7 @@ static bool is_first(struct dalcs_builder *builder, const struct dalcs_card *car
 static bool check_times(struct dalcs_builder *builder, const struct dalcs_transient *transient,
                         const struct dalcs_token *const *place) {
     if (transient->stop <= 0) {
-        dalcs_builder_error(builder, place[TSTOP], TRAN_USAGE,
-                            "the stop time must be positive");
+        dalcs_builder_error(builder, place[TSTOP], TRAN_USAGE, "the stop time must be positive");
         return false;
     }
     if (transient->step < 0) {
@@ -29,10 +28,9 @@ static bool check_times(struct dalcs_builder *builder, const struct dalcs_transi
         return false;
     }
     if (transient->step > transient->stop) {
-        dalcs_builder_warn(builder, place[TSTEP],
-                           dalcs_builder_hint(builder, "the order is: %s", TRAN_USAGE),
-                           "the step of %g s is longer than the run of %g s", transient->step,
-                           transient->stop);
+        dalcs_builder_warn(
+            builder, place[TSTEP], dalcs_builder_hint(builder, "the order is: %s", TRAN_USAGE),
+            "the step of %g s is longer than the run of %g s", transient->step, transient->stop);
     }
     if (place[TSTART] != NULL && (transient->start < 0 || transient->start >= transient->stop)) {
         dalcs_builder_error(builder, place[TSTART], TRAN_USAGE,
@@ -40,8 +38,7 @@ static bool check_times(struct dalcs_builder *builder, const struct dalcs_transi
         return false;
     }
     if (place[TMAX] != NULL && transient->max_step <= 0) {
-        dalcs_builder_error(builder, place[TMAX], TRAN_USAGE,
-                            "the largest step must be positive");
+        dalcs_builder_error(builder, place[TMAX], TRAN_USAGE, "the largest step must be positive");
         return false;
     }
     return true;

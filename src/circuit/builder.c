@@ -76,6 +76,21 @@ const char *dalcs_builder_suggest(struct dalcs_builder *builder, const struct da
     return list != NULL ? dalcs_builder_hint(builder, "the %s are: %s", plural, list) : NULL;
 }
 
+const char *dalcs_builder_suggest_of(struct dalcs_builder *builder, const char *const *candidate,
+                                     size_t n, const char *name, const char *otherwise) {
+    const char *nearest = dalcs_names_nearest_of(candidate, n, name);
+    return nearest != NULL ? dalcs_builder_hint(builder, "did you mean '%s'?", nearest) : otherwise;
+}
+
+bool dalcs_builder_is_one_of(const char *name, const char *const *list, size_t n) {
+    for (size_t k = 0; k < n; k++) {
+        if (strcmp(name, list[k]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 const char *dalcs_builder_place(struct dalcs_builder *builder, const struct dalcs_token *token) {
     const struct dalcs_location where = dalcs_token_location(token);
     const char *text =
@@ -119,8 +134,7 @@ int dalcs_builder_node(struct dalcs_builder *builder, const struct dalcs_token *
     }
     const int node = builder->circuit->n_nodes;
     const size_t need = (size_t)node + 1;
-    const char *name = dalcs_arena_copy(&builder->circuit->arena, token->text,
-                                        strlen(token->text));
+    const char *name = dalcs_arena_copy(&builder->circuit->arena, token->text, strlen(token->text));
     if (!note_memory(builder, name != NULL &&
                                   dalcs_grow(&builder->node_name, &builder->node_name_capacity,
                                              need, sizeof *builder->node_name) == DALCS_OK &&
@@ -142,7 +156,7 @@ int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_to
     const int node = dalcs_names_find(&builder->nodes, token->text);
     if (node < 0) {
         builder->failed = true;
-        if (!builder->incomplete) {
+        if ((builder->hidden & DALCS_HIDDEN_ELEMENTS) == 0) {
             dalcs_builder_error(
                 builder, token,
                 dalcs_builder_suggest(builder, &builder->nodes, token->text, "nodes"),
@@ -163,7 +177,7 @@ int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_
     if (device >= 0) {
         dalcs_builder_error(builder, token, NULL, "'%s' is a coupling, which has no terminals",
                             token->text);
-    } else if (!builder->incomplete) {
+    } else if ((builder->hidden & DALCS_HIDDEN_ELEMENTS) == 0) {
         dalcs_builder_error(
             builder, token,
             dalcs_builder_suggest(builder, &builder->devices, token->text, "elements"),

@@ -21,14 +21,21 @@ struct dalcs_model {
     const struct dalcs_token *type;
 };
 
+enum dalcs_hidden {
+    DALCS_HIDDEN_ELEMENTS = 1, /* and their nodes */
+    DALCS_HIDDEN_MODELS = 2,
+    DALCS_HIDDEN_ANALYSES = 4,
+    DALCS_HIDDEN_ALL = 7
+};
+
 struct dalcs_builder {
     struct dalcs_circuit *circuit;
     const struct dalcs_netlist *netlist;
     struct dalcs_diag *diag;
     struct dalcs_arena scratch; /* hints and the like: dies with the builder */
     bool failed;                /* an error was reported */
-    bool incomplete;            /* a card that may define things was refused: a name that is missing
-                                   is then no further error */
+    unsigned hidden;            /* what refused cards may have defined (enum dalcs_hidden): when
+                                   such a thing is missing, that is no further error */
     bool out_of_memory;
 
     struct dalcs_names nodes; /* name -> index; ground is not in it */
@@ -37,12 +44,12 @@ struct dalcs_builder {
     const struct dalcs_token **node_token; /* [n_nodes] where a node was named first, heap */
     size_t node_token_capacity;
 
-    struct dalcs_names devices;              /* name -> index, K cards follow from n_device_cards on */
+    struct dalcs_names devices; /* name -> index, K cards follow from n_device_cards on */
     const struct dalcs_token **device_token; /* where they are, by the same index */
     int n_device_cards;
     int n_couplings_seen;     /* K cards so far, right or wrong */
     struct dalcs_names pairs; /* "3 7": coils 3 and 7 are coupled */
-    int ideal_diode; /* the model of diodes without one, -1 before the first */
+    int ideal_diode;          /* the model of diodes without one, -1 before the first */
 
     struct dalcs_names models; /* name -> index of model */
     struct dalcs_model *model;
@@ -52,8 +59,9 @@ struct dalcs_builder {
     const struct dalcs_token *op;
 
     struct dalcs_names initial_pairs; /* "0 4": index of the condition on nodes 0 and 4 */
-    struct dalcs_names signals; /* name -> index of signal */
-    struct dalcs_signal *signal; /* heap */
+    bool names_signals;               /* a .save or .print was seen */
+    struct dalcs_names signals;       /* name -> index of signal */
+    struct dalcs_signal *signal;      /* heap */
     size_t n_signals;
     size_t signal_capacity;
     struct dalcs_initial_condition *initial_condition; /* heap */
@@ -88,6 +96,13 @@ const char *dalcs_builder_hint(struct dalcs_builder *builder, const char *format
 /* "did you mean 'out'?", or "the nodes are: a, b" when there are few, or NULL. */
 const char *dalcs_builder_suggest(struct dalcs_builder *builder, const struct dalcs_names *names,
                                   const char *name, const char *plural);
+
+/* "did you mean 'ron'?", or `otherwise`. */
+const char *dalcs_builder_suggest_of(struct dalcs_builder *builder, const char *const *candidate,
+                                     size_t n, const char *name, const char *otherwise);
+
+/* Is name one of list[0..n-1]? */
+bool dalcs_builder_is_one_of(const char *name, const char *const *list, size_t n);
 
 /* "bridge.cir:3:1", in scratch; never NULL. */
 const char *dalcs_builder_place(struct dalcs_builder *builder, const struct dalcs_token *token);
@@ -140,8 +155,8 @@ enum dalcs_quantity {
 };
 
 /* Starts after the card's first token. */
-struct dalcs_reader dalcs_reader_start(struct dalcs_builder *builder,
-                                       const struct dalcs_card *card, const char *usage);
+struct dalcs_reader dalcs_reader_start(struct dalcs_builder *builder, const struct dalcs_card *card,
+                                       const char *usage);
 
 /* The token `ahead` places from here, or NULL. */
 const struct dalcs_token *dalcs_reader_peek(const struct dalcs_reader *reader, int ahead);
@@ -214,6 +229,23 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, struct dalcs_diode_mod
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 bool dalcs_switch_parse_model(struct dalcs_reader *reader, struct dalcs_switch_model *model);
 void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+
+/* One parameter=value that a model may have. */
+struct dalcs_parameter {
+    const char *name;
+    enum dalcs_quantity quantity;
+    bool may_be_infinite;
+    double value;                    /* its default, then what the card says */
+    const struct dalcs_token *place; /* NULL: not on the card */
+};
+
+/* Reads all parameter=value of a model card. A name that is not among parameter[0..n-1] goes to
+ * `unknown`, which may report it; it is called until it has reported one. */
+bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_parameter *parameter,
+                                 int n,
+                                 bool (*unknown)(struct dalcs_builder *builder,
+                                                 const struct dalcs_token *name));
+
 /* The index (in diode_model or switch_model) of a model of this kind; else an error, and -1. */
 int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *name,
                      enum dalcs_model_kind kind);

@@ -13,65 +13,74 @@ struct dot_card {
     enum dalcs_card_class class;
     const char *refused; /* what it is, when it is not supported yet */
     const char *hint;
+    unsigned hides;        /* what a refused card may have defined */
     const char *block_end; /* the card that ends the block it starts */
 };
 
-static const struct dot_card DOT_CARDS[] = {
-    {".model", DALCS_CARD_MODEL, NULL, NULL, NULL},
-    {".tran", DALCS_CARD_TRAN, NULL, NULL, NULL},
-    {".op", DALCS_CARD_OP, NULL, NULL, NULL},
-    {".options", DALCS_CARD_OPTIONS, NULL, NULL, NULL},
-    {".option", DALCS_CARD_OPTIONS, NULL, NULL, NULL},
-    {".opt", DALCS_CARD_OPTIONS, NULL, NULL, NULL},
-    {".ic", DALCS_CARD_IC, NULL, NULL, NULL},
-    {".save", DALCS_CARD_SIGNALS, NULL, NULL, NULL},
-    {".print", DALCS_CARD_SIGNALS, NULL, NULL, NULL},
-    {".plot", DALCS_CARD_SIGNALS, NULL, NULL, NULL},
-    {".probe", DALCS_CARD_SIGNALS, NULL, NULL, NULL},
-    {".backanno", DALCS_CARD_NONE, NULL, NULL, NULL},
+enum {
+    NOTHING = 0,
+    ELEMENTS = DALCS_HIDDEN_ELEMENTS,
+    MODELS = DALCS_HIDDEN_MODELS,
+    ANALYSES = DALCS_HIDDEN_ANALYSES,
+    ALL = DALCS_HIDDEN_ALL
+};
 
-    {".param", DALCS_CARD_NONE, "parameters", "write the numbers in place", NULL},
-    {".params", DALCS_CARD_NONE, "parameters", "write the numbers in place", NULL},
-    {".csparam", DALCS_CARD_NONE, "parameters", "write the numbers in place", NULL},
-    {".global_param", DALCS_CARD_NONE, "parameters", "write the numbers in place", NULL},
-    {".func", DALCS_CARD_NONE, "functions", "write the numbers in place", NULL},
-    {".subckt", DALCS_CARD_NONE, "subcircuits", "write its elements in place", ".ends"},
-    {".ends", DALCS_CARD_NONE, "subcircuits", NULL, NULL},
-    {".global", DALCS_CARD_NONE, "global nodes", NULL, NULL},
-    {".include", DALCS_CARD_NONE, "included files", "paste the file's lines here", NULL},
-    {".incl", DALCS_CARD_NONE, "included files", "paste the file's lines here", NULL},
-    {".inc", DALCS_CARD_NONE, "included files", "paste the file's lines here", NULL},
-    {".lib", DALCS_CARD_NONE, "libraries", "paste the models that are used here", NULL},
-    {".endl", DALCS_CARD_NONE, "libraries", NULL, NULL},
-    {".if", DALCS_CARD_NONE, "conditions", "keep the branch that is wanted", ".endif"},
-    {".elseif", DALCS_CARD_NONE, "conditions", NULL, NULL},
-    {".else", DALCS_CARD_NONE, "conditions", NULL, NULL},
-    {".endif", DALCS_CARD_NONE, "conditions", NULL, NULL},
+static const struct dot_card DOT_CARDS[] = {
+    {".model", DALCS_CARD_MODEL, NULL, NULL, NOTHING, NULL},
+    {".tran", DALCS_CARD_TRAN, NULL, NULL, NOTHING, NULL},
+    {".op", DALCS_CARD_OP, NULL, NULL, NOTHING, NULL},
+    {".options", DALCS_CARD_OPTIONS, NULL, NULL, NOTHING, NULL},
+    {".option", DALCS_CARD_OPTIONS, NULL, NULL, NOTHING, NULL},
+    {".opt", DALCS_CARD_OPTIONS, NULL, NULL, NOTHING, NULL},
+    {".ic", DALCS_CARD_IC, NULL, NULL, NOTHING, NULL},
+    {".save", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
+    {".print", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
+    {".plot", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
+    {".probe", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
+    {".backanno", DALCS_CARD_NONE, NULL, NULL, NOTHING, NULL},
+
+    {".param", DALCS_CARD_NONE, "parameters", "write the numbers in place", NOTHING, NULL},
+    {".params", DALCS_CARD_NONE, "parameters", "write the numbers in place", NOTHING, NULL},
+    {".csparam", DALCS_CARD_NONE, "parameters", "write the numbers in place", NOTHING, NULL},
+    {".global_param", DALCS_CARD_NONE, "parameters", "write the numbers in place", NOTHING, NULL},
+    {".func", DALCS_CARD_NONE, "functions", "write the numbers in place", NOTHING, NULL},
+    {".subckt", DALCS_CARD_NONE, "subcircuits", "write its elements in place", MODELS, ".ends"},
+    {".ends", DALCS_CARD_NONE, "subcircuits", NULL, NOTHING, NULL},
+    {".global", DALCS_CARD_NONE, "global nodes", NULL, NOTHING, NULL},
+    {".include", DALCS_CARD_NONE, "included files", "paste the file's lines here", ALL, NULL},
+    {".incl", DALCS_CARD_NONE, "included files", "paste the file's lines here", ALL, NULL},
+    {".inc", DALCS_CARD_NONE, "included files", "paste the file's lines here", ALL, NULL},
+    {".lib", DALCS_CARD_NONE, "libraries", "paste the models that are used here", ALL, NULL},
+    {".endl", DALCS_CARD_NONE, "libraries", NULL, NOTHING, NULL},
+    {".if", DALCS_CARD_NONE, "conditions", "keep the branch that is wanted", ALL, ".endif"},
+    {".elseif", DALCS_CARD_NONE, "conditions", NULL, NOTHING, NULL},
+    {".else", DALCS_CARD_NONE, "conditions", NULL, NOTHING, NULL},
+    {".endif", DALCS_CARD_NONE, "conditions", NULL, NOTHING, NULL},
     {".control", DALCS_CARD_NONE, "control blocks",
-     "write the analysis as a card, such as: .tran 10u 20m", NULL},
-    {".endc", DALCS_CARD_NONE, "control blocks", NULL, NULL},
-    {".meas", DALCS_CARD_NONE, "measurements", NULL, NULL},
-    {".measure", DALCS_CARD_NONE, "measurements", NULL, NULL},
-    {".four", DALCS_CARD_NONE, "Fourier analysis", NULL, NULL},
-    {".fourier", DALCS_CARD_NONE, "Fourier analysis", NULL, NULL},
-    {".step", DALCS_CARD_NONE, "parameter sweeps", NULL, NULL},
-    {".data", DALCS_CARD_NONE, "parameter sweeps", NULL, ".enddata"},
-    {".enddata", DALCS_CARD_NONE, "parameter sweeps", NULL, NULL},
-    {".dc", DALCS_CARD_NONE, "DC sweeps", "write .op for one operating point", NULL},
-    {".ac", DALCS_CARD_NONE, "AC analysis", NULL, NULL},
+     "write the analysis as a card, such as: .tran 10u 20m", ANALYSES, NULL},
+    {".endc", DALCS_CARD_NONE, "control blocks", NULL, NOTHING, NULL},
+    {".meas", DALCS_CARD_NONE, "measurements", NULL, NOTHING, NULL},
+    {".measure", DALCS_CARD_NONE, "measurements", NULL, NOTHING, NULL},
+    {".four", DALCS_CARD_NONE, "Fourier analyses", NULL, NOTHING, NULL},
+    {".fourier", DALCS_CARD_NONE, "Fourier analyses", NULL, NOTHING, NULL},
+    {".step", DALCS_CARD_NONE, "parameter sweeps", NULL, NOTHING, NULL},
+    {".data", DALCS_CARD_NONE, "parameter sweeps", NULL, NOTHING, ".enddata"},
+    {".enddata", DALCS_CARD_NONE, "parameter sweeps", NULL, NOTHING, NULL},
+    {".dc", DALCS_CARD_NONE, "DC sweeps", "write .op for one operating point", ANALYSES, NULL},
+    {".ac", DALCS_CARD_NONE, "AC analyses", NULL, ANALYSES, NULL},
     {".nodeset", DALCS_CARD_NONE, "node sets",
-     "the operating point needs no guess; .ic sets a start", NULL},
-    {".wave", DALCS_CARD_NONE, "sound output", NULL, NULL},
-    {".alter", DALCS_CARD_NONE, "altered runs", NULL, NULL},
+     "the operating point needs no guess; .ic sets a start", NOTHING, NULL},
+    {".wave", DALCS_CARD_NONE, "sound files", NULL, NOTHING, NULL},
+    {".alter", DALCS_CARD_NONE, "altered runs", NULL, NOTHING, NULL},
 };
 
 /* Without a meaning for ideal elements; accepted. */
 static const char *const IGNORED[] = {".temp", ".width", ".noopt", ".prot", ".unprot", ".hdl"};
 
 /* Analyses that this simulator will not have. */
-static const char *const NEVER[] = {".noise", ".pz",   ".disto", ".tf", ".sens", ".sp",
-                                    ".pss",   ".hb",   ".net",   ".mc", ".wcase", ".machine",
-                                    ".stab",  ".ferret", ".sampling", ".preprocess"};
+static const char *const NEVER[] = {
+    ".noise", ".pz", ".disto", ".tf",      ".sens", ".sp",     ".pss",      ".hb",
+    ".net",   ".mc", ".wcase", ".machine", ".stab", ".ferret", ".sampling", ".preprocess"};
 
 /* Elements by letter that are not supported. */
 static const char *refused_element(char letter) {
@@ -118,26 +127,14 @@ static const char *hint_of_element(char letter) {
     }
 }
 
-static bool is_one_of(const char *name, const char *const *list, size_t n) {
-    for (size_t k = 0; k < n; k++) {
-        if (strcmp(name, list[k]) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static void report_unknown(struct dalcs_builder *builder, const struct dalcs_token *name) {
     const char *names[sizeof DOT_CARDS / sizeof DOT_CARDS[0]];
     const size_t n = sizeof DOT_CARDS / sizeof DOT_CARDS[0];
     for (size_t k = 0; k < n; k++) {
         names[k] = DOT_CARDS[k].name;
     }
-    const char *nearest = dalcs_names_nearest_of(names, n, name->text);
     dalcs_builder_error(builder, name,
-                        nearest != NULL
-                            ? dalcs_builder_hint(builder, "did you mean '%s'?", nearest)
-                            : NULL,
+                        dalcs_builder_suggest_of(builder, names, n, name->text, NULL),
                         "unknown card '%s'", name->text);
 }
 
@@ -152,23 +149,23 @@ static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
         if (card->refused != NULL) {
             dalcs_builder_error(builder, name, card->hint, "%s are not supported yet (%s)",
                                 card->refused, card->name);
-            builder->incomplete = true;
+            builder->hidden |= card->hides;
             table->block_begin = card->name;
             table->block_end = card->block_end;
             table->block_depth = card->block_end != NULL;
         }
         return card->class;
     }
-    if (is_one_of(name->text, IGNORED, sizeof IGNORED / sizeof IGNORED[0])) {
+    if (dalcs_builder_is_one_of(name->text, IGNORED, sizeof IGNORED / sizeof IGNORED[0])) {
         dalcs_builder_note(builder, name, NULL, "%s has no meaning here and is ignored",
                            name->text);
-    } else if (is_one_of(name->text, NEVER, sizeof NEVER / sizeof NEVER[0])) {
+    } else if (dalcs_builder_is_one_of(name->text, NEVER, sizeof NEVER / sizeof NEVER[0])) {
         dalcs_builder_error(builder, name, "use .tran or .op",
                             "%s is not an analysis of ideal-diode circuits", name->text);
-        builder->incomplete = true;
+        builder->hidden |= DALCS_HIDDEN_ANALYSES;
     } else {
         report_unknown(builder, name);
-        builder->incomplete = true;
+        builder->hidden |= DALCS_HIDDEN_ALL;
     }
     return DALCS_CARD_NONE;
 }
@@ -185,7 +182,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         return DALCS_CARD_ELEMENT;
     }
     const char *what = refused_element(letter);
-    builder->incomplete = true;
+    builder->hidden |= DALCS_HIDDEN_ELEMENTS;
     if (what != NULL) {
         dalcs_builder_error(builder, name, hint_of_element(letter),
                             "%s are not supported yet ('%s')", what, name->text);
@@ -205,7 +202,7 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
             dalcs_builder_error(table->builder, name, NULL, "a card cannot start with '%s'",
                                 name->text);
         }
-        table->builder->incomplete = true;
+        table->builder->hidden |= DALCS_HIDDEN_ALL;
         return DALCS_CARD_NONE;
     }
     if (table->block_end != NULL) {

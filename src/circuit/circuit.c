@@ -114,8 +114,7 @@ static void read_card(struct dalcs_builder *builder, const struct dalcs_card *ca
     }
 }
 
-static enum dalcs_status read_cards(struct dalcs_builder *builder,
-                                    const unsigned char *class_of) {
+static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigned char *class_of) {
     for (enum pass pass = MODELS; pass <= REFERENCES; pass++) {
         for (size_t k = 0; k < builder->netlist->n_cards; k++) {
             read_card(builder, &builder->netlist->card[k], (enum dalcs_card_class)class_of[k],
@@ -130,16 +129,16 @@ static enum dalcs_status read_cards(struct dalcs_builder *builder,
 
 /* Errors that are nowhere: something that every netlist has is missing. */
 static void check_presence(struct dalcs_builder *builder) {
-    const struct dalcs_circuit *circuit = builder->circuit;
     const struct dalcs_location where = {.file = builder->netlist->name};
-    if (builder->incomplete || builder->netlist->has_errors) {
+    if (builder->netlist->has_errors) {
         return;
     }
-    if (builder->n_device_cards == 0) {
+    if (builder->n_device_cards == 0 && (builder->hidden & DALCS_HIDDEN_ELEMENTS) == 0) {
         dalcs_builder_error_at(builder, &where, "the first line is the title, never an element",
                                "the netlist has no elements");
     }
-    if (builder->tran == NULL && builder->op == NULL && !circuit->operating_point) {
+    if (builder->tran == NULL && builder->op == NULL &&
+        (builder->hidden & DALCS_HIDDEN_ANALYSES) == 0) {
         dalcs_builder_error_at(builder, &where, "add a line such as: .tran 10u 20m",
                                "the netlist asks for nothing: no .tran and no .op");
     }
@@ -152,8 +151,8 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
     const size_t n_nodes = (size_t)circuit->n_nodes;
     circuit->node_name = dalcs_arena_alloc(arena, n_nodes, sizeof *circuit->node_name);
     circuit->signal = dalcs_arena_alloc(arena, builder->n_signals, sizeof *circuit->signal);
-    circuit->initial_condition = dalcs_arena_alloc(arena, builder->n_initial_conditions,
-                                                   sizeof *circuit->initial_condition);
+    circuit->initial_condition =
+        dalcs_arena_alloc(arena, builder->n_initial_conditions, sizeof *circuit->initial_condition);
     circuit->title =
         dalcs_arena_copy(arena, builder->netlist->title, strlen(builder->netlist->title));
     if (circuit->node_name == NULL || circuit->signal == NULL ||

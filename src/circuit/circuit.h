@@ -24,17 +24,17 @@ enum dalcs_device_kind {
 
 struct dalcs_device {
     enum dalcs_device_kind kind;
-    const char *name;              /* "d1" */
-    int node[4];                   /* terminals, then controlling nodes for E, G, S */
-    double value;                  /* ohm, H, F, or gain */
-    double initial;                /* IC=: V for C, A for L */
+    const char *name; /* "d1" */
+    int node[4];      /* terminals, then controlling nodes for E, G, S */
+    double value;     /* ohm, H, F, or gain */
+    double initial;   /* IC=: V for C, A for L */
     bool has_initial;
-    bool initially_on;             /* S ... ON */
-    bool has_initial_state;        /* S carries ON or OFF */
-    int stimulus;                  /* V, I: index into circuit->stimulus, else -1 */
-    int control;                   /* F, H: index of the controlling V device, else -1 */
-    int model;                     /* D: index into diode_model; S: into switch_model; else -1 */
-    struct dalcs_location where;   /* the element's card */
+    bool initially_on;           /* S ... ON */
+    bool has_initial_state;      /* S carries ON or OFF */
+    int stimulus;                /* V, I: index into circuit->stimulus, else -1 */
+    int control;                 /* F, H: index of the controlling V device, else -1 */
+    int model;                   /* D: index into diode_model; S: into switch_model; else -1 */
+    struct dalcs_location where; /* the element's card */
 };
 
 /* Forward branch: ideal + Vfwd + Ron; optional parallel Roff; optional reverse branch Vrev + Rrev.
@@ -104,11 +104,12 @@ struct dalcs_circuit {
     struct dalcs_signal *signal;
     struct dalcs_transient transient;
     bool operating_point; /* .op */
+
     struct dalcs_circuit_options {
         double reltol, abstol, vntol; /* 0: not given */
         const char *method;           /* NULL: not given */
         struct dalcs_location method_where;
-        double step;                  /* 0: not given */
+        double step; /* 0: not given */
     } options;
     struct dalcs_arena arena; /* owns everything above, source text of locations included */
 };

@@ -1,8 +1,6 @@
 /* controlled.c - linear controlled sources: E and G by a voltage, F and H by the current of a V. */
 #include "builder.h"
 
-#include <string.h>
-
 static bool is_voltage_controlled(enum dalcs_device_kind kind) {
     return kind == DALCS_VCVS || kind == DALCS_VCCS;
 }
@@ -22,17 +20,16 @@ static const char *usage_of(enum dalcs_device_kind kind) {
 
 /* POLY, VALUE=, TABLE and their like stand where the control should be. */
 static bool is_nonlinear(struct dalcs_reader *reader) {
-    static const char *const forms[] = {"poly", "value", "table", "laplace", "freq",
-                                        "vol",  "cur",   "chebyshev"};
+    static const char *const forms[] = {"poly", "value", "table", "laplace",
+                                        "freq", "vol",   "cur",   "chebyshev"};
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
-    for (size_t k = 0; token != NULL && k < sizeof forms / sizeof forms[0]; k++) {
-        if (strcmp(token->text, forms[k]) == 0) {
-            dalcs_builder_error(reader->builder, token, reader->usage,
-                                "a source of the form %s is not supported yet", token->text);
-            return true;
-        }
+    if (token == NULL ||
+        !dalcs_builder_is_one_of(token->text, forms, sizeof forms / sizeof forms[0])) {
+        return false;
     }
-    return false;
+    dalcs_builder_error(reader->builder, token, reader->usage,
+                        "a source of the form %s is not supported yet", token->text);
+    return true;
 }
 
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
@@ -40,8 +37,7 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
     struct dalcs_reader reader = dalcs_reader_start(builder, card, usage_of(kind));
     struct dalcs_device *device = dalcs_builder_add_device(builder, kind, card->token);
     const struct dalcs_token *source;
-    if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node) ||
-        is_nonlinear(&reader)) {
+    if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node) || is_nonlinear(&reader)) {
         return;
     }
     if (is_voltage_controlled(kind)) {
@@ -64,8 +60,7 @@ void dalcs_controlled_resolve(struct dalcs_builder *builder, const struct dalcs_
     /* A card that cannot be read so far was reported when it was parsed. */
     const bool was_failed = builder->failed;
     if (index < 0 || index >= builder->n_device_cards || card->n < 5 ||
-        !dalcs_reader_nodes(&reader, 2, ignored) ||
-        !dalcs_reader_name(&reader, "", &name)) {
+        !dalcs_reader_nodes(&reader, 2, ignored) || !dalcs_reader_name(&reader, "", &name)) {
         builder->failed = builder->failed || was_failed;
         return;
     }
@@ -75,10 +70,9 @@ void dalcs_controlled_resolve(struct dalcs_builder *builder, const struct dalcs_
         return;
     }
     if (builder->circuit->device[control].kind != DALCS_VSOURCE) {
-        dalcs_builder_error(
-            builder, name, "put a source of 0 V in series and name that",
-            "'%s' is %s: a control current is that of a voltage source", name->text,
-            dalcs_builder_kind_text(builder->circuit->device[control].kind));
+        dalcs_builder_error(builder, name, "put a source of 0 V in series and name that",
+                            "'%s' is %s: a control current is that of a voltage source", name->text,
+                            dalcs_builder_kind_text(builder->circuit->device[control].kind));
         return;
     }
     device->control = control;

@@ -20,11 +20,10 @@ static int find_coil(struct dalcs_builder *builder, const struct dalcs_token *na
     }
     /* An inductance of 0 became a resistor: coupling nothing. */
     if (builder->circuit->device[device].kind != DALCS_INDUCTOR) {
-        dalcs_builder_error(builder, name, USAGE, "'%s' is %s, only inductors can be coupled",
-                            name->text,
-                            name->text[0] == 'l'
-                                ? "an inductor of 0 H"
-                                : dalcs_builder_kind_text(builder->circuit->device[device].kind));
+        dalcs_builder_error(
+            builder, name, USAGE, "'%s' is %s, only inductors can be coupled", name->text,
+            name->text[0] == 'l' ? "an inductor of 0 H"
+                                 : dalcs_builder_kind_text(builder->circuit->device[device].kind));
         return -1;
     }
     return device;
@@ -41,11 +40,10 @@ static bool is_new_pair(struct dalcs_builder *builder, const struct dalcs_token 
     }
     const int first = dalcs_names_find(&builder->pairs, pair);
     if (first >= 0) {
-        dalcs_builder_error(builder, card_name, NULL,
-                            "'%s' and '%s' are coupled twice, first at %s",
-                            builder->circuit->device[inductor[0]].name,
-                            builder->circuit->device[inductor[1]].name,
-                            dalcs_builder_place(builder, builder->device_token[first]));
+        dalcs_builder_error(
+            builder, card_name, NULL, "'%s' and '%s' are coupled twice, first at %s",
+            builder->circuit->device[inductor[0]].name, builder->circuit->device[inductor[1]].name,
+            dalcs_builder_place(builder, builder->device_token[first]));
         return false;
     }
     if (dalcs_names_add(&builder->pairs, pair, place) != DALCS_OK) {
@@ -56,8 +54,7 @@ static bool is_new_pair(struct dalcs_builder *builder, const struct dalcs_token 
 }
 
 /* Reads the coils and k; true when the coupling is complete and right. */
-static bool read_coupling(struct dalcs_reader *reader, int place,
-                          struct dalcs_coupling *coupling) {
+static bool read_coupling(struct dalcs_reader *reader, int place, struct dalcs_coupling *coupling) {
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *coil[2];
     for (int k = 0; k < 2; k++) {
@@ -118,6 +115,8 @@ struct groups {
     int *parent;   /* [n_devices] another coil of the group, itself for the group's first */
     int *position; /* [n_devices] place in its group's matrix, -1: not placed yet */
     int *size;     /* [n_devices] of the group, at its first coil */
+    int *head;     /* [n_devices] the group's last coupling, at its first coil, -1 for none */
+    int *next;     /* [n_couplings] another coupling of the group, -1 at the end */
 };
 
 static int first_of(const struct groups *groups, int coil) {
@@ -171,13 +170,12 @@ static bool is_semidefinite(double *A, int n) {
     return true;
 }
 
-/* The group of coupling number `first`, of which no earlier coupling is a part. */
-static enum dalcs_status check_group(struct dalcs_builder *builder, struct groups *groups,
-                                     int first) {
+/* The group whose first coil is `root`. */
+static enum dalcs_status check_group(struct dalcs_builder *builder, const struct groups *groups,
+                                     int root) {
     const struct dalcs_circuit *circuit = builder->circuit;
-    const int root = first_of(groups, circuit->coupling[first].inductor[0]);
     const int n = groups->size[root];
-    if (n > MOST_COILS) {
+    if (n < 3 || n > MOST_COILS) {
         return DALCS_OK;
     }
     double *A = dalcs_alloc((size_t)n * (size_t)n, sizeof *A);
@@ -187,21 +185,17 @@ static enum dalcs_status check_group(struct dalcs_builder *builder, struct group
     for (int k = 0; k < n; k++) {
         A[k * n + k] = 1;
     }
-    for (int k = first; k < circuit->n_couplings; k++) {
-        const struct dalcs_coupling *c = &circuit->coupling[k];
-        if (first_of(groups, c->inductor[0]) == root) {
-            const int i = groups->position[c->inductor[0]];
-            const int j = groups->position[c->inductor[1]];
-            A[i * n + j] = A[j * n + i] = c->k;
-        }
+    for (int k = groups->head[root]; k >= 0; k = groups->next[k]) {
+        const int i = groups->position[circuit->coupling[k].inductor[0]];
+        const int j = groups->position[circuit->coupling[k].inductor[1]];
+        A[i * n + j] = A[j * n + i] = circuit->coupling[k].k;
     }
     if (!is_semidefinite(A, n)) {
-        dalcs_builder_warn(builder,
-                           builder->device_token[circuit->coupling[first].inductor[0]],
+        dalcs_builder_warn(builder, builder->device_token[root],
                            "of three coils, k12 = k13 = 1 leaves only k23 = 1",
                            "the %d coils coupled with '%s' cannot exist: their inductance matrix "
                            "has a negative eigenvalue, and they can give more energy than they got",
-                           n, circuit->device[circuit->coupling[first].inductor[0]].name);
+                           n, circuit->device[root].name);
     }
     free(A);
     return DALCS_OK;
@@ -212,37 +206,45 @@ static enum dalcs_status check_groups(struct dalcs_builder *builder, struct grou
     for (int k = 0; k < circuit->n_devices; k++) {
         groups->parent[k] = k;
         groups->position[k] = -1;
+        groups->head[k] = -1;
     }
     for (int k = 0; k < circuit->n_couplings; k++) {
         const int *coil = circuit->coupling[k].inductor;
         groups->parent[first_of(groups, coil[1])] = first_of(groups, coil[0]);
     }
     for (int k = 0; k < circuit->n_couplings; k++) {
+        const int root = first_of(groups, circuit->coupling[k].inductor[0]);
         place(groups, circuit->coupling[k].inductor[0]);
         place(groups, circuit->coupling[k].inductor[1]);
+        groups->next[k] = groups->head[root];
+        groups->head[root] = k;
     }
-    for (int k = 0; k < circuit->n_couplings; k++) {
-        const int root = first_of(groups, circuit->coupling[k].inductor[0]);
-        if (groups->size[root] > 2) {
+    for (int k = 0; k < circuit->n_devices; k++) {
+        if (groups->size[k] > 0) {
             DALCS_TRY(check_group(builder, groups, k));
         }
-        groups->size[root] = 0; /* done */
     }
     return DALCS_OK;
 }
 
 void dalcs_coupling_check(struct dalcs_builder *builder) {
-    const size_t n = (size_t)builder->circuit->n_devices;
-    if (builder->circuit->n_couplings < 2) {
+    const int n_devices = builder->circuit->n_devices;
+    const int n_couplings = builder->circuit->n_couplings;
+    if (n_couplings < 2) {
         return;
     }
-    struct groups groups = {dalcs_alloc(n, sizeof(int)), dalcs_alloc(n, sizeof(int)),
-                            dalcs_alloc(n, sizeof(int))};
-    if (groups.parent == NULL || groups.position == NULL || groups.size == NULL ||
-        check_groups(builder, &groups) != DALCS_OK) {
+    int *memory = dalcs_alloc(4 * (size_t)n_devices + (size_t)n_couplings, sizeof *memory);
+    if (memory == NULL) {
+        builder->out_of_memory = true;
+        return;
+    }
+    struct groups groups = {.parent = memory,
+                            .position = memory + n_devices,
+                            .size = memory + 2 * (size_t)n_devices,
+                            .head = memory + 3 * (size_t)n_devices,
+                            .next = memory + 4 * (size_t)n_devices};
+    if (check_groups(builder, &groups) != DALCS_OK) {
         builder->out_of_memory = true;
     }
-    free(groups.parent);
-    free(groups.position);
-    free(groups.size);
+    free(memory);
 }

@@ -37,15 +37,14 @@ static void read_rest(struct dalcs_reader *reader) {
             }
             dalcs_builder_warn(builder, token, NULL,
                                "the area of a piecewise linear diode is ignored");
-        } else if (name != NULL && (strcmp(name->text, "ic") == 0 ||
-                                    strcmp(name->text, "temp") == 0 ||
-                                    strcmp(name->text, "dtemp") == 0)) {
+        } else if (name != NULL &&
+                   (strcmp(name->text, "ic") == 0 || strcmp(name->text, "temp") == 0 ||
+                    strcmp(name->text, "dtemp") == 0)) {
             if (!dalcs_reader_number(reader, DALCS_PLAIN, "a number", &ignored)) {
                 return;
             }
             dalcs_builder_note(builder, name, NULL, "'%s' of a diode is ignored", name->text);
-        } else if (name != NULL && (strcmp(name->text, "m") == 0 ||
-                                    strcmp(name->text, "n") == 0 ||
+        } else if (name != NULL && (strcmp(name->text, "m") == 0 || strcmp(name->text, "n") == 0 ||
                                     strcmp(name->text, "area") == 0)) {
             dalcs_builder_error(builder, name, "write a model for it",
                                 "'%s' of a diode is not supported yet", name->text);
@@ -78,152 +77,92 @@ void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *c
 
 /* ---- Models -------------------------------------------------------------------------------- */
 
-static bool is_one_of(const char *name, const char *const *list) {
-    for (; *list != NULL; list++) {
-        if (strcmp(name, *list) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* Parameters of diodes that this is not. True when the name was reported. */
-static bool report_foreign(struct dalcs_builder *builder, const struct dalcs_token *name) {
+/* Reports a parameter that a diode here does not have; false for one that means nothing. */
+static bool report_parameter(struct dalcs_builder *builder, const struct dalcs_token *name) {
+    static const char *const ours[] = {"ron", "roff", "vfwd", "vrev", "rrev"};
     static const char *const berkeley[] = {
-        "is",  "js",  "jsw",  "n",    "ns",   "rs",   "bv",   "ibv",  "nbv",  "cjo",
-        "cj0", "cj",  "cjp",  "vj",   "pb",   "m",    "mj",   "fc",   "fcs",  "tt",
-        "eg",  "xti", "kf",   "af",   "ik",   "ikf",  "ikr",  "isr",  "nr",   "ibvl",
-        "nbvl", "tbv", "tbv1", "tbv2", "trs", "trs1", "trs2", "tikf", "tnom", "tref",
-        "level", "area", "vp", "rsw", "tcv", "cta", "vjsw", "php", "mjsw", NULL};
-    static const char *const later[] = {"ilimit", "revilimit", "epsilon", "revepsilon", NULL};
-    if (is_one_of(name->text, berkeley)) {
+        "is",   "js",    "jsw",  "n",    "ns",  "rs",   "bv",   "ibv",  "nbv",  "ibvl",
+        "nbvl", "cjo",   "cj0",  "cj",   "cjp", "vj",   "pb",   "m",    "mj",   "fc",
+        "fcs",  "tt",    "eg",   "xti",  "kf",  "af",   "ik",   "ikf",  "ikr",  "isr",
+        "nr",   "tbv",   "tbv1", "tbv2", "trs", "trs1", "trs2", "tikf", "tnom", "tref",
+        "vp",   "level", "area", "rsw",  "tcv", "cta",  "vjsw", "php",  "mjsw"};
+    static const char *const later[] = {"ilimit", "revilimit", "epsilon", "revepsilon"};
+    /* Data that libraries keep in a model, of no effect in any simulator. */
+    static const char *const labels[] = {"mfg",  "type", "vpk",  "ipk",     "iave",
+                                         "irms", "diss", "vceo", "icrating"};
+    if (dalcs_builder_is_one_of(name->text, labels, sizeof labels / sizeof labels[0])) {
+        return false;
+    }
+    if (dalcs_builder_is_one_of(name->text, berkeley, sizeof berkeley / sizeof berkeley[0])) {
         dalcs_builder_error(builder, name,
                             "write a piecewise linear diode, such as D(Ron=10m Vfwd=0.7), or D "
                             "for an ideal one",
                             "'%s' belongs to the exponential diode, which is not supported yet",
                             name->text);
-        return true;
-    }
-    if (is_one_of(name->text, later)) {
+    } else if (dalcs_builder_is_one_of(name->text, later, sizeof later / sizeof later[0])) {
         dalcs_builder_error(builder, name, MODEL_USAGE, "'%s' is not supported yet", name->text);
-        return true;
-    }
-    return false;
-}
-
-/* Data that some libraries keep in a model, of no effect in any simulator. */
-static bool skip_label(struct dalcs_reader *reader, const struct dalcs_token *name) {
-    static const char *const labels[] = {"mfg",  "type", "vpk",  "ipk",    "iave",
-                                         "irms", "diss", "vceo", "icrating", NULL};
-    if (!is_one_of(name->text, labels)) {
-        return false;
-    }
-    const struct dalcs_token *value = dalcs_reader_peek(reader, 0);
-    if (value != NULL && value->kind != DALCS_TOKEN_CLOSE) {
-        reader->at++;
+    } else {
+        dalcs_builder_error(builder, name,
+                            dalcs_builder_suggest_of(builder, ours, sizeof ours / sizeof ours[0],
+                                                     name->text, MODEL_USAGE),
+                            "a diode model has no parameter '%s'", name->text);
     }
     return true;
 }
 
-static bool check_model(struct dalcs_reader *reader, const struct dalcs_token *const *place,
-                        const struct dalcs_diode_model *model) {
-    struct dalcs_builder *builder = reader->builder;
-    /* In the order of place[]: ron roff vfwd vrev rrev. */
-    if (model->ron < 0) {
-        dalcs_builder_error(builder, place[0], NULL, "Ron cannot be negative");
+enum { RON, ROFF, VFWD, VREV, RREV, N_PARAMETERS };
+
+static bool check_model(struct dalcs_builder *builder, const struct dalcs_parameter *p) {
+    if (p[RON].value < 0) {
+        dalcs_builder_error(builder, p[RON].place, NULL, "Ron cannot be negative");
         return false;
     }
-    if (model->roff <= 0) {
-        dalcs_builder_error(builder, place[1], "leave Roff out for a diode without leakage",
+    if (p[ROFF].value <= 0) {
+        dalcs_builder_error(builder, p[ROFF].place, "leave Roff out for a diode without leakage",
                             "Roff must be positive");
         return false;
     }
-    if (model->vrev <= 0) {
-        dalcs_builder_error(builder, place[3],
+    if (p[VREV].value <= 0) {
+        dalcs_builder_error(builder, p[VREV].place,
                             "Vrev is the magnitude of the breakdown voltage; leave it out for none",
                             "Vrev must be positive");
         return false;
     }
-    if (model->vfwd <= -model->vrev) {
-        dalcs_builder_error(builder, place[2], NULL, "Vfwd is below the breakdown at -Vrev");
+    if (p[VFWD].value <= -p[VREV].value) {
+        dalcs_builder_error(builder, p[VFWD].place, NULL,
+                            "Vfwd is not above the breakdown at -Vrev");
         return false;
     }
-    if (model->rrev < 0) {
-        dalcs_builder_error(builder, place[4], NULL, "Rrev cannot be negative");
+    if (p[RREV].value < 0) {
+        dalcs_builder_error(builder, p[RREV].place, NULL, "Rrev cannot be negative");
         return false;
     }
-    if (model->roff <= model->ron) {
-        dalcs_builder_warn(builder, place[1], NULL, "Roff is not above Ron");
+    if (p[ROFF].value <= p[RON].value) {
+        dalcs_builder_warn(builder, p[ROFF].place, NULL, "Roff is not above Ron");
     }
     return true;
 }
 
 bool dalcs_diode_parse_model(struct dalcs_reader *reader, struct dalcs_diode_model *model) {
-    static const struct {
-        const char *name;
-        enum dalcs_quantity quantity;
-    } known[5] = {{"ron", DALCS_OHM},
-                  {"roff", DALCS_OHM},
-                  {"vfwd", DALCS_VOLTAGE},
-                  {"vrev", DALCS_VOLTAGE},
-                  {"rrev", DALCS_OHM}};
-    static const char *const names[5] = {"ron", "roff", "vfwd", "vrev", "rrev"};
-    struct dalcs_builder *builder = reader->builder;
-    double value[5] = {0, (double)INFINITY, 0, (double)INFINITY, 0};
-    const struct dalcs_token *place[5] = {NULL};
-    bool foreign = false;
-    const struct dalcs_token *name;
-
+    const double infinite = (double)INFINITY;
+    struct dalcs_parameter parameter[N_PARAMETERS] = {
+        [RON] = {"ron", DALCS_OHM, false, 0, NULL},
+        [ROFF] = {"roff", DALCS_OHM, true, infinite, NULL},
+        [VFWD] = {"vfwd", DALCS_VOLTAGE, false, 0, NULL},
+        [VREV] = {"vrev", DALCS_VOLTAGE, true, infinite, NULL},
+        [RREV] = {"rrev", DALCS_OHM, false, 0, NULL},
+    };
     reader->usage = MODEL_USAGE;
-    while ((name = dalcs_reader_take_parameter(reader)) != NULL) {
-        int k = 0;
-        while (k < 5 && strcmp(known[k].name, name->text) != 0) {
-            k++;
-        }
-        if (k == 5 && skip_label(reader, name)) {
-            continue;
-        }
-        if (k == 5) {
-            /* A library's card has a dozen of these: one message is enough. */
-            const char *nearest = dalcs_names_nearest_of(names, 5, name->text);
-            if (!foreign && !report_foreign(builder, name)) {
-                dalcs_builder_error(
-                    builder, name,
-                    nearest != NULL ? dalcs_builder_hint(builder, "did you mean '%s'?", nearest)
-                                    : MODEL_USAGE,
-                    "a diode model has no parameter '%s'", name->text);
-            }
-            foreign = true;
-            double ignored;
-            const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
-            if (next != NULL && next->kind == DALCS_TOKEN_WORD && !dalcs_reader_is_number(next)) {
-                reader->at++;
-            } else if (!dalcs_reader_number(reader, DALCS_PLAIN, "a value", &ignored)) {
-                return false;
-            }
-            continue;
-        }
-        if (place[k] != NULL) {
-            dalcs_builder_error(builder, name, NULL, "'%s' is given twice", name->text);
-            return false;
-        }
-        const bool may_be_infinite = k == 1 || k == 3;
-        const bool ok =
-            may_be_infinite
-                ? dalcs_reader_number_or_infinity(reader, known[k].quantity, "a value", &value[k])
-                : dalcs_reader_number(reader, known[k].quantity, "a value", &value[k]);
-        if (!ok) {
-            return false;
-        }
-        place[k] = name;
-    }
-    if (foreign) {
+    if (!dalcs_model_read_parameters(reader, parameter, N_PARAMETERS, report_parameter)) {
         return false;
     }
-    model->ron = value[0];
-    model->roff = value[1];
-    model->vfwd = value[2];
-    model->vrev = value[3];
-    model->rrev = place[4] != NULL ? value[4] : model->ron;
-    return check_model(reader, place, model);
+    if (parameter[RREV].place == NULL) {
+        parameter[RREV].value = parameter[RON].value;
+    }
+    model->ron = parameter[RON].value;
+    model->roff = parameter[ROFF].value;
+    model->vfwd = parameter[VFWD].value;
+    model->vrev = parameter[VREV].value;
+    model->rrev = parameter[RREV].value;
+    return check_model(reader->builder, parameter);
 }

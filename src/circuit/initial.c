@@ -17,9 +17,8 @@ static void add_voltage(struct dalcs_builder *builder, const struct dalcs_token 
         return;
     }
     /* v(a,b) and v(b,a) are one voltage. */
-    const char *key = node[0] < node[1]
-                          ? dalcs_builder_hint(builder, "%d %d", node[0], node[1])
-                          : dalcs_builder_hint(builder, "%d %d", node[1], node[0]);
+    const char *key = node[0] < node[1] ? dalcs_builder_hint(builder, "%d %d", node[0], node[1])
+                                        : dalcs_builder_hint(builder, "%d %d", node[1], node[0]);
     const int place_of_new = (int)builder->n_initial_conditions;
     if (key == NULL) {
         return;
@@ -42,14 +41,11 @@ static void add_voltage(struct dalcs_builder *builder, const struct dalcs_token 
         builder->out_of_memory = true;
         return;
     }
-    builder->initial_condition[builder->n_initial_conditions++] =
-        (struct dalcs_initial_condition){{node[0], node[1]},
-                                         value,
-                                         dalcs_builder_keep_location(builder, place)};
+    builder->initial_condition[builder->n_initial_conditions++] = (struct dalcs_initial_condition){
+        {node[0], node[1]}, value, dalcs_builder_keep_location(builder, place)};
 }
 
-static bool read_value(struct dalcs_reader *reader, enum dalcs_quantity quantity,
-                       double *value) {
+static bool read_value(struct dalcs_reader *reader, enum dalcs_quantity quantity, double *value) {
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
     return dalcs_reader_number(reader, quantity, "an initial value", value);
 }

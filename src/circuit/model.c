@@ -51,6 +51,56 @@ static const struct type *find_type(const char *name) {
     return NULL;
 }
 
+static bool read_known(struct dalcs_reader *reader, struct dalcs_parameter *parameter,
+                       const struct dalcs_token *name) {
+    if (parameter->place != NULL) {
+        dalcs_builder_error(reader->builder, name, NULL, "'%s' is given twice", name->text);
+        return false;
+    }
+    parameter->place = name;
+    return parameter->may_be_infinite
+               ? dalcs_reader_number_or_infinity(reader, parameter->quantity, "a value",
+                                                 &parameter->value)
+               : dalcs_reader_number(reader, parameter->quantity, "a value", &parameter->value);
+}
+
+/* The value of a parameter that is not known: a word or a number. */
+static bool skip_value(struct dalcs_reader *reader) {
+    const struct dalcs_token *value = dalcs_reader_peek(reader, 0);
+    double ignored;
+    if (value != NULL && (value->kind == DALCS_TOKEN_STRING ||
+                          (value->kind == DALCS_TOKEN_WORD && !dalcs_reader_is_number(value)))) {
+        reader->at++;
+        return true;
+    }
+    return dalcs_reader_number(reader, DALCS_PLAIN, "a value", &ignored);
+}
+
+bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_parameter *parameter,
+                                 int n,
+                                 bool (*unknown)(struct dalcs_builder *builder,
+                                                 const struct dalcs_token *name)) {
+    bool ok = true;
+    const struct dalcs_token *name;
+    while ((name = dalcs_reader_take_parameter(reader)) != NULL) {
+        int k = 0;
+        while (k < n && strcmp(parameter[k].name, name->text) != 0) {
+            k++;
+        }
+        if (k < n && !read_known(reader, &parameter[k], name)) {
+            return false;
+        }
+        if (k == n) {
+            /* A library's card has a dozen of these: one message is enough. */
+            ok = ok && !unknown(reader->builder, name);
+            if (!skip_value(reader)) {
+                return false;
+            }
+        }
+    }
+    return ok;
+}
+
 /* Reads the parameters of a D or SW into the circuit; false when an error was reported. */
 static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *model) {
     struct dalcs_circuit *circuit = reader->builder->circuit;
@@ -133,7 +183,7 @@ int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *na
     const int index = dalcs_names_find(&builder->models, name->text);
     if (index < 0) {
         builder->failed = true;
-        if (!builder->incomplete) {
+        if ((builder->hidden & DALCS_HIDDEN_MODELS) == 0) {
             dalcs_builder_error(
                 builder, name,
                 builder->n_models > 0
@@ -150,8 +200,7 @@ int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *na
     }
     if (model->kind != kind) {
         dalcs_builder_error(builder, name, NULL, "model '%s' is of type %s, here %s is wanted",
-                            name->text, model->type->text,
-                            kind == DALCS_MODEL_DIODE ? "D" : "SW");
+                            name->text, model->type->text, kind == DALCS_MODEL_DIODE ? "D" : "SW");
         return -1;
     }
     return model->index;

@@ -11,47 +11,34 @@
 static const char *const OURS[] = {"reltol", "abstol", "vntol", "method", "step"};
 
 static const char *const FOREIGN[] = {
-    "itl1",       "itl2",        "itl3",      "itl4",         "itl5",         "itl6",
-    "gmin",       "trtol",       "chgtol",    "pivtol",       "pivrel",       "maxord",
-    "numdgt",     "temp",        "tnom",      "acct",         "noacct",       "list",
-    "nomod",      "nopage",      "node",      "opts",         "noopts",       "noinit",
-    "klu",        "sparse",      "cshunt",    "rshunt",       "gshunt",       "gfarad",
-    "gminsteps",  "srcsteps",    "defl",      "defw",         "defad",        "defas",
-    "defpd",      "defps",       "scale",     "plotwinsize",  "ramptime",     "ramptol",
-    "trytocompact", "keepopinfo", "savecurrents", "autostop", "bypass",       "lvltim",
-    "limpts",     "cptime",      "limtim",    "maxstep",      "mindiv",       "maxevtiter",
-    "noopiter",   "noopalter",   "sollim",    "xmu",          "mu",           "measdgt",
-    "topologycheck", "fastaccess", "interp",  "oldlimit",     "badmos3",      "minbreak",
-    "convstep",   "convabsstep", "dgmin",     "gdsmin",       "delmax",       "absdv",
-    "reldv",      "mxsolve",     "ingold",    "post",         "probe",        "csdf",
-    "brief",      "co",          "width",     "seed",         "seedinfo",     "sim",
-    "digits",     "accurate",    "runlvl",    "rawfile",      "ibisdc",       "warn",
-    "stepgmin",   "ptrantau",    "ptranmax",  "skipgmin",     "solver",       "altinit",
-    "gear",       "trap",        "newtol",    "nopointtol",   "nomarch",      "thev_induc",
-    "baudrate",   "ascii",       "meascplxfmt", "flagloads",  "mindeltagmin", "dptran",
-    "timeint",    "parser",      "output",    "device",       "linsol",       "nonlin"};
+    "itl1",          "itl2",        "itl3",         "itl4",        "itl5",         "itl6",
+    "gmin",          "trtol",       "chgtol",       "pivtol",      "pivrel",       "maxord",
+    "numdgt",        "temp",        "tnom",         "acct",        "noacct",       "list",
+    "nomod",         "nopage",      "node",         "opts",        "noopts",       "noinit",
+    "klu",           "sparse",      "cshunt",       "rshunt",      "gshunt",       "gfarad",
+    "gminsteps",     "srcsteps",    "defl",         "defw",        "defad",        "defas",
+    "defpd",         "defps",       "scale",        "plotwinsize", "ramptime",     "ramptol",
+    "trytocompact",  "keepopinfo",  "savecurrents", "autostop",    "bypass",       "lvltim",
+    "limpts",        "cptime",      "limtim",       "maxstep",     "mindiv",       "maxevtiter",
+    "noopiter",      "noopalter",   "sollim",       "xmu",         "mu",           "measdgt",
+    "topologycheck", "fastaccess",  "interp",       "oldlimit",    "badmos3",      "minbreak",
+    "convstep",      "convabsstep", "dgmin",        "gdsmin",      "delmax",       "absdv",
+    "reldv",         "mxsolve",     "ingold",       "post",        "probe",        "csdf",
+    "brief",         "co",          "width",        "seed",        "seedinfo",     "sim",
+    "digits",        "accurate",    "runlvl",       "rawfile",     "ibisdc",       "warn",
+    "stepgmin",      "ptrantau",    "ptranmax",     "skipgmin",    "solver",       "altinit",
+    "gear",          "trap",        "newtol",       "nopointtol",  "nomarch",      "thev_induc",
+    "baudrate",      "ascii",       "meascplxfmt",  "flagloads",   "mindeltagmin", "dptran",
+    "timeint",       "parser",      "output",       "device",      "linsol",       "nonlin"};
 
 enum { N_OURS = sizeof OURS / sizeof OURS[0], N_FOREIGN = sizeof FOREIGN / sizeof FOREIGN[0] };
 
-static bool is_one_of(const char *name, const char *const *list, size_t n) {
-    for (size_t k = 0; k < n; k++) {
-        if (strcmp(name, list[k]) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static void report_unknown(struct dalcs_builder *builder, const struct dalcs_token *name) {
-    const char *nearest = dalcs_names_nearest_of(OURS, N_OURS, name->text);
-    if (nearest == NULL) {
-        nearest = dalcs_names_nearest_of(FOREIGN, N_FOREIGN, name->text);
+    const char *hint = dalcs_builder_suggest_of(builder, OURS, N_OURS, name->text, NULL);
+    if (hint == NULL) {
+        hint = dalcs_builder_suggest_of(builder, FOREIGN, N_FOREIGN, name->text, NULL);
     }
-    dalcs_builder_warn(builder, name,
-                       nearest != NULL
-                           ? dalcs_builder_hint(builder, "did you mean '%s'?", nearest)
-                           : NULL,
-                       "unknown option '%s' is ignored", name->text);
+    dalcs_builder_warn(builder, name, hint, "unknown option '%s' is ignored", name->text);
 }
 
 static bool read_positive(struct dalcs_reader *reader, enum dalcs_quantity quantity,
@@ -74,9 +61,9 @@ static bool read_method(struct dalcs_reader *reader) {
     if (!dalcs_reader_name(reader, "the name of a method", &method)) {
         return false;
     }
-    if (is_one_of(method->text, theirs, sizeof theirs / sizeof theirs[0])) {
-        dalcs_builder_note(builder, method, NULL,
-                           "method '%s' of other simulators is ignored", method->text);
+    if (dalcs_builder_is_one_of(method->text, theirs, sizeof theirs / sizeof theirs[0])) {
+        dalcs_builder_note(builder, method, NULL, "method '%s' of other simulators is ignored",
+                           method->text);
         return true;
     }
     struct dalcs_circuit_options *options = &builder->circuit->options;
@@ -114,15 +101,14 @@ void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card 
         if (!dalcs_reader_name(&reader, "the name of an option", &name)) {
             return;
         }
-        if (is_one_of(name->text, OURS, N_OURS)) {
+        if (dalcs_builder_is_one_of(name->text, OURS, N_OURS)) {
             if (!read_ours(&reader, name->text)) {
                 return;
             }
             continue;
         }
-        if (is_one_of(name->text, FOREIGN, N_FOREIGN)) {
-            dalcs_builder_note(builder, name, NULL, "option '%s' has no meaning here",
-                               name->text);
+        if (dalcs_builder_is_one_of(name->text, FOREIGN, N_FOREIGN)) {
+            dalcs_builder_note(builder, name, NULL, "option '%s' has no meaning here", name->text);
         } else {
             report_unknown(builder, name);
         }

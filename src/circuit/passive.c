@@ -9,7 +9,7 @@
 /* What belongs to one of the three letters. */
 struct family {
     const char *usage;
-    const char *value; /* what the value is called when it is missing */
+    const char *value;    /* what the value is called when it is missing */
     const char *names[3]; /* of the value when written as a parameter */
     enum dalcs_quantity quantity;
 };
@@ -27,9 +27,7 @@ static const struct family *family_of(enum dalcs_device_kind kind) {
                                             "a capacitance",
                                             {"c", "capacitance", "cap"},
                                             DALCS_FARAD};
-    return kind == DALCS_RESISTOR   ? &resistor
-           : kind == DALCS_INDUCTOR ? &inductor
-                                    : &capacitor;
+    return kind == DALCS_RESISTOR ? &resistor : kind == DALCS_INDUCTOR ? &inductor : &capacitor;
 }
 
 static bool is_value_name(const struct family *family, const char *name) {
@@ -41,22 +39,13 @@ static bool is_value_name(const struct family *family, const char *name) {
     return false;
 }
 
-static bool is_one_of(const char *name, const char *const *list) {
-    for (; *list != NULL; list++) {
-        if (strcmp(name, *list) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* The value of a parameter after the card's value. False ends the card. */
 static bool read_parameter(struct dalcs_reader *reader, const struct family *family,
                            const struct dalcs_token *name, struct dalcs_device *device,
                            bool *has_value) {
-    static const char *const temperature[] = {"tc", "tc1", "tc2", "temp", "dtemp", "noisy",
-                                              "noise", NULL};
-    static const char *const parasitic[] = {"rser", "rpar", "lser", "cpar", "rlshunt", NULL};
+    static const char *const temperature[] = {"tc",    "tc1",   "tc2",  "temp",
+                                              "dtemp", "noisy", "noise"};
+    static const char *const parasitic[] = {"rser", "rpar", "lser", "cpar", "rlshunt"};
     struct dalcs_builder *builder = reader->builder;
     double ignored;
     if (is_value_name(family, name->text) && !*has_value) {
@@ -73,7 +62,8 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
         return dalcs_reader_number(reader, is_inductor ? DALCS_CURRENT : DALCS_VOLTAGE,
                                    is_inductor ? "a current" : "a voltage", &device->initial);
     }
-    if (is_one_of(name->text, temperature)) {
+    if (dalcs_builder_is_one_of(name->text, temperature,
+                                sizeof temperature / sizeof temperature[0])) {
         dalcs_builder_note(builder, name, NULL, "'%s' has no meaning here and is ignored",
                            name->text);
         while (dalcs_reader_peek(reader, 0) != NULL &&
@@ -84,7 +74,7 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
         }
         return true;
     }
-    if (is_one_of(name->text, parasitic)) {
+    if (dalcs_builder_is_one_of(name->text, parasitic, sizeof parasitic / sizeof parasitic[0])) {
         dalcs_builder_error(builder, name, "write it as an element of its own",
                             "parasitic '%s' is not supported yet", name->text);
         return false;

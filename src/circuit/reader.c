@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-struct dalcs_reader dalcs_reader_start(struct dalcs_builder *builder,
-                                       const struct dalcs_card *card, const char *usage) {
+struct dalcs_reader dalcs_reader_start(struct dalcs_builder *builder, const struct dalcs_card *card,
+                                       const char *usage) {
     return (struct dalcs_reader){.builder = builder, .card = card, .at = 1, .usage = usage};
 }
 
@@ -114,8 +114,7 @@ static const char *rkm_hint(struct dalcs_builder *builder, const char *text) {
     }
     const char *letter = text + whole;
     size_t n_letters = 0;
-    while (letter[n_letters] != '\0' && !is_digit(letter[n_letters]) &&
-           letter[n_letters] != '.') {
+    while (letter[n_letters] != '\0' && !is_digit(letter[n_letters]) && letter[n_letters] != '.') {
         n_letters++;
     }
     const char *rest = letter + n_letters;
@@ -142,8 +141,8 @@ static void report_number(struct dalcs_builder *builder, const struct dalcs_toke
                             "'%s' is too small to be told from 0", token->text);
         return;
     case DALCS_NUMBER_RKM:
-        dalcs_builder_error(builder, token, rkm_hint(builder, token->text),
-                            "'%s' is not a number", token->text);
+        dalcs_builder_error(builder, token, rkm_hint(builder, token->text), "'%s' is not a number",
+                            token->text);
         return;
     case DALCS_NUMBER_MALFORMED:
         dalcs_builder_error(builder, token, NULL, "'%s' is not a number", token->text);
@@ -171,11 +170,11 @@ static void warn_of_suffix(struct dalcs_builder *builder, const struct dalcs_tok
                            dalcs_builder_hint(builder, "write %.*sMeg", number->digits, digits),
                            "M is milli: this is %g Hz", number->value);
     } else if (number->suffix == 'f' && quantity == DALCS_FARAD && *tail != 'f') {
-        dalcs_builder_warn(
-            builder, token,
-            dalcs_builder_hint(builder, "write %.*s for farads, %.*sfF for femtofarads",
-                               number->digits, digits, number->digits, digits),
-            "F is femto: this is %g F", number->value);
+        dalcs_builder_warn(builder, token,
+                           dalcs_builder_hint(builder,
+                                              "write %.*s for farads, %.*sfF for femtofarads",
+                                              number->digits, digits, number->digits, digits),
+                           "F is femto: this is %g F", number->value);
     } else if (number->suffix == 'a' && (bare || strncmp(tail, "mp", 2) == 0)) {
         dalcs_builder_warn(builder, token,
                            dalcs_builder_hint(builder, "write %.*s", number->digits, digits),
@@ -184,10 +183,10 @@ static void warn_of_suffix(struct dalcs_builder *builder, const struct dalcs_tok
         dalcs_builder_warn(builder, token, "write m for milli", "mil is 25.4e-6: this is %g",
                            number->value);
     } else if (number->suffix == 0 && *tail == 'x') {
-        dalcs_builder_warn(builder, token,
-                           dalcs_builder_hint(builder, "write %.*sMeg if that is meant",
-                                              number->digits, digits),
-                           "X is no suffix here: this is %g", number->value);
+        dalcs_builder_warn(
+            builder, token,
+            dalcs_builder_hint(builder, "write %.*sMeg if that is meant", number->digits, digits),
+            "X is no suffix here: this is %g", number->value);
     }
 }
 

@@ -8,14 +8,16 @@
 
 static const char USAGE[] = "signals are: v(node) v(a,b) i(element) all";
 
-/* Adds a signal; `name` is in the circuit's arena or NULL when memory ran out. */
+/* Adds a signal; `name` is in the circuit's arena or NULL when memory ran out. The defaults alone
+ * hold nothing twice, and a million names are better not looked up. */
 static void add_signal(struct dalcs_builder *builder, const char *name,
                        struct dalcs_signal signal) {
-    if (name != NULL && dalcs_names_find(&builder->signals, name) >= 0) {
+    const bool may_repeat = builder->names_signals;
+    if (name != NULL && may_repeat && dalcs_names_find(&builder->signals, name) >= 0) {
         return;
     }
     signal.name = name;
-    if (name == NULL || dalcs_names_add(&builder->signals, name, 0) != DALCS_OK ||
+    if (name == NULL || (may_repeat && dalcs_names_add(&builder->signals, name, 0) != DALCS_OK) ||
         dalcs_grow(&builder->signal, &builder->signal_capacity, builder->n_signals + 1,
                    sizeof *builder->signal) != DALCS_OK) {
         builder->out_of_memory = true;
@@ -30,13 +32,11 @@ static const char *node_text(const struct dalcs_builder *builder, int node) {
 
 static void add_voltage(struct dalcs_builder *builder, int a, int b, bool is_pair) {
     struct dalcs_arena *arena = &builder->circuit->arena;
-    const char *name =
-        is_pair ? dalcs_arena_printf(arena, "v(%s,%s)", node_text(builder, a),
-                                     node_text(builder, b))
-                : dalcs_arena_printf(arena, "v(%s)", node_text(builder, a));
+    const char *name = is_pair ? dalcs_arena_printf(arena, "v(%s,%s)", node_text(builder, a),
+                                                    node_text(builder, b))
+                               : dalcs_arena_printf(arena, "v(%s)", node_text(builder, a));
     add_signal(builder, name,
-               (struct dalcs_signal){
-                   .kind = DALCS_SIGNAL_VOLTAGE, .node = {a, b}, .device = -1});
+               (struct dalcs_signal){.kind = DALCS_SIGNAL_VOLTAGE, .node = {a, b}, .device = -1});
 }
 
 static void add_current(struct dalcs_builder *builder, int device) {
@@ -140,6 +140,7 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
     static const char *const other[] = {"ac", "dc", "noise", "sens", "hb", "four"};
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     const struct dalcs_token *type = dalcs_reader_peek(&reader, 0);
+    builder->names_signals = true;
     const bool is_print = strcmp(card->token->text, ".save") != 0;
     for (size_t k = 0; is_print && k < sizeof other / sizeof other[0]; k++) {
         if (dalcs_reader_take_word(&reader, other[k])) {

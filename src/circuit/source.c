@@ -38,21 +38,17 @@ static bool read_dc(struct dalcs_reader *reader, enum dalcs_quantity quantity,
 /* A word that is neither DC, AC nor the name of a function. */
 static void report_word(struct dalcs_reader *reader, const struct dalcs_token *token) {
     static const char *const later[] = {"sffm", "am", "trnoise", "trrandom", "external", "port",
-                                        "r", "td", "value", "poly", "table", "laplace"};
+                                        "r",    "td", "value",   "poly",     "table",    "laplace"};
     static const char *const known[] = {"sin", "pulse", "pwl", "exp", "dc", "ac"};
     struct dalcs_builder *builder = reader->builder;
-    for (size_t k = 0; k < sizeof later / sizeof later[0]; k++) {
-        if (strcmp(token->text, later[k]) == 0) {
-            dalcs_builder_error(builder, token, NULL, "source function '%s' is not supported yet",
-                                token->text);
-            return;
-        }
+    if (dalcs_builder_is_one_of(token->text, later, sizeof later / sizeof later[0])) {
+        dalcs_builder_error(builder, token, NULL, "'%s' on a source is not supported yet",
+                            token->text);
+        return;
     }
-    const char *nearest =
-        dalcs_names_nearest_of(known, sizeof known / sizeof known[0], token->text);
     dalcs_builder_error(builder, token,
-                        nearest != NULL ? dalcs_builder_hint(builder, "did you mean %s?", nearest)
-                                        : USAGE,
+                        dalcs_builder_suggest_of(builder, known, sizeof known / sizeof known[0],
+                                                 token->text, USAGE),
                         "'%s' is neither a value nor a source function", token->text);
 }
 

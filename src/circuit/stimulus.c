@@ -141,8 +141,7 @@ static double pulse_value(const struct dalcs_stimulus *s, double t, enum dalcs_s
     }
     /* Inside a segment, or at its end where the next period cuts it short. */
     const double end = last > first ? edges.item[first].time : t;
-    return within_segment(s, before->segment, end - before->time,
-                          tolerance(t, s->u.pulse.delay));
+    return within_segment(s, before->segment, end - before->time, tolerance(t, s->u.pulse.delay));
 }
 
 static double pulse_next_edge(const struct dalcs_stimulus *s, double t) {
@@ -175,8 +174,7 @@ static double approach(double t, double delay, double tau, enum dalcs_side side)
 static double exponential_value(const struct dalcs_stimulus *s, double t, enum dalcs_side side) {
     const double rise = approach(t, s->u.exponential.rise_delay, s->u.exponential.rise_tau, side);
     const double fall = approach(t, s->u.exponential.fall_delay, s->u.exponential.fall_tau, side);
-    return s->u.exponential.low +
-           (s->u.exponential.high - s->u.exponential.low) * (rise - fall);
+    return s->u.exponential.low + (s->u.exponential.high - s->u.exponential.low) * (rise - fall);
 }
 
 /* ---- PWL ----------------------------------------------------------------------------------- */

@@ -26,23 +26,28 @@ struct dalcs_stimulus {
     enum dalcs_stimulus_kind kind;
     double dc; /* the card's DC value; see has_dc */
     bool has_dc;
+
     union {
         /* offset + amplitude exp(-damping (t - delay)) sin(2 pi frequency (t - delay) + phase);
          * before the delay offset + amplitude sin(phase) */
         struct {
-            double offset, amplitude, frequency, delay, damping, phase; /* V or A, Hz, s, 1/s, deg */
+            double offset, amplitude, frequency, delay, damping,
+                phase; /* V or A, Hz, s, 1/s, deg */
         } sine;
+
         /* low until the delay; then in each period: rise, high for `width`, fall, low. A pulse
          * longer than its period is cut by the next one. */
         struct {
             double low, high, delay, rise, fall, width, period; /* V or A, s; width or period
                                                                    INFINITY: for ever, once */
         } pulse;
+
         /* low + (high - low) (r - f), r = 1 - exp(-(t - rise_delay) / rise_tau) after rise_delay,
          * f likewise after fall_delay (INFINITY: never); a tau of 0 is a jump */
         struct {
             double low, high, rise_delay, rise_tau, fall_delay, fall_tau;
         } exponential;
+
         /* straight lines; constant before the first and after the last point */
         struct {
             int n; /* points, n >= 1; times ascending, equal times are a jump */

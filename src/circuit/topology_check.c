@@ -26,8 +26,8 @@ static void check_nodes(struct dalcs_builder *builder, const struct touch *touch
                                circuit->node_name[k], circuit->device[t->device].name);
         } else if (t->n_terminals + t->n_controls == 1) {
             dalcs_builder_warn(builder, builder->node_token[k], NULL,
-                               "node '%s' has one connection only, '%s'",
-                               circuit->node_name[k], circuit->device[t->device].name);
+                               "node '%s' has one connection only, '%s'", circuit->node_name[k],
+                               circuit->device[t->device].name);
         }
     }
 }

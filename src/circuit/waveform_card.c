@@ -136,8 +136,8 @@ static bool read_points(struct dalcs_reader *reader, enum dalcs_quantity quantit
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *first = dalcs_reader_peek(reader, 0);
     if (first != NULL && first->kind == DALCS_TOKEN_WORD && !dalcs_reader_is_number(first)) {
-        dalcs_builder_error(builder, first, reader->usage,
-                            "PWL with '%s' is not supported yet", first->text);
+        dalcs_builder_error(builder, first, reader->usage, "PWL with '%s' is not supported yet",
+                            first->text);
         return false;
     }
     int n_numbers = 0;
@@ -240,8 +240,7 @@ bool dalcs_waveform_card_parse(struct dalcs_reader *reader, enum dalcs_quantity 
     }
     if (opened && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
         if (dalcs_reader_at_end(reader)) {
-            dalcs_builder_error(reader->builder, open, form->usage,
-                                "parenthesis is never closed");
+            dalcs_builder_error(reader->builder, open, form->usage, "parenthesis is never closed");
         } else {
             dalcs_reader_unexpected(reader);
         }

@@ -60,7 +60,9 @@ static void write_certificate(FILE *out, const struct dalcs_report *report) {
 }
 
 void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report) {
-    fprintf(out, "%s\n", report->title ? report->title : "");
+    const char *title = report->title ? report->title : "";
+    title += strspn(title, "* "); /* many a netlist's title is written as a comment */
+    fprintf(out, "%s\n", title);
     write_size(out, report);
     write_work(out, report);
     write_certificate(out, report);

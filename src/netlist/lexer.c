@@ -114,8 +114,8 @@ static void report(struct dalcs_lexer *lexer, const struct dalcs_token *token, c
 }
 
 static enum dalcs_status add_token(struct dalcs_lexer *lexer, const struct dalcs_token *token) {
-    DALCS_TRY(dalcs_grow(&lexer->token, &lexer->capacity, lexer->n_tokens + 1,
-                         sizeof *lexer->token));
+    DALCS_TRY(
+        dalcs_grow(&lexer->token, &lexer->capacity, lexer->n_tokens + 1, sizeof *lexer->token));
     lexer->token[lexer->n_tokens++] = *token;
     return DALCS_OK;
 }
@@ -174,7 +174,8 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
     token->length = (int)(q - p);
 
     if (invalid) {
-        report(lexer, token, "save the netlist as UTF-8 text", "byte that is not text (shown as ?)");
+        report(lexer, token, "save the netlist as UTF-8 text",
+               "byte that is not text (shown as ?)");
         token->kind = DALCS_TOKEN_BAD;
     } else if (!closed) {
         report(lexer, token, NULL, c == '{' ? "brace is never closed" : "quote is never closed");
@@ -231,8 +232,8 @@ static enum dalcs_status continue_card(struct dalcs_lexer *lexer, size_t plus, s
         return read_tokens(lexer, plus + 1, begin);
     }
     DALCS_TRY(need_line(lexer, begin));
-    const struct dalcs_token token = {.line = lexer->line, .offset = (int)(plus - begin),
-                                      .length = 1};
+    const struct dalcs_token token = {
+        .line = lexer->line, .offset = (int)(plus - begin), .length = 1};
     report(lexer, &token, "a line that starts with + continues the card before it",
            "there is no card to continue");
     return DALCS_OK;

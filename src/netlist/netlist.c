@@ -15,8 +15,8 @@
 /* Says so when the text is not one; else false. */
 static bool is_no_text(struct dalcs_netlist *netlist, const char *text, size_t length,
                        struct dalcs_diag *diag) {
-    const bool utf16 = length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 ||
-                                       memcmp(text, "\xFE\xFF", 2) == 0);
+    const bool utf16 =
+        length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0);
     const char *nul = length > 0 ? memchr(text, '\0', length) : NULL;
     if (!utf16 && nul == NULL) {
         return false;
@@ -152,8 +152,7 @@ struct dalcs_location dalcs_token_span(const struct dalcs_token *first,
     if (last->line != first->line || last->offset < first->offset) {
         return dalcs_token_location(first);
     }
-    return make_location(first->line, first->offset,
-                         last->offset + last->length - first->offset);
+    return make_location(first->line, first->offset, last->offset + last->length - first->offset);
 }
 
 struct dalcs_location dalcs_token_end(const struct dalcs_token *token) {

@@ -44,11 +44,12 @@ static int read_suffix(const char *text, char *suffix, int *power) {
         int power;
     } table[] = {
         /* The longer spellings first. */
-        {"meg", 'x', 6}, {"mil", 'i', 0},       {"t", 't', 12},       {"g", 'g', 9},
-        {"k", 'k', 3},   {"m", 'm', -3},        {"u", 'u', -6},       {"n", 'n', -9},
-        {"p", 'p', -12}, {"f", 'f', -15},       {"a", 'a', -18},      {"\xC2\xB5", 'u', -6},
+        {"meg", 'x', 6},       {"mil", 'i', 0}, {"t", 't', 12},  {"g", 'g', 9},
+        {"k", 'k', 3},         {"m", 'm', -3},  {"u", 'u', -6},  {"n", 'n', -9},
+        {"p", 'p', -12},       {"f", 'f', -15}, {"a", 'a', -18}, {"\xC2\xB5", 'u', -6},
         {"\xCE\xBC", 'u', -6}, /* the micro sign and the Greek mu */
     };
+
     for (size_t k = 0; k < sizeof table / sizeof table[0]; k++) {
         if (starts_with(text, table[k].text)) {
             *suffix = table[k].suffix;

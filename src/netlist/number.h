@@ -6,10 +6,10 @@
 
 enum dalcs_number_status {
     DALCS_NUMBER_OK,
-    DALCS_NUMBER_MALFORMED,  /* not a number */
-    DALCS_NUMBER_RKM,        /* 4k7: a digit after the suffix */
-    DALCS_NUMBER_OVERFLOW,   /* larger than any double */
-    DALCS_NUMBER_UNDERFLOW   /* smaller than any double, but not 0 */
+    DALCS_NUMBER_MALFORMED, /* not a number */
+    DALCS_NUMBER_RKM,       /* 4k7: a digit after the suffix */
+    DALCS_NUMBER_OVERFLOW,  /* larger than any double */
+    DALCS_NUMBER_UNDERFLOW  /* smaller than any double, but not 0 */
 };
 
 /* What stood after the digits, for warnings about suffixes that are often meant otherwise. */

@@ -52,13 +52,19 @@ static void recover_states(const struct dalcs_osnsp *p, const double *u, double 
     int n_x = p->system->n_x;
     for (int x = 0; x < n_x; x++) {
         double sum = 0.0;
+        double size = 0.0;
         for (int k = f->X.p[x]; k < f->X.p[x + 1]; k++) {
-            sum += f->X.x[k] * y[f->X.j[k]];
+            double term = f->X.x[k] * y[f->X.j[k]];
+            sum += term;
+            size += fabs(term);
         }
         for (int k = f->Xu.p[x]; k < f->Xu.p[x + 1]; k++) {
-            sum += f->Xu.x[k] * u[f->Xu.j[k]];
+            double term = f->Xu.x[k] * u[f->Xu.j[k]];
+            sum += term;
+            size += fabs(term);
         }
         y[x] = sum;
+        p->state_size[x] = size;
     }
     for (int x = 0; x < n_x; x++) {
         p->difference[x] = f->sigma * (y[x] - u[x]);
@@ -76,9 +82,9 @@ static void check_equations(struct dalcs_osnsp *p, const double *u, const double
         double size = 0.0;
         if (r < s->n_x) {
             for (int k = s->P.p[r]; k < s->P.p[r + 1]; k++) {
-                /* x+ itself is rounded: the row is known no better than sigma P x+. */
+                /* x+ is the rounded difference of two voltages: the row is known no better. */
                 sum -= s->P.x[k] * p->difference[s->P.j[k]];
-                size += fabs(s->P.x[k] * f->sigma * y[s->P.j[k]]);
+                size += fabs(s->P.x[k]) * f->sigma * p->state_size[s->P.j[k]];
             }
         }
         for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {

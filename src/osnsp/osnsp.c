@@ -72,24 +72,27 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
     size_t words = (size_t)p->n_words;
     p->mode = dalcs_alloc(words, sizeof(*p->mode));
     p->key = dalcs_alloc(words + 1, sizeof(*p->key));
+    p->regularised_mode = dalcs_alloc(words, sizeof(*p->regularised_mode));
     p->w = dalcs_alloc(n_pairs, sizeof(double));
     p->form = dalcs_alloc(33, sizeof(*p->form));
     p->form_id = dalcs_alloc(33, sizeof(*p->form_id));
     p->difference = dalcs_alloc((size_t)system->n_x, sizeof(double));
+    p->state_size = dalcs_alloc((size_t)system->n_x, sizeof(double));
     p->magnitude = dalcs_alloc((size_t)dalcs_system_n_equations(system), sizeof(double));
     p->violating = dalcs_alloc(n_pairs, sizeof(int));
     p->mapped = dalcs_alloc(n_columns + 8, sizeof(double));
     p->right = dalcs_alloc(n_columns, sizeof(double));
     p->scaled = dalcs_alloc(n_columns, sizeof(double));
     p->rhs = dalcs_alloc(n_columns, sizeof(double));
+    p->residual = dalcs_alloc(n_columns, sizeof(double));
     p->centre = dalcs_alloc(n_columns, sizeof(double));
     p->centre_w = dalcs_alloc(n_pairs, sizeof(double));
     p->step_before = dalcs_alloc(n_columns + n_pairs, sizeof(double));
     p->step_now = dalcs_alloc(n_columns + n_pairs, sizeof(double));
     enum dalcs_status status = DALCS_E_NOMEM;
-    if (p->mode != NULL && p->key != NULL && p->w != NULL && p->form != NULL &&
-        p->form_id != NULL && p->difference != NULL && p->magnitude != NULL &&
-        p->violating != NULL && p->mapped != NULL && p->right != NULL && p->scaled != NULL && p->rhs != NULL &&
+    if (p->mode != NULL && p->key != NULL && p->regularised_mode != NULL && p->w != NULL && p->form != NULL &&
+        p->form_id != NULL && p->difference != NULL && p->state_size != NULL && p->magnitude != NULL &&
+        p->violating != NULL && p->mapped != NULL && p->right != NULL && p->scaled != NULL && p->rhs != NULL && p->residual != NULL &&
         p->centre != NULL && p->centre_w != NULL && p->step_before != NULL &&
         p->step_now != NULL) {
         status = list_pair_rows(p);
@@ -111,18 +114,21 @@ void dalcs_osnsp_finish(struct dalcs_osnsp *p) {
     free(p->form_id);
     free(p->mode);
     free(p->key);
+    free(p->regularised_mode);
     free(p->w);
     free(p->pair_rows_p);
     free(p->pair_rows);
     free(p->reference);
     free(p->reference_row);
     free(p->difference);
+    free(p->state_size);
     free(p->magnitude);
     free(p->violating);
     free(p->mapped);
     free(p->right);
     free(p->scaled);
     free(p->rhs);
+    free(p->residual);
     free(p->centre);
     free(p->centre_w);
     free(p->step_before);
@@ -166,7 +172,7 @@ static void gather_right(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e
 static void refine(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e) {
     const struct dalcs_step_form *f = p->form[0];
     int n = f->n + f->n_pairs;
-    double *residual = p->centre; /* not in use outside the proximal method */
+    double *residual = p->residual;
     memcpy(residual, p->right, (size_t)n * sizeof(double));
     for (int c = 0; c < n; c++) {
         for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
@@ -189,6 +195,7 @@ static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double
     p->least_norm = e->singular;
     if (e->map == NULL && !e->singular && e->n_uses++ > 2 && dalcs_step_map_pays(p)) {
         DALCS_TRY(dalcs_step_map_build(p, e, 0.0));
+        *have_right = false;
     }
     if (e->map != NULL) {
         dalcs_step_map_apply(p, e, u, y);
@@ -222,12 +229,10 @@ static void flip(struct dalcs_osnsp *p, int pair) {
     p->mode[pair / 64] ^= (uint64_t)1 << (pair % 64);
 }
 
-/* From p->mode by block principal pivoting. DALCS_SINGULAR or DALCS_NOT_CONVERGED: try otherwise. */
-static enum dalcs_status pivot(struct dalcs_osnsp *p, const double *u, double *y) {
+enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
     int fewest = p->system->n_pairs + 1;
     int patience = PATIENCE;
     bool have_right = false;
-    int limit = p->options.max_pivots + 2 * p->system->n_pairs;
     for (int round = 0; round <= limit; round++) {
         bool sources_clash;
         DALCS_TRY(try_mode(p, u, y, &have_right, &sources_clash));
@@ -297,20 +302,18 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
     if (p->n_forms == 0 || p->form[0]->sigma != sigma) {
         DALCS_TRY(dalcs_forms_get(p, sigma));
     }
-    enum dalcs_status status = pivot(p, u, y);
+    int limit = p->options.max_pivots + 2 * p->system->n_pairs;
+    enum dalcs_status status = dalcs_osnsp_pivot(p, u, y, limit);
     if (status > DALCS_OK && status != DALCS_INFEASIBLE) {
         status = dalcs_proximal_solve(p, u, y);
-        if (status == DALCS_OK && p->least_norm == false) {
-            /* the proximal method ended in a regular mode: its answer is the mode's own */
-            status = pivot(p, u, y);
-        }
-        if (status > DALCS_OK && (status != DALCS_INFEASIBLE || !p->system->monotone)) {
+        if (status > DALCS_OK) {
             enum dalcs_status otherwise = enumerate(p, u, y);
             if (otherwise == DALCS_NOT_CONVERGED && !p->system->monotone) {
                 dalcs_witness_from_modes(p);
                 otherwise = DALCS_INFEASIBLE;
             }
-            status = otherwise;
+            /* a witness of a monotone system stands: no regular mode contradicts it */
+            status = otherwise == DALCS_NOT_CONVERGED ? status : otherwise;
         }
     }
     p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;

@@ -77,6 +77,7 @@ struct dalcs_osnsp {
     int n_references;             /* columns that must vanish, and their rows */
     int *reference, *reference_row;
     double *difference;           /* [n_x] x+ - x_k */
+    double *state_size;           /* [n_x] sum of |terms| that x+ is recovered from */
     double *magnitude;            /* [n_equations] sum of |terms| of a row */
     int *violating;               /* [n_pairs] */
     int n_violating;
@@ -84,10 +85,12 @@ struct dalcs_osnsp {
     double *right;  /* [n + n_pairs] scaled R u */
     double *scaled; /* [n + n_pairs] scaled y */
     double *rhs;    /* [n + n_pairs] in mode order */
+    double *residual; /* [n + n_pairs] of the condensed rows, scaled */
     double *centre; /* [n + n_pairs] proximal centre, scaled */
     double *centre_w; /* [n_pairs] */
     double *step_before, *step_now; /* [n + 2 n_pairs] displacements of the proximal iteration */
     uint64_t *key;    /* [n_words + 1] */
+    uint64_t *regularised_mode; /* [n_words] where the proximal method stands */
 };
 
 /* Allocates everything; the system must outlive it. On failure *p is zeroed. */

@@ -86,6 +86,11 @@ void dalcs_witness_from_modes(struct dalcs_osnsp *p);
 
 /* ---- osnsp.c ------------------------------------------------------------------------------- */
 
+/* From p->mode by block principal pivoting over regular modes, at most `limit` changes. DALCS_SINGULAR
+ * or DALCS_NOT_CONVERGED: try otherwise. */
+enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, double *y,
+                                    int limit) DALCS_MUST_CHECK;
+
 /* p->scaled to y's z and lambda. */
 void dalcs_osnsp_unscale(const struct dalcs_osnsp *p, double *y);
 

@@ -27,6 +27,9 @@ static const double weight_spread = 1e3;
 static const double ray_tolerance = 1e-3;
 static const double ray_part = 1e-2;
 
+/* Mode changes allowed from a regularised answer to a regular mode's. */
+enum { REGULAR_ATTEMPTS = 8 };
+
 static double local_ratio(const struct dalcs_osnsp *p, int pair) {
     const struct dalcs_step_form *f = p->form[0];
     double s = f->scale[f->n + pair];
@@ -193,6 +196,19 @@ static double move_centre(struct dalcs_osnsp *p, double *change, double *way) {
     return size;
 }
 
+/* Where the regularised problem ends in a regular mode, or next to one, that mode's own answer is
+ * unique and better: with conductances 1e13 apart the iteration may be too slow to tell a solution
+ * far away from none. Tried once for every mode that the iteration comes to. */
+static enum dalcs_status try_regular_mode(struct dalcs_osnsp *p, const double *u, double *y) {
+    size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
+    memcpy(p->regularised_mode, p->mode, bytes);
+    enum dalcs_status status = dalcs_osnsp_pivot(p, u, y, REGULAR_ATTEMPTS);
+    if (status != DALCS_OK) {
+        memcpy(p->mode, p->regularised_mode, bytes);
+    }
+    return status;
+}
+
 static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const double *u, double *y) {
     const struct dalcs_step_form *f = p->form[0];
     memset(p->centre, 0, (size_t)(f->n + f->n_pairs) * sizeof(double));
@@ -202,6 +218,18 @@ static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const doubl
     for (int outer = 0; outer < p->options.max_outer; outer++) {
         bool mode_changed;
         DALCS_TRY(solve_regularised(p, rung, &mode_changed));
+        struct dalcs_mode_entry *plain;
+        DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
+        if ((outer == 0 || mode_changed) && !plain->singular) {
+            enum dalcs_status status = try_regular_mode(p, u, y);
+            if (status <= DALCS_OK) {
+                return status;
+            }
+            dalcs_csr_multiply(&p->form[0]->R, u, p->right);
+            struct dalcs_mode_entry *e;
+            DALCS_TRY(dalcs_modes_get(p, 1 + rung, &e));
+            dalcs_proximal_step(p, e, p->options.proximal_weight[rung]);
+        }
         dalcs_osnsp_unscale(p, y);
         for (int d = 0; d < f->n_pairs; d++) {
             if (!dalcs_osnsp_is_on(p, d)) {

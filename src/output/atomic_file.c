@@ -81,10 +81,17 @@ static int open_temporary(struct dalcs_atomic_file *file) {
     return descriptor;
 }
 
+/* What a symbolic link leads to; else the path as given, which is how messages should name it. */
+static char *find_target(const char *path) {
+    struct stat status;
+    bool is_link = lstat(path, &status) == 0 && S_ISLNK(status.st_mode);
+    char *target = is_link ? realpath(path, NULL) : NULL;
+    return target ? target : strdup(path);
+}
+
 enum dalcs_status dalcs_atomic_file_open(struct dalcs_atomic_file *file, const char *path) {
     *file = (struct dalcs_atomic_file){0};
-    char *target = realpath(path, NULL);
-    file->path = target ? target : strdup(path);
+    file->path = find_target(path);
     if (!file->path) {
         return fail(file, ENOMEM);
     }

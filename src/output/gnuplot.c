@@ -20,7 +20,7 @@ extern char **environ;
 
 #define COINCIDENT 1e-3 /* of a panel's range: less cannot be seen */
 
-enum { WIDTH = 1200, HEIGHT = 720, MAX_LEGEND = 24 };
+enum { WIDTH = 1200, HEIGHT = 720, MAX_LEGEND = 24, MAX_TITLE = 100 };
 
 /* Eight colours that stay apart for colour-blind eyes and in print. */
 static const char *const colour[DALCS_FIGURE_MAX_CURVES] = {
@@ -100,8 +100,9 @@ static void write_header(FILE *stream, const struct dalcs_figure *figure) {
 
 static void write_title(FILE *stream, const struct dalcs_figure *figure) {
     size_t n_left_out = figure->panel[0].n_left_out + figure->panel[1].n_left_out;
+    const char *title = figure->plot->title ? figure->plot->title : "";
     fputs("set label 1 ", stream);
-    write_quoted(stream, figure->plot->title ? figure->plot->title : "", 100);
+    write_quoted(stream, title + strspn(title, "* "), MAX_TITLE);
     fputs(" at screen 0.065, screen 0.96 left font ',15' textcolor rgb '#202124'\n", stream);
     if (n_left_out > 0) {
         fprintf(stream, "set label 2 '%zu more signal%s not drawn' at screen 0.985, screen 0.96 "

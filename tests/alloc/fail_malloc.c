@@ -24,11 +24,11 @@ void *__libc_memalign(size_t alignment, size_t size);
 void __libc_free(void *old);
 
 struct tally {
-    int64_t calls;     /* allocations asked for */
-    int64_t refused;   /* answered with NULL on purpose */
-    int64_t live;      /* bytes in use */
-    int64_t peak;      /* the most bytes ever in use */
-    int64_t peak_rss;  /* kB, the kernel's VmHWM; written at exit */
+    int64_t calls;    /* allocations asked for */
+    int64_t refused;  /* answered with NULL on purpose */
+    int64_t live;     /* bytes in use */
+    int64_t peak;     /* the most bytes ever in use */
+    int64_t peak_rss; /* kB, the kernel's VmHWM; written at exit */
 };
 
 static struct tally here;
@@ -50,11 +50,11 @@ __attribute__((constructor)) static void start(void) {
         int file = open(path, O_RDWR | O_CREAT, 0600);
 
         if (file >= 0 && ftruncate(file, sizeof *tally) == 0) {
-            void *shared =
-                mmap(NULL, sizeof *tally, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+            void *shared = mmap(NULL, sizeof *tally, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
 
             if (shared != MAP_FAILED) {
                 tally = shared;
+                *tally = here; /* what other constructors took before */
             }
         }
         if (file >= 0) {

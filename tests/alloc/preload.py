@@ -18,7 +18,8 @@ def run_preloaded(library, command, folder, **variables):
     """Returns (finished process, Tally); variables are those of fail_malloc.c."""
     tally = pathlib.Path(folder) / "tally"
     tally.unlink(missing_ok=True)
-    environment = {**os.environ, "LD_PRELOAD": str(library), "DALCS_TALLY": str(tally)}
+    command = [os.path.abspath(command[0]), *command[1:]]
+    environment = {**os.environ, "LD_PRELOAD": os.path.abspath(library), "DALCS_TALLY": str(tally)}
     environment.update({name: str(value) for name, value in variables.items()})
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False,
                           env=environment, cwd=folder)

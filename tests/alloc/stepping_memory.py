@@ -46,7 +46,7 @@ R1 out 0 2
 """,
 }
 STEP = 100e-6
-EXTRA_CALLS = 8        # a longer file name, a longer number, stdio
+EXTRA_CALLS = 2        # nothing is known to need them
 EXTRA_RSS = 1024       # kB
 EXTRA_HEAP = 4096      # bytes
 

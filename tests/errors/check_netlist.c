@@ -16,8 +16,7 @@ static char *read_all(const char *path, size_t *length) {
     size_t capacity = 0;
     size_t got = 1;
     *length = 0;
-    while (file != NULL && got > 0 &&
-           dalcs_grow(&text, &capacity, *length + 4096, 1) == DALCS_OK) {
+    while (file != NULL && got > 0 && dalcs_grow(&text, &capacity, *length + 4096, 1) == DALCS_OK) {
         got = fread(text + *length, 1, capacity - *length, file);
         *length += got;
     }
@@ -40,8 +39,8 @@ int main(int argc, char **argv) {
     struct dalcs_diag diag = {0};
     struct dalcs_netlist netlist = {0};
     struct dalcs_circuit circuit = {0};
-    enum dalcs_status status = dalcs_netlist_read_text(
-        &netlist, argc > 2 ? argv[2] : argv[1], text, length, &diag);
+    enum dalcs_status status =
+        dalcs_netlist_read_text(&netlist, argc > 2 ? argv[2] : argv[1], text, length, &diag);
     if (status == DALCS_OK) {
         status = dalcs_circuit_build(&circuit, &netlist, &diag);
     }

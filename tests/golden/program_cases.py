@@ -1,0 +1,447 @@
+#!/usr/bin/env python3
+"""What a person at the command line meets: options, files, messages, exit statuses.
+
+usage: program_cases.py DALCS CLASS...
+"""
+
+import csv
+import json
+import os
+import pathlib
+import resource
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import xml.dom.minidom
+
+RECTIFIER = """half-wave rectifier
+V1 in 0 SIN(0 10 50)
+D1 in out
+C1 out 0 100u
+R1 out 0 1k
+.tran 100u 40m
+.end
+"""
+BOTH = RECTIFIER.replace(".tran", ".op\n.tran")
+POINT = RECTIFIER.replace("SIN(0 10 50)", "5").replace(".tran 100u 40m", ".op")
+LONG = RECTIFIER.replace(".tran 100u 40m", ".tran 1u 1000 uic")
+MISTAKE = RECTIFIER.replace("1k", "abc")
+# A diode that must conduct from a source into a stiffer one.
+IMPOSSIBLE = """a loop of two sources and a diode
+V1 a 0 5
+D1 a b
+V2 b 0 PULSE(10 1 1m 0 0 1 2)
+R1 b 0 1k
+C1 b 0 1u
+.tran 100u 10m uic
+.end
+"""
+CHARGES = """two capacitors share their charge
+C1 1 0 1u ic=10
+C2 2 0 3u ic=2
+D1 1 2
+.tran 10u 1m uic
+.end
+"""
+
+OK, RUN_FAILED, USAGE, NETLIST, INPUT_OUTPUT = range(5)
+DALCS = ""
+
+
+class Case(unittest.TestCase):
+    """A folder of its own, which is the current one of the program."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def path(self, name):
+        return self.folder / name
+
+    def write(self, text, name="a.cir"):
+        self.path(name).write_text(text)
+        return name
+
+    def files(self):
+        return sorted(path.name for path in self.folder.iterdir())
+
+    def dalcs(self, *arguments, expect=OK, **options):
+        done = subprocess.run([DALCS, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True, check=False, timeout=120, **options)
+        self.assertEqual(done.returncode, expect, done.stderr)
+        return done
+
+    def table(self, name):
+        with open(self.path(name), newline="", encoding="utf-8") as file:
+            header, *rows = csv.reader(file)
+        return header, [[float(field) for field in row] for row in rows]
+
+
+class Usage(Case):
+    def test_help(self):
+        for arguments in ["--help"], ["run", "--help"], ["run", "-h"]:
+            done = self.dalcs(*arguments)
+            self.assertIn("usage: dalcs", done.stdout)
+            self.assertEqual(done.stderr, "")
+
+    def test_every_option_is_in_the_help(self):
+        text = self.dalcs("run", "--help").stdout
+        for option in ["--output", "--method", "--step", "--at", "--report", "--plot",
+                       "--all-signals", "--quiet"]:
+            self.assertIn(option, text)
+
+    def test_version(self):
+        self.assertRegex(self.dalcs("--version").stdout, r"^dalcs \d+\.\d+\.\d+\n$")
+
+    def refused(self, *arguments):
+        done = self.dalcs(*arguments, expect=USAGE)
+        self.assertEqual(done.stdout, "")
+        self.assertTrue(done.stderr.startswith("dalcs: error: "), done.stderr)
+        self.assertEqual(self.files(), ["a.cir"])
+        return done.stderr
+
+    def test_slips(self):
+        self.write(RECTIFIER)
+        self.assertIn("did you mean 'run'?", self.refused("rnu", "a.cir"))
+        self.assertIn("did you mean 'dalcs run a.cir'?", self.refused("a.cir"))
+        self.assertIn("did you mean '--version'?", self.refused("--versoin"))
+        self.assertIn("did you mean '--step'?", self.refused("run", "a.cir", "--setp", "1u"))
+        self.assertIn("did you mean '--report'?", self.refused("run", "--repotr=r.json", "a.cir"))
+        self.assertIn("'-x'", self.refused("run", "a.cir", "-x"))
+
+    def test_values(self):
+        self.write(RECTIFIER)
+        self.assertIn("needs a value", self.refused("run", "a.cir", "--step"))
+        self.assertIn("needs a value", self.refused("run", "a.cir", "-o"))
+        self.assertIn("takes no value", self.refused("run", "a.cir", "--quiet=yes"))
+        self.assertIn("'abc' is not a number", self.refused("run", "a.cir", "--step", "abc"))
+        self.assertIn("greater than 0", self.refused("run", "a.cir", "--step", "0"))
+        self.assertIn("greater than 0", self.refused("run", "a.cir", "--step", "-1u"))
+        self.assertIn(".csv or .raw", self.refused("run", "a.cir", "-o", "out.txt"))
+        self.assertIn(".svg or .png", self.refused("run", "a.cir", "--plot", "p.pdf"))
+        self.assertIn("no netlist", self.refused("run"))
+        self.assertIn("one too many", self.refused("run", "a.cir", "a.cir"))
+        self.assertIn("two results", self.refused("run", "a.cir", "-o", "x.csv", "-o", "x.csv"))
+
+    def test_unknown_method(self):
+        self.write(RECTIFIER)
+        done = self.dalcs("run", "a.cir", "--method", "eluer", expect=USAGE)
+        self.assertIn("eluer", done.stderr)
+        self.assertIn("euler", done.stderr)
+        self.assertEqual(self.files(), ["a.cir"])
+
+
+class Results(Case):
+    def test_default_output(self):
+        self.path("sub").mkdir()
+        self.write(RECTIFIER, "sub/bridge.v2.cir")
+        self.dalcs("run", "sub/bridge.v2.cir")
+        self.assertEqual(self.files(), ["bridge.v2.raw", "sub"])
+
+    def test_csv(self):
+        self.dalcs("run", self.write(RECTIFIER), "-o", "out.csv")
+        header, rows = self.table("out.csv")
+        self.assertEqual(header[0], "time")
+        self.assertEqual(sorted(header[1:]), ["i(d1)", "i(v1)", "v(in)", "v(out)"])
+        self.assertEqual(rows[0][0], 0.0)
+        self.assertEqual(rows[-1][0], 0.04)
+        self.assertAlmostEqual(max(row[header.index("v(out)")] for row in rows), 10.0, places=2)
+
+    def test_step_takes_suffixes(self):
+        self.write(RECTIFIER)
+        self.dalcs("run", "a.cir", "--step", "20us", "--report", "r.json", "-q")
+        report = json.loads(self.path("r.json").read_text())
+        self.assertEqual(report["step"], 20e-6)
+        self.assertEqual(report["work"]["steps"], 2000)
+
+    def test_at(self):
+        self.write("# times\n0\n\n1m\n2.5m ignored\n* note\n0.0333\n", "times.txt")
+        self.dalcs("run", self.write(RECTIFIER), "--at", "times.txt", "-o", "out.csv")
+        self.assertEqual([row[0] for row in self.table("out.csv")[1]], [0.0, 1e-3, 2.5e-3, 0.0333])
+
+    def test_bad_times(self):
+        self.write(RECTIFIER)
+        for text, message in [("0\nx\n", "times.txt:2: 'x'"), ("1m\n1m\n", "times.txt:2:"),
+                              ("-1\n", "times.txt:1:"), ("# none\n", "no times")]:
+            self.write(text, "times.txt")
+            done = self.dalcs("run", "a.cir", "--at", "times.txt", expect=USAGE)
+            self.assertIn(message, done.stderr)
+        done = self.dalcs("run", "a.cir", "--at", "nowhere.txt", expect=INPUT_OUTPUT)
+        self.assertIn("'nowhere.txt': No such file", done.stderr)
+        self.assertEqual(self.files(), ["a.cir", "times.txt"])
+
+    def test_several_outputs(self):
+        done = self.dalcs("run", self.write(RECTIFIER), "-o", "x.csv", "-o", "y.raw", "--report",
+                          "r.json", "-o", "z.csv")
+        self.assertEqual(self.files(), ["a.cir", "r.json", "x.csv", "y.raw", "z.csv"])
+        self.assertEqual(self.path("x.csv").read_bytes(), self.path("z.csv").read_bytes())
+        for name in "x.csv", "y.raw", "z.csv", "r.json":
+            self.assertIn(f"wrote     {name}\n", done.stdout)
+
+    def test_operating_point(self):
+        done = self.dalcs("run", self.write(POINT), "-o", "out.csv")
+        header, rows = self.table("out.csv")
+        self.assertEqual(len(rows), 1)
+        self.assertEqual(dict(zip(header, rows[0])), {"time": 0.0, "v(in)": 5.0, "v(out)": 5.0,
+                                                      "i(v1)": -0.005, "i(d1)": 0.005})
+        self.assertRegex(done.stdout, r"v\(out\) +5\.000  V\n")
+
+    def test_report(self):
+        self.dalcs("run", self.write(CHARGES), "--report", "r.json", "-q")
+        report = json.loads(self.path("r.json").read_text())
+        self.assertEqual(report["status"], "ok")
+        self.assertEqual(report["method"], {"component 1": "euler"})
+        self.assertEqual(set(report["size"]), {"nodes", "x", "z", "lambda", "switches",
+                                               "components"})
+        self.assertLess(report["certificate"]["worst"], 2e-13)
+        jump = report["jumps"][0]
+        self.assertEqual(jump["time"], 0.0)
+        self.assertEqual(jump["states"]["c1"]["before"], 10.0)
+        self.assertAlmostEqual(jump["states"]["c1"]["after"], 4.0, places=12)
+        self.assertAlmostEqual(jump["impulses"]["d1"]["charge"], 6e-6, places=17)
+        self.assertAlmostEqual(jump["energy_lost"], 24e-6, places=16)
+        self.assertAlmostEqual(report["start"]["c2"], 4.0, places=12)
+
+    def test_same_bytes_twice(self):
+        self.write(BOTH)
+        environment = {**os.environ, "SOURCE_DATE_EPOCH": "1700000000"}
+        for name in "one", "two":
+            self.dalcs("run", "a.cir", "-q", "-o", f"{name}.csv", "-o", f"{name}.raw",
+                       env=environment)
+        for kind in "csv", "raw":
+            self.assertEqual(self.path(f"one.{kind}").read_bytes(),
+                             self.path(f"two.{kind}").read_bytes())
+
+
+class Summary(Case):
+    def test_text(self):
+        done = self.dalcs("run", self.write(CHARGES))
+        for piece in ["two capacitors share their charge\n", "2 states", "euler, step 10 us",
+                      "worst residual", "signal", "v(1)",
+                      "jump at t=0: c1 10 V -> 4 V, c2 2 V -> 4 V; charge through d1 6 uC; "
+                      "24 uJ lost", "wrote     a.raw"]:
+            self.assertIn(piece, done.stdout)
+
+    def test_measurements(self):
+        done = self.dalcs("run", self.write("sine\nV1 a 0 SIN(0 10 50)\nR1 a 0 5\n"
+                                            ".tran 10u 20m\n.end\n"))
+        self.assertRegex(done.stdout, r"v\(a\) +-10\.00  V +10\.00  V +0\.000  V +7\.071  V "
+                                      r"+0\.000  V\n")
+
+    def test_quiet(self):
+        done = self.dalcs("run", self.write(RECTIFIER), "--quiet")
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(done.stderr, "")
+
+    def test_no_progress_in_a_pipe(self):
+        self.assertNotIn("\r", self.dalcs("run", self.write(RECTIFIER), "--step", "50n").stderr)
+
+    def test_many_signals(self):
+        netlist = "\n".join(["ladder", "V1 n0 0 1"]
+                            + [f"R{k} n{k} n{k + 1} 1" for k in range(30)]
+                            + ["R99 n30 0 1", ".tran 1u 10u", ".end", ""])
+        self.write(netlist)
+        self.assertIn("... and 8 more: --all-signals", self.dalcs("run", "a.cir").stdout)
+        done = self.dalcs("run", "a.cir", "--all-signals")
+        self.assertIn("v(n30)", done.stdout)
+        self.assertNotIn("more", done.stdout)
+
+    def test_full_device(self):
+        with open("/dev/full", "w", encoding="ascii") as full:
+            done = subprocess.run([DALCS, "run", self.write(RECTIFIER)], cwd=self.folder,
+                                  stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual(done.returncode, INPUT_OUTPUT)
+        self.assertIn("standard output: No space left", done.stderr)
+
+
+class Failures(Case):
+    """A run that fails leaves what was there, and says what it leaves."""
+
+    def test_no_netlist(self):
+        done = self.dalcs("run", "nowhere.cir", "-o", "out.csv", expect=INPUT_OUTPUT)
+        self.assertIn("'nowhere.cir': No such file or directory", done.stderr)
+        self.path("folder").mkdir()
+        done = self.dalcs("run", "folder", expect=INPUT_OUTPUT)
+        self.assertIn("Is a directory", done.stderr)
+        self.assertEqual(self.files(), ["folder"])
+
+    def test_netlist_error(self):
+        self.write("old", "out.csv")
+        done = self.dalcs("run", self.write(MISTAKE), "-o", "out.csv", "-o", "new.raw", "--report",
+                          "r.json", "--plot", "p.svg", expect=NETLIST)
+        self.assertIn("a.cir:5:10: error:", done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(self.files(), ["a.cir", "out.csv"])
+        self.assertEqual(self.path("out.csv").read_text(), "old")
+
+    def test_no_analysis(self):
+        done = self.dalcs("run", self.write(RECTIFIER.replace(".tran 100u 40m\n", "")),
+                          expect=NETLIST)
+        self.assertIn(".tran", done.stderr)
+        self.assertEqual(self.files(), ["a.cir"])
+
+    def test_over_the_netlist(self):
+        self.write(RECTIFIER, "a.csv")
+        done = self.dalcs("run", "a.csv", "-o", "./a.csv", expect=USAGE)
+        self.assertIn("is the netlist itself", done.stderr)
+        self.assertEqual(self.path("a.csv").read_text(), RECTIFIER)
+
+    def test_unwritable(self):
+        self.write(RECTIFIER)
+        self.path("folder.csv").mkdir()
+        for arguments in [["-o", "nowhere/out.csv"], ["-o", "folder.csv"],
+                          ["--report", "nowhere/r.json"], ["--plot", "nowhere/p.svg"],
+                          ["-o", "good.csv", "-o", "nowhere/out.raw"]]:
+            done = self.dalcs("run", "a.cir", *arguments, expect=INPUT_OUTPUT)
+            self.assertIn(f"cannot write '{arguments[-1]}'", done.stderr)
+            self.assertEqual(self.files(), ["a.cir", "folder.csv"])
+
+    def test_disk_full(self):
+        self.write("old", "out.csv")
+
+        def small_files():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+
+        done = self.dalcs("run", self.write(RECTIFIER), "-o", "out.csv", expect=INPUT_OUTPUT,
+                          preexec_fn=small_files)
+        self.assertIn("cannot write 'out.csv': File too large", done.stderr)
+        self.assertEqual(self.files(), ["a.cir", "out.csv"])
+        self.assertEqual(self.path("out.csv").read_text(), "old")
+
+    def test_infeasible(self):
+        self.write("old", "out.csv")
+        done = self.dalcs("run", self.write(IMPOSSIBLE), "-o", "out.csv", "--report", "r.json",
+                          expect=RUN_FAILED)
+        for element in "v1", "d1", "v2":
+            self.assertIn(element, done.stderr)
+        self.assertIn("'out.partial.csv'", done.stderr)
+        self.assertEqual(self.files(), ["a.cir", "out.csv", "out.partial.csv", "r.json"])
+        self.assertEqual(self.path("out.csv").read_text(), "old")
+        _, rows = self.table("out.partial.csv")
+        self.assertLess(rows[-1][0], 1.1e-3)
+        report = json.loads(self.path("r.json").read_text())
+        self.assertNotEqual(report["status"], "ok")
+        self.assertEqual(sorted(report["infeasible"]["elements"]), ["d1", "v1", "v2"])
+        self.assertEqual(report["infeasible"]["kind"], "loop")
+
+    def test_infeasible_from_the_start(self):
+        text = IMPOSSIBLE.replace("PULSE(10 1 1m 0 0 1 2)", "1")
+        self.dalcs("run", self.write(text), "-o", "out.csv", expect=RUN_FAILED)
+        self.assertEqual(self.files(), ["a.cir"])
+
+
+class Interrupt(Case):
+    def interrupt(self, number):
+        self.write("old", "out.csv")
+        self.write(LONG)
+        process = subprocess.Popen([DALCS, "run", "a.cir", "-q", "-o", "out.csv", "-o", "out.raw",
+                                    "--report", "r.json"], cwd=self.folder, text=True,
+                                   stderr=subprocess.PIPE)
+        with process:
+            deadline = time.monotonic() + 60
+            while time.monotonic() < deadline and not any(
+                    path.stat().st_size > 1 << 20 for path in self.folder.glob("*.partial-*")):
+                time.sleep(0.02)
+            process.send_signal(number)
+            _, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, -number, errors)
+        self.assertIn("interrupted at t = ", errors)
+        self.assertIn("'out.partial.csv'", errors)
+        self.assertEqual(self.files(), ["a.cir", "out.csv", "out.partial.csv", "out.partial.raw",
+                                        "r.json"])
+        self.assertEqual(self.path("out.csv").read_text(), "old")
+        self.assertEqual(json.loads(self.path("r.json").read_text())["status"], "cancelled")
+        header, rows = self.table("out.partial.csv")
+        self.assertTrue(all(len(row) == len(header) for row in rows))
+        raw = self.path("out.partial.raw").read_bytes()
+        self.assertIn(f"No. Points: {len(rows)} ".encode(), raw)
+
+    def test_ctrl_c(self):
+        self.interrupt(signal.SIGINT)
+
+    def test_terminate(self):
+        self.interrupt(signal.SIGTERM)
+
+
+class Ngspice(Case):
+    """ngspice loads the raw file and finds every value, to the last bit."""
+
+    @staticmethod
+    def plots(data):
+        """(names, values by point) of each plot in a raw file."""
+        place = 0
+        while place < len(data):
+            start = data.index(b"Binary:\n", place) + len(b"Binary:\n")
+            header = data[place:start].decode().splitlines()
+            fields = dict(line.split(": ", 1) for line in header if ": " in line)
+            names = [line.split("\t")[2] for line in header if line.startswith("\t")]
+            n = len(names) * int(fields["No. Points"])
+            place = start + 8 * n
+            values = struct.unpack(f"<{n}d", data[start:place])
+            yield names, [values[k:k + len(names)] for k in range(0, n, len(names))]
+
+    def test_load(self):
+        if not shutil.which("ngspice"):
+            self.skipTest("ngspice is not installed")
+        self.dalcs("run", self.write(BOTH), "-q", "-o", "ours.raw")
+        # ngspice makes the last plot of the file the current one.
+        self.write("* load\n.control\nset filetype=binary\nload ours.raw\nsetplot\n"
+                   "setplot tran1\nwrite tran.raw\nsetplot op1\nwrite op.raw\nquit 0\n.endc\n.end\n",
+                   "load.cir")
+        done = subprocess.run(["ngspice", "-n", "-b", "load.cir"], cwd=self.folder, text=True,
+                              stdin=subprocess.DEVNULL, capture_output=True, check=False)
+        self.assertNotIn("Error", done.stdout + done.stderr)
+        self.assertNotIn("no such command", done.stdout + done.stderr)
+        ours = list(self.plots(self.path("ours.raw").read_bytes()))
+        self.assertEqual([len(rows) for _, rows in ours], [1, 401])
+        for (names, rows), file in zip(ours, ["op.raw", "tran.raw"]):
+            (their_names, their_rows), = self.plots(self.path(file).read_bytes())
+            self.assertEqual(sorted(their_names), sorted(names))
+            order = [their_names.index(name) for name in names]
+            bits = [struct.pack(f"{len(row)}d", *row) for row in rows]
+            self.assertEqual([struct.pack(f"{len(order)}d", *[row[k] for k in order])
+                              for row in their_rows], bits)
+
+
+class Plot(Case):
+    def test_svg(self):
+        if not shutil.which("gnuplot"):
+            self.skipTest("gnuplot is not installed")
+        name = "it's \"$(id)\" `id`; rm.svg"
+        self.dalcs("run", self.write(RECTIFIER.replace("half-wave", "<half> & 'wave'")), "--plot",
+                   name)
+        self.assertEqual(self.files(), ["a.cir", "a.raw", name])
+        document = xml.dom.minidom.parse(str(self.path(name)))
+        self.assertEqual(document.documentElement.tagName, "svg")
+        texts = " ".join(node.firstChild.data for node in document.getElementsByTagName("tspan")
+                         if node.firstChild)
+        texts += " ".join("".join(child.data for child in node.childNodes
+                                  if child.nodeType == child.TEXT_NODE)
+                          for node in document.getElementsByTagName("text"))
+        for piece in ["<half> & 'wave' rectifier", "v(out)", "i(d1)", "voltage (V)", "time (ms)"]:
+            self.assertIn(piece, texts)
+
+    def test_png(self):
+        if not shutil.which("gnuplot"):
+            self.skipTest("gnuplot is not installed")
+        self.dalcs("run", self.write(RECTIFIER), "-q", "--plot", "p.PNG")
+        data = self.path("p.PNG").read_bytes()
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(struct.unpack(">II", data[16:24]), (1200, 720))
+
+    def test_without_gnuplot(self):
+        done = self.dalcs("run", self.write(RECTIFIER), "-o", "out.csv", "--plot", "p.svg",
+                          expect=INPUT_OUTPUT, env={"PATH": "/nowhere"})
+        self.assertIn("gnuplot is not installed (on Debian: apt-get install gnuplot-nox)",
+                      done.stderr)
+        self.assertEqual(self.files(), ["a.cir", "out.csv"])
+
+
+if __name__ == "__main__":
+    DALCS = str(pathlib.Path(sys.argv[1]).resolve())
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

@@ -1,0 +1,145 @@
+/* osnsp.c - the cost of a certified implicit Euler step over that of one bare klu_solve of the same
+ * matrix, in one process, medians of interleaved repeats.
+ *
+ * "Same matrix": the plain mode matrix (equations, closed pairs) that was last factored; for a
+ * component in a singular mode, its proximal matrix. A step includes sampling the sources, the
+ * solve, pivoting and factoring where modes change, and the certificate. */
+#include "circuit.h"
+#include "circuits.h"
+#include "euler.h"
+#include "netlist.h"
+#include "osnsp_internal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { REPEATS = 9 };
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static int compare(const void *a, const void *b) {
+    double x = *(const double *)a;
+    double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *v, int n) {
+    qsort(v, (size_t)n, sizeof(*v), compare);
+    return v[n / 2];
+}
+
+static void must(enum dalcs_status status, const char *what) {
+    if (status != DALCS_OK) {
+        fprintf(stderr, "bench: %s: %s\n", what, dalcs_status_text(status));
+        exit(1);
+    }
+}
+
+/* Seconds of one klu_solve with the newest factors of the largest component. */
+static double time_klu_solve(struct dalcs_euler *e, int *order) {
+    struct dalcs_osnsp *p = &e->component[0].osnsp;
+    const struct dalcs_mode_entry *entry = p->newest;
+    while (entry != NULL && entry->lu.numeric == NULL) {
+        entry = entry->older;
+    }
+    if (entry == NULL) {
+        return 0.0;
+    }
+    *order = entry->lu.n;
+    double *b = calloc((size_t)entry->lu.n, sizeof(*b));
+    int rounds = 1 + 2000000 / (entry->lu.n * 10 + 100);
+    double begin = now();
+    for (int k = 0; k < rounds; k++) {
+        for (int i = 0; i < entry->lu.n; i++) {
+            b[i] = 1.0 / (i + 1.0);
+        }
+        dalcs_lu_solve(&entry->lu, &p->klu, 1, b);
+    }
+    double seconds = (now() - begin) / rounds;
+    free(b);
+    return seconds;
+}
+
+static void bench(const char *name, char *text, double h, int warm_up, int n_steps, double target,
+                  bool per_component, const char *unit) {
+    struct dalcs_diag diag = {0};
+    struct dalcs_netlist netlist = {0};
+    struct dalcs_circuit circuit;
+    struct dalcs_network network;
+    must(dalcs_netlist_read_text(&netlist, name, text, strlen(text), &diag), name);
+    must(dalcs_circuit_build(&circuit, &netlist, &diag), name);
+    dalcs_netlist_finish(&netlist);
+    must(dalcs_network_build(&network, &circuit, &(struct dalcs_network_options){0}, &diag), name);
+    struct dalcs_run_options o = dalcs_run_options_default();
+    struct dalcs_osnsp_options options = {.certificate_tolerance = o.certificate_tolerance,
+                                          .proximal_weight = {1e-8, 1e-7, 1e-6},
+                                          .rcond_min = o.rcond_min,
+                                          .max_outer = o.max_outer,
+                                          .max_pivots = o.max_pivots,
+                                          .cache_bytes = o.cache_bytes,
+                                          .dense_limit = o.dense_limit};
+    struct dalcs_euler e;
+    must(dalcs_euler_setup(&e, &circuit, &network, &options, h, 1e9 * h), name);
+    must(dalcs_euler_start(&e, network.initial), name);
+    for (int k = 0; k < warm_up; k++) {
+        must(dalcs_euler_step(&e), name);
+    }
+    double step[REPEATS];
+    double solve[REPEATS];
+    int order = 0;
+    struct dalcs_osnsp_counters before = {0};
+    for (int k = 0; k < e.n_components; k++) {
+        before.factorizations += e.component[k].osnsp.counters.factorizations;
+        before.pivots += e.component[k].osnsp.counters.pivots;
+    }
+    for (int r = 0; r < REPEATS; r++) {
+        double begin = now();
+        for (int k = 0; k < n_steps; k++) {
+            must(dalcs_euler_step(&e), name);
+        }
+        step[r] = (now() - begin) / n_steps;
+        solve[r] = time_klu_solve(&e, &order);
+    }
+    long factorizations = -before.factorizations;
+    long pivots = -before.pivots;
+    for (int k = 0; k < e.n_components; k++) {
+        factorizations += e.component[k].osnsp.counters.factorizations;
+        pivots += e.component[k].osnsp.counters.pivots;
+    }
+    int parts = per_component ? e.n_components : 1;
+    double us = 1e6 * median(step, REPEATS) / parts;
+    double us_solve = 1e6 * median(solve, REPEATS);
+    double steps = (double)REPEATS * n_steps * parts;
+    printf("%-22s n %5d  step %8.3f us  klu_solve %7.3f us  ratio %5.2f  pivots %.3f  factors "
+           "%.4f  worst %.0e  target %g %s\n",
+           name, order, us, us_solve, us / us_solve, (double)pivots / steps,
+           (double)factorizations / steps, e.worst.worst, target, unit);
+    dalcs_euler_finish(&e);
+    dalcs_network_finish(&network);
+    dalcs_circuit_finish(&circuit);
+    dalcs_diag_finish(&diag);
+    free(text);
+}
+
+int main(void) {
+    bench("bridge", bench_bridge(1), 2e-5, 5000, 20000, 0.3, false, "us");
+    bench("250 bridges", bench_bridge(250), 2e-5, 5000, 200, 0.4, true, "us a bridge");
+    bench("six-pulse", bench_six_pulse(), 2e-5, 20000, 20000, 1.5, false, "klu_solve");
+    bench("Cockcroft-Walton 10", bench_cockcroft_walton(10), 2e-6 / 20, 20000, 20000, 1.5, false,
+          "klu_solve");
+    bench("Cockcroft-Walton 100", bench_cockcroft_walton(100), 1e-7, 4000, 2000, 1.5, false,
+          "klu_solve");
+    bench("Cockcroft-Walton 1000", bench_cockcroft_walton(1000), 1e-7, 2000, 200, 1.5, false,
+          "klu_solve");
+    bench("ladder 64", bench_ladder(64), 1e-6, 1000, 1000, 0, false, "");
+    bench("ladder 256", bench_ladder(256), 1e-6, 1000, 1000, 15, false, "us");
+    bench("ladder 1024", bench_ladder(1024), 1e-6, 1000, 200, 0, false, "");
+    bench("ladder 10000", bench_ladder(10000), 1e-6, 1000, 50, 0, false, "");
+    return 0;
+}
