@@ -13,16 +13,20 @@ static void note_signal(int number) {
     interrupted = number;
 }
 
-/* The first signal ends the run with its results so far in files; a second one ends the program. */
+/* The first signal ends the run with its results so far in files; a second one ends the program.
+ * What nohup or a shell has told us to ignore stays ignored. */
 static void catch_signals(void) {
-    struct sigaction action = {.sa_handler = note_signal, .sa_flags = (int)SA_RESETHAND};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    sigaction(SIGHUP, &action, NULL);
-    action = (struct sigaction){.sa_handler = SIG_IGN};
-    sigaction(SIGPIPE, &action, NULL); /* a reader that left is a write error */
-    sigaction(SIGXFSZ, &action, NULL); /* so is a file that grew too large */
+    static const int stopping[] = {SIGINT, SIGTERM, SIGHUP};
+    for (size_t i = 0; i < sizeof stopping / sizeof stopping[0]; i++) {
+        struct sigaction before;
+        struct sigaction action = {.sa_handler = note_signal, .sa_flags = (int)SA_RESETHAND};
+        sigemptyset(&action.sa_mask);
+        if (sigaction(stopping[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
+            sigaction(stopping[i], &action, NULL);
+        }
+    }
+    signal(SIGPIPE, SIG_IGN); /* a reader that left is a write error, */
+    signal(SIGXFSZ, SIG_IGN); /* and so is a file that grew too large */
 }
 
 int main(int argc, char **argv) {

@@ -14,6 +14,10 @@ class NoNgspice(Exception):
     """ngspice is not installed."""
 
 
+def parts(name):
+    return [f"v({node})" for node in name[2:-1].split(",")] if name.startswith("v(") else [name]
+
+
 @dataclasses.dataclass
 class Table:
     """Columns by name; "time" is the first for a transient analysis."""
@@ -23,6 +27,15 @@ class Table:
 
     def column(self, name):
         return self.columns[self.names.index(name)]
+
+    def has(self, name):
+        """v(a,b) is there when both nodes are."""
+        return all(part in self.names for part in parts(name))
+
+    def signal(self, name):
+        """A column, or the difference of two for v(a,b)."""
+        first, *second = (self.column(part) for part in parts(name))
+        return [a - b for a, b in zip(first, second[0])] if second else first
 
     @property
     def n_rows(self):

@@ -1,12 +1,16 @@
 """How far two waveforms are apart, whatever their grids.
 
-Two simulators put an edge at slightly different times; a difference there says nothing. So what is
-measured at a time is the distance from one waveform's value to the range that the other one passes
-through within a small window around that time.
+Two simulators put an edge at slightly different times, and round or ring at it; a difference there
+says nothing. So what is measured at a time is the distance from one waveform's value to the range
+that the other one passes through within a small window around that time, and beside the largest
+there is the `usual` difference, which 99 % of the time it stays below.
 """
 
 import dataclasses
 import math
+
+
+USUAL = 0.99
 
 
 @dataclasses.dataclass
@@ -14,16 +18,23 @@ class Difference:
     signal: str
     scale: float
     largest: float
+    usual: float
     rms: float
     time: float  # of the largest
 
-    @property
-    def relative_largest(self):
-        return self.largest / self.scale if self.scale > 0 else 0.0
+    def relative(self, value):
+        return value / self.scale if self.scale > 0 else 0.0
 
-    @property
-    def relative_rms(self):
-        return self.rms / self.scale if self.scale > 0 else 0.0
+    def within(self, tolerance):
+        """The rms may be half of the tolerance: a waveform that is off all the time is wrong."""
+        return (self.relative(self.usual) <= tolerance
+                and self.relative(self.rms) <= tolerance / 2)
+
+    def as_dict(self):
+        return {"scale": self.scale, "max": self.largest, "time": self.time, "usual": self.usual,
+                "rms": self.rms, "relative_max": self.relative(self.largest),
+                "relative_usual": self.relative(self.usual),
+                "relative_rms": self.relative(self.rms)}
 
 
 def interpolate(times, values, grid):
@@ -58,19 +69,17 @@ def ranges(times, values, grid, window):
 
 def compare(signal, ours, theirs, grid, window, scale):
     """`ours` and `theirs` are (times, values)."""
-    other = interpolate(*theirs, grid)
-    total, largest, at = 0.0, 0.0, grid[0]
-    for t, value, (low, high) in zip(grid, other, ranges(*ours, grid, window)):
-        error = max(low - value, value - high, 0.0)
-        if math.isnan(value) or math.isnan(low):
-            error = math.inf
-        total += error * error
-        if error > largest:
-            largest, at = error, t
-    return Difference(signal, scale, largest, math.sqrt(total / len(grid)), at)
+    errors = []
+    for value, (low, high) in zip(interpolate(*theirs, grid), ranges(*ours, grid, window)):
+        finite = math.isfinite(value) and math.isfinite(low) and math.isfinite(high)
+        errors.append(max(low - value, value - high, 0.0) if finite else math.inf)
+    largest = max(errors)
+    usual = sorted(errors)[int(USUAL * (len(errors) - 1))]
+    rms = math.sqrt(sum(error * error for error in errors) / len(errors))
+    return Difference(signal, scale, largest, usual, rms, grid[errors.index(largest)])
 
 
 def compare_points(signal, ours, theirs, scale):
     """Two single values, of an operating point."""
     error = abs(ours - theirs)
-    return Difference(signal, scale, error, error, 0.0)
+    return Difference(signal, scale, error, error, error, 0.0)

@@ -117,49 +117,54 @@ static int distance(const char *a, int length_a, const char *b, int length_b) {
     return row[length_a % 3][length_b];
 }
 
-/* Is `candidate` a likelier meaning of `name` than a distance of *best? Then *best shrinks. */
-static bool improves(const char *candidate, const char *name, int length, int *best) {
+/* The best candidate so far. */
+struct nearest {
+    const char *name; /* NULL: none */
+    int distance;
+    size_t prefix; /* bytes shared with the name from its start: decides between equals */
+};
+
+static size_t common_prefix(const char *a, const char *b) {
+    size_t n = 0;
+    while (a[n] != '\0' && a[n] == b[n]) {
+        n++;
+    }
+    return n;
+}
+
+static void consider(struct nearest *nearest, const char *candidate, const char *name,
+                     size_t length) {
     const size_t n = strlen(candidate);
-    if (n > NEAREST_MAX_LENGTH) {
-        return false;
+    const size_t longer = n > length ? n : length;
+    const size_t difference = longer - (n > length ? length : n);
+    if (longer > NEAREST_MAX_LENGTH || difference > 2) {
+        return;
     }
-    const int candidate_length = (int)n;
-    const int longer = candidate_length > length ? candidate_length : length;
-    const int difference =
-        candidate_length > length ? candidate_length - length : length - candidate_length;
-    if (difference >= *best) {
-        return false;
+    const int d = distance(candidate, (int)n, name, (int)length);
+    const size_t prefix = common_prefix(candidate, name);
+    if (d > 2 || 3 * d > (int)longer) {
+        return;
     }
-    const int d = distance(candidate, candidate_length, name, length);
-    if (d >= *best || 3 * d > longer) {
-        return false;
+    if (nearest->name == NULL || d < nearest->distance ||
+        (d == nearest->distance && prefix > nearest->prefix)) {
+        *nearest = (struct nearest){candidate, d, prefix};
     }
-    *best = d;
-    return true;
 }
 
 const char *dalcs_names_nearest(const struct dalcs_names *names, const char *name) {
-    const size_t length = strlen(name);
-    const char *nearest = NULL;
-    int best = 3;
-    for (size_t k = 0; length <= NEAREST_MAX_LENGTH && k < names->n; k++) {
-        if (improves(names->entry[k].name, name, (int)length, &best)) {
-            nearest = names->entry[k].name;
-        }
+    struct nearest nearest = {0};
+    for (size_t k = 0; k < names->n; k++) {
+        consider(&nearest, names->entry[k].name, name, strlen(name));
     }
-    return nearest;
+    return nearest.name;
 }
 
 const char *dalcs_names_nearest_of(const char *const *candidate, size_t n, const char *name) {
-    const size_t length = strlen(name);
-    const char *nearest = NULL;
-    int best = 3;
-    for (size_t k = 0; length <= NEAREST_MAX_LENGTH && k < n; k++) {
-        if (improves(candidate[k], name, (int)length, &best)) {
-            nearest = candidate[k];
-        }
+    struct nearest nearest = {0};
+    for (size_t k = 0; k < n; k++) {
+        consider(&nearest, candidate[k], name, strlen(name));
     }
-    return nearest;
+    return nearest.name;
 }
 
 const char *dalcs_names_join(const struct dalcs_names *names, size_t most,

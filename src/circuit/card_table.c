@@ -75,7 +75,7 @@ static const struct dot_card DOT_CARDS[] = {
 };
 
 /* Without a meaning for ideal elements; accepted. */
-static const char *const IGNORED[] = {".temp", ".width", ".noopt", ".prot", ".unprot", ".hdl"};
+static const char *const IGNORED[] = {".temp", ".width", ".prot", ".unprot"};
 
 /* Analyses that this simulator will not have. */
 static const char *const NEVER[] = {

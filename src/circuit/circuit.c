@@ -209,7 +209,8 @@ enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
 
     enum dalcs_status status = build(&builder);
     if (status == DALCS_OK && (builder.failed || netlist->has_errors)) {
-        status = DALCS_E_NETLIST;
+        /* Errors that nobody can read are no explanation. */
+        status = diag->out_of_memory ? DALCS_E_NOMEM : DALCS_E_NETLIST;
     }
     dalcs_diag_sort(diag);
 

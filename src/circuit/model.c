@@ -127,9 +127,13 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
     }
     if (opened && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
         if (dalcs_reader_at_end(reader)) {
-            dalcs_builder_error(reader->builder, open, NULL, "parenthesis is never closed");
+            dalcs_builder_error(reader->builder, open, NULL, "this parenthesis is never closed");
+        } else if (dalcs_reader_peek(reader, 0)->kind == DALCS_TOKEN_WORD) {
+            dalcs_builder_error(reader->builder, dalcs_reader_peek(reader, 0), reader->usage,
+                                "'%s' is not of the form parameter=value",
+                                dalcs_reader_peek(reader, 0)->text);
         } else {
-            dalcs_reader_missing(reader, "parameter=value");
+            dalcs_reader_unexpected(reader);
         }
         return false;
     }

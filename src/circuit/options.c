@@ -112,8 +112,9 @@ void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card 
         } else {
             report_unknown(builder, name);
         }
-        if (dalcs_reader_take(&reader, DALCS_TOKEN_EQUAL) && !dalcs_reader_at_end(&reader)) {
-            reader.at++;
-        }
+        const struct dalcs_token *value = dalcs_reader_peek(&reader, 0);
+        const bool has_value = dalcs_reader_take(&reader, DALCS_TOKEN_EQUAL) ||
+                               (value != NULL && dalcs_reader_is_number(value));
+        reader.at += has_value && !dalcs_reader_at_end(&reader);
     }
 }

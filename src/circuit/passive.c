@@ -48,13 +48,17 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
     static const char *const parasitic[] = {"rser", "rpar", "lser", "cpar", "rlshunt"};
     struct dalcs_builder *builder = reader->builder;
     double ignored;
-    if (is_value_name(family, name->text) && !*has_value) {
+    if (is_value_name(family, name->text)) {
+        if (*has_value) {
+            dalcs_builder_error(builder, name, NULL, "%s is given twice", family->value);
+            return false;
+        }
         *has_value = true;
         return dalcs_reader_number(reader, family->quantity, family->value, &device->value);
     }
     if (strcmp(name->text, "ic") == 0 && device->kind != DALCS_RESISTOR) {
         if (device->has_initial) {
-            dalcs_builder_error(builder, name, NULL, "a second initial condition");
+            dalcs_builder_error(builder, name, NULL, "an initial condition is given twice");
             return false;
         }
         const bool is_inductor = device->kind == DALCS_INDUCTOR;

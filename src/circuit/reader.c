@@ -74,7 +74,7 @@ void dalcs_reader_unexpected(struct dalcs_reader *reader) {
         return;
     }
     if (token->kind == DALCS_TOKEN_EXPRESSION || token->kind == DALCS_TOKEN_STRING) {
-        dalcs_builder_error(reader->builder, token, "write the number",
+        dalcs_builder_error(reader->builder, token, reader->usage,
                             "expressions are not supported yet");
         return;
     }
@@ -108,23 +108,25 @@ bool dalcs_reader_is_number(const struct dalcs_token *token) {
 
 /* 4k7 -> "write 4.7k", when the text has that shape; else NULL. */
 static const char *rkm_hint(struct dalcs_builder *builder, const char *text) {
-    size_t whole = 0;
-    while (is_digit(text[whole]) || (whole == 0 && (text[0] == '-' || text[0] == '+'))) {
-        whole++;
-    }
-    const char *letter = text + whole;
-    size_t n_letters = 0;
-    while (letter[n_letters] != '\0' && !is_digit(letter[n_letters]) && letter[n_letters] != '.') {
-        n_letters++;
-    }
-    const char *rest = letter + n_letters;
-    size_t n_rest = strspn(rest, "0123456789");
-    if (n_letters == 0 || n_rest == 0 || rest[n_rest] != '\0') {
+    static const char *const suffixes[] = {"r", "v", "t", "g", "meg",      "k",       "m",
+                                           "u", "n", "p", "f", "\xC2\xB5", "\xCE\xBC"};
+    const int sign = text[0] == '-' || text[0] == '+';
+    const int whole = sign + (int)strspn(text + sign, "0123456789");
+    const char *suffix = text + whole;
+    const int length = (int)strcspn(suffix, "0123456789.");
+    const char *rest = suffix + length;
+    if (rest[0] == '\0' || rest[strspn(rest, "0123456789")] != '\0') {
         return NULL;
     }
-    const bool is_r = n_letters == 1 && (*letter == 'r' || *letter == 'v');
-    return dalcs_builder_hint(builder, "write %.*s.%s%.*s", (int)whole, text, rest,
-                              is_r ? 0 : (int)n_letters, letter);
+    for (size_t k = 0; k < sizeof suffixes / sizeof suffixes[0]; k++) {
+        if ((int)strlen(suffixes[k]) == length &&
+            strncmp(suffix, suffixes[k], strlen(suffixes[k])) == 0) {
+            /* The first two are no suffixes, they only stand for the point. */
+            return dalcs_builder_hint(builder, "write %.*s.%s%.*s", whole, text, rest,
+                                      k < 2 ? 0 : length, suffix);
+        }
+    }
+    return NULL;
 }
 
 static void report_number(struct dalcs_builder *builder, const struct dalcs_token *token,
@@ -215,7 +217,10 @@ bool dalcs_reader_list_number(struct dalcs_reader *reader, enum dalcs_quantity q
         return false;
     }
     if (token->kind != DALCS_TOKEN_WORD) {
+        const char *usage = reader->usage;
+        reader->usage = "write the number";
         dalcs_reader_unexpected(reader);
+        reader->usage = usage;
         return false;
     }
     struct dalcs_number number;

@@ -102,15 +102,23 @@ static bool read_current(struct dalcs_reader *reader) {
 
 /* A word without a parenthesis: in ngspice a node's voltage. */
 static bool read_plain_node(struct dalcs_reader *reader) {
+    struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
-    const int node = dalcs_names_find(&reader->builder->nodes, token->text);
-    if (node < 0) {
-        dalcs_builder_error(reader->builder, token, USAGE, "'%s' is not a signal", token->text);
-        return false;
+    const int node = dalcs_names_find(&builder->nodes, token->text);
+    if (node >= 0) {
+        reader->at++;
+        add_voltage(builder, node, 0, false);
+        return true;
     }
-    reader->at++;
-    add_voltage(reader->builder, node, 0, false);
-    return true;
+    const char *hint = USAGE;
+    const char *nearest = dalcs_names_nearest(&builder->nodes, token->text);
+    if (dalcs_names_find(&builder->devices, token->text) >= 0) {
+        hint = dalcs_builder_hint(builder, "write i(%s)", token->text);
+    } else if (nearest != NULL) {
+        hint = dalcs_builder_hint(builder, "did you mean 'v(%s)'?", nearest);
+    }
+    dalcs_builder_error(builder, token, hint, "'%s' is not a signal", token->text);
+    return false;
 }
 
 static bool read_signal(struct dalcs_reader *reader) {

@@ -240,7 +240,8 @@ bool dalcs_waveform_card_parse(struct dalcs_reader *reader, enum dalcs_quantity 
     }
     if (opened && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
         if (dalcs_reader_at_end(reader)) {
-            dalcs_builder_error(reader->builder, open, form->usage, "parenthesis is never closed");
+            dalcs_builder_error(reader->builder, open, form->usage,
+                                "this parenthesis is never closed");
         } else {
             dalcs_reader_unexpected(reader);
         }

@@ -136,6 +136,15 @@ static enum dalcs_status check_repeats(const struct dalcs_arguments *arguments,
     return DALCS_OK;
 }
 
+static enum dalcs_status refuse_count(const struct dalcs_cli *cli, int argc, char **argv) {
+    if (optind == argc) {
+        dalcs_cli_error(cli, "no netlist given; see 'dalcs run --help'");
+    } else {
+        dalcs_cli_error(cli, "one netlist at a time: '%s' is one too many", argv[argc - 1]);
+    }
+    return DALCS_E_OPTION;
+}
+
 enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, int argc, char **argv) {
     *arguments = (struct dalcs_arguments){0};
@@ -152,10 +161,7 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
     }
     if (status == DALCS_OK && !arguments->help) {
         if (optind != argc - 1) {
-            dalcs_cli_error(cli, optind == argc ? "no netlist given; see 'dalcs run --help'"
-                                                : "one netlist at a time: '%s' is one too many",
-                            argv[argc - 1]);
-            status = DALCS_E_OPTION;
+            status = refuse_count(cli, argc, argv);
         } else {
             arguments->netlist = argv[optind];
             status = check_repeats(arguments, cli);

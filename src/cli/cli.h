@@ -10,7 +10,7 @@
 /* The process's exit status. */
 enum dalcs_exit {
     DALCS_EXIT_OK = 0,
-    DALCS_EXIT_RUN = 1,     /* the run failed: numerical, infeasible, cancelled, out of memory */
+    DALCS_EXIT_RUN = 1, /* the run failed: numerical, infeasible, cancelled, out of memory */
     DALCS_EXIT_USAGE = 2,
     DALCS_EXIT_NETLIST = 3,
     DALCS_EXIT_IO = 4,

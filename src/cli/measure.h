@@ -10,7 +10,7 @@ struct dalcs_measure_signal {
 };
 
 struct dalcs_measure {
-    const struct dalcs_plot *plot; /* borrowed; NULL before the first plot */
+    const struct dalcs_plot *plot;       /* borrowed; NULL before the first plot */
     struct dalcs_measure_signal *signal; /* [plot->n_signals] */
     size_t n_rows;
     double first_time, last_time;

@@ -82,8 +82,7 @@ enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs,
         }
     }
     if (outputs->report_path && !outputs->report.stream) {
-        enum dalcs_status status =
-            dalcs_atomic_file_open(&outputs->report, outputs->report_path);
+        enum dalcs_status status = dalcs_atomic_file_open(&outputs->report, outputs->report_path);
         if (status != DALCS_OK) {
             return status;
         }
@@ -119,9 +118,8 @@ enum dalcs_status dalcs_outputs_end(struct dalcs_outputs *outputs) {
 }
 
 /* One line about one file; returns `status` or what was wrong before the run stopped. */
-static enum dalcs_status tell(const struct dalcs_cli *cli, FILE *out, const char *path,
-                              int error, enum dalcs_status status, bool complete,
-                              const char *left_at) {
+static enum dalcs_status tell(const struct dalcs_cli *cli, FILE *out, const char *path, int error,
+                              enum dalcs_status status, bool complete, const char *left_at) {
     if (error != 0) {
         dalcs_cli_error(cli, "cannot write '%s': %s", path, strerror(error));
         return DALCS_E_IO;
@@ -150,8 +148,9 @@ static enum dalcs_status close_figure(struct dalcs_figure *figure, const struct 
                                       FILE *out, bool complete) {
     char *left_at = NULL;
     bool written = figure->file.stream != NULL;
-    enum dalcs_status status =
-        figure->file.error != 0 ? DALCS_E_IO : dalcs_figure_draw(figure, complete ? NULL : &left_at);
+    enum dalcs_status status = figure->file.error != 0
+                                   ? DALCS_E_IO
+                                   : dalcs_figure_draw(figure, complete ? NULL : &left_at);
     if (figure->message[0]) {
         dalcs_cli_error(cli, "cannot draw '%s': %s", figure->path, figure->message);
         return DALCS_E_IO;

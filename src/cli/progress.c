@@ -6,7 +6,7 @@
 
 #include <time.h>
 
-#define FIRST_AFTER 0.5 /* s */
+#define FIRST_AFTER  0.5 /* s */
 #define REDRAW_EVERY 0.2 /* s */
 
 static double read_clock(void) {

@@ -102,8 +102,8 @@ static enum dalcs_status check_readable(const struct dalcs_cli *cli, const char 
 }
 
 /* No result may overwrite the netlist. */
-static enum dalcs_status check_not_netlist(const struct dalcs_cli *cli,
-                                           const struct stat *netlist, const char *path) {
+static enum dalcs_status check_not_netlist(const struct dalcs_cli *cli, const struct stat *netlist,
+                                           const char *path) {
     struct stat result;
     if (path && stat(path, &result) == 0 && result.st_dev == netlist->st_dev &&
         result.st_ino == netlist->st_ino) {
@@ -135,6 +135,7 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
     } option[] = {{"--step", arguments->step > 0.0},
                   {"--at", arguments->at != NULL},
                   {"--plot", arguments->plot != NULL}};
+
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
         if (option[i].given && !request->transient) {
             fprintf(cli->err, "dalcs: warning: the netlist has no .tran: %s has no effect\n",
@@ -224,9 +225,9 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     }
     struct run run = {.cli = cli};
     bool at = times.n > 0;
-    status = dalcs_outputs_init(&run.outputs, arguments, &request,
-                                at ? times.time[0] : request.start,
-                                at ? times.time[times.n - 1] : request.stop);
+    status =
+        dalcs_outputs_init(&run.outputs, arguments, &request, at ? times.time[0] : request.start,
+                           at ? times.time[times.n - 1] : request.stop);
     if (status == DALCS_OK) {
         status = run_session(&run, session, arguments, &times, &n_written);
         dalcs_outputs_finish(&run.outputs);

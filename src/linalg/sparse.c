@@ -3,6 +3,7 @@
 #include "sparse.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -88,12 +89,15 @@ void dalcs_csr_finish(struct dalcs_csr *a) {
     *a = (struct dalcs_csr){0};
 }
 
-double dalcs_csr_row_dot(const struct dalcs_csr *a, int i, const double *v) {
-    double sum = 0.0;
-    for (int k = a->p[i]; k < a->p[i + 1]; k++) {
-        sum += a->x[k] * v[a->j[k]];
+void dalcs_csr_row_difference(const struct dalcs_csr *a, int i, int *ends) {
+    int k = a->p[i];
+    ends[0] = -1;
+    ends[1] = -1;
+    if (a->p[i + 1] - k == 2 && a->x[k] * a->x[k + 1] == -1.0 && fabs(a->x[k]) == 1.0) {
+        int plus = a->x[k] == 1.0 ? k : k + 1;
+        ends[0] = a->j[plus];
+        ends[1] = a->j[2 * k + 1 - plus];
     }
-    return sum;
 }
 
 void dalcs_csr_multiply(const struct dalcs_csr *a, const double *v, double *y) {

@@ -10,10 +10,11 @@
 /* Entries in any order; duplicates add up when compressed. Zero-initialise. */
 struct dalcs_triplets {
     size_t n, capacity;
+
     struct dalcs_triplet {
         int row, column;
         double value;
-    } *entry;
+    } * entry;
 };
 
 enum dalcs_status dalcs_triplets_add(struct dalcs_triplets *t, int row, int column,
@@ -35,8 +36,17 @@ enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_colu
 
 void dalcs_csr_finish(struct dalcs_csr *a);
 
-/* Row i of a, times v. */
-double dalcs_csr_row_dot(const struct dalcs_csr *a, int i, const double *v /* [n_columns] */);
+/* Row i of a, times v[n_columns]. */
+static inline double dalcs_csr_row_dot(const struct dalcs_csr *a, int i, const double *v) {
+    double sum = 0.0;
+    for (int k = a->p[i]; k < a->p[i + 1]; k++) {
+        sum += a->x[k] * v[a->j[k]];
+    }
+    return sum;
+}
+
+/* ends[2] = the columns (p, m) when row i is exactly v[p] - v[m]; else ends[0] = -1. */
+void dalcs_csr_row_difference(const struct dalcs_csr *a, int i, int *ends);
 
 /* y[n_rows] = a v[n_columns] */
 void dalcs_csr_multiply(const struct dalcs_csr *a, const double *v, double *y);

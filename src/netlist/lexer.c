@@ -175,10 +175,11 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
 
     if (invalid) {
         report(lexer, token, "save the netlist as UTF-8 text",
-               "byte that is not text (shown as ?)");
+               "a byte that is not text, shown as ?");
         token->kind = DALCS_TOKEN_BAD;
     } else if (!closed) {
-        report(lexer, token, NULL, c == '{' ? "brace is never closed" : "quote is never closed");
+        report(lexer, token, NULL,
+               c == '{' ? "this brace is never closed" : "this quote is never closed");
         token->kind = DALCS_TOKEN_BAD;
     }
     return q;

@@ -24,10 +24,13 @@ static void link_newest(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
     p->newest = e;
 }
 
-static void entry_destroy(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
-    dalcs_lu_finish(&e->lu, &p->klu);
+static void entry_destroy(struct dalcs_mode_entry *e) {
+    dalcs_lu_finish(&e->lu);
     free(e->key);
     free(e->on);
+    free(e->row_of);
+    free(e->column_of);
+    free(e->scale_of);
     free(e->map);
     free(e);
 }
@@ -36,7 +39,7 @@ static void remove_entry(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
     HASH_DELETE(hh, p->entries, e);
     unlink_entry(p, e);
     p->entry_bytes -= e->bytes;
-    entry_destroy(p, e);
+    entry_destroy(e);
 }
 
 /* Never below a handful: the entries that one solve holds at a time stay valid. */
@@ -100,17 +103,13 @@ enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) {
     return DALCS_OK;
 }
 
-/* The plain matrix of the mode: equations and the w rows of conducting pairs. */
-static enum dalcs_status factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
+enum dalcs_status dalcs_modes_matrix(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *e,
+                                     struct dalcs_columns *a) {
     const struct dalcs_step_form *f = p->form[0];
-    int order = f->n + e->n_on;
+    *a = (struct dalcs_columns){.n = f->n + e->n_on};
     int *slot = dalcs_alloc((size_t)(f->n + f->n_pairs), sizeof(*slot));
-    int *start = dalcs_alloc((size_t)order + 1, sizeof(*start));
-    int *row = NULL;
-    double *value = NULL;
-    enum dalcs_status status = DALCS_E_NOMEM;
-    if (slot == NULL || start == NULL) {
-        goto done;
+    if (slot == NULL) {
+        return DALCS_E_NOMEM;
     }
     for (int i = 0; i < f->n; i++) {
         slot[i] = i;
@@ -125,10 +124,13 @@ static enum dalcs_status factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_e
     for (int c = 0; c < f->n + f->n_pairs; c++) {
         n_entries += slot[c] >= 0 ? (size_t)(f->K.p[c + 1] - f->K.p[c]) : 0;
     }
-    row = dalcs_alloc(n_entries, sizeof(*row));
-    value = dalcs_alloc(n_entries, sizeof(*value));
-    if (row == NULL || value == NULL) {
-        goto done;
+    a->p = dalcs_alloc((size_t)a->n + 1, sizeof(*a->p));
+    a->i = dalcs_alloc(n_entries, sizeof(*a->i));
+    a->x = dalcs_alloc(n_entries, sizeof(*a->x));
+    if (a->p == NULL || a->i == NULL || a->x == NULL) {
+        free(slot);
+        dalcs_columns_finish(a);
+        return DALCS_E_NOMEM;
     }
     int out = 0;
     for (int c = 0; c < f->n + f->n_pairs; c++) {
@@ -137,19 +139,52 @@ static enum dalcs_status factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_e
         }
         for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
             if (slot[f->K.j[k]] >= 0) {
-                row[out] = slot[f->K.j[k]];
-                value[out++] = f->K.x[k];
+                a->i[out] = slot[f->K.j[k]];
+                a->x[out++] = f->K.x[k];
             }
         }
-        start[slot[c] + 1] = out;
+        a->p[slot[c] + 1] = out;
     }
-    status = dalcs_lu_factor(&e->lu, &p->klu, order, start, row, value, p->options.rcond_min);
-done:
     free(slot);
-    free(start);
-    free(row);
-    free(value);
-    return status;
+    return DALCS_OK;
+}
+
+void dalcs_columns_finish(struct dalcs_columns *a) {
+    free(a->p);
+    free(a->i);
+    free(a->x);
+    *a = (struct dalcs_columns){0};
+}
+
+/* Where the rows and unknowns of the factors are in R and in y, so that a step needs no copies. */
+static enum dalcs_status order_rows(const struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
+    const struct dalcs_step_form *f = p->form[0];
+    size_t order = (size_t)e->lu.n;
+    e->row_of = dalcs_alloc(order, sizeof(*e->row_of));
+    e->column_of = dalcs_alloc(order, sizeof(*e->column_of));
+    e->scale_of = dalcs_alloc(order, sizeof(*e->scale_of));
+    if (e->row_of == NULL || e->column_of == NULL || e->scale_of == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    int n_equations = dalcs_system_n_equations(p->system);
+    for (int i = 0; i < e->lu.n; i++) {
+        int row = e->lu.from[i];
+        int unknown = e->lu.to[i];
+        e->row_of[i] = row < f->n ? row : f->n + e->on[row - f->n];
+        int reduced = unknown < f->n ? unknown : f->n + e->on[unknown - f->n];
+        e->column_of[i] = unknown < f->n ? f->column_of[unknown] : n_equations + reduced - f->n;
+        e->scale_of[i] = f->scale[reduced];
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
+    struct dalcs_columns a;
+    DALCS_TRY(dalcs_modes_matrix(p, e, &a));
+    enum dalcs_status status =
+        dalcs_lu_factor(&e->lu, &p->klu, a.n, a.p, a.i, a.x, p->options.rcond_min);
+    dalcs_columns_finish(&a);
+    return status == DALCS_OK ? order_rows(p, e) : status;
 }
 
 static enum dalcs_status entry_create(struct dalcs_osnsp *p, int kind,
@@ -184,11 +219,12 @@ static enum dalcs_status entry_create(struct dalcs_osnsp *p, int kind,
         }
     }
     if (status != DALCS_OK) {
-        entry_destroy(p, e);
+        entry_destroy(e);
         return status;
     }
     e->bytes = sizeof(*e) + ((size_t)p->n_words + 1) * sizeof(uint64_t) +
-               (size_t)e->n_on * sizeof(int) + dalcs_lu_bytes(&e->lu);
+               (size_t)e->n_on * sizeof(int) + dalcs_lu_bytes(&e->lu) +
+               (size_t)e->lu.n * (2 * sizeof(int) + sizeof(double));
     *entry = e;
     return DALCS_OK;
 }
@@ -214,7 +250,7 @@ enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
         DALCS_TRY(entry_create(p, kind, &e));
         HASH_ADD_KEYPTR(hh, p->entries, e->key, key_bytes, e);
         if (e->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
-            entry_destroy(p, e);
+            entry_destroy(e);
             return DALCS_E_NOMEM;
         }
         link_newest(p, e);

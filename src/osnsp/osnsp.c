@@ -41,6 +41,29 @@ static enum dalcs_status list_pair_rows(struct dalcs_osnsp *p) {
     return DALCS_OK;
 }
 
+static void list_runs(struct dalcs_osnsp *p) {
+    const struct dalcs_system *s = p->system;
+    int n_columns = dalcs_system_n_columns(s);
+    for (int c = 0; c < n_columns; c++) {
+        bool is_current = s->column_is_current[c];
+        if (p->n_runs == 0 || p->run[p->n_runs - 1].is_current != is_current) {
+            p->run[p->n_runs++] = (struct dalcs_unit_run){c, c, is_current};
+        }
+        p->run[p->n_runs - 1].end = c + 1;
+    }
+}
+
+static void list_w_ends(struct dalcs_osnsp *p) {
+    const struct dalcs_system *s = p->system;
+    for (int d = 0; d < s->n_pairs; d++) {
+        p->is_diode[d] = s->pair[d].kind == DALCS_PAIR_DIODE;
+        dalcs_csr_row_difference(&s->C, d, &p->w_ends[2 * d]);
+        if (s->F.p[d] != s->F.p[d + 1]) {
+            p->w_ends[2 * d] = -1;
+        }
+    }
+}
+
 static enum dalcs_status list_references(struct dalcs_osnsp *p) {
     const struct dalcs_system *s = p->system;
     int n_equations = dalcs_system_n_equations(s);
@@ -77,8 +100,9 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
     p->form = dalcs_alloc(33, sizeof(*p->form));
     p->form_id = dalcs_alloc(33, sizeof(*p->form_id));
     p->difference = dalcs_alloc((size_t)system->n_x, sizeof(double));
-    p->state_size = dalcs_alloc((size_t)system->n_x, sizeof(double));
-    p->magnitude = dalcs_alloc((size_t)dalcs_system_n_equations(system), sizeof(double));
+    p->run = dalcs_alloc(n_columns, sizeof(*p->run));
+    p->is_diode = dalcs_alloc(n_pairs, sizeof(bool));
+    p->w_ends = dalcs_alloc(2 * n_pairs, sizeof(int));
     p->violating = dalcs_alloc(n_pairs, sizeof(int));
     p->mapped = dalcs_alloc(n_columns + 8, sizeof(double));
     p->right = dalcs_alloc(n_columns, sizeof(double));
@@ -90,11 +114,13 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
     p->step_before = dalcs_alloc(n_columns + n_pairs, sizeof(double));
     p->step_now = dalcs_alloc(n_columns + n_pairs, sizeof(double));
     enum dalcs_status status = DALCS_E_NOMEM;
-    if (p->mode != NULL && p->key != NULL && p->regularised_mode != NULL && p->w != NULL && p->form != NULL &&
-        p->form_id != NULL && p->difference != NULL && p->state_size != NULL && p->magnitude != NULL &&
-        p->violating != NULL && p->mapped != NULL && p->right != NULL && p->scaled != NULL && p->rhs != NULL && p->residual != NULL &&
-        p->centre != NULL && p->centre_w != NULL && p->step_before != NULL &&
-        p->step_now != NULL) {
+    if (p->mode != NULL && p->key != NULL && p->regularised_mode != NULL && p->w != NULL &&
+        p->form != NULL && p->form_id != NULL && p->difference != NULL && p->run != NULL &&
+        p->w_ends != NULL && p->is_diode != NULL && p->violating != NULL && p->mapped != NULL &&
+        p->right != NULL && p->scaled != NULL && p->rhs != NULL && p->residual != NULL &&
+        p->centre != NULL && p->centre_w != NULL && p->step_before != NULL && p->step_now != NULL) {
+        list_runs(p);
+        list_w_ends(p);
         status = list_pair_rows(p);
         if (status == DALCS_OK) {
             status = list_references(p);
@@ -121,8 +147,9 @@ void dalcs_osnsp_finish(struct dalcs_osnsp *p) {
     free(p->reference);
     free(p->reference_row);
     free(p->difference);
-    free(p->state_size);
-    free(p->magnitude);
+    free(p->run);
+    free(p->w_ends);
+    free(p->is_diode);
     free(p->violating);
     free(p->mapped);
     free(p->right);
@@ -148,23 +175,30 @@ void dalcs_osnsp_unscale(const struct dalcs_osnsp *p, double *y) {
     }
 }
 
-/* Solves in the mode of entry for the right-hand side in mode order, into p->scaled (+=). */
-static void solve_in_mode(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e) {
-    const struct dalcs_step_form *f = p->form[0];
-    dalcs_lu_solve(&e->lu, &p->klu, 1, p->rhs);
-    for (int i = 0; i < f->n; i++) {
-        p->scaled[i] += p->rhs[i];
+/* R u solved straight into y's z and lambda: the way of every ordinary step. */
+static void solve_to_answer(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *e,
+                            const double *u, double *y) {
+    const struct dalcs_csr R = p->form[0]->R;
+    double *x = e->lu.work;
+    for (int i = 0; i < e->lu.n; i++) {
+        x[i] = dalcs_csr_row_dot(&R, e->row_of[i], u);
     }
-    for (int k = 0; k < e->n_on; k++) {
-        p->scaled[f->n + e->on[k]] += p->rhs[f->n + k];
+    dalcs_lu_solve_ordered(&e->lu);
+    memset(y + dalcs_system_n_equations(p->system), 0, (size_t)p->system->n_pairs * sizeof(double));
+    for (int i = 0; i < e->lu.n; i++) {
+        y[e->column_of[i]] = e->scale_of[i] * x[i];
     }
 }
 
-static void gather_right(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e) {
+/* p->scaled from y: the inverse of dalcs_osnsp_unscale, exact because scales are powers of 2. */
+static void scale_answer(struct dalcs_osnsp *p, const double *y) {
     const struct dalcs_step_form *f = p->form[0];
-    memcpy(p->rhs, p->right, (size_t)f->n * sizeof(double));
-    for (int k = 0; k < e->n_on; k++) {
-        p->rhs[f->n + k] = p->right[f->n + e->on[k]];
+    int n_equations = dalcs_system_n_equations(p->system);
+    for (int i = 0; i < f->n; i++) {
+        p->scaled[i] = y[f->column_of[i]] / f->scale[i];
+    }
+    for (int d = 0; d < f->n_pairs; d++) {
+        p->scaled[f->n + d] = y[n_equations + d] / f->scale[f->n + d];
     }
 }
 
@@ -183,19 +217,24 @@ static void refine(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e) {
     for (int k = 0; k < e->n_on; k++) {
         p->rhs[f->n + k] = residual[f->n + e->on[k]];
     }
-    solve_in_mode(p, e);
+    dalcs_lu_solve(&e->lu, p->rhs);
+    for (int i = 0; i < f->n; i++) {
+        p->scaled[i] += p->rhs[i];
+    }
+    for (int k = 0; k < e->n_on; k++) {
+        p->scaled[f->n + e->on[k]] += p->rhs[f->n + k];
+    }
 }
 
 /* Solves and evaluates in p->mode. DALCS_SINGULAR: no plain factors and no map for this mode. */
 static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double *y,
-                                  bool *have_right, bool *sources_clash) {
+                                  bool *sources_clash) {
     struct dalcs_mode_entry *e;
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
     double tolerance = p->options.certificate_tolerance;
     p->least_norm = e->singular;
     if (e->map == NULL && !e->singular && e->n_uses++ > 2 && dalcs_step_map_pays(p)) {
         DALCS_TRY(dalcs_step_map_build(p, e, 0.0));
-        *have_right = false;
     }
     if (e->map != NULL) {
         dalcs_step_map_apply(p, e, u, y);
@@ -207,16 +246,12 @@ static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double
     if (e->singular) {
         return DALCS_SINGULAR;
     }
-    if (!*have_right) {
-        dalcs_csr_multiply(&p->form[0]->R, u, p->right);
-        *have_right = true;
-    }
-    int n = p->form[0]->n + p->form[0]->n_pairs;
-    memset(p->scaled, 0, (size_t)n * sizeof(double));
-    gather_right(p, e);
-    solve_in_mode(p, e);
-    dalcs_osnsp_unscale(p, y);
+    solve_to_answer(p, e, u, y);
     dalcs_certificate_evaluate(p, u, y, sources_clash);
+    if (p->certificate.worst > tolerance) {
+        scale_answer(p, y);
+        dalcs_csr_multiply(&p->form[0]->R, u, p->right);
+    }
     for (int k = 0; k < MAX_REFINEMENTS && p->certificate.worst > tolerance; k++) {
         refine(p, e);
         dalcs_osnsp_unscale(p, y);
@@ -232,10 +267,9 @@ static void flip(struct dalcs_osnsp *p, int pair) {
 enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
     int fewest = p->system->n_pairs + 1;
     int patience = PATIENCE;
-    bool have_right = false;
     for (int round = 0; round <= limit; round++) {
         bool sources_clash;
-        DALCS_TRY(try_mode(p, u, y, &have_right, &sources_clash));
+        DALCS_TRY(try_mode(p, u, y, &sources_clash));
         if (p->n_violating == 0) {
             if (sources_clash) {
                 dalcs_witness_from_clash(p);
@@ -275,7 +309,6 @@ static enum dalcs_status enumerate(struct dalcs_osnsp *p, const double *u, doubl
             diode[n++] = d;
         }
     }
-    bool have_right = false;
     for (unsigned code = 1; code <= 1u << n; code++) {
         /* Gray code: one flip from mode to mode, and the last flip closes the cycle. */
         int bit = code < 1u << n ? __builtin_ctz(code) : n - 1;
@@ -283,7 +316,7 @@ static enum dalcs_status enumerate(struct dalcs_osnsp *p, const double *u, doubl
             flip(p, diode[bit]);
         }
         bool sources_clash;
-        enum dalcs_status status = try_mode(p, u, y, &have_right, &sources_clash);
+        enum dalcs_status status = try_mode(p, u, y, &sources_clash);
         if (status == DALCS_OK && p->n_violating == 0 && !sources_clash &&
             p->certificate.worst <= p->options.certificate_tolerance) {
             return DALCS_OK;

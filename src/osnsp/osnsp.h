@@ -47,6 +47,7 @@ struct dalcs_witness {
         DALCS_WITNESS_CUTSET, /* voltages across current sources, diodes, open switches */
         DALCS_WITNESS_MODE    /* no mode of a system that is not passive fits */
     } kind;
+
     int n_elements, capacity;
     const char **element; /* borrowed names */
 };
@@ -76,21 +77,28 @@ struct dalcs_osnsp {
     int *pair_rows_p, *pair_rows; /* rows of A that hold lambda_d */
     int n_references;             /* columns that must vanish, and their rows */
     int *reference, *reference_row;
-    double *difference;           /* [n_x] x+ - x_k */
-    double *state_size;           /* [n_x] sum of |terms| that x+ is recovered from */
-    double *magnitude;            /* [n_equations] sum of |terms| of a row */
-    int *violating;               /* [n_pairs] */
+    double *difference; /* [n_x] x+ - x_k */
+    int n_runs;         /* columns of one unit side by side */
+
+    struct dalcs_unit_run {
+        int begin, end;
+        bool is_current;
+    } * run;
+
+    bool *is_diode; /* [n_pairs] */
+    int *w_ends;    /* [n_pairs][2] columns whose difference is w; -1 where w is more than that */
+    int *violating; /* [n_pairs] */
     int n_violating;
-    double *mapped; /* [n + n_pairs, padded to 8] what a map gave */
-    double *right;  /* [n + n_pairs] scaled R u */
-    double *scaled; /* [n + n_pairs] scaled y */
-    double *rhs;    /* [n + n_pairs] in mode order */
-    double *residual; /* [n + n_pairs] of the condensed rows, scaled */
-    double *centre; /* [n + n_pairs] proximal centre, scaled */
-    double *centre_w; /* [n_pairs] */
+    double *mapped;                 /* [n + n_pairs, padded to 8] what a map gave */
+    double *right;                  /* [n + n_pairs] scaled R u */
+    double *scaled;                 /* [n + n_pairs] scaled y */
+    double *rhs;                    /* [n + n_pairs] in mode order */
+    double *residual;               /* [n + n_pairs] of the condensed rows, scaled */
+    double *centre;                 /* [n + n_pairs] proximal centre, scaled */
+    double *centre_w;               /* [n_pairs] */
     double *step_before, *step_now; /* [n + 2 n_pairs] displacements of the proximal iteration */
-    uint64_t *key;    /* [n_words + 1] */
-    uint64_t *regularised_mode; /* [n_words] where the proximal method stands */
+    uint64_t *key;                  /* [n_words + 1] */
+    uint64_t *regularised_mode;     /* [n_words] where the proximal method stands */
 };
 
 /* Allocates everything; the system must outlive it. On failure *p is zeroed. */

@@ -18,7 +18,9 @@ struct dalcs_mode_entry {
     int n_on;
     int *on; /* [n_on] ascending */
     struct dalcs_lu lu;
-    double *map; /* see step_map.h; NULL until the mode has recurred */
+    int *row_of, *column_of; /* [lu.n] plain factors: row of R, column of y, in pivot order */
+    double *scale_of;        /* [lu.n] */
+    double *map;             /* see step_map.h; NULL until the mode has recurred */
     int n_uses;
     size_t bytes;
 };
@@ -32,6 +34,20 @@ enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) DALCS_MUS
  * failure. Older entries make room, never this one. */
 enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
                                   struct dalcs_mode_entry **entry) DALCS_MUST_CHECK;
+
+/* A square matrix by columns. */
+struct dalcs_columns {
+    int n;
+    int *p, *i;
+    double *x;
+};
+
+/* The plain matrix of the entry's mode in p->form[0]: equations and the w rows of closed pairs. */
+enum dalcs_status dalcs_modes_matrix(const struct dalcs_osnsp *p,
+                                     const struct dalcs_mode_entry *entry,
+                                     struct dalcs_columns *a) DALCS_MUST_CHECK;
+
+void dalcs_columns_finish(struct dalcs_columns *a);
 
 /* Counts the bytes of a map that was just added to the entry. */
 void dalcs_modes_grew(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry, size_t bytes);

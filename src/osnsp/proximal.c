@@ -69,8 +69,7 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
             double diagonal = node_weight * eps;
             if (c >= f->n) {
                 int d = c - f->n;
-                diagonal =
-                    dalcs_osnsp_is_on(p, d) ? dalcs_proximal_on_weight(p, d, eps) : 1.0;
+                diagonal = dalcs_osnsp_is_on(p, d) ? dalcs_proximal_on_weight(p, d, eps) : 1.0;
             }
             bool seen = false;
             for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
@@ -110,7 +109,7 @@ void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e
                 ? right + dalcs_proximal_on_weight(p, d, eps) * p->centre[f->n + d]
                 : dalcs_proximal_off_weight(p, d, eps) * (right + p->centre_w[d]);
     }
-    dalcs_lu_solve(&entry->lu, &p->klu, 1, p->scaled);
+    dalcs_lu_solve(&entry->lu, p->scaled);
 }
 
 /* The pairs whose regularised sign is wrong: closed with lambda + eps G (w - w') < 0, open with
@@ -128,9 +127,10 @@ static void find_violations(struct dalcs_osnsp *p, double eps) {
         }
         double w = dalcs_proximal_scaled_w(p, d);
         double lambda = p->scaled[f->n + d];
-        double sign = dalcs_osnsp_is_on(p, d)
-                          ? lambda + dalcs_proximal_off_weight(p, d, eps) * (w - p->centre_w[d])
-                          : w + dalcs_proximal_on_weight(p, d, eps) * (lambda - p->centre[f->n + d]);
+        double sign =
+            dalcs_osnsp_is_on(p, d)
+                ? lambda + dalcs_proximal_off_weight(p, d, eps) * (w - p->centre_w[d])
+                : w + dalcs_proximal_on_weight(p, d, eps) * (lambda - p->centre[f->n + d]);
         if (sign < -sign_tolerance * largest) {
             p->violating[p->n_violating++] = d;
         }

@@ -281,8 +281,7 @@ static enum dalcs_status collect(struct dalcs_step_form *f, const struct elimina
         double pivot = *row_find(r, x);
         for (int k = 0; k < r->n && status == DALCS_OK; k++) {
             if (r->column[k] >= e->n_left) {
-                status =
-                    dalcs_triplets_add(&Xu, x, r->column[k] - e->n_left, r->value[k] / pivot);
+                status = dalcs_triplets_add(&Xu, x, r->column[k] - e->n_left, r->value[k] / pivot);
             } else if (r->column[k] != x) {
                 status = dalcs_triplets_add(&X, x, r->column[k], -r->value[k] / pivot);
             }
@@ -314,6 +313,16 @@ static enum dalcs_status collect(struct dalcs_step_form *f, const struct elimina
     }
     if (status == DALCS_OK) {
         status = dalcs_csr_compress(&f->Xu, s->n_x, f->n_u, &Xu);
+    }
+    f->x_ends = dalcs_alloc(2 * (size_t)s->n_x, sizeof(*f->x_ends));
+    if (status == DALCS_OK && f->x_ends == NULL) {
+        status = DALCS_E_NOMEM;
+    }
+    for (int x = 0; status == DALCS_OK && x < s->n_x; x++) {
+        dalcs_csr_row_difference(&f->X, x, &f->x_ends[2 * x]);
+        if (f->Xu.p[x] != f->Xu.p[x + 1]) {
+            f->x_ends[2 * x] = -1;
+        }
     }
     if (status == DALCS_OK) {
         status = balance(f);
@@ -398,6 +407,7 @@ void dalcs_step_form_finish(struct dalcs_step_form *form) {
     free(form->column_of);
     free(form->scale);
     free(form->checked);
+    free(form->x_ends);
     dalcs_csr_finish(&form->K);
     dalcs_csr_finish(&form->W);
     dalcs_csr_finish(&form->R);

@@ -15,8 +15,8 @@
 #include "system.h"
 
 struct dalcs_step_form {
-    double sigma;       /* 1/s */
-    int n;              /* equations and unknowns besides the pairs */
+    double sigma; /* 1/s */
+    int n;        /* equations and unknowns besides the pairs */
     int n_pairs;
     int n_u;            /* n_x + n_inputs */
     int *column_of;     /* [n] the system's column of an unknown: all z first, then kept x */
@@ -25,8 +25,9 @@ struct dalcs_step_form {
     struct dalcs_csr R; /* [n + n_pairs][n_u], rows scaled */
     double *scale;      /* [n + n_pairs] powers of 2: y = scale * scaled y, and rows times scale */
     double pair_conductance; /* S: the typical scale^2 of a pair; weights of the proximal method */
-    struct dalcs_csr X; /* [n_x][n_columns] x+ = X (0, z+, lambda+) + Xu u; kept x: identity */
+    struct dalcs_csr X;      /* [n_x][n_columns] x+ = X (0, z+, lambda+) + Xu u; kept x: identity */
     struct dalcs_csr Xu;
+    int *x_ends;   /* [n_x][2] columns whose difference is x+, -1 where it is more than that */
     int n_checked; /* rows of the system that recovering x+ does not satisfy by definition */
     int *checked;
 };

@@ -33,7 +33,7 @@ static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, 
         for (int k = 0; k < e->n_on; k++) {
             p->rhs[f->n + k] = p->right[f->n + e->on[k]];
         }
-        dalcs_lu_solve(&e->lu, &p->klu, 1, p->rhs);
+        dalcs_lu_solve(&e->lu, p->rhs);
         memcpy(p->scaled, p->rhs, (size_t)f->n * sizeof(double));
         for (int k = 0; k < e->n_on; k++) {
             p->scaled[f->n + e->on[k]] = p->rhs[f->n + k];
@@ -99,7 +99,8 @@ typedef double vector4 __attribute__((vector_size(32), aligned(32)));
 
 /* out[rows] = map u, eight rows at a time. The clones differ in vector width only: without
  * contraction every element is computed by the same operations in the same order. */
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) &&                             \
+    !defined(__SANITIZE_ADDRESS__)
 __attribute__((target_clones("avx2", "default")))
 #endif
 static void

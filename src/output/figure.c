@@ -30,6 +30,7 @@ static int rank_signal(const char *name) {
 
 static void choose_signals(struct dalcs_figure_panel *panel, const struct dalcs_plot *plot) {
     enum { N_RANKS = 3 };
+
     size_t n_of_rank[N_RANKS] = {0};
     size_t room[N_RANKS];
     for (size_t i = 0; i < plot->n_signals; i++) {

@@ -16,7 +16,7 @@ struct dalcs_figure_panel {
 };
 
 struct dalcs_figure {
-    const char *path; /* borrowed */
+    const char *path;              /* borrowed */
     const struct dalcs_plot *plot; /* borrowed; NULL until there is something to draw */
     double start, stop;
     size_t n_rows;

@@ -120,8 +120,7 @@ static void write_infeasible(struct dalcs_json *json, const struct dalcs_report 
     dalcs_json_close(json, '}');
 }
 
-void dalcs_report_write(FILE *stream, const struct dalcs_report *report,
-                        enum dalcs_status status) {
+void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum dalcs_status status) {
     struct dalcs_json json;
     dalcs_json_init(&json, stream);
     dalcs_json_open(&json, NULL, '{', false);

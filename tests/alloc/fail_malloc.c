@@ -43,15 +43,12 @@ static int64_t number_from(const char *name) {
 
 __attribute__((constructor)) static void start(void) {
     const char *path = getenv("DALCS_TALLY");
-
     fail_at = number_from("DALCS_FAIL_AT");
     fail_from = number_from("DALCS_FAIL_FROM");
     if (path != NULL) {
         int file = open(path, O_RDWR | O_CREAT, 0600);
-
         if (file >= 0 && ftruncate(file, sizeof *tally) == 0) {
             void *shared = mmap(NULL, sizeof *tally, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-
             if (shared != MAP_FAILED) {
                 tally = shared;
                 *tally = here; /* what other constructors took before */
@@ -68,15 +65,12 @@ __attribute__((destructor)) static void stop(void) {
     char text[4096];
     int file = open("/proc/self/status", O_RDONLY);
     ssize_t length = file >= 0 ? read(file, text, sizeof text - 1) : -1;
-
     if (file >= 0) {
         close(file);
     }
     if (length > 0) {
-        const char *line;
-
         text[length] = '\0';
-        line = strstr(text, "VmHWM:");
+        const char *line = strstr(text, "VmHWM:");
         tally->peak_rss = line != NULL ? strtoll(line + 6, NULL, 10) : 0;
     }
 }
@@ -121,12 +115,10 @@ void *calloc(size_t count, size_t size) {
 
 void *realloc(void *old, size_t size) {
     int64_t before = old != NULL ? (int64_t)malloc_usable_size(old) : 0;
-    void *block;
-
     if (refuse()) {
         return NULL;
     }
-    block = __libc_realloc(old, size);
+    void *block = __libc_realloc(old, size);
     if (block != NULL || size == 0) {
         tally->live -= before;
     }
@@ -143,7 +135,6 @@ void *aligned_alloc(size_t alignment, size_t size) {
 
 int posix_memalign(void **block, size_t alignment, size_t size) {
     void *made = memalign(alignment, size);
-
     if (made == NULL) {
         return ENOMEM;
     }

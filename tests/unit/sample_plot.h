@@ -12,7 +12,9 @@
 #include <unistd.h>
 
 static const char *const sample_name[] = {"v(out)", "v(a,b)", "i(d1)"};
+
 static const enum dalcs_unit sample_unit[] = {DALCS_VOLT, DALCS_VOLT, DALCS_AMPERE};
+
 static const double sample_row[2][3] = {{1.0 / 3.0, -0.0, 5e-324}, {-2.385e300, 0.1, 1e-7}};
 
 static inline struct dalcs_plot sample_plot(enum dalcs_analysis analysis) {

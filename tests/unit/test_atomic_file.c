@@ -35,6 +35,7 @@ START_TEST(test_commit) {
     ck_assert_int_eq(status.st_mode & 0777, 0640);
     ck_assert_int_eq(n_files(), 1);
 }
+
 END_TEST
 
 START_TEST(test_discard) {
@@ -46,6 +47,7 @@ START_TEST(test_discard) {
     check_contents("a.csv", "old");
     ck_assert_int_eq(n_files(), 1);
 }
+
 END_TEST
 
 START_TEST(test_keep) {
@@ -63,6 +65,7 @@ START_TEST(test_keep) {
     }
     ck_assert_int_eq(n_files(), 3);
 }
+
 END_TEST
 
 /* The link stays and what it points to is replaced. */
@@ -78,6 +81,7 @@ START_TEST(test_symbolic_link) {
     ck_assert_int_eq(lstat("link.csv", &status), 0);
     ck_assert(S_ISLNK(status.st_mode));
 }
+
 END_TEST
 
 START_TEST(test_refusals) {
@@ -91,6 +95,7 @@ START_TEST(test_refusals) {
     ck_assert_int_eq(file.error, ENOENT);
     ck_assert_int_eq(n_files(), 2);
 }
+
 END_TEST
 
 RUN_SUITE("atomic_file", test_commit, test_discard, test_keep, test_symbolic_link, test_refusals)

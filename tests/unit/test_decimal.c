@@ -33,6 +33,7 @@ START_TEST(test_known_values) {
     check_text(NAN, "nan");
     check_text(-NAN, "nan");
 }
+
 END_TEST
 
 /* 2^-k has ties and long runs of nines and zeros; the random bits have everything else. */
@@ -44,7 +45,7 @@ START_TEST(test_equals_printf) {
         uint64_t bits = state ^ state >> 29;
         double value = 0.0;
         memcpy(&value, &bits, sizeof value);
-        value = i % 3 == 1 ? ldexp((double)(bits % 1000), -(int)(bits >> 60) * 4)
+        value = i % 3 == 1   ? ldexp((double)(bits % 1000), -(int)(bits >> 60) * 4)
                 : i % 3 == 2 ? (double)(bits % 2000000) / 1000.0
                              : value;
         char expected[64];
@@ -52,6 +53,24 @@ START_TEST(test_equals_printf) {
         check_text(value, expected);
     }
 }
+
+END_TEST
+
+/* Next to a power of ten the digits may round up to one more. */
+START_TEST(test_powers_of_ten) {
+    dalcs_decimal_init(&decimal);
+    for (int k = -323; k <= 308; k++) {
+        char text[64];
+        snprintf(text, sizeof text, "1e%d", k);
+        double value = strtod(text, NULL);
+        for (int side = -1; side <= 1; side++) {
+            double near = side == 0 ? value : nextafter(value, side * INFINITY);
+            snprintf(text, sizeof text, "%.17g", near);
+            check_text(near, text);
+        }
+    }
+}
+
 END_TEST
 
 START_TEST(test_ignores_the_locale) {
@@ -68,6 +87,8 @@ START_TEST(test_ignores_the_locale) {
         ck_assert_double_eq(strtod(text, NULL), value);
     }
 }
+
 END_TEST
 
-RUN_SUITE("decimal", test_known_values, test_equals_printf, test_ignores_the_locale)
+RUN_SUITE("decimal", test_known_values, test_equals_printf, test_powers_of_ten,
+          test_ignores_the_locale)

@@ -12,7 +12,10 @@ START_TEST(test_curve_keeps_extremes) {
     ck_assert_int_eq(dalcs_curve_init(&curve, 0.0, 1.0), DALCS_OK);
     const long n = 1000000;
     for (long i = 0; i <= n; i++) {
-        dalcs_curve_add(&curve, (double)i / (double)n, i == 123456 ? 7.0 : i == 123457 ? -9.0 : 1.0);
+        dalcs_curve_add(&curve, (double)i / (double)n,
+                        i == 123456   ? 7.0
+                        : i == 123457 ? -9.0
+                                      : 1.0);
     }
     ck_assert_double_eq(curve.highest, 7.0);
     ck_assert_double_eq(curve.lowest, -9.0);
@@ -26,14 +29,15 @@ START_TEST(test_curve_keeps_extremes) {
     ck_assert_int_eq(dalcs_curve_column_points(&curve.column[7], point), 2);
     dalcs_curve_finish(&curve);
 }
+
 END_TEST
 
 /* Both sides of a discontinuity have the same time and must stay in order. */
 START_TEST(test_curve_keeps_order) {
     struct dalcs_curve curve;
     ck_assert_int_eq(dalcs_curve_init(&curve, 0.0, 1.0), DALCS_OK);
-    const double value[] = {5.0, 1.0, NAN, 9.0, 4.0};
-    for (int i = 0; i < 5; i++) {
+    const double value[] = {5.0, 1.0, NAN, 9.0, INFINITY, 4.0, -INFINITY, NAN};
+    for (int i = 0; i < 8; i++) {
         dalcs_curve_add(&curve, 0.5, value[i]);
     }
     struct dalcs_curve_point point[4];
@@ -44,11 +48,13 @@ START_TEST(test_curve_keeps_order) {
     ck_assert_double_eq(point[3].value, 4.0);
     dalcs_curve_finish(&curve);
 }
+
 END_TEST
 
 START_TEST(test_choice_of_signals) {
     static const char *const name[] = {"v(n1)", "v(n2)", "i(v1)", "v(n3)", "v(n4)", "v(n5)",
                                        "v(n6)", "v(n7)", "i(l1)", "v(n8)", "v(out)"};
+
     enum { N = sizeof name / sizeof name[0] };
     enum dalcs_unit unit[N];
     for (int i = 0; i < N; i++) {
@@ -67,6 +73,7 @@ START_TEST(test_choice_of_signals) {
     ck_assert_uint_eq(figure.panel[1].signal[1], 8);
     dalcs_figure_finish(&figure);
 }
+
 END_TEST
 
 static char *write_script(const char *title, const char *signal) {
@@ -96,6 +103,7 @@ START_TEST(test_quoting) {
     ck_assert_ptr_nonnull(strstr(text, "title 'i(d'')'"));
     free(text);
 }
+
 END_TEST
 
 START_TEST(test_units) {
@@ -105,6 +113,7 @@ START_TEST(test_units) {
     ck_assert_ptr_nonnull(strstr(text, "\n0 0\n10 250\n20 2\n"));
     free(text);
 }
+
 END_TEST
 
 RUN_SUITE("figure", test_curve_keeps_extremes, test_curve_keeps_order, test_choice_of_signals,

@@ -7,6 +7,7 @@
 
 static struct dalcs_measure measure_rows(const double (*row)[2], size_t n) {
     static const char *const name[] = {"v(a)"};
+
     static const enum dalcs_unit unit[] = {DALCS_VOLT};
     static const struct dalcs_plot plot = {DALCS_TRANSIENT, "t", 1, name, unit};
     struct dalcs_measure measure = {0};
@@ -28,6 +29,7 @@ START_TEST(test_uneven_grid) {
     ck_assert_double_eq_tol(dalcs_measure_rms(&measure, 0), sqrt((4.0 + 36.0) / 4.0), 1e-15);
     dalcs_measure_finish(&measure);
 }
+
 END_TEST
 
 START_TEST(test_one_row) {
@@ -39,6 +41,7 @@ START_TEST(test_one_row) {
     ck_assert_double_eq(dalcs_measure_rms(&measure, 0), 2.5);
     dalcs_measure_finish(&measure);
 }
+
 END_TEST
 
 START_TEST(test_quantities) {
@@ -46,17 +49,13 @@ START_TEST(test_quantities) {
         double value;
         const char *text, *column;
     } expected[] = {
-        {0.0, "0 V", "0.000  V"},
-        {4.0, "4 V", "4.000  V"},
-        {1e-3, "1 mV", "1.000 mV"},
-        {-0.01234567, "-12.35 mV", "-12.35 mV"},
-        {999.96, "1 kV", "1.000 kV"},
-        {999.94, "999.9 V", "999.9  V"},
-        {9.9996, "10 V", "10.00  V"},
-        {1e-6, "1 uV", "1.000 uV"},
-        {1e-30, "1e-30 V", "1e-30  V"},
-        {INFINITY, "inf V", "inf  V"},
+        {0.0, "0 V", "0.000  V"},       {4.0, "4 V", "4.000  V"},
+        {1e-3, "1 mV", "1.000 mV"},     {-0.01234567, "-12.35 mV", "-12.35 mV"},
+        {999.96, "1 kV", "1.000 kV"},   {999.94, "999.9 V", "999.9  V"},
+        {9.9996, "10 V", "10.00  V"},   {1e-6, "1 uV", "1.000 uV"},
+        {1e-30, "1e-30 V", "1e-30  V"}, {INFINITY, "inf V", "inf  V"},
     };
+
     char text[DALCS_QUANTITY_SIZE];
     for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
         ck_assert_str_eq(dalcs_quantity_write(text, expected[i].value, "V", 4), expected[i].text);
@@ -67,6 +66,7 @@ START_TEST(test_quantities) {
     ck_assert_double_eq(dalcs_quantity_scale(1.0), 1.0);
     ck_assert_str_eq(dalcs_quantity_prefix(1e-6), "u");
 }
+
 END_TEST
 
 RUN_SUITE("measure", test_uneven_grid, test_one_row, test_quantities)

@@ -3,6 +3,8 @@
 #include "sample_plot.h"
 #include "table.h"
 
+#include <time.h>
+
 #define N_BYTES(n) ((size_t)(n) * sizeof(double))
 
 static void write_plot(struct dalcs_table *table, enum dalcs_analysis analysis, int n_rows) {
@@ -14,6 +16,13 @@ static void write_plot(struct dalcs_table *table, enum dalcs_analysis analysis, 
     ck_assert_int_eq(dalcs_table_end(table), DALCS_OK);
 }
 
+/* The same wherever the test runs. */
+static void fix_the_date(void) {
+    setenv("SOURCE_DATE_EPOCH", "0", 1);
+    setenv("TZ", "XYZ-3", 1);
+    tzset();
+}
+
 /* Header text at *place, then n doubles; moves *place behind them. */
 static void check_plot(const char **place, const char *header, const double *value, size_t n) {
     ck_assert_msg(strncmp(*place, header, strlen(header)) == 0, "header is %.400s", *place);
@@ -22,40 +31,37 @@ static void check_plot(const char **place, const char *header, const double *val
     *place += N_BYTES(n);
 }
 
-static const char transient_header[] =
-    "Title: a title with a tab\n"
-    "Date: Thu Jan  1 00:00:00 1970\n"
-    "Plotname: Transient Analysis\n"
-    "Flags: real\n"
-    "No. Variables: 4\n"
-    "No. Points: 2                   \n"
-    "Command: * ngspice-compatible, dalcs " DALCS_VERSION "\n"
-    "Variables:\n"
-    "\t0\ttime\ttime\n"
-    "\t1\tv(out)\tvoltage\n"
-    "\t2\tv(a,b)\tvoltage\n"
-    "\t3\ti(d1)\tcurrent\n"
-    "Binary:\n";
+static const char transient_header[] = "Title: a title with a tab\n"
+                                       "Date: Thu Jan  1 00:00:00 1970\n"
+                                       "Plotname: Transient Analysis\n"
+                                       "Flags: real\n"
+                                       "No. Variables: 4\n"
+                                       "No. Points: 2                   \n"
+                                       "Command: * ngspice-compatible, dalcs " DALCS_VERSION "\n"
+                                       "Variables:\n"
+                                       "\t0\ttime\ttime\n"
+                                       "\t1\tv(out)\tvoltage\n"
+                                       "\t2\tv(a,b)\tvoltage\n"
+                                       "\t3\ti(d1)\tcurrent\n"
+                                       "Binary:\n";
 
-static const char point_header[] =
-    "Title: a title with a tab\n"
-    "Date: Thu Jan  1 00:00:00 1970\n"
-    "Plotname: Operating Point\n"
-    "Flags: real\n"
-    "No. Variables: 3\n"
-    "No. Points: 1                   \n"
-    "Command: * ngspice-compatible, dalcs " DALCS_VERSION "\n"
-    "Variables:\n"
-    "\t0\tv(out)\tvoltage\n"
-    "\t1\tv(a,b)\tvoltage\n"
-    "\t2\ti(d1)\tcurrent\n"
-    "Binary:\n";
+static const char point_header[] = "Title: a title with a tab\n"
+                                   "Date: Thu Jan  1 00:00:00 1970\n"
+                                   "Plotname: Operating Point\n"
+                                   "Flags: real\n"
+                                   "No. Variables: 3\n"
+                                   "No. Points: 1                   \n"
+                                   "Command: * ngspice-compatible, dalcs " DALCS_VERSION "\n"
+                                   "Variables:\n"
+                                   "\t0\tv(out)\tvoltage\n"
+                                   "\t1\tv(a,b)\tvoltage\n"
+                                   "\t2\ti(d1)\tcurrent\n"
+                                   "Binary:\n";
 
-static const double transient_values[] = {0.0, 1.0 / 3.0, -0.0, 5e-324,
-                                          0.1, -2.385e300, 0.1, 1e-7};
+static const double transient_values[] = {0.0, 1.0 / 3.0, -0.0, 5e-324, 0.1, -2.385e300, 0.1, 1e-7};
 
 START_TEST(test_two_plots) {
-    setenv("SOURCE_DATE_EPOCH", "0", 1);
+    fix_the_date();
     struct dalcs_table table;
     ck_assert_int_eq(dalcs_table_init(&table, "out.raw", true), DALCS_OK);
     write_plot(&table, DALCS_OPERATING_POINT, 1);
@@ -71,11 +77,12 @@ START_TEST(test_two_plots) {
     ck_assert_uint_eq((size_t)(place - text), length);
     free(text);
 }
+
 END_TEST
 
 /* What an interrupted run leaves has its number of points too. */
 START_TEST(test_interrupted) {
-    setenv("SOURCE_DATE_EPOCH", "0", 1);
+    fix_the_date();
     struct dalcs_table table;
     struct dalcs_plot plot = sample_plot(DALCS_TRANSIENT);
     ck_assert_int_eq(dalcs_table_init(&table, "out.raw", true), DALCS_OK);
@@ -95,6 +102,7 @@ START_TEST(test_interrupted) {
     free(text);
     ck_assert_ptr_null(read_all("out.raw", &length));
 }
+
 END_TEST
 
 RUN_SUITE("raw", test_two_plots, test_interrupted)

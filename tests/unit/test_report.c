@@ -100,6 +100,7 @@ START_TEST(test_everything) {
                  "  }\n"
                  "}\n");
 }
+
 END_TEST
 
 /* A run that failed before it knew anything. */
@@ -132,6 +133,7 @@ START_TEST(test_nothing) {
                  "  \"jumps\": []\n"
                  "}\n");
 }
+
 END_TEST
 
 RUN_SUITE("report", test_everything, test_nothing)

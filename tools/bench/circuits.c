@@ -43,12 +43,12 @@ char *bench_bridge(int copies) {
 char *bench_cockcroft_walton(int n) {
     struct text t;
     FILE *f = begin(&t, "Cockcroft-Walton");
-    fprintf(f, "v1 a0 0 sin(0 100 50k)\n");
+    fprintf(f, "v1 a0 0 sin(0 100 50)\n");
     for (int k = 1; k <= n; k++) {
-        fprintf(f, "ca%d a%d a%d 10n\ncb%d b%d b%d 10n\n", k, k - 1, k, k, k - 1, k);
+        fprintf(f, "ca%d a%d a%d 1u\ncb%d b%d b%d 1u\n", k, k - 1, k, k, k - 1, k);
         fprintf(f, "da%d b%d a%d di\ndb%d a%d b%d di\n", k, k - 1, k, k, k, k);
     }
-    fprintf(f, "vb b0 0 0\nrl b%d 0 10meg\n.tran 100n 400u uic\n", n);
+    fprintf(f, "vb b0 0 0\nrl b%d 0 10meg\n.tran 2u 400m uic\n", n);
     return end(&t);
 }
 

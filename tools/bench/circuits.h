@@ -5,7 +5,7 @@
 /* Diode bridge with R and C load behind a source resistance. */
 char *bench_bridge(int copies);
 
-/* Cockcroft-Walton multiplier with n stages, 50 kHz, stiff source. */
+/* Cockcroft-Walton multiplier with n stages, 50 Hz, stiff source. */
 char *bench_cockcroft_walton(int n);
 
 /* Six-pulse bridge with source inductance. */
