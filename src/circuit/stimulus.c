@@ -57,27 +57,32 @@ struct edge {
     enum segment segment;
 };
 
-/* The edges of the periods around a time, ascending: at most four in each of three periods. */
+/* Rounding may put a time in the period before its own, of which the one before and the next one
+ * must be there. */
+enum { PERIODS_AROUND = 4 };
+
+/* The edges of the periods around a time, ascending. */
 struct edges {
-    struct edge item[12];
+    struct edge item[4 * PERIODS_AROUND];
     int n;
 };
 
 static void collect_edges(const struct dalcs_stimulus *s, double t, struct edges *edges) {
     const double rise_end = s->u.pulse.rise;
-    const double fall_start = rise_end + s->u.pulse.width;
-    const double offset[4] = {0, rise_end, fall_start, fall_start + s->u.pulse.fall};
+    double fall_start = rise_end + s->u.pulse.width;
     double period = s->u.pulse.period;
-    if (rise_end == 0 && fall_start >= period) {
-        period = INFINITY; /* high for ever: the restarts change nothing */
-    }
     /* An offset equal to the period but for rounding is the next period's start, not an edge of its
      * own a hair away from it. */
-    const double end = isinf(period) ? INFINITY : period * (1 - 4 * DBL_EPSILON);
+    double end = isinf(period) ? (double)INFINITY : period * (1 - 4 * DBL_EPSILON);
+    if (rise_end == 0 && fall_start >= end) {
+        /* High for ever: the restarts change nothing. */
+        fall_start = period = end = (double)INFINITY;
+    }
+    const double offset[4] = {0, rise_end, fall_start, fall_start + s->u.pulse.fall};
 
     double first = isinf(period) ? 0 : floor((t - s->u.pulse.delay) / period) - 1;
     first = first < 0 ? 0 : first;
-    const int n_periods = isinf(period) ? 1 : 3;
+    const int n_periods = isinf(period) ? 1 : PERIODS_AROUND;
     edges->n = 0;
     for (int k = 0; k < n_periods; k++) {
         const double n = first + k;

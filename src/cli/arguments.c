@@ -150,6 +150,7 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
     *arguments = (struct dalcs_arguments){0};
     arguments->output = dalcs_alloc((size_t)argc, sizeof *arguments->output);
     if (!arguments->output) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         return DALCS_E_NOMEM;
     }
     enum dalcs_status status = DALCS_OK;

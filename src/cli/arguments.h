@@ -16,7 +16,7 @@ struct dalcs_arguments {
     bool help; /* asked for: nothing else is set */
 };
 
-/* DALCS_E_OPTION with a message on cli->err when the command line makes no sense. */
+/* DALCS_E_OPTION when the command line makes no sense. Messages go to cli->err. */
 enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, int argc,
                                         char **argv) DALCS_MUST_CHECK;

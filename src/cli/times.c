@@ -29,10 +29,12 @@ static enum dalcs_status add_line(struct dalcs_times *times, size_t *capacity,
     }
     enum dalcs_status status =
         dalcs_grow(&times->time, capacity, times->n + 1, sizeof *times->time);
-    if (status == DALCS_OK) {
-        times->time[times->n++] = time;
+    if (status != DALCS_OK) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+        return status;
     }
-    return status;
+    times->time[times->n++] = time;
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_times_read(struct dalcs_times *times, const struct dalcs_cli *cli,
@@ -50,7 +52,7 @@ enum dalcs_status dalcs_times_read(struct dalcs_times *times, const struct dalcs
     for (long line = 1; status == DALCS_OK && getline(&text, &size, file) >= 0; line++) {
         status = add_line(times, &capacity, cli, path, line, text);
     }
-    if (status == DALCS_OK && ferror(file)) {
+    if (status == DALCS_OK && !feof(file)) { /* an error, or no memory for a line */
         dalcs_cli_error(cli, "cannot read '%s': %s", path, strerror(errno != 0 ? errno : EIO));
         status = DALCS_E_IO;
     } else if (status == DALCS_OK && times->n == 0) {

@@ -1,10 +1,10 @@
 /* certificate.c - the proof that comes with every accepted step.
  *
  * Nothing of how the answer was found is used: the rows of the system itself are evaluated with
- * (x_k, s) and (x+, z+, lambda+), each residual against its own scale, the larger of the sum of its
- * terms' magnitudes and of the circuit's largest voltage or current. Voltages and currents vouch for
- * each other through the typical conductance of a diode's surroundings, so that a part without
- * current is not asked for more digits than its voltages have. */
+ * (x_k, s) and (x+, z+, lambda+), and each residual is measured against the row's norm times the
+ * largest voltage and current of the answer (the backward error of that row, volts and amperes
+ * apart). Voltages and currents vouch for each other through the typical conductance of a diode's
+ * surroundings, so that a part without current is not asked for more digits than its voltages have. */
 #include "osnsp_internal.h"
 
 #include <math.h>
@@ -49,7 +49,7 @@ static struct scales physical_scales(const struct dalcs_osnsp *p, const double *
 
 static void note(struct dalcs_certificate *c, double residual, double scale, int where) {
     if (residual > c->worst * scale) {
-        c->worst = residual / scale;
+        c->worst = scale > 0.0 ? residual / scale : INFINITY;
         c->where = where;
     }
     if (!(residual <= 1e300)) { /* NaN or overflow: never certified */
@@ -81,34 +81,10 @@ static void recover_states(const struct dalcs_osnsp *p, const double *u, double 
     }
 }
 
-/* The sum of |terms| that x+ is recovered from: it is rounded to that. */
-static double state_size(const struct dalcs_osnsp *p, const double *u, const double *y, int x) {
-    const struct dalcs_step_form *f = p->form[0];
-    double size = 0.0;
-    for (int k = f->X.p[x]; k < f->X.p[x + 1]; k++) {
-        size += fabs(f->X.x[k] * y[f->X.j[k]]);
-    }
-    for (int k = f->Xu.p[x]; k < f->Xu.p[x + 1]; k++) {
-        size += fabs(f->Xu.x[k] * u[f->Xu.j[k]]);
-    }
-    return size;
-}
-
-/* The magnitude of a row: no residual of it is known better than this times a rounding. */
-static double row_size(const struct dalcs_osnsp *p, const double *u, const double *y, int r) {
-    const struct dalcs_system *s = p->system;
-    const double *inputs = u + s->n_x;
-    double size = 0.0;
-    for (int k = r < s->n_x ? s->P.p[r] : 0; r < s->n_x && k < s->P.p[r + 1]; k++) {
-        size += fabs(s->P.x[k]) * p->form[0]->sigma * state_size(p, u, y, s->P.j[k]);
-    }
-    for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
-        size += fabs(s->A.x[k] * y[s->A.j[k]]);
-    }
-    for (int k = s->E.p[r]; k < s->E.p[r + 1]; k++) {
-        size += fabs(s->E.x[k] * inputs[s->E.j[k]]);
-    }
-    return size;
+/* The magnitude that row r can have at these voltages and currents: its norm times theirs. No residual
+ * of it is known better than this times a rounding. */
+static inline double row_size(const struct dalcs_step_form *f, struct scales scale, int r) {
+    return f->row_volts[r] * scale.volt + f->row_amperes[r] * scale.ampere;
 }
 
 /* Row r's residual. */
@@ -131,41 +107,30 @@ static inline double evaluate_row(const struct dalcs_system *s, const double *di
 
 static void check_equations(struct dalcs_osnsp *p, const double *u, const double *y,
                             struct scales scale) {
-    const struct dalcs_system s = *p->system; /* a copy: nothing that is written can alias it */
-    const int *checked = p->form[0]->checked;
-    int n_checked = p->form[0]->n_checked;
+    const struct dalcs_system s = *p->system; /* copies: nothing that is written can alias them */
+    const struct dalcs_step_form f = *p->form[0];
     const double *difference = p->difference;
-    const double floor[2] = {scale.volt, scale.ampere};
-    double tolerance = p->options.certificate_tolerance;
-    double largest[2] = {0.0, 0.0};
-    int where[2] = {-1, -1};
-    for (int i = 0; i < n_checked; i++) {
-        int r = checked[i];
+    double worst = 0.0;
+    int where = -1;
+    for (int i = 0; i < f.n_checked; i++) {
+        int r = f.checked[i];
         double residual = evaluate_row(&s, difference, y, u + s.n_x, r);
-        int unit = s.row_is_current[r];
-        if (residual <= largest[unit]) {
-            continue;
-        }
-        if (residual <= tolerance * floor[unit]) {
-            largest[unit] = residual;
-            where[unit] = r;
-        } else {
-            /* The row's own magnitude is worth computing only where the circuit's is not enough. */
-            note(&p->certificate, residual, fmax(floor[unit], row_size(p, u, y, r)), r);
+        double size = row_size(&f, scale, r);
+        if (!(residual <= worst * size)) {
+            worst = size > 0.0 ? residual / size : INFINITY;
+            where = r;
         }
     }
-    for (int unit = 0; unit < 2; unit++) {
-        note(&p->certificate, largest[unit], floor[unit], where[unit]);
-    }
+    note(&p->certificate, worst, 1.0, where);
 }
 
 /* The current of a diode is known no better than the KCL that it enters. */
-static double current_scale(const struct dalcs_osnsp *p, const double *u, const double *y, int pair,
-                            double floor) {
+static double current_scale(const struct dalcs_osnsp *p, int pair, struct scales scale) {
+    double size = scale.ampere;
     for (int k = p->pair_rows_p[pair]; k < p->pair_rows_p[pair + 1]; k++) {
-        floor = fmax(floor, row_size(p, u, y, p->pair_rows[k]));
+        size = fmax(size, row_size(p->form[0], scale, p->pair_rows[k]));
     }
-    return floor;
+    return size;
 }
 
 static double pair_size(const struct dalcs_osnsp *p, const double *u, const double *y, int d) {
@@ -223,10 +188,7 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
             note(&p->certificate, residual, size, n_equations + d);
             p->w[d] = 0.0;
             if (is_diode && lambda[d] < 0.0) {
-                double size_i = -lambda[d] <= tolerance * scale.ampere
-                                    ? scale.ampere
-                                    : current_scale(p, u, y, d, scale.ampere);
-                judge_sign(p, d, -lambda[d], size_i);
+                judge_sign(p, d, -lambda[d], current_scale(p, d, scale));
             }
         } else {
             p->w[d] = w;
@@ -239,20 +201,16 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
 
 /* The reference of a floating island would have to carry what its current sources do not balance. It
  * is the sum of the island's KCL, known as well as the largest of them. */
-static void check_references(struct dalcs_osnsp *p, const double *u, const double *y,
-                             struct scales scale, bool *sources_clash) {
+static void check_references(struct dalcs_osnsp *p, const double *y, struct scales scale,
+                             bool *sources_clash) {
     const struct dalcs_system *s = p->system;
+    double size = scale.ampere;
+    for (int r = 0; p->n_references > 0 && r < dalcs_system_n_equations(s); r++) {
+        size = s->row_is_current[r] ? fmax(size, row_size(p->form[0], scale, r)) : size;
+    }
     for (int k = 0; k < p->n_references; k++) {
         double residual = fabs(y[p->reference[k]]);
-        double size = scale.ampere;
-        if (residual > p->options.certificate_tolerance * size) {
-            for (int r = 0; r < dalcs_system_n_equations(s); r++) {
-                size = s->row_is_current[r] ? fmax(size, row_size(p, u, y, r)) : size;
-            }
-        }
-        if (residual > p->options.certificate_tolerance * size) {
-            *sources_clash = true;
-        }
+        *sources_clash = *sources_clash || residual > p->options.certificate_tolerance * size;
         note(&p->certificate, residual, size, p->reference_row[k]);
     }
 }
@@ -266,5 +224,5 @@ void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *
     struct scales scale = physical_scales(p, y);
     check_equations(p, u, y, scale);
     check_pairs(p, u, y, scale);
-    check_references(p, u, y, scale, sources_clash);
+    check_references(p, y, scale, sources_clash);
 }

@@ -32,8 +32,8 @@ enum { REGULAR_ATTEMPTS = 8 };
 
 static double local_ratio(const struct dalcs_osnsp *p, int pair) {
     const struct dalcs_step_form *f = p->form[0];
-    double s = f->scale[f->n + pair];
-    return fmin(fmax(s * s / f->pair_conductance, 1.0 / weight_spread), weight_spread);
+    double g = f->scale[f->n + pair] * f->row_scale[f->n + pair]; /* A over V, balanced */
+    return fmin(fmax(g / f->pair_conductance, 1.0 / weight_spread), weight_spread);
 }
 
 double dalcs_proximal_on_weight(const struct dalcs_osnsp *p, int pair, double eps) {

@@ -178,50 +178,76 @@ static enum dalcs_status eliminate_states(struct elimination *e, const int *row_
     return DALCS_OK;
 }
 
-/* Symmetric equilibration by powers of 2 (Ruiz 2001): exact, and it makes a conductance of 1e9 S
- * next to one of 1e-12 S, or volts next to amperes, look alike to KLU's pivoting and to rcond. */
+/* Equilibration by powers of 2 (Ruiz 2001): exact, and it makes a conductance of 1e9 S next to one of
+ * 1e-12 S, or volts next to amperes, look alike to KLU's pivoting and to rcond. Rows and columns
+ * have their own scales: the KCL of a floating group of capacitors, summed over the group, has none
+ * of the large companion conductances that its voltages see elsewhere. */
 static enum dalcs_status balance(struct dalcs_step_form *f) {
     int n = f->n + f->n_pairs;
-    double *largest = dalcs_alloc((size_t)n, sizeof(*largest));
+    double *largest = dalcs_alloc(2 * (size_t)n, sizeof(*largest));
     if (largest == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int i = 0; i < n; i++) {
         f->scale[i] = 1.0;
+        f->row_scale[i] = 1.0;
     }
-    for (int pass = 0; pass < 6; pass++) {
-        memset(largest, 0, (size_t)n * sizeof(*largest));
+    for (int pass = 0; pass < 8; pass++) {
+        memset(largest, 0, 2 * (size_t)n * sizeof(*largest));
         for (int c = 0; c < n; c++) {
             for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
                 int r = f->K.j[k];
-                double a = fabs(f->K.x[k]) * f->scale[c] * f->scale[r];
+                double a = fabs(f->K.x[k]) * f->scale[c] * f->row_scale[r];
                 largest[c] = fmax(largest[c], a);
-                largest[r] = fmax(largest[r], a);
+                largest[n + r] = fmax(largest[n + r], a);
             }
         }
         for (int i = 0; i < n; i++) {
             if (largest[i] > 0.0) {
                 f->scale[i] = ldexp(f->scale[i], -(int)lrint(0.5 * log2(largest[i])));
             }
+            if (largest[n + i] > 0.0) {
+                f->row_scale[i] = ldexp(f->row_scale[i], -(int)lrint(0.5 * log2(largest[n + i])));
+            }
         }
     }
     free(largest);
     double sum = 0.0;
     for (int d = 0; d < f->n_pairs; d++) {
-        sum += 2.0 * log2(f->scale[f->n + d]);
+        sum += log2(f->scale[f->n + d]) + log2(f->row_scale[f->n + d]);
     }
     f->pair_conductance = f->n_pairs > 0 ? exp2(rint(sum / f->n_pairs)) : 1.0;
     for (int c = 0; c < n; c++) {
         for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
-            f->K.x[k] *= f->scale[c] * f->scale[f->K.j[k]];
+            f->K.x[k] *= f->scale[c] * f->row_scale[f->K.j[k]];
         }
         for (int k = f->R.p[c]; k < f->R.p[c + 1]; k++) {
-            f->R.x[k] *= f->scale[c];
+            f->R.x[k] *= f->row_scale[c];
         }
     }
     for (int d = 0; d < f->n_pairs; d++) {
         for (int k = f->W.p[d]; k < f->W.p[d + 1]; k++) {
-            f->W.x[k] *= f->scale[f->n + d] * f->scale[f->W.j[k]];
+            f->W.x[k] *= f->row_scale[f->n + d] * f->scale[f->W.j[k]];
+        }
+    }
+    return DALCS_OK;
+}
+
+/* The norm of every row of the system over voltages and over currents. */
+static enum dalcs_status measure_rows(struct dalcs_step_form *f, const struct dalcs_system *s) {
+    int n_equations = dalcs_system_n_equations(s);
+    f->row_volts = dalcs_alloc((size_t)n_equations, sizeof(*f->row_volts));
+    f->row_amperes = dalcs_alloc((size_t)n_equations, sizeof(*f->row_amperes));
+    if (f->row_volts == NULL || f->row_amperes == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int r = 0; r < n_equations; r++) {
+        double *norm[2] = {&f->row_volts[r], &f->row_amperes[r]};
+        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
+            *norm[s->column_is_current[s->A.j[k]]] += fabs(s->A.x[k]);
+        }
+        for (int k = r < s->n_x ? s->P.p[r] : 0; r < s->n_x && k < s->P.p[r + 1]; k++) {
+            *norm[s->column_is_current[s->P.j[k]]] += f->sigma * fabs(s->P.x[k]);
         }
     }
     return DALCS_OK;
@@ -242,7 +268,9 @@ static enum dalcs_status collect(struct dalcs_step_form *f, const struct elimina
     f->column_of = dalcs_alloc((size_t)n_equations, sizeof(*f->column_of));
     f->checked = dalcs_alloc((size_t)n_equations, sizeof(*f->checked));
     f->scale = dalcs_alloc((size_t)e->n_rows, sizeof(*f->scale));
-    if (reduced == NULL || f->column_of == NULL || f->checked == NULL || f->scale == NULL) {
+    f->row_scale = dalcs_alloc((size_t)e->n_rows, sizeof(*f->row_scale));
+    if (reduced == NULL || f->column_of == NULL || f->checked == NULL || f->scale == NULL ||
+        f->row_scale == NULL) {
         goto done;
     }
     for (int c = s->n_x; c < n_equations; c++) {
@@ -325,6 +353,9 @@ static enum dalcs_status collect(struct dalcs_step_form *f, const struct elimina
         }
     }
     if (status == DALCS_OK) {
+        status = measure_rows(f, s);
+    }
+    if (status == DALCS_OK) {
         status = balance(f);
     }
 done:
@@ -400,14 +431,17 @@ static size_t csr_bytes(const struct dalcs_csr *a) {
 
 size_t dalcs_step_form_bytes(const struct dalcs_step_form *f) {
     return csr_bytes(&f->K) + csr_bytes(&f->R) + csr_bytes(&f->X) + csr_bytes(&f->Xu) +
-           (size_t)(f->n + f->n_pairs) * (2 * sizeof(int) + sizeof(double));
+           (size_t)(f->n + f->n_pairs) * (2 * sizeof(int) + 2 * sizeof(double));
 }
 
 void dalcs_step_form_finish(struct dalcs_step_form *form) {
     free(form->column_of);
     free(form->scale);
+    free(form->row_scale);
     free(form->checked);
     free(form->x_ends);
+    free(form->row_volts);
+    free(form->row_amperes);
     dalcs_csr_finish(&form->K);
     dalcs_csr_finish(&form->W);
     dalcs_csr_finish(&form->R);

@@ -23,13 +23,16 @@ struct dalcs_step_form {
     struct dalcs_csr K; /* [n + n_pairs][n + n_pairs], transposed: row c lists column c, scaled */
     struct dalcs_csr W; /* [n_pairs][n + n_pairs] the last n_pairs rows of K, scaled, by rows */
     struct dalcs_csr R; /* [n + n_pairs][n_u], rows scaled */
-    double *scale;      /* [n + n_pairs] powers of 2: y = scale * scaled y, and rows times scale */
-    double pair_conductance; /* S: the typical scale^2 of a pair; weights of the proximal method */
+    double *scale;      /* [n + n_pairs] powers of 2: y = scale * scaled y */
+    double *row_scale;  /* [n + n_pairs] powers of 2 that rows of K and R were multiplied with */
+    double pair_conductance; /* S: the typical scale * row_scale of a pair */
     struct dalcs_csr X;      /* [n_x][n_columns] x+ = X (0, z+, lambda+) + Xu u; kept x: identity */
     struct dalcs_csr Xu;
     int *x_ends;   /* [n_x][2] columns whose difference is x+, -1 where it is more than that */
     int n_checked; /* rows of the system that recovering x+ does not satisfy by definition */
     int *checked;
+    double *row_volts;   /* [n_equations] sum of |coefficients| on voltages, sigma P included */
+    double *row_amperes; /* [n_equations] the same on currents */
 };
 
 /* Condenses the system at sigma. On failure *form is zeroed. */
