@@ -157,8 +157,8 @@ static void warn_of_suffix(struct dalcs_builder *builder, const struct dalcs_tok
                            const struct dalcs_number *number, enum dalcs_quantity quantity) {
     const char *digits = token->text;
     const char *tail = token->text + number->tail;
-    const bool capital_m = token->line->text[token->offset + number->digits] == 'M';
-    const bool bare = *tail == '\0';
+    const char *raw = token->line->text + token->offset; /* in the case it was written in */
+    const bool capital_m = raw[number->digits] == 'M';
 
     if (number->suffix == 'm' && quantity == DALCS_OHM && capital_m) {
         dalcs_builder_warn(builder, token,
@@ -167,7 +167,7 @@ static void warn_of_suffix(struct dalcs_builder *builder, const struct dalcs_tok
                                               number->digits, digits, number->digits, digits),
                            "M is milli: this is %g ohm", number->value);
     } else if (number->suffix == 'm' && quantity == DALCS_HERTZ &&
-               (capital_m || strcmp(tail, "hz") == 0)) {
+               (capital_m || strncmp(raw + number->tail, "hz", 2) == 0)) {
         dalcs_builder_warn(builder, token,
                            dalcs_builder_hint(builder, "write %.*sMeg", number->digits, digits),
                            "M is milli: this is %g Hz", number->value);
@@ -177,7 +177,7 @@ static void warn_of_suffix(struct dalcs_builder *builder, const struct dalcs_tok
                                               "write %.*s for farads, %.*sfF for femtofarads",
                                               number->digits, digits, number->digits, digits),
                            "F is femto: this is %g F", number->value);
-    } else if (number->suffix == 'a' && (bare || strncmp(tail, "mp", 2) == 0)) {
+    } else if (number->suffix == 'a' && (*tail == '\0' || strncmp(tail, "mp", 2) == 0)) {
         dalcs_builder_warn(builder, token,
                            dalcs_builder_hint(builder, "write %.*s", number->digits, digits),
                            "A is atto: this is %g", number->value);

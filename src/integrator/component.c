@@ -1,6 +1,7 @@
 /* component.c - sampling the sources and commanding the switches around one OSNSP. */
 #include "component.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,15 +24,19 @@ enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
     c->scratch = dalcs_alloc(n_columns, sizeof(double));
     c->saved_mode = dalcs_alloc((size_t)c->osnsp.n_words, sizeof(*c->saved_mode));
     c->varying = dalcs_alloc((size_t)system->n_inputs, sizeof(int));
+    c->piece = dalcs_alloc((size_t)system->n_inputs, sizeof(*c->piece));
     c->switch_pair = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
-    if (c->u == NULL || c->probe_u == NULL || c->probe_y == NULL || c->y == NULL || c->y_before == NULL ||
-        c->scratch == NULL || c->saved_mode == NULL || c->varying == NULL ||
-        c->switch_pair == NULL) {
+    if (c->u == NULL || c->probe_u == NULL || c->probe_y == NULL || c->y == NULL ||
+        c->y_before == NULL || c->scratch == NULL || c->saved_mode == NULL || c->varying == NULL ||
+        c->piece == NULL || c->switch_pair == NULL) {
         dalcs_component_finish(c);
         return DALCS_E_NOMEM;
     }
     for (int k = 1; k < system->n_inputs; k++) {
         if (circuit->stimulus[system->stimulus[k]].kind != DALCS_STIMULUS_DC) {
+            enum dalcs_stimulus_kind kind = circuit->stimulus[system->stimulus[k]].kind;
+            bool is_linear = kind == DALCS_STIMULUS_PULSE || kind == DALCS_STIMULUS_PWL;
+            c->piece[c->n_varying] = (struct dalcs_input_piece){.is_linear = is_linear, .to = -1.0};
             c->varying[c->n_varying++] = k;
         }
     }
@@ -59,12 +64,29 @@ void dalcs_component_finish(struct dalcs_component *c) {
     free(c->scratch);
     free(c->saved_mode);
     free(c->varying);
+    free(c->piece);
     free(c->switch_pair);
     *c = (struct dalcs_component){0};
 }
 
-void dalcs_component_sample(const struct dalcs_component *c, double t, enum dalcs_side side,
-                            double *u) {
+/* Time only moves forward: from piece to piece, over the edges between. */
+static double sample_linear(const struct dalcs_stimulus *s, struct dalcs_input_piece *piece,
+                            double t, enum dalcs_side side) {
+    while (t > piece->to || (t == piece->to && side == DALCS_RIGHT)) {
+        piece->from = piece->to < 0.0 ? 0.0 : piece->to;
+        piece->to = dalcs_stimulus_next_edge(s, piece->from);
+        piece->first = dalcs_stimulus_value(s, piece->from, DALCS_RIGHT);
+        piece->last =
+            isfinite(piece->to) ? dalcs_stimulus_value(s, piece->to, DALCS_LEFT) : piece->first;
+    }
+    if (t == piece->to || piece->first == piece->last) {
+        return piece->last;
+    }
+    double part = (t - piece->from) / (piece->to - piece->from);
+    return piece->first + part * (piece->last - piece->first);
+}
+
+void dalcs_component_sample(struct dalcs_component *c, double t, enum dalcs_side side, double *u) {
     const struct dalcs_system *s = c->system;
     double *inputs = u + s->n_x;
     inputs[0] = 1.0;
@@ -76,7 +98,9 @@ void dalcs_component_sample(const struct dalcs_component *c, double t, enum dalc
     }
     for (int i = 0; i < c->n_varying; i++) {
         int k = c->varying[i];
-        inputs[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+        const struct dalcs_stimulus *stimulus = &c->circuit->stimulus[s->stimulus[k]];
+        inputs[k] = c->piece[i].is_linear ? sample_linear(stimulus, &c->piece[i], t, side)
+                                          : dalcs_stimulus_value(stimulus, t, side);
     }
 }
 

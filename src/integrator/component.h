@@ -16,28 +16,33 @@ struct dalcs_component {
     double *probe_u;  /* [n_x + n_inputs] */
     double *probe_y;  /* [n_columns] */
     uint64_t *saved_mode;
+
+    struct dalcs_input_piece {
+        bool is_linear;     /* PULSE and PWL between two edges */
+        double from, to;    /* s */
+        double first, last; /* right limit at from, left limit at to; equal when constant */
+    } * piece;              /* [n_varying] where each varying input is */
+
     int n_varying; /* inputs that are not constant in time */
     int *varying;
     int n_switches;
     int *switch_pair;
     double failed_sigma; /* the problem of the last failed solve, for the dump */
     const double *failed_u;
-    bool is_static; /* nothing depends on time or history */
-    bool commanded; /* the last solve changed a switch */
+    bool is_static;        /* nothing depends on time or history */
+    bool commanded;        /* the last solve changed a switch */
     long delayed_commands; /* switches whose control did not settle within a step */
 };
 
 enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
                                         const struct dalcs_circuit *circuit,
                                         const struct dalcs_system *system,
-                                        const struct dalcs_osnsp_options *options)
-    DALCS_MUST_CHECK;
+                                        const struct dalcs_osnsp_options *options) DALCS_MUST_CHECK;
 
 void dalcs_component_finish(struct dalcs_component *c);
 
 /* Puts the inputs at time t into u[n_x + n_inputs]. */
-void dalcs_component_sample(const struct dalcs_component *c, double t, enum dalcs_side side,
-                            double *u);
+void dalcs_component_sample(struct dalcs_component *c, double t, enum dalcs_side side, double *u);
 
 /* The inputs for an operating point. */
 void dalcs_component_sample_operating(const struct dalcs_component *c, bool transient_follows,

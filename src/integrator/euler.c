@@ -18,8 +18,11 @@ enum dalcs_status dalcs_euler_setup(struct dalcs_euler *e, const struct dalcs_ci
                                     const struct dalcs_network *network,
                                     const struct dalcs_osnsp_options *options, double h,
                                     double stop) {
-    *e = (struct dalcs_euler){
-        .circuit = circuit, .network = network, .h = h, .failed_system = -1, .worst = {.where = -1}};
+    *e = (struct dalcs_euler){.circuit = circuit,
+                              .network = network,
+                              .h = h,
+                              .failed_system = -1,
+                              .worst = {.where = -1}};
     size_t n = (size_t)network->n_systems;
     size_t columns = 1;
     size_t pairs = 1;
@@ -104,8 +107,7 @@ static double largest_state(const struct dalcs_system *s, const double *y, bool 
 }
 
 /* 1/2 d' storage d for d = after - before: what a jump dissipates. */
-static double jump_energy(const struct dalcs_system *s, const double *before,
-                          const double *after) {
+static double jump_energy(const struct dalcs_system *s, const double *before, const double *after) {
     double energy = 0.0;
     for (int i = 0; i < s->n_x; i++) {
         for (int k = s->storage.p[i]; k < s->storage.p[i + 1]; k++) {

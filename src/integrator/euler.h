@@ -35,7 +35,7 @@ struct dalcs_euler {
     int failed_system; /* after a failure: which component, at which time */
     double failed_time, failed_h;
     bool at_operating_point; /* the failure was there */
-    bool detect_jumps; /* also where a circuit's own voltage moves a switch */
+    bool detect_jumps;       /* also where a circuit's own voltage moves a switch */
     void *jump_user;
     enum dalcs_status (*on_jump)(void *user, const struct dalcs_euler_jump *jump); /* may be NULL */
     double *after, *charge, *flux; /* work, the largest component */
@@ -55,8 +55,7 @@ enum dalcs_status dalcs_euler_operating_point(struct dalcs_euler *e,
 
 /* Starts at t = 0. initial[k][n_x] is the state x(0-) of component k, which may be inconsistent; y
  * becomes the values just after t = 0. NULL: the operating point in y is the start. */
-enum dalcs_status dalcs_euler_start(struct dalcs_euler *e,
-                                    double *const *initial) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initial) DALCS_MUST_CHECK;
 
 /* One step: y moves to y_before, y is the answer at e->t. */
 enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) DALCS_MUST_CHECK;

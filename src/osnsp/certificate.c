@@ -8,6 +8,7 @@
 #include "osnsp_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 /* How far a scale of one unit reaches into the other. */
 static const double cross_floor = 1e-3;
@@ -87,38 +88,22 @@ static inline double row_size(const struct dalcs_step_form *f, struct scales sca
     return f->row_volts[r] * scale.volt + f->row_amperes[r] * scale.ampere;
 }
 
-/* Row r's residual. */
-static inline double evaluate_row(const struct dalcs_system *s, const double *difference,
-                                  const double *y, const double *inputs, int r) {
-    double sum = 0.0;
-    if (r < s->n_x) {
-        for (int k = s->P.p[r]; k < s->P.p[r + 1]; k++) {
-            sum -= s->P.x[k] * difference[s->P.j[k]];
-        }
-    }
-    for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
-        sum += s->A.x[k] * y[s->A.j[k]];
-    }
-    for (int k = s->E.p[r]; k < s->E.p[r + 1]; k++) {
-        sum += s->E.x[k] * inputs[s->E.j[k]];
-    }
-    return fabs(sum);
-}
-
 static void check_equations(struct dalcs_osnsp *p, const double *u, const double *y,
                             struct scales scale) {
-    const struct dalcs_system s = *p->system; /* copies: nothing that is written can alias them */
-    const struct dalcs_step_form f = *p->form[0];
-    const double *difference = p->difference;
+    const struct dalcs_system *s = p->system;
+    const struct dalcs_step_form *f = p->form[0];
+    const struct dalcs_csr check = f->check;
+    double *v = p->difference; /* (sigma (x+ - x_k), y, s) */
+    memcpy(v + s->n_x, y, (size_t)dalcs_system_n_columns(s) * sizeof(*v));
+    memcpy(v + s->n_x + dalcs_system_n_columns(s), u + s->n_x, (size_t)s->n_inputs * sizeof(*v));
     double worst = 0.0;
     int where = -1;
-    for (int i = 0; i < f.n_checked; i++) {
-        int r = f.checked[i];
-        double residual = evaluate_row(&s, difference, y, u + s.n_x, r);
-        double size = row_size(&f, scale, r);
+    for (int i = 0; i < check.n_rows; i++) {
+        double residual = fabs(dalcs_csr_row_dot(&check, i, v));
+        double size = row_size(f, scale, f->checked[i]);
         if (!(residual <= worst * size)) {
             worst = size > 0.0 ? residual / size : INFINITY;
-            where = r;
+            where = f->checked[i];
         }
     }
     note(&p->certificate, worst, 1.0, where);

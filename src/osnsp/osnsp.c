@@ -99,7 +99,8 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
     p->w = dalcs_alloc(n_pairs, sizeof(double));
     p->form = dalcs_alloc(33, sizeof(*p->form));
     p->form_id = dalcs_alloc(33, sizeof(*p->form_id));
-    p->difference = dalcs_alloc((size_t)system->n_x, sizeof(double));
+    p->difference =
+        dalcs_alloc((size_t)(system->n_x + system->n_inputs) + n_columns, sizeof(double));
     p->run = dalcs_alloc(n_columns, sizeof(*p->run));
     p->is_diode = dalcs_alloc(n_pairs, sizeof(bool));
     p->w_ends = dalcs_alloc(2 * n_pairs, sizeof(int));

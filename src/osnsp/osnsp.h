@@ -77,7 +77,7 @@ struct dalcs_osnsp {
     int *pair_rows_p, *pair_rows; /* rows of A that hold lambda_d */
     int n_references;             /* columns that must vanish, and their rows */
     int *reference, *reference_row;
-    double *difference; /* [n_x] x+ - x_k */
+    double *difference; /* [n_x + n_columns + n_inputs] (sigma (x+ - x_k), y, s) being checked */
     int n_runs;         /* columns of one unit side by side */
 
     struct dalcs_unit_run {

@@ -253,6 +253,39 @@ static enum dalcs_status measure_rows(struct dalcs_step_form *f, const struct da
     return DALCS_OK;
 }
 
+static enum dalcs_status copy_row(struct dalcs_triplets *t, int row, const struct dalcs_csr *a,
+                                  int i, int first_column, double sign) {
+    for (int k = a->p[i]; k < a->p[i + 1]; k++) {
+        DALCS_TRY(dalcs_triplets_add(t, row, first_column + a->j[k], sign * a->x[k]));
+    }
+    return DALCS_OK;
+}
+
+/* The rows that a certificate evaluates, in one matrix: its loop is a good part of a step. */
+static enum dalcs_status gather_checked_rows(struct dalcs_step_form *f,
+                                             const struct dalcs_system *s) {
+    struct dalcs_triplets t = {0};
+    int n_columns = dalcs_system_n_columns(s);
+    enum dalcs_status status = DALCS_OK;
+    for (int i = 0; i < f->n_checked && status == DALCS_OK; i++) {
+        int r = f->checked[i];
+        if (r < s->n_x) {
+            status = copy_row(&t, i, &s->P, r, 0, -1.0);
+        }
+        if (status == DALCS_OK) {
+            status = copy_row(&t, i, &s->A, r, s->n_x, 1.0);
+        }
+        if (status == DALCS_OK) {
+            status = copy_row(&t, i, &s->E, r, s->n_x + n_columns, 1.0);
+        }
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_csr_compress(&f->check, f->n_checked, s->n_x + n_columns + s->n_inputs, &t);
+    }
+    dalcs_triplets_finish(&t);
+    return status;
+}
+
 /* Numbers what is left, and splits the rows into K, R, X and Xu. */
 static enum dalcs_status collect(struct dalcs_step_form *f, const struct elimination *e,
                                  const int *row_of_dual) {
@@ -356,6 +389,9 @@ static enum dalcs_status collect(struct dalcs_step_form *f, const struct elimina
         status = measure_rows(f, s);
     }
     if (status == DALCS_OK) {
+        status = gather_checked_rows(f, s);
+    }
+    if (status == DALCS_OK) {
         status = balance(f);
     }
 done:
@@ -430,8 +466,8 @@ static size_t csr_bytes(const struct dalcs_csr *a) {
 }
 
 size_t dalcs_step_form_bytes(const struct dalcs_step_form *f) {
-    return csr_bytes(&f->K) + csr_bytes(&f->R) + csr_bytes(&f->X) + csr_bytes(&f->Xu) +
-           (size_t)(f->n + f->n_pairs) * (2 * sizeof(int) + 2 * sizeof(double));
+    return csr_bytes(&f->K) + csr_bytes(&f->R) + csr_bytes(&f->X) + csr_bytes(&f->check) +
+           csr_bytes(&f->Xu) + (size_t)(f->n + f->n_pairs) * (2 * sizeof(int) + 2 * sizeof(double));
 }
 
 void dalcs_step_form_finish(struct dalcs_step_form *form) {
@@ -443,6 +479,7 @@ void dalcs_step_form_finish(struct dalcs_step_form *form) {
     free(form->row_volts);
     free(form->row_amperes);
     dalcs_csr_finish(&form->K);
+    dalcs_csr_finish(&form->check);
     dalcs_csr_finish(&form->W);
     dalcs_csr_finish(&form->R);
     dalcs_csr_finish(&form->X);

@@ -31,8 +31,9 @@ struct dalcs_step_form {
     int *x_ends;   /* [n_x][2] columns whose difference is x+, -1 where it is more than that */
     int n_checked; /* rows of the system that recovering x+ does not satisfy by definition */
     int *checked;
-    double *row_volts;   /* [n_equations] sum of |coefficients| on voltages, sigma P included */
-    double *row_amperes; /* [n_equations] the same on currents */
+    struct dalcs_csr check; /* [n_checked] those rows over (sigma (x+ - x_k), y, s) side by side */
+    double *row_volts;      /* [n_equations] sum of |coefficients| on voltages, sigma P included */
+    double *row_amperes;    /* [n_equations] the same on currents */
 };
 
 /* Condenses the system at sigma. On failure *form is zeroed. */

@@ -14,8 +14,7 @@ static inline enum dalcs_status build_circuit(struct dalcs_circuit *circuit,
     struct dalcs_netlist netlist = {0};
     *diag = (struct dalcs_diag){0};
     *circuit = (struct dalcs_circuit){0};
-    enum dalcs_status status =
-        dalcs_netlist_read_text(&netlist, "t.cir", text, strlen(text), diag);
+    enum dalcs_status status = dalcs_netlist_read_text(&netlist, "t.cir", text, strlen(text), diag);
     if (status == DALCS_OK) {
         status = dalcs_circuit_build(circuit, &netlist, diag);
     }

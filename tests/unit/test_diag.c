@@ -32,6 +32,7 @@ START_TEST(test_places) {
     dalcs_diag_finish(&diag);
     ck_assert_uint_eq(diag.n, 0);
 }
+
 END_TEST
 
 /* The caret stands right whatever a tab's width, and counts characters, not bytes. */
@@ -51,6 +52,7 @@ START_TEST(test_caret) {
     check_last(DALCS_ERROR, "t:1:3: error: x\nab\n  ^");
     dalcs_diag_finish(&diag);
 }
+
 END_TEST
 
 START_TEST(test_long_line) {
@@ -70,6 +72,7 @@ START_TEST(test_long_line) {
     ck_assert_uint_lt(strcspn(line, "\n"), 170);
     dalcs_diag_finish(&diag);
 }
+
 END_TEST
 
 /* A flood of warnings must not hide an error, and ends with a word about the rest. */
@@ -88,6 +91,7 @@ START_TEST(test_flood) {
     check_last(DALCS_ERROR, "error: more errors than are shown here");
     dalcs_diag_finish(&diag);
 }
+
 END_TEST
 
 START_TEST(test_sort) {
@@ -104,6 +108,7 @@ START_TEST(test_sort) {
     }
     dalcs_diag_finish(&diag);
 }
+
 END_TEST
 
 RUN_TESTS("diag", test_places, test_caret, test_long_line, test_flood, test_sort)

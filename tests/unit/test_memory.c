@@ -27,6 +27,7 @@ START_TEST(test_alloc) {
     ck_assert_ptr_null(dalcs_alloc(SIZE_MAX / 4, 8));
     ck_assert_ptr_null(dalcs_alloc(SIZE_MAX, 1));
 }
+
 END_TEST
 
 START_TEST(test_grow) {
@@ -52,6 +53,7 @@ START_TEST(test_grow) {
     ck_assert_uint_eq(capacity, capacity_before);
     free(item);
 }
+
 END_TEST
 
 /* Objects of all sizes: aligned, zeroed, apart from each other. */
@@ -81,6 +83,7 @@ START_TEST(test_arena) {
     ck_assert_ptr_null(arena.head);
     dalcs_arena_finish(&arena);
 }
+
 END_TEST
 
 RUN_TESTS("memory", test_alloc, test_grow, test_arena)

@@ -27,31 +27,29 @@ START_TEST(test_many) {
     dalcs_names_finish(&names);
     dalcs_arena_finish(&arena);
 }
+
 END_TEST
 
 START_TEST(test_nearest) {
     static const char *const known[] = {"reltol", "abstol", "vntol", "ron", "roff", "in", "out"};
+
     enum { N = sizeof known / sizeof known[0] };
+
     static const struct {
         const char *name;
         const char *nearest;
     } wanted[] = {
-        {"retol", "reltol"},  /* a letter missing */
-        {"relltol", "reltol"}, /* one too many */
-        {"reltoi", "reltol"}, /* changed */
-        {"erltol", "reltol"}, /* swapped */
-        {"rletol", "reltol"},
-        {"rof", "roff"}, /* as near to ron; the longer common start wins */
-        {"rom", "ron"},
-        {"ou", "out"},
-        {"abtsol", "abstol"},
-        {"abxxol", "abstol"},
-        {"abxxxl", NULL}, /* three letters: a guess */
-        {"im", NULL},     /* half of a name */
-        {"a", NULL},
-        {"", NULL},
-        {"something else altogether", NULL},
+        {"retol", "reltol"},                    /* a letter missing */
+        {"relltol", "reltol"},                  /* one too many */
+        {"reltoi", "reltol"},                   /* changed */
+        {"erltol", "reltol"},                   /* swapped */
+        {"rletol", "reltol"},  {"rof", "roff"}, /* as near to ron; the longer common start wins */
+        {"rom", "ron"},        {"ou", "out"},    {"abtsol", "abstol"},
+        {"abxxol", "abstol"},  {"abxxxl", NULL}, /* three letters: a guess */
+        {"im", NULL},                            /* half of a name */
+        {"a", NULL},           {"", NULL},       {"something else altogether", NULL},
     };
+
     for (size_t k = 0; k < sizeof wanted / sizeof wanted[0]; k++) {
         const char *nearest = dalcs_names_nearest_of(known, N, wanted[k].name);
         if (wanted[k].nearest == NULL) {
@@ -62,6 +60,7 @@ START_TEST(test_nearest) {
         }
     }
 }
+
 END_TEST
 
 START_TEST(test_table_of_few) {
@@ -78,6 +77,7 @@ START_TEST(test_table_of_few) {
     dalcs_names_finish(&names);
     dalcs_arena_finish(&arena);
 }
+
 END_TEST
 
 RUN_TESTS("names", test_many, test_nearest, test_table_of_few)

@@ -30,10 +30,10 @@ static const char *card_text(size_t index) {
     const struct dalcs_card *card = &netlist.card[index];
     text[0] = '\0';
     for (int k = 0; k < card->n; k++) {
-        static const char mark[] = {[DALCS_TOKEN_WORD] = 'w',       [DALCS_TOKEN_STRING] = 's',
-                                    [DALCS_TOKEN_EXPRESSION] = 'e', [DALCS_TOKEN_EQUAL] = '=',
-                                    [DALCS_TOKEN_OPEN] = '(',       [DALCS_TOKEN_CLOSE] = ')',
-                                    [DALCS_TOKEN_BAD] = '!'};
+        static const char mark[] = {
+            [DALCS_TOKEN_WORD] = 'w',  [DALCS_TOKEN_STRING] = 's', [DALCS_TOKEN_EXPRESSION] = 'e',
+            [DALCS_TOKEN_EQUAL] = '=', [DALCS_TOKEN_OPEN] = '(',   [DALCS_TOKEN_CLOSE] = ')',
+            [DALCS_TOKEN_BAD] = '!'};
         const struct dalcs_token *token = &card->token[k];
         const size_t n = strlen(text);
         const char m = mark[token->kind];
@@ -79,6 +79,7 @@ START_TEST(test_tokens) {
     ck_assert_str_eq(netlist.card[0].token->line->text, "R1 In OUT 4.7K");
     finish();
 }
+
 END_TEST
 
 START_TEST(test_comments_and_continuation) {
@@ -104,6 +105,7 @@ START_TEST(test_comments_and_continuation) {
     ck_assert_uint_eq(diag.n, 0);
     finish();
 }
+
 END_TEST
 
 START_TEST(test_end) {
@@ -113,6 +115,7 @@ START_TEST(test_end) {
     ck_assert_uint_eq(diag.n, 0);
     finish();
 }
+
 END_TEST
 
 START_TEST(test_title) {
@@ -129,10 +132,13 @@ START_TEST(test_title) {
     ck_assert_uint_eq(netlist.n_cards, 0);
     finish();
 }
+
 END_TEST
 
 START_TEST(test_line_ends_and_encodings) {
-    read_text("\xEF\xBB\xBF" "CRLF\r\nR1\xC2\xA0" "a\t0 1k\r\n+ 5\r\nC\xC2\xB5 a 0 \xCE\xA9z 1");
+    read_text("\xEF\xBB\xBF"
+              "CRLF\r\nR1\xC2\xA0"
+              "a\t0 1k\r\n+ 5\r\nC\xC2\xB5 a 0 \xCE\xA9z 1");
     ck_assert_str_eq(netlist.title, "CRLF");
     ck_assert_uint_eq(netlist.n_cards, 2);
     ck_assert_str_eq(card_text(0), "r1 a 0 1k 5 ");
@@ -142,6 +148,7 @@ START_TEST(test_line_ends_and_encodings) {
     ck_assert_uint_eq(diag.n, 0);
     finish();
 }
+
 END_TEST
 
 START_TEST(test_control_block) {
@@ -151,6 +158,7 @@ START_TEST(test_control_block) {
     ck_assert_uint_eq(diag.n, 0);
     finish();
 }
+
 END_TEST
 
 /* Errors of spelling do not end the reading: the rest is there, the token is marked. */
@@ -170,6 +178,7 @@ START_TEST(test_errors) {
         {"t\nR1 \xE2\x82\nR2 b 0 1\n", NULL, 2, 4},
         {"t\n+ 5\nR2 b 0 1\nR3 c 0 1\n", "r2 b 0 1 ", 2, 1},
     };
+
     for (size_t k = 0; k < sizeof wanted / sizeof wanted[0]; k++) {
         read_text(wanted[k].text);
         ck_assert_uint_eq(diag.n, 1);
@@ -184,6 +193,7 @@ START_TEST(test_errors) {
         finish();
     }
 }
+
 END_TEST
 
 START_TEST(test_no_text) {
@@ -199,6 +209,7 @@ START_TEST(test_no_text) {
     ck_assert(netlist.has_errors);
     finish();
 }
+
 END_TEST
 
 START_TEST(test_file) {
@@ -228,6 +239,7 @@ START_TEST(test_file) {
     ck_assert_int_eq(netlist.card[19999].token->line->number, 20001);
     finish();
 }
+
 END_TEST
 
 START_TEST(test_spans) {
@@ -244,6 +256,7 @@ START_TEST(test_spans) {
     ck_assert_int_eq(where.column, 11);
     finish();
 }
+
 END_TEST
 
 RUN_TESTS("netlist", test_tokens, test_comments_and_continuation, test_end, test_title,

@@ -36,6 +36,7 @@ START_TEST(test_values) {
     check_value("4.9406564584124654e-324", 4.9406564584124654e-324);
     check_value("1.7976931348623157e308", 1.7976931348623157e308);
 }
+
 END_TEST
 
 START_TEST(test_suffixes) {
@@ -49,7 +50,9 @@ START_TEST(test_suffixes) {
     check_value("1MHz", 1e-3);
     check_value("3.3u", 3.3e-6);
     check_value("3.3\xC2\xB5", 3.3e-6);
-    check_value("3.3\xCE\xBC" "F", 3.3e-6);
+    check_value("3.3\xCE\xBC"
+                "F",
+                3.3e-6);
     check_value("10k\xCE\xA9", 1e4); /* ohm sign */
     check_value("100n", 100e-9);
     check_value("22pF", 22e-12);
@@ -60,6 +63,7 @@ START_TEST(test_suffixes) {
     check_value("1mil", 25.4e-6);
     check_value("1e3eV", 1e3);
 }
+
 END_TEST
 
 /* Every suffix equals the exponent it stands for, correctly rounded, which multiplying is not. */
@@ -69,6 +73,7 @@ START_TEST(test_rounding) {
         int power;
     } table[] = {{"t", 12}, {"g", 9},  {"meg", 6}, {"k", 3},   {"m", -3},
                  {"u", -6}, {"n", -9}, {"p", -12}, {"f", -15}, {"a", -18}};
+
     uint64_t state = 2385;
     int multiplying_differs = 0;
     for (int k = 0; k < 100000; k++) {
@@ -82,11 +87,11 @@ START_TEST(test_rounding) {
         snprintf(plain, sizeof plain, "%u.%06ue%d", whole, part, table[s].power);
         check_value(text, strtod(plain, NULL));
         snprintf(plain, sizeof plain, "%u.%06u", whole, part);
-        multiplying_differs +=
-            strtod(plain, NULL) * pow(10, table[s].power) != strtod(text, NULL);
+        multiplying_differs += strtod(plain, NULL) * pow(10, table[s].power) != strtod(text, NULL);
     }
     ck_assert_int_gt(multiplying_differs, 1000);
 }
+
 END_TEST
 
 /* The decision of a tie may lie behind hundreds of digits. */
@@ -104,12 +109,13 @@ START_TEST(test_many_digits) {
     snprintf(text, sizeof text, "1%0900de-900k", 0);
     check_value(text, 1000.0);
 }
+
 END_TEST
 
 START_TEST(test_refusals) {
-    static const char *const malformed[] = {"",    "-",    "+",   ".",    "abc", "1..5", "1.2.3",
-                                            "1e",  "1e+",  "1,5", "k",    "--1", "1-",   "1k-",
-                                            "0x#", "1k.5", "e5",  "10u*2", "1%",  "inf", "nan"};
+    static const char *const malformed[] = {"",    "-",    "+",   ".",     "abc", "1..5", "1.2.3",
+                                            "1e",  "1e+",  "1,5", "k",     "--1", "1-",   "1k-",
+                                            "0x#", "1k.5", "e5",  "10u*2", "1%",  "inf",  "nan"};
     for (size_t k = 0; k < sizeof malformed / sizeof malformed[0]; k++) {
         check_refused(malformed[k], DALCS_NUMBER_MALFORMED);
     }
@@ -124,6 +130,7 @@ START_TEST(test_refusals) {
     check_refused("1e-99999999999999999999999999999999999", DALCS_NUMBER_UNDERFLOW);
     check_value("0e999999999999999999999999", 0.0);
 }
+
 END_TEST
 
 START_TEST(test_parts) {
@@ -137,6 +144,7 @@ START_TEST(test_parts) {
     ck_assert_int_eq(number.digits, 1);
     ck_assert_int_eq(number.tail, 1);
 }
+
 END_TEST
 
 START_TEST(test_ignores_the_locale) {
@@ -147,6 +155,7 @@ START_TEST(test_ignores_the_locale) {
     check_value("1.5k", 1500);
     check_refused("1,5", DALCS_NUMBER_MALFORMED);
 }
+
 END_TEST
 
 RUN_TESTS("number", test_values, test_suffixes, test_rounding, test_many_digits, test_refusals,

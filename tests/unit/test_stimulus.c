@@ -38,8 +38,7 @@ static struct dalcs_stimulus make_sine(double offset, double amplitude, double f
 }
 
 static struct dalcs_stimulus make_exponential(double low, double high, double rise_delay,
-                                              double rise_tau, double fall_delay,
-                                              double fall_tau) {
+                                              double rise_tau, double fall_delay, double fall_tau) {
     struct dalcs_stimulus s = {.kind = DALCS_STIMULUS_EXP};
     s.u.exponential.low = low;
     s.u.exponential.high = high;
@@ -91,6 +90,7 @@ START_TEST(test_pulse_jumps) {
     ck_assert_double_eq(dalcs_stimulus_next_edge(&s, 0), 1e-3);
     ck_assert(accumulated > 1e-3);
 }
+
 END_TEST
 
 START_TEST(test_pulse_edges) {
@@ -107,6 +107,7 @@ START_TEST(test_pulse_edges) {
     check_limits(&s, 6.125, 1.5, 1.5);
     check_limits(&s, 3, 1, 1);
 }
+
 END_TEST
 
 START_TEST(test_pulse_once_and_for_ever) {
@@ -126,6 +127,7 @@ START_TEST(test_pulse_once_and_for_ever) {
     s = make_pulse(2, 2, 1, 0, 0, 1, 10);
     ck_assert(isinf(dalcs_stimulus_next_edge(&s, 0)));
 }
+
 END_TEST
 
 START_TEST(test_pulse_triangle) {
@@ -141,6 +143,7 @@ START_TEST(test_pulse_triangle) {
         ck_assert_double_eq_tol(t, (n + 1) * 1e-6, 4 * DBL_EPSILON * t);
     }
 }
+
 END_TEST
 
 START_TEST(test_pulse_cut_short) {
@@ -156,6 +159,7 @@ START_TEST(test_pulse_cut_short) {
     check_limits(&s, 1.5, 1.5, 1.5);
     check_limits(&s, 2, 1, 2);
 }
+
 END_TEST
 
 START_TEST(test_pulse_narrow_edges) {
@@ -171,6 +175,7 @@ START_TEST(test_pulse_narrow_edges) {
     check_limits(&running, 1, 0, 1);
     ck_assert_double_eq(dalcs_stimulus_next_edge(&running, 0), 1);
 }
+
 END_TEST
 
 /* ---- SIN, EXP, PWL ------------------------------------------------------------------------- */
@@ -195,6 +200,7 @@ START_TEST(test_sine) {
     const double wanted = 1 + 2 * exp(-0.7 * 0.385) * sin(2 * PI * (3 * 0.385 + 1. / 12));
     ck_assert_double_eq_tol(dalcs_stimulus_value(&s, 0.885, DALCS_LEFT), wanted, 1e-14);
 }
+
 END_TEST
 
 /* A million cycles on, no digit of the phase is lost. */
@@ -203,11 +209,12 @@ START_TEST(test_sine_late) {
     for (int k = 0; k < 10000; k++) {
         const double t = 1000 + 0.0001237 * k;
         const long double cycles = 997.3 * (long double)t + 17.0L / 360;
-        const double wanted = (double)sinl(2 * 3.14159265358979323846264L *
-                                           (cycles - floorl(cycles)));
+        const double wanted =
+            (double)sinl(2 * 3.14159265358979323846264L * (cycles - floorl(cycles)));
         ck_assert_double_eq_tol(dalcs_stimulus_value(&s, t, DALCS_RIGHT), wanted, 2e-12);
     }
 }
+
 END_TEST
 
 START_TEST(test_exponential) {
@@ -230,6 +237,7 @@ START_TEST(test_exponential) {
     check_limits(&s, 1e6, 3, 3);
     ck_assert(isinf(dalcs_stimulus_next_edge(&s, 0)));
 }
+
 END_TEST
 
 START_TEST(test_pwl) {
@@ -262,6 +270,7 @@ START_TEST(test_pwl) {
     check_limits(&s, 0, 0, 5);
     ck_assert_double_eq(dalcs_stimulus_operating_value(&s, true), 5);
 }
+
 END_TEST
 
 START_TEST(test_operating_value) {
@@ -276,6 +285,7 @@ START_TEST(test_operating_value) {
     ck_assert(isinf(dalcs_stimulus_next_edge(&s, 0)));
     ck_assert(!dalcs_stimulus_jumps_at(&s, 0));
 }
+
 END_TEST
 
 /* ---- The contract, on random sources -------------------------------------------------------- */
@@ -301,8 +311,8 @@ static struct dalcs_stimulus random_stimulus(int kind) {
     const double high = uniform(-5, 5);
     if (kind == 0) {
         const double period = uniform(0, 1) < 0.2 ? INFINITY : decimal_time() + 0.01;
-        return make_pulse(low, high, decimal_time() - 0.5, decimal_time() / 4,
-                          decimal_time() / 4, decimal_time(), period);
+        return make_pulse(low, high, decimal_time() - 0.5, decimal_time() / 4, decimal_time() / 4,
+                          decimal_time(), period);
     }
     if (kind == 1) {
         return make_sine(low, high, uniform(0, 50), decimal_time(), uniform(-1, 1),
@@ -322,26 +332,22 @@ static struct dalcs_stimulus random_stimulus(int kind) {
     return make_pwl(pwl_t, pwl_v, 12);
 }
 
-/* No edge inside a..b: differences of a smooth function shrink with the distance. */
+/* No jump inside a..b. Slopes are below 1e6 a second, so that over 1e-9 s a jump stands out. */
 static void check_smooth(const struct dalcs_stimulus *s, double a, double b) {
-    const double h = (b - a) / 64;
-    double jump = 0;
-    double slope = 0;
-    for (int k = 1; k < 64; k++) {
-        const double t = a + k * h;
-        const double before = dalcs_stimulus_value(s, t - h / 1e4, DALCS_LEFT);
+    const double near = 1e-9 * fmin(1, b - a);
+    for (int k = 1; k < 16; k++) {
+        const double t = a + k * (b - a) / 16;
         const double here = dalcs_stimulus_value(s, t, DALCS_LEFT);
-        const double after = dalcs_stimulus_value(s, t + h / 1e4, DALCS_RIGHT);
+        const double change = dalcs_stimulus_value(s, t + near, DALCS_RIGHT) -
+                              dalcs_stimulus_value(s, t - near, DALCS_LEFT);
         ck_assert_double_eq(here, dalcs_stimulus_value(s, t, DALCS_RIGHT));
-        jump = fmax(jump, fmax(fabs(here - before), fabs(after - here)));
-        slope = fmax(slope, fabs(dalcs_stimulus_value(s, t + h / 2, DALCS_LEFT) - here));
+        ck_assert_msg(fabs(change) < 2e-3, "a jump of %g at %.17g, between %.17g and %.17g", change,
+                      t, a, b);
     }
-    ck_assert_msg(jump <= 0.02 * slope + 1e-3, "a jump of %g between edges at %.17g and %.17g",
-                  jump, a, b);
 }
 
 START_TEST(test_contract) {
-    for (int trial = 0; trial < 4000; trial++) {
+    for (int trial = 0; trial < 1200; trial++) {
         const struct dalcs_stimulus s = random_stimulus(trial % 4);
         double t = 0;
         for (int k = 0; k < 30; k++) {
@@ -364,6 +370,7 @@ START_TEST(test_contract) {
         }
     }
 }
+
 END_TEST
 
 RUN_TESTS("stimulus", test_pulse_jumps, test_pulse_edges, test_pulse_once_and_for_ever,

@@ -148,8 +148,9 @@ static void bench(const char *name, char *text, double h, int warm_up, int n_ste
 
 int main(int argc, char **argv) {
     if (argc > 1) { /* one circuit, for a profiler */
-        bench("Cockcroft-Walton", bench_cockcroft_walton(atoi(argv[1])), 2e-6, 2000, 2000, 1.5,
-              false, "klu_solve");
+        int n = atoi(argv[1]);
+        bench("one", n > 0 ? bench_cockcroft_walton(n) : bench_six_pulse(), n > 0 ? 2e-6 : 2e-5, 20000,
+              n > 30 ? 2000 : 20000, 1.5, false, "klu_solve");
         return 0;
     }
     bench("bridge", bench_bridge(1), 2e-5, 5000, 20000, 0.3, false, "us");
