@@ -16,14 +16,14 @@ USUAL = 0.99
 @dataclasses.dataclass
 class Difference:
     signal: str
-    scale: float
+    scale: float  # > 0
     largest: float
     usual: float
     rms: float
     time: float  # of the largest
 
     def relative(self, value):
-        return value / self.scale if self.scale > 0 else 0.0
+        return value / self.scale
 
     def within(self, tolerance):
         """The rms may be half of the tolerance: a waveform that is off all the time is wrong."""

@@ -10,9 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-/* How far a scale of one unit reaches into the other. */
-static const double cross_floor = 1e-3;
-
 struct scales {
     double volt, ampere;
 };
@@ -40,12 +37,13 @@ static struct scales physical_scales(const struct dalcs_osnsp *p, const double *
     double largest[2] = {0.0, 0.0};
     for (int k = 0; k < p->n_runs; k++) {
         const struct dalcs_unit_run *run = &p->run[k];
-        largest[run->is_current] =
-            fmax(largest[run->is_current], largest_of(y, run->begin, run->end));
+        double a = largest_of(y, run->begin, run->end);
+        largest[run->is_current] = a > largest[run->is_current] ? a : largest[run->is_current];
     }
-    double g = cross_floor * p->form[0]->pair_conductance;
-    double r = cross_floor / p->form[0]->pair_conductance;
-    return (struct scales){fmax(largest[0], r * largest[1]), fmax(largest[1], g * largest[0])};
+    double ampere = p->form[0]->volt_in_amperes * largest[0];
+    double volt = p->form[0]->ampere_in_volts * largest[1];
+    return (struct scales){largest[0] > volt ? largest[0] : volt,
+                           largest[1] > ampere ? largest[1] : ampere};
 }
 
 static void note(struct dalcs_certificate *c, double residual, double scale, int where) {

@@ -229,17 +229,26 @@ static enum dalcs_status entry_create(struct dalcs_osnsp *p, int kind,
     return DALCS_OK;
 }
 
+static bool is_key(const uint64_t *key, const uint64_t *mode, size_t words, uint64_t last_word) {
+    uint64_t different = key[words] ^ last_word;
+    for (size_t i = 0; i < words; i++) {
+        different |= key[i] ^ mode[i];
+    }
+    return different == 0;
+}
+
 enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
                                   struct dalcs_mode_entry **entry) {
     size_t words = (size_t)p->n_words;
-    memcpy(p->key, p->mode, words * sizeof(*p->key));
-    p->key[words] = (uint64_t)p->form_id[0] << 8 | (uint64_t)kind;
-    size_t key_bytes = (words + 1) * sizeof(*p->key);
-    if (p->newest != NULL && memcmp(p->newest->key, p->key, key_bytes) == 0) {
-        *entry = p->newest;
+    uint64_t last_word = (uint64_t)p->form_id[0] << 8 | (uint64_t)kind;
+    if (p->newest != NULL && is_key(p->newest->key, p->mode, words, last_word)) {
+        *entry = p->newest; /* as in most steps */
         p->counters.cache_hits++;
         return DALCS_OK;
     }
+    memcpy(p->key, p->mode, words * sizeof(*p->key));
+    p->key[words] = last_word;
+    size_t key_bytes = (words + 1) * sizeof(*p->key);
     struct dalcs_mode_entry *e;
     HASH_FIND(hh, p->entries, p->key, key_bytes, e);
     if (e != NULL) {

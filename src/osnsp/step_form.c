@@ -12,6 +12,9 @@
 static const double pivot_floor = 1e-8;
 static const int fill_limit = 4096;
 
+/* How far a scale of one unit reaches into the other, through the conductance around a pair. */
+static const double cross_floor = 1e-3;
+
 struct row {
     int n, capacity;
     int *column;
@@ -217,6 +220,8 @@ static enum dalcs_status balance(struct dalcs_step_form *f) {
         sum += log2(f->scale[f->n + d]) + log2(f->row_scale[f->n + d]);
     }
     f->pair_conductance = f->n_pairs > 0 ? exp2(rint(sum / f->n_pairs)) : 1.0;
+    f->volt_in_amperes = cross_floor * f->pair_conductance;
+    f->ampere_in_volts = cross_floor / f->pair_conductance;
     for (int c = 0; c < n; c++) {
         for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
             f->K.x[k] *= f->scale[c] * f->row_scale[f->K.j[k]];

@@ -26,7 +26,9 @@ struct dalcs_step_form {
     double *scale;      /* [n + n_pairs] powers of 2: y = scale * scaled y */
     double *row_scale;  /* [n + n_pairs] powers of 2 that rows of K and R were multiplied with */
     double pair_conductance; /* S: the typical scale * row_scale of a pair */
-    struct dalcs_csr X;      /* [n_x][n_columns] x+ = X (0, z+, lambda+) + Xu u; kept x: identity */
+    double volt_in_amperes,
+        ampere_in_volts; /* how far the scale of one unit reaches into the other */
+    struct dalcs_csr X;  /* [n_x][n_columns] x+ = X (0, z+, lambda+) + Xu u; kept x: identity */
     struct dalcs_csr Xu;
     int *x_ends;   /* [n_x][2] columns whose difference is x+, -1 where it is more than that */
     int n_checked; /* rows of the system that recovering x+ does not satisfy by definition */

@@ -85,6 +85,20 @@ static double time_klu_solve(struct dalcs_euler *e, int *order) {
     return seconds;
 }
 
+/* Seconds of one OSNSP of every component, at the state and inputs where the run stands: the same
+ * mode again and again, nothing but the solve and its certificate. */
+static double time_osnsp(struct dalcs_euler *e, int rounds) {
+    double sigma = 1.0 / e->grid.h;
+    double begin = now();
+    for (int r = 0; r < rounds; r++) {
+        for (int k = 0; k < e->n_components; k++) {
+            struct dalcs_component *c = &e->component[k];
+            must(dalcs_osnsp_solve(&c->osnsp, sigma, c->u, c->scratch), "osnsp");
+        }
+    }
+    return (now() - begin) / rounds;
+}
+
 static void bench(const char *name, char *text, double h, int warm_up, int n_steps, double target,
                   bool per_component, const char *unit) {
     struct dalcs_diag diag = {0};
@@ -111,6 +125,7 @@ static void bench(const char *name, char *text, double h, int warm_up, int n_ste
     }
     double step[REPEATS];
     double solve[REPEATS];
+    double osnsp[REPEATS];
     int order = 0;
     struct dalcs_osnsp_counters before = {0};
     for (int k = 0; k < e.n_components; k++) {
@@ -123,6 +138,7 @@ static void bench(const char *name, char *text, double h, int warm_up, int n_ste
             must(dalcs_euler_step(&e), name);
         }
         step[r] = (now() - begin) / n_steps;
+        osnsp[r] = time_osnsp(&e, n_steps);
         solve[r] = time_klu_solve(&e, &order);
     }
     long factorizations = -before.factorizations;
@@ -135,10 +151,11 @@ static void bench(const char *name, char *text, double h, int warm_up, int n_ste
     double us = 1e6 * median(step, REPEATS) / parts;
     double us_solve = 1e6 * median(solve, REPEATS);
     double steps = (double)REPEATS * n_steps * parts;
-    printf("%-22s n %5d  step %8.3f us  klu_solve %7.3f us  ratio %5.2f  pivots %.3f  factors "
-           "%.4f  worst %.0e  target %g %s\n",
-           name, order, us, us_solve, us / us_solve, (double)pivots / steps,
-           (double)factorizations / steps, e.worst.worst, target, unit);
+    double us_osnsp = 1e6 * median(osnsp, REPEATS) / parts;
+    printf("%-22s n %5d  klu_solve %7.3f us  osnsp %8.3f us = %5.2f  step %8.3f us = %5.2f  "
+           "(pivots %.3f, factors %.4f a step)  worst %.0e  target %g %s\n",
+           name, order, us_solve, us_osnsp, us_osnsp / us_solve, us, us / us_solve,
+           (double)pivots / steps, (double)factorizations / steps, e.worst.worst, target, unit);
     dalcs_euler_finish(&e);
     dalcs_network_finish(&network);
     dalcs_circuit_finish(&circuit);
@@ -149,8 +166,8 @@ static void bench(const char *name, char *text, double h, int warm_up, int n_ste
 int main(int argc, char **argv) {
     if (argc > 1) { /* one circuit, for a profiler */
         int n = atoi(argv[1]);
-        bench("one", n > 0 ? bench_cockcroft_walton(n) : bench_six_pulse(), n > 0 ? 2e-6 : 2e-5, 20000,
-              n > 30 ? 2000 : 20000, 1.5, false, "klu_solve");
+        bench("one", n > 0 ? bench_cockcroft_walton(n) : bench_six_pulse(), n > 0 ? 2e-6 : 2e-5,
+              20000, n > 30 ? 2000 : 20000, 1.5, false, "klu_solve");
         return 0;
     }
     bench("bridge", bench_bridge(1), 2e-5, 5000, 20000, 0.3, false, "us");

@@ -1,0 +1,120 @@
+/* fuzz_netlist.c - libFuzzer target: any bytes to cards to a circuit.
+ *
+ * Beside not crashing, the outcome must be one that the next stage can rely on: errors come with
+ * messages and leave nothing behind; a circuit has indices in range, values that are numbers, and
+ * sources whose edges ascend. */
+#include "circuit.h"
+#include "netlist.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(bool condition) {
+    if (!condition) {
+        abort();
+    }
+}
+
+static void check_device(const struct dalcs_circuit *circuit, const struct dalcs_device *device) {
+    require(device->name != NULL && device->where.file != NULL && device->where.line > 1);
+    for (int k = 0; k < 4; k++) {
+        require(device->node[k] >= 0 && device->node[k] < circuit->n_nodes);
+    }
+    require(isfinite(device->value) && isfinite(device->initial));
+    require(device->stimulus < circuit->n_stimuli && device->control < circuit->n_devices);
+    switch (device->kind) {
+    case DALCS_VSOURCE:
+    case DALCS_ISOURCE:
+        require(device->stimulus >= 0);
+        break;
+    case DALCS_CCCS:
+    case DALCS_CCVS:
+        require(device->control >= 0 &&
+                circuit->device[device->control].kind == DALCS_VSOURCE);
+        break;
+    case DALCS_INDUCTOR:
+    case DALCS_CAPACITOR:
+        require(device->value > 0);
+        break;
+    case DALCS_DIODE:
+        require(device->model >= 0 && device->model < circuit->n_diode_models);
+        require(circuit->diode_model[device->model].ron >= 0);
+        require(circuit->diode_model[device->model].roff > 0);
+        break;
+    case DALCS_SWITCH:
+        require(device->model >= 0 && device->model < circuit->n_switch_models);
+        require(circuit->switch_model[device->model].vh >= 0);
+        break;
+    default:
+        break;
+    }
+}
+
+static void check_stimulus(const struct dalcs_stimulus *s) {
+    double t = 0;
+    for (int k = 0; k < 20 && !isinf(t); k++) {
+        require(!isnan(dalcs_stimulus_value(s, t, DALCS_LEFT)));
+        require(!isnan(dalcs_stimulus_value(s, t, DALCS_RIGHT)));
+        const double next = dalcs_stimulus_next_edge(s, t);
+        require(next > t);
+        t = next;
+    }
+}
+
+static void check_circuit(const struct dalcs_circuit *circuit) {
+    require(circuit->n_nodes >= 1 && circuit->n_devices >= 1);
+    require(circuit->operating_point || circuit->transient.present);
+    require(strcmp(circuit->node_name[0], "0") == 0);
+    for (int k = 0; k < circuit->n_devices; k++) {
+        check_device(circuit, &circuit->device[k]);
+    }
+    for (int k = 0; k < circuit->n_stimuli; k++) {
+        check_stimulus(&circuit->stimulus[k]);
+    }
+    for (int k = 0; k < circuit->n_couplings; k++) {
+        const struct dalcs_coupling *c = &circuit->coupling[k];
+        require(fabs(c->k) <= 1 && c->inductor[0] != c->inductor[1]);
+        require(circuit->device[c->inductor[0]].kind == DALCS_INDUCTOR);
+        require(circuit->device[c->inductor[1]].kind == DALCS_INDUCTOR);
+    }
+    for (int k = 0; k < circuit->n_initial_conditions; k++) {
+        const struct dalcs_initial_condition *ic = &circuit->initial_condition[k];
+        require(ic->node[0] < circuit->n_nodes && ic->node[1] < circuit->n_nodes);
+        require(ic->node[0] != ic->node[1] && isfinite(ic->value));
+    }
+    for (int k = 0; k < circuit->n_signals; k++) {
+        const struct dalcs_signal *signal = &circuit->signal[k];
+        require(signal->name != NULL && signal->device < circuit->n_devices);
+        require(signal->node[0] < circuit->n_nodes && signal->node[1] < circuit->n_nodes);
+        require(signal->kind == DALCS_SIGNAL_VOLTAGE || signal->device >= 0);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    struct dalcs_diag diag = {0};
+    struct dalcs_netlist netlist = {0};
+    struct dalcs_circuit circuit = {0};
+    require(dalcs_netlist_read_text(&netlist, "fuzz.cir", (const char *)data, size, &diag) ==
+            DALCS_OK);
+    require(netlist.has_errors == (diag.n_errors > 0));
+    const enum dalcs_status status = dalcs_circuit_build(&circuit, &netlist, &diag);
+    dalcs_netlist_finish(&netlist);
+
+    require(status == (diag.n_errors > 0 ? DALCS_E_NETLIST : DALCS_OK));
+    for (size_t k = 0; k < diag.n; k++) {
+        require(strlen(diag.item[k].text) > 8);
+        require(k == 0 || diag.item[k].line == 0 || diag.item[k - 1].line <= diag.item[k].line);
+    }
+    if (status == DALCS_OK) {
+        check_circuit(&circuit);
+    } else {
+        require(circuit.arena.head == NULL && circuit.n_devices == 0);
+    }
+    dalcs_circuit_finish(&circuit);
+    dalcs_diag_finish(&diag);
+    return 0;
+}
