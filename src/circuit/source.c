@@ -27,7 +27,9 @@ static void skip_ac(struct dalcs_reader *reader) {
 static bool read_dc(struct dalcs_reader *reader, enum dalcs_quantity quantity,
                     struct dalcs_stimulus *stimulus) {
     if (stimulus->has_dc) {
-        dalcs_builder_error(reader->builder, dalcs_reader_peek(reader, 0), USAGE,
+        const struct dalcs_token *second = dalcs_reader_peek(reader, 0);
+        dalcs_builder_error(reader->builder,
+                            second != NULL ? second : dalcs_reader_previous(reader), USAGE,
                             "a second DC value");
         return false;
     }

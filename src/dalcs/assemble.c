@@ -13,115 +13,10 @@
  * and resistances on its diagonal blocks. */
 #include "assemble.h"
 
+#include "stamp.h"
+
 #include <math.h>
 #include <stdlib.h>
-
-struct stamps {
-    struct dalcs_layout *layout;
-    struct dalcs_system *s;
-    struct dalcs_triplets P, A, E, C, F, storage, control, direct_control;
-    int n_tree;   /* capacitors in the forest: rows and columns 0..n_tree-1 of x */
-    int next_x;   /* next x column (= row of I) after the forest's */
-    int next_z;   /* next z column after the node voltages */
-    int next_row; /* next row of II after KCL */
-    int next_pair, next_input;
-    double *initial;
-};
-
-static int column_of_node(const struct dalcs_layout *l, int node) {
-    int n = l->topology.node_of[node];
-    return n == 0 ? -1 : l->node_column[n];
-}
-
-/* Adds to a matrix whose columns are the system's; ground (-1) vanishes. */
-static enum dalcs_status add(struct dalcs_triplets *t, int row, int column, double value) {
-    if (column < 0 || value == 0.0) {
-        return DALCS_OK;
-    }
-    return dalcs_triplets_add(t, row, column, value);
-}
-
-/* A current leaving `node`: coefficient * column. */
-static enum dalcs_status leave(struct stamps *b, struct dalcs_triplets *t, int node, int column,
-                               double value) {
-    const struct dalcs_layout *l = b->layout;
-    int n = l->topology.node_of[node];
-    if (n == 0) {
-        return DALCS_OK;
-    }
-    DALCS_TRY(add(t, l->kcl_row[n], column, -value));
-    int root = l->topology.forest_root[n];
-    if (root != n && root != 0) {
-        DALCS_TRY(add(t, l->kcl_row[root], column, -value));
-    }
-    return DALCS_OK;
-}
-
-/* A branch current through a device from its first to its second terminal. */
-static enum dalcs_status branch_current(struct stamps *b, const struct dalcs_device *d, int column,
-                                        double value) {
-    DALCS_TRY(leave(b, &b->A, d->node[0], column, value));
-    return leave(b, &b->A, d->node[1], column, -value);
-}
-
-/* row of t += value * (v(first) - v(second)) */
-static enum dalcs_status add_voltage(struct stamps *b, struct dalcs_triplets *t, int row, int first,
-                                     int second, double value) {
-    DALCS_TRY(add(t, row, column_of_node(b->layout, first), value));
-    return add(t, row, column_of_node(b->layout, second), -value);
-}
-
-/* The current gain * (v(c) - v(d)) leaving node a and entering node b. */
-static enum dalcs_status transconductance(struct stamps *b, int first, int second, int plus,
-                                          int minus, double gain) {
-    int c = column_of_node(b->layout, plus);
-    int d = column_of_node(b->layout, minus);
-    DALCS_TRY(leave(b, &b->A, first, c, gain));
-    DALCS_TRY(leave(b, &b->A, first, d, -gain));
-    DALCS_TRY(leave(b, &b->A, second, c, -gain));
-    return leave(b, &b->A, second, d, gain);
-}
-
-static enum dalcs_status conductance(struct stamps *b, const struct dalcs_device *d, double g) {
-    return transconductance(b, d->node[0], d->node[1], d->node[0], d->node[1], g);
-}
-
-static int new_input(struct stamps *b, int device) {
-    struct dalcs_system *s = b->s;
-    const struct dalcs_circuit *c = b->layout->circuit;
-    int input = b->next_input++;
-    s->stimulus[input] = c->device[device].stimulus;
-    s->input_element[input] = c->device[device].name;
-    b->layout->input[device] = input;
-    return input;
-}
-
-/* A z column for the current of `device` and the row of II that is its branch equation. */
-static void new_branch(struct stamps *b, int device, int *column, int *row) {
-    struct dalcs_system *s = b->s;
-    *column = s->n_x + b->next_z++;
-    *row = s->n_x + b->next_row++;
-    s->dual[*row] = *column;
-    s->column_is_current[*column] = true;
-    s->row_is_current[*row] = false;
-    const char *name = b->layout->circuit->device[device].name;
-    s->column[*column] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
-    s->row[*row] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
-    b->layout->current_column[device] = *column;
-    b->layout->branch_row[device] = *row;
-}
-
-/* An x column whose differential equation has a row of its own, with the same number. */
-static int new_state(struct stamps *b, const char *name, bool is_current) {
-    struct dalcs_system *s = b->s;
-    int x = b->next_x++;
-    s->column_is_current[x] = is_current;
-    s->row_is_current[x] = !is_current;
-    s->column[x] = (struct dalcs_label){name, DALCS_LABEL_STATE};
-    s->row[x] = (struct dalcs_label){name, DALCS_LABEL_STATE};
-    s->dual[x] = x;
-    return x;
-}
 
 static double initial_voltage(const struct dalcs_circuit *c, const struct dalcs_device *d) {
     if (d->has_initial) {
@@ -154,42 +49,42 @@ static enum dalcs_status stamp_capacitor(struct stamps *b, int device, int fores
         for (int e = 0; e < 2; e++) {
             int n = l->topology.node_of[d->node[e]];
             if (n != l->topology.forest_root[n]) {
-                DALCS_TRY(add(&b->P, l->kcl_row[n], x, e == 0 ? d->value : -d->value));
+                DALCS_TRY(dalcs_stamp_add(&b->P, l->kcl_row[n], x, e == 0 ? d->value : -d->value));
             }
         }
-        DALCS_TRY(add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));
-        DALCS_TRY(add(&b->A, row, x, -1.0));
+        DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));
+        DALCS_TRY(dalcs_stamp_add(&b->A, row, x, -1.0));
         s->dual[row] = x;
         s->column_is_current[x] = false;
         s->row_is_current[row] = false;
         s->column[x] = (struct dalcs_label){d->name, DALCS_LABEL_STATE};
         s->row[row] = (struct dalcs_label){d->name, DALCS_LABEL_BRANCH};
     } else {
-        x = new_state(b, d->name, false);
+        x = dalcs_stamp_new_state(b, d->name, false);
         int column;
         int row;
-        new_branch(b, device, &column, &row);
-        DALCS_TRY(add(&b->P, x, x, d->value));
-        DALCS_TRY(add(&b->A, x, column, 1.0));
-        DALCS_TRY(add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));
-        DALCS_TRY(add(&b->A, row, x, -1.0));
-        DALCS_TRY(branch_current(b, d, column, 1.0));
+        dalcs_stamp_new_branch(b, device, &column, &row);
+        DALCS_TRY(dalcs_stamp_add(&b->P, x, x, d->value));
+        DALCS_TRY(dalcs_stamp_add(&b->A, x, column, 1.0));
+        DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));
+        DALCS_TRY(dalcs_stamp_add(&b->A, row, x, -1.0));
+        DALCS_TRY(dalcs_stamp_branch_current(b, d, column, 1.0));
     }
     l->state_column[device] = x;
     b->initial[x] = initial_voltage(l->circuit, d);
-    return add(&b->storage, x, x, d->value);
+    return dalcs_stamp_add(&b->storage, x, x, d->value);
 }
 
 static enum dalcs_status stamp_coil(struct stamps *b, int device) {
     struct dalcs_layout *l = b->layout;
     const struct dalcs_device *d = &l->circuit->device[device];
-    int x = new_state(b, d->name, true);
+    int x = dalcs_stamp_new_state(b, d->name, true);
     l->state_column[device] = x;
     b->initial[x] = d->initial;
-    DALCS_TRY(add(&b->P, x, x, d->value));
-    DALCS_TRY(add(&b->storage, x, x, d->value));
-    DALCS_TRY(add_voltage(b, &b->A, x, d->node[0], d->node[1], 1.0));
-    return branch_current(b, d, x, 1.0);
+    DALCS_TRY(dalcs_stamp_add(&b->P, x, x, d->value));
+    DALCS_TRY(dalcs_stamp_add(&b->storage, x, x, d->value));
+    DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, x, d->node[0], d->node[1], 1.0));
+    return dalcs_stamp_branch_current(b, d, x, 1.0);
 }
 
 static double mutual(const struct dalcs_circuit *c, int first, int second) {
@@ -216,18 +111,20 @@ static enum dalcs_status stamp_group(struct stamps *b, const struct coil_group *
     int n_dependent = g->n - rank;
     for (int i = 0; i < rank; i++) {
         int device = g->device[g->split.coil[i]];
-        int x = new_state(b, c->device[device].name, true);
+        int x = dalcs_stamp_new_state(b, c->device[device].name, true);
         l->state_column[device] = x;
         b->initial[x] = c->device[device].initial;
-        DALCS_TRY(add_voltage(b, &b->A, x, c->device[device].node[0], c->device[device].node[1], 1.0));
+        DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, x, c->device[device].node[0],
+                                          c->device[device].node[1], 1.0));
     }
     for (int i = 0; i < rank; i++) {
         int first = g->device[g->split.coil[i]];
         for (int j = 0; j < rank; j++) {
             int second = g->device[g->split.coil[j]];
             double L = mutual(c, first, second);
-            DALCS_TRY(add(&b->P, l->state_column[first], l->state_column[second], L));
-            DALCS_TRY(add(&b->storage, l->state_column[first], l->state_column[second], L));
+            DALCS_TRY(dalcs_stamp_add(&b->P, l->state_column[first], l->state_column[second], L));
+            DALCS_TRY(
+                dalcs_stamp_add(&b->storage, l->state_column[first], l->state_column[second], L));
         }
     }
     for (int k = 0; k < n_dependent; k++) {
@@ -235,13 +132,13 @@ static enum dalcs_status stamp_group(struct stamps *b, const struct coil_group *
         const struct dalcs_device *d = &c->device[device];
         int column;
         int row;
-        new_branch(b, device, &column, &row);
-        DALCS_TRY(add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));
+        dalcs_stamp_new_branch(b, device, &column, &row);
+        DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));
         for (int i = 0; i < rank; i++) {
             int independent = g->device[g->split.coil[i]];
             const struct dalcs_device *e = &c->device[independent];
             double ratio = g->split.ratio[i * n_dependent + k];
-            DALCS_TRY(add_voltage(b, &b->A, row, e->node[0], e->node[1], -ratio));
+            DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, row, e->node[0], e->node[1], -ratio));
             b->initial[l->state_column[independent]] += ratio * d->initial;
         }
     }
@@ -251,7 +148,8 @@ static enum dalcs_status stamp_group(struct stamps *b, const struct coil_group *
     for (int i = 0; i < g->n && status == DALCS_OK; i++) {
         int n_terms = dalcs_layout_coil_current(l, g->device[i], column, coefficient);
         for (int k = 0; k < n_terms && status == DALCS_OK; k++) {
-            status = branch_current(b, &c->device[g->device[i]], column[k], coefficient[k]);
+            status =
+                dalcs_stamp_branch_current(b, &c->device[g->device[i]], column[k], coefficient[k]);
         }
     }
     free(column);
@@ -288,14 +186,14 @@ static enum dalcs_status stamp_voltage_branch(struct stamps *b, int device) {
     const struct dalcs_device *d = &l->circuit->device[device];
     int column;
     int row;
-    new_branch(b, device, &column, &row);
-    DALCS_TRY(branch_current(b, d, column, 1.0));
-    DALCS_TRY(add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));
+    dalcs_stamp_new_branch(b, device, &column, &row);
+    DALCS_TRY(dalcs_stamp_branch_current(b, d, column, 1.0));
+    DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));
     switch (d->kind) {
     case DALCS_VSOURCE:
-        return dalcs_triplets_add(&b->E, row, new_input(b, device), -1.0);
+        return dalcs_triplets_add(&b->E, row, dalcs_stamp_new_input(b, device), -1.0);
     case DALCS_VCVS:
-        return add_voltage(b, &b->A, row, d->node[2], d->node[3], -d->value);
+        return dalcs_stamp_add_voltage(b, &b->A, row, d->node[2], d->node[3], -d->value);
     default:
         return DALCS_OK;
     }
@@ -309,10 +207,10 @@ static enum dalcs_status stamp_pair(struct stamps *b, int anode, int cathode, do
     int column = s->n_x + s->n_z + k;
     s->pair[k] = pair;
     s->column_is_current[column] = true;
-    DALCS_TRY(leave(b, &b->A, anode, column, 1.0));
-    DALCS_TRY(leave(b, &b->A, cathode, column, -1.0));
-    DALCS_TRY(add_voltage(b, &b->C, k, cathode, anode, 1.0));
-    DALCS_TRY(add(&b->C, k, column, ron));
+    DALCS_TRY(dalcs_stamp_leave(b, &b->A, anode, column, 1.0));
+    DALCS_TRY(dalcs_stamp_leave(b, &b->A, cathode, column, -1.0));
+    DALCS_TRY(dalcs_stamp_add_voltage(b, &b->C, k, cathode, anode, 1.0));
+    DALCS_TRY(dalcs_stamp_add(&b->C, k, column, ron));
     return threshold == 0.0 ? DALCS_OK : dalcs_triplets_add(&b->F, k, 0, threshold);
 }
 
@@ -327,7 +225,7 @@ static enum dalcs_status stamp_diode(struct stamps *b, int device) {
         pair.is_breakdown = true;
         DALCS_TRY(stamp_pair(b, d->node[1], d->node[0], m->vrev, m->rrev, pair));
     }
-    return isfinite(m->roff) ? conductance(b, d, 1.0 / m->roff) : DALCS_OK;
+    return isfinite(m->roff) ? dalcs_stamp_conductance(b, d, 1.0 / m->roff) : DALCS_OK;
 }
 
 static bool is_direct(const struct dalcs_layout *l, int node) {
@@ -351,10 +249,10 @@ static enum dalcs_status stamp_switch(struct stamps *b, int device) {
                               .turn_on = m->vt + m->vh,
                               .turn_off = m->vt - m->vh};
     b->layout->pair[device] = b->next_pair;
-    DALCS_TRY(add_voltage(b, &b->control, b->next_pair, d->node[2], d->node[3], 1.0));
+    DALCS_TRY(dalcs_stamp_add_voltage(b, &b->control, b->next_pair, d->node[2], d->node[3], 1.0));
     pair.is_direct = is_direct(b->layout, d->node[2]) && is_direct(b->layout, d->node[3]);
     DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], 0.0, r_branch, pair));
-    return g_off != 0.0 ? conductance(b, d, g_off) : DALCS_OK;
+    return g_off != 0.0 ? dalcs_stamp_conductance(b, d, g_off) : DALCS_OK;
 }
 
 static enum dalcs_status stamp_device(struct stamps *b, int device, int *next_forest) {
@@ -366,7 +264,7 @@ static enum dalcs_status stamp_device(struct stamps *b, int device, int *next_fo
             return stamp_voltage_branch(b, device);
         }
         b->s->monotone = b->s->monotone && d->value > 0.0;
-        return conductance(b, d, 1.0 / d->value);
+        return dalcs_stamp_conductance(b, d, 1.0 / d->value);
     case DALCS_INDUCTOR:
         if (l->group_of[device] < 0) {
             return stamp_coil(b, device);
@@ -379,9 +277,9 @@ static enum dalcs_status stamp_device(struct stamps *b, int device, int *next_fo
     case DALCS_VSOURCE:
         return stamp_voltage_branch(b, device);
     case DALCS_ISOURCE: {
-        int input = new_input(b, device);
-        DALCS_TRY(leave(b, &b->E, d->node[0], input, 1.0));
-        return leave(b, &b->E, d->node[1], input, -1.0);
+        int input = dalcs_stamp_new_input(b, device);
+        DALCS_TRY(dalcs_stamp_leave(b, &b->E, d->node[0], input, 1.0));
+        return dalcs_stamp_leave(b, &b->E, d->node[1], input, -1.0);
     }
     case DALCS_VCVS:
     case DALCS_CCVS:
@@ -389,7 +287,8 @@ static enum dalcs_status stamp_device(struct stamps *b, int device, int *next_fo
         return stamp_voltage_branch(b, device);
     case DALCS_VCCS:
         b->s->monotone = false;
-        return transconductance(b, d->node[0], d->node[1], d->node[2], d->node[3], d->value);
+        return dalcs_stamp_transconductance(b, d->node[0], d->node[1], d->node[2], d->node[3],
+                                            d->value);
     case DALCS_CCCS:
         b->s->monotone = false;
         return DALCS_OK;
@@ -402,8 +301,7 @@ static enum dalcs_status stamp_device(struct stamps *b, int device, int *next_fo
 }
 
 /* The controlling voltages that V sources fix, once every source has its input. */
-static enum dalcs_status stamp_direct_controls(struct stamps *b, int n_devices,
-                                               const int *device) {
+static enum dalcs_status stamp_direct_controls(struct stamps *b, int n_devices, const int *device) {
     const struct dalcs_layout *l = b->layout;
     const struct dalcs_topology *t = &l->topology;
     for (int i = 0; i < n_devices; i++) {
@@ -433,10 +331,10 @@ static enum dalcs_status stamp_current_controls(struct stamps *b, int n_devices,
     for (int i = 0; i < n_devices; i++) {
         const struct dalcs_device *d = &l->circuit->device[device[i]];
         if (d->kind == DALCS_CCCS) {
-            DALCS_TRY(branch_current(b, d, l->current_column[d->control], d->value));
+            DALCS_TRY(dalcs_stamp_branch_current(b, d, l->current_column[d->control], d->value));
         } else if (d->kind == DALCS_CCVS) {
-            DALCS_TRY(add(&b->A, l->branch_row[device[i]], l->current_column[d->control],
-                          -d->value));
+            DALCS_TRY(dalcs_stamp_add(&b->A, l->branch_row[device[i]],
+                                      l->current_column[d->control], -d->value));
         }
     }
     return DALCS_OK;
@@ -457,8 +355,8 @@ static enum dalcs_status stamp_references(struct stamps *b, int n_nodes, const i
         s->row_is_current[row] = false;
         s->column[column] = (struct dalcs_label){name, DALCS_LABEL_REFERENCE};
         s->row[row] = (struct dalcs_label){name, DALCS_LABEL_REFERENCE};
-        DALCS_TRY(leave(b, &b->A, node[i], column, 1.0));
-        DALCS_TRY(add_voltage(b, &b->A, row, node[i], 0, 1.0));
+        DALCS_TRY(dalcs_stamp_leave(b, &b->A, node[i], column, 1.0));
+        DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, row, node[i], 0, 1.0));
     }
     return DALCS_OK;
 }
@@ -481,9 +379,9 @@ static enum dalcs_status stamp_clamps(struct stamps *b, int component) {
         s->row_is_current[row] = false;
         s->column[column] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
         s->row[row] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
-        DALCS_TRY(leave(b, &b->A, ic->node[0], column, 1.0));
-        DALCS_TRY(leave(b, &b->A, ic->node[1], column, -1.0));
-        DALCS_TRY(add_voltage(b, &b->A, row, ic->node[0], ic->node[1], 1.0));
+        DALCS_TRY(dalcs_stamp_leave(b, &b->A, ic->node[0], column, 1.0));
+        DALCS_TRY(dalcs_stamp_leave(b, &b->A, ic->node[1], column, -1.0));
+        DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, row, ic->node[0], ic->node[1], 1.0));
         if (ic->value != 0.0) {
             DALCS_TRY(dalcs_triplets_add(&b->E, row, 0, -ic->value));
         }
@@ -492,8 +390,8 @@ static enum dalcs_status stamp_clamps(struct stamps *b, int component) {
 }
 
 /* How many unknowns of each sort the component needs: everything else follows from the counts. */
-static void count(struct stamps *b, int n_devices, const int *device, int n_nodes,
-                  const int *node, int component) {
+static void count(struct stamps *b, int n_devices, const int *device, int n_nodes, const int *node,
+                  int component) {
     const struct dalcs_layout *l = b->layout;
     const struct dalcs_circuit *c = l->circuit;
     struct dalcs_system *s = b->s;
@@ -625,6 +523,7 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_de
     }
     int n_equations = dalcs_system_n_equations(system);
     int n_columns = dalcs_system_n_columns(system);
+
     const struct {
         struct dalcs_csr *matrix;
         int n_rows, n_columns;
@@ -639,9 +538,10 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_de
         {&system->control, system->n_pairs, n_columns, &b.control},
         {&system->direct_control, system->n_pairs, system->n_inputs, &b.direct_control},
     };
+
     for (size_t k = 0; k < sizeof(part) / sizeof(part[0]) && status == DALCS_OK; k++) {
-        status = dalcs_csr_compress(part[k].matrix, part[k].n_rows, part[k].n_columns,
-                                    part[k].entries);
+        status =
+            dalcs_csr_compress(part[k].matrix, part[k].n_rows, part[k].n_columns, part[k].entries);
     }
 done:
     dalcs_triplets_finish(&b.P);

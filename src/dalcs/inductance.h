@@ -12,10 +12,10 @@
 #include "memory.h"
 
 struct dalcs_inductance {
-    int n;          /* coils */
-    int rank;       /* independent ones */
-    int *coil;      /* [n] position in the group; the first `rank` are independent */
-    double *ratio;  /* [rank][n - rank] N, row by row */
+    int n;         /* coils */
+    int rank;      /* independent ones */
+    int *coil;     /* [n] position in the group; the first `rank` are independent */
+    double *ratio; /* [rank][n - rank] N, row by row */
 };
 
 /* L is [n][n], symmetric, H. *valid is false when L is not positive semidefinite. On failure *group

@@ -200,10 +200,10 @@ static enum dalcs_status assemble_all(struct dalcs_network *network, struct dalc
         status = list_members(c->n_nodes, representative, n, &node_start, &node);
     }
     for (int k = 0; k < n && status == DALCS_OK; k++) {
-        status = dalcs_assemble_component(
-            l, device_start[k + 1] - device_start[k], device + device_start[k],
-            node_start[k + 1] - node_start[k], node + node_start[k], &network->system[k],
-            &network->initial[k]);
+        status = dalcs_assemble_component(l, device_start[k + 1] - device_start[k],
+                                          device + device_start[k],
+                                          node_start[k + 1] - node_start[k], node + node_start[k],
+                                          &network->system[k], &network->initial[k]);
         network->n_systems = k + 1;
     }
 done:
@@ -365,10 +365,8 @@ static enum dalcs_status build_outputs(struct dalcs_network *network,
 static enum dalcs_status build_states(struct dalcs_network *network, const struct dalcs_layout *l) {
     const struct dalcs_circuit *c = l->circuit;
     for (int i = 0; i < c->n_devices; i++) {
-        network->n_states += c->device[i].kind == DALCS_CAPACITOR ||
-                                     c->device[i].kind == DALCS_INDUCTOR
-                                 ? 1
-                                 : 0;
+        network->n_states +=
+            c->device[i].kind == DALCS_CAPACITOR || c->device[i].kind == DALCS_INDUCTOR ? 1 : 0;
     }
     network->state =
         dalcs_arena_alloc(&network->arena, (size_t)network->n_states, sizeof(*network->state));
@@ -395,6 +393,20 @@ static enum dalcs_status build_states(struct dalcs_network *network, const struc
     return DALCS_OK;
 }
 
+/* Islands that nothing ties to ground have their voltages by convention, and a person should know. */
+static void note_references(const struct dalcs_layout *l, struct dalcs_diag *diag) {
+    const struct dalcs_circuit *c = l->circuit;
+    for (int n = 1; n < c->n_nodes; n++) {
+        if (l->topology.is_reference[n]) {
+            dalcs_diag_add(
+                diag, DALCS_NOTE, NULL, NULL,
+                "nothing ties node '%s' and what hangs on it to ground: its voltage is 0 by "
+                "convention, the others of that part are relative to it",
+                c->node_name[n]);
+        }
+    }
+}
+
 enum dalcs_status dalcs_network_build(struct dalcs_network *network,
                                       const struct dalcs_circuit *circuit,
                                       const struct dalcs_network_options *options,
@@ -416,6 +428,9 @@ enum dalcs_status dalcs_network_build(struct dalcs_network *network,
         status = dalcs_topology_build(&layout.topology, circuit, wants_current);
     }
     if (status == DALCS_OK) {
+        if (!options->clamp_initial_conditions) {
+            note_references(&layout, diag);
+        }
         status = find_groups(&layout, diag);
     }
     if (status == DALCS_OK) {

@@ -12,10 +12,11 @@
 struct dalcs_probe {
     int system; /* -1: identically zero */
     int n_terms, n_inputs;
+
     struct dalcs_probe_term {
         int index; /* column, or input */
         double coefficient;
-    } *term; /* [n_terms + n_inputs], columns first */
+    } * term; /* [n_terms + n_inputs], columns first */
 };
 
 /* A voltage between two systems is the difference of two probes. */
@@ -31,11 +32,13 @@ struct dalcs_network {
     int n_outputs;
     struct dalcs_output *output; /* the circuit's signals, in its order */
     int n_states;
+
     struct dalcs_state {
         const char *element; /* every capacitor and inductor of the circuit */
         bool is_current;
         struct dalcs_probe probe;
-    } *state;
+    } * state;
+
     double **initial; /* [n_systems][n_x] x(0-) for uic: IC=, else .ic, else 0 */
     int n_nodes;      /* without ground */
     struct dalcs_arena arena;

@@ -25,10 +25,11 @@ enum dalcs_pair_kind { DALCS_PAIR_DIODE, DALCS_PAIR_SWITCH };
  * KCL, a node. */
 struct dalcs_label {
     const char *element;
+
     enum dalcs_label_kind {
-        DALCS_LABEL_STATE,   /* column: capacitor voltage or inductor current; row: its branch */
-        DALCS_LABEL_NODE,    /* column: node voltage; row: KCL at the node */
-        DALCS_LABEL_BRANCH,  /* column: branch current; row: branch equation */
+        DALCS_LABEL_STATE,    /* column: capacitor voltage or inductor current; row: its branch */
+        DALCS_LABEL_NODE,     /* column: node voltage; row: KCL at the node */
+        DALCS_LABEL_BRANCH,   /* column: branch current; row: branch equation */
         DALCS_LABEL_REFERENCE /* column: current into the reference of a floating island, must be
                                  zero; row: voltage of the reference node */
     } kind;
@@ -36,10 +37,10 @@ struct dalcs_label {
 
 struct dalcs_pair {
     enum dalcs_pair_kind kind;
-    const char *element;     /* "d1", "s1" */
-    bool is_breakdown;       /* the reverse branch of a diode with Vrev */
-    bool initially_on;       /* switches */
-    bool is_direct;          /* switches: use direct_control, known before the step is solved */
+    const char *element;      /* "d1", "s1" */
+    bool is_breakdown;        /* the reverse branch of a diode with Vrev */
+    bool initially_on;        /* switches */
+    bool is_direct;           /* switches: use direct_control, known before the step is solved */
     double turn_on, turn_off; /* switches: control thresholds vt + vh and vt - vh, in V */
 };
 
@@ -59,9 +60,9 @@ struct dalcs_system {
      * of (sigma P - A, C) has a positive semidefinite symmetric part when the circuit is passive:
      * KCL with its node's voltage, a branch equation with its current. A permutation of the x and z
      * columns. */
-    int *dual;              /* [n_x + n_z] */
-    bool *column_is_current; /* [n_columns] unit A, else V */
-    bool *row_is_current;    /* [n_x + n_z] unit of the row's equation */
+    int *dual;                  /* [n_x + n_z] */
+    bool *column_is_current;    /* [n_columns] unit A, else V */
+    bool *row_is_current;       /* [n_x + n_z] unit of the row's equation */
     struct dalcs_label *row;    /* [n_x + n_z] */
     struct dalcs_label *column; /* [n_x + n_z] */
     struct dalcs_pair *pair;    /* [n_pairs] */

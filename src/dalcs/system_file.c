@@ -152,8 +152,8 @@ static enum dalcs_status read_matrix(struct reader *r, const struct section *sec
         int i;
         int j;
         double x;
-        bool valid = fscanf(r->f, " %d %d %lf", &i, &j, &x) == 3 && i >= 0 &&
-                     i < section->n_rows && j >= 0 && j < section->n_columns;
+        bool valid = fscanf(r->f, " %d %d %lf", &i, &j, &x) == 3 && i >= 0 && i < section->n_rows &&
+                     j >= 0 && j < section->n_columns;
         status = valid ? dalcs_triplets_add(&t, i, j, x) : DALCS_E_NETLIST;
     }
     if (status == DALCS_OK) {

@@ -66,8 +66,8 @@ static void merge_shorts(struct dalcs_topology *t, const struct dalcs_circuit *c
 
 /* Components hang together through anything but ground. Devices are vertices too, so that one
  * between ground and ground, or one that a coupling or a current control reaches, has its place. */
-static void find_components(struct dalcs_topology *t, const struct dalcs_circuit *c,
-                            int *parent, int *number /* both [n_nodes + n_devices] */) {
+static void find_components(struct dalcs_topology *t, const struct dalcs_circuit *c, int *parent,
+                            int *number /* both [n_nodes + n_devices] */) {
     reset(parent, c->n_nodes + c->n_devices);
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
@@ -122,7 +122,8 @@ static void find_references(struct dalcs_topology *t, const struct dalcs_circuit
         }
     }
     for (int n = 1; n < c->n_nodes; n++) {
-        t->is_reference[n] = t->node_component[n] >= 0 && t->node_of[n] == n && find(parent, n) == n;
+        t->is_reference[n] =
+            t->node_component[n] >= 0 && t->node_of[n] == n && find(parent, n) == n;
     }
 }
 
@@ -184,9 +185,10 @@ enum dalcs_status dalcs_topology_build(struct dalcs_topology *t,
     int *parent = dalcs_alloc(n_nodes + n_devices, sizeof(*parent));
     int *number = dalcs_alloc(n_nodes + n_devices, sizeof(*number));
     bool *known = dalcs_alloc(n_nodes, sizeof(*known));
-    if (known == NULL || t->potential_source == NULL || t->node_of == NULL || t->node_component == NULL || t->device_component == NULL ||
-        t->is_reference == NULL || t->in_forest == NULL || t->has_current == NULL ||
-        t->forest_root == NULL || parent == NULL || number == NULL) {
+    if (known == NULL || t->potential_source == NULL || t->node_of == NULL ||
+        t->node_component == NULL || t->device_component == NULL || t->is_reference == NULL ||
+        t->in_forest == NULL || t->has_current == NULL || t->forest_root == NULL ||
+        parent == NULL || number == NULL) {
         free(parent);
         free(number);
         free(known);

@@ -6,17 +6,17 @@
 #include "circuit.h"
 
 struct dalcs_topology {
-    int *node_of;        /* [n_nodes] representative after merging the two ends of every short */
+    int *node_of; /* [n_nodes] representative after merging the two ends of every short */
     int n_components;
-    int *node_component; /* [n_nodes], of representatives; -1 for ground */
+    int *node_component;   /* [n_nodes], of representatives; -1 for ground */
     int *device_component; /* [n_devices], -1 for a device that leaves no equation */
-    bool *is_reference;  /* [n_nodes] the node whose voltage is 0 by convention in an island that
+    bool *is_reference;    /* [n_nodes] the node whose voltage is 0 by convention in an island that
                             nothing ties to ground: its first node in the netlist */
-    bool *in_forest;     /* [n_devices] capacitors whose current is eliminated */
-    bool *has_current;   /* [n_devices] shorts and capacitors whose current is an unknown */
+    bool *in_forest;       /* [n_devices] capacitors whose current is eliminated */
+    bool *has_current;     /* [n_devices] shorts and capacitors whose current is an unknown */
     int *potential_source; /* [n_nodes] V device between a node and one nearer to ground, when V
                               sources alone fix the node's voltage; else -1 */
-    int *forest_root;    /* [n_nodes] root of the capacitor tree that a node is in; itself if none */
+    int *forest_root; /* [n_nodes] root of the capacitor tree that a node is in; itself if none */
 };
 
 /* wants_current[n_devices]: a signal asks for i(device). */

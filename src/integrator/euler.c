@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Length of a micro-step over h. Two of them, extrapolated, leave an error of its square. */
-static const double micro_part = 1e-6;
+/* Lengths of a micro-step over h, the next where one has no certified answer (a circuit that is not
+ * passive may have widely different gains). Two of them, extrapolated, leave an error of the square. */
+static const double micro_part[] = {1e-6, 1e-3, 1.0};
 
 /* A quantity jumps when its change survives extrapolation to a step of 0 (regular changes halve with
  * the micro-step, impulsive ones do not) and is more than rounding. */
@@ -129,9 +130,14 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
     if (s->n_x == 0) {
         return solve(e, k, 0.0, u, y);
     }
-    double h = micro_part * e->grid.h;
     int n_equations = dalcs_system_n_equations(s);
-    DALCS_TRY(solve(e, k, 1.0 / h, u, y));
+    enum dalcs_status status = DALCS_NOT_CONVERGED;
+    double h = 0.0;
+    for (size_t i = 0; i < sizeof(micro_part) / sizeof(*micro_part) && status > DALCS_OK; i++) {
+        h = micro_part[i] * e->grid.h;
+        status = solve(e, k, 1.0 / h, u, y);
+    }
+    DALCS_TRY(status);
     double limit[2];
     bool moved = false;
     for (int unit = 0; unit < 2; unit++) {

@@ -1,0 +1,114 @@
+/* explain.c - numerical failures in words: the time, the elements, what to look at. */
+#include "session_internal.h"
+
+#include "system_file.h"
+
+#include <string.h>
+
+/* "KCL at out", "branch v1", "complementarity of d1" */
+const char *dalcs_explain_row(struct dalcs_session *s, int system, int where) {
+    if (where < 0) {
+        return "";
+    }
+    const struct dalcs_system *d = &s->network.system[system];
+    int n_equations = dalcs_system_n_equations(d);
+    if (where >= n_equations) {
+        return dalcs_arena_printf(&s->arena, "complementarity of %s",
+                                  d->pair[where - n_equations].element);
+    }
+    static const char *const what[] = {[DALCS_LABEL_STATE] = "branch",
+                                       [DALCS_LABEL_NODE] = "KCL at",
+                                       [DALCS_LABEL_BRANCH] = "branch",
+                                       [DALCS_LABEL_REFERENCE] = "reference"};
+    return dalcs_arena_printf(&s->arena, "%s %s", what[d->row[where].kind], d->row[where].element);
+}
+
+/* A list "v1, d1" of names, in the session's arena. */
+static const char *join_names(struct dalcs_session *s, int n, const char *const *name) {
+    const char *list = "";
+    for (int k = 0; k < n && list != NULL; k++) {
+        list = k == 0    ? name[0]
+               : k == 12 ? dalcs_arena_printf(&s->arena, "%s and %d more", list, n - k)
+               : k > 12  ? list
+                         : dalcs_arena_printf(&s->arena, "%s, %s", list, name[k]);
+    }
+    return list == NULL ? "" : list;
+}
+
+static const struct dalcs_location *place_of(const struct dalcs_circuit *c, const char *element) {
+    for (int i = 0; i < c->n_devices; i++) {
+        if (strcmp(c->device[i].name, element) == 0) {
+            return &c->device[i].where;
+        }
+    }
+    return NULL;
+}
+
+static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e, const char *when) {
+    struct dalcs_session *s = r->s;
+    const struct dalcs_witness *w = &e->component[e->failed_system].osnsp.witness;
+    static const char *const kind[] = {[DALCS_WITNESS_LOOP] = "loop",
+                                       [DALCS_WITNESS_CUTSET] = "cutset",
+                                       [DALCS_WITNESS_MODE] = "mode"};
+    static const char *const why[] = {
+        [DALCS_WITNESS_LOOP] = "the sources drive current around it with nothing to limit the "
+                               "current",
+        [DALCS_WITNESS_CUTSET] = "the sources force a current that nothing in it lets pass",
+        [DALCS_WITNESS_MODE] = "no combination of conducting and blocking satisfies the circuit, "
+                               "which its controlled sources or negative resistors keep from being "
+                               "passive"};
+    const struct dalcs_location *where =
+        w->n_elements > 0 ? place_of(&s->circuit, w->element[0]) : NULL;
+    dalcs_diag_add(&s->diag, DALCS_ERROR, where, NULL, "%s no solution exists: %s %s: %s", when,
+                   kind[w->kind], join_names(s, w->n_elements, w->element), why[w->kind]);
+    const char **element = dalcs_arena_alloc(&s->arena, (size_t)w->n_elements, sizeof(*element));
+    if (element != NULL) {
+        memcpy(element, w->element, (size_t)w->n_elements * sizeof(*element));
+        s->report.infeasible.present = true;
+        s->report.infeasible.time = e->failed_time;
+        s->report.infeasible.kind = kind[w->kind];
+        s->report.infeasible.n_elements = (size_t)w->n_elements;
+        s->report.infeasible.element = element;
+    }
+}
+
+static void dump_problem(struct dalcs_run *r, const struct dalcs_euler *e) {
+    const struct dalcs_component *c = &e->component[e->failed_system];
+    if (r->options->dump_path == NULL) {
+        return;
+    }
+    enum dalcs_status status = dalcs_system_file_write(
+        r->options->dump_path, c->system,
+        &(struct dalcs_system_step){
+            .sigma = c->failed_sigma, .u = c->failed_u, .mode = c->osnsp.mode});
+    dalcs_diag_add(&r->s->diag, DALCS_NOTE, NULL, NULL,
+                   status == DALCS_OK ? "the one-step problem was written to %s"
+                                      : "the one-step problem could not be written to %s",
+                   r->options->dump_path);
+}
+
+/* A numerical failure, in words; other statuses explain themselves elsewhere. */
+void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
+                           enum dalcs_status status) {
+    struct dalcs_session *s = r->s;
+    if (status <= DALCS_OK || e->failed_system < 0) {
+        return;
+    }
+    const char *when = e->at_operating_point
+                           ? "at the operating point"
+                           : dalcs_arena_printf(&s->arena, "at t = %.9g s (step %ld, h = %.6g s)",
+                                                e->failed_time, e->steps + 1, e->failed_h);
+    when = when == NULL ? "" : when;
+    if (status == DALCS_INFEASIBLE) {
+        explain_infeasible(r, e, when);
+    } else {
+        const struct dalcs_certificate *c = &e->component[e->failed_system].osnsp.certificate;
+        const char *row = dalcs_explain_row(s, e->failed_system, c->where);
+        dalcs_diag_add(
+            &s->diag, DALCS_ERROR, NULL, NULL,
+            "%s no certified solution was found: the best residual is %.3g of its scale, "
+            "%s",
+            when, c->worst, row == NULL ? "" : row);
+    }
+    dump_problem(r, e);
+}

@@ -1,0 +1,120 @@
+/* session.c - the life of a session: made, fed a netlist, asked for messages and the report. */
+#include "session_internal.h"
+
+#include "netlist.h"
+#include "number.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum dalcs_status dalcs_session_create(struct dalcs_session **session) {
+    *session = dalcs_alloc(1, sizeof(**session));
+    return *session == NULL ? DALCS_E_NOMEM : DALCS_OK;
+}
+
+void dalcs_session_forget_run(struct dalcs_session *s) {
+    if (s->recorder.network != NULL) {
+        dalcs_recorder_finish(&s->recorder);
+    }
+    free(s->start);
+    free(s->final);
+    s->start = NULL;
+    s->final = NULL;
+    s->report = (struct dalcs_report){0};
+    s->has_report = false;
+}
+
+void dalcs_session_destroy(struct dalcs_session *session) {
+    if (session == NULL) {
+        return;
+    }
+    dalcs_session_forget_run(session);
+    if (session->has_network) {
+        dalcs_network_finish(&session->network);
+    }
+    if (session->has_circuit) {
+        dalcs_circuit_finish(&session->circuit);
+    }
+    dalcs_diag_finish(&session->diag);
+    dalcs_arena_finish(&session->arena);
+    free(session);
+}
+
+/* ---- Reading ------------------------------------------------------------------------------- */
+
+static enum dalcs_status read_netlist(struct dalcs_session *s, const char *path, const char *text,
+                                      size_t length) {
+    if (s->name != NULL) {
+        return DALCS_E_OPTION; /* a session reads one netlist */
+    }
+    s->name = dalcs_arena_copy(&s->arena, path, strlen(path));
+    if (s->name == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    struct dalcs_netlist netlist = {0};
+    enum dalcs_status status =
+        text == NULL ? dalcs_netlist_read_file(&netlist, path, &s->diag)
+                     : dalcs_netlist_read_text(&netlist, path, text, length, &s->diag);
+    if (status == DALCS_OK) {
+        status = dalcs_circuit_build(&s->circuit, &netlist, &s->diag);
+        s->has_circuit = status == DALCS_OK;
+    }
+    dalcs_netlist_finish(&netlist);
+    if (status == DALCS_OK) {
+        status = dalcs_network_build(&s->network, &s->circuit, &(struct dalcs_network_options){0},
+                                     &s->diag);
+        s->has_network = status == DALCS_OK;
+    }
+    return status;
+}
+
+enum dalcs_status dalcs_session_read_file(struct dalcs_session *session, const char *path) {
+    return read_netlist(session, path, NULL, 0);
+}
+
+enum dalcs_status dalcs_session_read_text(struct dalcs_session *session, const char *name,
+                                          const char *text, size_t length) {
+    return read_netlist(session, name, text, length);
+}
+
+size_t dalcs_session_n_messages(const struct dalcs_session *session) {
+    return session->diag.n;
+}
+
+const char *dalcs_session_message(const struct dalcs_session *session, size_t index,
+                                  enum dalcs_level *level) {
+    static const enum dalcs_level level_of[] = {[DALCS_NOTE] = DALCS_LEVEL_NOTE,
+                                                [DALCS_WARNING] = DALCS_LEVEL_WARNING,
+                                                [DALCS_ERROR] = DALCS_LEVEL_ERROR};
+
+    if (index >= session->diag.n) {
+        return NULL;
+    }
+    if (level != NULL) {
+        *level = level_of[session->diag.item[index].severity];
+    }
+    return session->diag.item[index].text;
+}
+
+struct dalcs_request dalcs_session_request(const struct dalcs_session *session) {
+    const struct dalcs_transient *t = &session->circuit.transient;
+    return (struct dalcs_request){.operating_point = session->circuit.operating_point,
+                                  .transient = t->present,
+                                  .step = t->step,
+                                  .stop = t->stop,
+                                  .start = t->start,
+                                  .max_step = t->max_step};
+}
+
+const struct dalcs_report *dalcs_session_report(const struct dalcs_session *session) {
+    return session->has_report ? &session->report : NULL;
+}
+
+enum dalcs_status dalcs_parse_number(const char *text, double *value) {
+    struct dalcs_number number;
+    if (dalcs_number_parse(text, &number) != DALCS_NUMBER_OK) {
+        return DALCS_E_OPTION;
+    }
+    *value = number.value;
+    return DALCS_OK;
+}

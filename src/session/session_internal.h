@@ -1,0 +1,42 @@
+/* session_internal.h - what the files of src/session share. */
+#ifndef DALCS_SESSION_INTERNAL_H
+#define DALCS_SESSION_INTERNAL_H
+
+#include "recorder.h"
+
+struct dalcs_session {
+    char *name;
+    struct dalcs_diag diag;
+    struct dalcs_circuit circuit;
+    bool has_circuit;
+    struct dalcs_network network;
+    bool has_network;
+    struct dalcs_recorder recorder; /* owns the report's events and jumps */
+    struct dalcs_report report;
+    bool has_report;
+    double *start, *final;
+    struct dalcs_arena arena; /* names of the report and of the plots */
+};
+
+struct dalcs_run {
+    struct dalcs_session *s;
+    const struct dalcs_run_options *options;
+    const struct dalcs_sink *sink;
+    struct dalcs_osnsp_options osnsp;
+    double h;
+    const char **name;
+    enum dalcs_unit *unit;
+};
+
+/* Frees what the last run left. */
+void dalcs_session_forget_run(struct dalcs_session *session);
+
+/* "KCL at out", "branch v1", "complementarity of d1"; NULL when out of memory. */
+const char *dalcs_explain_row(struct dalcs_session *session, int system, int where);
+
+/* Puts a numerical failure of e into words, into the report and, if wanted, into a dump. Other
+ * statuses explain themselves elsewhere. */
+void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
+                           enum dalcs_status status);
+
+#endif
