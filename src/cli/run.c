@@ -210,11 +210,6 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         return status;
     }
     const struct dalcs_request request = dalcs_session_request(session);
-    if (!request.operating_point && !request.transient) {
-        dalcs_cli_error(cli, "%s: nothing to do: the netlist has no .tran and no .op",
-                        arguments->netlist);
-        return DALCS_E_NETLIST;
-    }
     warn_unused(cli, arguments, &request);
     struct dalcs_times times = {0};
     if (arguments->at) {

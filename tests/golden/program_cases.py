@@ -72,7 +72,7 @@ class Case(unittest.TestCase):
 
     def dalcs(self, *arguments, expect=OK, **options):
         done = subprocess.run([DALCS, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
-                              capture_output=True, text=True, check=False, timeout=120, **options)
+                              capture_output=True, text=True, check=False, timeout=60, **options)
         self.assertEqual(done.returncode, expect, done.stderr)
         return done
 
@@ -238,6 +238,15 @@ class Summary(Case):
         self.assertEqual(done.stdout, "")
         self.assertEqual(done.stderr, "")
 
+    def test_notes_are_not_for_quiet(self):
+        self.write(RECTIFIER.replace(".tran", ".options method=gear\n.tran"))
+        self.assertIn("note: ", self.dalcs("run", "a.cir").stderr)
+        self.assertEqual(self.dalcs("run", "a.cir", "-q").stderr, "")
+
+    def test_warnings_are_for_quiet(self):
+        done = self.dalcs("run", self.write(POINT), "-q", "--step", "1u")
+        self.assertIn("warning: the netlist has no .tran: --step has no effect", done.stderr)
+
     def test_no_progress_in_a_pipe(self):
         self.assertNotIn("\r", self.dalcs("run", self.write(RECTIFIER), "--step", "50n").stderr)
 
@@ -302,12 +311,13 @@ class Failures(Case):
             self.assertEqual(self.files(), ["a.cir", "folder.csv"])
 
     def test_disk_full(self):
+        """Noticed when it happens, not at the end of a run of hours."""
         self.write("old", "out.csv")
 
         def small_files():
             resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
 
-        done = self.dalcs("run", self.write(RECTIFIER), "-o", "out.csv", expect=INPUT_OUTPUT,
+        done = self.dalcs("run", self.write(LONG), "-o", "out.csv", expect=INPUT_OUTPUT,
                           preexec_fn=small_files)
         self.assertIn("cannot write 'out.csv': File too large", done.stderr)
         self.assertEqual(self.files(), ["a.cir", "out.csv"])

@@ -1,8 +1,11 @@
 /* residual.c - every row of the raw matrices, every sign.
  *
- * The scale of a row is the larger of the sum of its terms' magnitudes and of the circuit's largest
- * current or voltage. Amperes and volts vouch for each other with a thousandth of the circuit's
- * typical conductance: a part without current is not asked for more digits than its voltages have. */
+ * A residual is measured against what its row could be at the largest voltage and current of the
+ * problem (unknowns, states before the step, sources, thresholds): the sum of |coefficient| times
+ * those, and never less than the largest of the row's own unit. Amperes and volts vouch for each
+ * other through a thousandth of the circuit's least conductance and of its least resistance, or a
+ * 1e-8 of the typical ones: a part without current is not asked for more digits than its voltages
+ * have. */
 #include "residual.h"
 
 #include <math.h>
@@ -19,31 +22,30 @@ static double largest_term(const struct dalcs_csr *a, int row, const double *v) 
     return largest;
 }
 
-/* The geometric mean of the conductances (and resistances, inverted) among the coefficients. */
-static double typical_conductance(const struct dalcs_system *s, double sigma) {
-    double sum = 0.0;
-    int n = 0;
-    for (int r = 0; r < dalcs_system_n_equations(s); r++) {
-        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
-            if (s->row_is_current[r] != s->column_is_current[s->A.j[k]]) {
-                sum += (s->row_is_current[r] ? 1.0 : -1.0) * log(fabs(s->A.x[k]));
-                n++;
-            }
+struct conductances {
+    double least, most, log_sum;
+    int n;
+};
+
+/* Coefficients of voltages in rows of currents, and the inverse of those the other way round. */
+static void add_conductances(struct conductances *g, const struct dalcs_system *s,
+                             const struct dalcs_csr *a, int row, bool of_current, double factor) {
+    for (int k = a->p[row]; k < a->p[row + 1]; k++) {
+        if (of_current != s->column_is_current[a->j[k]]) {
+            double x = fabs(factor * a->x[k]);
+            double conductance = of_current ? x : 1.0 / x;
+            g->least = fmin(g->least, conductance);
+            g->most = fmax(g->most, conductance);
+            g->log_sum += log(conductance);
+            g->n++;
         }
     }
-    for (int r = 0; sigma > 0.0 && r < s->n_x; r++) {
-        for (int k = s->P.p[r]; k < s->P.p[r + 1]; k++) {
-            sum += (s->row_is_current[r] ? 1.0 : -1.0) * log(fabs(sigma * s->P.x[k]));
-            n++;
-        }
-    }
-    return n > 0 ? exp(sum / n) : 1.0;
 }
 
-/* The largest of the unknowns, of the states before the step, of the sources and thresholds. */
 static struct scale scale_of(const struct dalcs_system *s, double sigma, const double *u,
                              const double *y) {
     double largest[2] = {0.0, 0.0};
+    struct conductances g = {.least = INFINITY};
     for (int c = 0; c < dalcs_system_n_columns(s); c++) {
         int unit = s->column_is_current[c] ? 1 : 0;
         largest[unit] = fmax(largest[unit], fabs(y[c]));
@@ -52,29 +54,39 @@ static struct scale scale_of(const struct dalcs_system *s, double sigma, const d
     for (int r = 0; r < dalcs_system_n_equations(s); r++) {
         int unit = s->row_is_current[r] ? 1 : 0;
         largest[unit] = fmax(largest[unit], largest_term(&s->E, r, u + s->n_x));
+        add_conductances(&g, s, &s->A, r, s->row_is_current[r], 1.0);
+        if (r < s->n_x && sigma > 0.0) {
+            add_conductances(&g, s, &s->P, r, s->row_is_current[r], sigma);
+        }
     }
     for (int d = 0; d < s->n_pairs; d++) {
         largest[0] = fmax(largest[0], largest_term(&s->F, d, u + s->n_x));
+        add_conductances(&g, s, &s->C, d, false, 1.0);
     }
-    double volt = largest[0];
-    double ampere = largest[1];
-    double conductance = typical_conductance(s, sigma);
-    return (struct scale){fmax(volt, 1e-3 * ampere / conductance),
-                          fmax(ampere, 1e-3 * volt * conductance)};
+    double typical = g.n > 0 ? exp(g.log_sum / g.n) : 1.0;
+    double siemens = fmax(g.n > 0 ? 1e-3 * g.least : 0.0, 1e-8 * typical);
+    double ohms = fmax(g.n > 0 ? 1e-3 / g.most : 0.0, 1e-8 / typical);
+    return (struct scale){fmax(largest[0], ohms * largest[1]),
+                          fmax(largest[1], siemens * largest[0])};
 }
 
+/* The value of a row, and how large it could be. */
 struct sum {
-    double value, magnitude;
+    double value, size;
 };
 
-static void add(struct sum *sum, double term) {
-    sum->value += term;
-    sum->magnitude += fabs(term);
+static void add_terms(struct sum *sum, const struct dalcs_csr *a, int row, const double *v,
+                      double factor) {
+    for (int k = a->p[row]; k < a->p[row + 1]; k++) {
+        sum->value += factor * a->x[k] * v[a->j[k]];
+    }
 }
 
-static void add_row(struct sum *sum, const struct dalcs_csr *a, int row, const double *v) {
+static void add_size(struct sum *sum, const struct dalcs_system *s, const struct dalcs_csr *a,
+                     int row, double factor, struct scale scale) {
     for (int k = a->p[row]; k < a->p[row + 1]; k++) {
-        add(sum, a->x[k] * v[a->j[k]]);
+        bool is_current = s->column_is_current[a->j[k]];
+        sum->size += fabs(factor * a->x[k]) * (is_current ? scale.ampere : scale.volt);
     }
 }
 
@@ -92,36 +104,39 @@ double residual_of(const struct dalcs_system *s, double sigma, const double *u, 
             return INFINITY;
         }
     }
-    struct scale scale = scale_of(s, sigma, u, y);
+    const struct scale scale = scale_of(s, sigma, u, y);
     double worst = 0.0;
-    double largest_current = scale.ampere;
+    double largest_kcl = scale.ampere;
     for (int r = 0; r < n_equations; r++) {
         struct sum sum = {0};
-        for (int k = s->P.p[r]; r < s->n_x && k < s->P.p[r + 1]; k++) {
-            add(&sum, -sigma * s->P.x[k] * y[s->P.j[k]]);
-            add(&sum, sigma * s->P.x[k] * u[s->P.j[k]]);
+        if (r < s->n_x) {
+            add_terms(&sum, &s->P, r, y, -sigma);
+            add_terms(&sum, &s->P, r, u, sigma);
+            add_size(&sum, s, &s->P, r, sigma, scale);
         }
-        add_row(&sum, &s->A, r, y);
-        add_row(&sum, &s->E, r, inputs);
-        double size = fmax(sum.magnitude, s->row_is_current[r] ? scale.ampere : scale.volt);
+        add_terms(&sum, &s->A, r, y, 1.0);
+        add_terms(&sum, &s->E, r, inputs, 1.0);
+        add_size(&sum, s, &s->A, r, 1.0, scale);
+        double size = fmax(sum.size, s->row_is_current[r] ? scale.ampere : scale.volt);
         worst = fmax(worst, part(fabs(sum.value), size));
-        largest_current = s->row_is_current[r] ? fmax(largest_current, size) : largest_current;
+        largest_kcl = s->row_is_current[r] ? fmax(largest_kcl, size) : largest_kcl;
     }
     for (int c = 0; c < n_equations; c++) {
         if (s->column[c].kind == DALCS_LABEL_REFERENCE) {
-            worst = fmax(worst, part(fabs(y[c]), largest_current));
+            worst = fmax(worst, part(fabs(y[c]), largest_kcl));
         }
     }
     for (int d = 0; d < s->n_pairs; d++) {
-        struct sum w = {0};
-        add_row(&w, &s->C, d, y);
-        add_row(&w, &s->F, d, inputs);
-        double v = w.value / fmax(fmax(w.magnitude, scale.volt), 1e-300);
-        double i = lambda[d] / fmax(scale.ampere, 1e-300);
+        struct sum sum = {0};
+        add_terms(&sum, &s->C, d, y, 1.0);
+        add_terms(&sum, &s->F, d, inputs, 1.0);
+        add_size(&sum, s, &s->C, d, 1.0, scale);
+        double w = part(sum.value, fmax(sum.size, scale.volt));
+        double i = part(lambda[d], scale.ampere);
         if (s->pair[d].kind == DALCS_PAIR_SWITCH) {
-            worst = fmax(worst, closed[d] ? fabs(v) : fabs(i));
+            worst = fmax(worst, closed[d] ? fabs(w) : fabs(i));
         } else {
-            worst = fmax(worst, fmax(fmax(-v, -i), fmin(fabs(v), fabs(i))));
+            worst = fmax(worst, fmax(fmax(-w, -i), fmin(fabs(w), fabs(i))));
         }
     }
     return worst;
