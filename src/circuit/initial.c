@@ -34,10 +34,10 @@ static void add_voltage(struct dalcs_builder *builder, const struct dalcs_token 
         }
         return;
     }
-    if (dalcs_names_add(&builder->initial_pairs, key, place_of_new) != DALCS_OK ||
-        dalcs_grow(&builder->initial_condition, &builder->initial_condition_capacity,
+    if (dalcs_grow(&builder->initial_condition, &builder->initial_condition_capacity,
                    builder->n_initial_conditions + 1,
-                   sizeof *builder->initial_condition) != DALCS_OK) {
+                   sizeof *builder->initial_condition) != DALCS_OK ||
+        dalcs_names_add(&builder->initial_pairs, key, place_of_new) != DALCS_OK) {
         builder->out_of_memory = true;
         return;
     }
