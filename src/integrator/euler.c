@@ -119,17 +119,13 @@ static double jump_energy(const struct dalcs_system *s, const double *before, co
     return energy;
 }
 
-/* Solves micro-steps from u (whose x is x-) into y: the values just after a discontinuity. Where the
- * state jumps it is reported, and y is solved again from the state after the jump, so that its
- * currents are those after the impulse. u is left as it was. */
-static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *before, double *u,
-                                    double *y) {
+/* Solves micro-steps from u (whose x is x-) into y, and so learns the state just after a
+ * discontinuity, left in e->after: x- where it is continuous. Where it jumps, *jumps is set and the
+ * jump reported; y then holds impulsive currents. *length is that of the micro-step of y. */
+static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *before,
+                                    const double *u, double *y, double *length, bool *jumps) {
     struct dalcs_component *c = &e->component[k];
     const struct dalcs_system *s = c->system;
-    size_t n_x = (size_t)s->n_x;
-    if (s->n_x == 0) {
-        return solve(e, k, 0.0, u, y);
-    }
     int n_equations = dalcs_system_n_equations(s);
     enum dalcs_status status = DALCS_NOT_CONVERGED;
     double h = 0.0;
@@ -138,6 +134,9 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
         status = solve(e, k, 1.0 / h, u, y);
     }
     DALCS_TRY(status);
+    *length = h;
+    *jumps = false;
+    memcpy(e->after, u, (size_t)s->n_x * sizeof(double));
     double limit[2];
     bool moved = false;
     for (int unit = 0; unit < 2; unit++) {
@@ -154,17 +153,17 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
         e->flux[d] = h * c->osnsp.w[d];
     }
     DALCS_TRY(solve(e, k, 2.0 / h, u, c->scratch));
-    bool jumps = false;
-    memcpy(e->after, c->scratch, (size_t)dalcs_system_n_columns(s) * sizeof(double));
     for (int x = 0; x < s->n_x; x++) {
         double whole = y[x] - u[x];
         double limit_of_0 = 2.0 * (c->scratch[x] - u[x]) - whole;
-        e->after[x] = u[x] + limit_of_0;
-        jumps = jumps || (fabs(limit_of_0) > jump_part * fabs(whole) &&
-                          fabs(limit_of_0) > limit[s->column_is_current[x]]);
+        *jumps = *jumps || (fabs(limit_of_0) > jump_part * fabs(whole) &&
+                            fabs(limit_of_0) > limit[s->column_is_current[x]]);
     }
-    if (!jumps) {
+    if (!*jumps) {
         return DALCS_OK;
+    }
+    for (int x = 0; x < s->n_x; x++) {
+        e->after[x] = 2.0 * c->scratch[x] - y[x];
     }
     for (int d = 0; d < s->n_pairs; d++) {
         double *impulse[2] = {&e->charge[d], &e->flux[d]};
@@ -175,19 +174,41 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
             *impulse[i] = impulsive ? limit_of_0 : 0.0;
         }
     }
-    if (e->on_jump != NULL) {
-        DALCS_TRY(e->on_jump(e->jump_user, &(struct dalcs_euler_jump){
-                                               .time = e->t,
-                                               .system = k,
-                                               .before = before,
-                                               .after = e->after,
-                                               .charge = e->charge,
-                                               .flux = e->flux,
-                                               .energy_lost = jump_energy(s, before, e->after),
-                                           }));
+    if (e->on_jump == NULL) {
+        return DALCS_OK;
     }
-    memcpy(c->probe_u, e->after, n_x * sizeof(double));
-    memcpy(c->probe_u + n_x, u + n_x, (size_t)s->n_inputs * sizeof(double));
+    return e->on_jump(e->jump_user, &(struct dalcs_euler_jump){
+                                        .time = e->t,
+                                        .system = k,
+                                        .before = before,
+                                        .after = e->after,
+                                        .charge = e->charge,
+                                        .flux = e->flux,
+                                        .energy_lost = jump_energy(s, before, e->after),
+                                    });
+}
+
+/* y becomes all values just after a discontinuity, with the state after it. Its voltages and currents
+ * are those of a certified micro-step that starts as far before that state as a first one went past
+ * it, and so ends on it up to the square of the micro-step. u is left as it was. */
+static enum dalcs_status settle_after(struct dalcs_euler *e, int k, const double *before,
+                                      const double *u, double *y) {
+    struct dalcs_component *c = &e->component[k];
+    size_t n_x = (size_t)c->system->n_x;
+    if (n_x == 0) {
+        return solve(e, k, 0.0, u, y);
+    }
+    double h;
+    bool jumps;
+    DALCS_TRY(look_after(e, k, before, u, y, &h, &jumps));
+    memcpy(c->probe_u + n_x, u + n_x, (size_t)c->system->n_inputs * sizeof(double));
+    if (jumps) {
+        memcpy(c->probe_u, e->after, n_x * sizeof(double));
+        DALCS_TRY(solve(e, k, 1.0 / h, c->probe_u, y));
+    }
+    for (size_t x = 0; x < n_x; x++) {
+        c->probe_u[x] = 2.0 * e->after[x] - y[x];
+    }
     DALCS_TRY(solve(e, k, 1.0 / h, c->probe_u, y));
     memcpy(y, e->after, n_x * sizeof(double));
     return DALCS_OK;
@@ -202,7 +223,7 @@ enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initia
             memcpy(c->u, initial[k], n_x * sizeof(double));
             memset(c->y_before, 0, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
             memcpy(c->y_before, c->u, n_x * sizeof(double));
-            DALCS_TRY(look_after(e, k, c->y_before, c->u, c->y));
+            DALCS_TRY(settle_after(e, k, c->y_before, c->u, c->y));
         }
     }
     return DALCS_OK;
@@ -228,7 +249,9 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
         if (e->detect_jumps && c->commanded && n_x > 0) {
             size_t mode_bytes = (size_t)c->osnsp.n_words * sizeof(uint64_t);
             memcpy(c->saved_mode, c->osnsp.mode, mode_bytes);
-            DALCS_TRY(look_after(e, k, c->y_before, c->u, c->probe_y));
+            double length;
+            bool jumps;
+            DALCS_TRY(look_after(e, k, c->y_before, c->u, c->probe_y, &length, &jumps));
             memcpy(c->osnsp.mode, c->saved_mode, mode_bytes);
         }
         memcpy(c->u, c->y, n_x * sizeof(double));
@@ -249,7 +272,7 @@ enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) {
         if (changes) {
             dalcs_component_sample(c, e->t, DALCS_RIGHT, c->u);
             memcpy(c->probe_y, c->y, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
-            DALCS_TRY(look_after(e, k, c->probe_y, c->u, c->y));
+            DALCS_TRY(settle_after(e, k, c->probe_y, c->u, c->y));
         }
     }
     return DALCS_OK;
