@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { METHOD = 256, STEP, AT, REPORT, PLOT, ALL_SIGNALS };
+enum { METHOD = 256, STEP, AT, REPORT, PLOT, DUMP, ALL_SIGNALS };
 
 static const struct option option[] = {
     {"output", required_argument, NULL, 'o'},
@@ -19,6 +19,7 @@ static const struct option option[] = {
     {"at", required_argument, NULL, AT},
     {"report", required_argument, NULL, REPORT},
     {"plot", required_argument, NULL, PLOT},
+    {"dump", required_argument, NULL, DUMP},
     {"all-signals", no_argument, NULL, ALL_SIGNALS},
     {"quiet", no_argument, NULL, 'q'},
     {"help", no_argument, NULL, 'h'},
@@ -99,6 +100,9 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
             return DALCS_E_OPTION;
         }
         return DALCS_OK;
+    case DUMP:
+        arguments->dump = optarg;
+        return DALCS_OK;
     case ALL_SIGNALS:
         arguments->all_signals = true;
         return DALCS_OK;
@@ -113,17 +117,22 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     }
 }
 
+/* Besides the outputs. */
+enum { N_OTHER_RESULTS = 3 };
+
 static const char *result_path(const struct dalcs_arguments *arguments, size_t i) {
     if (i < arguments->n_outputs) {
         return arguments->output[i];
     }
-    return i == arguments->n_outputs ? arguments->report : arguments->plot;
+    const char *const other[N_OTHER_RESULTS] = {arguments->report, arguments->plot,
+                                                arguments->dump};
+    return other[i - arguments->n_outputs];
 }
 
 /* Two results must not overwrite each other. */
 static enum dalcs_status check_repeats(const struct dalcs_arguments *arguments,
                                        const struct dalcs_cli *cli) {
-    for (size_t i = 0; i < arguments->n_outputs + 2; i++) {
+    for (size_t i = 0; i < arguments->n_outputs + N_OTHER_RESULTS; i++) {
         const char *path = result_path(arguments, i);
         for (size_t j = 0; path && j < i; j++) {
             const char *other = result_path(arguments, j);

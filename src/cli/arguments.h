@@ -12,6 +12,7 @@ struct dalcs_arguments {
     const char *method; /* NULL: the netlist's */
     double step;        /* s; 0: the netlist's */
     const char *at, *report, *plot;
+    const char *dump; /* NULL: beside the first output */
     bool quiet, all_signals;
     bool help; /* asked for: nothing else is set */
 };

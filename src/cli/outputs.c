@@ -8,16 +8,20 @@
 #include <string.h>
 #include <unistd.h>
 
-/* "dir/bridge.cir" -> "bridge.raw", in the current folder. */
-static char *name_default(const char *netlist) {
-    const char *slash = strrchr(netlist, '/');
-    const char *base = slash ? slash + 1 : netlist;
+static const char *base_of(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* "dir/bridge.cir" -> "dir/bridge" and the ending. */
+static char *change_ending(const char *path, const char *ending) {
+    const char *base = base_of(path);
     const char *dot = strrchr(base, '.');
-    size_t stem = dot && dot != base ? (size_t)(dot - base) : strlen(base);
-    char *name = dalcs_alloc(stem + sizeof ".raw", 1);
+    size_t stem = dot && dot != base ? (size_t)(dot - path) : strlen(path);
+    char *name = dalcs_alloc(stem + strlen(ending) + 1, 1);
     if (name) {
-        memcpy(name, base, stem);
-        strcpy(name + stem, ".raw");
+        memcpy(name, path, stem);
+        strcpy(name + stem, ending);
     }
     return name;
 }
@@ -28,15 +32,16 @@ static enum dalcs_status init_tables(struct dalcs_outputs *outputs,
     const char *const *path = arguments->output;
     size_t n = arguments->n_outputs;
     if (n == 0) {
-        outputs->default_path = name_default(arguments->netlist);
+        outputs->default_path = change_ending(base_of(arguments->netlist), ".raw"); /* here */
         if (!outputs->default_path) {
             return DALCS_E_NOMEM;
         }
         path = (const char *const *)&outputs->default_path;
         n = 1;
     }
+    outputs->dump_path = change_ending(path[0], ".failed.dalcs");
     outputs->table = dalcs_alloc(n, sizeof *outputs->table);
-    if (!outputs->table) {
+    if (!outputs->dump_path || !outputs->table) {
         return DALCS_E_NOMEM;
     }
     for (size_t i = 0; i < n; i++) {
@@ -206,6 +211,7 @@ void dalcs_outputs_finish(struct dalcs_outputs *outputs) {
     }
     free(outputs->table);
     free(outputs->default_path);
+    free(outputs->dump_path);
     if (outputs->has_figure) {
         dalcs_figure_finish(&outputs->figure);
     }

@@ -34,6 +34,8 @@ static const char help[] =
     "      --at FILE       print at exactly the times in FILE, one a line\n"
     "      --report FILE   write what the run did as JSON\n"
     "      --plot FILE     draw the waveforms with gnuplot, .svg or .png\n"
+    "      --dump FILE     where to leave a one-step problem that could not be solved (default:\n"
+    "                      beside the output, out.failed.dalcs for out.csv)\n"
     "      --all-signals   print the measurements of all signals, not of the first 24\n"
     "  -q, --quiet         print nothing but warnings and errors\n"
     "  -h, --help          this text\n"
@@ -123,7 +125,10 @@ static enum dalcs_status check_files(const struct dalcs_cli *cli,
     if (status == DALCS_OK) {
         status = check_not_netlist(cli, &netlist, arguments->report);
     }
-    return status == DALCS_OK ? check_not_netlist(cli, &netlist, arguments->plot) : status;
+    if (status == DALCS_OK) {
+        status = check_not_netlist(cli, &netlist, arguments->plot);
+    }
+    return status == DALCS_OK ? check_not_netlist(cli, &netlist, arguments->dump) : status;
 }
 
 /* What was asked for on the command line and cannot apply to this netlist. */
@@ -175,6 +180,7 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     options.step = arguments->step;
     options.at = times->time;
     options.n_at = times->n;
+    options.dump_path = arguments->dump ? arguments->dump : run->outputs.dump_path;
     options.record = arguments->report || !arguments->quiet;
     const struct dalcs_sink sink = {run, begin, row, end, progress};
     dalcs_progress_init(&run->progress, run->cli->err_is_terminal ? run->cli->err : NULL);

@@ -3,6 +3,7 @@
 
 #include "system_file.h"
 
+#include <errno.h>
 #include <string.h>
 
 /* "KCL at out", "branch v1", "complementarity of d1" */
@@ -44,7 +45,8 @@ static const struct dalcs_location *place_of(const struct dalcs_circuit *c, cons
     return NULL;
 }
 
-static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e, const char *when) {
+static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e, const char *when,
+                               const char *hint) {
     struct dalcs_session *s = r->s;
     const struct dalcs_witness *w = &e->component[e->failed_system].osnsp.witness;
     static const char *const kind[] = {[DALCS_WITNESS_LOOP] = "loop",
@@ -59,7 +61,7 @@ static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e,
                                "passive"};
     const struct dalcs_location *where =
         w->n_elements > 0 ? place_of(&s->circuit, w->element[0]) : NULL;
-    dalcs_diag_add(&s->diag, DALCS_ERROR, where, NULL, "%s no solution exists: %s %s: %s", when,
+    dalcs_diag_add(&s->diag, DALCS_ERROR, where, hint, "%s no solution exists: %s %s: %s", when,
                    kind[w->kind], join_names(s, w->n_elements, w->element), why[w->kind]);
     const char **element = dalcs_arena_alloc(&s->arena, (size_t)w->n_elements, sizeof(*element));
     if (element != NULL) {
@@ -72,19 +74,27 @@ static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e,
     }
 }
 
-static void dump_problem(struct dalcs_run *r, const struct dalcs_euler *e) {
+/* Writes the problem if that is wanted. Returns the hint that says where it is, or NULL. */
+static const char *dump_problem(struct dalcs_run *r, const struct dalcs_euler *e,
+                                const char *when) {
     const struct dalcs_component *c = &e->component[e->failed_system];
-    if (r->options->dump_path == NULL) {
-        return;
+    const char *path = r->options->dump_path;
+    if (path == NULL) {
+        return NULL;
     }
-    enum dalcs_status status = dalcs_system_file_write(
-        r->options->dump_path, c->system,
-        &(struct dalcs_system_step){
-            .sigma = c->failed_sigma, .u = c->failed_u, .mode = c->osnsp.mode});
-    dalcs_diag_add(&r->s->diag, DALCS_NOTE, NULL, NULL,
-                   status == DALCS_OK ? "the one-step problem was written to %s"
-                                      : "the one-step problem could not be written to %s",
-                   r->options->dump_path);
+    struct dalcs_session *s = r->s;
+    const char *about = dalcs_arena_printf(&s->arena, "%s %s", s->name, when);
+    const struct dalcs_system_step step = {.sigma = c->failed_sigma,
+                                           .u = c->failed_u,
+                                           .mode = c->osnsp.mode,
+                                           .about = about == NULL ? when : about};
+    if (dalcs_system_file_write(path, c->system, &step) != DALCS_OK) {
+        return dalcs_arena_printf(&s->arena,
+                                  "the one-step problem could not be written to '%s': %s", path,
+                                  strerror(errno));
+    }
+    return dalcs_arena_printf(
+        &s->arena, "the one-step problem is in '%s'; tools/replay solves it again", path);
 }
 
 /* A numerical failure, in words; other statuses explain themselves elsewhere. */
@@ -99,16 +109,16 @@ void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
                            : dalcs_arena_printf(&s->arena, "at t = %.9g s (step %ld, h = %.6g s)",
                                                 e->failed_time, e->steps + 1, e->failed_h);
     when = when == NULL ? "" : when;
+    const char *hint = dump_problem(r, e, when);
     if (status == DALCS_INFEASIBLE) {
-        explain_infeasible(r, e, when);
+        explain_infeasible(r, e, when, hint);
     } else {
         const struct dalcs_certificate *c = &e->component[e->failed_system].osnsp.certificate;
         const char *row = dalcs_explain_row(s, e->failed_system, c->where);
         dalcs_diag_add(
-            &s->diag, DALCS_ERROR, NULL, NULL,
+            &s->diag, DALCS_ERROR, NULL, hint,
             "%s no certified solution was found: the best residual is %.3g of its scale, "
             "%s",
             when, c->worst, row == NULL ? "" : row);
     }
-    dump_problem(r, e);
 }

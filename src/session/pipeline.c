@@ -202,7 +202,6 @@ static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_eul
             initial[k] = held.component[k].u; /* the same x: clamps add algebraic unknowns only */
         }
         status = dalcs_euler_start(e, initial);
-        dalcs_explain_failure(r, e, status);
     }
     free(initial);
     dalcs_euler_finish(&held);

@@ -91,7 +91,7 @@ class Usage(Case):
 
     def test_every_option_is_in_the_help(self):
         text = self.dalcs("run", "--help").stdout
-        for option in ["--output", "--method", "--step", "--at", "--report", "--plot",
+        for option in ["--output", "--method", "--step", "--at", "--report", "--plot", "--dump",
                        "--all-signals", "--quiet"]:
             self.assertIn(option, text)
 
@@ -330,7 +330,8 @@ class Failures(Case):
         for element in "v1", "d1", "v2":
             self.assertIn(element, done.stderr)
         self.assertIn("'out.partial.csv'", done.stderr)
-        self.assertEqual(self.files(), ["a.cir", "out.csv", "out.partial.csv", "r.json"])
+        self.assertEqual(self.files(), ["a.cir", "out.csv", "out.failed.dalcs", "out.partial.csv",
+                                        "r.json"])
         self.assertEqual(self.path("out.csv").read_text(), "old")
         _, rows = self.table("out.partial.csv")
         self.assertLess(rows[-1][0], 1.1e-3)
@@ -342,7 +343,7 @@ class Failures(Case):
     def test_infeasible_from_the_start(self):
         text = IMPOSSIBLE.replace("PULSE(10 1 1m 0 0 1 2)", "1")
         self.dalcs("run", self.write(text), "-o", "out.csv", expect=RUN_FAILED)
-        self.assertEqual(self.files(), ["a.cir"])
+        self.assertEqual(self.files(), ["a.cir", "out.failed.dalcs"])
 
 
 class Interrupt(Case):
