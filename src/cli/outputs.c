@@ -150,12 +150,12 @@ static enum dalcs_status close_table(struct dalcs_table *table, const struct dal
 }
 
 static enum dalcs_status close_figure(struct dalcs_figure *figure, const struct dalcs_cli *cli,
-                                      FILE *out, bool complete) {
+                                      FILE *out, const struct dalcs_report *report, bool complete) {
     char *left_at = NULL;
     bool written = figure->file.stream != NULL;
     enum dalcs_status status = figure->file.error != 0
                                    ? DALCS_E_IO
-                                   : dalcs_figure_draw(figure, complete ? NULL : &left_at);
+                                   : dalcs_figure_draw(figure, report, complete ? NULL : &left_at);
     if (figure->message[0]) {
         dalcs_cli_error(cli, "cannot draw '%s': %s", figure->path, figure->message);
         return DALCS_E_IO;
@@ -195,7 +195,7 @@ enum dalcs_status dalcs_outputs_close(struct dalcs_outputs *outputs, const struc
         worst = status != DALCS_OK ? status : worst;
     }
     if (outputs->has_figure) {
-        enum dalcs_status status = close_figure(&outputs->figure, cli, out, complete);
+        enum dalcs_status status = close_figure(&outputs->figure, cli, out, report, complete);
         worst = status != DALCS_OK ? status : worst;
     }
     if (outputs->report_path) {

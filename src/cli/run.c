@@ -181,7 +181,7 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     options.at = times->time;
     options.n_at = times->n;
     options.dump_path = arguments->dump ? arguments->dump : run->outputs.dump_path;
-    options.record = arguments->report || !arguments->quiet;
+    options.record = arguments->report || arguments->plot || !arguments->quiet;
     const struct dalcs_sink sink = {run, begin, row, end, progress};
     dalcs_progress_init(&run->progress, run->cli->err_is_terminal ? run->cli->err : NULL);
     enum dalcs_status status = dalcs_session_run(session, &options, &sink);

@@ -7,6 +7,19 @@
 #include <math.h>
 #include <stdlib.h>
 
+#define SWING 0.2 /* of the range so far: smaller ripple is no turn */
+
+void dalcs_turns_add(struct dalcs_turns *turns, double value, double swing) {
+    double back = turns->rising ? turns->extreme - value : value - turns->extreme;
+    if (back > swing) {
+        turns->n++;
+        turns->rising = !turns->rising;
+    }
+    if (back > swing || back < 0.0) {
+        turns->extreme = value;
+    }
+}
+
 enum dalcs_status dalcs_curve_init(struct dalcs_curve *curve, double start, double stop) {
     *curve = (struct dalcs_curve){
         .start = start, .stop = stop, .lowest = INFINITY, .highest = -INFINITY};
@@ -14,14 +27,17 @@ enum dalcs_status dalcs_curve_init(struct dalcs_curve *curve, double start, doub
     return curve->column ? DALCS_OK : DALCS_E_NOMEM;
 }
 
+int dalcs_curve_find_column(const struct dalcs_curve *curve, double time) {
+    double position = (time - curve->start) / (curve->stop - curve->start) * DALCS_CURVE_COLUMNS;
+    return position > 0.0 ? (int)fmin(position, DALCS_CURVE_COLUMNS - 1) : 0;
+}
+
 void dalcs_curve_add(struct dalcs_curve *curve, double time, double value) {
     struct dalcs_curve_point point = {.row = curve->n_rows++, .time = time, .value = value};
     if (!isfinite(value)) {
         return;
     }
-    double position = (time - curve->start) / (curve->stop - curve->start) * DALCS_CURVE_COLUMNS;
-    int index = position > 0.0 ? (int)fmin(position, DALCS_CURVE_COLUMNS - 1) : 0;
-    struct dalcs_curve_column *column = &curve->column[index];
+    struct dalcs_curve_column *column = &curve->column[dalcs_curve_find_column(curve, time)];
     if (!column->used) {
         *column = (struct dalcs_curve_column){true, point, point, point, point};
     }
@@ -34,6 +50,32 @@ void dalcs_curve_add(struct dalcs_curve *curve, double time, double value) {
     column->last = point;
     curve->lowest = fmin(curve->lowest, value);
     curve->highest = fmax(curve->highest, value);
+    dalcs_turns_add(&curve->turns, value, SWING * (curve->highest - curve->lowest));
+}
+
+void dalcs_curve_widen_range(const struct dalcs_curve *curve, const bool *skip, double *low,
+                             double *high) {
+    for (int i = 0; i < DALCS_CURVE_COLUMNS; i++) {
+        if (curve->column[i].used && !skip[i]) {
+            *low = fmin(*low, curve->column[i].lowest.value);
+            *high = fmax(*high, curve->column[i].highest.value);
+        }
+    }
+}
+
+double dalcs_curve_overlap(const struct dalcs_curve *a, const struct dalcs_curve *b,
+                           double tolerance) {
+    int n = 0;
+    for (int i = 0; i < DALCS_CURVE_COLUMNS; i++) {
+        const struct dalcs_curve_column *p = &a->column[i], *q = &b->column[i];
+        bool away = fmax(p->highest.value, -p->lowest.value) > tolerance;
+        bool same = fabs(p->first.value - q->first.value) <= tolerance &&
+                    fabs(p->lowest.value - q->lowest.value) <= tolerance &&
+                    fabs(p->highest.value - q->highest.value) <= tolerance &&
+                    fabs(p->last.value - q->last.value) <= tolerance;
+        n += p->used && q->used && away && same ? 1 : 0;
+    }
+    return (double)n / DALCS_CURVE_COLUMNS;
 }
 
 int dalcs_curve_column_points(const struct dalcs_curve_column *column,

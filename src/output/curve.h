@@ -17,10 +17,20 @@ struct dalcs_curve_column {
     struct dalcs_curve_point first, lowest, highest, last;
 };
 
+/* Counts how often a signal turns back by more than a given swing. */
+struct dalcs_turns {
+    long n;
+    bool rising;
+    double extreme; /* since the last turn */
+};
+
+void dalcs_turns_add(struct dalcs_turns *turns, double value, double swing);
+
 struct dalcs_curve {
     double start, stop;
     long n_rows;
     double lowest, highest; /* of the finite values; lowest > highest when there are none */
+    struct dalcs_turns turns;
     struct dalcs_curve_column *column; /* [DALCS_CURVE_COLUMNS] */
 };
 
@@ -29,6 +39,17 @@ enum dalcs_status dalcs_curve_init(struct dalcs_curve *curve, double start,
 
 /* Times ascend. Values that are not finite leave a gap of one point. */
 void dalcs_curve_add(struct dalcs_curve *curve, double time, double value);
+
+/* The pixel column of a time; times beyond the ends belong to the outermost columns. */
+int dalcs_curve_find_column(const struct dalcs_curve *curve, double time);
+
+/* Widens *low and *high by the columns that are not skipped. skip is [DALCS_CURVE_COLUMNS]. */
+void dalcs_curve_widen_range(const struct dalcs_curve *curve, const bool *skip, double *low,
+                             double *high);
+
+/* The part of the columns, 0 to 1, where both curves are drawn in the same place away from 0. */
+double dalcs_curve_overlap(const struct dalcs_curve *a, const struct dalcs_curve *b,
+                           double tolerance);
 
 /* The points of a column in their order; returns how many, 0 to 4. */
 int dalcs_curve_column_points(const struct dalcs_curve_column *column,

@@ -3,8 +3,16 @@
 
 #include "gnuplot.h"
 
+#include <math.h>
 #include <string.h>
 #include <strings.h>
+
+#define CLIP  3.0 /* an impulse that stretches a panel by less is left in */
+#define SWING 0.2 /* of a signal's range: smaller ripple is no turn */
+
+/* Turns of the densest signal: beyond the first number nobody sees a single period; the second is
+ * what the end of the run then shows. */
+enum { MAX_TURNS = 120, TURNS_AT_END = 8 };
 
 bool dalcs_figure_can_write(const char *path) {
     const char *dot = strrchr(path, '.');
@@ -12,7 +20,7 @@ bool dalcs_figure_can_write(const char *path) {
 }
 
 void dalcs_figure_init(struct dalcs_figure *figure, const char *path, double start, double stop) {
-    *figure = (struct dalcs_figure){.path = path, .start = start, .stop = stop};
+    *figure = (struct dalcs_figure){.path = path, .view[0] = {.start = start, .stop = stop}};
     figure->panel[0].unit = DALCS_VOLT;
     figure->panel[1].unit = DALCS_AMPERE;
 }
@@ -51,23 +59,41 @@ static void choose_signals(struct dalcs_figure_panel *panel, const struct dalcs_
     }
 }
 
-enum dalcs_status dalcs_figure_begin(struct dalcs_figure *figure, const struct dalcs_plot *plot) {
-    if (plot->analysis != DALCS_TRANSIENT || plot->n_signals == 0) {
-        return DALCS_OK;
-    }
-    figure->plot = plot;
+static enum dalcs_status init_view(struct dalcs_figure *figure, double start, double stop) {
+    struct dalcs_figure_view *view = &figure->view[figure->n_views++];
+    *view = (struct dalcs_figure_view){.start = start, .stop = stop};
     for (int p = 0; p < 2; p++) {
-        struct dalcs_figure_panel *panel = &figure->panel[p];
-        choose_signals(panel, plot);
-        for (int i = 0; i < panel->n; i++) {
-            enum dalcs_status status =
-                dalcs_curve_init(&panel->curve[i], figure->start, figure->stop);
+        for (int i = 0; i < figure->panel[p].n; i++) {
+            enum dalcs_status status = dalcs_curve_init(&view->curve[p][i], start, stop);
             if (status != DALCS_OK) {
                 return status;
             }
         }
     }
-    return dalcs_atomic_file_open(&figure->file, figure->path);
+    return DALCS_OK;
+}
+
+/* value[] are those of panel 0's curves, then of panel 1's. */
+static void add_to_view(struct dalcs_figure *figure, int v, double time, const double *value) {
+    for (int p = 0; p < 2; p++) {
+        for (int i = 0; i < figure->panel[p].n; i++) {
+            dalcs_curve_add(&figure->view[v].curve[p][i], time, *value++);
+        }
+    }
+}
+
+enum dalcs_status dalcs_figure_begin(struct dalcs_figure *figure, const struct dalcs_plot *plot) {
+    if (plot->analysis != DALCS_TRANSIENT || plot->n_signals == 0) {
+        return DALCS_OK;
+    }
+    figure->plot = plot;
+    choose_signals(&figure->panel[0], plot);
+    choose_signals(&figure->panel[1], plot);
+    enum dalcs_status status = init_view(figure, figure->view[0].start, figure->view[0].stop);
+    if (status == DALCS_OK) {
+        status = dalcs_tail_init(&figure->tail, (size_t)(figure->panel[0].n + figure->panel[1].n));
+    }
+    return status == DALCS_OK ? dalcs_atomic_file_open(&figure->file, figure->path) : status;
 }
 
 void dalcs_figure_row(struct dalcs_figure *figure, double time, const double *value) {
@@ -75,22 +101,122 @@ void dalcs_figure_row(struct dalcs_figure *figure, double time, const double *va
         return;
     }
     figure->n_rows++;
+    double chosen[2 * DALCS_FIGURE_MAX_CURVES];
+    int n = 0;
     for (int p = 0; p < 2; p++) {
-        struct dalcs_figure_panel *panel = &figure->panel[p];
-        for (int i = 0; i < panel->n; i++) {
-            dalcs_curve_add(&panel->curve[i], time, value[panel->signal[i]]);
+        for (int i = 0; i < figure->panel[p].n; i++) {
+            chosen[n++] = value[figure->panel[p].signal[i]];
+        }
+    }
+    add_to_view(figure, 0, time, chosen);
+    dalcs_tail_add(&figure->tail, time, chosen);
+}
+
+/* The signal with the most turns, as a column of the tail; *n_turns of it. */
+static size_t find_densest(const struct dalcs_figure *figure, long *n_turns) {
+    size_t densest = 0, column = 0;
+    *n_turns = 0;
+    for (int p = 0; p < 2; p++) {
+        for (int i = 0; i < figure->panel[p].n; i++) {
+            column++;
+            if (figure->view[0].curve[p][i].turns.n > *n_turns) {
+                *n_turns = figure->view[0].curve[p][i].turns.n;
+                densest = column;
+            }
+        }
+    }
+    return densest;
+}
+
+/* The row of the tail from which on a signal turns TURNS_AT_END times. */
+static size_t find_end(const struct dalcs_tail *tail, size_t column) {
+    size_t n = dalcs_tail_n_rows(tail);
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < n; i++) {
+        low = fmin(low, dalcs_tail_row(tail, i)[column]);
+        high = fmax(high, dalcs_tail_row(tail, i)[column]);
+    }
+    struct dalcs_turns turns = {.extreme = dalcs_tail_row(tail, n - 1)[column]};
+    size_t row = n - 1;
+    while (row > 0 && turns.n <= TURNS_AT_END) {
+        row--;
+        dalcs_turns_add(&turns, dalcs_tail_row(tail, row)[column], SWING * (high - low));
+    }
+    return row;
+}
+
+static enum dalcs_status add_end(struct dalcs_figure *figure) {
+    const struct dalcs_tail *tail = &figure->tail;
+    long n_turns = 0;
+    size_t densest = find_densest(figure, &n_turns);
+    if (n_turns <= MAX_TURNS) {
+        return DALCS_OK;
+    }
+    size_t n = dalcs_tail_n_rows(tail), first = find_end(tail, densest);
+    double start = *dalcs_tail_row(tail, first), stop = *dalcs_tail_row(tail, n - 1);
+    if (!(start < stop)) {
+        return DALCS_OK;
+    }
+    enum dalcs_status status = init_view(figure, start, stop);
+    for (size_t i = first; status == DALCS_OK && i < n; i++) {
+        const double *row = dalcs_tail_row(tail, i);
+        add_to_view(figure, 1, row[0], row + 1);
+    }
+    return status;
+}
+
+/* Impulses last a step whatever its length, so their height says nothing: they do not count for the
+ * range where they would dwarf all the rest. */
+static void find_ranges(const struct dalcs_figure *figure, struct dalcs_figure_view *view,
+                        const struct dalcs_report *report) {
+    static const bool none[DALCS_CURVE_COLUMNS];
+    bool impulsive[DALCS_CURVE_COLUMNS] = {false};
+    const struct dalcs_curve *any = &view->curve[figure->panel[0].n > 0 ? 0 : 1][0];
+    for (size_t j = 0; report && j < report->n_jumps; j++) {
+        double time = report->jump[j].time;
+        if (time >= view->start && time <= view->stop) {
+            int last = dalcs_curve_find_column(any, time + report->step);
+            for (int i = dalcs_curve_find_column(any, time); i <= last; i++) {
+                impulsive[i] = true;
+            }
+        }
+    }
+    for (int p = 0; p < 2; p++) {
+        double low = INFINITY, high = -INFINITY, all_low = INFINITY, all_high = -INFINITY;
+        for (int i = 0; i < figure->panel[p].n; i++) {
+            dalcs_curve_widen_range(&view->curve[p][i], none, &all_low, &all_high);
+            dalcs_curve_widen_range(&view->curve[p][i], impulsive, &low, &high);
+        }
+        view->clipped[p] = low <= high && all_high - all_low > CLIP * (high - low);
+        view->low[p] = view->clipped[p] ? low : all_low;
+        view->high[p] = view->clipped[p] ? high : all_high;
+        if (view->low[p] > view->high[p]) {
+            view->low[p] = view->high[p] = 0.0;
         }
     }
 }
 
-enum dalcs_status dalcs_figure_draw(struct dalcs_figure *figure, char **left_at) {
+enum dalcs_status dalcs_figure_compose(struct dalcs_figure *figure,
+                                       const struct dalcs_report *report) {
+    enum dalcs_status status = add_end(figure);
+    for (int v = 0; v < figure->n_views; v++) {
+        find_ranges(figure, &figure->view[v], report);
+    }
+    return status;
+}
+
+enum dalcs_status dalcs_figure_draw(struct dalcs_figure *figure, const struct dalcs_report *report,
+                                    char **left_at) {
     if (left_at) {
         *left_at = NULL;
     }
     if (!figure->plot || figure->n_rows == 0) {
         return DALCS_OK;
     }
-    enum dalcs_status status = dalcs_gnuplot_draw(figure);
+    enum dalcs_status status = dalcs_figure_compose(figure, report);
+    if (status == DALCS_OK) {
+        status = dalcs_gnuplot_draw(figure);
+    }
     if (status != DALCS_OK) {
         return status;
     }
@@ -99,11 +225,14 @@ enum dalcs_status dalcs_figure_draw(struct dalcs_figure *figure, char **left_at)
 }
 
 void dalcs_figure_finish(struct dalcs_figure *figure) {
-    for (int p = 0; p < 2; p++) {
-        for (int i = 0; i < figure->panel[p].n; i++) {
-            dalcs_curve_finish(&figure->panel[p].curve[i]);
+    for (int v = 0; v < figure->n_views; v++) {
+        for (int p = 0; p < 2; p++) {
+            for (int i = 0; i < figure->panel[p].n; i++) {
+                dalcs_curve_finish(&figure->view[v].curve[p][i]);
+            }
         }
     }
+    dalcs_tail_finish(&figure->tail);
     dalcs_atomic_file_discard(&figure->file);
     *figure = (struct dalcs_figure){0};
 }

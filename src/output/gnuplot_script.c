@@ -1,7 +1,8 @@
 /* gnuplot_script.c - the looks of a figure: a gnuplot script with its data inside.
  *
- * Two panels share a time axis, engineering prefixes on all axes, legends to the right. Whatever
- * comes from the netlist is quoted: it cannot become a command. */
+ * Two panels share a time axis, engineering prefixes on all axes, legends to the right. The end of a
+ * dense run is a second pair of panels beside the first. Whatever comes from the netlist is quoted:
+ * it cannot become a command. */
 #include "gnuplot.h"
 
 #include "quantity.h"
@@ -12,6 +13,7 @@
 #include <strings.h>
 
 #define COINCIDENT 1e-3 /* of a panel's range: less cannot be seen */
+#define OVERLAP    0.02 /* of a panel's width */
 
 enum { WIDTH = 1200, HEIGHT = 720, MAX_LEGEND = 24, MAX_TITLE = 100 };
 
@@ -45,31 +47,21 @@ static const char *unit_prefix(double scale) {
     return strcmp(prefix, "u") == 0 ? "\302\265" : prefix;
 }
 
-/* Of a panel's lowest and highest value the larger in magnitude; 0 when it has none. */
-static double find_range(const struct dalcs_figure_panel *panel, double *low, double *high) {
-    *low = INFINITY;
-    *high = -INFINITY;
-    for (int i = 0; i < panel->n; i++) {
-        *low = fmin(*low, panel->curve[i].lowest);
-        *high = fmax(*high, panel->curve[i].highest);
-    }
-    if (*low > *high) {
-        *low = *high = 0.0;
-    }
-    return fmax(fabs(*low), fabs(*high));
+static double panel_scale(const struct dalcs_figure_view *view, int p) {
+    return dalcs_quantity_scale(fmax(fabs(view->low[p]), fabs(view->high[p])));
 }
 
-static void write_data(FILE *stream, const struct dalcs_figure *figure, int p, double time_scale) {
-    const struct dalcs_figure_panel *panel = &figure->panel[p];
-    double low = 0.0, high = 0.0;
-    double scale = dalcs_quantity_scale(find_range(panel, &low, &high));
-    for (int i = 0; i < panel->n; i++) {
-        fprintf(stream, "$p%dc%d << end_of_data\n", p, i);
+static void write_data(FILE *stream, const struct dalcs_figure *figure, int v, int p,
+                       double time_scale) {
+    const struct dalcs_figure_view *view = &figure->view[v];
+    double scale = panel_scale(view, p);
+    for (int i = 0; i < figure->panel[p].n; i++) {
+        fprintf(stream, "$v%dp%dc%d << end_of_data\n", v, p, i);
         for (int column = 0; column < DALCS_CURVE_COLUMNS; column++) {
             struct dalcs_curve_point point[4];
-            int n = dalcs_curve_column_points(&panel->curve[i].column[column], point);
+            int n = dalcs_curve_column_points(&view->curve[p][i].column[column], point);
             for (int k = 0; k < n; k++) {
-                fprintf(stream, "%.9g %.7g\n", point[k].time / time_scale, point[k].value / scale);
+                fprintf(stream, "%.12g %.7g\n", point[k].time / time_scale, point[k].value / scale);
             }
         }
         fputs("end_of_data\n", stream);
@@ -80,7 +72,8 @@ static void write_header(FILE *stream, const struct dalcs_figure *figure) {
     const char *dot = strrchr(figure->path, '.');
     bool svg = dot && strcasecmp(dot, ".svg") == 0;
     fprintf(stream, "set encoding utf8\n");
-    fprintf(stream, "set terminal %s size %d,%d font 'DejaVu Sans,%d' noenhanced background %s\n",
+    fprintf(stream,
+            "set terminal %s size %d,%d font 'DejaVu Sans,%d' noenhanced rounded background %s\n",
             svg ? "svg" : "pngcairo", WIDTH, HEIGHT, svg ? 14 : 11, svg ? "'white'" : "'#ffffff'");
     fputs("set border 3 lc rgb '#80868b' lw 1\n"
           "set grid xtics ytics lc rgb '#e3e6ea' lw 1 lt 1\n"
@@ -105,52 +98,68 @@ static void write_title(FILE *stream, const struct dalcs_figure *figure) {
     }
 }
 
-static bool coincide(const struct dalcs_curve *a, const struct dalcs_curve *b, double tolerance) {
-    for (int i = 0; i < DALCS_CURVE_COLUMNS; i++) {
-        const struct dalcs_curve_column *p = &a->column[i], *q = &b->column[i];
-        if (p->used != q->used || fabs(p->first.value - q->first.value) > tolerance ||
-            fabs(p->lowest.value - q->lowest.value) > tolerance ||
-            fabs(p->highest.value - q->highest.value) > tolerance ||
-            fabs(p->last.value - q->last.value) > tolerance) {
-            return false;
-        }
+/* A curve that others lie on later is wider, so that its colour shows beside theirs. */
+static double choose_width(const struct dalcs_figure *figure, const struct dalcs_figure_view *view,
+                           int p, int i) {
+    double width = 2.0, tolerance = COINCIDENT * (view->high[p] - view->low[p]);
+    const struct dalcs_curve *curve = view->curve[p];
+    for (int k = i + 1; k < figure->panel[p].n && width < 5.0; k++) {
+        width += dalcs_curve_overlap(&curve[i], &curve[k], tolerance) > OVERLAP ? 1.7 : 0.0;
     }
-    return true;
+    return width;
 }
 
-/* A curve that lies on earlier ones is dashed, so that all their colours show. */
-static const char *choose_dashes(const struct dalcs_figure_panel *panel, int i, double range) {
-    static const char *const dashes[] = {"", " dt (10,10)", " dt (5,15)", " dt (2,18)"};
-    int n_below = 0;
-    for (int k = 0; k < i && n_below < 3; k++) {
-        n_below += coincide(&panel->curve[k], &panel->curve[i], COINCIDENT * range) ? 1 : 0;
-    }
-    return dashes[n_below];
-}
+/* Where a pair of panels is on the page, 0 to 1. */
+struct place {
+    double left, right;
+    bool legend;
+};
 
-/* The panel between two heights of the page. */
-static void write_panel(FILE *stream, const struct dalcs_figure *figure, int p, double bottom,
-                        double top, bool last) {
+static void write_panel(FILE *stream, const struct dalcs_figure *figure, int v, int p,
+                        const struct place *place) {
+    const struct dalcs_figure_view *view = &figure->view[v];
     const struct dalcs_figure_panel *panel = &figure->panel[p];
-    double low = 0.0, high = 0.0;
-    double scale = dalcs_quantity_scale(find_range(panel, &low, &high));
+    bool voltage = panel->unit == DALCS_VOLT;
+    double low = view->low[p], high = view->high[p], scale = panel_scale(view, p);
     double margin = high > low ? 0.05 * (high - low) : fmax(0.1 * fabs(high), 0.5 * scale);
-    fprintf(stream, "set bmargin at screen %.3f\nset tmargin at screen %.3f\n", bottom, top);
+    bool last = p == 1 || figure->panel[1].n == 0, first = p == 0 || figure->panel[0].n == 0;
+    fprintf(stream, "set lmargin at screen %.3f\nset rmargin at screen %.3f\n", place->left,
+            place->right);
+    fprintf(stream, "set bmargin at screen %.3f\nset tmargin at screen %.3f\n", last ? 0.09 : 0.53,
+            first ? 0.92 : 0.48);
     fprintf(stream, "set yrange [%.9g:%.9g]\n", (low - margin) / scale, (high + margin) / scale);
     fprintf(stream, "set ylabel '%s (%s%s)' offset 0.5,0 textcolor rgb '#3c4043'\n",
-            panel->unit == DALCS_VOLT ? "voltage" : "current", unit_prefix(scale),
-            panel->unit == DALCS_VOLT ? "V" : "A");
+            voltage ? "voltage" : "current", unit_prefix(scale), voltage ? "V" : "A");
     if (last) {
-        fprintf(stream, "set xlabel 'time (%ss)' offset 0,0.2 textcolor rgb '#3c4043'\n",
-                unit_prefix(dalcs_quantity_scale(figure->stop)));
+        fprintf(stream, "set xlabel 'time (%ss)%s' offset 0,0.2 textcolor rgb '#3c4043'\n",
+                unit_prefix(dalcs_quantity_scale(figure->view[0].stop)),
+                v == 1 ? ", the end of the run" : "");
+    } else {
+        fputs("unset xlabel\n", stream);
     }
     fputs(last ? "set format x '%g'\n" : "set format x ''\n", stream);
+    if (view->clipped[p]) {
+        fputs("set label 3 'impulses of jumps leave the scale' at graph 1.0, graph 1.04 right "
+              "textcolor rgb '#80868b'\n",
+              stream);
+    }
     for (int i = 0; i < panel->n; i++) {
-        fprintf(stream, "%s $p%dc%d using 1:2 with lines lw 2 lc rgb '%s'%s title ",
-                i == 0 ? "plot" : ",", p, i, colour[i], choose_dashes(panel, i, high - low));
-        write_quoted(stream, figure->plot->name[panel->signal[i]], MAX_LEGEND);
+        fprintf(stream, "%s $v%dp%dc%d using 1:2 with lines lw %.1f lc rgb '%s' ",
+                i == 0 ? "plot" : ",", v, p, i, choose_width(figure, view, p, i), colour[i]);
+        if (place->legend) {
+            fputs("title ", stream);
+            write_quoted(stream, figure->plot->name[panel->signal[i]], MAX_LEGEND);
+        } else {
+            fputs("notitle", stream);
+        }
     }
     fputs("\nunset label\n", stream);
+}
+
+/* 1, 2 or 5 times a power of ten: a distance between tics that leaves room for their numbers. */
+static double choose_tics(double range) {
+    double power = pow(10.0, floor(log10(range / 4.0))), ratio = range / 4.0 / power;
+    return power * (ratio < 2.0 ? 1.0 : ratio < 5.0 ? 2.0 : 5.0);
 }
 
 static int longest_name(const struct dalcs_figure *figure) {
@@ -165,21 +174,28 @@ static int longest_name(const struct dalcs_figure *figure) {
 }
 
 void dalcs_gnuplot_write(FILE *stream, const struct dalcs_figure *figure) {
-    double time_scale = dalcs_quantity_scale(figure->stop);
+    double time_scale = dalcs_quantity_scale(figure->view[0].stop);
+    double left = 0.065, right = 0.945 - 0.0082 * longest_name(figure);
+    double middle = 0.5 * (left + right);
+    const struct place place[2] = {
+        {left, figure->n_views > 1 ? middle - 0.02 : right, figure->n_views == 1},
+        {middle + 0.05, right, true}};
     write_header(stream, figure);
-    write_data(stream, figure, 0, time_scale);
-    write_data(stream, figure, 1, time_scale);
-    fprintf(stream, "set multiplot\nset lmargin at screen 0.065\nset rmargin at screen %.3f\n",
-            0.945 - 0.0082 * longest_name(figure));
-    fprintf(stream, "set xrange [%.12g:%.12g]\n", figure->start / time_scale,
-            figure->stop / time_scale);
+    fputs("set multiplot\n", stream);
     write_title(stream, figure);
-    bool both = figure->panel[0].n > 0 && figure->panel[1].n > 0;
-    if (figure->panel[0].n > 0) {
-        write_panel(stream, figure, 0, both ? 0.53 : 0.09, 0.92, !both);
-    }
-    if (figure->panel[1].n > 0) {
-        write_panel(stream, figure, 1, 0.09, both ? 0.48 : 0.92, true);
+    for (int v = 0; v < figure->n_views; v++) {
+        fprintf(stream, "set xrange [%.12g:%.12g]\n", figure->view[v].start / time_scale,
+                figure->view[v].stop / time_scale);
+        if (v == 1) {
+            double range = figure->view[v].stop - figure->view[v].start;
+            fprintf(stream, "set xtics %.9g\n", choose_tics(range / time_scale));
+        }
+        for (int p = 0; p < 2; p++) {
+            if (figure->panel[p].n > 0) {
+                write_data(stream, figure, v, p, time_scale);
+                write_panel(stream, figure, v, p, &place[v]);
+            }
+        }
     }
     fputs("unset multiplot\n", stream);
 }

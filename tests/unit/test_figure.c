@@ -76,6 +76,63 @@ START_TEST(test_choice_of_signals) {
 
 END_TEST
 
+/* A run of n_rows rows over one second: v(n1) has that many periods and a jump's impulse at 0.5. */
+static void run_figure(struct dalcs_figure *figure, const struct dalcs_plot *plot, double n_periods,
+                       double impulse) {
+    const long n_rows = 20000;
+    dalcs_figure_init(figure, "a.svg", 0.0, 1.0);
+    ck_assert_int_eq(dalcs_figure_begin(figure, plot), DALCS_OK);
+    for (long i = 0; i <= n_rows; i++) {
+        double t = (double)i / (double)n_rows;
+        double value[] = {sin(2.0 * acos(-1.0) * n_periods * t), 2 * i == n_rows ? impulse : 0.25};
+        dalcs_figure_row(figure, t, value);
+    }
+}
+
+static const char *const two_names[] = {"v(n1)", "i(d1)"};
+
+static const enum dalcs_unit two_units[] = {DALCS_VOLT, DALCS_AMPERE};
+static const struct dalcs_plot two_signals = {DALCS_TRANSIENT, "t", 2, two_names, two_units};
+
+/* A few periods need no closer look; of many the last four are shown. */
+START_TEST(test_end_of_dense_run) {
+    struct dalcs_figure figure;
+    run_figure(&figure, &two_signals, 20.0, 0.0);
+    ck_assert_int_eq(dalcs_figure_compose(&figure, NULL), DALCS_OK);
+    ck_assert_int_eq(figure.n_views, 1);
+    dalcs_figure_finish(&figure);
+
+    run_figure(&figure, &two_signals, 200.0, 0.0);
+    ck_assert_int_eq(dalcs_figure_compose(&figure, NULL), DALCS_OK);
+    ck_assert_int_eq(figure.n_views, 2);
+    ck_assert_double_eq(figure.view[1].stop, 1.0);
+    ck_assert_double_eq_tol(figure.view[1].start, 1.0 - 4.5 / 200.0, 1.0 / 200.0);
+    ck_assert_double_eq_tol(figure.view[1].high[0], 1.0, 1e-3);
+    ck_assert_double_eq(figure.view[1].low[1], 0.25); /* the 0 at half time is not there */
+    dalcs_figure_finish(&figure);
+}
+
+END_TEST
+
+/* The height of an impulse depends on the step: it must not set the scale. A regular peak does. */
+START_TEST(test_impulse_leaves_scale) {
+    const struct dalcs_jump jump = {.time = 0.5};
+    struct dalcs_report report = {.step = 1e-4};
+    for (int n_jumps = 0; n_jumps < 2; n_jumps++) {
+        struct dalcs_figure figure;
+        run_figure(&figure, &two_signals, 1.0, 100.0);
+        report.n_jumps = (size_t)n_jumps;
+        report.jump = &jump;
+        ck_assert_int_eq(dalcs_figure_compose(&figure, &report), DALCS_OK);
+        ck_assert(figure.view[0].clipped[1] == (n_jumps == 1));
+        ck_assert(!figure.view[0].clipped[0]);
+        ck_assert_double_eq(figure.view[0].high[1], n_jumps == 1 ? 0.25 : 100.0);
+        dalcs_figure_finish(&figure);
+    }
+}
+
+END_TEST
+
 static char *write_script(const char *title, const char *signal) {
     const enum dalcs_unit unit = DALCS_AMPERE;
     const struct dalcs_plot plot = {DALCS_TRANSIENT, title, 1, &signal, &unit};
@@ -86,6 +143,7 @@ static char *write_script(const char *title, const char *signal) {
     for (int i = 0; i < 3; i++) {
         dalcs_figure_row(&figure, 1e-5 * i, &value[i]);
     }
+    ck_assert_int_eq(dalcs_figure_compose(&figure, NULL), DALCS_OK);
     char *text = NULL;
     size_t length = 0;
     FILE *stream = open_memstream(&text, &length);
@@ -117,4 +175,4 @@ START_TEST(test_units) {
 END_TEST
 
 RUN_SUITE("figure", test_curve_keeps_extremes, test_curve_keeps_order, test_choice_of_signals,
-          test_quoting, test_units)
+          test_end_of_dense_run, test_impulse_leaves_scale, test_quoting, test_units)
