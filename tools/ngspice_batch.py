@@ -14,10 +14,6 @@ class NoNgspice(Exception):
     """ngspice is not installed."""
 
 
-def parts(name):
-    return [f"v({node})" for node in name[2:-1].split(",")] if name.startswith("v(") else [name]
-
-
 @dataclasses.dataclass
 class Table:
     """Columns by name; "time" is the first for a transient analysis."""
@@ -28,13 +24,20 @@ class Table:
     def column(self, name):
         return self.columns[self.names.index(name)]
 
+    def _parts(self, name):
+        """The columns that a signal is made of: v(a,b) may be one of its own or two voltages."""
+        if name in self.names or not name.startswith("v("):
+            return [name]
+        return [f"v({node})" for node in name[2:-1].split(",") if node != "0"]
+
     def has(self, name):
-        """v(a,b) is there when both nodes are."""
-        return all(part in self.names for part in parts(name))
+        return all(part in self.names for part in self._parts(name))
 
     def signal(self, name):
         """A column, or the difference of two for v(a,b)."""
-        first, *second = (self.column(part) for part in parts(name))
+        first, *second = (self.column(part) for part in self._parts(name))
+        if name.startswith("v(0,") and name not in self.names:
+            return [-a for a in first]
         return [a - b for a, b in zip(first, second[0])] if second else first
 
     @property

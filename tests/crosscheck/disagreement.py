@@ -21,6 +21,7 @@ R2 r 0 500
 Vc c 0 PULSE(0 1 10m 0 0 1 2)
 .model sm SW(Ron=0 Vt=0.5)
 .tran 20u 40m
+.save v(in) v(out) v(in,out) v(0,in) i(d1) i(s1)
 .end
 """
 LIAR = """#!{python}
@@ -41,7 +42,10 @@ LIES = [  # signal, what becomes of its value, the cross-check's status
     ("v(out)", "value", 0),
     ("v(out)", "1.03 * value", 1),
     ("v(out)", "value + 0.5 * (t > 0.039)", 1),
+    ("v(out)", "1.03 * value + 1e3 * (0.02 < t < 0.02005)", 1),  # its height is no excuse
     ("v(in)", "-value", 1),
+    ("v(in,out)", "-value", 1),
+    ("v(0,in)", "-value", 1),
     ("i(d1)", "0.0", 1),
     ("i(s1)", "value + 1e-3", 1),
     ("v(out)", "float('nan') if t > 0.02 else value", 1),
