@@ -3,6 +3,7 @@
 #include "cli.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -29,7 +30,20 @@ static void catch_signals(void) {
     signal(SIGXFSZ, SIG_IGN); /* and so is a file that grew too large */
 }
 
+/* Where the caller closed a standard stream, the next file would take its number and what is meant
+ * for a terminal would end up in a waveform. A stream that refuses to be written is put there. */
+static bool keep_standard_streams(void) {
+    int descriptor = open("/dev/null", O_RDONLY);
+    while (descriptor >= 0 && descriptor <= STDERR_FILENO) {
+        descriptor = dup(descriptor);
+    }
+    return descriptor >= 0 && close(descriptor) == 0;
+}
+
 int main(int argc, char **argv) {
+    if (!keep_standard_streams()) {
+        return DALCS_EXIT_IO;
+    }
     catch_signals();
     const struct dalcs_cli cli = {
         .out = stdout,

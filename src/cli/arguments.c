@@ -1,4 +1,4 @@
-/* arguments.c - getopt_long, then checks that need no file: formats by name, numbers, repeats. */
+/* arguments.c - getopt_long, then checks that need no file: formats by name, numbers. */
 #include "arguments.h"
 
 #include "figure.h"
@@ -120,31 +120,6 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
 /* Besides the outputs. */
 enum { N_OTHER_RESULTS = 3 };
 
-static const char *result_path(const struct dalcs_arguments *arguments, size_t i) {
-    if (i < arguments->n_outputs) {
-        return arguments->output[i];
-    }
-    const char *const other[N_OTHER_RESULTS] = {arguments->report, arguments->plot,
-                                                arguments->dump};
-    return other[i - arguments->n_outputs];
-}
-
-/* Two results must not overwrite each other. */
-static enum dalcs_status check_repeats(const struct dalcs_arguments *arguments,
-                                       const struct dalcs_cli *cli) {
-    for (size_t i = 0; i < arguments->n_outputs + N_OTHER_RESULTS; i++) {
-        const char *path = result_path(arguments, i);
-        for (size_t j = 0; path && j < i; j++) {
-            const char *other = result_path(arguments, j);
-            if (other && strcmp(path, other) == 0) {
-                dalcs_cli_error(cli, "'%s' is given for two results", path);
-                return DALCS_E_OPTION;
-            }
-        }
-    }
-    return DALCS_OK;
-}
-
 static enum dalcs_status refuse_count(const struct dalcs_cli *cli, int argc, char **argv) {
     if (optind == argc) {
         dalcs_cli_error(cli, "no netlist given; see 'dalcs run --help'");
@@ -152,6 +127,42 @@ static enum dalcs_status refuse_count(const struct dalcs_cli *cli, int argc, cha
         dalcs_cli_error(cli, "one netlist at a time: '%s' is one too many", argv[argc - 1]);
     }
     return DALCS_E_OPTION;
+}
+
+static const char *base_of(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* "dir/bridge.cir" -> "dir/bridge" and the ending. */
+static char *change_ending(const char *path, const char *ending) {
+    const char *base = base_of(path);
+    const char *dot = strrchr(base, '.');
+    size_t stem = dot && dot != base ? (size_t)(dot - path) : strlen(path);
+    char *name = dalcs_alloc(stem + strlen(ending) + 1, 1);
+    if (name) {
+        memcpy(name, path, stem);
+        strcpy(name + stem, ending);
+    }
+    return name;
+}
+
+/* The raw file goes to the current folder, a failed step beside the first output. */
+static enum dalcs_status add_defaults(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli) {
+    if (arguments->n_outputs == 0) {
+        arguments->default_output = change_ending(base_of(arguments->netlist), ".raw");
+        arguments->output[arguments->n_outputs++] = arguments->default_output;
+    }
+    if (!arguments->dump && arguments->output[0]) {
+        arguments->default_dump = change_ending(arguments->output[0], ".failed.dalcs");
+        arguments->dump = arguments->default_dump;
+    }
+    if (!arguments->output[0] || !arguments->dump) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
+        return DALCS_E_NOMEM;
+    }
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
@@ -174,7 +185,7 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
             status = refuse_count(cli, argc, argv);
         } else {
             arguments->netlist = argv[optind];
-            status = check_repeats(arguments, cli);
+            status = add_defaults(arguments, cli);
         }
     }
     if (status != DALCS_OK) {
@@ -185,5 +196,7 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
 
 void dalcs_arguments_finish(struct dalcs_arguments *arguments) {
     free(arguments->output);
+    free(arguments->default_output);
+    free(arguments->default_dump);
     *arguments = (struct dalcs_arguments){0};
 }

@@ -4,15 +4,16 @@
 
 #include "cli.h"
 
-/* Strings are borrowed from argv. */
+/* Strings are borrowed from argv but for the defaults, which are owned. */
 struct dalcs_arguments {
     const char *netlist;
-    const char **output; /* [n_outputs]; owned array */
+    const char **output; /* [n_outputs], at least one; owned array */
     size_t n_outputs;
     const char *method; /* NULL: the netlist's */
     double step;        /* s; 0: the netlist's */
     const char *at, *report, *plot;
-    const char *dump; /* NULL: beside the first output */
+    const char *dump;
+    char *default_output, *default_dump; /* NULL: not needed */
     bool quiet, all_signals;
     bool help; /* asked for: nothing else is set */
 };

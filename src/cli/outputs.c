@@ -8,45 +8,16 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char *base_of(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
-/* "dir/bridge.cir" -> "dir/bridge" and the ending. */
-static char *change_ending(const char *path, const char *ending) {
-    const char *base = base_of(path);
-    const char *dot = strrchr(base, '.');
-    size_t stem = dot && dot != base ? (size_t)(dot - path) : strlen(path);
-    char *name = dalcs_alloc(stem + strlen(ending) + 1, 1);
-    if (name) {
-        memcpy(name, path, stem);
-        strcpy(name + stem, ending);
-    }
-    return name;
-}
-
 static enum dalcs_status init_tables(struct dalcs_outputs *outputs,
                                      const struct dalcs_arguments *arguments,
                                      const struct dalcs_request *request) {
-    const char *const *path = arguments->output;
-    size_t n = arguments->n_outputs;
-    if (n == 0) {
-        outputs->default_path = change_ending(base_of(arguments->netlist), ".raw"); /* here */
-        if (!outputs->default_path) {
-            return DALCS_E_NOMEM;
-        }
-        path = (const char *const *)&outputs->default_path;
-        n = 1;
-    }
-    outputs->dump_path = change_ending(path[0], ".failed.dalcs");
-    outputs->table = dalcs_alloc(n, sizeof *outputs->table);
-    if (!outputs->dump_path || !outputs->table) {
+    outputs->table = dalcs_alloc(arguments->n_outputs, sizeof *outputs->table);
+    if (!outputs->table) {
         return DALCS_E_NOMEM;
     }
-    for (size_t i = 0; i < n; i++) {
-        enum dalcs_status status =
-            dalcs_table_init(&outputs->table[outputs->n_tables++], path[i], request->transient);
+    for (size_t i = 0; i < arguments->n_outputs; i++) {
+        enum dalcs_status status = dalcs_table_init(&outputs->table[outputs->n_tables++],
+                                                    arguments->output[i], request->transient);
         if (status != DALCS_OK) {
             return status;
         }
@@ -210,8 +181,6 @@ void dalcs_outputs_finish(struct dalcs_outputs *outputs) {
         dalcs_table_finish(&outputs->table[i]);
     }
     free(outputs->table);
-    free(outputs->default_path);
-    free(outputs->dump_path);
     if (outputs->has_figure) {
         dalcs_figure_finish(&outputs->figure);
     }

@@ -10,8 +10,6 @@
 struct dalcs_outputs {
     struct dalcs_table *table; /* [n_tables] */
     size_t n_tables;
-    char *default_path; /* of table[0] when no -o was given; NULL otherwise */
-    char *dump_path;    /* where a failed step goes by default: beside table[0] */
     bool has_figure;
     struct dalcs_figure figure;
     const char *report_path; /* NULL: none */

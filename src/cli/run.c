@@ -3,16 +3,13 @@
 
 #include "arguments.h"
 #include "outputs.h"
+#include "paths.h"
 #include "progress.h"
 #include "quantity.h"
 #include "summary.h"
 #include "times.h"
 
-#include <errno.h>
-#include <fcntl.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <math.h>
 
 /* The state behind the sink. */
 struct run {
@@ -84,53 +81,6 @@ static void write_messages(const struct dalcs_cli *cli, const struct dalcs_sessi
     }
 }
 
-static enum dalcs_status check_readable(const struct dalcs_cli *cli, const char *path,
-                                        struct stat *netlist) {
-    int descriptor = open(path, O_RDONLY | O_CLOEXEC);
-    int error = descriptor < 0 ? errno : 0;
-    if (error == 0 && fstat(descriptor, netlist) != 0) {
-        error = errno;
-    } else if (error == 0 && S_ISDIR(netlist->st_mode)) {
-        error = EISDIR;
-    }
-    if (descriptor >= 0) {
-        close(descriptor);
-    }
-    if (error != 0) {
-        dalcs_cli_error(cli, "cannot read '%s': %s", path, strerror(error));
-        return DALCS_E_IO;
-    }
-    return DALCS_OK;
-}
-
-/* No result may overwrite the netlist. */
-static enum dalcs_status check_not_netlist(const struct dalcs_cli *cli, const struct stat *netlist,
-                                           const char *path) {
-    struct stat result;
-    if (path && stat(path, &result) == 0 && result.st_dev == netlist->st_dev &&
-        result.st_ino == netlist->st_ino) {
-        dalcs_cli_error(cli, "'%s' is the netlist itself", path);
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
-}
-
-static enum dalcs_status check_files(const struct dalcs_cli *cli,
-                                     const struct dalcs_arguments *arguments) {
-    struct stat netlist;
-    enum dalcs_status status = check_readable(cli, arguments->netlist, &netlist);
-    for (size_t i = 0; status == DALCS_OK && i < arguments->n_outputs; i++) {
-        status = check_not_netlist(cli, &netlist, arguments->output[i]);
-    }
-    if (status == DALCS_OK) {
-        status = check_not_netlist(cli, &netlist, arguments->report);
-    }
-    if (status == DALCS_OK) {
-        status = check_not_netlist(cli, &netlist, arguments->plot);
-    }
-    return status == DALCS_OK ? check_not_netlist(cli, &netlist, arguments->dump) : status;
-}
-
 /* What was asked for on the command line and cannot apply to this netlist. */
 static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_arguments *arguments,
                         const struct dalcs_request *request) {
@@ -180,7 +130,7 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     options.step = arguments->step;
     options.at = times->time;
     options.n_at = times->n;
-    options.dump_path = arguments->dump ? arguments->dump : run->outputs.dump_path;
+    options.dump_path = arguments->dump;
     options.record = arguments->report || arguments->plot || !arguments->quiet;
     const struct dalcs_sink sink = {run, begin, row, end, progress};
     dalcs_progress_init(&run->progress, run->cli->err_is_terminal ? run->cli->err : NULL);
@@ -219,7 +169,8 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     warn_unused(cli, arguments, &request);
     struct dalcs_times times = {0};
     if (arguments->at) {
-        status = dalcs_times_read(&times, cli, arguments->at);
+        status = dalcs_times_read(&times, cli, arguments->at,
+                                  request.transient ? request.stop : INFINITY);
         if (status != DALCS_OK) {
             return status;
         }
@@ -248,7 +199,7 @@ enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv
     if (arguments.help) {
         fputs(help, cli->out);
     } else {
-        status = check_files(cli, &arguments);
+        status = dalcs_paths_check(cli, &arguments);
     }
     if (status == DALCS_OK && !arguments.help) {
         struct dalcs_session *session = NULL;

@@ -7,11 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define ROUNDING 1e-9 /* a time this little after the end is meant to be the end */
+
 static const char blank[] = " \t\r\n";
 
 static enum dalcs_status add_line(struct dalcs_times *times, size_t *capacity,
-                                  const struct dalcs_cli *cli, const char *path, long line,
-                                  char *text) {
+                                  const struct dalcs_cli *cli, const char *path, double stop,
+                                  long line, char *text) {
     text += strspn(text, blank);
     text[strcspn(text, blank)] = '\0'; /* the first word: the rest may be other columns */
     if (*text == '\0' || *text == '#' || *text == '*') {
@@ -20,6 +22,13 @@ static enum dalcs_status add_line(struct dalcs_times *times, size_t *capacity,
     double time = 0.0;
     if (dalcs_parse_number(text, &time) != DALCS_OK || time < 0.0) {
         dalcs_cli_error(cli, "%s:%ld: '%s' is not a time", path, line, text);
+        return DALCS_E_OPTION;
+    }
+    if (time > stop && time <= stop * (1.0 + ROUNDING)) {
+        time = stop;
+    }
+    if (time > stop) {
+        dalcs_cli_error(cli, "%s:%ld: '%s' comes after the end of the run", path, line, text);
         return DALCS_E_OPTION;
     }
     if (times->n > 0 && time <= times->time[times->n - 1]) {
@@ -38,7 +47,7 @@ static enum dalcs_status add_line(struct dalcs_times *times, size_t *capacity,
 }
 
 enum dalcs_status dalcs_times_read(struct dalcs_times *times, const struct dalcs_cli *cli,
-                                   const char *path) {
+                                   const char *path, double stop) {
     *times = (struct dalcs_times){0};
     FILE *file = fopen(path, "r");
     if (!file) {
@@ -50,7 +59,7 @@ enum dalcs_status dalcs_times_read(struct dalcs_times *times, const struct dalcs
     char *text = NULL;
     errno = 0;
     for (long line = 1; status == DALCS_OK && getline(&text, &size, file) >= 0; line++) {
-        status = add_line(times, &capacity, cli, path, line, text);
+        status = add_line(times, &capacity, cli, path, stop, line, text);
     }
     if (status == DALCS_OK && !feof(file)) { /* an error, or no memory for a line */
         dalcs_cli_error(cli, "cannot read '%s': %s", path, strerror(errno != 0 ? errno : EIO));

@@ -9,10 +9,10 @@ struct dalcs_times {
     size_t n;
 };
 
-/* One time a line, SPICE suffixes allowed; blank lines and lines starting with # or * are skipped.
+/* One time a line up to `stop`, SPICE suffixes allowed; blank lines and lines starting with # or * are skipped.
  * Messages go to cli->err. */
 enum dalcs_status dalcs_times_read(struct dalcs_times *times, const struct dalcs_cli *cli,
-                                   const char *path) DALCS_MUST_CHECK;
+                                   const char *path, double stop) DALCS_MUST_CHECK;
 
 void dalcs_times_finish(struct dalcs_times *times);
 

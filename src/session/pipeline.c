@@ -74,6 +74,10 @@ static enum dalcs_status check_options(struct dalcs_run *r) {
     if (!has_states && o->step == 0.0 && t->step > 0.0) {
         r->h = t->step; /* nothing remembers: only the times that are printed matter */
     }
+    if (t->present && o->step > t->stop) {
+        option_error(s, "the step is longer than the run");
+        return DALCS_E_OPTION;
+    }
     if (t->present && t->stop / r->h > 1e15) {
         option_error(s, "the step is too small for the stop time: times would not be distinct");
         return DALCS_E_OPTION;

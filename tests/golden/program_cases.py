@@ -128,6 +128,29 @@ class Usage(Case):
         self.assertIn("one too many", self.refused("run", "a.cir", "a.cir"))
         self.assertIn("two results", self.refused("run", "a.cir", "-o", "x.csv", "-o", "x.csv"))
 
+    def test_one_file_for_two_results(self):
+        """However it is spelled, and whether it is there or not."""
+        self.write(RECTIFIER)
+        here = self.folder.name
+        for one, other in [("x.csv", "./x.csv"), ("x.csv", f"../{here}/x.csv"),
+                           (str(self.path("x.csv")), "x.csv")]:
+            self.assertIn("two results", self.refused("run", "a.cir", "-o", one, "-o", other))
+            self.assertIn("two results", self.refused("run", "a.cir", "-o", one, "--report",
+                                                      other))
+        self.assertIn("two results", self.refused("run", "a.cir", "--report", "a.raw"))
+        self.write("old", "x.csv")
+        self.path("link.csv").symlink_to("x.csv")
+        done = self.dalcs("run", "a.cir", "-o", "x.csv", "-o", "link.csv", expect=USAGE)
+        self.assertIn("two results", done.stderr)
+        self.assertEqual(self.path("x.csv").read_text(), "old")
+
+    def test_step_and_run(self):
+        self.write(RECTIFIER)
+        for step, message in [("1", "longer than the run"), ("1e-30", "too small")]:
+            done = self.dalcs("run", "a.cir", "--step", step, expect=USAGE)
+            self.assertIn(message, done.stderr)
+            self.assertEqual(self.files(), ["a.cir"])
+
     def test_unknown_method(self):
         self.write(RECTIFIER)
         done = self.dalcs("run", "a.cir", "--method", "eluer", expect=USAGE)
@@ -164,9 +187,15 @@ class Results(Case):
         self.dalcs("run", self.write(RECTIFIER), "--at", "times.txt", "-o", "out.csv")
         self.assertEqual([row[0] for row in self.table("out.csv")[1]], [0.0, 1e-3, 2.5e-3, 0.0333])
 
+    def test_last_time_is_rounded(self):
+        self.write("1m\n0.04000000000001\n", "times.txt")
+        self.dalcs("run", self.write(RECTIFIER), "--at", "times.txt", "-o", "out.csv")
+        self.assertEqual([row[0] for row in self.table("out.csv")[1]], [1e-3, 0.04])
+
     def test_bad_times(self):
         self.write(RECTIFIER)
         for text, message in [("0\nx\n", "times.txt:2: 'x'"), ("1m\n1m\n", "times.txt:2:"),
+                              ("40m\n41m\n", "times.txt:2: '41m' comes after the end"),
                               ("-1\n", "times.txt:1:"), ("# none\n", "no times")]:
             self.write(text, "times.txt")
             done = self.dalcs("run", "a.cir", "--at", "times.txt", expect=USAGE)
@@ -299,6 +328,33 @@ class Failures(Case):
         done = self.dalcs("run", "a.csv", "-o", "./a.csv", expect=USAGE)
         self.assertIn("is the netlist itself", done.stderr)
         self.assertEqual(self.path("a.csv").read_text(), RECTIFIER)
+
+    def test_default_over_the_netlist(self):
+        self.write(RECTIFIER, "a.raw")
+        done = self.dalcs("run", "a.raw", expect=USAGE)
+        self.assertIn("is the netlist itself", done.stderr)
+        self.assertEqual(self.path("a.raw").read_text(), RECTIFIER)
+
+    def test_over_the_times(self):
+        self.write("1m\n", "times.csv")
+        done = self.dalcs("run", self.write(RECTIFIER), "--at", "times.csv", "-o", "./times.csv",
+                          expect=USAGE)
+        self.assertIn("'./times.csv' holds the times of --at", done.stderr)
+        self.assertEqual(self.path("times.csv").read_text(), "1m\n")
+
+    def test_closed_streams(self):
+        """No file takes the place of a closed standard stream and gets what is meant for it."""
+        nodes = range(200)  # so many that the summary does not fit into a buffer
+        self.write("\n".join(["ladder", "V1 n0 0 1", *(f"R{k} n{k} n{k + 1} 1" for k in nodes),
+                              "R999 n200 0 1", ".tran 1u 10u", ".end", ""]))
+        self.dalcs("run", "a.cir", "-q", "-o", "good.csv")
+        for closed in ">&-", "2>&-", "<&- >&- 2>&-":
+            command = f"exec {DALCS!r} run a.cir -o out.csv --all-signals {closed}"
+            done = subprocess.run(["sh", "-c", command], cwd=self.folder, check=False,
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            self.assertEqual(done.returncode, OK if closed == "2>&-" else INPUT_OUTPUT)
+            self.assertEqual(self.path("out.csv").read_bytes(),
+                             self.path("good.csv").read_bytes(), closed)
 
     def test_unwritable(self):
         self.write(RECTIFIER)
