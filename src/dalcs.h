@@ -30,6 +30,7 @@ extern "C" {
     ENTRY(DALCS_E_CANCELLED, -6, "cancelled")
 
 enum dalcs_status {
+
 #define DALCS_STATUS_ENUM(name, value, text) name = (value),
     DALCS_STATUS_LIST(DALCS_STATUS_ENUM)
 #undef DALCS_STATUS_ENUM
@@ -41,7 +42,7 @@ enum dalcs_status {
 #define DALCS_MUST_CHECK
 #endif
 
-/* A short English phrase for a status; never NULL, never freed. */
+/* A short English phrase for a status; never NULL, do not free it. */
 const char *dalcs_status_text(enum dalcs_status status);
 
 /* "0.1.0" */
@@ -62,7 +63,8 @@ enum dalcs_status dalcs_session_create(struct dalcs_session **session) DALCS_MUS
 void dalcs_session_destroy(struct dalcs_session *session);
 
 /* Reads a netlist from a file, or from text[0..length-1] that messages call `name`. A session reads
- * one netlist, once. Errors in the netlist: DALCS_E_NETLIST, all of them in the messages. */
+ * one netlist, once: a second call is DALCS_E_OPTION. Errors in the netlist: DALCS_E_NETLIST, all of
+ * them in the messages. */
 enum dalcs_status dalcs_session_read_file(struct dalcs_session *session,
                                           const char *path) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_session_read_text(struct dalcs_session *session, const char *name,
@@ -70,12 +72,14 @@ enum dalcs_status dalcs_session_read_text(struct dalcs_session *session, const c
 
 enum dalcs_level { DALCS_LEVEL_NOTE, DALCS_LEVEL_WARNING, DALCS_LEVEL_ERROR };
 
-/* The messages so far, oldest first. Text has no final newline and lives as long as the session. */
+/* The messages so far, oldest first: one may have several lines, the place, the line with a caret,
+ * a hint. Text has no final newline and lives as long as the session. NULL when index is too large;
+ * level may be NULL. */
 size_t dalcs_session_n_messages(const struct dalcs_session *session);
 const char *dalcs_session_message(const struct dalcs_session *session, size_t index,
                                   enum dalcs_level *level);
 
-/* What the netlist asks for; times in s, 0 where not given. */
+/* What the netlist asks for; times in s, 0 where not given. All zero before a netlist was read. */
 struct dalcs_request {
     bool operating_point;
     bool transient;
@@ -86,23 +90,26 @@ struct dalcs_request dalcs_session_request(const struct dalcs_session *session);
 /* ---- Running ------------------------------------------------------------------------------- */
 
 enum dalcs_analysis { DALCS_OPERATING_POINT, DALCS_TRANSIENT };
+
 enum dalcs_unit { DALCS_VOLT, DALCS_AMPERE };
 
 /* One table of results. Borrowed: valid until the session is destroyed. */
 struct dalcs_plot {
     enum dalcs_analysis analysis;
-    const char *title;        /* the netlist's title line */
-    size_t n_signals;         /* time not counted */
-    const char *const *name;  /* [n_signals] "v(out)", "i(d1)" */
+    const char *title;           /* the netlist's title line */
+    size_t n_signals;            /* time not counted */
+    const char *const *name;     /* [n_signals] "v(out)", "i(d1)" */
     const enum dalcs_unit *unit; /* [n_signals] */
 };
 
-/* Receives results while they are made. Any callback may return a status other than DALCS_OK, which
- * ends the run with that status. */
+/* Receives results while they are made: for .op and for .tran begin, rows, end, in this order. Any
+ * callback may return a status other than DALCS_OK, which ends the run with that status; end is then
+ * not called. */
 struct dalcs_sink {
     void *user;
     enum dalcs_status (*begin)(void *user, const struct dalcs_plot *plot);
-    /* Times ascend; two rows of equal time are the two sides of a discontinuity. */
+    /* Times ascend; two rows of equal time are the two sides of a discontinuity. Values are borrowed
+     * until the callback returns. An operating point has one row, at time 0. */
     enum dalcs_status (*row)(void *user, double time, const double *value /* [n_signals] */);
     enum dalcs_status (*end)(void *user);
     /* May be NULL. Called now and then, not more than every few thousand steps. Return DALCS_OK to
@@ -111,80 +118,93 @@ struct dalcs_sink {
 };
 
 struct dalcs_run_options {
-    const char *method; /* "euler", the papers' implicit Euler; NULL: the netlist's or the default */
-    double step;        /* s; 0: the netlist's .tran tmax, else tstep */
-    const double *at;   /* [n_at] ascending output times in s; NULL: the .tran grid */
+    const char
+        *method;      /* "euler", the papers' implicit Euler; NULL: the netlist's or the default */
+    double step;      /* s; 0: .options step, else the tmax of .tran, else its tstep */
+    const double *at; /* [n_at] ascending output times in s, interpolated linearly between steps;
+                           NULL: the .tran grid where it falls on steps, else every step */
     size_t n_at;
-    bool record;        /* keep events and jumps for the report */
+    bool record; /* keep events and jumps for the report */
 
     /* Tolerances of the certificate and of the OSNSP; see doc/methods.md. All dimensionless. */
     double certificate_tolerance; /* residual over its physical scale, 2e-13 */
     double proximal_weight[3];    /* the eps ladder 1e-8, 1e-7, 1e-6 */
-    double rcond_min;             /* a mode with a smaller estimate counts as singular, 1e-14 */
-    int max_outer;                /* proximal iterations per rung, 40 */
-    int max_pivots;               /* per solve, on top of twice the number of pairs, 200 */
-    size_t cache_bytes;           /* bound on factorisations kept over all components, 256 MiB */
-    int dense_limit;              /* components up to this many unknowns use dense step maps, 64 */
-    size_t max_events;            /* events and jumps kept when recording, 1e6 */
-    const char *dump_path;        /* where to write an OSNSP that failed; NULL: nowhere */
+    double rcond_min;      /* a mode whose 1/condition is estimated smaller is singular, 1e-14 */
+    int max_outer;         /* proximal iterations per rung, 40 */
+    int max_pivots;        /* per solve, on top of twice the number of pairs, 200 */
+    size_t cache_bytes;    /* bound on factorisations kept over all components, 256 MiB */
+    int dense_limit;       /* components up to this many unknowns use dense step maps, 64 */
+    size_t max_events;     /* events and jumps kept when recording, 1e6 */
+    const char *dump_path; /* where to write an OSNSP that failed; NULL: nowhere */
 };
 
 struct dalcs_run_options dalcs_run_options_default(void);
 
-/* Runs .op and/or .tran. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the messages name the time and the
- * elements; rows already handed to the sink stay true. */
+/* Runs .op, then .tran, whichever the netlist has. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the messages
+ * name the time and the elements; rows already handed to the sink stay true. A second run replaces the
+ * report of the first. */
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) DALCS_MUST_CHECK;
 
 /* ---- The report ---------------------------------------------------------------------------- */
 
+/* A diode or switch changed sides. */
 struct dalcs_event {
-    double time;         /* s */
+    double time;         /* s, the end of the step that found it */
     const char *element; /* "d1", "s1" */
-    bool on;
+    bool on;             /* now conducts, or is closed */
 };
 
+/* States of one component that changed at once. */
 struct dalcs_jump {
     double time; /* s */
     size_t n_states;
+
     const struct dalcs_jump_state {
-        const char *element;  /* "c1": V, "l1": A */
+        const char *element; /* "c1": V, "l1": A */
         double before, after;
-    } *state;
+    } * state;
+
     size_t n_impulses;
+
     const struct dalcs_impulse {
         const char *element; /* diode or switch */
         bool is_flux;        /* Wb across it; else C through it */
         double value;
-    } *impulse;
+    } * impulse;
+
     double energy_lost; /* J, 1/2 |dx|^2 in the storage metric */
 };
 
-/* What a run did. Strings and arrays are borrowed from the session. */
+/* What a run did. Strings and arrays are borrowed from the session and live until its next run. */
 struct dalcs_report {
     const char *netlist; /* path or name */
     const char *title;
     const char *method;
     double step; /* s, the step used in .tran; 0 when there was none */
     double stop; /* s */
+
     struct {
         int nodes, x, z, lambda, switches, components;
     } size;
+
     struct {
         long steps;          /* accepted time steps */
         long osnsp;          /* one-step problems solved, over all components */
         long pivots;         /* mode changes tried */
         long factorizations; /* of KLU and LAPACK */
         long cache_hits;
-        long singular;       /* problems in a singular mode, answered by the least-norm solution */
+        long singular; /* problems in a singular mode, answered by the least-norm solution */
         double cpu_s, wall_s;
     } work;
+
     struct {
-        double worst; /* largest scaled residual of any accepted step */
-        double time;  /* s */
+        double worst;      /* largest scaled residual of any accepted step */
+        double time;       /* s */
         const char *where; /* "KCL at out", "branch v1", "complementarity of d1" */
     } certificate;
+
     size_t n_states;
     const char *const *state_name; /* [n_states] element names of capacitors and inductors */
     const double *start;           /* [n_states] just after t = 0: V, A */
@@ -193,10 +213,12 @@ struct dalcs_report {
     const struct dalcs_event *event;
     size_t n_jumps, n_jumps_dropped;
     const struct dalcs_jump *jump;
+
     struct {
         bool present;
-        double time;      /* s */
-        const char *kind; /* "loop", "cutset" or "mode" */
+        double time; /* s */
+        const char
+            *kind; /* "loop", "cutset", or "mode": no mode of a circuit that is not passive */
         size_t n_elements;
         const char *const *element;
     } infeasible;
