@@ -452,6 +452,7 @@ static enum dalcs_status allocate(struct stamps *b) {
     struct dalcs_system *s = b->s;
     size_t n_equations = (size_t)dalcs_system_n_equations(s);
     s->dual = dalcs_alloc(n_equations, sizeof(*s->dual));
+    s->forest_root = dalcs_alloc(n_equations, sizeof(*s->forest_root));
     s->column_is_current = dalcs_alloc((size_t)dalcs_system_n_columns(s), sizeof(bool));
     s->row_is_current = dalcs_alloc(n_equations, sizeof(bool));
     s->row = dalcs_alloc(n_equations, sizeof(*s->row));
@@ -460,10 +461,13 @@ static enum dalcs_status allocate(struct stamps *b) {
     s->stimulus = dalcs_alloc((size_t)s->n_inputs, sizeof(*s->stimulus));
     s->input_element = dalcs_alloc((size_t)s->n_inputs, sizeof(*s->input_element));
     b->initial = dalcs_alloc((size_t)s->n_x, sizeof(*b->initial));
-    if (s->dual == NULL || s->column_is_current == NULL || s->row_is_current == NULL ||
-        s->row == NULL || s->column == NULL || s->pair == NULL || s->stimulus == NULL ||
-        s->input_element == NULL || b->initial == NULL) {
+    if (s->dual == NULL || s->forest_root == NULL || s->column_is_current == NULL ||
+        s->row_is_current == NULL || s->row == NULL || s->column == NULL || s->pair == NULL ||
+        s->stimulus == NULL || s->input_element == NULL || b->initial == NULL) {
         return DALCS_E_NOMEM;
+    }
+    for (size_t c = 0; c < n_equations; c++) {
+        s->forest_root[c] = (int)c;
     }
     s->stimulus[0] = -1;
     b->next_input = 1;
@@ -487,6 +491,10 @@ static void number_nodes(struct stamps *b, int n_nodes, const int *node) {
         const char *name = l->circuit->node_name[node[i]];
         s->column[column] = (struct dalcs_label){name, DALCS_LABEL_NODE};
         s->row[row] = (struct dalcs_label){name, DALCS_LABEL_NODE};
+    }
+    for (int i = 0; i < n_nodes; i++) {
+        int root = l->topology.forest_root[node[i]];
+        s->forest_root[s->n_x + i] = root == 0 ? s->n_x + i : l->node_column[root];
     }
     b->next_z = n_nodes;
     b->next_x = b->n_tree;

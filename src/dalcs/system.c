@@ -13,6 +13,7 @@ void dalcs_system_finish(struct dalcs_system *system) {
     dalcs_csr_finish(&system->control);
     dalcs_csr_finish(&system->direct_control);
     free(system->dual);
+    free(system->forest_root);
     free(system->column_is_current);
     free(system->row_is_current);
     free(system->row);

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { VERSION = 1, N_SECTIONS = 8, N_LABEL_KINDS = 4, N_PAIR_KINDS = 3 };
 
@@ -75,8 +76,8 @@ static void write_header(FILE *f, const struct dalcs_system *s, const char *abou
 static void write_labels(FILE *f, const struct dalcs_system *s) {
     int n_equations = dalcs_system_n_equations(s);
     for (int c = 0; c < n_equations; c++) {
-        fprintf(f, "column %s %c %s\n", label_kind[s->column[c].kind],
-                s->column_is_current[c] ? 'A' : 'V', s->column[c].element);
+        fprintf(f, "column %s %c %d %s\n", label_kind[s->column[c].kind],
+                s->column_is_current[c] ? 'A' : 'V', s->forest_root[c], s->column[c].element);
     }
     for (int r = 0; r < n_equations; r++) {
         fprintf(f, "row %s %c %d %s\n", label_kind[s->row[r].kind],
@@ -126,9 +127,22 @@ static void write_step(FILE *f, const struct dalcs_system *s,
     fputs("end\n", f);
 }
 
+/* rename() would replace a device. */
+static bool is_replaceable(const char *path) {
+    struct stat target;
+    if (stat(path, &target) != 0) {
+        return true; /* opening and renaming will tell */
+    }
+    errno = S_ISDIR(target.st_mode) ? EISDIR : EINVAL;
+    return S_ISREG(target.st_mode);
+}
+
 enum dalcs_status dalcs_system_file_write(const char *path, const struct dalcs_system *system,
                                           const struct dalcs_system_step *step) {
     static const char suffix[] = ".partial";
+    if (!is_replaceable(path)) {
+        return DALCS_E_IO;
+    }
     char *temporary = dalcs_alloc(strlen(path) + sizeof(suffix), 1);
     if (temporary == NULL) {
         return DALCS_E_NOMEM;
@@ -280,6 +294,7 @@ static enum dalcs_status read_columns(struct reader *r) {
         DALCS_TRY(read_keyword(r, "column"));
         DALCS_TRY(read_choice(r, label_kind, N_LABEL_KINDS, "the kind of a column", &kind));
         DALCS_TRY(read_unit(r, &s->column_is_current[c]));
+        DALCS_TRY(read_int(r, 0, dalcs_system_n_equations(s) - 1, &s->forest_root[c]));
         DALCS_TRY(read_name(r, &s->column[c].element));
         s->column[c].kind = (enum dalcs_label_kind)kind;
     }
@@ -447,6 +462,7 @@ static enum dalcs_status allocate(struct dalcs_system_file *file) {
     size_t n_inputs = (size_t)s->n_inputs;
     size_t n_pairs = (size_t)s->n_pairs;
     s->dual = dalcs_alloc(n_equations, sizeof(*s->dual));
+    s->forest_root = dalcs_alloc(n_equations, sizeof(*s->forest_root));
     s->column_is_current = dalcs_alloc(n_equations + n_pairs, sizeof(bool));
     s->row_is_current = dalcs_alloc(n_equations, sizeof(bool));
     s->row = dalcs_alloc(n_equations, sizeof(*s->row));
@@ -456,9 +472,9 @@ static enum dalcs_status allocate(struct dalcs_system_file *file) {
     s->input_element = dalcs_alloc(n_inputs, sizeof(*s->input_element));
     file->u = dalcs_alloc((size_t)s->n_x + n_inputs, sizeof(*file->u));
     file->mode = dalcs_alloc((n_pairs + 63) / 64, sizeof(*file->mode));
-    if (s->dual == NULL || s->column_is_current == NULL || s->row_is_current == NULL ||
-        s->row == NULL || s->column == NULL || s->pair == NULL || s->stimulus == NULL ||
-        s->input_element == NULL || file->u == NULL || file->mode == NULL) {
+    if (s->dual == NULL || s->forest_root == NULL || s->column_is_current == NULL ||
+        s->row_is_current == NULL || s->row == NULL || s->column == NULL || s->pair == NULL ||
+        s->stimulus == NULL || s->input_element == NULL || file->u == NULL || file->mode == NULL) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n_inputs; k++) {

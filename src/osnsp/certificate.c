@@ -3,8 +3,8 @@
  * Nothing of how the answer was found is used: the rows of the system itself are evaluated with
  * (x_k, s) and (x+, z+, lambda+), and each residual is measured against the row's norm times the
  * largest voltage and current of the answer (the backward error of that row, volts and amperes
- * apart). Voltages and currents vouch for each other through the typical conductance of a diode's
- * surroundings, so that a part without current is not asked for more digits than its voltages have. */
+ * apart). Voltages and currents vouch for each other (dalcs_reach), so that a part without current is
+ * not asked for more digits than its voltages have. */
 #include "osnsp_internal.h"
 
 #include <math.h>
@@ -33,17 +33,45 @@ static double largest_of(const double *y, int begin, int end) {
     return m[2] > m[0] ? m[2] : m[0];
 }
 
-static struct scales physical_scales(const struct dalcs_osnsp *p, const double *y) {
+/* The largest voltage and current that sources, thresholds and, if asked for, states put in. */
+static struct scales driving_scales(const struct dalcs_osnsp *p, const double *u, bool states) {
+    double largest[2] = {0.0, 0.0};
+    for (int k = 0; k < p->n_drives; k++) {
+        const struct dalcs_drive *d = &p->drive[k];
+        double a = d->coefficient * fabs(u[d->input]);
+        largest[d->is_current] = a > largest[d->is_current] ? a : largest[d->is_current];
+    }
+    for (int x = 0; states && x < p->system->n_x; x++) {
+        bool is_current = p->system->column_is_current[x];
+        largest[is_current] = fmax(largest[is_current], fabs(u[x]));
+    }
+    return (struct scales){largest[0], largest[1]};
+}
+
+/* Scales reach into the other unit no further than what drives the circuit could raise there: a false
+ * answer, with 1e11 A around a loop of sources that clash, must not vouch for its own residual. */
+static struct scales physical_scales(const struct dalcs_osnsp *p, const double *u,
+                                     const double *y) {
+    const struct dalcs_step_form *f = p->form[0];
     double largest[2] = {0.0, 0.0};
     for (int k = 0; k < p->n_runs; k++) {
         const struct dalcs_unit_run *run = &p->run[k];
         double a = largest_of(y, run->begin, run->end);
         largest[run->is_current] = a > largest[run->is_current] ? a : largest[run->is_current];
     }
-    double ampere = p->form[0]->volt_in_amperes * largest[0];
-    double volt = p->form[0]->ampere_in_volts * largest[1];
-    return (struct scales){largest[0] > volt ? largest[0] : volt,
-                           largest[1] > ampere ? largest[1] : ampere};
+    struct scales drive = driving_scales(p, u, false);
+    double volt = largest[0] > drive.volt ? largest[0] : drive.volt;
+    double ampere = largest[1] > drive.ampere ? largest[1] : drive.ampere;
+    double volt_reach = f->volt_in_amperes[f->reach];
+    double ampere_reach = f->ampere_in_volts[f->reach];
+    if (ampere_reach * ampere > volt || volt_reach * volt > ampere) {
+        drive = driving_scales(p, u, true);
+        double raised_current = drive.ampere + f->most_conductance * drive.volt;
+        double raised_voltage = drive.volt + drive.ampere / f->least_conductance;
+        volt = fmax(volt, ampere_reach * fmin(ampere, raised_current));
+        ampere = fmax(ampere, volt_reach * fmin(volt, raised_voltage));
+    }
+    return (struct scales){volt, ampere};
 }
 
 static void note(struct dalcs_certificate *c, double residual, double scale, int where) {
@@ -100,7 +128,8 @@ static void check_equations(struct dalcs_osnsp *p, const double *u, const double
         double residual = fabs(dalcs_csr_row_dot(&check, i, v));
         double size = row_size(f, scale, f->checked[i]);
         if (!(residual <= worst * size)) {
-            worst = size > 0.0 ? residual / size : INFINITY;
+            /* A NaN must stay the worst: it compares with nothing that follows. */
+            worst = size > 0.0 && residual < INFINITY ? residual / size : INFINITY;
             where = f->checked[i];
         }
     }
@@ -204,7 +233,7 @@ void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *
     p->n_violating = 0;
     *sources_clash = false;
     recover_states(p, u, y);
-    struct scales scale = physical_scales(p, y);
+    struct scales scale = physical_scales(p, u, y);
     check_equations(p, u, y, scale);
     check_pairs(p, u, y, scale);
     check_references(p, y, scale, sources_clash);

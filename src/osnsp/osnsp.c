@@ -53,6 +53,26 @@ static void list_runs(struct dalcs_osnsp *p) {
     }
 }
 
+/* What sources and thresholds ask for counts as a current or voltage even where the answer is 0. */
+static enum dalcs_status list_drives(struct dalcs_osnsp *p) {
+    const struct dalcs_system *s = p->system;
+    int n_equations = dalcs_system_n_equations(s);
+    p->drive = dalcs_alloc((size_t)(s->E.p[n_equations] + s->F.p[s->n_pairs]), sizeof(*p->drive));
+    if (p->drive == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int r = 0; r < n_equations; r++) {
+        for (int k = s->E.p[r]; k < s->E.p[r + 1]; k++) {
+            p->drive[p->n_drives++] =
+                (struct dalcs_drive){s->n_x + s->E.j[k], s->row_is_current[r], fabs(s->E.x[k])};
+        }
+    }
+    for (int k = 0; k < s->F.p[s->n_pairs]; k++) {
+        p->drive[p->n_drives++] = (struct dalcs_drive){s->n_x + s->F.j[k], false, fabs(s->F.x[k])};
+    }
+    return DALCS_OK;
+}
+
 static void list_w_ends(struct dalcs_osnsp *p) {
     const struct dalcs_system *s = p->system;
     for (int d = 0; d < s->n_pairs; d++) {
@@ -126,6 +146,9 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
         if (status == DALCS_OK) {
             status = list_references(p);
         }
+        if (status == DALCS_OK) {
+            status = list_drives(p);
+        }
     }
     if (status != DALCS_OK) {
         dalcs_osnsp_finish(p);
@@ -149,6 +172,7 @@ void dalcs_osnsp_finish(struct dalcs_osnsp *p) {
     free(p->reference_row);
     free(p->difference);
     free(p->run);
+    free(p->drive);
     free(p->w_ends);
     free(p->is_diode);
     free(p->violating);
@@ -330,12 +354,7 @@ static enum dalcs_status enumerate(struct dalcs_osnsp *p, const double *u, doubl
     return DALCS_NOT_CONVERGED;
 }
 
-enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
-                                    double *y) {
-    p->counters.solved++;
-    if (p->n_forms == 0 || p->form[0]->sigma != sigma) {
-        DALCS_TRY(dalcs_forms_get(p, sigma));
-    }
+static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, double *y) {
     int limit = p->options.max_pivots + 2 * p->system->n_pairs;
     enum dalcs_status status = dalcs_osnsp_pivot(p, u, y, limit);
     if (status > DALCS_OK && status != DALCS_INFEASIBLE) {
@@ -349,6 +368,20 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
             /* a witness of a monotone system stands: no regular mode contradicts it */
             status = otherwise == DALCS_NOT_CONVERGED ? status : otherwise;
         }
+    }
+    return status;
+}
+
+enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
+                                    double *y) {
+    p->counters.solved++;
+    if (p->n_forms == 0 || p->form[0]->sigma != sigma) {
+        DALCS_TRY(dalcs_forms_get(p, sigma));
+    }
+    enum dalcs_status status = solve_somehow(p, u, y);
+    if (status == DALCS_NOT_CONVERGED && p->form[0]->reach == DALCS_STRICT) {
+        p->form[0]->reach = DALCS_TYPICAL;
+        status = solve_somehow(p, u, y);
     }
     p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;
     return status;

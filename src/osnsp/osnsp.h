@@ -85,6 +85,14 @@ struct dalcs_osnsp {
         bool is_current;
     } * run;
 
+    int n_drives;
+
+    struct dalcs_drive { /* a source or a diode's threshold, part of the physical scale */
+        int input;       /* in u */
+        bool is_current;
+        double coefficient;
+    } * drive;
+
     bool *is_diode; /* [n_pairs] */
     int *w_ends;    /* [n_pairs][2] columns whose difference is w; -1 where w is more than that */
     int *violating; /* [n_pairs] */

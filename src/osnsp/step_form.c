@@ -12,7 +12,7 @@
 static const double pivot_floor = 1e-8;
 static const int fill_limit = 4096;
 
-/* How far a scale of one unit reaches into the other, through the conductance around a pair. */
+/* How far a scale of one unit reaches into the other, as a part of a conductance or resistance. */
 static const double cross_floor = 1e-3;
 
 struct row {
@@ -220,8 +220,6 @@ static enum dalcs_status balance(struct dalcs_step_form *f) {
         sum += log2(f->scale[f->n + d]) + log2(f->row_scale[f->n + d]);
     }
     f->pair_conductance = f->n_pairs > 0 ? exp2(rint(sum / f->n_pairs)) : 1.0;
-    f->volt_in_amperes = cross_floor * f->pair_conductance;
-    f->ampere_in_volts = cross_floor / f->pair_conductance;
     for (int c = 0; c < n; c++) {
         for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
             f->K.x[k] *= f->scale[c] * f->row_scale[f->K.j[k]];
@@ -238,7 +236,26 @@ static enum dalcs_status balance(struct dalcs_step_form *f) {
     return DALCS_OK;
 }
 
-/* The norm of every row of the system over voltages and over currents. */
+struct conductances {
+    double least, most, log_sum;
+    int n;
+};
+
+/* A coefficient of a voltage in a row of currents is a conductance, the other way round a
+ * resistance. */
+static void see_conductance(struct conductances *g, bool row_is_current, bool column_is_current,
+                            double a) {
+    if (row_is_current != column_is_current && a > 0.0) {
+        double conductance = row_is_current ? a : 1.0 / a;
+        g->least = g->n == 0 ? conductance : fmin(g->least, conductance);
+        g->most = fmax(g->most, conductance);
+        g->log_sum += log(conductance);
+        g->n++;
+    }
+}
+
+/* The norm of every row of the system over voltages and over currents, and how far a voltage counts
+ * as a current. */
 static enum dalcs_status measure_rows(struct dalcs_step_form *f, const struct dalcs_system *s) {
     int n_equations = dalcs_system_n_equations(s);
     f->row_volts = dalcs_alloc((size_t)n_equations, sizeof(*f->row_volts));
@@ -246,15 +263,30 @@ static enum dalcs_status measure_rows(struct dalcs_step_form *f, const struct da
     if (f->row_volts == NULL || f->row_amperes == NULL) {
         return DALCS_E_NOMEM;
     }
+    struct conductances g = {0};
     for (int r = 0; r < n_equations; r++) {
         double *norm[2] = {&f->row_volts[r], &f->row_amperes[r]};
         for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
-            *norm[s->column_is_current[s->A.j[k]]] += fabs(s->A.x[k]);
+            bool is_current = s->column_is_current[s->A.j[k]];
+            *norm[is_current] += fabs(s->A.x[k]);
+            see_conductance(&g, s->row_is_current[r], is_current, fabs(s->A.x[k]));
         }
         for (int k = r < s->n_x ? s->P.p[r] : 0; r < s->n_x && k < s->P.p[r + 1]; k++) {
-            *norm[s->column_is_current[s->P.j[k]]] += f->sigma * fabs(s->P.x[k]);
+            bool is_current = s->column_is_current[s->P.j[k]];
+            *norm[is_current] += f->sigma * fabs(s->P.x[k]);
+            see_conductance(&g, s->row_is_current[r], is_current, f->sigma * fabs(s->P.x[k]));
         }
     }
+    for (int k = 0; k < s->C.p[s->n_pairs]; k++) {
+        see_conductance(&g, false, s->column_is_current[s->C.j[k]], fabs(s->C.x[k]));
+    }
+    double typical = g.n > 0 ? exp(g.log_sum / g.n) : 1.0;
+    f->least_conductance = g.n > 0 ? g.least : 1.0;
+    f->most_conductance = g.n > 0 ? g.most : 1.0;
+    f->volt_in_amperes[DALCS_STRICT] = cross_floor * f->least_conductance;
+    f->ampere_in_volts[DALCS_STRICT] = cross_floor / f->most_conductance;
+    f->volt_in_amperes[DALCS_TYPICAL] = cross_floor * typical;
+    f->ampere_in_volts[DALCS_TYPICAL] = cross_floor / typical;
     return DALCS_OK;
 }
 

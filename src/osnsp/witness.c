@@ -32,7 +32,8 @@ static void add_element(struct dalcs_osnsp *p, const char *name) {
     w->element[w->n_elements++] = name;
 }
 
-/* Sources whose terms do not vanish along d[n + n_pairs] (balanced). */
+/* Sources that do work along d[n + n_pairs] (balanced). Where a row sums the KCL of a tree of
+ * capacitors, the other rows of the tree are paired with voltages relative to its root. */
 static void add_sources(struct dalcs_osnsp *p, const double *d, double largest) {
     const struct dalcs_system *s = p->system;
     const struct dalcs_step_form *f = p->form[0];
@@ -40,10 +41,16 @@ static void add_sources(struct dalcs_osnsp *p, const double *d, double largest) 
         double work = 0.0;
         double size = 0.0;
         for (int i = 0; i < f->n + f->n_pairs; i++) {
+            double along = d[i];
+            if (i < f->n && s->forest_root[f->column_of[i]] != f->column_of[i]) {
+                int root = s->forest_root[f->column_of[i]] - s->n_x;
+                along -= d[root] * f->scale[root] / f->scale[i];
+            }
             for (int k = f->R.p[i]; k < f->R.p[i + 1]; k++) {
                 if (f->R.j[k] == s->n_x + input) {
-                    work += f->R.x[k] * d[i];
-                    size += fabs(f->R.x[k]);
+                    double push = f->R.x[k] * f->scale[i] / f->row_scale[i];
+                    work += push * along;
+                    size += fabs(push);
                 }
             }
         }
