@@ -63,8 +63,8 @@ enum dalcs_status dalcs_session_create(struct dalcs_session **session) DALCS_MUS
 void dalcs_session_destroy(struct dalcs_session *session);
 
 /* Reads a netlist from a file, or from text[0..length-1] that messages call `name`. A session reads
- * one netlist, once: a second call is DALCS_E_OPTION. Errors in the netlist: DALCS_E_NETLIST, all of
- * them in the messages. */
+ * one netlist, once: a second call is DALCS_E_OPTION. Errors in the netlist: DALCS_E_NETLIST, all
+ * of them in the messages. */
 enum dalcs_status dalcs_session_read_file(struct dalcs_session *session,
                                           const char *path) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_session_read_text(struct dalcs_session *session, const char *name,
@@ -103,13 +103,13 @@ struct dalcs_plot {
 };
 
 /* Receives results while they are made: for .op and for .tran begin, rows, end, in this order. Any
- * callback may return a status other than DALCS_OK, which ends the run with that status; end is then
- * not called. */
+ * callback may return a status other than DALCS_OK, which ends the run with that status; end is
+ * then not called. */
 struct dalcs_sink {
     void *user;
     enum dalcs_status (*begin)(void *user, const struct dalcs_plot *plot);
-    /* Times ascend; two rows of equal time are the two sides of a discontinuity. Values are borrowed
-     * until the callback returns. An operating point has one row, at time 0. */
+    /* Times ascend; two rows of equal time are the two sides of a discontinuity. Values are
+     * borrowed until the callback returns. An operating point has one row, at time 0. */
     enum dalcs_status (*row)(void *user, double time, const double *value /* [n_signals] */);
     enum dalcs_status (*end)(void *user);
     /* May be NULL. Called now and then, not more than every few thousand steps. Return DALCS_OK to
@@ -140,9 +140,9 @@ struct dalcs_run_options {
 
 struct dalcs_run_options dalcs_run_options_default(void);
 
-/* Runs .op, then .tran, whichever the netlist has. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the messages
- * name the time and the elements; rows already handed to the sink stay true. A second run replaces the
- * report of the first. */
+/* Runs .op, then .tran, whichever the netlist has. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the
+ * messages name the time and the elements; rows already handed to the sink stay true. A second run
+ * replaces the report of the first. */
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) DALCS_MUST_CHECK;
