@@ -4,6 +4,7 @@
 #include "system_file.h"
 
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 
 /* "KCL at out", "branch v1", "complementarity of d1" */
@@ -45,6 +46,43 @@ static const struct dalcs_location *place_of(const struct dalcs_circuit *c, cons
     return NULL;
 }
 
+static bool is_named(const char *name, size_t n, const char *const *element) {
+    bool found = false;
+    for (size_t k = 0; k < n && !found; k++) {
+        found = strcmp(element[k], name) == 0;
+    }
+    return found;
+}
+
+/* The names of a witness in the session's arena, NULL without memory. A coil of an ideal transformer
+ * carries what its partners carry: they belong to the loop as well. */
+static const char **whole_witness(struct dalcs_session *s, const struct dalcs_witness *w,
+                                  size_t *n_elements) {
+    const struct dalcs_circuit *c = &s->circuit;
+    size_t n = (size_t)w->n_elements;
+    const char **element =
+        dalcs_arena_alloc(&s->arena, n + 2 * (size_t)c->n_couplings, sizeof(*element));
+    if (element == NULL) {
+        return NULL;
+    }
+    memcpy(element, w->element, n * sizeof(*element));
+    for (size_t before = 0; before < n;) {
+        before = n;
+        for (int k = 0; k < c->n_couplings && w->kind == DALCS_WITNESS_LOOP; k++) {
+            const struct dalcs_coupling *coupling = &c->coupling[k];
+            const char *coil[] = {c->device[coupling->inductor[0]].name,
+                                  c->device[coupling->inductor[1]].name};
+            for (int i = 0; i < 2 && fabs(coupling->k) == 1.0; i++) {
+                if (is_named(coil[i], n, element) && !is_named(coil[1 - i], n, element)) {
+                    element[n++] = coil[1 - i];
+                }
+            }
+        }
+    }
+    *n_elements = n;
+    return element;
+}
+
 static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e, const char *when,
                                const char *hint) {
     struct dalcs_session *s = r->s;
@@ -59,17 +97,16 @@ static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e,
         [DALCS_WITNESS_MODE] = "no combination of conducting and blocking satisfies the circuit, "
                                "which its controlled sources or negative resistors keep from being "
                                "passive"};
-    const struct dalcs_location *where =
-        w->n_elements > 0 ? place_of(&s->circuit, w->element[0]) : NULL;
+    size_t n_elements = 0;
+    const char **element = whole_witness(s, w, &n_elements);
+    const struct dalcs_location *where = n_elements > 0 ? place_of(&s->circuit, element[0]) : NULL;
     dalcs_diag_add(&s->diag, DALCS_ERROR, where, hint, "%s no solution exists: %s %s: %s", when,
-                   kind[w->kind], join_names(s, w->n_elements, w->element), why[w->kind]);
-    const char **element = dalcs_arena_alloc(&s->arena, (size_t)w->n_elements, sizeof(*element));
+                   kind[w->kind], join_names(s, (int)n_elements, element), why[w->kind]);
     if (element != NULL) {
-        memcpy(element, w->element, (size_t)w->n_elements * sizeof(*element));
         s->report.infeasible.present = true;
         s->report.infeasible.time = e->failed_time;
         s->report.infeasible.kind = kind[w->kind];
-        s->report.infeasible.n_elements = (size_t)w->n_elements;
+        s->report.infeasible.n_elements = n_elements;
         s->report.infeasible.element = element;
     }
 }

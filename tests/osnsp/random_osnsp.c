@@ -192,6 +192,16 @@ static bool is_infeasible(const struct sketch *sketch, double sigma) {
     return infeasible;
 }
 
+/* Coils coupled with k = 1 carry each other's current. */
+static void keep_ideal_partners(const struct sketch *sketch, bool *keep) {
+    for (int k = 0; k < sketch->n; k++) {
+        const struct sketch_element *e = &sketch->element[k];
+        if (e->kind == 'k' && e->value == 1.0 && (keep[e->node[0]] || keep[e->node[1]])) {
+            keep[e->node[0]] = keep[e->node[1]] = true;
+        }
+    }
+}
+
 /* A loop is one when its elements alone, without all others, have no solution; a cutset when all
  * others are wires. At an operating point capacitors are cuts and coils wires whatever the witness
  * says; a wire of 0 ohm is always one. */
@@ -229,6 +239,7 @@ static void check_witness(const struct problem *p, const struct engine_answer *a
         keep[k] = keep[k] || (is_loop && e->kind == 'r' && e->value == 0.0) ||
                   (!is_loop && e->kind == 'c' && p->sigma == 0.0);
     }
+    keep_ideal_partners(p->sketch, keep);
     struct sketch core =
         is_loop ? sketch_without(p->sketch, keep) : sketch_wired(p->sketch, keep);
     core = sketch_unit_values(&core);
