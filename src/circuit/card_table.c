@@ -46,7 +46,8 @@ static const struct dot_card DOT_CARDS[] = {
     {".func", DALCS_CARD_NONE, "functions", "write the numbers in place", NOTHING, NULL},
     {".subckt", DALCS_CARD_NONE, "subcircuits", "write its elements in place", MODELS, ".ends"},
     {".ends", DALCS_CARD_NONE, "subcircuits", NULL, NOTHING, NULL},
-    {".global", DALCS_CARD_NONE, "global nodes", NULL, NOTHING, NULL},
+    {".global", DALCS_CARD_NONE, "global nodes", "without subcircuits every node is global",
+     NOTHING, NULL},
     {".include", DALCS_CARD_NONE, "included files", "paste the file's lines here", ALL, NULL},
     {".incl", DALCS_CARD_NONE, "included files", "paste the file's lines here", ALL, NULL},
     {".inc", DALCS_CARD_NONE, "included files", "paste the file's lines here", ALL, NULL},
@@ -59,19 +60,24 @@ static const struct dot_card DOT_CARDS[] = {
     {".control", DALCS_CARD_NONE, "control blocks",
      "write the analysis as a card, such as: .tran 10u 20m", ANALYSES, NULL},
     {".endc", DALCS_CARD_NONE, "control blocks", NULL, NOTHING, NULL},
-    {".meas", DALCS_CARD_NONE, "measurements", NULL, NOTHING, NULL},
-    {".measure", DALCS_CARD_NONE, "measurements", NULL, NOTHING, NULL},
-    {".four", DALCS_CARD_NONE, "Fourier analyses", NULL, NOTHING, NULL},
-    {".fourier", DALCS_CARD_NONE, "Fourier analyses", NULL, NOTHING, NULL},
-    {".step", DALCS_CARD_NONE, "parameter sweeps", NULL, NOTHING, NULL},
-    {".data", DALCS_CARD_NONE, "parameter sweeps", NULL, NOTHING, ".enddata"},
+    {".meas", DALCS_CARD_NONE, "measurements",
+     "dalcs run prints the extremes, average and rms of every signal", NOTHING, NULL},
+    {".measure", DALCS_CARD_NONE, "measurements",
+     "dalcs run prints the extremes, average and rms of every signal", NOTHING, NULL},
+    {".four", DALCS_CARD_NONE, "Fourier analyses", "write the waveforms to a file and analyse that",
+     NOTHING, NULL},
+    {".fourier", DALCS_CARD_NONE, "Fourier analyses",
+     "write the waveforms to a file and analyse that", NOTHING, NULL},
+    {".step", DALCS_CARD_NONE, "parameter sweeps", "write a netlist for each value", NOTHING, NULL},
+    {".data", DALCS_CARD_NONE, "parameter sweeps", "write a netlist for each value", NOTHING,
+     ".enddata"},
     {".enddata", DALCS_CARD_NONE, "parameter sweeps", NULL, NOTHING, NULL},
     {".dc", DALCS_CARD_NONE, "DC sweeps", "write .op for one operating point", ANALYSES, NULL},
-    {".ac", DALCS_CARD_NONE, "AC analyses", NULL, ANALYSES, NULL},
+    {".ac", DALCS_CARD_NONE, "AC analyses", "write .tran with a sinusoidal source", ANALYSES, NULL},
     {".nodeset", DALCS_CARD_NONE, "node sets",
      "the operating point needs no guess; .ic sets a start", NOTHING, NULL},
     {".wave", DALCS_CARD_NONE, "sound files", NULL, NOTHING, NULL},
-    {".alter", DALCS_CARD_NONE, "altered runs", NULL, NOTHING, NULL},
+    {".alter", DALCS_CARD_NONE, "altered runs", "write a netlist for each run", NOTHING, NULL},
 };
 
 /* Without a meaning for ideal elements; accepted. */
@@ -118,6 +124,10 @@ static const char *hint_of_element(char letter) {
     case 'q':
     case 'z':
         return "write an ideal switch S, with a diode D across it for a body diode";
+    case 'b':
+        return "a linear one is E, F, G or H";
+    case 't':
+        return "write sections of L and C";
     case 'w':
         return "write H to turn the current into a voltage, and a switch S";
     case 'x':
@@ -127,6 +137,8 @@ static const char *hint_of_element(char letter) {
     }
 }
 
+static const char CARDS[] = "the cards are: .model .ic .tran .op .options .save .print .end";
+
 static void report_unknown(struct dalcs_builder *builder, const struct dalcs_token *name) {
     const char *names[sizeof DOT_CARDS / sizeof DOT_CARDS[0]];
     const size_t n = sizeof DOT_CARDS / sizeof DOT_CARDS[0];
@@ -134,7 +146,7 @@ static void report_unknown(struct dalcs_builder *builder, const struct dalcs_tok
         names[k] = DOT_CARDS[k].name;
     }
     dalcs_builder_error(builder, name,
-                        dalcs_builder_suggest_of(builder, names, n, name->text, NULL),
+                        dalcs_builder_suggest_of(builder, names, n, name->text, CARDS),
                         "unknown card '%s'", name->text);
 }
 

@@ -1,7 +1,7 @@
 /* diode.c - D elements and their models.
  *
- * A model is piecewise linear: Ron, Vfwd in series with the ideal diode, Roff in parallel, Vrev and
- * Rrev for breakdown. What is left out is ideal: Ron = 0, Roff infinite, Vfwd = 0, no breakdown. The
+ * A model is piecewise linear, with the lines of LTspice's idealised diode: slope 1/Roff up to Vfwd,
+ * then 1/Ron, and 1/Rrev below -Vrev. What is left out is ideal: Ron = 0, Roff infinite, Vfwd = 0, no breakdown. The
  * parameters of the exponential diode are refused rather than guessed at. */
 #include "builder.h"
 
@@ -137,8 +137,12 @@ static bool check_model(struct dalcs_builder *builder, const struct dalcs_parame
         dalcs_builder_error(builder, p[RREV].place, NULL, "Rrev cannot be negative");
         return false;
     }
-    if (p[ROFF].value <= p[RON].value) {
-        dalcs_builder_warn(builder, p[ROFF].place, NULL, "Roff is not above Ron");
+    double largest = fmax(p[RON].value, p[VREV].place ? p[RREV].value : 0.0);
+    if (p[ROFF].value <= largest) {
+        dalcs_builder_error(builder, p[ROFF].place, "leave Roff out for a diode without leakage",
+                            "Roff must be above Ron and Rrev: what conducts more when off is no "
+                            "diode");
+        return false;
     }
     return true;
 }

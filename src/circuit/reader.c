@@ -129,6 +129,8 @@ static const char *rkm_hint(struct dalcs_builder *builder, const char *text) {
     return NULL;
 }
 
+static const char NUMBER_USAGE[] = "a number is one like 0.5, 10u, 1Meg or 2e-3";
+
 static void report_number(struct dalcs_builder *builder, const struct dalcs_token *token,
                           enum dalcs_number_status status) {
     switch (status) {
@@ -142,12 +144,14 @@ static void report_number(struct dalcs_builder *builder, const struct dalcs_toke
         dalcs_builder_error(builder, token, "write 0 if it is meant to be 0",
                             "'%s' is too small to be told from 0", token->text);
         return;
-    case DALCS_NUMBER_RKM:
-        dalcs_builder_error(builder, token, rkm_hint(builder, token->text), "'%s' is not a number",
-                            token->text);
+    case DALCS_NUMBER_RKM: {
+        const char *hint = rkm_hint(builder, token->text);
+        dalcs_builder_error(builder, token, hint != NULL ? hint : NUMBER_USAGE,
+                            "'%s' is not a number", token->text);
         return;
+    }
     case DALCS_NUMBER_MALFORMED:
-        dalcs_builder_error(builder, token, NULL, "'%s' is not a number", token->text);
+        dalcs_builder_error(builder, token, NUMBER_USAGE, "'%s' is not a number", token->text);
         return;
     }
 }

@@ -63,7 +63,12 @@ static bool check_model(struct dalcs_builder *builder, const struct dalcs_parame
         return false;
     }
     if (p[ROFF].value <= p[RON].value) {
-        dalcs_builder_warn(builder, p[ROFF].place, NULL, "Roff is not above Ron");
+        dalcs_builder_error(
+            builder, p[ROFF].place,
+            "for a switch that is closed when off exchange Ron and Roff and the two "
+            "control nodes, and change the sign of Vt",
+            "Roff must be above Ron");
+        return false;
     }
     return true;
 }

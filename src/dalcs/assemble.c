@@ -214,16 +214,24 @@ static enum dalcs_status stamp_pair(struct stamps *b, int anode, int cathode, do
     return threshold == 0.0 ? DALCS_OK : dalcs_triplets_add(&b->F, k, 0, threshold);
 }
 
+/* What makes up r together with roff in parallel. A model's r is below its roff. */
+static double series_part(double r, double roff) {
+    return isfinite(roff) ? r / (1.0 - r / roff) : r;
+}
+
+/* Roff lies across all the rest, so that the lines are those of LTspice's idealised diode: they
+ * meet at v = Vfwd and i = Vfwd/Roff and have the slopes 1/Roff and 1/Ron. */
 static enum dalcs_status stamp_diode(struct stamps *b, int device) {
     const struct dalcs_circuit *c = b->layout->circuit;
     const struct dalcs_device *d = &c->device[device];
     const struct dalcs_diode_model *m = &c->diode_model[d->model];
     b->layout->pair[device] = b->next_pair;
     struct dalcs_pair pair = {.kind = DALCS_PAIR_DIODE, .element = d->name};
-    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], m->vfwd, m->ron, pair));
+    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], m->vfwd, series_part(m->ron, m->roff), pair));
     if (isfinite(m->vrev)) {
         pair.is_breakdown = true;
-        DALCS_TRY(stamp_pair(b, d->node[1], d->node[0], m->vrev, m->rrev, pair));
+        DALCS_TRY(
+            stamp_pair(b, d->node[1], d->node[0], m->vrev, series_part(m->rrev, m->roff), pair));
     }
     return isfinite(m->roff) ? dalcs_stamp_conductance(b, d, 1.0 / m->roff) : DALCS_OK;
 }
@@ -238,11 +246,6 @@ static enum dalcs_status stamp_switch(struct stamps *b, int device) {
     const struct dalcs_circuit *c = b->layout->circuit;
     const struct dalcs_device *d = &c->device[device];
     const struct dalcs_switch_model *m = &c->switch_model[d->model];
-    double g_off = isfinite(m->roff) ? 1.0 / m->roff : 0.0;
-    double r_branch = m->ron == 0.0 ? 0.0 : 1.0 / (1.0 / m->ron - g_off);
-    if (r_branch < 0.0) {
-        b->s->monotone = false;
-    }
     struct dalcs_pair pair = {.kind = DALCS_PAIR_SWITCH,
                               .element = d->name,
                               .initially_on = d->initially_on,
@@ -251,8 +254,8 @@ static enum dalcs_status stamp_switch(struct stamps *b, int device) {
     b->layout->pair[device] = b->next_pair;
     DALCS_TRY(dalcs_stamp_add_voltage(b, &b->control, b->next_pair, d->node[2], d->node[3], 1.0));
     pair.is_direct = is_direct(b->layout, d->node[2]) && is_direct(b->layout, d->node[3]);
-    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], 0.0, r_branch, pair));
-    return g_off != 0.0 ? dalcs_stamp_conductance(b, d, g_off) : DALCS_OK;
+    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], 0.0, series_part(m->ron, m->roff), pair));
+    return isfinite(m->roff) ? dalcs_stamp_conductance(b, d, 1.0 / m->roff) : DALCS_OK;
 }
 
 static enum dalcs_status stamp_device(struct stamps *b, int device, int *next_forest) {

@@ -220,6 +220,23 @@ class Results(Case):
                                                       "i(v1)": -0.005, "i(d1)": 0.005})
         self.assertRegex(done.stdout, r"v\(out\) +5\.000  V\n")
 
+    def test_lines_of_a_model(self):
+        """The five parameters of a diode: LTspice's lines. Ron and Roff of a switch are its two
+        resistances."""
+        model = "D(Ron=5 Roff=20 Vfwd=0.2 Vrev=0.5 Rrev=10)"
+        for volts, amperes in [(1, 0.8 / 5 + 0.2 / 20), (0.1, 0.1 / 20), (-0.4, -0.4 / 20),
+                               (-1, -0.5 / 10 - 0.5 / 20)]:
+            self.write(f"line\nV1 a 0 {volts}\nD1 a 0 m\n.model m {model}\n.op\n.end\n")
+            self.dalcs("run", "a.cir", "-q", "-o", "out.csv")
+            header, rows = self.table("out.csv")
+            self.assertAlmostEqual(rows[0][header.index("i(d1)")], amperes, places=15)
+        for control, amperes in [(1, 0.2), (0, 0.05)]:
+            self.write(f"two resistances\nV1 a 0 1\nVc c 0 {control}\nS1 a 0 c 0 m\n"
+                       ".model m SW(Ron=5 Roff=20 Vt=0.5)\n.op\n.end\n")
+            self.dalcs("run", "a.cir", "-q", "-o", "out.csv")
+            header, rows = self.table("out.csv")
+            self.assertAlmostEqual(rows[0][header.index("i(s1)")], amperes, places=15)
+
     def test_report(self):
         self.dalcs("run", self.write(CHARGES), "--report", "r.json", "-q")
         report = json.loads(self.path("r.json").read_text())
