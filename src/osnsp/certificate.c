@@ -33,17 +33,19 @@ static double largest_of(const double *y, int begin, int end) {
     return m[2] > m[0] ? m[2] : m[0];
 }
 
-/* The largest voltage and current that sources, thresholds and, if asked for, states put in. */
-static struct scales driving_scales(const struct dalcs_osnsp *p, const double *u, bool states) {
+/* The largest voltage and current that sources, thresholds and states put in. */
+static struct scales driving_scales(const struct dalcs_osnsp *p, const double *u) {
     double largest[2] = {0.0, 0.0};
+    int n_x = p->form[0]->sigma > 0.0 ? p->system->n_x : 0;
+    for (int k = 0; k < p->n_runs && p->run[k].begin < n_x; k++) {
+        const struct dalcs_unit_run *run = &p->run[k];
+        double a = largest_of(u, run->begin, run->end < n_x ? run->end : n_x);
+        largest[run->is_current] = a > largest[run->is_current] ? a : largest[run->is_current];
+    }
     for (int k = 0; k < p->n_drives; k++) {
         const struct dalcs_drive *d = &p->drive[k];
         double a = d->coefficient * fabs(u[d->input]);
         largest[d->is_current] = a > largest[d->is_current] ? a : largest[d->is_current];
-    }
-    for (int x = 0; states && x < p->system->n_x; x++) {
-        bool is_current = p->system->column_is_current[x];
-        largest[is_current] = fmax(largest[is_current], fabs(u[x]));
     }
     return (struct scales){largest[0], largest[1]};
 }
@@ -53,25 +55,21 @@ static struct scales driving_scales(const struct dalcs_osnsp *p, const double *u
 static struct scales physical_scales(const struct dalcs_osnsp *p, const double *u,
                                      const double *y) {
     const struct dalcs_step_form *f = p->form[0];
-    double largest[2] = {0.0, 0.0};
+    struct scales drive = driving_scales(p, u);
+    double largest[2] = {drive.volt, drive.ampere};
     for (int k = 0; k < p->n_runs; k++) {
         const struct dalcs_unit_run *run = &p->run[k];
         double a = largest_of(y, run->begin, run->end);
         largest[run->is_current] = a > largest[run->is_current] ? a : largest[run->is_current];
     }
-    struct scales drive = driving_scales(p, u, false);
-    double volt = largest[0] > drive.volt ? largest[0] : drive.volt;
-    double ampere = largest[1] > drive.ampere ? largest[1] : drive.ampere;
-    double volt_reach = f->volt_in_amperes[f->reach];
-    double ampere_reach = f->ampere_in_volts[f->reach];
-    if (ampere_reach * ampere > volt || volt_reach * volt > ampere) {
-        drive = driving_scales(p, u, true);
-        double raised_current = drive.ampere + f->most_conductance * drive.volt;
-        double raised_voltage = drive.volt + drive.ampere / f->least_conductance;
-        volt = fmax(volt, ampere_reach * fmin(ampere, raised_current));
-        ampere = fmax(ampere, volt_reach * fmin(volt, raised_voltage));
-    }
-    return (struct scales){volt, ampere};
+    double raised_volt = drive.volt + drive.ampere / f->least_conductance;
+    double raised_ampere = drive.ampere + drive.volt * f->most_conductance;
+    raised_volt = raised_volt < largest[0] ? raised_volt : largest[0];
+    raised_ampere = raised_ampere < largest[1] ? raised_ampere : largest[1];
+    double volt = f->ampere_in_volts[f->reach] * raised_ampere;
+    double ampere = f->volt_in_amperes[f->reach] * raised_volt;
+    return (struct scales){largest[0] > volt ? largest[0] : volt,
+                           largest[1] > ampere ? largest[1] : ampere};
 }
 
 static void note(struct dalcs_certificate *c, double residual, double scale, int where) {
@@ -188,6 +186,7 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
     const double *lambda = y + dalcs_system_n_equations(s);
     double tolerance = p->options.certificate_tolerance;
     int n_equations = dalcs_system_n_equations(s);
+    int n_tied = 0;
     for (int d = 0; d < s->n_pairs; d++) {
         double w = pair_voltage(p, u, y, d);
         bool is_diode = p->is_diode[d];
@@ -199,16 +198,21 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
                               : fmax(scale.volt, pair_size(p, u, y, d));
             note(&p->certificate, residual, size, n_equations + d);
             p->w[d] = 0.0;
+            n_tied += is_diode && lambda[d] <= tolerance * scale.ampere ? 1 : 0;
             if (is_diode && lambda[d] < 0.0) {
                 judge_sign(p, d, -lambda[d], current_scale(p, d, scale));
             }
         } else {
             p->w[d] = w;
+            n_tied += is_diode && w <= tolerance * scale.volt ? 1 : 0;
             if (is_diode && w < 0.0) {
                 judge_sign(p, d, -w, fmax(scale.volt, pair_size(p, u, y, d)));
             }
         }
     }
+    p->n_tied = n_tied;
+    p->tie_volt = tolerance * scale.volt;
+    p->tie_ampere = tolerance * scale.ampere;
 }
 
 /* The reference of a floating island would have to carry what its current sources do not balance. It

@@ -210,9 +210,7 @@ static enum dalcs_status entry_create(struct dalcs_osnsp *p, int kind,
             }
         }
         p->counters.factorizations++;
-        status = kind == DALCS_PLAIN
-                     ? factor_plain(p, e)
-                     : dalcs_proximal_factor(p, e, p->options.proximal_weight[kind - 1]);
+        status = kind == DALCS_PLAIN ? factor_plain(p, e) : dalcs_proximal_factor(p, e, kind - 1);
         if (status == DALCS_SINGULAR) {
             e->singular = true;
             status = DALCS_OK;

@@ -125,6 +125,9 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
     p->is_diode = dalcs_alloc(n_pairs, sizeof(bool));
     p->w_ends = dalcs_alloc(2 * n_pairs, sizeof(int));
     p->violating = dalcs_alloc(n_pairs, sizeof(int));
+    p->tied = dalcs_alloc(n_pairs, sizeof(bool));
+    p->tied_mode = dalcs_alloc(words, sizeof(*p->tied_mode));
+    p->tied_answer = dalcs_alloc(n_columns, sizeof(double));
     p->mapped = dalcs_alloc(n_columns + 8, sizeof(double));
     p->right = dalcs_alloc(n_columns, sizeof(double));
     p->scaled = dalcs_alloc(n_columns, sizeof(double));
@@ -137,9 +140,10 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
     enum dalcs_status status = DALCS_E_NOMEM;
     if (p->mode != NULL && p->key != NULL && p->regularised_mode != NULL && p->w != NULL &&
         p->form != NULL && p->form_id != NULL && p->difference != NULL && p->run != NULL &&
-        p->w_ends != NULL && p->is_diode != NULL && p->violating != NULL && p->mapped != NULL &&
-        p->right != NULL && p->scaled != NULL && p->rhs != NULL && p->residual != NULL &&
-        p->centre != NULL && p->centre_w != NULL && p->step_before != NULL && p->step_now != NULL) {
+        p->w_ends != NULL && p->is_diode != NULL && p->violating != NULL && p->tied != NULL &&
+        p->tied_mode != NULL && p->tied_answer != NULL && p->mapped != NULL && p->right != NULL &&
+        p->scaled != NULL && p->rhs != NULL && p->residual != NULL && p->centre != NULL &&
+        p->centre_w != NULL && p->step_before != NULL && p->step_now != NULL) {
         list_runs(p);
         list_w_ends(p);
         status = list_pair_rows(p);
@@ -176,6 +180,9 @@ void dalcs_osnsp_finish(struct dalcs_osnsp *p) {
     free(p->w_ends);
     free(p->is_diode);
     free(p->violating);
+    free(p->tied);
+    free(p->tied_mode);
+    free(p->tied_answer);
     free(p->mapped);
     free(p->right);
     free(p->scaled);
@@ -215,8 +222,7 @@ static void solve_to_answer(const struct dalcs_osnsp *p, const struct dalcs_mode
     }
 }
 
-/* p->scaled from y: the inverse of dalcs_osnsp_unscale, exact because scales are powers of 2. */
-static void scale_answer(struct dalcs_osnsp *p, const double *y) {
+void dalcs_osnsp_scale(struct dalcs_osnsp *p, const double *y) {
     const struct dalcs_step_form *f = p->form[0];
     int n_equations = dalcs_system_n_equations(p->system);
     for (int i = 0; i < f->n; i++) {
@@ -259,14 +265,15 @@ static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double
     double tolerance = p->options.certificate_tolerance;
     p->least_norm = e->singular;
     if (e->map == NULL && !e->singular && e->n_uses++ > 2 && dalcs_step_map_pays(p)) {
-        DALCS_TRY(dalcs_step_map_build(p, e, 0.0));
+        DALCS_TRY(dalcs_step_map_build(p, e, DALCS_PLAIN));
     }
-    if (e->map != NULL) {
+    if (e->map != NULL && !e->map_is_poor) {
         dalcs_step_map_apply(p, e, u, y);
         dalcs_certificate_evaluate(p, u, y, sources_clash);
         if (p->n_violating > 0 || p->certificate.worst <= tolerance) {
             return DALCS_OK;
         }
+        e->map_is_poor = true;
     }
     if (e->singular) {
         return DALCS_SINGULAR;
@@ -274,7 +281,7 @@ static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double
     solve_to_answer(p, e, u, y);
     dalcs_certificate_evaluate(p, u, y, sources_clash);
     if (p->certificate.worst > tolerance) {
-        scale_answer(p, y);
+        dalcs_osnsp_scale(p, y);
         dalcs_csr_multiply(&p->form[0]->R, u, p->right);
     }
     for (int k = 0; k < MAX_REFINEMENTS && p->certificate.worst > tolerance; k++) {
@@ -357,6 +364,9 @@ static enum dalcs_status enumerate(struct dalcs_osnsp *p, const double *u, doubl
 static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, double *y) {
     int limit = p->options.max_pivots + 2 * p->system->n_pairs;
     enum dalcs_status status = dalcs_osnsp_pivot(p, u, y, limit);
+    if (status == DALCS_OK && p->n_tied > 0 && p->system->monotone && !p->least_norm) {
+        return dalcs_ties_settle(p, u, y);
+    }
     if (status > DALCS_OK && status != DALCS_INFEASIBLE) {
         status = dalcs_proximal_solve(p, u, y);
         if (status > DALCS_OK) {

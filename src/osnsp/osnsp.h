@@ -64,7 +64,7 @@ struct dalcs_osnsp {
     struct dalcs_certificate certificate;
     struct dalcs_osnsp_counters counters;
     struct dalcs_witness witness;
-    bool least_norm; /* the last answer is the least-norm one of a singular mode */
+    bool least_norm; /* the last answer is the least-norm one of several */
 
     struct dalcs_step_form **form; /* most recently used first */
     int n_forms;
@@ -97,6 +97,11 @@ struct dalcs_osnsp {
     int *w_ends;    /* [n_pairs][2] columns whose difference is w; -1 where w is more than that */
     int *violating; /* [n_pairs] */
     int n_violating;
+    int n_tied; /* diodes with lambda = 0 = w, up to these scaled roundings */
+    double tie_volt, tie_ampere;
+    bool *tied;                     /* [n_pairs] */
+    uint64_t *tied_mode;            /* [n_words] */
+    double *tied_answer;            /* [n_columns] */
     double *mapped;                 /* [n + n_pairs, padded to 8] what a map gave */
     double *right;                  /* [n + n_pairs] scaled R u */
     double *scaled;                 /* [n + n_pairs] scaled y */

@@ -9,6 +9,9 @@
 
 enum { DALCS_PLAIN = 0 }; /* kind of an entry; 1 + rung for the proximal matrices */
 
+/* Rungs of the ladder: every eps with equal diodes, then every eps with balanced ones. */
+enum { DALCS_N_WEIGHTS = 3, DALCS_N_RUNGS = 2 * DALCS_N_WEIGHTS };
+
 /* A mode at a step size: its factors, and for a small recurring one the map from u to y. */
 struct dalcs_mode_entry {
     UT_hash_handle hh;
@@ -21,6 +24,9 @@ struct dalcs_mode_entry {
     int *row_of, *column_of; /* [lu.n] plain factors: row of R, column of y, in pivot order */
     double *scale_of;        /* [lu.n] */
     double *map;             /* see step_map.h; NULL until the mode has recurred */
+    bool map_is_poor;        /* its rounding was too large once */
+    uint64_t tie;            /* which ties of this mode were looked at last; 0: none yet */
+    bool tie_has_choice;     /* they leave a choice */
     int n_uses;
     size_t bytes;
 };
@@ -69,21 +75,30 @@ enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u,
 
 /* Factors the regularised matrix of p->mode; the columns are all n + n_pairs. */
 enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
-                                        double eps) DALCS_MUST_CHECK;
+                                        int rung) DALCS_MUST_CHECK;
 
 /* Solves one regularised problem around (centre, centre_w) in the mode of entry, into p->scaled. */
-void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry, double eps);
+void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry, int rung);
 
-double dalcs_proximal_on_weight(const struct dalcs_osnsp *p, int pair, double eps);
-double dalcs_proximal_off_weight(const struct dalcs_osnsp *p, int pair, double eps);
+/* The same from p->mode on by block pivoting over regularised modes. */
+enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, int rung,
+                                       bool *mode_changed) DALCS_MUST_CHECK;
+
+/* w of a pair in balanced units, from p->scaled and p->right. */
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair);
+
+/* ---- ties.c -------------------------------------------------------------------------------- */
+
+/* Makes a certified answer y of a regular mode with ties the least-norm one if there are several. */
+enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u,
+                                    double *y) DALCS_MUST_CHECK;
 
 /* ---- step_map.c ---------------------------------------------------------------------------- */
 
 bool dalcs_step_map_pays(const struct dalcs_osnsp *p);
 
 enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
-                                       double eps) DALCS_MUST_CHECK;
+                                       int kind) DALCS_MUST_CHECK;
 
 /* y's z and lambda from u. */
 void dalcs_step_map_apply(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
@@ -109,5 +124,8 @@ enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, doub
 
 /* p->scaled to y's z and lambda. */
 void dalcs_osnsp_unscale(const struct dalcs_osnsp *p, double *y);
+
+/* p->scaled from y: the inverse, exact because scales are powers of 2. */
+void dalcs_osnsp_scale(struct dalcs_osnsp *p, const double *y);
 
 #endif

@@ -27,24 +27,36 @@ static const double weight_spread = 1e3;
 static const double ray_tolerance = 1e-3;
 static const double ray_part = 1e-2;
 
+/* Rounds that free the unknowns from their own weights: each gains three digits. */
+enum { UNKNOWN_ROUNDS = 3 };
+
+static const double unknown_tolerance = 1e-9;
+
 /* Mode changes allowed from a regularised answer to a regular mode's. */
 enum { REGULAR_ATTEMPTS = 8 };
 
-static double local_ratio(const struct dalcs_osnsp *p, int pair) {
+/* Equal diodes on the first rungs, so that the answer is the least-norm one in amperes and volts; with
+ * very different conductances around them, weights that suit each one's surroundings solve more. */
+static double ratio_of(const struct dalcs_osnsp *p, int pair, int rung) {
     const struct dalcs_step_form *f = p->form[0];
     double g = f->scale[f->n + pair] * f->row_scale[f->n + pair]; /* A over V, balanced */
-    return fmin(fmax(g / f->pair_conductance, 1.0 / weight_spread), weight_spread);
+    return rung < DALCS_N_WEIGHTS
+               ? fmin(fmax(g / f->pair_conductance, 1.0 / weight_spread), weight_spread)
+               : 1.0;
 }
 
-double dalcs_proximal_on_weight(const struct dalcs_osnsp *p, int pair, double eps) {
-    return eps * local_ratio(p, pair);
+static double eps_of(const struct dalcs_osnsp *p, int rung) {
+    return p->options.proximal_weight[rung % DALCS_N_WEIGHTS];
 }
 
-double dalcs_proximal_off_weight(const struct dalcs_osnsp *p, int pair, double eps) {
-    return eps / local_ratio(p, pair);
+static double on_weight(const struct dalcs_osnsp *p, int pair, int rung) {
+    return eps_of(p, rung) * ratio_of(p, pair, rung);
 }
 
-/* w of a pair in balanced units, from p->scaled and p->right. */
+static double off_weight(const struct dalcs_osnsp *p, int pair, int rung) {
+    return eps_of(p, rung) / ratio_of(p, pair, rung);
+}
+
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair) {
     const struct dalcs_step_form *f = p->form[0];
     double w = -p->right[f->n + pair];
@@ -55,7 +67,7 @@ double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair) {
 }
 
 enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
-                                        double eps) {
+                                        int rung) {
     const struct dalcs_step_form *f = p->form[0];
     int n = f->n + f->n_pairs;
     size_t capacity = (size_t)f->K.p[n] + (size_t)n;
@@ -66,17 +78,17 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
     if (start != NULL && row != NULL && value != NULL) {
         int out = 0;
         for (int c = 0; c < n; c++) {
-            double diagonal = node_weight * eps;
+            double diagonal = node_weight * eps_of(p, rung);
             if (c >= f->n) {
                 int d = c - f->n;
-                diagonal = dalcs_osnsp_is_on(p, d) ? dalcs_proximal_on_weight(p, d, eps) : 1.0;
+                diagonal = dalcs_osnsp_is_on(p, d) ? on_weight(p, d, rung) : 1.0;
             }
             bool seen = false;
             for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
                 int r = f->K.j[k];
                 double a = f->K.x[k];
                 if (r >= f->n && !dalcs_osnsp_is_on(p, r - f->n)) {
-                    a *= dalcs_proximal_off_weight(p, r - f->n, eps);
+                    a *= off_weight(p, r - f->n, rung);
                 }
                 seen = seen || r == c;
                 row[out] = r;
@@ -97,24 +109,23 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
     return status;
 }
 
-void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry, double eps) {
+void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry, int rung) {
     const struct dalcs_step_form *f = p->form[0];
     for (int i = 0; i < f->n; i++) {
-        p->scaled[i] = p->right[i] + node_weight * eps * p->centre[i];
+        p->scaled[i] = p->right[i] + node_weight * eps_of(p, rung) * p->centre[i];
     }
     for (int d = 0; d < f->n_pairs; d++) {
         double right = p->right[f->n + d];
-        p->scaled[f->n + d] =
-            dalcs_osnsp_is_on(p, d)
-                ? right + dalcs_proximal_on_weight(p, d, eps) * p->centre[f->n + d]
-                : dalcs_proximal_off_weight(p, d, eps) * (right + p->centre_w[d]);
+        p->scaled[f->n + d] = dalcs_osnsp_is_on(p, d)
+                                  ? right + on_weight(p, d, rung) * p->centre[f->n + d]
+                                  : off_weight(p, d, rung) * (right + p->centre_w[d]);
     }
     dalcs_lu_solve(&entry->lu, p->scaled);
 }
 
 /* The pairs whose regularised sign is wrong: closed with lambda + eps G (w - w') < 0, open with
  * w + eps/G (lambda - lambda') < 0. */
-static void find_violations(struct dalcs_osnsp *p, double eps) {
+static void find_violations(struct dalcs_osnsp *p, int rung) {
     const struct dalcs_step_form *f = p->form[0];
     double largest = 0.0;
     for (int i = 0; i < f->n + f->n_pairs; i++) {
@@ -127,10 +138,9 @@ static void find_violations(struct dalcs_osnsp *p, double eps) {
         }
         double w = dalcs_proximal_scaled_w(p, d);
         double lambda = p->scaled[f->n + d];
-        double sign =
-            dalcs_osnsp_is_on(p, d)
-                ? lambda + dalcs_proximal_off_weight(p, d, eps) * (w - p->centre_w[d])
-                : w + dalcs_proximal_on_weight(p, d, eps) * (lambda - p->centre[f->n + d]);
+        double sign = dalcs_osnsp_is_on(p, d)
+                          ? lambda + off_weight(p, d, rung) * (w - p->centre_w[d])
+                          : w + on_weight(p, d, rung) * (lambda - p->centre[f->n + d]);
         if (sign < -sign_tolerance * largest) {
             p->violating[p->n_violating++] = d;
         }
@@ -139,8 +149,7 @@ static void find_violations(struct dalcs_osnsp *p, double eps) {
 
 /* One regularised problem around the centre, from p->mode, by block pivoting. Its matrix is a
  * P-matrix when the system is monotone: the least-index fallback ends it. */
-static enum dalcs_status solve_regularised(struct dalcs_osnsp *p, int rung, bool *mode_changed) {
-    double eps = p->options.proximal_weight[rung];
+enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, int rung, bool *mode_changed) {
     int fewest = p->system->n_pairs + 1;
     int patience = 10;
     *mode_changed = false;
@@ -151,8 +160,8 @@ static enum dalcs_status solve_regularised(struct dalcs_osnsp *p, int rung, bool
         if (e->singular) {
             return DALCS_NOT_CONVERGED;
         }
-        dalcs_proximal_step(p, e, eps);
-        find_violations(p, eps);
+        dalcs_proximal_step(p, e, rung);
+        find_violations(p, rung);
         if (p->n_violating == 0) {
             return DALCS_OK;
         }
@@ -209,6 +218,27 @@ static enum dalcs_status try_regular_mode(struct dalcs_osnsp *p, const double *u
     return status;
 }
 
+/* The weights of unknowns pull a node between two blocking diodes towards 0: their centre alone is
+ * moved until it no longer matters, so that only the diodes decide. */
+static enum dalcs_status free_unknowns(struct dalcs_osnsp *p, int rung) {
+    const struct dalcs_step_form *f = p->form[0];
+    for (int k = 0; k <= UNKNOWN_ROUNDS; k++) {
+        double size = 0.0;
+        double moved = 0.0;
+        for (int i = 0; i < f->n; i++) {
+            size = fmax(size, fabs(p->scaled[i]));
+            moved = fmax(moved, fabs(p->scaled[i] - p->centre[i]));
+            p->centre[i] = p->scaled[i];
+        }
+        if (moved <= unknown_tolerance * size || k == UNKNOWN_ROUNDS) {
+            break;
+        }
+        bool mode_changed;
+        DALCS_TRY(dalcs_proximal_pivot(p, rung, &mode_changed));
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const double *u, double *y) {
     const struct dalcs_step_form *f = p->form[0];
     memset(p->centre, 0, (size_t)(f->n + f->n_pairs) * sizeof(double));
@@ -217,7 +247,7 @@ static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const doubl
     int n_equations = dalcs_system_n_equations(p->system);
     for (int outer = 0; outer < p->options.max_outer; outer++) {
         bool mode_changed;
-        DALCS_TRY(solve_regularised(p, rung, &mode_changed));
+        DALCS_TRY(dalcs_proximal_pivot(p, rung, &mode_changed));
         struct dalcs_mode_entry *plain;
         DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
         if ((outer == 0 || mode_changed) && !plain->singular) {
@@ -228,7 +258,10 @@ static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const doubl
             dalcs_csr_multiply(&p->form[0]->R, u, p->right);
             struct dalcs_mode_entry *e;
             DALCS_TRY(dalcs_modes_get(p, 1 + rung, &e));
-            dalcs_proximal_step(p, e, p->options.proximal_weight[rung]);
+            dalcs_proximal_step(p, e, rung);
+        }
+        if (outer == 0) {
+            DALCS_TRY(free_unknowns(p, rung));
         }
         dalcs_osnsp_unscale(p, y);
         for (int d = 0; d < f->n_pairs; d++) {
@@ -260,7 +293,7 @@ static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const doubl
 enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, double *y) {
     dalcs_csr_multiply(&p->form[0]->R, u, p->right);
     enum dalcs_status status = DALCS_NOT_CONVERGED;
-    for (int rung = 0; rung < 3 && status == DALCS_NOT_CONVERGED; rung++) {
+    for (int rung = 0; rung < DALCS_N_RUNGS && status == DALCS_NOT_CONVERGED; rung++) {
         status = climb_rung(p, rung, u, y);
         if (status != DALCS_OK) {
             continue;
@@ -270,7 +303,7 @@ enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, d
         p->least_norm = plain->singular;
         if (plain->singular && plain->map == NULL && plain->n_uses++ > 2 &&
             dalcs_step_map_pays(p)) {
-            status = dalcs_step_map_build(p, plain, p->options.proximal_weight[rung]);
+            status = dalcs_step_map_build(p, plain, 1 + rung);
         }
     }
     return status;

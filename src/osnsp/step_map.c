@@ -12,7 +12,7 @@
 #include <string.h>
 
 /* Inputs up to which the dense product is worth its memory traffic. */
-enum { MAX_MAP_COLUMNS = 48, PROXIMAL_ROUNDS = 4 };
+enum { MAX_MAP_COLUMNS = 48, UNKNOWN_ROUNDS = 3, PROXIMAL_ROUNDS = UNKNOWN_ROUNDS + 4 };
 
 static int padded_rows(const struct dalcs_osnsp *p) {
     return (p->form[0]->n + p->form[0]->n_pairs + 7) / 8 * 8;
@@ -24,11 +24,11 @@ bool dalcs_step_map_pays(const struct dalcs_osnsp *p) {
 }
 
 /* p->scaled = the answer to the unit input u_j. */
-static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, double eps) {
+static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, int kind) {
     const struct dalcs_step_form *f = p->form[0];
     size_t n = (size_t)(f->n + f->n_pairs);
     memset(p->scaled, 0, n * sizeof(double));
-    if (eps == 0.0) {
+    if (kind == DALCS_PLAIN) {
         memcpy(p->rhs, p->right, (size_t)f->n * sizeof(double));
         for (int k = 0; k < e->n_on; k++) {
             p->rhs[f->n + k] = p->right[f->n + e->on[k]];
@@ -43,24 +43,21 @@ static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, 
     memset(p->centre, 0, n * sizeof(double));
     memset(p->centre_w, 0, (size_t)f->n_pairs * sizeof(double));
     for (int round = 0; round < PROXIMAL_ROUNDS; round++) {
-        dalcs_proximal_step(p, e, eps);
-        memcpy(p->centre, p->scaled, n * sizeof(double));
-        for (int d = 0; d < f->n_pairs; d++) {
+        dalcs_proximal_step(p, e, kind - 1);
+        bool unknowns_only = round < UNKNOWN_ROUNDS;
+        memcpy(p->centre, p->scaled, (unknowns_only ? (size_t)f->n : n) * sizeof(double));
+        for (int d = 0; d < f->n_pairs && !unknowns_only; d++) {
             p->centre_w[d] = dalcs_proximal_scaled_w(p, d);
         }
     }
 }
 
 enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
-                                       double eps) {
+                                       int kind) {
     const struct dalcs_step_form *f = p->form[0];
     struct dalcs_mode_entry *factors = entry;
-    if (eps != 0.0) {
-        int rung = 0;
-        while (p->options.proximal_weight[rung] != eps) {
-            rung++;
-        }
-        DALCS_TRY(dalcs_modes_get(p, 1 + rung, &factors));
+    if (kind != DALCS_PLAIN) {
+        DALCS_TRY(dalcs_modes_get(p, kind, &factors));
         if (factors->singular) {
             return DALCS_OK;
         }
@@ -81,7 +78,7 @@ enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_
                 p->right[i] = f->R.j[k] == j ? f->R.x[k] : p->right[i];
             }
         }
-        solve_unit(p, factors, eps);
+        solve_unit(p, factors, kind);
         double *column = map + rows * (size_t)j;
         for (int i = 0; i < n; i++) {
             column[i] = f->scale[i] * p->scaled[i];

@@ -2,10 +2,10 @@
  *
  * A residual is measured against what its row could be at the largest voltage and current of the
  * problem (unknowns, states before the step, sources, thresholds): the sum of |coefficient| times
- * those, and never less than the largest of the row's own unit. Amperes and volts vouch for each
- * other through a thousandth of the circuit's least conductance and of its least resistance, or a
- * 1e-8 of the typical ones: a part without current is not asked for more digits than its voltages
- * have. */
+ * those, and never less than the largest of the row's own unit; the current of a diode against the
+ * KCL that it enters. Amperes and volts vouch for each other through a thousandth of the circuit's
+ * least conductance and of its least resistance, or a 1e-8 of the typical ones (1 S where a circuit
+ * has none): a part without current is not asked for more digits than its voltages have. */
 #include "residual.h"
 
 #include <math.h>
@@ -64,8 +64,8 @@ static struct scale scale_of(const struct dalcs_system *s, double sigma, const d
         add_conductances(&g, s, &s->C, d, false, 1.0);
     }
     double typical = g.n > 0 ? exp(g.log_sum / g.n) : 1.0;
-    double siemens = fmax(g.n > 0 ? 1e-3 * g.least : 0.0, 1e-8 * typical);
-    double ohms = fmax(g.n > 0 ? 1e-3 / g.most : 0.0, 1e-8 / typical);
+    double siemens = fmax(1e-3 * (g.n > 0 ? g.least : 1.0), 1e-8 * typical);
+    double ohms = fmax(1e-3 / (g.n > 0 ? g.most : 1.0), 1e-8 / typical);
     return (struct scale){fmax(largest[0], ohms * largest[1]),
                           fmax(largest[1], siemens * largest[0])};
 }
@@ -92,6 +92,26 @@ static void add_size(struct sum *sum, const struct dalcs_system *s, const struct
 
 static double part(double residual, double scale) {
     return residual == 0.0 ? 0.0 : residual / scale;
+}
+
+/* The largest size of a row that the current of a pair enters. */
+static double size_of_current(const struct dalcs_system *s, double sigma, int pair,
+                              struct scale scale) {
+    int column = dalcs_system_n_equations(s) + pair;
+    double largest = scale.ampere;
+    for (int r = 0; r < dalcs_system_n_equations(s); r++) {
+        struct sum sum = {0};
+        bool enters = false;
+        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
+            enters = enters || (s->A.j[k] == column && s->row_is_current[r]);
+        }
+        add_size(&sum, s, &s->A, r, 1.0, scale);
+        if (r < s->n_x && sigma > 0.0) {
+            add_size(&sum, s, &s->P, r, sigma, scale);
+        }
+        largest = enters ? fmax(largest, sum.size) : largest;
+    }
+    return largest;
 }
 
 double residual_of(const struct dalcs_system *s, double sigma, const double *u, const bool *closed,
@@ -128,11 +148,12 @@ double residual_of(const struct dalcs_system *s, double sigma, const double *u, 
     }
     for (int d = 0; d < s->n_pairs; d++) {
         struct sum sum = {0};
+        double current_size = size_of_current(s, sigma, d, scale);
         add_terms(&sum, &s->C, d, y, 1.0);
         add_terms(&sum, &s->F, d, inputs, 1.0);
         add_size(&sum, s, &s->C, d, 1.0, scale);
         double w = part(sum.value, fmax(sum.size, scale.volt));
-        double i = part(lambda[d], scale.ampere);
+        double i = part(lambda[d], current_size);
         if (s->pair[d].kind == DALCS_PAIR_SWITCH) {
             worst = fmax(worst, closed[d] ? fabs(w) : fabs(i));
         } else {

@@ -1,0 +1,92 @@
+/* ties.c - diodes with lambda = 0 = w, and the answers they may leave a choice between.
+ *
+ * The answers of a monotone problem are one convex set, on which complementarity keeps every pair but
+ * the tied ones where it is (Cottle, Pang and Stone 1992, thm 3.1.7). In a regular mode two answers
+ * therefore differ in a tied pair, where they can only grow: an answer as near as possible to this one
+ * pushed up in all tied pairs is another one if there is any. What follows from a mode and its ties
+ * holds for every right-hand side, so it is asked once. */
+#include "osnsp_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A tied pair moves by this part of the push when there is a choice; of rounding and of the
+ * regularisation, far less. */
+static const double moved_part = 1e-5;
+
+/* Marks the tied pairs of the last certified answer and names the set: FNV-1a, never 0. */
+static uint64_t mark_ties(struct dalcs_osnsp *p, const double *lambda) {
+    uint64_t name = 14695981039346656037u;
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        bool vanishes =
+            dalcs_osnsp_is_on(p, d) ? lambda[d] <= p->tie_ampere : p->w[d] <= p->tie_volt;
+        p->tied[d] = p->is_diode[d] && vanishes;
+        if (p->tied[d]) {
+            name = (name ^ (uint64_t)d) * 1099511628211u;
+        }
+    }
+    return name != 0 ? name : 1;
+}
+
+static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u, const double *y,
+                                         bool *has_choice) {
+    const struct dalcs_step_form *f = p->form[0];
+    double push = 0.0;
+    dalcs_osnsp_scale(p, y);
+    dalcs_csr_multiply(&f->R, u, p->right);
+    for (int i = 0; i < f->n + f->n_pairs; i++) {
+        p->centre[i] = p->scaled[i];
+        push = fmax(push, fabs(p->scaled[i]));
+    }
+    for (int d = 0; d < f->n_pairs; d++) {
+        p->centre_w[d] = f->row_scale[f->n + d] * p->w[d];
+        if (p->tied[d]) {
+            p->centre[f->n + d] += push;
+            p->centre_w[d] += push;
+        }
+    }
+    bool mode_changed;
+    enum dalcs_status status = dalcs_proximal_pivot(p, DALCS_N_WEIGHTS, &mode_changed);
+    *has_choice = false;
+    for (int d = 0; status == DALCS_OK && d < f->n_pairs && !*has_choice; d++) {
+        double moved = fmax(p->scaled[f->n + d], dalcs_proximal_scaled_w(p, d));
+        *has_choice = p->tied[d] && moved > moved_part * push;
+    }
+    return status;
+}
+
+enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, double *y) {
+    const double *lambda = y + dalcs_system_n_equations(p->system);
+    size_t mode_bytes = (size_t)p->n_words * sizeof(*p->mode);
+    size_t answer_bytes = (size_t)dalcs_system_n_columns(p->system) * sizeof(*y);
+    uint64_t tie = mark_ties(p, lambda);
+    struct dalcs_mode_entry *e;
+    DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
+    if (e->tie == tie && !e->tie_has_choice) {
+        return DALCS_OK;
+    }
+    memcpy(p->tied_mode, p->mode, mode_bytes);
+    memcpy(p->tied_answer, y, answer_bytes);
+    bool has_choice = true;
+    enum dalcs_status status = DALCS_OK;
+    if (e->tie != tie) {
+        status = look_for_choice(p, u, y, &has_choice);
+        memcpy(p->mode, p->tied_mode, mode_bytes);
+        DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
+        e->tie = tie;
+        e->tie_has_choice = has_choice;
+    }
+    if (status == DALCS_OK && has_choice) {
+        status = dalcs_proximal_solve(p, u, y);
+    }
+    if (status < DALCS_OK || (status == DALCS_OK && has_choice)) {
+        p->least_norm = status == DALCS_OK;
+        return status;
+    }
+    /* No choice, or none that could be certified: the answer that was. */
+    memcpy(p->mode, p->tied_mode, mode_bytes);
+    memcpy(y, p->tied_answer, answer_bytes);
+    bool sources_clash;
+    dalcs_certificate_evaluate(p, u, y, &sources_clash);
+    return DALCS_OK;
+}
