@@ -16,6 +16,10 @@
 extern "C" {
 #endif
 
+#if defined(__GNUC__)
+#pragma GCC visibility push(default) /* all else in the library is hidden */
+#endif
+
 /* 0 is success, > 0 a numerical failure that a smaller step may cure, < 0 is final. */
 #define DALCS_STATUS_LIST(ENTRY)                                                                   \
     ENTRY(DALCS_OK, 0, "ok")                                                                       \
@@ -103,8 +107,8 @@ struct dalcs_plot {
 };
 
 /* Receives results while they are made: for .op and for .tran begin, rows, end, in this order. Any
- * callback may return a status other than DALCS_OK, which ends the run with that status; end is
- * then not called. */
+ * callback may be NULL, or return a status other than DALCS_OK, which ends the run with that
+ * status; end is then not called. */
 struct dalcs_sink {
     void *user;
     enum dalcs_status (*begin)(void *user, const struct dalcs_plot *plot);
@@ -112,7 +116,7 @@ struct dalcs_sink {
      * borrowed until the callback returns. An operating point has one row, at time 0. */
     enum dalcs_status (*row)(void *user, double time, const double *value /* [n_signals] */);
     enum dalcs_status (*end)(void *user);
-    /* May be NULL. Called now and then, not more than every few thousand steps. Return DALCS_OK to
+    /* Called now and then, not more than every few thousand steps. Return DALCS_OK to
      * go on, DALCS_E_CANCELLED to stop. */
     enum dalcs_status (*progress)(void *user, double time, double stop);
 };
@@ -226,6 +230,10 @@ struct dalcs_report {
 
 /* Valid after dalcs_session_run, whatever its status; NULL before. */
 const struct dalcs_report *dalcs_session_report(const struct dalcs_session *session);
+
+#if defined(__GNUC__)
+#pragma GCC visibility pop
+#endif
 
 #ifdef __cplusplus
 }

@@ -234,7 +234,7 @@ static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct dalcs_euler
             DALCS_TRY(dalcs_euler_cross(e));
             DALCS_TRY(dalcs_recorder_cross(recorder, e));
         }
-        if (e->steps % PROGRESS_INTERVAL == 0 && r->sink->progress != NULL) {
+        if (e->steps % PROGRESS_INTERVAL == 0) {
             DALCS_TRY(r->sink->progress(r->sink->user, e->t, e->grid.stop));
         }
     }
@@ -322,6 +322,31 @@ static enum dalcs_status prepare_report(struct dalcs_run *r) {
     return DALCS_OK;
 }
 
+static enum dalcs_status ignore_begin(void *user, const struct dalcs_plot *plot) {
+    (void)user;
+    (void)plot;
+    return DALCS_OK;
+}
+
+static enum dalcs_status ignore_row(void *user, double time, const double *value) {
+    (void)user;
+    (void)time;
+    (void)value;
+    return DALCS_OK;
+}
+
+static enum dalcs_status ignore_end(void *user) {
+    (void)user;
+    return DALCS_OK;
+}
+
+static enum dalcs_status ignore_progress(void *user, double time, double stop) {
+    (void)user;
+    (void)time;
+    (void)stop;
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) {
@@ -329,7 +354,14 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
         return DALCS_E_NETLIST;
     }
     dalcs_session_forget_run(session);
-    struct dalcs_run r = {.s = session, .options = options, .sink = sink};
+    const struct dalcs_sink complete = {
+        .user = sink->user,
+        .begin = sink->begin != NULL ? sink->begin : ignore_begin,
+        .row = sink->row != NULL ? sink->row : ignore_row,
+        .end = sink->end != NULL ? sink->end : ignore_end,
+        .progress = sink->progress != NULL ? sink->progress : ignore_progress,
+    };
+    struct dalcs_run r = {.s = session, .options = options, .sink = &complete};
     double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     double wall = seconds(CLOCK_MONOTONIC);
     DALCS_TRY(check_options(&r));
