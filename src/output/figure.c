@@ -7,8 +7,10 @@
 #include <string.h>
 #include <strings.h>
 
-#define CLIP  3.0 /* an impulse that stretches a panel by less is left in */
-#define SWING 0.2 /* of a signal's range: smaller ripple is no turn */
+#define CLIP     3.0  /* an impulse that stretches a panel by less is left in */
+#define SWING    0.2  /* of a signal's range: smaller ripple is no turn */
+#define VISIBLE  0.01 /* of a panel's range */
+#define ROUNDING 1e-7 /* of a panel's largest value: all in so small a range is constant */
 
 /* Turns of the densest signal: beyond the first number nobody sees a single period; the second is
  * what the end of the run then shows. */
@@ -112,15 +114,18 @@ void dalcs_figure_row(struct dalcs_figure *figure, double time, const double *va
     dalcs_tail_add(&figure->tail, time, chosen);
 }
 
-/* The signal with the most turns, as a column of the tail; *n_turns of it. */
+/* The signal with the most turns that can be seen, as a column of the tail; *n_turns of it. */
 static size_t find_densest(const struct dalcs_figure *figure, long *n_turns) {
+    const struct dalcs_figure_view *view = &figure->view[0];
     size_t densest = 0, column = 0;
     *n_turns = 0;
     for (int p = 0; p < 2; p++) {
+        double visible = VISIBLE * (view->high[p] - view->low[p]);
         for (int i = 0; i < figure->panel[p].n; i++) {
+            const struct dalcs_curve *curve = &view->curve[p][i];
             column++;
-            if (figure->view[0].curve[p][i].turns.n > *n_turns) {
-                *n_turns = figure->view[0].curve[p][i].turns.n;
+            if (curve->turns.n > *n_turns && curve->highest - curve->lowest > visible) {
+                *n_turns = curve->turns.n;
                 densest = column;
             }
         }
@@ -193,14 +198,23 @@ static void find_ranges(const struct dalcs_figure *figure, struct dalcs_figure_v
         if (view->low[p] > view->high[p]) {
             view->low[p] = view->high[p] = 0.0;
         }
+        double largest = fmax(fabs(view->low[p]), fabs(view->high[p]));
+        view->largest[p] = largest;
+        double margin = 0.05 * (view->high[p] - view->low[p]);
+        if (margin <= ROUNDING * largest) { /* a constant; 0 in a range of 1 */
+            margin = largest > 0.0 ? 0.1 * largest : 0.5;
+        }
+        view->low[p] -= margin;
+        view->high[p] += margin;
     }
 }
 
 enum dalcs_status dalcs_figure_compose(struct dalcs_figure *figure,
                                        const struct dalcs_report *report) {
+    find_ranges(figure, &figure->view[0], report);
     enum dalcs_status status = add_end(figure);
-    for (int v = 0; v < figure->n_views; v++) {
-        find_ranges(figure, &figure->view[v], report);
+    if (status == DALCS_OK && figure->n_views > 1) {
+        find_ranges(figure, &figure->view[1], report);
     }
     return status;
 }

@@ -20,8 +20,9 @@ struct dalcs_figure_panel {
 struct dalcs_figure_view {
     double start, stop;
     struct dalcs_curve curve[2][DALCS_FIGURE_MAX_CURVES];
-    double low[2], high[2];
-    bool clipped[2]; /* impulses, which depend on the step, leave this range */
+    double largest[2];      /* magnitude that is to be seen; chooses the unit's prefix */
+    double low[2], high[2]; /* of the axis: a margin wider */
+    bool clipped[2];        /* impulses, which depend on the step, leave this range */
 };
 
 struct dalcs_figure {

@@ -23,10 +23,11 @@ static const char *const colour[DALCS_FIGURE_MAX_CURVES] = {
 };
 
 /* 'text' in gnuplot's single quotes, where nothing but the quote is special. At most max_length
- * characters; what is not printable UTF-8 becomes a question mark. */
+ * characters, then an ellipsis; what is not printable UTF-8 becomes a question mark. */
 static void write_quoted(FILE *stream, const char *text, int max_length) {
     fputc('\'', stream);
-    for (const char *c = text; *c && max_length-- > 0;) {
+    const char *c = text;
+    while (*c && max_length-- > 0) {
         size_t length = dalcs_utf8_length(c);
         if (length == 0 || (unsigned char)*c < 0x20 || *c == 0x7f) {
             fputc('?', stream);
@@ -39,7 +40,7 @@ static void write_quoted(FILE *stream, const char *text, int max_length) {
         fwrite(c, 1, length, stream);
         c += length;
     }
-    fputc('\'', stream);
+    fputs(*c ? "\342\200\246'" : "'", stream);
 }
 
 static const char *unit_prefix(double scale) {
@@ -48,7 +49,7 @@ static const char *unit_prefix(double scale) {
 }
 
 static double panel_scale(const struct dalcs_figure_view *view, int p) {
-    return dalcs_quantity_scale(fmax(fabs(view->low[p]), fabs(view->high[p])));
+    return dalcs_quantity_scale(view->largest[p]);
 }
 
 static void write_data(FILE *stream, const struct dalcs_figure *figure, int v, int p,
@@ -68,9 +69,13 @@ static void write_data(FILE *stream, const struct dalcs_figure *figure, int v, i
     }
 }
 
-static void write_header(FILE *stream, const struct dalcs_figure *figure) {
+static bool is_svg(const struct dalcs_figure *figure) {
     const char *dot = strrchr(figure->path, '.');
-    bool svg = dot && strcasecmp(dot, ".svg") == 0;
+    return dot && strcasecmp(dot, ".svg") == 0;
+}
+
+static void write_header(FILE *stream, const struct dalcs_figure *figure) {
+    bool svg = is_svg(figure);
     fprintf(stream, "set encoding utf8\n");
     fprintf(stream,
             "set terminal %s size %d,%d font 'DejaVu Sans,%d' noenhanced rounded background %s\n",
@@ -89,7 +94,8 @@ static void write_title(FILE *stream, const struct dalcs_figure *figure) {
     const char *title = figure->plot->title ? figure->plot->title : "";
     fputs("set label 1 ", stream);
     write_quoted(stream, title + strspn(title, "* "), MAX_TITLE);
-    fputs(" at screen 0.065, screen 0.96 left font ',15' textcolor rgb '#202124'\n", stream);
+    fprintf(stream, " at screen 0.065, screen 0.96 left font ',%d' textcolor rgb '#202124'\n",
+            is_svg(figure) ? 19 : 15);
     if (n_left_out > 0) {
         fprintf(stream,
                 "set label 2 '%zu more signal%s not drawn' at screen 0.985, screen 0.96 "
@@ -120,14 +126,13 @@ static void write_panel(FILE *stream, const struct dalcs_figure *figure, int v, 
     const struct dalcs_figure_view *view = &figure->view[v];
     const struct dalcs_figure_panel *panel = &figure->panel[p];
     bool voltage = panel->unit == DALCS_VOLT;
-    double low = view->low[p], high = view->high[p], scale = panel_scale(view, p);
-    double margin = high > low ? 0.05 * (high - low) : fmax(0.1 * fabs(high), 0.5 * scale);
+    double scale = panel_scale(view, p);
     bool last = p == 1 || figure->panel[1].n == 0, first = p == 0 || figure->panel[0].n == 0;
     fprintf(stream, "set lmargin at screen %.3f\nset rmargin at screen %.3f\n", place->left,
             place->right);
     fprintf(stream, "set bmargin at screen %.3f\nset tmargin at screen %.3f\n", last ? 0.09 : 0.53,
             first ? 0.92 : 0.48);
-    fprintf(stream, "set yrange [%.9g:%.9g]\n", (low - margin) / scale, (high + margin) / scale);
+    fprintf(stream, "set yrange [%.9g:%.9g]\n", view->low[p] / scale, view->high[p] / scale);
     fprintf(stream, "set ylabel '%s (%s%s)' offset 0.5,0 textcolor rgb '#3c4043'\n",
             voltage ? "voltage" : "current", unit_prefix(scale), voltage ? "V" : "A");
     if (last) {

@@ -107,8 +107,8 @@ START_TEST(test_end_of_dense_run) {
     ck_assert_int_eq(figure.n_views, 2);
     ck_assert_double_eq(figure.view[1].stop, 1.0);
     ck_assert_double_eq_tol(figure.view[1].start, 1.0 - 4.5 / 200.0, 1.0 / 200.0);
-    ck_assert_double_eq_tol(figure.view[1].high[0], 1.0, 1e-3);
-    ck_assert_double_eq(figure.view[1].low[1], 0.25); /* the 0 at half time is not there */
+    ck_assert_double_eq_tol(figure.view[1].largest[0], 1.0, 1e-3);
+    ck_assert_double_gt(figure.view[1].low[1], 0.0); /* the 0 at half time is not there */
     dalcs_figure_finish(&figure);
 }
 
@@ -126,9 +126,28 @@ START_TEST(test_impulse_leaves_scale) {
         ck_assert_int_eq(dalcs_figure_compose(&figure, &report), DALCS_OK);
         ck_assert(figure.view[0].clipped[1] == (n_jumps == 1));
         ck_assert(!figure.view[0].clipped[0]);
-        ck_assert_double_eq(figure.view[0].high[1], n_jumps == 1 ? 0.25 : 100.0);
+        ck_assert_double_eq(figure.view[0].largest[1], n_jumps == 1 ? 0.25 : 100.0);
         dalcs_figure_finish(&figure);
     }
+}
+
+END_TEST
+
+/* Rounding noise is neither a range nor a train of periods. */
+START_TEST(test_noise_is_constant) {
+    struct dalcs_figure figure;
+    dalcs_figure_init(&figure, "a.svg", 0.0, 1.0);
+    ck_assert_int_eq(dalcs_figure_begin(&figure, &two_signals), DALCS_OK);
+    for (int i = 0; i <= 1000; i++) {
+        const double value[] = {i % 2 == 0 ? 1.0 : 1.0 + 2e-16, 0.0};
+        dalcs_figure_row(&figure, 1e-3 * i, value);
+    }
+    ck_assert_int_eq(dalcs_figure_compose(&figure, NULL), DALCS_OK);
+    ck_assert_int_eq(figure.n_views, 1);
+    ck_assert_double_eq_tol(figure.view[0].low[0], 0.9, 1e-9);
+    ck_assert_double_eq_tol(figure.view[0].high[0], 1.1, 1e-9);
+    ck_assert_double_eq(figure.view[0].low[1], -0.5);
+    dalcs_figure_finish(&figure);
 }
 
 END_TEST
@@ -160,6 +179,9 @@ START_TEST(test_quoting) {
     ck_assert_ptr_nonnull(strstr(text, "'it''s?`id` \"x\" caf\303\251 ?'"));
     ck_assert_ptr_nonnull(strstr(text, "title 'i(d'')'"));
     free(text);
+    text = write_script("t", "i(a_resistor_of_the_filter)");
+    ck_assert_ptr_nonnull(strstr(text, "title 'i(a_resistor_of_the_filt\342\200\246'"));
+    free(text);
 }
 
 END_TEST
@@ -175,4 +197,5 @@ START_TEST(test_units) {
 END_TEST
 
 RUN_SUITE("figure", test_curve_keeps_extremes, test_curve_keeps_order, test_choice_of_signals,
-          test_end_of_dense_run, test_impulse_leaves_scale, test_quoting, test_units)
+          test_end_of_dense_run, test_impulse_leaves_scale, test_noise_is_constant, test_quoting,
+          test_units)
