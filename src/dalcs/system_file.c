@@ -294,8 +294,10 @@ static enum dalcs_status read_columns(struct reader *r) {
         DALCS_TRY(read_keyword(r, "column"));
         DALCS_TRY(read_choice(r, label_kind, N_LABEL_KINDS, "the kind of a column", &kind));
         DALCS_TRY(read_unit(r, &s->column_is_current[c]));
-        DALCS_TRY(read_int(r, 0, dalcs_system_n_equations(s) - 1, &s->forest_root[c]));
-        if (s->forest_root[c] != c && (c < s->n_x || s->forest_root[c] < s->n_x)) {
+        int root;
+        DALCS_TRY(read_int(r, 0, dalcs_system_n_equations(s) - 1, &root));
+        s->forest_root[c] = root;
+        if (root != c && (c < s->n_x || root < s->n_x)) {
             return refuse(r, "the column itself or, for a voltage, that of its tree's root");
         }
         DALCS_TRY(read_name(r, &s->column[c].element));

@@ -99,7 +99,8 @@ static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e,
                                "passive"};
     size_t n_elements = 0;
     const char **element = whole_witness(s, w, &n_elements);
-    const struct dalcs_location *where = n_elements > 0 ? place_of(&s->circuit, element[0]) : NULL;
+    const struct dalcs_location *where =
+        element != NULL && n_elements > 0 ? place_of(&s->circuit, element[0]) : NULL;
     dalcs_diag_add(&s->diag, DALCS_ERROR, where, hint, "%s no solution exists: %s %s: %s", when,
                    kind[w->kind], join_names(s, (int)n_elements, element), why[w->kind]);
     if (element != NULL) {
