@@ -8,12 +8,13 @@
 /* Output times this close to a step's end, over the step, are at its end. */
 static const double same_time = 1e-9;
 
-enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
-                                       const struct dalcs_network *network,
-                                       const struct dalcs_circuit *circuit,
-                                       const struct dalcs_sink *sink,
-                                       const struct dalcs_schedule *schedule, bool keep,
-                                       size_t limit) {
+/* V or A: what extrapolation leaves of a state that stays at 0. */
+static const double smallest_jump = 1e-15;
+
+enum dalcs_status
+dalcs_recorder_setup(struct dalcs_recorder *r, const struct dalcs_network *network,
+                     const struct dalcs_circuit *circuit, const struct dalcs_sink *sink,
+                     const struct dalcs_schedule *schedule, bool keep, size_t limit) {
     *r = (struct dalcs_recorder){.network = network,
                                  .circuit = circuit,
                                  .sink = sink,
@@ -230,7 +231,9 @@ enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump 
         }
         double before = dalcs_probe_value(&x->probe, j->before, no_inputs);
         double after = dalcs_probe_value(&x->probe, j->after, no_inputs);
-        if (is_noticeable(after - before, fmax(fabs(before), fabs(after)))) {
+        double change = after - before;
+        if (fabs(change) > smallest_jump &&
+            is_noticeable(change, fmax(fabs(before), fabs(after)))) {
             state[n_states++] =
                 (struct dalcs_jump_state){.element = x->element, .before = before, .after = after};
         }

@@ -273,6 +273,12 @@ class Summary(Case):
                       "24 uJ lost", "wrote     a.raw"]:
             self.assertIn(piece, done.stdout)
 
+    def test_jump_without_the_still_ones(self):
+        """A state that stays at 0 has rounding only, which is no jump."""
+        self.write(CHARGES.replace("D1 1 2", "D1 1 2\nL1 1 0 10m ic=0"))
+        self.assertIn("jump at t=0: c1 10 V -> 4 V, c2 2 V -> 4 V;",
+                      self.dalcs("run", "a.cir").stdout)
+
     def test_measurements(self):
         done = self.dalcs("run", self.write("sine\nV1 a 0 SIN(0 10 50)\nR1 a 0 5\n"
                                             ".tran 10u 20m\n.end\n"))
