@@ -3,10 +3,12 @@
  * Nothing of how the answer was found is used: the rows of the system itself are evaluated with
  * (x_k, s) and (x+, z+, lambda+), and each residual is measured against the row's norm times the
  * largest voltage and current of the answer (the backward error of that row, volts and amperes
- * apart). Voltages and currents vouch for each other (dalcs_reach), so that a part without current is
- * not asked for more digits than its voltages have. */
+ * apart). Voltages and currents vouch for each other through a thousandth of the typical conductance
+ * and resistance, so that a part without current is not asked for more digits than its voltages
+ * have. */
 #include "osnsp_internal.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -66,8 +68,8 @@ static struct scales physical_scales(const struct dalcs_osnsp *p, const double *
     double raised_ampere = drive.ampere + drive.volt * f->most_conductance;
     raised_volt = raised_volt < largest[0] ? raised_volt : largest[0];
     raised_ampere = raised_ampere < largest[1] ? raised_ampere : largest[1];
-    double volt = f->ampere_in_volts[f->reach] * raised_ampere;
-    double ampere = f->volt_in_amperes[f->reach] * raised_volt;
+    double volt = f->ampere_in_volts * raised_ampere;
+    double ampere = f->volt_in_amperes * raised_volt;
     return (struct scales){largest[0] > volt ? largest[0] : volt,
                            largest[1] > ampere ? largest[1] : ampere};
 }
@@ -215,18 +217,27 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
     p->tie_ampere = tolerance * scale.ampere;
 }
 
+/* A current that is this part of what drives the circuit, and this many roundings, is no rounding. */
+static const double clash_part = 1e-6;
+static const double clash_roundings = 32.0 * DBL_EPSILON;
+
 /* The reference of a floating island would have to carry what its current sources do not balance. It
  * is the sum of the island's KCL, known as well as the largest of them. */
-static void check_references(struct dalcs_osnsp *p, const double *y, struct scales scale,
-                             bool *sources_clash) {
+static void check_references(struct dalcs_osnsp *p, const double *u, const double *y,
+                             struct scales scale, bool *sources_clash) {
     const struct dalcs_system *s = p->system;
+    if (p->n_references == 0) {
+        return;
+    }
     double size = scale.ampere;
-    for (int r = 0; p->n_references > 0 && r < dalcs_system_n_equations(s); r++) {
+    for (int r = 0; r < dalcs_system_n_equations(s); r++) {
         size = s->row_is_current[r] ? fmax(size, row_size(p->form[0], scale, r)) : size;
     }
+    double limit = fmin(p->options.certificate_tolerance * size,
+                        fmax(clash_part * driving_scales(p, u).ampere, clash_roundings * size));
     for (int k = 0; k < p->n_references; k++) {
         double residual = fabs(y[p->reference[k]]);
-        *sources_clash = *sources_clash || residual > p->options.certificate_tolerance * size;
+        *sources_clash = *sources_clash || residual > limit;
         note(&p->certificate, residual, size, p->reference_row[k]);
     }
 }
@@ -240,5 +251,5 @@ void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *
     struct scales scale = physical_scales(p, u, y);
     check_equations(p, u, y, scale);
     check_pairs(p, u, y, scale);
-    check_references(p, y, scale, sources_clash);
+    check_references(p, u, y, scale, sources_clash);
 }

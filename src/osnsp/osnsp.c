@@ -267,13 +267,12 @@ static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double
     if (e->map == NULL && !e->singular && e->n_uses++ > 2 && dalcs_step_map_pays(p)) {
         DALCS_TRY(dalcs_step_map_build(p, e, DALCS_PLAIN));
     }
-    if (e->map != NULL && !e->map_is_poor) {
+    if (e->map != NULL) {
         dalcs_step_map_apply(p, e, u, y);
         dalcs_certificate_evaluate(p, u, y, sources_clash);
         if (p->n_violating > 0 || p->certificate.worst <= tolerance) {
             return DALCS_OK;
         }
-        e->map_is_poor = true;
     }
     if (e->singular) {
         return DALCS_SINGULAR;
@@ -389,10 +388,6 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
         DALCS_TRY(dalcs_forms_get(p, sigma));
     }
     enum dalcs_status status = solve_somehow(p, u, y);
-    if (status == DALCS_NOT_CONVERGED && p->form[0]->reach == DALCS_STRICT) {
-        p->form[0]->reach = DALCS_TYPICAL;
-        status = solve_somehow(p, u, y);
-    }
     p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;
     return status;
 }

@@ -24,7 +24,6 @@ struct dalcs_mode_entry {
     int *row_of, *column_of; /* [lu.n] plain factors: row of R, column of y, in pivot order */
     double *scale_of;        /* [lu.n] */
     double *map;             /* see step_map.h; NULL until the mode has recurred */
-    bool map_is_poor;        /* its rounding was too large once */
     uint64_t tie;            /* which ties of this mode were looked at last; 0: none yet */
     bool tie_has_choice;     /* they leave a choice */
     int n_uses;

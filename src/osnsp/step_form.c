@@ -12,7 +12,9 @@
 static const double pivot_floor = 1e-8;
 static const int fill_limit = 4096;
 
-/* How far a scale of one unit reaches into the other, as a part of a conductance or resistance. */
+/* How far a scale of one unit reaches into the other, as a part of the typical conductance: a voltage
+ * next to a large one is known no better than to its own rounding, whose current may spread where
+ * conductances are small. */
 static const double cross_floor = 1e-3;
 
 struct row {
@@ -283,10 +285,8 @@ static enum dalcs_status measure_rows(struct dalcs_step_form *f, const struct da
     double typical = g.n > 0 ? exp(g.log_sum / g.n) : 1.0;
     f->least_conductance = g.n > 0 ? g.least : 1.0;
     f->most_conductance = g.n > 0 ? g.most : 1.0;
-    f->volt_in_amperes[DALCS_STRICT] = cross_floor * f->least_conductance;
-    f->ampere_in_volts[DALCS_STRICT] = cross_floor / f->most_conductance;
-    f->volt_in_amperes[DALCS_TYPICAL] = cross_floor * typical;
-    f->ampere_in_volts[DALCS_TYPICAL] = cross_floor / typical;
+    f->volt_in_amperes = cross_floor * typical;
+    f->ampere_in_volts = cross_floor / typical;
     return DALCS_OK;
 }
 

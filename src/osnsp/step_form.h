@@ -28,13 +28,15 @@ struct dalcs_step_form {
     double pair_conductance;                    /* S: the typical scale * row_scale of a pair */
     double least_conductance, most_conductance; /* S, of the whole system */
 
-    /* How far the scale of one unit reaches into the other. Strictly, through a thousandth of the least
-     * conductance and of the least resistance; but a voltage next to a large conductance is known no
-     * better than to its own rounding, whose current may spread where conductances are small: then
-     * through a thousandth of the typical ones. */
-    enum dalcs_reach { DALCS_STRICT, DALCS_TYPICAL } reach;
+    double volt_in_amperes,
+        ampere_in_volts; /* how far the scale of one unit reaches into the other */
 
-    double volt_in_amperes[2], ampere_in_volts[2]; /* [reach] */
+    enum {
+        DALCS_UNKNOWN,
+        DALCS_UNIQUE,
+        DALCS_MANY
+    } answers; /* can there be more than one? ties.c */
+
     struct dalcs_csr X; /* [n_x][n_columns] x+ = X (0, z+, lambda+) + Xu u; kept x: identity */
     struct dalcs_csr Xu;
     int *x_ends;   /* [n_x][2] columns whose difference is x+, -1 where it is more than that */

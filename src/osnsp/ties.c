@@ -11,8 +11,38 @@
 #include <string.h>
 
 /* A tied pair moves by this part of the push when there is a choice; of rounding and of the
- * regularisation, far less. */
-static const double moved_part = 1e-5;
+ * regularisation, less. */
+static const double moved_part = 1e-2;
+
+static enum dalcs_status is_singular(struct dalcs_osnsp *p, int byte, bool *singular) {
+    struct dalcs_mode_entry *e;
+    memset(p->mode, byte, (size_t)p->n_words * sizeof(*p->mode));
+    if (p->system->n_pairs % 64 != 0) {
+        p->mode[p->n_words - 1] &= ((uint64_t)1 << p->system->n_pairs % 64) - 1;
+    }
+    DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
+    *singular = e->singular;
+    return DALCS_OK;
+}
+
+/* Two answers of a passive circuit differ by something that dissipates nothing: voltages that float
+ * with all pairs open, or currents that circulate with all pairs closed. Most circuits have neither,
+ * and pay for ties no more than this one look. */
+static enum dalcs_status count_answers(struct dalcs_osnsp *p) {
+    bool floats;
+    bool circulates = true;
+    size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
+    memcpy(p->tied_mode, p->mode, bytes);
+    enum dalcs_status status = is_singular(p, 0, &floats);
+    if (status == DALCS_OK && !floats) {
+        status = is_singular(p, 0xff, &circulates);
+    }
+    memcpy(p->mode, p->tied_mode, bytes);
+    if (status == DALCS_OK) {
+        p->form[0]->answers = floats || circulates ? DALCS_MANY : DALCS_UNIQUE;
+    }
+    return status;
+}
 
 /* Marks the tied pairs of the last certified answer and names the set: FNV-1a, never 0. */
 static uint64_t mark_ties(struct dalcs_osnsp *p, const double *lambda) {
@@ -56,6 +86,12 @@ static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u,
 }
 
 enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, double *y) {
+    if (p->form[0]->answers == DALCS_UNKNOWN) {
+        DALCS_TRY(count_answers(p));
+    }
+    if (p->form[0]->answers == DALCS_UNIQUE) {
+        return DALCS_OK;
+    }
     const double *lambda = y + dalcs_system_n_equations(p->system);
     size_t mode_bytes = (size_t)p->n_words * sizeof(*p->mode);
     size_t answer_bytes = (size_t)dalcs_system_n_columns(p->system) * sizeof(*y);

@@ -4,8 +4,8 @@
  * problem (unknowns, states before the step, sources, thresholds): the sum of |coefficient| times
  * those, and never less than the largest of the row's own unit; the current of a diode against the
  * KCL that it enters. Amperes and volts vouch for each other through a thousandth of the circuit's
- * least conductance and of its least resistance, or a 1e-8 of the typical ones (1 S where a circuit
- * has none): a part without current is not asked for more digits than its voltages have. */
+ * typical conductance and resistance (1 S where a circuit has none): a part without current is not
+ * asked for more digits than its voltages have. */
 #include "residual.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ static double largest_term(const struct dalcs_csr *a, int row, const double *v) 
 }
 
 struct conductances {
-    double least, most, log_sum;
+    double log_sum;
     int n;
 };
 
@@ -34,8 +34,6 @@ static void add_conductances(struct conductances *g, const struct dalcs_system *
         if (of_current != s->column_is_current[a->j[k]]) {
             double x = fabs(factor * a->x[k]);
             double conductance = of_current ? x : 1.0 / x;
-            g->least = fmin(g->least, conductance);
-            g->most = fmax(g->most, conductance);
             g->log_sum += log(conductance);
             g->n++;
         }
@@ -45,7 +43,7 @@ static void add_conductances(struct conductances *g, const struct dalcs_system *
 static struct scale scale_of(const struct dalcs_system *s, double sigma, const double *u,
                              const double *y) {
     double largest[2] = {0.0, 0.0};
-    struct conductances g = {.least = INFINITY};
+    struct conductances g = {0};
     for (int c = 0; c < dalcs_system_n_columns(s); c++) {
         int unit = s->column_is_current[c] ? 1 : 0;
         largest[unit] = fmax(largest[unit], fabs(y[c]));
@@ -64,8 +62,8 @@ static struct scale scale_of(const struct dalcs_system *s, double sigma, const d
         add_conductances(&g, s, &s->C, d, false, 1.0);
     }
     double typical = g.n > 0 ? exp(g.log_sum / g.n) : 1.0;
-    double siemens = fmax(1e-3 * (g.n > 0 ? g.least : 1.0), 1e-8 * typical);
-    double ohms = fmax(1e-3 / (g.n > 0 ? g.most : 1.0), 1e-8 / typical);
+    double siemens = 1e-3 * typical;
+    double ohms = 1e-3 / typical;
     return (struct scale){fmax(largest[0], ohms * largest[1]),
                           fmax(largest[1], siemens * largest[0])};
 }
