@@ -7,7 +7,7 @@
  *
  * KCL, currents leaving. At a node of the capacitor forest (its root apart) KCL is the differential
  * equation of a capacitor, C x' = -(the other currents), so that no capacitor current is an unknown;
- * the KCL of a root is summed over its tree, where the capacitor currents cancel. A_I = 0 for RLC.
+ * the KCL of a root is summed over its tree, where the capacitor currents cancel.
  *
  * Signs are chosen for passivity: with rows in the order of `dual`, -A is skew but for conductances
  * and resistances on its diagonal blocks. */

@@ -60,12 +60,12 @@ struct dalcs_system {
      * of (sigma P - A, C) has a positive semidefinite symmetric part when the circuit is passive:
      * KCL with its node's voltage, a branch equation with its current. A permutation of the x and z
      * columns. */
-    int *dual;                  /* [n_x + n_z] */
-    int *forest_root;           /* [n_x + n_z] of a node's voltage in a capacitor tree: the column of
+    int *dual;               /* [n_x + n_z] */
+    int *forest_root;        /* [n_x + n_z] of a node's voltage in a capacitor tree: the column of
                                    the root's, whose row sums the KCL of the tree; else itself */
-    bool *column_is_current;    /* [n_columns] unit A, else V */
-    bool *row_is_current;       /* [n_x + n_z] unit of the row's equation */
-    struct dalcs_label *row;    /* [n_x + n_z] */
+    bool *column_is_current; /* [n_columns] unit A, else V */
+    bool *row_is_current;    /* [n_x + n_z] unit of the row's equation */
+    struct dalcs_label *row; /* [n_x + n_z] */
     struct dalcs_label *column; /* [n_x + n_z] */
     struct dalcs_pair *pair;    /* [n_pairs] */
     int *stimulus;              /* [n_inputs] index in the circuit; -1 for the constant 1 */

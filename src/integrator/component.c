@@ -104,6 +104,15 @@ void dalcs_component_sample(struct dalcs_component *c, double t, enum dalcs_side
     }
 }
 
+void dalcs_component_look_ahead(const struct dalcs_component *c, double t, double *u) {
+    const struct dalcs_system *s = c->system;
+    for (int i = 0; i < c->n_varying; i++) {
+        int k = c->varying[i];
+        u[s->n_x + k] =
+            dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, DALCS_RIGHT);
+    }
+}
+
 void dalcs_component_sample_operating(const struct dalcs_component *c, bool transient_follows,
                                       double *u) {
     const struct dalcs_system *s = c->system;

@@ -45,6 +45,9 @@ void dalcs_component_finish(struct dalcs_component *c);
 void dalcs_component_sample(struct dalcs_component *c, double t, enum dalcs_side side, double *u);
 
 /* The inputs for an operating point. */
+/* The inputs at t + ahead, which the next samples may lie before. */
+void dalcs_component_look_ahead(const struct dalcs_component *c, double t, double *u);
+
 void dalcs_component_sample_operating(const struct dalcs_component *c, bool transient_follows,
                                       double *u);
 

@@ -188,27 +188,29 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
                                     });
 }
 
-/* y becomes all values just after a discontinuity, with the state after it. Its voltages and currents
- * are those of a certified micro-step that starts as far before that state as a first one went past
- * it, and so ends on it up to the square of the micro-step. u is left as it was. */
+/* y becomes all values just after a discontinuity, with the state after it. A micro-step from that
+ * state tells where the circuit goes; its mirror image, which comes from as far before, ends on that
+ * state up to the square of the micro-step, with the currents that slopes of sources drive, and is
+ * certified. u is left as it was. */
 static enum dalcs_status settle_after(struct dalcs_euler *e, int k, const double *before,
                                       const double *u, double *y) {
     struct dalcs_component *c = &e->component[k];
     size_t n_x = (size_t)c->system->n_x;
+    size_t input_bytes = (size_t)c->system->n_inputs * sizeof(double);
     if (n_x == 0) {
         return solve(e, k, 0.0, u, y);
     }
     double h;
     bool jumps;
     DALCS_TRY(look_after(e, k, before, u, y, &h, &jumps));
-    memcpy(c->probe_u + n_x, u + n_x, (size_t)c->system->n_inputs * sizeof(double));
-    if (jumps) {
-        memcpy(c->probe_u, e->after, n_x * sizeof(double));
-        DALCS_TRY(solve(e, k, 1.0 / h, c->probe_u, y));
-    }
+    memcpy(c->probe_u, e->after, n_x * sizeof(double));
+    memcpy(c->probe_u + n_x, u + n_x, input_bytes);
+    dalcs_component_look_ahead(c, e->t + h, c->probe_u);
+    DALCS_TRY(solve(e, k, 1.0 / h, c->probe_u, y));
     for (size_t x = 0; x < n_x; x++) {
         c->probe_u[x] = 2.0 * e->after[x] - y[x];
     }
+    memcpy(c->probe_u + n_x, u + n_x, input_bytes);
     DALCS_TRY(solve(e, k, 1.0 / h, c->probe_u, y));
     memcpy(y, e->after, n_x * sizeof(double));
     return DALCS_OK;

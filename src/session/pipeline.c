@@ -170,7 +170,7 @@ static enum dalcs_status run_operating_point(struct dalcs_run *r) {
 
 static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
     const struct dalcs_transient *t = &r->s->circuit.transient;
-    struct dalcs_schedule schedule = {.start = t->start, .step = t->step};
+    struct dalcs_schedule schedule = {.start = t->start, .step = t->step, .stop = t->stop};
     double ratio = t->step / r->h;
     if (r->options->at != NULL) {
         schedule.kind = DALCS_AT_TIMES;

@@ -79,8 +79,12 @@ void dalcs_recorder_states(const struct dalcs_network *network, const struct dal
 /* The next time a row is due, INFINITY when none is. */
 static double next_output(const struct dalcs_schedule *s) {
     switch (s->kind) {
-    case DALCS_ON_GRID:
-        return s->start + (double)s->next * s->step;
+    case DALCS_ON_GRID: {
+        double due = s->start + (double)s->next * s->step;
+        /* the stop time is the last row, unless the grid has just been there */
+        bool past = due > s->stop && due - s->step < s->stop * (1.0 - same_time);
+        return past ? s->stop : due;
+    }
     case DALCS_AT_TIMES:
         return s->next < s->n_at ? s->at[s->next] : INFINITY;
     case DALCS_EVERY_STEP:

@@ -9,10 +9,10 @@
 struct dalcs_schedule {
     enum dalcs_schedule_kind {
         DALCS_EVERY_STEP, /* from `start` on */
-        DALCS_ON_GRID,    /* start + k * step */
+        DALCS_ON_GRID,    /* start + k * step, and the stop time */
         DALCS_AT_TIMES    /* the listed times */
     } kind;
-    double start, step;
+    double start, step, stop;
     const double *at; /* [n_at] ascending, borrowed */
     size_t n_at;
     size_t next; /* grid point or list entry to come */

@@ -1,10 +1,12 @@
-/* fuzz_netlist.c - libFuzzer target: any bytes to cards to a circuit.
+/* fuzz_netlist.c - libFuzzer target: any bytes to cards to a circuit to its DALCS, and a few steps.
  *
  * Beside not crashing, the outcome must be one that the next stage can rely on: errors come with
  * messages and leave nothing behind; a circuit has indices in range, values that are numbers, and
- * sources whose edges ascend. */
+ * sources whose edges ascend; the rows and columns of its systems are paired one to one. */
 #include "circuit.h"
+#include "euler.h"
 #include "netlist.h"
+#include "network.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -33,8 +35,7 @@ static void check_device(const struct dalcs_circuit *circuit, const struct dalcs
         break;
     case DALCS_CCCS:
     case DALCS_CCVS:
-        require(device->control >= 0 &&
-                circuit->device[device->control].kind == DALCS_VSOURCE);
+        require(device->control >= 0 && circuit->device[device->control].kind == DALCS_VSOURCE);
         break;
     case DALCS_INDUCTOR:
     case DALCS_CAPACITOR:
@@ -94,6 +95,73 @@ static void check_circuit(const struct dalcs_circuit *circuit) {
     }
 }
 
+static void check_matrix(const struct dalcs_csr *a, int n_rows, int n_columns) {
+    require(a->n_rows == n_rows);
+    for (int k = 0; k < a->p[n_rows]; k++) {
+        require(a->j[k] >= 0 && a->j[k] < n_columns);
+    }
+}
+
+static void check_system(const struct dalcs_system *s) {
+    int n_equations = dalcs_system_n_equations(s);
+    int n_columns = dalcs_system_n_columns(s);
+    check_matrix(&s->P, s->n_x, s->n_x);
+    check_matrix(&s->A, n_equations, n_columns);
+    check_matrix(&s->E, n_equations, s->n_inputs);
+    check_matrix(&s->C, s->n_pairs, n_columns);
+    check_matrix(&s->F, s->n_pairs, s->n_inputs);
+    long sum = 0;
+    for (int r = 0; r < n_equations; r++) {
+        require(s->dual[r] >= 0 && s->dual[r] < n_equations);
+        sum += s->dual[r];
+    }
+    require(sum == (long)n_equations * (n_equations - 1) / 2);
+}
+
+/* Every outcome of a step is fine, but none may take long: pivots are few. */
+static void run_a_little(const struct dalcs_circuit *circuit, const struct dalcs_network *network) {
+    static const struct dalcs_osnsp_options options = {.certificate_tolerance = 2e-13,
+                                                       .proximal_weight = {1e-8, 1e-7, 1e-6},
+                                                       .rcond_min = 1e-14,
+                                                       .max_outer = 5,
+                                                       .max_pivots = 5,
+                                                       .cache_bytes = (size_t)1 << 16,
+                                                       .dense_limit = 24};
+    double stop = circuit->transient.present ? circuit->transient.stop : 1.0;
+    struct dalcs_euler e;
+    if (dalcs_euler_setup(&e, circuit, network, &options, stop / 7.0, stop) != DALCS_OK) {
+        return;
+    }
+    e.detect_jumps = true;
+    enum dalcs_status status = dalcs_euler_operating_point(&e, true);
+    if (status == DALCS_OK || circuit->transient.use_initial_conditions) {
+        status = dalcs_euler_start(&e, circuit->transient.use_initial_conditions ? network->initial
+                                                                                 : NULL);
+    }
+    for (int k = 0; k < 20 && status == DALCS_OK && !dalcs_grid_at_end(&e.grid); k++) {
+        status = dalcs_euler_step(&e);
+        if (status == DALCS_OK && e.at_jump) {
+            status = dalcs_euler_cross(&e);
+        }
+    }
+    dalcs_euler_finish(&e);
+}
+
+static void check_network(const struct dalcs_circuit *circuit, struct dalcs_diag *diag) {
+    enum { MANY = 60 };
+    struct dalcs_network network;
+    if (circuit->n_devices > MANY ||
+        dalcs_network_build(&network, circuit, &(struct dalcs_network_options){0}, diag) !=
+            DALCS_OK) {
+        return;
+    }
+    for (int k = 0; k < network.n_systems; k++) {
+        check_system(&network.system[k]);
+    }
+    run_a_little(circuit, &network);
+    dalcs_network_finish(&network);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     struct dalcs_diag diag = {0};
     struct dalcs_netlist netlist = {0};
@@ -111,6 +179,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     if (status == DALCS_OK) {
         check_circuit(&circuit);
+        check_network(&circuit, &diag);
     } else {
         require(circuit.arena.head == NULL && circuit.n_devices == 0);
     }
