@@ -121,6 +121,9 @@ struct dalcs_sink {
     enum dalcs_status (*progress)(void *user, double time, double stop);
 };
 
+/* The methods by name, the default first; NULL when index is too large. */
+const char *dalcs_method_name(size_t index);
+
 struct dalcs_run_options {
     const char
         *method;      /* "euler", the papers' implicit Euler; NULL: the netlist's or the default */

@@ -16,7 +16,8 @@ enum dalcs_model_kind {
 
 struct dalcs_model {
     enum dalcs_model_kind kind;
-    int index; /* in diode_model or switch_model */
+    int index;        /* in diode_model or switch_model */
+    bool was_refused; /* an element names it, where another kind is wanted */
     const struct dalcs_token *name;
     const struct dalcs_token *type;
 };
@@ -57,6 +58,7 @@ struct dalcs_builder {
 
     const struct dalcs_token *tran; /* the first .tran and .op, NULL before */
     const struct dalcs_token *op;
+    const struct dalcs_token *initial_state; /* the first IC= or .ic i(...), NULL before */
 
     struct dalcs_names initial_pairs; /* "0 4": index of the condition on nodes 0 and 4 */
     bool names_signals;               /* a .save or .print was seen */
@@ -229,6 +231,8 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, struct dalcs_diode_mod
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 bool dalcs_switch_parse_model(struct dalcs_reader *reader, struct dalcs_switch_model *model);
 void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* Warnings about models that nothing here can use, when all elements are known. */
+void dalcs_model_check(struct dalcs_builder *builder);
 
 /* One parameter=value that a model may have. */
 struct dalcs_parameter {
@@ -253,6 +257,8 @@ void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs
 void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_initial_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* A note about initial conditions that do not count without uic. */
+void dalcs_initial_check(struct dalcs_builder *builder);
 /* .save, .print, .plot and .probe */
 void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_signals_add_default(struct dalcs_builder *builder);

@@ -183,6 +183,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_card_table_check_title(builder);
     DALCS_TRY(classify_cards(builder, class_of));
     DALCS_TRY(read_cards(builder, class_of));
+    dalcs_model_check(builder);
     check_presence(builder);
     if (builder->n_signals == 0) {
         dalcs_signals_add_default(builder);
@@ -196,6 +197,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
         dalcs_coupling_check(builder);
         dalcs_source_check(builder);
         dalcs_topology_check(builder);
+        dalcs_initial_check(builder);
     }
     return builder->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
 }

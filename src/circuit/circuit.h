@@ -106,8 +106,9 @@ struct dalcs_circuit {
     bool operating_point; /* .op */
 
     struct dalcs_circuit_options {
-        double reltol, abstol, vntol; /* 0: not given */
-        const char *method;           /* NULL: not given */
+        double reltol, abstol, vntol;          /* 0: not given */
+        struct dalcs_location tolerance_where; /* of the first of these */
+        const char *method;                    /* NULL: not given */
         struct dalcs_location method_where;
         double step; /* 0: not given */
     } options;

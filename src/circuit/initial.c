@@ -78,7 +78,7 @@ static bool read_voltage(struct dalcs_reader *reader, const struct dalcs_token *
     return true;
 }
 
-static bool read_current(struct dalcs_reader *reader) {
+static bool read_current(struct dalcs_reader *reader, const struct dalcs_token *place) {
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *name;
     double value;
@@ -106,6 +106,7 @@ static bool read_current(struct dalcs_reader *reader) {
     }
     device->has_initial = true;
     device->initial = value;
+    builder->initial_state = builder->initial_state != NULL ? builder->initial_state : place;
     return true;
 }
 
@@ -122,8 +123,25 @@ void dalcs_initial_parse(struct dalcs_builder *builder, const struct dalcs_card 
             dalcs_reader_missing(&reader, "'('");
             return;
         }
-        if (!(is_voltage ? read_voltage(&reader, place) : read_current(&reader))) {
+        if (!(is_voltage ? read_voltage(&reader, place) : read_current(&reader, place))) {
             return;
         }
+    }
+}
+
+void dalcs_initial_check(struct dalcs_builder *builder) {
+    const struct dalcs_transient *transient = &builder->circuit->transient;
+    if (transient->present && transient->use_initial_conditions) {
+        return;
+    }
+    if (builder->initial_state != NULL) {
+        dalcs_builder_note(builder, builder->initial_state,
+                           transient->present ? "write 'uic' on .tran to start from it" : NULL,
+                           "IC= and .ic i(...) count only with 'uic' on .tran; the states here are "
+                           "those of the operating point");
+    }
+    if (!transient->present && builder->n_initial_conditions > 0) {
+        dalcs_diag_add(builder->diag, DALCS_NOTE, &builder->initial_condition[0].where, NULL,
+                       ".ic v(...) counts only for .tran; .op does not hold it");
     }
 }

@@ -172,13 +172,19 @@ void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *c
         return;
     }
     model->kind = known->kind;
-    if (known->kind == DALCS_MODEL_OTHER) {
-        dalcs_builder_warn(builder, type, NULL, "%s models are not supported: '%s' is ignored",
-                           known->what, name->text);
-        return;
-    }
-    if (!read_parameters(&reader, model)) {
+    if (known->kind != DALCS_MODEL_OTHER && !read_parameters(&reader, model)) {
         model->kind = DALCS_MODEL_WRONG;
+    }
+}
+
+void dalcs_model_check(struct dalcs_builder *builder) {
+    for (int k = 0; k < builder->n_models; k++) {
+        const struct dalcs_model *model = &builder->model[k];
+        if (model->kind == DALCS_MODEL_OTHER && !model->was_refused) {
+            dalcs_builder_warn(builder, model->type, NULL,
+                               "%s models are not supported: '%s' is ignored",
+                               find_type(model->type->text)->what, model->name->text);
+        }
     }
 }
 
@@ -198,11 +204,12 @@ int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *na
         }
         return -1;
     }
-    const struct dalcs_model *model = &builder->model[index];
+    struct dalcs_model *model = &builder->model[index];
     if (model->kind == DALCS_MODEL_WRONG) {
         return -1;
     }
     if (model->kind != kind) {
+        model->was_refused = true;
         dalcs_builder_error(builder, name, NULL, "model '%s' is of type %s, here %s is wanted",
                             name->text, model->type->text, kind == DALCS_MODEL_DIODE ? "D" : "SW");
         return -1;

@@ -75,9 +75,13 @@ static bool read_method(struct dalcs_reader *reader) {
 }
 
 /* The value of a known option; `=` is optional, as in SPICE. */
-static bool read_ours(struct dalcs_reader *reader, const char *name) {
+static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *token) {
     struct dalcs_circuit_options *options = &reader->builder->circuit->options;
+    const char *name = token->text;
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+    if (strstr(name, "tol") != NULL && options->tolerance_where.line == 0) {
+        options->tolerance_where = dalcs_builder_keep_location(reader->builder, token);
+    }
     if (strcmp(name, "reltol") == 0) {
         return read_positive(reader, DALCS_PLAIN, &options->reltol);
     }
@@ -102,7 +106,7 @@ void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card 
             return;
         }
         if (dalcs_builder_is_one_of(name->text, OURS, N_OURS)) {
-            if (!read_ours(&reader, name->text)) {
+            if (!read_ours(&reader, name)) {
                 return;
             }
             continue;

@@ -63,6 +63,7 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
         }
         const bool is_inductor = device->kind == DALCS_INDUCTOR;
         device->has_initial = true;
+        builder->initial_state = builder->initial_state != NULL ? builder->initial_state : name;
         return dalcs_reader_number(reader, is_inductor ? DALCS_CURRENT : DALCS_VOLTAGE,
                                    is_inductor ? "a current" : "a voltage", &device->initial);
     }

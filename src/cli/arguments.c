@@ -63,6 +63,23 @@ static enum dalcs_status add_output(struct dalcs_arguments *arguments, const str
     return DALCS_OK;
 }
 
+static enum dalcs_status parse_method(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *text) {
+    size_t n = 0;
+    for (; dalcs_method_name(n); n++) {
+        if (strcmp(dalcs_method_name(n), text) == 0) {
+            arguments->method = text;
+            return DALCS_OK;
+        }
+    }
+    fprintf(cli->err, "dalcs: error: --method: unknown method '%s'; the methods are:", text);
+    for (size_t i = 0; i < n; i++) {
+        fprintf(cli->err, " %s", dalcs_method_name(i));
+    }
+    fputc('\n', cli->err);
+    return DALCS_E_OPTION;
+}
+
 static enum dalcs_status parse_step(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                                     const char *text) {
     if (dalcs_parse_number(text, &arguments->step) != DALCS_OK) {
@@ -82,8 +99,7 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     case 'o':
         return add_output(arguments, cli, optarg);
     case METHOD:
-        arguments->method = optarg;
-        return DALCS_OK;
+        return parse_method(arguments, cli, optarg);
     case STEP:
         return parse_step(arguments, cli, optarg);
     case AT:

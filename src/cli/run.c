@@ -10,6 +10,7 @@
 #include "times.h"
 
 #include <math.h>
+#include <string.h>
 
 /* The state behind the sink. */
 struct run {
@@ -69,6 +70,16 @@ static enum dalcs_status progress(void *user, double time, double stop) {
 
 /* ---- Before the run ------------------------------------------------------------------------- */
 
+/* A message without a place in a file starts with what it is; the program's name goes before it. */
+static bool has_place(const char *text) {
+    static const char *const label[] = {"error: ", "warning: ", "note: "};
+    bool bare = false;
+    for (size_t i = 0; i < sizeof label / sizeof label[0] && !bare; i++) {
+        bare = strncmp(text, label[i], strlen(label[i])) == 0;
+    }
+    return !bare;
+}
+
 /* Prints the messages that came since the last call; notes are not for --quiet. */
 static void write_messages(const struct dalcs_cli *cli, const struct dalcs_session *session,
                            size_t *n_written, bool quiet) {
@@ -76,7 +87,7 @@ static void write_messages(const struct dalcs_cli *cli, const struct dalcs_sessi
         enum dalcs_level level = DALCS_LEVEL_NOTE;
         const char *text = dalcs_session_message(session, *n_written, &level);
         if (!quiet || level != DALCS_LEVEL_NOTE) {
-            fprintf(cli->err, "%s\n", text);
+            fprintf(cli->err, "%s%s\n", has_place(text) ? "" : "dalcs: ", text);
         }
     }
 }

@@ -22,6 +22,22 @@ struct dalcs_run_options dalcs_run_options_default(void) {
                                       .max_events = 1000000};
 }
 
+static const char *const METHODS[] = {"euler"};
+
+enum { N_METHODS = sizeof METHODS / sizeof METHODS[0] };
+
+const char *dalcs_method_name(size_t index) {
+    return index < N_METHODS ? METHODS[index] : NULL;
+}
+
+static bool is_method(const char *name) {
+    bool found = false;
+    for (size_t k = 0; k < N_METHODS && !found; k++) {
+        found = strcmp(METHODS[k], name) == 0;
+    }
+    return found;
+}
+
 static void option_error(struct dalcs_session *s, const char *text) {
     dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, NULL, "%s", text);
 }
@@ -29,15 +45,20 @@ static void option_error(struct dalcs_session *s, const char *text) {
 static enum dalcs_status check_options(struct dalcs_run *r) {
     struct dalcs_session *s = r->s;
     const struct dalcs_run_options *o = r->options;
-    if (o->method != NULL && strcmp(o->method, "euler") != 0) {
+    if (o->method != NULL && !is_method(o->method)) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "the methods are: euler", "unknown method '%s'",
                        o->method);
         return DALCS_E_OPTION;
     }
-    const char *wanted = s->circuit.options.method;
-    if (o->method == NULL && wanted != NULL && strcmp(wanted, "euler") != 0) {
-        dalcs_diag_add(&s->diag, DALCS_NOTE, NULL, NULL,
-                       "method=%s has no meaning here: using implicit Euler", wanted);
+    const struct dalcs_circuit_options *netlist = &s->circuit.options;
+    if (o->method == NULL && netlist->method != NULL && !is_method(netlist->method)) {
+        dalcs_diag_add(&s->diag, DALCS_NOTE, &netlist->method_where, NULL,
+                       "method=%s has no meaning here: using implicit Euler", netlist->method);
+    }
+    if (netlist->tolerance_where.line > 0) {
+        dalcs_diag_add(&s->diag, DALCS_NOTE, &netlist->tolerance_where,
+                       "choose the step with --step or .options step=",
+                       "reltol, abstol and vntol have no effect with the fixed step of euler");
     }
     if (!(o->step >= 0.0) || !isfinite(o->step)) {
         option_error(s, "the step must be positive");
@@ -112,6 +133,23 @@ static enum dalcs_status begin_plot(struct dalcs_run *r, enum dalcs_analysis ana
     return r->sink->begin(r->sink->user, plot);
 }
 
+/* Switches that no command agreed with what followed from it. */
+static void warn_of_switches(struct dalcs_run *r, const struct dalcs_component *c, long steps) {
+    if (c->delayed_commands == 0) {
+        return;
+    }
+    if (steps == 0 || c->is_static) {
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, NULL,
+                       "a switch and the voltage that controls it do not agree, open or closed; "
+                       "the values are those of its last command");
+    } else {
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, NULL,
+                       "in %ld one-step problem%s a switch and the voltage that controls it did "
+                       "not agree; its last command stood until the next one",
+                       c->delayed_commands, c->delayed_commands == 1 ? "" : "s");
+    }
+}
+
 /* The counts of one engine run into the report. */
 static void add_work(struct dalcs_run *r, const struct dalcs_euler *e) {
     struct dalcs_report *report = &r->s->report;
@@ -123,12 +161,7 @@ static void add_work(struct dalcs_run *r, const struct dalcs_euler *e) {
         report->work.factorizations += c->factorizations;
         report->work.cache_hits += c->cache_hits;
         report->work.singular += c->singular;
-        if (e->component[k].delayed_commands > 0) {
-            dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, NULL,
-                           "in %ld steps a switch and the voltage that controls it did not agree; "
-                           "its last command stood until the next step",
-                           e->component[k].delayed_commands);
-        }
+        warn_of_switches(r, &e->component[k], e->steps);
     }
     if (e->worst.worst >= report->certificate.worst) {
         const char *where = dalcs_explain_row(r->s, e->worst_system, e->worst.where);

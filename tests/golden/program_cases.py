@@ -147,16 +147,14 @@ class Usage(Case):
     def test_step_and_run(self):
         self.write(RECTIFIER)
         for step, message in [("1", "longer than the run"), ("1e-30", "too small")]:
-            done = self.dalcs("run", "a.cir", "--step", step, expect=USAGE)
-            self.assertIn(message, done.stderr)
-            self.assertEqual(self.files(), ["a.cir"])
+            self.assertIn(message, self.refused("run", "a.cir", "--step", step))
 
     def test_unknown_method(self):
         self.write(RECTIFIER)
-        done = self.dalcs("run", "a.cir", "--method", "eluer", expect=USAGE)
-        self.assertIn("eluer", done.stderr)
-        self.assertIn("euler", done.stderr)
-        self.assertEqual(self.files(), ["a.cir"])
+        message = self.refused("run", "a.cir", "--method", "eluer")
+        self.assertIn("unknown method 'eluer'; the methods are: euler\n", message)
+        self.write(MISTAKE)  # which is not read
+        self.assertEqual(self.refused("run", "a.cir", "--method", "eluer"), message)
 
 
 class Results(Case):
@@ -294,6 +292,29 @@ class Summary(Case):
         self.write(RECTIFIER.replace(".tran", ".options method=gear\n.tran"))
         self.assertIn("note: ", self.dalcs("run", "a.cir").stderr)
         self.assertEqual(self.dalcs("run", "a.cir", "-q").stderr, "")
+
+    def test_tolerances(self):
+        """One note, however many of them there are."""
+        self.write(RECTIFIER.replace(".tran", ".options method=euler reltol=1e-4\n"
+                                     ".options vntol=1u abstol=1p\n.tran"))
+        done = self.dalcs("run", "a.cir")
+        self.assertIn("a.cir:6:23: note: reltol, abstol and vntol have no effect with the fixed "
+                      "step of euler\n", done.stderr)
+        self.assertEqual(done.stderr.count("note: "), 1)
+
+    def test_switches_that_never_agree(self):
+        """A switch that takes away what holds it closed, with and without another step to come."""
+        flutter = ("a switch that opens itself\nV1 a 0 1\nR1 a b 1\nS1 b 0 b 0 m\n"
+                   ".model m SW(Vt=0.5)\n{}\n.end\n")
+        self.write(flutter.format(".op"))
+        done = self.dalcs("run", "a.cir", "-q")
+        self.assertEqual(done.stderr, "dalcs: warning: a switch and the voltage that controls it "
+                         "do not agree, open or closed; the values are those of its last command\n")
+        self.write(flutter.format("C1 a c 1n\nV2 c 0 SIN(0 1 1k)\nR2 c 0 1\n.tran 100u 200u"))
+        done = self.dalcs("run", "a.cir", "-q")
+        self.assertRegex(done.stderr, r"^dalcs: warning: in \d+ one-step problems a switch and the "
+                         r"voltage that controls it did not agree; its last command stood until "
+                         r"the next one\n$")
 
     def test_warnings_are_for_quiet(self):
         done = self.dalcs("run", self.write(POINT), "-q", "--step", "1u")
