@@ -52,8 +52,12 @@ static struct scales driving_scales(const struct dalcs_osnsp *p, const double *u
     return (struct scales){largest[0], largest[1]};
 }
 
-/* Scales reach into the other unit no further than what drives the circuit could raise there: a false
- * answer, with 1e11 A around a loop of sources that clash, must not vouch for its own residual. */
+/* An answer this many times what drives the circuit could raise is one that runs away. */
+static const double runaway = 1e9;
+
+/* Scales reach into the other unit no further than what drives the circuit could raise there, and not
+ * far beyond it in their own: a false answer, with 1e12 A around a loop of sources that clash, must
+ * not vouch for its own residual. */
 static struct scales physical_scales(const struct dalcs_osnsp *p, const double *u,
                                      const double *y) {
     const struct dalcs_step_form *f = p->form[0];
@@ -66,6 +70,8 @@ static struct scales physical_scales(const struct dalcs_osnsp *p, const double *
     }
     double raised_volt = drive.volt + drive.ampere / f->least_conductance;
     double raised_ampere = drive.ampere + drive.volt * f->most_conductance;
+    largest[0] = largest[0] < runaway * raised_volt ? largest[0] : runaway * raised_volt;
+    largest[1] = largest[1] < runaway * raised_ampere ? largest[1] : runaway * raised_ampere;
     raised_volt = raised_volt < largest[0] ? raised_volt : largest[0];
     raised_ampere = raised_ampere < largest[1] ? raised_ampere : largest[1];
     double volt = f->ampere_in_volts * raised_ampere;

@@ -9,9 +9,6 @@
 /* Rounds without fewer wrong signs before pivots become single (Judice and Pires 1994). */
 enum { PATIENCE = 10 };
 
-/* Pairs up to which a system that pivoting cannot solve is searched mode by mode. */
-enum { ENUMERATION_LIMIT = 12 };
-
 /* Iterative refinements of an answer whose residual is too large. */
 enum { MAX_REFINEMENTS = 3 };
 
@@ -257,9 +254,8 @@ static void refine(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e) {
     }
 }
 
-/* Solves and evaluates in p->mode. DALCS_SINGULAR: no plain factors and no map for this mode. */
-static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double *y,
-                                  bool *sources_clash) {
+enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, double *y,
+                                       bool *sources_clash) {
     struct dalcs_mode_entry *e;
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
     double tolerance = p->options.certificate_tolerance;
@@ -291,16 +287,12 @@ static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double
     return DALCS_OK;
 }
 
-static void flip(struct dalcs_osnsp *p, int pair) {
-    p->mode[pair / 64] ^= (uint64_t)1 << (pair % 64);
-}
-
 enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
     int fewest = p->system->n_pairs + 1;
     int patience = PATIENCE;
     for (int round = 0; round <= limit; round++) {
         bool sources_clash;
-        DALCS_TRY(try_mode(p, u, y, &sources_clash));
+        DALCS_TRY(dalcs_osnsp_try_mode(p, u, y, &sources_clash));
         if (p->n_violating == 0) {
             if (sources_clash) {
                 dalcs_witness_from_clash(p);
@@ -318,44 +310,12 @@ enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, doub
         }
         if (patience > 0) {
             for (int k = 0; k < p->n_violating; k++) {
-                flip(p, p->violating[k]);
+                dalcs_osnsp_flip(p, p->violating[k]);
             }
         } else {
-            flip(p, p->violating[p->n_violating - 1]); /* Murty: ascending list, largest index */
+            dalcs_osnsp_flip(
+                p, p->violating[p->n_violating - 1]); /* Murty: ascending list, largest index */
         }
-    }
-    return DALCS_NOT_CONVERGED;
-}
-
-/* Every mode of the diodes, from the present one on. */
-static enum dalcs_status enumerate(struct dalcs_osnsp *p, const double *u, double *y) {
-    const struct dalcs_system *s = p->system;
-    int diode[ENUMERATION_LIMIT];
-    int n = 0;
-    for (int d = 0; d < s->n_pairs; d++) {
-        if (s->pair[d].kind == DALCS_PAIR_DIODE) {
-            if (n == ENUMERATION_LIMIT) {
-                return DALCS_NOT_CONVERGED;
-            }
-            diode[n++] = d;
-        }
-    }
-    for (unsigned code = 1; code <= 1u << n; code++) {
-        /* Gray code: one flip from mode to mode, and the last flip closes the cycle. */
-        int bit = code < 1u << n ? __builtin_ctz(code) : n - 1;
-        if (n > 0) {
-            flip(p, diode[bit]);
-        }
-        bool sources_clash;
-        enum dalcs_status status = try_mode(p, u, y, &sources_clash);
-        if (status == DALCS_OK && p->n_violating == 0 && !sources_clash &&
-            p->certificate.worst <= p->options.certificate_tolerance) {
-            return DALCS_OK;
-        }
-        if (status < DALCS_OK) {
-            return status;
-        }
-        p->counters.pivots++;
     }
     return DALCS_NOT_CONVERGED;
 }
@@ -368,15 +328,15 @@ static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, d
     }
     if (status > DALCS_OK && status != DALCS_INFEASIBLE) {
         status = dalcs_proximal_solve(p, u, y);
-        if (status > DALCS_OK) {
-            enum dalcs_status otherwise = enumerate(p, u, y);
-            if (otherwise == DALCS_NOT_CONVERGED && !p->system->monotone) {
-                dalcs_witness_from_modes(p);
-                otherwise = DALCS_INFEASIBLE;
-            }
-            /* a witness of a monotone system stands: no regular mode contradicts it */
-            status = otherwise == DALCS_NOT_CONVERGED ? status : otherwise;
+    }
+    if (status > DALCS_OK) {
+        enum dalcs_status otherwise = dalcs_enumerate(p, u, y);
+        if (otherwise == DALCS_INFEASIBLE) {
+            dalcs_witness_from_modes(p);
         }
+        /* a ray proves nothing where the circuit is not passive */
+        bool decided = otherwise != DALCS_NOT_CONVERGED || !p->system->monotone;
+        status = decided ? otherwise : status;
     }
     return status;
 }
@@ -388,6 +348,9 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
         DALCS_TRY(dalcs_forms_get(p, sigma));
     }
     enum dalcs_status status = solve_somehow(p, u, y);
+    if (status == DALCS_INFEASIBLE) {
+        dalcs_witness_complete(p);
+    }
     p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;
     return status;
 }

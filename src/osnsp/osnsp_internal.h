@@ -86,6 +86,17 @@ enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, int rung,
 /* w of a pair in balanced units, from p->scaled and p->right. */
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair);
 
+/* The proximal iteration in p->mode alone. DALCS_NOT_CONVERGED: no certified answer in this mode. */
+enum dalcs_status dalcs_proximal_in_mode(struct dalcs_osnsp *p, const double *u,
+                                         double *y) DALCS_MUST_CHECK;
+
+/* ---- enumerate.c --------------------------------------------------------------------------- */
+
+/* Every mode of a small system's diodes. DALCS_INFEASIBLE: the system is not passive and none fits;
+ * DALCS_NOT_CONVERGED: there are too many, or the system is passive and no regular one fits. */
+enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u,
+                                  double *y) DALCS_MUST_CHECK;
+
 /* ---- ties.c -------------------------------------------------------------------------------- */
 
 /* Makes a certified answer y of a regular mode with ties the least-norm one if there are several. */
@@ -114,7 +125,18 @@ void dalcs_witness_from_clash(struct dalcs_osnsp *p);
 /* Every pair of a system that no mode fits. */
 void dalcs_witness_from_modes(struct dalcs_osnsp *p);
 
+/* Names something where the others found no name. */
+void dalcs_witness_complete(struct dalcs_osnsp *p);
+
 /* ---- osnsp.c ------------------------------------------------------------------------------- */
+
+/* Solves and evaluates in p->mode. DALCS_SINGULAR: no plain factors and no map for this mode. */
+enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, double *y,
+                                       bool *sources_clash) DALCS_MUST_CHECK;
+
+static inline void dalcs_osnsp_flip(struct dalcs_osnsp *p, int pair) {
+    p->mode[pair / 64] ^= (uint64_t)1 << (pair % 64);
+}
 
 /* From p->mode by block principal pivoting over regular modes, at most `limit` changes. DALCS_SINGULAR
  * or DALCS_NOT_CONVERGED: try otherwise. */

