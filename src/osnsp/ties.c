@@ -14,6 +14,10 @@
  * regularisation, less. */
 static const double moved_part = 1e-2;
 
+/* The push over the largest current or voltage of a pair: small, for a choice may end soon; and where
+ * all are 0, nothing is smaller. */
+static const double push_part = 1e-3;
+
 static enum dalcs_status is_singular(struct dalcs_osnsp *p, int byte, bool *singular) {
     struct dalcs_mode_entry *e;
     memset(p->mode, byte, (size_t)p->n_words * sizeof(*p->mode));
@@ -62,27 +66,39 @@ static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u,
                                          bool *has_choice) {
     const struct dalcs_step_form *f = p->form[0];
     double push = 0.0;
+    double push_w = 0.0;
     dalcs_osnsp_scale(p, y);
     dalcs_csr_multiply(&f->R, u, p->right);
-    for (int i = 0; i < f->n + f->n_pairs; i++) {
-        p->centre[i] = p->scaled[i];
-        push = fmax(push, fabs(p->scaled[i]));
-    }
+    memcpy(p->centre, p->scaled, (size_t)(f->n + f->n_pairs) * sizeof(double));
     for (int d = 0; d < f->n_pairs; d++) {
         p->centre_w[d] = f->row_scale[f->n + d] * p->w[d];
-        if (p->tied[d]) {
-            p->centre[f->n + d] += push;
-            p->centre_w[d] += push;
-        }
+        push = fmax(push, push_part * fabs(p->scaled[f->n + d]));
+        push_w = fmax(push_w, push_part * fabs(p->centre_w[d]));
+    }
+    for (int d = 0; d < f->n_pairs; d++) {
+        p->centre[f->n + d] += p->tied[d] ? push : 0.0;
+        p->centre_w[d] += p->tied[d] ? push_w : 0.0;
     }
     bool mode_changed;
     enum dalcs_status status = dalcs_proximal_pivot(p, DALCS_N_WEIGHTS, &mode_changed);
     *has_choice = false;
     for (int d = 0; status == DALCS_OK && d < f->n_pairs && !*has_choice; d++) {
-        double moved = fmax(p->scaled[f->n + d], dalcs_proximal_scaled_w(p, d));
-        *has_choice = p->tied[d] && moved > moved_part * push;
+        bool moves = (push > 0.0 && p->scaled[f->n + d] > moved_part * push) ||
+                     (push_w > 0.0 && dalcs_proximal_scaled_w(p, d) > moved_part * push_w);
+        *has_choice = p->tied[d] && moves;
     }
     return status;
+}
+
+/* Did the push make another pair change sides? Then there is a choice, now as small as that pair's
+ * distance from doing so: as where a diode has just begun to block. */
+static bool was_stopped(const struct dalcs_osnsp *p) {
+    bool stopped = false;
+    for (int d = 0; d < p->system->n_pairs && !stopped; d++) {
+        uint64_t changed = p->mode[d / 64] ^ p->tied_mode[d / 64];
+        stopped = !p->tied[d] && (changed >> (d % 64) & 1) != 0;
+    }
+    return stopped;
 }
 
 enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, double *y) {
@@ -107,9 +123,11 @@ enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, doub
     enum dalcs_status status = DALCS_OK;
     if (e->tie != tie) {
         status = look_for_choice(p, u, y, &has_choice);
+        bool is_final = has_choice || !was_stopped(p);
+        has_choice = has_choice || !is_final;
         memcpy(p->mode, p->tied_mode, mode_bytes);
         DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
-        e->tie = tie;
+        e->tie = is_final ? tie : 0;
         e->tie_has_choice = has_choice;
     }
     if (status == DALCS_OK && has_choice) {
