@@ -24,6 +24,10 @@ static const double residual_limit = 2e-13;
  * unit. */
 static const double answer_limit = 1e-9;
 
+/* Between two choices among several answers: the regularisation that makes them is 1e-8 of balanced
+ * weights that differ by up to 1e3. */
+static const double choice_limit = 1e-4;
+
 enum { REPEATS = 6 };
 
 static const char *const family_name[] = {"integer", "spread", "switches", "controlled"};
@@ -131,6 +135,36 @@ static double difference(const struct dalcs_system *s, const double *a, const do
     return fmax(apart[0], apart[1]) / scale;
 }
 
+static double reverse_voltage(const struct dalcs_system *s, int pair, const double *u,
+                              const double *y) {
+    double w = 0.0;
+    for (int k = s->C.p[pair]; k < s->C.p[pair + 1]; k++) {
+        w += s->C.x[k] * y[s->C.j[k]];
+    }
+    for (int k = s->F.p[pair]; k < s->F.p[pair + 1]; k++) {
+        w += s->F.x[k] * u[s->n_x + s->F.j[k]];
+    }
+    return w;
+}
+
+/* In lambda and w of diodes, relative to the largest of its kind. */
+static double difference_of_pairs(const struct dalcs_system *s, const double *u, const double *a,
+                                  const double *b) {
+    int n_equations = dalcs_system_n_equations(s);
+    double largest[2] = {0.0, 0.0};
+    double apart[2] = {0.0, 0.0};
+    for (int d = 0; d < s->n_pairs; d++) {
+        double first[2] = {a[n_equations + d], reverse_voltage(s, d, u, a)};
+        double second[2] = {b[n_equations + d], reverse_voltage(s, d, u, b)};
+        for (int i = 0; i < 2 && s->pair[d].kind == DALCS_PAIR_DIODE; i++) {
+            largest[i] = fmax(largest[i], fmax(fabs(first[i]), fabs(second[i])));
+            apart[i] = fmax(apart[i], fabs(first[i] - second[i]));
+        }
+    }
+    double scale = fmax(1.0, fmax(largest[0], largest[1]));
+    return fmax(apart[0], apart[1]) / scale;
+}
+
 /* The same object again, from the mode it ended in (a recurring mode gets its map), then from all
  * closed and from all open. */
 static void check_repeated(const struct problem *p, const struct engine_answer *first) {
@@ -156,6 +190,10 @@ static void check_repeated(const struct problem *p, const struct engine_answer *
         double apart = difference(s, y, first->y);
         if (p->truth.unique && p->family != SKETCH_SPREAD && apart > answer_limit) {
             fail(p, "a repeated solve differs", apart);
+        }
+        double choice = difference_of_pairs(s, p->u, y, first->y);
+        if (s->monotone && p->family != SKETCH_SPREAD && choice > choice_limit) {
+            fail(p, "the choice among answers depends on the past", choice);
         }
     }
     dalcs_osnsp_finish(&osnsp);
