@@ -19,10 +19,16 @@ static double tolerance(double t, double delay) {
 
 /* ---- SIN ----------------------------------------------------------------------------------- */
 
+/* The nearest whole number: a sum with no bits left for a fraction, several times faster than a call
+ * of floor. */
+static double nearest_whole(double x) {
+    return fabs(x) < 0x1p51 ? (x + 0x1.8p52) - 0x1.8p52 : x;
+}
+
 /* sin(2 pi x), exact at quarters: reducing x rather than 2 pi x makes the zeros of a mains voltage
  * zeros, which is where rectifiers are most degenerate. */
 static double sin_of_cycles(double x) {
-    double r = x - floor(x + 0.5); /* -1/2 .. 1/2 */
+    double r = x - nearest_whole(x); /* -1/2 .. 1/2 */
     if (r > 0.25) {
         r = 0.5 - r;
     } else if (r < -0.25) {
@@ -40,7 +46,7 @@ static double sine_value(const struct dalcs_stimulus *s, double t) {
     /* The product's rounding error, which grows with the number of cycles, is put back. */
     const double cycles = s->u.sine.frequency * since;
     const double lost = fma(s->u.sine.frequency, since, -cycles);
-    double value = s->u.sine.amplitude * sin_of_cycles((cycles - floor(cycles)) + (phase + lost));
+    double value = s->u.sine.amplitude * sin_of_cycles((cycles - nearest_whole(cycles)) + (phase + lost));
     if (s->u.sine.damping != 0) {
         value *= exp(-s->u.sine.damping * since);
     }
