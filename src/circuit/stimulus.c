@@ -46,7 +46,8 @@ static double sine_value(const struct dalcs_stimulus *s, double t) {
     /* The product's rounding error, which grows with the number of cycles, is put back. */
     const double cycles = s->u.sine.frequency * since;
     const double lost = fma(s->u.sine.frequency, since, -cycles);
-    double value = s->u.sine.amplitude * sin_of_cycles((cycles - nearest_whole(cycles)) + (phase + lost));
+    double value =
+        s->u.sine.amplitude * sin_of_cycles((cycles - nearest_whole(cycles)) + (phase + lost));
     if (s->u.sine.damping != 0) {
         value *= exp(-s->u.sine.damping * since);
     }

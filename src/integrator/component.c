@@ -108,8 +108,7 @@ void dalcs_component_look_ahead(const struct dalcs_component *c, double t, doubl
     const struct dalcs_system *s = c->system;
     for (int i = 0; i < c->n_varying; i++) {
         int k = c->varying[i];
-        u[s->n_x + k] =
-            dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, DALCS_RIGHT);
+        u[s->n_x + k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, DALCS_RIGHT);
     }
 }
 

@@ -50,6 +50,10 @@ static void list_runs(struct dalcs_osnsp *p) {
     }
 }
 
+/* A threshold says little about the voltages of a circuit (Vrev = 1 MV: never); but where all else is
+ * 0, it tells rounding from an answer. */
+static const double threshold_part = 1e-9;
+
 /* What sources and thresholds ask for counts as a current or voltage even where the answer is 0. */
 static enum dalcs_status list_drives(struct dalcs_osnsp *p) {
     const struct dalcs_system *s = p->system;
@@ -65,7 +69,8 @@ static enum dalcs_status list_drives(struct dalcs_osnsp *p) {
         }
     }
     for (int k = 0; k < s->F.p[s->n_pairs]; k++) {
-        p->drive[p->n_drives++] = (struct dalcs_drive){s->n_x + s->F.j[k], false, fabs(s->F.x[k])};
+        p->drive[p->n_drives++] = (struct dalcs_drive){s->n_x + s->F.j[k], false,
+                                                       threshold_part * fabs(s->F.x[k])};
     }
     return DALCS_OK;
 }

@@ -12,6 +12,7 @@ struct dalcs_schedule {
         DALCS_ON_GRID,    /* start + k * step, and the stop time */
         DALCS_AT_TIMES    /* the listed times */
     } kind;
+
     double start, step, stop;
     const double *at; /* [n_at] ascending, borrowed */
     size_t n_at;

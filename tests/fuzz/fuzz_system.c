@@ -38,7 +38,8 @@ static bool is_moderate(const struct dalcs_csr *a, double factor) {
 static void check_rows(const struct dalcs_system *s, double sigma, const double *u,
                        const double *y) {
     double largest = 0.0;
-    if (!is_moderate(&s->A, 1.0) || !is_moderate(&s->C, 1.0) || !is_moderate(&s->P, sigma)) {
+    if (!is_moderate(&s->A, 1.0) || !is_moderate(&s->C, 1.0) || !is_moderate(&s->P, sigma) ||
+        !is_moderate(&s->E, 1.0) || !is_moderate(&s->F, 1.0)) {
         return;
     }
     for (int c = 0; c < dalcs_system_n_columns(s); c++) {

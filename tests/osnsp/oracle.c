@@ -55,7 +55,7 @@ static void write_rows(struct tree *t, double sigma, const double *u) {
         double right;
         if (i < n_equations) {
             right = row_times_inputs(&s->E, row, inputs);
-            for (int k = s->P.p[row]; row < s->n_x && k < s->P.p[row + 1]; k++) {
+            for (int k = row < s->n_x ? s->P.p[row] : 0; row < s->n_x && k < s->P.p[row + 1]; k++) {
                 dense[s->P.j[k]] += sigma * s->P.x[k];
                 right += sigma * s->P.x[k] * u[s->P.j[k]];
             }

@@ -17,9 +17,9 @@
 
 struct oracle_answer {
     bool feasible;
-    bool unique;  /* every solution has the same y */
-    int n_modes;  /* modes that have a solution */
-    double *y;    /* [n_columns] one solution; free() it */
+    bool unique; /* every solution has the same y */
+    int n_modes; /* modes that have a solution */
+    double *y;   /* [n_columns] one solution; free() it */
 };
 
 /* The problem of system at sigma, u; closed[n_pairs] tells the switches, diodes are free. */

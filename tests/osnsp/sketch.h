@@ -16,9 +16,9 @@ uint64_t splitmix_next(struct splitmix *r);
 int splitmix_below(struct splitmix *r, int n);
 
 enum sketch_family {
-    SKETCH_INTEGER, /* ohms, volts, amperes, farads and henries are small integers */
-    SKETCH_SPREAD,  /* 1e-9 to 1e9 ohm, C/h and L/h 1e-6 to 1e6 */
-    SKETCH_SWITCHES, /* the first, with ideal switches in commanded states */
+    SKETCH_INTEGER,    /* ohms, volts, amperes, farads and henries are small integers */
+    SKETCH_SPREAD,     /* 1e-9 to 1e9 ohm, C/h and L/h 1e-6 to 1e6 */
+    SKETCH_SWITCHES,   /* the first, with ideal switches in commanded states */
     SKETCH_CONTROLLED, /* the first, with controlled sources: not passive */
     SKETCH_N_FAMILIES
 };
@@ -31,13 +31,13 @@ enum {
 };
 
 struct sketch_element {
-    char kind;     /* r l c v i d s e f g h k: also the first letter of its name */
-    int node[4];   /* k: the two coils; f, h: the controlling v in node[2] */
-    double value;  /* V, A, ohm, F, H, gain or k */
+    char kind;      /* r l c v i d s e f g h k: also the first letter of its name */
+    int node[4];    /* k: the two coils; f, h: the controlling v in node[2] */
+    double value;   /* V, A, ohm, F, H, gain or k */
     double initial; /* IC= of c and l */
-    int model;     /* of d: ideal, with Ron and Vfwd, with Roff, with Vrev; of s: ideal, with Ron */
-    bool on;       /* s: commanded state */
-    bool saved;    /* its current is asked for */
+    int model;  /* of d: ideal, with Ron and Vfwd, with Roff, with Vrev; of s: ideal, with Ron */
+    bool on;    /* s: commanded state */
+    bool saved; /* its current is asked for */
 };
 
 struct sketch {
