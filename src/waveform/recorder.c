@@ -156,8 +156,9 @@ enum dalcs_status dalcs_recorder_step(struct dalcs_recorder *r, const struct dal
         dalcs_recorder_evaluate(r->network, e, r->now);
         return emit(r, e->t, r->now);
     }
-    /* Signals are needed at both ends of a step that an output time falls into. */
-    if (due > e->t + 2.0 * e->grid.h) {
+    /* Signals are needed at both ends of a step that an output time falls into, and before a
+     * discontinuity. */
+    if (due > e->t + 2.0 * e->grid.h && !e->at_jump) {
         r->have_before = false;
         return DALCS_OK;
     }

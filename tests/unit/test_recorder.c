@@ -107,6 +107,17 @@ START_TEST(test_discontinuity) {
         ck_assert_double_eq(row_value[k], expected[k][1]);
     }
     finish();
+    /* Also where no row is due for many steps. */
+    const struct dalcs_schedule sparse = {.kind = DALCS_ON_GRID, .step = 0.1};
+    ck_assert_int_eq(run(text, 1e-3, 0.1, &sparse, 0), DALCS_OK);
+    static const double sides[][2] = {{0.0, 1.0},   {0.025, 1.0}, {0.025, 5.0},
+                                      {0.045, 5.0}, {0.045, 1.0}, {0.1, 1.0}};
+    ck_assert_int_eq(n_rows, 6);
+    for (int k = 0; k < 6; k++) {
+        ck_assert_double_eq_tol(row_time[k], sides[k][0], 1e-15);
+        ck_assert_double_eq(row_value[k], sides[k][1]);
+    }
+    finish();
 }
 
 END_TEST
