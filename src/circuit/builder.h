@@ -212,7 +212,6 @@ void dalcs_reader_unexpected(struct dalcs_reader *reader);
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind);
 void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
-void dalcs_coupling_check(struct dalcs_builder *builder);
 void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                         enum dalcs_device_kind kind);
 /* What needs .tran: a missing frequency, periods too short to resolve. */

@@ -194,7 +194,6 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     DALCS_TRY(collect(builder));
     /* Checks of the whole make no sense of a half. */
     if (!builder->failed && !builder->netlist->has_errors) {
-        dalcs_coupling_check(builder);
         dalcs_source_check(builder);
         dalcs_topology_check(builder);
         dalcs_initial_check(builder);

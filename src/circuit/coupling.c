@@ -1,17 +1,12 @@
 /* coupling.c - K: mutual inductance k sqrt(L1 L2) of two coils.
  *
- * Coils coupled among each other must have an inductance matrix that stores no negative energy; the
- * matrix of the factors k, with 1 on its diagonal, is checked for that. */
+ * Whether three or more coils can be coupled like this is for the equations to say (inductance.c). */
 #include "builder.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char USAGE[] = "a coupling is: Kname Lfirst Lsecond k, with k from -1 to 1";
-
-/* Groups of more coils than this are not checked: the check is cubic. */
-enum { MOST_COILS = 200 };
 
 static int find_coil(struct dalcs_builder *builder, const struct dalcs_token *name) {
     const int device = dalcs_builder_find_device(builder, name);
@@ -106,145 +101,4 @@ void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card
     if (read_coupling(&reader, place, coupling)) {
         circuit->n_couplings++;
     }
-}
-
-/* ---- Can these coils exist? ---------------------------------------------------------------- */
-
-/* Coupled coils in groups, each joined to the others of its group by some chain of couplings. */
-struct groups {
-    int *parent;   /* [n_devices] another coil of the group, itself for the group's first */
-    int *position; /* [n_devices] place in its group's matrix, -1: not placed yet */
-    int *size;     /* [n_devices] of the group, at its first coil */
-    int *head;     /* [n_devices] the group's last coupling, at its first coil, -1 for none */
-    int *next;     /* [n_couplings] another coupling of the group, -1 at the end */
-};
-
-static int first_of(const struct groups *groups, int coil) {
-    while (groups->parent[coil] != coil) {
-        groups->parent[coil] = groups->parent[groups->parent[coil]];
-        coil = groups->parent[coil];
-    }
-    return coil;
-}
-
-static void place(struct groups *groups, int coil) {
-    if (groups->position[coil] < 0) {
-        groups->position[coil] = groups->size[first_of(groups, coil)]++;
-    }
-}
-
-/* Is the symmetric matrix A (n by n, 1 on its diagonal) free of negative eigenvalues? Cholesky with
- * the largest pivot first; A is overwritten. Coils coupled with k = 1 make it singular, so rounding
- * of n numbers of size 1 must pass. */
-static bool is_semidefinite(double *A, int n) {
-    const double rounding = 1e-9;
-    for (int step = 0; step < n; step++) {
-        int pivot = step;
-        for (int k = step; k < n; k++) {
-            if (A[k * n + k] < -rounding) {
-                return false;
-            }
-            pivot = A[k * n + k] > A[pivot * n + pivot] ? k : pivot;
-        }
-        for (int k = 0; k < n; k++) { /* swap rows, then columns */
-            const double t = A[step * n + k];
-            A[step * n + k] = A[pivot * n + k];
-            A[pivot * n + k] = t;
-        }
-        for (int k = 0; k < n; k++) {
-            const double t = A[k * n + step];
-            A[k * n + step] = A[k * n + pivot];
-            A[k * n + pivot] = t;
-        }
-        const double d = A[step * n + step];
-        for (int i = step + 1; i < n; i++) {
-            /* No diagonal left: what remains beside it must vanish too. */
-            if (d <= rounding && fabs(A[i * n + step]) > sqrt(rounding)) {
-                return false;
-            }
-            for (int j = step + 1; j < n && d > rounding; j++) {
-                A[i * n + j] -= A[i * n + step] * A[step * n + j] / d;
-            }
-        }
-    }
-    return true;
-}
-
-/* The group whose first coil is `root`. */
-static enum dalcs_status check_group(struct dalcs_builder *builder, const struct groups *groups,
-                                     int root) {
-    const struct dalcs_circuit *circuit = builder->circuit;
-    const int n = groups->size[root];
-    if (n < 3 || n > MOST_COILS) {
-        return DALCS_OK;
-    }
-    double *A = dalcs_alloc((size_t)n * (size_t)n, sizeof *A);
-    if (A == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    for (int k = 0; k < n; k++) {
-        A[k * n + k] = 1;
-    }
-    for (int k = groups->head[root]; k >= 0; k = groups->next[k]) {
-        const int i = groups->position[circuit->coupling[k].inductor[0]];
-        const int j = groups->position[circuit->coupling[k].inductor[1]];
-        A[i * n + j] = A[j * n + i] = circuit->coupling[k].k;
-    }
-    if (!is_semidefinite(A, n)) {
-        dalcs_builder_warn(builder, builder->device_token[root],
-                           "of three coils, k12 = k13 = 1 leaves only k23 = 1",
-                           "the %d coils coupled with '%s' cannot exist: their inductance matrix "
-                           "has a negative eigenvalue, and they can give more energy than they got",
-                           n, circuit->device[root].name);
-    }
-    free(A);
-    return DALCS_OK;
-}
-
-static enum dalcs_status check_groups(struct dalcs_builder *builder, struct groups *groups) {
-    const struct dalcs_circuit *circuit = builder->circuit;
-    for (int k = 0; k < circuit->n_devices; k++) {
-        groups->parent[k] = k;
-        groups->position[k] = -1;
-        groups->head[k] = -1;
-    }
-    for (int k = 0; k < circuit->n_couplings; k++) {
-        const int *coil = circuit->coupling[k].inductor;
-        groups->parent[first_of(groups, coil[1])] = first_of(groups, coil[0]);
-    }
-    for (int k = 0; k < circuit->n_couplings; k++) {
-        const int root = first_of(groups, circuit->coupling[k].inductor[0]);
-        place(groups, circuit->coupling[k].inductor[0]);
-        place(groups, circuit->coupling[k].inductor[1]);
-        groups->next[k] = groups->head[root];
-        groups->head[root] = k;
-    }
-    for (int k = 0; k < circuit->n_devices; k++) {
-        if (groups->size[k] > 0) {
-            DALCS_TRY(check_group(builder, groups, k));
-        }
-    }
-    return DALCS_OK;
-}
-
-void dalcs_coupling_check(struct dalcs_builder *builder) {
-    const int n_devices = builder->circuit->n_devices;
-    const int n_couplings = builder->circuit->n_couplings;
-    if (n_couplings < 2) {
-        return;
-    }
-    int *memory = dalcs_alloc(4 * (size_t)n_devices + (size_t)n_couplings, sizeof *memory);
-    if (memory == NULL) {
-        builder->out_of_memory = true;
-        return;
-    }
-    struct groups groups = {.parent = memory,
-                            .position = memory + n_devices,
-                            .size = memory + 2 * (size_t)n_devices,
-                            .head = memory + 3 * (size_t)n_devices,
-                            .next = memory + 4 * (size_t)n_devices};
-    if (check_groups(builder, &groups) != DALCS_OK) {
-        builder->out_of_memory = true;
-    }
-    free(memory);
 }

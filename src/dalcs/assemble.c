@@ -18,20 +18,23 @@
 #include <math.h>
 #include <stdlib.h>
 
-static double initial_voltage(const struct dalcs_circuit *c, const struct dalcs_device *d) {
+static double initial_voltage(const struct dalcs_layout *l, const struct dalcs_device *d) {
     if (d->has_initial) {
         return d->initial;
     }
+    const int *node_of = l->topology.node_of;
+    const int end[2] = {node_of[d->node[0]], node_of[d->node[1]]};
     double v[2] = {0.0, 0.0};
-    for (int k = 0; k < c->n_initial_conditions; k++) {
-        const struct dalcs_initial_condition *ic = &c->initial_condition[k];
-        if (ic->node[1] == 0) {
+    for (int k = 0; k < l->circuit->n_initial_conditions; k++) {
+        const struct dalcs_initial_condition *ic = &l->circuit->initial_condition[k];
+        const int node[2] = {node_of[ic->node[0]], node_of[ic->node[1]]};
+        if (node[1] == 0) {
             for (int e = 0; e < 2; e++) {
-                v[e] = d->node[e] == ic->node[0] ? ic->value : v[e];
+                v[e] = end[e] == node[0] ? ic->value : v[e];
             }
-        } else if (d->node[0] == ic->node[0] && d->node[1] == ic->node[1]) {
+        } else if (end[0] == node[0] && end[1] == node[1]) {
             return ic->value;
-        } else if (d->node[0] == ic->node[1] && d->node[1] == ic->node[0]) {
+        } else if (end[0] == node[1] && end[1] == node[0]) {
             return -ic->value;
         }
     }
@@ -71,7 +74,7 @@ static enum dalcs_status stamp_capacitor(struct stamps *b, int device, int fores
         DALCS_TRY(dalcs_stamp_branch_current(b, d, column, 1.0));
     }
     l->state_column[device] = x;
-    b->initial[x] = initial_voltage(l->circuit, d);
+    b->initial[x] = initial_voltage(l, d);
     return dalcs_stamp_add(&b->storage, x, x, d->value);
 }
 
@@ -85,22 +88,6 @@ static enum dalcs_status stamp_coil(struct stamps *b, int device) {
     DALCS_TRY(dalcs_stamp_add(&b->storage, x, x, d->value));
     DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, x, d->node[0], d->node[1], 1.0));
     return dalcs_stamp_branch_current(b, d, x, 1.0);
-}
-
-static double mutual(const struct dalcs_circuit *c, int first, int second) {
-    const double *value[2] = {&c->device[first].value, &c->device[second].value};
-    if (first == second) {
-        return *value[0];
-    }
-    double k = 0.0;
-    for (int i = 0; i < c->n_couplings; i++) {
-        const struct dalcs_coupling *m = &c->coupling[i];
-        if ((m->inductor[0] == first && m->inductor[1] == second) ||
-            (m->inductor[0] == second && m->inductor[1] == first)) {
-            k += m->k;
-        }
-    }
-    return k * sqrt(*value[0] * *value[1]);
 }
 
 /* All coils of a group, when its first one is met. */
@@ -118,13 +105,14 @@ static enum dalcs_status stamp_group(struct stamps *b, const struct coil_group *
                                           c->device[device].node[1], 1.0));
     }
     for (int i = 0; i < rank; i++) {
-        int first = g->device[g->split.coil[i]];
+        int first = g->split.coil[i];
+        int row = l->state_column[g->device[first]];
         for (int j = 0; j < rank; j++) {
-            int second = g->device[g->split.coil[j]];
-            double L = mutual(c, first, second);
-            DALCS_TRY(dalcs_stamp_add(&b->P, l->state_column[first], l->state_column[second], L));
-            DALCS_TRY(
-                dalcs_stamp_add(&b->storage, l->state_column[first], l->state_column[second], L));
+            int second = g->split.coil[j];
+            int column = l->state_column[g->device[second]];
+            double L = g->L[first * g->n + second];
+            DALCS_TRY(dalcs_stamp_add(&b->P, row, column, L));
+            DALCS_TRY(dalcs_stamp_add(&b->storage, row, column, L));
         }
     }
     for (int k = 0; k < n_dependent; k++) {
@@ -364,27 +352,46 @@ static enum dalcs_status stamp_references(struct stamps *b, int n_nodes, const i
     return DALCS_OK;
 }
 
-/* .ic voltages held by sources while the operating point is sought, as SPICE does. */
+/* The component that holds a .ic voltage; -1 when there is nothing to hold, because a short joins
+ * its nodes or no equation knows one of them. */
+static int holding_component(const struct dalcs_layout *l,
+                             const struct dalcs_initial_condition *ic) {
+    const struct dalcs_topology *t = &l->topology;
+    const int node[2] = {t->node_of[ic->node[0]], t->node_of[ic->node[1]]};
+    int component = -1;
+    for (int e = 0; e < 2; e++) {
+        if (node[e] != 0 && t->node_component[node[e]] < 0) {
+            return -1;
+        }
+        component = node[e] != 0 ? t->node_component[node[e]] : component;
+    }
+    return node[0] == node[1] ? -1 : component;
+}
+
+/* .ic voltages held by sources while the operating point is sought, as SPICE does. In an island that
+ * floats, the voltage of a node is that against the island's reference. */
 static enum dalcs_status stamp_clamps(struct stamps *b, int component) {
     struct dalcs_layout *l = b->layout;
     struct dalcs_system *s = b->s;
     const struct dalcs_circuit *c = l->circuit;
     for (int k = 0; k < c->n_initial_conditions; k++) {
         const struct dalcs_initial_condition *ic = &c->initial_condition[k];
-        if (l->topology.node_component[l->topology.node_of[ic->node[0]]] != component) {
+        if (holding_component(l, ic) != component) {
             continue;
         }
         int column = s->n_x + b->next_z++;
         int row = s->n_x + b->next_row++;
-        const char *name = c->node_name[ic->node[0]];
+        int first = ic->node[0];
+        int second =
+            ic->node[1] != 0 ? ic->node[1] : l->topology.reference_of[l->topology.node_of[first]];
         s->dual[row] = column;
         s->column_is_current[column] = true;
         s->row_is_current[row] = false;
-        s->column[column] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
-        s->row[row] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
-        DALCS_TRY(dalcs_stamp_leave(b, &b->A, ic->node[0], column, 1.0));
-        DALCS_TRY(dalcs_stamp_leave(b, &b->A, ic->node[1], column, -1.0));
-        DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, row, ic->node[0], ic->node[1], 1.0));
+        s->column[column] = (struct dalcs_label){".ic", DALCS_LABEL_BRANCH};
+        s->row[row] = (struct dalcs_label){".ic", DALCS_LABEL_BRANCH};
+        DALCS_TRY(dalcs_stamp_leave(b, &b->A, first, column, 1.0));
+        DALCS_TRY(dalcs_stamp_leave(b, &b->A, second, column, -1.0));
+        DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, row, first, second, 1.0));
         if (ic->value != 0.0) {
             DALCS_TRY(dalcs_triplets_add(&b->E, row, 0, -ic->value));
         }
@@ -446,8 +453,7 @@ static void count(struct stamps *b, int n_devices, const int *device, int n_node
         }
     }
     for (int k = 0; l->options->clamp_initial_conditions && k < c->n_initial_conditions; k++) {
-        int n = l->topology.node_of[c->initial_condition[k].node[0]];
-        s->n_z += l->topology.node_component[n] == component ? 1 : 0;
+        s->n_z += holding_component(l, &c->initial_condition[k]) == component ? 1 : 0;
     }
 }
 

@@ -9,7 +9,8 @@
 /* Magnetically coupled coils. */
 struct coil_group {
     int n;
-    int *device; /* [n] ascending */
+    const int *device; /* [n] ascending, in the layout's grouped_coil */
+    double *L;         /* [n][n] H */
     struct dalcs_inductance split;
 };
 
@@ -28,6 +29,7 @@ struct dalcs_layout {
     int n_groups;
     struct coil_group *group;
     int *group_of; /* [n_devices], -1 for a coil on its own */
+    int *grouped_coil;
 };
 
 /* Assembles component `index` from its devices (ascending) into *system (zeroed on failure) and

@@ -30,7 +30,12 @@ enum dalcs_status dalcs_inductance_split(struct dalcs_inductance *group, int n, 
     lapack_int rank = 0;
     lapack_int info =
         LAPACKE_dpstrf(LAPACK_ROW_MAJOR, 'U', n, U, n, pivot, &rank, perfect_coupling);
-    if (info < 0) {
+    if (info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR) {
+        goto done;
+    }
+    if (info < 0) { /* no numbers: inductances whose product leaves the range of doubles */
+        *valid = false;
+        status = DALCS_OK;
         goto done;
     }
     group->rank = rank;

@@ -18,8 +18,8 @@ struct dalcs_inductance {
     double *ratio; /* [rank][n - rank] N, row by row */
 };
 
-/* L is [n][n], symmetric, H. *valid is false when L is not positive semidefinite. On failure *group
- * is zeroed. */
+/* L is [n][n], symmetric, H. *valid is false, and *group of no use, when L is not positive
+ * semidefinite. The caller finishes *group; on failure it is zeroed. */
 enum dalcs_status dalcs_inductance_split(struct dalcs_inductance *group, int n, const double *L,
                                          bool *valid) DALCS_MUST_CHECK;
 

@@ -1,7 +1,8 @@
 /* network.c - the whole circuit: coil groups, components, and the probes that read the results. */
 #include "network.h"
 
-#include "assemble.h"
+#include "stamp.h"
+#include "union_find.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,11 +10,12 @@
 static void layout_finish(struct dalcs_layout *l) {
     dalcs_topology_finish(&l->topology);
     for (int g = 0; g < l->n_groups; g++) {
-        free(l->group[g].device);
+        free(l->group[g].L);
         dalcs_inductance_finish(&l->group[g].split);
     }
     free(l->group);
     free(l->group_of);
+    free(l->grouped_coil);
     free(l->node_column);
     free(l->kcl_row);
     free(l->state_column);
@@ -51,38 +53,103 @@ static enum dalcs_status layout_allocate(struct dalcs_layout *l) {
     return DALCS_OK;
 }
 
-static int group_find(int *parent, int i) {
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
+/* Lists the members of each part, part[n_items] or -1, by a counting sort: items keep their order.
+ * Those of part k are item[start[k]..start[k + 1] - 1]. The caller frees both, also on failure. */
+static enum dalcs_status list_members(int n_items, const int *part, int n_parts, int **start,
+                                      int **item) {
+    *start = dalcs_alloc((size_t)n_parts + 2, sizeof(**start));
+    *item = dalcs_alloc((size_t)n_items, sizeof(**item));
+    if (*start == NULL || *item == NULL) {
+        return DALCS_E_NOMEM;
     }
-    return i;
+    for (int i = 0; i < n_items; i++) {
+        if (part[i] >= 0) {
+            (*start)[part[i] + 2]++;
+        }
+    }
+    for (int k = 0; k < n_parts; k++) {
+        (*start)[k + 2] += (*start)[k + 1];
+    }
+    for (int i = 0; i < n_items; i++) {
+        if (part[i] >= 0) {
+            (*item)[(*start)[part[i] + 1]++] = i;
+        }
+    }
+    return DALCS_OK;
 }
 
-static enum dalcs_status split_group(const struct dalcs_circuit *c, struct coil_group *g,
-                                     const int *position, bool *valid) {
-    size_t n = (size_t)g->n;
-    double *L = dalcs_alloc(n * n, sizeof(*L));
-    if (L == NULL) {
+/* ---- Coupled coils ------------------------------------------------------------------------- */
+
+/* Coils coupled among each other, at most: their inductance matrix is dense. */
+enum { MOST_COUPLED_COILS = 5000 };
+
+/* The matrix of a group, its diagonal filled, and the place of each coil in it. */
+static enum dalcs_status start_group(const struct dalcs_circuit *c, struct coil_group *g,
+                                     int *position /* [n_devices] */, struct dalcs_diag *diag) {
+    const struct dalcs_device *first = &c->device[g->device[0]];
+    if (g->n > MOST_COUPLED_COILS) {
+        dalcs_diag_add(diag, DALCS_ERROR, &first->where, NULL,
+                       "%d coils are coupled with '%s', more than %d", g->n - 1, first->name,
+                       MOST_COUPLED_COILS - 1);
+        return DALCS_E_LIMIT;
+    }
+    g->L = dalcs_alloc((size_t)g->n * (size_t)g->n, sizeof(*g->L));
+    if (g->L == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int i = 0; i < g->n; i++) {
-        L[i * g->n + i] = c->device[g->device[i]].value;
+        position[g->device[i]] = i;
+        g->L[i * g->n + i] = c->device[g->device[i]].value;
     }
+    return DALCS_OK;
+}
+
+static void add_mutual_inductances(struct dalcs_layout *l, const int *position) {
+    const struct dalcs_circuit *c = l->circuit;
     for (int k = 0; k < c->n_couplings; k++) {
         const struct dalcs_coupling *m = &c->coupling[k];
+        const struct coil_group *g = &l->group[l->group_of[m->inductor[0]]];
         int i = position[m->inductor[0]];
         int j = position[m->inductor[1]];
-        if (i < 0 || i >= g->n || g->device[i] != m->inductor[0]) {
-            continue; /* a coupling of another group */
-        }
-        double mutual = m->k * sqrt(L[i * g->n + i] * L[j * g->n + j]);
-        L[i * g->n + j] += mutual;
-        L[j * g->n + i] += mutual;
+        double mutual = m->k * sqrt(g->L[i * g->n + i] * g->L[j * g->n + j]);
+        g->L[i * g->n + j] = mutual;
+        g->L[j * g->n + i] = mutual;
     }
-    enum dalcs_status status = dalcs_inductance_split(&g->split, g->n, L, valid);
-    free(L);
-    return status;
+}
+
+static enum dalcs_status split_group(const struct dalcs_circuit *c, struct coil_group *g,
+                                     struct dalcs_diag *diag) {
+    bool valid;
+    DALCS_TRY(dalcs_inductance_split(&g->split, g->n, g->L, &valid));
+    if (!valid) {
+        const struct dalcs_device *first = &c->device[g->device[0]];
+        dalcs_diag_add(diag, DALCS_ERROR, &first->where,
+                       g->n > 2 ? "of three coils, k12 = k13 = 1 leaves only k23 = 1" : NULL,
+                       "the %d coils coupled with '%s' cannot exist: their inductance matrix has a "
+                       "negative eigenvalue, and they could give more energy than they got",
+                       g->n - 1, first->name);
+        return DALCS_E_NETLIST;
+    }
+    return DALCS_OK;
+}
+
+/* Gives every coil that is coupled the number of its group. */
+static void number_groups(struct dalcs_layout *l, int *parent /* work [n_devices] */) {
+    const struct dalcs_circuit *c = l->circuit;
+    dalcs_union_reset(parent, c->n_devices);
+    for (int k = 0; k < c->n_couplings; k++) {
+        dalcs_union_join(parent, c->coupling[k].inductor[0], c->coupling[k].inductor[1]);
+    }
+    for (int i = 0; i < c->n_devices; i++) {
+        int first = dalcs_union_find(parent, i);
+        if (first == i) {
+            continue;
+        }
+        if (l->group_of[first] < 0) {
+            l->group_of[first] = l->n_groups++;
+        }
+        l->group_of[i] = l->group_of[first];
+    }
 }
 
 /* Groups of coils that couplings join, each split into independent and dependent ones. */
@@ -92,91 +159,34 @@ static enum dalcs_status find_groups(struct dalcs_layout *l, struct dalcs_diag *
         return DALCS_OK;
     }
     enum dalcs_status status = DALCS_E_NOMEM;
-    int *parent = dalcs_alloc((size_t)c->n_devices, sizeof(*parent));
-    int *position = dalcs_alloc((size_t)c->n_devices, sizeof(*position));
+    int *start = NULL;
+    /* Of a union-find first, then the place of each coil in its group. */
+    int *work = dalcs_alloc((size_t)c->n_devices, sizeof(*work));
     l->group = dalcs_alloc((size_t)c->n_couplings, sizeof(*l->group));
-    if (parent == NULL || position == NULL || l->group == NULL) {
+    if (work == NULL || l->group == NULL) {
         goto done;
     }
-    for (int i = 0; i < c->n_devices; i++) {
-        parent[i] = i;
-        position[i] = -1;
-    }
-    for (int k = 0; k < c->n_couplings; k++) {
-        int a = group_find(parent, c->coupling[k].inductor[0]);
-        int b = group_find(parent, c->coupling[k].inductor[1]);
-        parent[a > b ? a : b] = a > b ? b : a;
-    }
-    for (int pass = 0; pass < 2; pass++) {
-        for (int g = 0; pass == 1 && g < l->n_groups; g++) {
-            l->group[g].device = dalcs_alloc((size_t)l->group[g].n, sizeof(int));
-            if (l->group[g].device == NULL) {
-                goto done;
-            }
-            l->group[g].n = 0;
-        }
-        for (int i = 0; i < c->n_devices; i++) {
-            if (c->device[i].kind != DALCS_INDUCTOR) {
-                continue;
-            }
-            int root = group_find(parent, i);
-            if (pass == 0 && root != i) {
-                if (l->group_of[root] < 0) {
-                    l->group_of[root] = l->n_groups++;
-                    l->group[l->group_of[root]].n = 1;
-                }
-                l->group_of[i] = l->group_of[root];
-                l->group[l->group_of[i]].n++;
-            } else if (pass == 1 && l->group_of[i] >= 0) {
-                struct coil_group *g = &l->group[l->group_of[i]];
-                position[i] = g->n;
-                g->device[g->n++] = i;
-            }
-        }
-    }
-    status = DALCS_OK;
+    number_groups(l, work);
+    status = list_members(c->n_devices, l->group_of, l->n_groups, &start, &l->grouped_coil);
     for (int g = 0; g < l->n_groups && status == DALCS_OK; g++) {
-        bool valid;
-        status = split_group(c, &l->group[g], position, &valid);
-        if (status == DALCS_OK && !valid) {
-            const struct dalcs_device *first = &c->device[l->group[g].device[0]];
-            dalcs_diag_add(diag, DALCS_ERROR, &first->where,
-                           "the matrix of coupling factors must be positive semidefinite",
-                           "the couplings among %s and the %d coils coupled to it are not possible "
-                           "together",
-                           first->name, l->group[g].n - 1);
-            status = DALCS_E_NETLIST;
-        }
+        struct coil_group *group = &l->group[g];
+        group->n = start[g + 1] - start[g];
+        group->device = l->grouped_coil + start[g];
+        status = start_group(c, group, work, diag);
+    }
+    if (status == DALCS_OK) {
+        add_mutual_inductances(l, work);
+    }
+    for (int g = 0; g < l->n_groups && status == DALCS_OK; g++) {
+        status = split_group(c, &l->group[g], diag);
     }
 done:
-    free(parent);
-    free(position);
+    free(start);
+    free(work);
     return status;
 }
 
-/* Lists the members of each component, by a counting sort: items keep their order. */
-static enum dalcs_status list_members(int n_items, const int *component, int n_components,
-                                      int **start, int **item) {
-    *start = dalcs_alloc((size_t)n_components + 2, sizeof(**start));
-    *item = dalcs_alloc((size_t)n_items, sizeof(**item));
-    if (*start == NULL || *item == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    for (int i = 0; i < n_items; i++) {
-        if (component[i] >= 0) {
-            (*start)[component[i] + 2]++;
-        }
-    }
-    for (int k = 0; k < n_components; k++) {
-        (*start)[k + 2] += (*start)[k + 1];
-    }
-    for (int i = 0; i < n_items; i++) {
-        if (component[i] >= 0) {
-            (*item)[(*start)[component[i] + 1]++] = i;
-        }
-    }
-    return DALCS_OK;
-}
+/* ---- Components ---------------------------------------------------------------------------- */
 
 static enum dalcs_status assemble_all(struct dalcs_network *network, struct dalcs_layout *l) {
     const struct dalcs_circuit *c = l->circuit;
@@ -247,15 +257,10 @@ static enum dalcs_status keep_probe(struct dalcs_network *network, struct dalcs_
     return DALCS_OK;
 }
 
-static int node_column(const struct dalcs_layout *l, int node) {
-    int n = l->topology.node_of[node];
-    return n == 0 ? -1 : l->node_column[n];
-}
-
 static void put_voltage(const struct dalcs_layout *l, struct probe_terms *t, int first, int second,
                         double coefficient) {
-    put(t, node_column(l, first), coefficient);
-    put(t, node_column(l, second), -coefficient);
+    put(t, dalcs_stamp_node_column(l, first), coefficient);
+    put(t, dalcs_stamp_node_column(l, second), -coefficient);
 }
 
 static enum dalcs_status current_probe(struct dalcs_network *network, const struct dalcs_layout *l,
@@ -331,7 +336,7 @@ static enum dalcs_status current_probe(struct dalcs_network *network, const stru
 static enum dalcs_status node_probe(struct dalcs_network *network, const struct dalcs_layout *l,
                                     int node, struct dalcs_probe *probe) {
     struct probe_terms t = {0};
-    put(&t, node_column(l, node), 1.0);
+    put(&t, dalcs_stamp_node_column(l, node), 1.0);
     int system = l->topology.node_component[l->topology.node_of[node]];
     return keep_probe(network, probe, system, t.term, t.n, 0);
 }
@@ -407,6 +412,23 @@ static void note_references(const struct dalcs_layout *l, struct dalcs_diag *dia
     }
 }
 
+/* A voltage across a short is 0, whatever .ic says. */
+static enum dalcs_status check_initial_conditions(const struct dalcs_layout *l,
+                                                  struct dalcs_diag *diag) {
+    const struct dalcs_circuit *c = l->circuit;
+    enum dalcs_status status = DALCS_OK;
+    for (int k = 0; k < c->n_initial_conditions; k++) {
+        const struct dalcs_initial_condition *ic = &c->initial_condition[k];
+        int node = l->topology.node_of[ic->node[0]];
+        if (node == l->topology.node_of[ic->node[1]] && ic->value != 0.0) {
+            dalcs_diag_add(diag, DALCS_ERROR, &ic->where, "shorts join its two nodes",
+                           "this voltage is 0 always");
+            status = DALCS_E_NETLIST;
+        }
+    }
+    return status;
+}
+
 enum dalcs_status dalcs_network_build(struct dalcs_network *network,
                                       const struct dalcs_circuit *circuit,
                                       const struct dalcs_network_options *options,
@@ -431,6 +453,9 @@ enum dalcs_status dalcs_network_build(struct dalcs_network *network,
         if (!options->clamp_initial_conditions) {
             note_references(&layout, diag);
         }
+        status = check_initial_conditions(&layout, diag);
+    }
+    if (status == DALCS_OK) {
         status = find_groups(&layout, diag);
     }
     if (status == DALCS_OK) {

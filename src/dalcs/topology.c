@@ -2,36 +2,9 @@
  * union-find over the nodes. */
 #include "topology.h"
 
+#include "union_find.h"
+
 #include <stdlib.h>
-
-static int find(int *parent, int i) {
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
-/* The smaller index stays the representative: ground wins, then the earlier node. */
-static bool join(int *parent, int a, int b) {
-    a = find(parent, a);
-    b = find(parent, b);
-    if (a == b) {
-        return false;
-    }
-    if (a < b) {
-        parent[b] = a;
-    } else {
-        parent[a] = b;
-    }
-    return true;
-}
-
-static void reset(int *parent, int n) {
-    for (int i = 0; i < n; i++) {
-        parent[i] = i;
-    }
-}
 
 static bool is_short(const struct dalcs_device *d) {
     return d->kind == DALCS_RESISTOR && d->value == 0.0;
@@ -49,41 +22,49 @@ static bool conducts(const struct dalcs_device *d) {
 
 static void merge_shorts(struct dalcs_topology *t, const struct dalcs_circuit *c,
                          const bool *wants_current, int *parent) {
-    reset(parent, c->n_nodes);
+    dalcs_union_reset(parent, c->n_nodes);
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
         if (is_short(d)) {
             t->has_current[i] = wants_current[i];
             if (!wants_current[i]) {
-                join(parent, d->node[0], d->node[1]);
+                dalcs_union_join(parent, d->node[0], d->node[1]);
             }
         }
     }
     for (int n = 0; n < c->n_nodes; n++) {
-        t->node_of[n] = find(parent, n);
+        t->node_of[n] = dalcs_union_find(parent, n);
     }
 }
 
 /* Components hang together through anything but ground. Devices are vertices too, so that one
- * between ground and ground, or one that a coupling or a current control reaches, has its place. */
+ * between ground and ground, or one that a coupling or a current control reaches, has its place. What
+ * .ic says of two nodes takes one equation for both. */
 static void find_components(struct dalcs_topology *t, const struct dalcs_circuit *c, int *parent,
                             int *number /* both [n_nodes + n_devices] */) {
-    reset(parent, c->n_nodes + c->n_devices);
+    dalcs_union_reset(parent, c->n_nodes + c->n_devices);
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
         for (int k = 0; k < 2 + controlling_nodes(d); k++) {
             int n = t->node_of[d->node[k]];
             if (n != 0) {
-                join(parent, n, c->n_nodes + i);
+                dalcs_union_join(parent, n, c->n_nodes + i);
             }
         }
         if (d->kind == DALCS_CCCS || d->kind == DALCS_CCVS) {
-            join(parent, c->n_nodes + i, c->n_nodes + d->control);
+            dalcs_union_join(parent, c->n_nodes + i, c->n_nodes + d->control);
         }
     }
     for (int k = 0; k < c->n_couplings; k++) {
-        join(parent, c->n_nodes + c->coupling[k].inductor[0],
-             c->n_nodes + c->coupling[k].inductor[1]);
+        dalcs_union_join(parent, c->n_nodes + c->coupling[k].inductor[0],
+                         c->n_nodes + c->coupling[k].inductor[1]);
+    }
+    for (int k = 0; k < c->n_initial_conditions; k++) {
+        int a = t->node_of[c->initial_condition[k].node[0]];
+        int b = t->node_of[c->initial_condition[k].node[1]];
+        if (a != 0 && b != 0) {
+            dalcs_union_join(parent, a, b);
+        }
     }
     for (int n = 0; n < c->n_nodes; n++) {
         t->node_component[n] = -1;
@@ -99,7 +80,7 @@ static void find_components(struct dalcs_topology *t, const struct dalcs_circuit
         if (merged || (d->kind == DALCS_CAPACITOR && d->value == 0.0 && !t->has_current[i])) {
             continue;
         }
-        int *slot = &number[find(parent, c->n_nodes + i)];
+        int *slot = &number[dalcs_union_find(parent, c->n_nodes + i)];
         if (*slot < 0) {
             *slot = t->n_components++;
         }
@@ -114,16 +95,17 @@ static void find_components(struct dalcs_topology *t, const struct dalcs_circuit
 }
 
 static void find_references(struct dalcs_topology *t, const struct dalcs_circuit *c, int *parent) {
-    reset(parent, c->n_nodes);
+    dalcs_union_reset(parent, c->n_nodes);
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
         if (t->device_component[i] >= 0 && conducts(d)) {
-            join(parent, t->node_of[d->node[0]], t->node_of[d->node[1]]);
+            dalcs_union_join(parent, t->node_of[d->node[0]], t->node_of[d->node[1]]);
         }
     }
     for (int n = 1; n < c->n_nodes; n++) {
+        t->reference_of[n] = dalcs_union_find(parent, n);
         t->is_reference[n] =
-            t->node_component[n] >= 0 && t->node_of[n] == n && find(parent, n) == n;
+            t->node_component[n] >= 0 && t->node_of[n] == n && t->reference_of[n] == n;
     }
 }
 
@@ -152,18 +134,18 @@ static void find_potentials(struct dalcs_topology *t, const struct dalcs_circuit
 
 static void build_forest(struct dalcs_topology *t, const struct dalcs_circuit *c,
                          const bool *wants_current, int *parent) {
-    reset(parent, c->n_nodes);
+    dalcs_union_reset(parent, c->n_nodes);
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
         if (d->kind != DALCS_CAPACITOR || t->device_component[i] < 0) {
             continue;
         }
-        t->in_forest[i] =
-            !wants_current[i] && join(parent, t->node_of[d->node[0]], t->node_of[d->node[1]]);
+        t->in_forest[i] = !wants_current[i] &&
+                          dalcs_union_join(parent, t->node_of[d->node[0]], t->node_of[d->node[1]]);
         t->has_current[i] = !t->in_forest[i];
     }
     for (int n = 0; n < c->n_nodes; n++) {
-        t->forest_root[n] = find(parent, n);
+        t->forest_root[n] = dalcs_union_find(parent, n);
     }
 }
 
@@ -177,6 +159,7 @@ enum dalcs_status dalcs_topology_build(struct dalcs_topology *t,
         .node_component = dalcs_alloc(n_nodes, sizeof(int)),
         .device_component = dalcs_alloc(n_devices, sizeof(int)),
         .is_reference = dalcs_alloc(n_nodes, sizeof(bool)),
+        .reference_of = dalcs_alloc(n_nodes, sizeof(int)),
         .in_forest = dalcs_alloc(n_devices, sizeof(bool)),
         .has_current = dalcs_alloc(n_devices, sizeof(bool)),
         .potential_source = dalcs_alloc(n_nodes, sizeof(int)),
@@ -187,8 +170,8 @@ enum dalcs_status dalcs_topology_build(struct dalcs_topology *t,
     bool *known = dalcs_alloc(n_nodes, sizeof(*known));
     if (known == NULL || t->potential_source == NULL || t->node_of == NULL ||
         t->node_component == NULL || t->device_component == NULL || t->is_reference == NULL ||
-        t->in_forest == NULL || t->has_current == NULL || t->forest_root == NULL ||
-        parent == NULL || number == NULL) {
+        t->reference_of == NULL || t->in_forest == NULL || t->has_current == NULL ||
+        t->forest_root == NULL || parent == NULL || number == NULL) {
         free(parent);
         free(number);
         free(known);
@@ -214,6 +197,7 @@ void dalcs_topology_finish(struct dalcs_topology *t) {
     free(t->node_component);
     free(t->device_component);
     free(t->is_reference);
+    free(t->reference_of);
     free(t->in_forest);
     free(t->has_current);
     free(t->potential_source);

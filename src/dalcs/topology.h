@@ -12,6 +12,7 @@ struct dalcs_topology {
     int *device_component; /* [n_devices], -1 for a device that leaves no equation */
     bool *is_reference;    /* [n_nodes] the node whose voltage is 0 by convention in an island that
                             nothing ties to ground: its first node in the netlist */
+    int *reference_of;     /* [n_nodes] that node, for representatives; ground where tied to it */
     bool *in_forest;       /* [n_devices] capacitors whose current is eliminated */
     bool *has_current;     /* [n_devices] shorts and capacitors whose current is an unknown */
     int *potential_source; /* [n_nodes] V device between a node and one nearer to ground, when V

@@ -1,10 +1,10 @@
-/* check_netlist.c - reads a netlist, builds its circuit, prints the messages on stderr.
+/* check_netlist.c - reads a netlist as far as its equations, prints the messages on stderr.
  *
  *     check_netlist FILE [NAME]     messages call the file NAME
  *
  * Exit status 0, 3 for a netlist with errors, 4 for a file that cannot be read, as the program. */
-#include "circuit.h"
-#include "netlist.h"
+#include "dalcs.h"
+#include "memory.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,20 +36,15 @@ int main(int argc, char **argv) {
     if (text == NULL) {
         return 4;
     }
-    struct dalcs_diag diag = {0};
-    struct dalcs_netlist netlist = {0};
-    struct dalcs_circuit circuit = {0};
-    enum dalcs_status status =
-        dalcs_netlist_read_text(&netlist, argc > 2 ? argv[2] : argv[1], text, length, &diag);
+    struct dalcs_session *session = NULL;
+    enum dalcs_status status = dalcs_session_create(&session);
     if (status == DALCS_OK) {
-        status = dalcs_circuit_build(&circuit, &netlist, &diag);
+        status = dalcs_session_read_text(session, argc > 2 ? argv[2] : argv[1], text, length);
     }
-    dalcs_netlist_finish(&netlist);
-    for (size_t k = 0; k < diag.n; k++) {
-        fprintf(stderr, "%s\n", diag.item[k].text);
+    for (size_t k = 0; session != NULL && k < dalcs_session_n_messages(session); k++) {
+        fprintf(stderr, "%s\n", dalcs_session_message(session, k, NULL));
     }
-    dalcs_diag_finish(&diag);
-    dalcs_circuit_finish(&circuit);
+    dalcs_session_destroy(session);
     free(text);
     return status == DALCS_OK ? 0 : status == DALCS_E_NETLIST ? 3 : 1;
 }
