@@ -231,7 +231,7 @@ struct dalcs_report {
     } infeasible;
 };
 
-/* Valid after dalcs_session_run, whatever its status; NULL before. */
+/* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */
 const struct dalcs_report *dalcs_session_report(const struct dalcs_session *session);
 
 #if defined(__GNUC__)

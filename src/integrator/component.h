@@ -44,10 +44,10 @@ void dalcs_component_finish(struct dalcs_component *c);
 /* Puts the inputs at time t into u[n_x + n_inputs]. */
 void dalcs_component_sample(struct dalcs_component *c, double t, enum dalcs_side side, double *u);
 
-/* The inputs for an operating point. */
-/* The inputs at t + ahead, which the next samples may lie before. */
+/* The same at a time t that the next samples may lie before. */
 void dalcs_component_look_ahead(const struct dalcs_component *c, double t, double *u);
 
+/* The inputs for an operating point. */
 void dalcs_component_sample_operating(const struct dalcs_component *c, bool transient_follows,
                                       double *u);
 

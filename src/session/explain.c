@@ -7,12 +7,12 @@
 #include <math.h>
 #include <string.h>
 
-/* "KCL at out", "branch v1", "complementarity of d1" */
-const char *dalcs_explain_row(struct dalcs_session *s, int system, int where) {
+const char *dalcs_explain_row(struct dalcs_session *s, const struct dalcs_euler *e, int system,
+                              int where) {
     if (where < 0) {
         return "";
     }
-    const struct dalcs_system *d = &s->network.system[system];
+    const struct dalcs_system *d = &e->network->system[system];
     int n_equations = dalcs_system_n_equations(d);
     if (where >= n_equations) {
         return dalcs_arena_printf(&s->arena, "complementarity of %s",
@@ -46,40 +46,60 @@ static const struct dalcs_location *place_of(const struct dalcs_circuit *c, cons
     return NULL;
 }
 
-static bool is_named(const char *name, size_t n, const char *const *element) {
+static bool contains(const char *const *list, size_t n, const char *name) {
     bool found = false;
     for (size_t k = 0; k < n && !found; k++) {
-        found = strcmp(element[k], name) == 0;
+        found = strcmp(list[k], name) == 0;
     }
     return found;
 }
 
-/* The names of a witness in the session's arena, NULL without memory. A coil of an ideal transformer
- * carries what its partners carry: they belong to the loop as well. */
-static const char **whole_witness(struct dalcs_session *s, const struct dalcs_witness *w,
-                                  size_t *n_elements) {
-    const struct dalcs_circuit *c = &s->circuit;
-    size_t n = (size_t)w->n_elements;
-    const char **element =
-        dalcs_arena_alloc(&s->arena, n + 2 * (size_t)c->n_couplings, sizeof(*element));
-    if (element == NULL) {
-        return NULL;
-    }
-    memcpy(element, w->element, n * sizeof(*element));
-    for (size_t before = 0; before < n;) {
-        before = n;
-        for (int k = 0; k < c->n_couplings && w->kind == DALCS_WITNESS_LOOP; k++) {
-            const struct dalcs_coupling *coupling = &c->coupling[k];
-            const char *coil[] = {c->device[coupling->inductor[0]].name,
-                                  c->device[coupling->inductor[1]].name};
-            for (int i = 0; i < 2 && fabs(coupling->k) == 1.0; i++) {
-                if (is_named(coil[i], n, element) && !is_named(coil[1 - i], n, element)) {
-                    element[n++] = coil[1 - i];
-                }
+/* A coil of an ideal transformer carries what its partners carry. */
+static void add_coupled_coils(const struct dalcs_circuit *c, bool *is_named) {
+    for (bool more = true; more;) {
+        more = false;
+        for (int k = 0; k < c->n_couplings; k++) {
+            const int *coil = c->coupling[k].inductor;
+            if (fabs(c->coupling[k].k) == 1.0 && is_named[coil[0]] != is_named[coil[1]]) {
+                is_named[coil[0]] = is_named[coil[1]] = true;
+                more = true;
             }
         }
     }
+}
+
+/* The names of a witness in the session's arena; without memory NULL, of which there are 0. To a loop belong also what no
+ * equation of its own tells: the partners of a coil, and shorts. */
+static const char **whole_witness(struct dalcs_session *s, const struct dalcs_witness *w,
+                                  size_t *n_elements) {
+    const struct dalcs_circuit *c = &s->circuit;
+    size_t n_devices = (size_t)c->n_devices;
+    size_t n = (size_t)w->n_elements;
+    const char **element = dalcs_arena_alloc(&s->arena, n + n_devices, sizeof(*element));
+    bool *is_named = dalcs_arena_alloc(&s->arena, n_devices, sizeof(*is_named));
+    bool *is_short = dalcs_arena_alloc(&s->arena, n_devices, sizeof(*is_short));
+    *n_elements = 0;
+    if (element == NULL || is_named == NULL || is_short == NULL) {
+        return NULL;
+    }
+    memcpy(element, w->element, n * sizeof(*element));
     *n_elements = n;
+    if (w->kind != DALCS_WITNESS_LOOP) {
+        return element;
+    }
+    for (size_t i = 0; i < n_devices; i++) {
+        is_named[i] = contains(element, n, c->device[i].name);
+    }
+    add_coupled_coils(c, is_named);
+    if (dalcs_loop_shorts_find(c, is_named, is_short) != DALCS_OK) {
+        *n_elements = 0;
+        return NULL;
+    }
+    for (size_t i = 0; i < n_devices; i++) {
+        if (is_short[i] || (is_named[i] && !contains(element, n, c->device[i].name))) {
+            element[(*n_elements)++] = c->device[i].name;
+        }
+    }
     return element;
 }
 
@@ -97,7 +117,7 @@ static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e,
         [DALCS_WITNESS_MODE] = "no combination of conducting and blocking satisfies the circuit, "
                                "which its controlled sources or negative resistors keep from being "
                                "passive"};
-    size_t n_elements = 0;
+    size_t n_elements;
     const char **element = whole_witness(s, w, &n_elements);
     const struct dalcs_location *where =
         element != NULL && n_elements > 0 ? place_of(&s->circuit, element[0]) : NULL;
@@ -135,7 +155,6 @@ static const char *dump_problem(struct dalcs_run *r, const struct dalcs_euler *e
         &s->arena, "the one-step problem is in '%s'; tools/replay solves it again", path);
 }
 
-/* A numerical failure, in words; other statuses explain themselves elsewhere. */
 void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
                            enum dalcs_status status) {
     struct dalcs_session *s = r->s;
@@ -152,7 +171,7 @@ void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
         explain_infeasible(r, e, when, hint);
     } else {
         const struct dalcs_certificate *c = &e->component[e->failed_system].osnsp.certificate;
-        const char *row = dalcs_explain_row(s, e->failed_system, c->where);
+        const char *row = dalcs_explain_row(s, e, e->failed_system, c->where);
         dalcs_diag_add(
             &s->diag, DALCS_ERROR, NULL, hint,
             "%s no certified solution was found: the best residual is %.3g of its scale, "

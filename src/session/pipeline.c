@@ -8,8 +8,12 @@
 #include <string.h>
 #include <time.h>
 
-/* Steps between calls of the sink's progress. */
-enum { PROGRESS_INTERVAL = 4096 };
+/* Unknowns solved for between calls of the sink's progress, a fraction of a second of work, but no
+ * more steps than that. */
+enum { PROGRESS_UNKNOWNS = 1 << 18, PROGRESS_STEPS = 4096 };
+
+/* The grid tells times apart to a few 1e-15 of the stop time; leave room for edges between. */
+static const double MOST_STEPS = 1e13;
 
 struct dalcs_run_options dalcs_run_options_default(void) {
     return (struct dalcs_run_options){.certificate_tolerance = 2e-13,
@@ -38,13 +42,12 @@ static bool is_method(const char *name) {
     return found;
 }
 
-static void option_error(struct dalcs_session *s, const char *text) {
+static enum dalcs_status option_error(struct dalcs_session *s, const char *text) {
     dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, NULL, "%s", text);
+    return DALCS_E_OPTION;
 }
 
-static enum dalcs_status check_options(struct dalcs_run *r) {
-    struct dalcs_session *s = r->s;
-    const struct dalcs_run_options *o = r->options;
+static enum dalcs_status check_method(struct dalcs_session *s, const struct dalcs_run_options *o) {
     if (o->method != NULL && !is_method(o->method)) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "the methods are: euler", "unknown method '%s'",
                        o->method);
@@ -60,21 +63,76 @@ static enum dalcs_status check_options(struct dalcs_run *r) {
                        "choose the step with --step or .options step=",
                        "reltol, abstol and vntol have no effect with the fixed step of euler");
     }
-    if (!(o->step >= 0.0) || !isfinite(o->step)) {
-        option_error(s, "the step must be positive");
-        return DALCS_E_OPTION;
-    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status check_output_times(struct dalcs_session *s,
+                                            const struct dalcs_run_options *o) {
     for (size_t k = 0; k < o->n_at; k++) {
         if (!(o->at[k] >= (k > 0 ? o->at[k - 1] : 0.0)) || !isfinite(o->at[k])) {
-            option_error(s, "output times must be ascending and not negative");
-            return DALCS_E_OPTION;
+            return option_error(s, "output times must be ascending and not negative");
         }
     }
-    if (!(o->certificate_tolerance > 0.0) || o->max_outer < 1 || o->max_pivots < 1) {
-        option_error(s, "tolerances and iteration limits must be positive");
-        return DALCS_E_OPTION;
+    return DALCS_OK;
+}
+
+static enum dalcs_status check_tolerances(struct dalcs_session *s,
+                                          const struct dalcs_run_options *o) {
+    bool positive = o->certificate_tolerance > 0.0 && o->max_outer > 0 && o->max_pivots > 0;
+    for (int k = 0; k < 3; k++) {
+        positive = positive && o->proximal_weight[k] > 0.0 && o->proximal_weight[k] < 1.0;
     }
-    r->osnsp = (struct dalcs_osnsp_options){
+    if (!positive || !(o->certificate_tolerance < 1.0) || !(o->rcond_min >= 0.0) ||
+        !(o->rcond_min < 1.0) || o->dense_limit < 0) {
+        return option_error(s, "tolerances and limits must be positive, tolerances less than 1");
+    }
+    return DALCS_OK;
+}
+
+/* Does the next step depend on the one before? */
+static bool has_memory(const struct dalcs_network *n) {
+    bool found = false;
+    for (int k = 0; k < n->n_systems && !found; k++) {
+        found = n->system[k].n_x > 0;
+        for (int d = 0; d < n->system[k].n_pairs && !found; d++) {
+            const struct dalcs_pair *p = &n->system[k].pair[d];
+            found = p->kind == DALCS_PAIR_SWITCH && p->turn_on != p->turn_off;
+        }
+    }
+    return found;
+}
+
+static enum dalcs_status choose_step(struct dalcs_run *r) {
+    struct dalcs_session *s = r->s;
+    const struct dalcs_transient *t = &s->circuit.transient;
+    const double given = r->options->step;
+    if (!(given >= 0.0) || !isfinite(given)) {
+        return option_error(s, "the step must be positive");
+    }
+    if (!t->present) {
+        return DALCS_OK;
+    }
+    if (given > t->stop) {
+        return option_error(s, "the step is longer than the run");
+    }
+    if (given > 0.0) {
+        r->h = given;
+    } else if (s->circuit.options.step > 0.0) {
+        r->h = s->circuit.options.step;
+    } else if (t->max_step > 0.0 && (t->step == 0.0 || has_memory(&s->network))) {
+        r->h = t->max_step;
+    } else { /* without memory only the times that are printed matter */
+        r->h = t->step > 0.0 ? t->step : t->stop / 1000.0;
+    }
+    if (t->stop / r->h > MOST_STEPS) {
+        return option_error(s,
+                            "the step is too small for the stop time: times would not be distinct");
+    }
+    return DALCS_OK;
+}
+
+static struct dalcs_osnsp_options osnsp_options(const struct dalcs_run_options *o) {
+    return (struct dalcs_osnsp_options){
         .certificate_tolerance = o->certificate_tolerance,
         .proximal_weight = {o->proximal_weight[0], o->proximal_weight[1], o->proximal_weight[2]},
         .rcond_min = o->rcond_min,
@@ -82,28 +140,14 @@ static enum dalcs_status check_options(struct dalcs_run *r) {
         .max_pivots = o->max_pivots,
         .cache_bytes = o->cache_bytes,
         .dense_limit = o->dense_limit};
-    const struct dalcs_transient *t = &s->circuit.transient;
-    r->h = o->step > 0.0                   ? o->step
-           : s->circuit.options.step > 0.0 ? s->circuit.options.step
-           : t->max_step > 0.0             ? t->max_step
-           : t->step > 0.0                 ? t->step
-                                           : t->stop / 1000.0;
-    bool has_states = false;
-    for (int k = 0; k < s->network.n_systems; k++) {
-        has_states = has_states || s->network.system[k].n_x > 0;
-    }
-    if (!has_states && o->step == 0.0 && t->step > 0.0) {
-        r->h = t->step; /* nothing remembers: only the times that are printed matter */
-    }
-    if (t->present && o->step > t->stop) {
-        option_error(s, "the step is longer than the run");
-        return DALCS_E_OPTION;
-    }
-    if (t->present && t->stop / r->h > 1e15) {
-        option_error(s, "the step is too small for the stop time: times would not be distinct");
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
+}
+
+static enum dalcs_status check_options(struct dalcs_run *r) {
+    DALCS_TRY(check_method(r->s, r->options));
+    DALCS_TRY(check_output_times(r->s, r->options));
+    DALCS_TRY(check_tolerances(r->s, r->options));
+    r->osnsp = osnsp_options(r->options);
+    return choose_step(r);
 }
 
 static enum dalcs_status name_signals(struct dalcs_run *r) {
@@ -164,7 +208,7 @@ static void add_work(struct dalcs_run *r, const struct dalcs_euler *e) {
         warn_of_switches(r, &e->component[k], e->steps);
     }
     if (e->worst.worst >= report->certificate.worst) {
-        const char *where = dalcs_explain_row(r->s, e->worst_system, e->worst.where);
+        const char *where = dalcs_explain_row(r->s, e, e->worst_system, e->worst.where);
         report->certificate.worst = e->worst.worst;
         report->certificate.time = e->worst_time;
         report->certificate.where = where == NULL ? "" : where;
@@ -258,8 +302,19 @@ static enum dalcs_status start_transient(struct dalcs_run *r, struct dalcs_euler
     return dalcs_euler_start(e, NULL);
 }
 
+/* Steps between calls of the sink's progress. */
+static long progress_interval(const struct dalcs_network *n) {
+    long n_unknowns = 1;
+    for (int k = 0; k < n->n_systems; k++) {
+        n_unknowns += dalcs_system_n_columns(&n->system[k]);
+    }
+    long n_steps = PROGRESS_UNKNOWNS / n_unknowns;
+    return n_steps < 1 ? 1 : n_steps < PROGRESS_STEPS ? n_steps : PROGRESS_STEPS;
+}
+
 static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct dalcs_euler *e) {
     struct dalcs_recorder *recorder = &r->s->recorder;
+    const long interval = progress_interval(&r->s->network);
     while (!dalcs_grid_at_end(&e->grid)) {
         DALCS_TRY(dalcs_euler_step(e));
         DALCS_TRY(dalcs_recorder_step(recorder, e));
@@ -267,7 +322,7 @@ static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct dalcs_euler
             DALCS_TRY(dalcs_euler_cross(e));
             DALCS_TRY(dalcs_recorder_cross(recorder, e));
         }
-        if (e->steps % PROGRESS_INTERVAL == 0) {
+        if (e->steps % interval == 0) {
             DALCS_TRY(r->sink->progress(r->sink->user, e->t, e->grid.stop));
         }
     }
@@ -397,9 +452,11 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
     struct dalcs_run r = {.s = session, .options = options, .sink = &complete};
     double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     double wall = seconds(CLOCK_MONOTONIC);
-    DALCS_TRY(check_options(&r));
     DALCS_TRY(prepare_report(&r));
-    enum dalcs_status status = name_signals(&r);
+    enum dalcs_status status = check_options(&r);
+    if (status == DALCS_OK) {
+        status = name_signals(&r);
+    }
     if (status == DALCS_OK && session->circuit.operating_point) {
         status = run_operating_point(&r);
     }

@@ -31,8 +31,15 @@ struct dalcs_run {
 /* Frees what the last run left. */
 void dalcs_session_forget_run(struct dalcs_session *session);
 
-/* "KCL at out", "branch v1", "complementarity of d1"; NULL when out of memory. */
-const char *dalcs_explain_row(struct dalcs_session *session, int system, int where);
+/* "KCL at out", "branch v1", "complementarity of d1"; NULL when out of memory. `where` is a row, or a
+ * pair behind them, of a system of e's network, which need not be the session's. */
+const char *dalcs_explain_row(struct dalcs_session *session, const struct dalcs_euler *e,
+                              int system, int where);
+
+/* Which shorts close a loop with the devices that is_named[n_devices] marks: is_part[n_devices], zeroed
+ * by the caller. */
+enum dalcs_status dalcs_loop_shorts_find(const struct dalcs_circuit *circuit, const bool *is_named,
+                                         bool *is_part) DALCS_MUST_CHECK;
 
 /* Puts a numerical failure of e into words, into the report and, if wanted, into a dump. Other
  * statuses explain themselves elsewhere. */

@@ -1,0 +1,284 @@
+/* test_session.c - the public interface: options, reports, what initial conditions hold, the names of
+ * a loop, cancelling, two threads. */
+#include "dalcs.h"
+
+#include "run_tests.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_VALUES = 1 << 16 };
+
+/* What a run handed out. */
+struct rows {
+    size_t n_signals, n_values, n_progress;
+    double value[MAX_VALUES]; /* time, then the signals, row by row */
+};
+
+static enum dalcs_status take_plot(void *user, const struct dalcs_plot *plot) {
+    struct rows *rows = user;
+    rows->n_signals = plot->n_signals;
+    return DALCS_OK;
+}
+
+static enum dalcs_status take_row(void *user, double time, const double *value) {
+    struct rows *rows = user;
+    ck_assert_uint_le(rows->n_values + rows->n_signals + 1, MAX_VALUES);
+    rows->value[rows->n_values++] = time;
+    memcpy(rows->value + rows->n_values, value, rows->n_signals * sizeof(*value));
+    rows->n_values += rows->n_signals;
+    return DALCS_OK;
+}
+
+static struct dalcs_session *read_good(const char *text) {
+    struct dalcs_session *session;
+    ck_assert_int_eq(dalcs_session_create(&session), DALCS_OK);
+    ck_assert_int_eq(dalcs_session_read_text(session, "test.cir", text, strlen(text)), DALCS_OK);
+    return session;
+}
+
+static enum dalcs_status run(struct dalcs_session *session, struct rows *rows) {
+    const struct dalcs_run_options options = dalcs_run_options_default();
+    const struct dalcs_sink sink = {.user = rows, .begin = take_plot, .row = take_row};
+    rows->n_values = 0;
+    return dalcs_session_run(session, &options, &sink);
+}
+
+static struct rows rows;
+
+/* The first row of the only plot. */
+static const double *first_row(const char *text) {
+    struct dalcs_session *session = read_good(text);
+    ck_assert_int_eq(run(session, &rows), DALCS_OK);
+    dalcs_session_destroy(session);
+    return rows.value + 1;
+}
+
+/* ---- Options and the report ---------------------------------------------------------------- */
+
+static const char divider[] = "divider\nV1 in 0 1\nR1 in out 1\nC1 out 0 1\n.tran 0.1 1\n";
+
+START_TEST(test_wrong_options) {
+    const struct dalcs_run_options usual = dalcs_run_options_default();
+    struct dalcs_run_options wrong[12];
+    size_t n = 0;
+    for (size_t k = 0; k < sizeof(wrong) / sizeof(*wrong); k++) {
+        wrong[k] = usual;
+    }
+    static const double descending[] = {0.5, 0.25};
+    wrong[n++].method = "trapezoidal";
+    wrong[n++].step = -1.0;
+    wrong[n++].step = NAN;
+    wrong[n++].step = 2.0;
+    wrong[n++].step = 1e-14; /* 1e14 steps: edges could not be put between their times */
+    wrong[n].at = descending;
+    wrong[n++].n_at = 2;
+    wrong[n++].certificate_tolerance = NAN;
+    wrong[n++].certificate_tolerance = INFINITY;
+    wrong[n++].proximal_weight[1] = 0.0;
+    wrong[n++].proximal_weight[2] = NAN;
+    wrong[n++].rcond_min = NAN;
+    wrong[n++].max_outer = 0;
+    ck_assert_uint_eq(n, sizeof(wrong) / sizeof(*wrong));
+    const struct dalcs_sink sink = {0};
+    for (size_t k = 0; k < n; k++) {
+        struct dalcs_session *session = read_good(divider);
+        ck_assert_ptr_null(dalcs_session_report(session));
+        ck_assert_int_eq(dalcs_session_run(session, &wrong[k], &sink), DALCS_E_OPTION);
+        ck_assert_uint_eq(dalcs_session_n_messages(session), 1);
+        ck_assert_ptr_nonnull(dalcs_session_report(session));
+        /* The session is as good as new. */
+        ck_assert_int_eq(dalcs_session_run(session, &usual, &sink), DALCS_OK);
+        ck_assert_int_eq(dalcs_session_report(session)->work.steps, 10);
+        dalcs_session_destroy(session);
+    }
+}
+
+END_TEST
+
+static long steps_of(const char *text) {
+    struct dalcs_session *session = read_good(text);
+    ck_assert_int_eq(run(session, &rows), DALCS_OK);
+    long steps = dalcs_session_report(session)->work.steps;
+    dalcs_session_destroy(session);
+    return steps;
+}
+
+/* Without states only the times that are printed matter, but a step that is asked for is taken, and a
+ * switch with hysteresis remembers. */
+START_TEST(test_step_without_states) {
+    ck_assert_int_eq(steps_of("a\nV1 a 0 SIN(0 1 1)\nR1 a 0 1\n.tran 0.1 1 0 1m\n"), 10);
+    ck_assert_int_eq(
+        steps_of("a\nV1 a 0 SIN(0 1 1)\nR1 a 0 1\n.options step=1m\n.tran 0.1 1 0 2m\n"), 1000);
+    ck_assert_int_eq(steps_of("a\nV1 a 0 SIN(0 1 1)\nR1 a b 1\nS1 b 0 a 0 sw\n"
+                              ".model sw SW(Vt=0.5 Vh=0.2)\n.tran 0.1 1 0 1m\n"),
+                     1000);
+}
+
+END_TEST
+
+static enum dalcs_status cancel(void *user, double time, double stop) {
+    long *n_calls = user;
+    ck_assert_double_lt(time, stop);
+    return ++*n_calls == 3 ? DALCS_E_CANCELLED : DALCS_OK;
+}
+
+/* A large circuit is asked more often: nobody waits for thousands of its steps. */
+START_TEST(test_cancel) {
+    char text[1 << 17];
+    int length = sprintf(text, "ladder\nV1 n0 0 SIN(0 1 50)\n");
+    for (int k = 0; k < 1000; k++) {
+        length += sprintf(text + length, "R%d n%d n%d 1\nC%d n%d 0 1u\n", k, k, k + 1, k, k + 1);
+    }
+    sprintf(text + length, ".save v(n1)\n.tran 1u 1\n");
+    struct dalcs_session *session = read_good(text);
+    const struct dalcs_run_options options = dalcs_run_options_default();
+    long n_calls = 0;
+    const struct dalcs_sink sink = {.user = &n_calls, .progress = cancel};
+    ck_assert_int_eq(dalcs_session_run(session, &options, &sink), DALCS_E_CANCELLED);
+    ck_assert_int_eq(n_calls, 3);
+    ck_assert_int_lt(dalcs_session_report(session)->work.steps, 3 * 1000);
+    dalcs_session_destroy(session);
+}
+
+END_TEST
+
+/* ---- Initial conditions -------------------------------------------------------------------- */
+
+/* .ic v(a,b) between two parts of a circuit that share only ground. */
+START_TEST(test_initial_across_parts) {
+    const double *v = first_row("parts\nR1 a 0 1k\nC1 a 0 1u\nR2 b 0 1k\nC2 b 0 1u\n"
+                                ".ic v(a,b)=1\n.save v(a) v(b)\n.tran 10u 100u\n");
+    ck_assert_double_eq_tol(v[0], 0.5, 1e-14);
+    ck_assert_double_eq_tol(v[1], -0.5, 1e-14);
+}
+
+END_TEST
+
+/* .ic names a node that a short makes one with another. */
+START_TEST(test_initial_beside_short) {
+    const double *v = first_row("short\nR0 a b 0\nC1 b 0 1u\nR2 b 0 1k\n.ic v(a)=5\n"
+                                ".save v(a) v(b)\n.tran 10u 100u uic\n");
+    ck_assert_double_eq(v[0], 5.0);
+    ck_assert_double_eq(v[1], 5.0);
+    v = first_row("ground\nR0 g 0 0\nV1 a 0 1\nR1 a b 1k\nC1 b g 1u\n.ic v(g,b)=-5\n"
+                  ".save v(b)\n.tran 10u 100u\n");
+    ck_assert_double_eq_tol(v[0], 5.0, 1e-12);
+}
+
+END_TEST
+
+/* In a part that nothing ties to ground, .ic holds a voltage against the part's reference. */
+START_TEST(test_initial_of_floating_part) {
+    const double *v = first_row("secondary\nV1 p 0 SIN(0 10 50)\nR0 p q 1\nL1 q 0 1\nL2 s1 s2 1\n"
+                                "K1 L1 L2 0.9\nD1 s1 out\nC1 out s2 10u\nR1 out s2 1k\n"
+                                ".ic v(s2)=-5\n.save v(out,s2) v(s1,s2)\n.tran 1m 10m uic\n");
+    ck_assert_double_eq_tol(v[0], 5.0, 1e-12);
+    v = first_row("secondary\nV1 p 0 SIN(0 10 50)\nR0 p q 1\nL1 q 0 1\nL2 s1 s2 1\n"
+                  "K1 L1 L2 0.9\nR2 s1 m 1\nC1 m s2 10u\nR1 m s2 1k\n"
+                  ".ic v(m)=-5\n.save v(m,s2)\n.tran 1m 10m\n");
+    ck_assert_double_eq_tol(v[0], -5.0, 1e-9);
+}
+
+END_TEST
+
+/* The row whose residual is worst may be one that only the held operating point has. */
+START_TEST(test_certificate_of_held_point) {
+    struct dalcs_session *session =
+        read_good("held\nR1 a 0 8.3\nR2 b a 1.9\nR3 b c 1\nC1 a 0 1e9\nC2 b 0 1e9\nC3 c 0 1e9\n"
+                  ".ic v(a)=4.9 v(a,b)=3.6 v(c,b)=4.8\n.tran 1 1\n");
+    ck_assert_int_eq(run(session, &rows), DALCS_OK);
+    const char *where = dalcs_session_report(session)->certificate.where;
+    ck_assert_msg(strncmp(where, "KCL at ", 7) == 0 || strcmp(where, "branch .ic") == 0, "%s",
+                  where);
+    dalcs_session_destroy(session);
+}
+
+END_TEST
+
+/* ---- Why there is no solution -------------------------------------------------------------- */
+
+static void check_loop(const char *text, const char *expected) {
+    struct dalcs_session *session = read_good(text);
+    ck_assert_int_eq(run(session, &rows), DALCS_INFEASIBLE);
+    const struct dalcs_report *report = dalcs_session_report(session);
+    ck_assert(report->infeasible.present);
+    ck_assert_str_eq(report->infeasible.kind, "loop");
+    char names[200] = "";
+    for (size_t k = 0; k < report->infeasible.n_elements; k++) {
+        strcat(strcat(names, " "), report->infeasible.element[k]);
+    }
+    ck_assert_str_eq(names, expected);
+    dalcs_session_destroy(session);
+}
+
+/* Shorts have no equation, and close the loop all the same. */
+START_TEST(test_shorts_in_a_loop) {
+    check_loop("across a source\nV1 a 0 1\nR1 a 0 0\n.op\n", " v1 r1");
+    check_loop("two sources\nV1 a 0 1\nV2 b 0 2\nL1 a b 0\nR1 a 0 1\n.save v(a)\n.op\n",
+               " v1 v2 l1");
+    /* Those beside the loop, dead ends and a second way round are not named. */
+    check_loop("beside\nV1 a 0 1\nR1 a b 0\nR2 b c 0\nR3 b x 0\nR4 x y 0\nD1 c d\nL1 d e 0\n"
+               "V2 e g 0\nR5 g 0 0\nR6 y 0 1\nR7 a c 0\n.save v(a)\n.op\n",
+               " v1 v2 d1 r1 r2 l1 r5");
+    /* A short whose current is asked for is named as the source beside it is. */
+    check_loop("asked for\nV1 a 0 1\nR1 a 0 0\n.save i(r1)\n.op\n", " v1 r1");
+}
+
+END_TEST
+
+/* ---- Threads ------------------------------------------------------------------------------- */
+
+static const char *const circuit[] = {
+    "bridge\nV1 a b SIN(0 10 50)\nD1 a p\nD2 b p\nD3 n a\nD4 n b\nR1 p n 100\nC1 p n 100u\n"
+    ".tran 0.1m 40m\n",
+    "buck\nV1 in 0 12\nVg g 0 PULSE(0 1 0 0 0 4u 10u)\nS1 in sw g 0 sm\n.model sm SW(Vt=0.5)\n"
+    "D1 0 sw\nL1 sw out 47u\nC1 out 0 10u\nR1 out 0 4\n"
+    ".tran 1u 400u\n"};
+
+struct task {
+    const char *text;
+    struct rows rows;
+};
+
+static struct task task[6];
+
+static void *work(void *user) {
+    struct task *t = user;
+    struct dalcs_session *session = read_good(t->text);
+    enum dalcs_status status = run(session, &t->rows);
+    dalcs_session_destroy(session);
+    return status == DALCS_OK ? t : NULL;
+}
+
+/* Nothing is shared: circuits in threads at once give the bits that they give alone. */
+START_TEST(test_threads) {
+    enum { N_TASKS = sizeof(task) / sizeof(*task) };
+
+    pthread_t thread[N_TASKS];
+    for (int k = 0; k < N_TASKS; k++) {
+        task[k].text = circuit[k % 2];
+        ck_assert_int_eq(pthread_create(&thread[k], NULL, work, &task[k]), 0);
+    }
+    for (int k = 0; k < N_TASKS; k++) {
+        void *result;
+        ck_assert_int_eq(pthread_join(thread[k], &result), 0);
+        ck_assert_ptr_nonnull(result);
+    }
+    for (int k = 0; k < N_TASKS; k++) {
+        struct dalcs_session *alone = read_good(circuit[k % 2]);
+        ck_assert_int_eq(run(alone, &rows), DALCS_OK);
+        dalcs_session_destroy(alone);
+        ck_assert_uint_gt(rows.n_values, 1000);
+        ck_assert_uint_eq(task[k].rows.n_values, rows.n_values);
+        ck_assert_mem_eq(task[k].rows.value, rows.value, rows.n_values * sizeof(double));
+    }
+}
+
+END_TEST
+
+RUN_TESTS("session", test_wrong_options, test_step_without_states, test_cancel,
+          test_initial_across_parts, test_initial_beside_short, test_initial_of_floating_part,
+          test_certificate_of_held_point, test_shorts_in_a_loop, test_threads)
