@@ -47,6 +47,8 @@ struct dalcs_builder {
 
     struct dalcs_names devices; /* name -> index, K cards follow from n_device_cards on */
     const struct dalcs_token **device_token; /* where they are, by the same index */
+    const struct dalcs_token *
+        *control_token; /* [n_device_cards] the V source that an F or H names */
     int n_device_cards;
     int n_couplings_seen;     /* K cards so far, right or wrong */
     struct dalcs_names pairs; /* "3 7": coils 3 and 7 are coupled */
@@ -223,8 +225,8 @@ bool dalcs_waveform_card_parse(struct dalcs_reader *reader, enum dalcs_quantity 
                                struct dalcs_stimulus *stimulus);
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                             enum dalcs_device_kind kind);
-/* Finds the V source of an F or H, when all devices are known. */
-void dalcs_controlled_resolve(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* Finds the V sources of all F and H, when all devices are known. */
+void dalcs_controlled_resolve(struct dalcs_builder *builder);
 void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 bool dalcs_diode_parse_model(struct dalcs_reader *reader, struct dalcs_diode_model *model);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);

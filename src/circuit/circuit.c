@@ -38,10 +38,12 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     builder->model = dalcs_arena_alloc(&builder->scratch, n_models, sizeof *builder->model);
     builder->device_token = dalcs_arena_alloc(&builder->scratch, n_devices + n_couplings,
                                               sizeof *builder->device_token);
+    builder->control_token =
+        dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->control_token);
     const bool ok = circuit->device != NULL && circuit->stimulus != NULL &&
                     circuit->coupling != NULL && circuit->diode_model != NULL &&
                     circuit->switch_model != NULL && builder->model != NULL &&
-                    builder->device_token != NULL;
+                    builder->device_token != NULL && builder->control_token != NULL;
     return ok ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -104,9 +106,6 @@ static void read_card(struct dalcs_builder *builder, const struct dalcs_card *ca
         }
     } else if (c == DALCS_CARD_COUPLING) {
         dalcs_coupling_parse(builder, card);
-    } else if (c == DALCS_CARD_ELEMENT &&
-               (card->token->text[0] == 'f' || card->token->text[0] == 'h')) {
-        dalcs_controlled_resolve(builder, card);
     } else if (c == DALCS_CARD_IC) {
         dalcs_initial_parse(builder, card);
     } else if (c == DALCS_CARD_SIGNALS) {
@@ -183,6 +182,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_card_table_check_title(builder);
     DALCS_TRY(classify_cards(builder, class_of));
     DALCS_TRY(read_cards(builder, class_of));
+    dalcs_controlled_resolve(builder);
     dalcs_model_check(builder);
     check_presence(builder);
     if (builder->n_signals == 0) {

@@ -36,7 +36,6 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
                             enum dalcs_device_kind kind) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, usage_of(kind));
     struct dalcs_device *device = dalcs_builder_add_device(builder, kind, card->token);
-    const struct dalcs_token *source;
     if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node) || is_nonlinear(&reader)) {
         return;
     }
@@ -44,27 +43,20 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
         if (!dalcs_reader_nodes(&reader, 2, device->node + 2)) {
             return;
         }
-    } else if (!dalcs_reader_name(&reader, "the name of a voltage source", &source)) {
-        return;
+    } else {
+        const struct dalcs_token *source;
+        if (!dalcs_reader_name(&reader, "the name of a voltage source", &source)) {
+            return;
+        }
+        builder->control_token[device - builder->circuit->device] = source;
     }
     if (dalcs_reader_number(&reader, DALCS_PLAIN, "a gain", &device->value)) {
         dalcs_reader_end(&reader);
     }
 }
 
-void dalcs_controlled_resolve(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    const int index = dalcs_names_find(&builder->devices, card->token->text);
-    int ignored[2];
-    struct dalcs_reader reader = dalcs_reader_start(builder, card, NULL);
-    const struct dalcs_token *name;
-    /* A card that cannot be read so far was reported when it was parsed. */
-    const bool was_failed = builder->failed;
-    if (index < 0 || index >= builder->n_device_cards || card->n < 5 ||
-        !dalcs_reader_nodes(&reader, 2, ignored) || !dalcs_reader_name(&reader, "", &name)) {
-        builder->failed = builder->failed || was_failed;
-        return;
-    }
-    struct dalcs_device *device = &builder->circuit->device[index];
+static void resolve(struct dalcs_builder *builder, struct dalcs_device *device,
+                    const struct dalcs_token *name) {
     const int control = dalcs_builder_find_device(builder, name);
     if (control < 0) {
         return;
@@ -76,4 +68,12 @@ void dalcs_controlled_resolve(struct dalcs_builder *builder, const struct dalcs_
         return;
     }
     device->control = control;
+}
+
+void dalcs_controlled_resolve(struct dalcs_builder *builder) {
+    for (int k = 0; k < builder->circuit->n_devices; k++) {
+        if (builder->control_token[k] != NULL) {
+            resolve(builder, &builder->circuit->device[k], builder->control_token[k]);
+        }
+    }
 }
