@@ -68,7 +68,6 @@ enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs,
 
 enum dalcs_status dalcs_outputs_row(struct dalcs_outputs *outputs, double time,
                                     const double *value) {
-    outputs->time = time;
     outputs->n_rows++;
     dalcs_measure_row(&outputs->measure[outputs->analysis], time, value);
     if (outputs->has_figure && outputs->analysis == DALCS_TRANSIENT) {

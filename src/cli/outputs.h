@@ -16,7 +16,6 @@ struct dalcs_outputs {
     struct dalcs_atomic_file report;
     struct dalcs_measure measure[2]; /* by enum dalcs_analysis */
     enum dalcs_analysis analysis;    /* of the plot being received */
-    double time;                     /* of the last row, s */
     size_t n_rows;
 };
 

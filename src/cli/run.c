@@ -17,6 +17,7 @@ struct run {
     const struct dalcs_cli *cli;
     struct dalcs_outputs outputs;
     struct dalcs_progress progress;
+    double time; /* s, how far the run has come */
 };
 
 static const char help[] =
@@ -53,6 +54,7 @@ static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
 
 static enum dalcs_status row(void *user, double time, const double *value) {
     struct run *run = user;
+    run->time = time;
     enum dalcs_status status = dalcs_outputs_row(&run->outputs, time, value);
     return status == DALCS_OK ? check_interrupt(run) : status;
 }
@@ -64,6 +66,7 @@ static enum dalcs_status end(void *user) {
 
 static enum dalcs_status progress(void *user, double time, double stop) {
     struct run *run = user;
+    run->time = time;
     dalcs_progress_update(&run->progress, time, stop);
     return check_interrupt(run);
 }
@@ -121,8 +124,8 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
     dalcs_summary_write_run(out, report);
     if (status != DALCS_OK) {
         char text[DALCS_QUANTITY_SIZE];
-        fprintf(out, "  stopped   at %s: %s\n",
-                dalcs_quantity_write(text, run->outputs.time, "s", 6), dalcs_status_text(status));
+        fprintf(out, "  stopped   at %s: %s\n", dalcs_quantity_write(text, run->time, "s", 6),
+                dalcs_status_text(status));
     }
     dalcs_summary_write_signals(out, &run->outputs.measure[DALCS_OPERATING_POINT],
                                 arguments->all_signals);
@@ -153,7 +156,7 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     if (status == DALCS_E_CANCELLED) {
         char text[DALCS_QUANTITY_SIZE];
         fprintf(run->cli->err, "dalcs: interrupted at t = %s\n",
-                dalcs_quantity_write(text, run->outputs.time, "s", 6));
+                dalcs_quantity_write(text, run->time, "s", 6));
     } else if (status != DALCS_OK && status != DALCS_E_IO && *n_written == n_before) {
         dalcs_cli_error(run->cli, "%s", dalcs_status_text(status));
     }

@@ -7,7 +7,8 @@
 #include <string.h>
 
 /* Lengths of a micro-step over h, the next where one has no certified answer (a circuit that is not
- * passive may have widely different gains). Two of them, extrapolated, leave an error of the square. */
+ * passive may have widely different gains). Two of them, extrapolated, leave an error of the square.
+ * None reaches more than half of the way to the next edge. */
 static const double micro_part[] = {1e-6, 1e-3, 1.0};
 
 /* A quantity jumps when its change survives extrapolation to a step of 0 (regular changes halve with
@@ -130,7 +131,7 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
     enum dalcs_status status = DALCS_NOT_CONVERGED;
     double h = 0.0;
     for (size_t i = 0; i < sizeof(micro_part) / sizeof(*micro_part) && status > DALCS_OK; i++) {
-        h = micro_part[i] * e->grid.h;
+        h = fmin(micro_part[i] * e->grid.h, 0.5 * (e->grid.next_edge - e->t));
         status = solve(e, k, 1.0 / h, u, y);
     }
     DALCS_TRY(status);

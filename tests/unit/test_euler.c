@@ -187,6 +187,30 @@ START_TEST(test_edge) {
 
 END_TEST
 
+/* The values just after an edge know nothing of the next one, however near it is. */
+START_TEST(test_next_edge_near) {
+    start(
+        "edges\nV1 a 0 PULSE(0 1 10u 0 0 3u 50u)\nV2 b 0 PULSE(0 2 10.0000000000001u 0 0 3u 50u)\n"
+        "R1 a x 1\nR2 b x 1\nC1 x 0 1u\n.tran 1u 1m uic\n",
+        1e-6, 1e-3);
+    for (int k = 0; k < 10; k++) {
+        step();
+    }
+    ck_assert(e.at_jump);
+    ck_assert_int_eq(dalcs_euler_cross(&e), DALCS_OK);
+    ck_assert_double_eq(value(DALCS_LABEL_NODE, "a"), 1.0);
+    ck_assert_double_eq(value(DALCS_LABEL_NODE, "b"), 0.0);
+    ck_assert_double_eq_tol(value(DALCS_LABEL_NODE, "x"), 0.0, 1e-12);
+    step();
+    ck_assert(e.at_jump);
+    ck_assert_double_eq_tol(e.t, 10e-6, 2e-19 + 1e-19);
+    ck_assert_int_eq(dalcs_euler_cross(&e), DALCS_OK);
+    ck_assert_double_eq(value(DALCS_LABEL_NODE, "b"), 2.0);
+    finish();
+}
+
+END_TEST
+
 /* A source commands the switch with hysteresis: on above 1.5 V, off below 0.5 V. */
 START_TEST(test_switch) {
     start("switch\nV1 a 0 9\nS1 a b c 0 sm\nR1 b 0 3\nVc c 0 PWL(0 0 1m 2 2m 0)\nRc c 0 1\n"
@@ -221,4 +245,4 @@ START_TEST(test_failure) {
 END_TEST
 
 RUN_TESTS("euler", test_rc, test_lc, test_freewheel, test_inconsistent_start, test_flux,
-          test_operating_point, test_edge, test_switch, test_failure)
+          test_operating_point, test_edge, test_next_edge_near, test_switch, test_failure)
