@@ -140,7 +140,8 @@ struct dalcs_run_options {
     int max_outer;         /* proximal iterations per rung, 40 */
     int max_pivots;        /* per solve, on top of twice the number of pairs, 200 */
     size_t cache_bytes;    /* bound on factorisations kept over all components, 256 MiB */
-    int dense_limit;       /* components up to this many unknowns use dense step maps, 64 */
+    int dense_limit;       /* components up to this many unknowns use dense step maps, 64; this
+                              and the bound may change the last bits of results */
     size_t max_events;     /* events and jumps kept when recording, 1e6 */
     const char *dump_path; /* where to write an OSNSP that failed; NULL: nowhere */
 };

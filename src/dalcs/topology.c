@@ -76,8 +76,7 @@ static void find_components(struct dalcs_topology *t, const struct dalcs_circuit
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
         t->device_component[i] = -1;
-        bool merged = is_short(d) && !t->has_current[i];
-        if (merged || (d->kind == DALCS_CAPACITOR && d->value == 0.0 && !t->has_current[i])) {
+        if (is_short(d) && !t->has_current[i]) {
             continue;
         }
         int *slot = &number[dalcs_union_find(parent, c->n_nodes + i)];

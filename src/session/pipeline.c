@@ -333,7 +333,7 @@ static enum dalcs_status run_transient(struct dalcs_run *r) {
     struct dalcs_session *s = r->s;
     struct dalcs_euler e;
     struct dalcs_schedule schedule = choose_schedule(r);
-    DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, &s->circuit, r->sink, &schedule,
+    DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, r->h,
                                 s->circuit.transient.stop));

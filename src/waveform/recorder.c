@@ -11,16 +11,13 @@ static const double same_time = 1e-9;
 /* V or A: what extrapolation leaves of a state that stays at 0. */
 static const double smallest_jump = 1e-15;
 
-enum dalcs_status
-dalcs_recorder_setup(struct dalcs_recorder *r, const struct dalcs_network *network,
-                     const struct dalcs_circuit *circuit, const struct dalcs_sink *sink,
-                     const struct dalcs_schedule *schedule, bool keep, size_t limit) {
-    *r = (struct dalcs_recorder){.network = network,
-                                 .circuit = circuit,
-                                 .sink = sink,
-                                 .schedule = *schedule,
-                                 .keep = keep,
-                                 .limit = limit};
+enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
+                                       const struct dalcs_network *network,
+                                       const struct dalcs_sink *sink,
+                                       const struct dalcs_schedule *schedule, bool keep,
+                                       size_t limit) {
+    *r = (struct dalcs_recorder){
+        .network = network, .sink = sink, .schedule = *schedule, .keep = keep, .limit = limit};
     size_t n = (size_t)network->n_outputs;
     r->now = dalcs_alloc(n, sizeof(double));
     r->before = dalcs_alloc(n, sizeof(double));

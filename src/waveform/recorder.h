@@ -21,7 +21,6 @@ struct dalcs_schedule {
 
 struct dalcs_recorder {
     const struct dalcs_network *network;
-    const struct dalcs_circuit *circuit;
     const struct dalcs_sink *sink;
     struct dalcs_schedule schedule;
     double *now, *before, *row; /* [n_outputs] at the end and the beginning of the step */
@@ -39,7 +38,6 @@ struct dalcs_recorder {
 
 enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
                                        const struct dalcs_network *network,
-                                       const struct dalcs_circuit *circuit,
                                        const struct dalcs_sink *sink,
                                        const struct dalcs_schedule *schedule, bool keep,
                                        size_t limit) DALCS_MUST_CHECK;

@@ -29,9 +29,8 @@ static enum dalcs_status run(const char *text, double h, double stop,
     build_good_network(&t, text);
     const struct dalcs_osnsp_options options = usual_osnsp_options();
     ck_assert_int_eq(dalcs_euler_setup(&e, &t.circuit, &t.network, &options, h, stop), DALCS_OK);
-    ck_assert_int_eq(
-        dalcs_recorder_setup(&r, &t.network, &t.circuit, &sink, schedule, limit > 0, limit),
-        DALCS_OK);
+    ck_assert_int_eq(dalcs_recorder_setup(&r, &t.network, &sink, schedule, limit > 0, limit),
+                     DALCS_OK);
     e.on_jump = dalcs_recorder_jump;
     e.jump_user = &r;
     n_rows = 0;
