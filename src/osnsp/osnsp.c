@@ -50,9 +50,9 @@ static void list_runs(struct dalcs_osnsp *p) {
     }
 }
 
-/* A threshold says little about the voltages of a circuit (Vrev = 1 MV: never); but where all else is
- * 0, it tells rounding from an answer. */
-static const double threshold_part = 1e-9;
+/* V: thresholds say little about the voltages of a circuit (Vrev = 1 MV: never), but where all else is
+ * 0 the least of them, up to this, tells rounding from an answer. */
+static const double largest_threshold = 1.0;
 
 /* What sources and thresholds ask for counts as a current or voltage even where the answer is 0. */
 static enum dalcs_status list_drives(struct dalcs_osnsp *p) {
@@ -68,9 +68,15 @@ static enum dalcs_status list_drives(struct dalcs_osnsp *p) {
                 (struct dalcs_drive){s->n_x + s->E.j[k], s->row_is_current[r], fabs(s->E.x[k])};
         }
     }
+    struct dalcs_drive least = {.coefficient = INFINITY};
     for (int k = 0; k < s->F.p[s->n_pairs]; k++) {
-        p->drive[p->n_drives++] = (struct dalcs_drive){s->n_x + s->F.j[k], false,
-                                                       threshold_part * fabs(s->F.x[k])};
+        double size = fmin(fabs(s->F.x[k]), largest_threshold);
+        if (size > 0.0 && size < least.coefficient) {
+            least = (struct dalcs_drive){s->n_x + s->F.j[k], false, size};
+        }
+    }
+    if (isfinite(least.coefficient)) {
+        p->drive[p->n_drives++] = least;
     }
     return DALCS_OK;
 }

@@ -186,7 +186,7 @@ struct sketch sketch_random(enum sketch_family family, uint64_t seed) {
         add_controlled(&d);
     }
     int n_diodes = between(&d, 1, SKETCH_MAX_DIODES);
-    while (d.n_pairs < n_diodes) {
+    while (d.n_pairs < n_diodes && room_for_pairs(&d, 1)) {
         if (chance(&d, 25)) {
             add_pattern(&d);
         } else {
