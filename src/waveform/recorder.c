@@ -23,12 +23,18 @@ enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
     r->before = dalcs_alloc(n, sizeof(double));
     r->row = dalcs_alloc(n, sizeof(double));
     r->seen = dalcs_alloc((size_t)network->n_systems, sizeof(*r->seen));
-    bool complete = r->now != NULL && r->before != NULL && r->row != NULL && r->seen != NULL;
+    r->jump_state = dalcs_alloc((size_t)network->n_states, sizeof(*r->jump_state));
+    bool complete = r->now != NULL && r->before != NULL && r->row != NULL && r->seen != NULL &&
+                    r->jump_state != NULL;
+    size_t most_pairs = 0;
     for (int k = 0; complete && k < network->n_systems; k++) {
-        size_t words = ((size_t)network->system[k].n_pairs + 63) / 64;
-        r->seen[k] = dalcs_alloc(words, sizeof(uint64_t));
+        size_t n_pairs = (size_t)network->system[k].n_pairs;
+        most_pairs = n_pairs > most_pairs ? n_pairs : most_pairs;
+        r->seen[k] = dalcs_alloc((n_pairs + 63) / 64, sizeof(uint64_t));
         complete = r->seen[k] != NULL;
     }
+    r->impulse = dalcs_alloc(2 * most_pairs, sizeof(*r->impulse));
+    complete = complete && r->impulse != NULL;
     if (!complete) {
         dalcs_recorder_finish(r);
         return DALCS_E_NOMEM;
@@ -46,6 +52,8 @@ void dalcs_recorder_finish(struct dalcs_recorder *r) {
     free(r->row);
     free(r->event);
     free(r->jump);
+    free(r->jump_state);
+    free(r->impulse);
     dalcs_arena_finish(&r->arena);
     *r = (struct dalcs_recorder){0};
 }
@@ -206,26 +214,9 @@ static bool is_noticeable(double change, double largest) {
     return fabs(change) > 1e-9 * largest;
 }
 
-enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump *j) {
-    struct dalcs_recorder *r = user;
-    if (!r->keep) {
-        return DALCS_OK;
-    }
-    if (r->n_jumps == r->limit) {
-        r->n_jumps_dropped++;
-        return DALCS_OK;
-    }
-    const struct dalcs_system *s = &r->network->system[j->system];
-    struct dalcs_jump_state *state =
-        dalcs_arena_alloc(&r->arena, (size_t)r->network->n_states, sizeof(*state));
-    struct dalcs_impulse *impulse =
-        dalcs_arena_alloc(&r->arena, 2 * (size_t)s->n_pairs, sizeof(*impulse));
-    DALCS_TRY(dalcs_grow(&r->jump, &r->jump_capacity, r->n_jumps + 1, sizeof(*r->jump)));
-    if (state == NULL || impulse == NULL) {
-        return DALCS_E_NOMEM;
-    }
+static size_t list_jump_states(const struct dalcs_recorder *r, const struct dalcs_euler_jump *j) {
     static const double no_inputs[1] = {1.0}; /* states are columns only */
-    size_t n_states = 0;
+    size_t n = 0;
     for (int i = 0; i < r->network->n_states; i++) {
         const struct dalcs_state *x = &r->network->state[i];
         if (x->probe.system != j->system) {
@@ -236,25 +227,52 @@ enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump 
         double change = after - before;
         if (fabs(change) > smallest_jump &&
             is_noticeable(change, fmax(fabs(before), fabs(after)))) {
-            state[n_states++] =
+            r->jump_state[n++] =
                 (struct dalcs_jump_state){.element = x->element, .before = before, .after = after};
         }
     }
+    return n;
+}
+
+static size_t list_impulses(const struct dalcs_recorder *r, const struct dalcs_euler_jump *j) {
+    const struct dalcs_system *s = &r->network->system[j->system];
     double largest[2] = {0.0, 0.0};
     for (int d = 0; d < s->n_pairs; d++) {
         largest[0] = fmax(largest[0], fabs(j->charge[d]));
         largest[1] = fmax(largest[1], fabs(j->flux[d]));
     }
-    size_t n_impulses = 0;
+    size_t n = 0;
     for (int d = 0; d < s->n_pairs; d++) {
         const double value[2] = {j->charge[d], j->flux[d]};
         for (int i = 0; i < 2; i++) {
             if (value[i] != 0.0 && is_noticeable(value[i], largest[i])) {
-                impulse[n_impulses++] = (struct dalcs_impulse){
+                r->impulse[n++] = (struct dalcs_impulse){
                     .element = s->pair[d].element, .is_flux = i == 1, .value = value[i]};
             }
         }
     }
+    return n;
+}
+
+enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump *j) {
+    struct dalcs_recorder *r = user;
+    if (!r->keep) {
+        return DALCS_OK;
+    }
+    if (r->n_jumps == r->limit) {
+        r->n_jumps_dropped++;
+        return DALCS_OK;
+    }
+    size_t n_states = list_jump_states(r, j);
+    size_t n_impulses = list_impulses(r, j);
+    struct dalcs_jump_state *state = dalcs_arena_alloc(&r->arena, n_states, sizeof(*state));
+    struct dalcs_impulse *impulse = dalcs_arena_alloc(&r->arena, n_impulses, sizeof(*impulse));
+    DALCS_TRY(dalcs_grow(&r->jump, &r->jump_capacity, r->n_jumps + 1, sizeof(*r->jump)));
+    if (state == NULL || impulse == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    memcpy(state, r->jump_state, n_states * sizeof(*state));
+    memcpy(impulse, r->impulse, n_impulses * sizeof(*impulse));
     r->jump[r->n_jumps++] = (struct dalcs_jump){.time = j->time,
                                                 .n_states = n_states,
                                                 .state = state,

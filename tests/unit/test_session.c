@@ -4,6 +4,7 @@
 
 #include "run_tests.h"
 
+#include <malloc.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -145,6 +146,33 @@ START_TEST(test_cancel) {
 
 END_TEST
 
+static size_t bytes_in_use(void) {
+    const struct mallinfo2 info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
+
+/* A jump is kept with the states that take part, however many there are. */
+START_TEST(test_memory_of_jumps) {
+    static char text[1 << 17];
+    int length = sprintf(text, "one of many\nV1 a 0 PULSE(0 1 1u 0 0 1u 2u)\nD1 a b\nC0 b 0 1u\n"
+                               "R0 b 0 0.1\n");
+    for (int k = 1; k < 2000; k++) {
+        length += sprintf(text + length, "C%d n%d 0 1u\nR%d n%d 0 1\n", k, k, k, k);
+    }
+    sprintf(text + length, ".save v(b)\n.tran 0.5u 1m\n");
+    struct dalcs_session *session = read_good(text);
+    struct dalcs_run_options options = dalcs_run_options_default();
+    options.record = true;
+    const struct dalcs_sink sink = {0};
+    size_t before = bytes_in_use();
+    ck_assert_int_eq(dalcs_session_run(session, &options, &sink), DALCS_OK);
+    ck_assert_uint_gt(dalcs_session_report(session)->n_jumps, 400);
+    ck_assert_uint_lt(bytes_in_use() - before, 2 << 20);
+    dalcs_session_destroy(session);
+}
+
+END_TEST
+
 /* ---- Initial conditions -------------------------------------------------------------------- */
 
 /* .ic v(a,b) between two parts of a circuit that share only ground. */
@@ -280,5 +308,6 @@ START_TEST(test_threads) {
 END_TEST
 
 RUN_TESTS("session", test_wrong_options, test_step_without_states, test_cancel,
-          test_initial_across_parts, test_initial_beside_short, test_initial_of_floating_part,
-          test_certificate_of_held_point, test_shorts_in_a_loop, test_threads)
+          test_memory_of_jumps, test_initial_across_parts, test_initial_beside_short,
+          test_initial_of_floating_part, test_certificate_of_held_point, test_shorts_in_a_loop,
+          test_threads)
