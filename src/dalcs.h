@@ -128,7 +128,8 @@ struct dalcs_run_options {
     const char
         *method;      /* "euler", the papers' implicit Euler; NULL: the netlist's or the default */
     double step;      /* s; 0: .options step, else the tmax of .tran, else its tstep */
-    const double *at; /* [n_at] ascending output times in s, interpolated linearly between steps;
+    const double *at; /* [n_at] ascending output times in s, none after the stop time,
+                           interpolated linearly between steps;
                            NULL: the .tran grid where it falls on steps, else every step */
     size_t n_at;
     bool record; /* keep events and jumps for the report */

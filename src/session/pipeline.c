@@ -68,9 +68,13 @@ static enum dalcs_status check_method(struct dalcs_session *s, const struct dalc
 
 static enum dalcs_status check_output_times(struct dalcs_session *s,
                                             const struct dalcs_run_options *o) {
-    for (size_t k = 0; k < o->n_at; k++) {
+    const struct dalcs_transient *t = &s->circuit.transient;
+    for (size_t k = 0; o->at != NULL && k < o->n_at; k++) {
         if (!(o->at[k] >= (k > 0 ? o->at[k - 1] : 0.0)) || !isfinite(o->at[k])) {
             return option_error(s, "output times must be ascending and not negative");
+        }
+        if (t->present && o->at[k] > t->stop) {
+            return option_error(s, "output times must not come after the stop time");
         }
     }
     return DALCS_OK;

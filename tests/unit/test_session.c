@@ -63,18 +63,21 @@ static const char divider[] = "divider\nV1 in 0 1\nR1 in out 1\nC1 out 0 1\n.tra
 
 START_TEST(test_wrong_options) {
     const struct dalcs_run_options usual = dalcs_run_options_default();
-    struct dalcs_run_options wrong[12];
+    struct dalcs_run_options wrong[13];
     size_t n = 0;
     for (size_t k = 0; k < sizeof(wrong) / sizeof(*wrong); k++) {
         wrong[k] = usual;
     }
     static const double descending[] = {0.5, 0.25};
+    static const double late[] = {1.0, 1.5};
     wrong[n++].method = "trapezoidal";
     wrong[n++].step = -1.0;
     wrong[n++].step = NAN;
     wrong[n++].step = 2.0;
     wrong[n++].step = 1e-14; /* 1e14 steps: edges could not be put between their times */
     wrong[n].at = descending;
+    wrong[n++].n_at = 2;
+    wrong[n].at = late;
     wrong[n++].n_at = 2;
     wrong[n++].certificate_tolerance = NAN;
     wrong[n++].certificate_tolerance = INFINITY;
