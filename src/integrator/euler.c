@@ -154,6 +154,9 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
         e->flux[d] = h * c->osnsp.w[d];
     }
     DALCS_TRY(solve(e, k, 2.0 / h, u, c->scratch));
+    if (c->commanded) {
+        return DALCS_OK; /* a switch moved in between: the two tell nothing together */
+    }
     for (int x = 0; x < s->n_x; x++) {
         double whole = y[x] - u[x];
         double limit_of_0 = 2.0 * (c->scratch[x] - u[x]) - whole;
@@ -207,12 +210,21 @@ static enum dalcs_status settle_after(struct dalcs_euler *e, int k, const double
     memcpy(c->probe_u, e->after, n_x * sizeof(double));
     memcpy(c->probe_u + n_x, u + n_x, input_bytes);
     dalcs_component_look_ahead(c, e->t + h, c->probe_u);
-    DALCS_TRY(solve(e, k, 1.0 / h, c->probe_u, y));
-    for (size_t x = 0; x < n_x; x++) {
-        c->probe_u[x] = 2.0 * e->after[x] - y[x];
+    enum dalcs_status status = solve(e, k, 1.0 / h, c->probe_u, c->scratch);
+    if (status == DALCS_OK) {
+        for (size_t x = 0; x < n_x; x++) {
+            c->probe_u[x] = 2.0 * e->after[x] - c->scratch[x];
+        }
+        memcpy(c->probe_u + n_x, u + n_x, input_bytes);
+        status = solve(e, k, 1.0 / h, c->probe_u, c->scratch);
     }
-    memcpy(c->probe_u + n_x, u + n_x, input_bytes);
-    DALCS_TRY(solve(e, k, 1.0 / h, c->probe_u, y));
+    if (status < DALCS_OK) {
+        return status;
+    }
+    if (status ==
+        DALCS_OK) { /* otherwise the first micro-step has to do, and the next step tells */
+        memcpy(y, c->scratch, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
+    }
     memcpy(y, e->after, n_x * sizeof(double));
     return DALCS_OK;
 }
@@ -254,7 +266,11 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
             memcpy(c->saved_mode, c->osnsp.mode, mode_bytes);
             double length;
             bool jumps;
-            DALCS_TRY(look_after(e, k, c->y_before, c->u, c->probe_y, &length, &jumps));
+            enum dalcs_status status =
+                look_after(e, k, c->y_before, c->u, c->probe_y, &length, &jumps);
+            if (status < DALCS_OK) {
+                return status; /* without a micro-step there is no jump to report, no more */
+            }
             memcpy(c->osnsp.mode, c->saved_mode, mode_bytes);
         }
         memcpy(c->u, c->y, n_x * sizeof(double));
