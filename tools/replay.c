@@ -129,22 +129,11 @@ static void print_verdict(const struct replay *r, enum dalcs_status status) {
     }
 }
 
-static struct dalcs_osnsp_options usual_options(void) {
-    const struct dalcs_run_options o = dalcs_run_options_default();
-    return (struct dalcs_osnsp_options){
-        .certificate_tolerance = o.certificate_tolerance,
-        .proximal_weight = {o.proximal_weight[0], o.proximal_weight[1], o.proximal_weight[2]},
-        .rcond_min = o.rcond_min,
-        .max_outer = o.max_outer,
-        .max_pivots = o.max_pivots,
-        .cache_bytes = o.cache_bytes,
-        .dense_limit = o.dense_limit};
-}
-
 /* Solves from the mode in the file and prints everything. */
 static enum dalcs_status replay(struct replay *r) {
     const struct dalcs_system *s = &r->file.system;
-    const struct dalcs_osnsp_options options = usual_options();
+    const struct dalcs_run_options usual = dalcs_run_options_default();
+    const struct dalcs_osnsp_options options = dalcs_osnsp_options_of(&usual);
     r->y = dalcs_alloc((size_t)dalcs_system_n_columns(s), sizeof(*r->y));
     if (r->y == NULL) {
         return DALCS_E_NOMEM;

@@ -12,6 +12,17 @@ enum { PATIENCE = 10 };
 /* Iterative refinements of an answer whose residual is too large. */
 enum { MAX_REFINEMENTS = 3 };
 
+struct dalcs_osnsp_options dalcs_osnsp_options_of(const struct dalcs_run_options *run) {
+    const double *weight = run->proximal_weight;
+    return (struct dalcs_osnsp_options){.certificate_tolerance = run->certificate_tolerance,
+                                        .proximal_weight = {weight[0], weight[1], weight[2]},
+                                        .rcond_min = run->rcond_min,
+                                        .max_outer = run->max_outer,
+                                        .max_pivots = run->max_pivots,
+                                        .cache_bytes = run->cache_bytes,
+                                        .dense_limit = run->dense_limit};
+}
+
 static enum dalcs_status list_pair_rows(struct dalcs_osnsp *p) {
     const struct dalcs_system *s = p->system;
     int n_equations = dalcs_system_n_equations(s);

@@ -28,6 +28,9 @@ struct dalcs_osnsp_options {
     int dense_limit;              /* unknowns up to which recurring modes use a dense map */
 };
 
+/* Those of a run. */
+struct dalcs_osnsp_options dalcs_osnsp_options_of(const struct dalcs_run_options *run);
+
 struct dalcs_osnsp_counters {
     long solved, pivots, factorizations, cache_hits, singular;
 };

@@ -159,7 +159,7 @@ static bool pivot_is_sound(const struct elimination *e, int x, int row) {
         }
     }
     return pivot > 0.0 && pivot >= pivot_floor * largest &&
-           (n_left - 1) * (e->users[x].n - 1) <= fill_limit;
+           (long)(n_left - 1) * (e->users[x].n - 1) <= fill_limit;
 }
 
 static enum dalcs_status eliminate_states(struct elimination *e, const int *row_of_dual) {
@@ -494,17 +494,6 @@ enum dalcs_status dalcs_step_form_build(struct dalcs_step_form *form,
         dalcs_step_form_finish(form);
     }
     return status;
-}
-
-static size_t csr_bytes(const struct dalcs_csr *a) {
-    return a->p == NULL ? 0
-                        : (size_t)(a->n_rows + 1) * sizeof(int) +
-                              (size_t)a->p[a->n_rows] * (sizeof(int) + sizeof(double));
-}
-
-size_t dalcs_step_form_bytes(const struct dalcs_step_form *f) {
-    return csr_bytes(&f->K) + csr_bytes(&f->R) + csr_bytes(&f->X) + csr_bytes(&f->check) +
-           csr_bytes(&f->Xu) + (size_t)(f->n + f->n_pairs) * (2 * sizeof(int) + 2 * sizeof(double));
 }
 
 void dalcs_step_form_finish(struct dalcs_step_form *form) {

@@ -97,7 +97,7 @@ typedef double vector4 __attribute__((vector_size(32), aligned(32)));
 /* out[rows] = map u, eight rows at a time. The clones differ in vector width only: without
  * contraction every element is computed by the same operations in the same order. */
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) &&                             \
-    !defined(__SANITIZE_ADDRESS__)
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 __attribute__((target_clones("avx2", "default")))
 #endif
 static void

@@ -135,22 +135,11 @@ static enum dalcs_status choose_step(struct dalcs_run *r) {
     return DALCS_OK;
 }
 
-static struct dalcs_osnsp_options osnsp_options(const struct dalcs_run_options *o) {
-    return (struct dalcs_osnsp_options){
-        .certificate_tolerance = o->certificate_tolerance,
-        .proximal_weight = {o->proximal_weight[0], o->proximal_weight[1], o->proximal_weight[2]},
-        .rcond_min = o->rcond_min,
-        .max_outer = o->max_outer,
-        .max_pivots = o->max_pivots,
-        .cache_bytes = o->cache_bytes,
-        .dense_limit = o->dense_limit};
-}
-
 static enum dalcs_status check_options(struct dalcs_run *r) {
     DALCS_TRY(check_method(r->s, r->options));
     DALCS_TRY(check_output_times(r->s, r->options));
     DALCS_TRY(check_tolerances(r->s, r->options));
-    r->osnsp = osnsp_options(r->options);
+    r->osnsp = dalcs_osnsp_options_of(r->options);
     return choose_step(r);
 }
 

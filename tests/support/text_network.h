@@ -52,14 +52,7 @@ static inline void text_network_inputs(const struct text_network *t, int system,
 /* The options a user gets. */
 static inline struct dalcs_osnsp_options usual_osnsp_options(void) {
     const struct dalcs_run_options o = dalcs_run_options_default();
-    return (struct dalcs_osnsp_options){
-        .certificate_tolerance = o.certificate_tolerance,
-        .proximal_weight = {o.proximal_weight[0], o.proximal_weight[1], o.proximal_weight[2]},
-        .rcond_min = o.rcond_min,
-        .max_outer = o.max_outer,
-        .max_pivots = o.max_pivots,
-        .cache_bytes = o.cache_bytes,
-        .dense_limit = o.dense_limit};
+    return dalcs_osnsp_options_of(&o);
 }
 
 #endif

@@ -110,13 +110,7 @@ static void bench(const char *name, char *text, double h, int warm_up, int n_ste
     dalcs_netlist_finish(&netlist);
     must(dalcs_network_build(&network, &circuit, &(struct dalcs_network_options){0}, &diag), name);
     struct dalcs_run_options o = dalcs_run_options_default();
-    struct dalcs_osnsp_options options = {.certificate_tolerance = o.certificate_tolerance,
-                                          .proximal_weight = {1e-8, 1e-7, 1e-6},
-                                          .rcond_min = o.rcond_min,
-                                          .max_outer = o.max_outer,
-                                          .max_pivots = o.max_pivots,
-                                          .cache_bytes = o.cache_bytes,
-                                          .dense_limit = o.dense_limit};
+    struct dalcs_osnsp_options options = dalcs_osnsp_options_of(&o);
     struct dalcs_euler e;
     must(dalcs_euler_setup(&e, &circuit, &network, &options, h, 1e9 * h), name);
     must(dalcs_euler_start(&e, network.initial), name);
