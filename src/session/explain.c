@@ -161,8 +161,9 @@ void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
     if (status <= DALCS_OK || e->failed_system < 0) {
         return;
     }
-    const char *when = e->at_operating_point
-                           ? "at the operating point"
+    const char *when = e->at_operating_point ? "at the operating point"
+                       : e->failed_time == 0.0
+                           ? "just after t = 0 s"
                            : dalcs_arena_printf(&s->arena, "at t = %.9g s (step %ld, h = %.6g s)",
                                                 e->failed_time, e->steps + 1, e->failed_h);
     when = when == NULL ? "" : when;
