@@ -1,90 +1,45 @@
-/* names.c - a table from names to small integers, and the search for a mistyped name.
- *
- * Open addressing with linear probing, at most half full; a slot keeps the hash beside the index, so
- * that a probe rarely looks at a name. A million names are found about twice as fast as in a chained
- * uthash, in a third of the memory. */
+/* names.c - a table from names to small integers, and the search for a mistyped name. */
 #include "names.h"
 
-#include <stdint.h>
+#define HASH_NONFATAL_OOM 1
+#include <uthash.h>
+
 #include <stdlib.h>
 #include <string.h>
 
 struct dalcs_names_entry {
+    UT_hash_handle hh;
     const char *name;
     int value;
 };
 
-struct dalcs_names_slot {
-    uint32_t hash;
-    uint32_t place; /* index of the entry + 1; 0 is empty */
-};
-
 /* Longer names are not searched for a near one: nobody mistypes them by two letters and the search
  * keeps its rows on the stack. */
-enum { FIRST_SLOTS = 32, NEAREST_MAX_LENGTH = 63 };
-
-/* FNV-1a, its two halves folded together. */
-static uint32_t hash_of(const char *name) {
-    uint64_t hash = 14695981039346656037ULL;
-    for (; *name != '\0'; name++) {
-        hash = (hash ^ (unsigned char)*name) * 1099511628211ULL;
-    }
-    return (uint32_t)(hash ^ hash >> 32);
-}
+enum { NEAREST_MAX_LENGTH = 63 };
 
 int dalcs_names_find(const struct dalcs_names *names, const char *name) {
-    if (names->n_slots == 0) {
-        return -1;
-    }
-    const uint32_t hash = hash_of(name);
-    const size_t mask = names->n_slots - 1;
-    size_t k = hash & mask;
-    for (; names->slot[k].place != 0; k = (k + 1) & mask) {
-        const struct dalcs_names_entry *entry = &names->entry[names->slot[k].place - 1];
-        if (names->slot[k].hash == hash && strcmp(entry->name, name) == 0) {
-            return entry->value;
-        }
-    }
-    return -1;
-}
-
-static void put(struct dalcs_names_slot *slot, size_t n_slots, struct dalcs_names_slot item) {
-    size_t k = item.hash & (n_slots - 1);
-    while (slot[k].place != 0) {
-        k = (k + 1) & (n_slots - 1);
-    }
-    slot[k] = item;
-}
-
-static enum dalcs_status make_room(struct dalcs_names *names) {
-    DALCS_TRY(dalcs_grow(&names->entry, &names->capacity, names->n + 1, sizeof *names->entry));
-    if (2 * (names->n + 1) <= names->n_slots) {
-        return DALCS_OK;
-    }
-    const size_t n_slots = names->n_slots == 0 ? FIRST_SLOTS : 2 * names->n_slots;
-    if (n_slots > UINT32_MAX) {
-        return DALCS_E_LIMIT;
-    }
-    struct dalcs_names_slot *slot = dalcs_alloc(n_slots, sizeof *slot);
-    if (slot == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    for (size_t k = 0; k < names->n_slots; k++) {
-        if (names->slot[k].place != 0) {
-            put(slot, n_slots, names->slot[k]);
-        }
-    }
-    free(names->slot);
-    names->slot = slot;
-    names->n_slots = n_slots;
-    return DALCS_OK;
+    struct dalcs_names_entry *entry;
+    HASH_FIND_STR(names->entry, name, entry);
+    return entry == NULL ? -1 : entry->value;
 }
 
 enum dalcs_status dalcs_names_add(struct dalcs_names *names, const char *name, int value) {
-    DALCS_TRY(make_room(names));
-    names->entry[names->n++] = (struct dalcs_names_entry){name, value};
-    put(names->slot, names->n_slots, (struct dalcs_names_slot){hash_of(name), (uint32_t)names->n});
+    struct dalcs_names_entry *entry = dalcs_alloc(1, sizeof *entry);
+    if (entry == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    entry->name = name;
+    entry->value = value;
+    HASH_ADD_KEYPTR(hh, names->entry, name, strlen(name), entry);
+    if (entry->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
+        free(entry);
+        return DALCS_E_NOMEM;
+    }
     return DALCS_OK;
+}
+
+static const struct dalcs_names_entry *next_of(const struct dalcs_names_entry *entry) {
+    return entry->hh.next;
 }
 
 /* ---- Mistyped names ------------------------------------------------------------------------ */
@@ -153,8 +108,8 @@ static void consider(struct nearest *nearest, const char *candidate, const char 
 
 const char *dalcs_names_nearest(const struct dalcs_names *names, const char *name) {
     struct nearest nearest = {0};
-    for (size_t k = 0; k < names->n; k++) {
-        consider(&nearest, names->entry[k].name, name, strlen(name));
+    for (const struct dalcs_names_entry *e = names->entry; e != NULL; e = next_of(e)) {
+        consider(&nearest, e->name, name, strlen(name));
     }
     return nearest.name;
 }
@@ -169,18 +124,23 @@ const char *dalcs_names_nearest_of(const char *const *candidate, size_t n, const
 
 const char *dalcs_names_join(const struct dalcs_names *names, size_t most,
                              struct dalcs_arena *arena) {
-    if (names->n == 0 || names->n > most) {
+    const struct dalcs_names_entry *e = names->entry;
+    if (e == NULL || HASH_COUNT(names->entry) > most) {
         return NULL;
     }
-    const char *list = names->entry[0].name;
-    for (size_t k = 1; k < names->n && list != NULL; k++) {
-        list = dalcs_arena_printf(arena, "%s, %s", list, names->entry[k].name);
+    const char *list = e->name;
+    for (e = next_of(e); e != NULL && list != NULL; e = next_of(e)) {
+        list = dalcs_arena_printf(arena, "%s, %s", list, e->name);
     }
     return list;
 }
 
 void dalcs_names_finish(struct dalcs_names *names) {
-    free(names->slot);
-    free(names->entry);
+    struct dalcs_names_entry *entry;
+    struct dalcs_names_entry *next;
+    HASH_ITER(hh, names->entry, entry, next) {
+        HASH_DEL(names->entry, entry);
+        free(entry);
+    }
     *names = (struct dalcs_names){0};
 }

@@ -7,11 +7,7 @@
 #include "memory.h"
 
 struct dalcs_names {
-    struct dalcs_names_entry *entry; /* [n] in the order of insertion */
-    size_t n;
-    size_t capacity;
-    struct dalcs_names_slot *slot; /* [n_slots] hash table of entries */
-    size_t n_slots;                /* a power of two, or 0 */
+    struct dalcs_names_entry *entry; /* uthash, in the order of insertion */
 };
 
 /* The value of a name, or -1. */
