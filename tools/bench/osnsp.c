@@ -164,6 +164,9 @@ int main(int argc, char **argv) {
               20000, n > 30 ? 2000 : 20000, 1.5, false, "klu_solve");
         return 0;
     }
+    printf("osnsp: solve, signs and certificate in a recurring mode; step: the sources and the "
+           "time loop "
+           "too.\nTargets in klu_solve are the OSNSP's, those in us the step's.\n");
     bench("bridge", bench_bridge(1), 2e-5, 5000, 20000, 0.3, false, "us");
     bench("250 bridges", bench_bridge(250), 2e-5, 5000, 200, 0.4, true, "us a bridge");
     bench("six-pulse", bench_six_pulse(), 2e-5, 20000, 20000, 1.5, false, "klu_solve");
