@@ -121,10 +121,10 @@ static double jump_energy(const struct dalcs_system *s, const double *before, co
 }
 
 /* Solves micro-steps from u (whose x is x-) into y, and so learns the state just after a
- * discontinuity, left in e->after: x- where it is continuous. Where it jumps, *jumps is set and the
- * jump reported; y then holds impulsive currents. *length is that of the micro-step of y. */
+ * discontinuity, left in e->after: x- where it is continuous. Where it jumps, the jump is reported
+ * and y holds impulsive currents. *length is that of the micro-step of y. */
 static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *before,
-                                    const double *u, double *y, double *length, bool *jumps) {
+                                    const double *u, double *y, double *length) {
     struct dalcs_component *c = &e->component[k];
     const struct dalcs_system *s = c->system;
     int n_equations = dalcs_system_n_equations(s);
@@ -136,7 +136,6 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
     }
     DALCS_TRY(status);
     *length = h;
-    *jumps = false;
     memcpy(e->after, u, (size_t)s->n_x * sizeof(double));
     double limit[2];
     bool moved = false;
@@ -157,13 +156,14 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
     if (c->commanded) {
         return DALCS_OK; /* a switch moved in between: the two tell nothing together */
     }
+    bool jumps = false;
     for (int x = 0; x < s->n_x; x++) {
         double whole = y[x] - u[x];
         double limit_of_0 = 2.0 * (c->scratch[x] - u[x]) - whole;
-        *jumps = *jumps || (fabs(limit_of_0) > jump_part * fabs(whole) &&
-                            fabs(limit_of_0) > limit[s->column_is_current[x]]);
+        jumps = jumps || (fabs(limit_of_0) > jump_part * fabs(whole) &&
+                          fabs(limit_of_0) > limit[s->column_is_current[x]]);
     }
-    if (!*jumps) {
+    if (!jumps) {
         return DALCS_OK;
     }
     for (int x = 0; x < s->n_x; x++) {
@@ -205,8 +205,7 @@ static enum dalcs_status settle_after(struct dalcs_euler *e, int k, const double
         return solve(e, k, 0.0, u, y);
     }
     double h;
-    bool jumps;
-    DALCS_TRY(look_after(e, k, before, u, y, &h, &jumps));
+    DALCS_TRY(look_after(e, k, before, u, y, &h));
     memcpy(c->probe_u, e->after, n_x * sizeof(double));
     memcpy(c->probe_u + n_x, u + n_x, input_bytes);
     dalcs_component_look_ahead(c, e->t + h, c->probe_u);
@@ -221,8 +220,8 @@ static enum dalcs_status settle_after(struct dalcs_euler *e, int k, const double
     if (status < DALCS_OK) {
         return status;
     }
-    if (status ==
-        DALCS_OK) { /* otherwise the first micro-step has to do, and the next step tells */
+    /* otherwise the first micro-step has to do, and the next step tells */
+    if (status == DALCS_OK) {
         memcpy(y, c->scratch, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
     }
     memcpy(y, e->after, n_x * sizeof(double));
@@ -265,9 +264,7 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
             size_t mode_bytes = (size_t)c->osnsp.n_words * sizeof(uint64_t);
             memcpy(c->saved_mode, c->osnsp.mode, mode_bytes);
             double length;
-            bool jumps;
-            enum dalcs_status status =
-                look_after(e, k, c->y_before, c->u, c->probe_y, &length, &jumps);
+            enum dalcs_status status = look_after(e, k, c->y_before, c->u, c->probe_y, &length);
             if (status < DALCS_OK) {
                 return status; /* without a micro-step there is no jump to report, no more */
             }

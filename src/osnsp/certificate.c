@@ -58,10 +58,9 @@ static const double runaway = 1e9;
 /* Scales reach into the other unit no further than what drives the circuit could raise there, and not
  * far beyond it in their own: a false answer, with 1e12 A around a loop of sources that clash, must
  * not vouch for its own residual. */
-static struct scales physical_scales(const struct dalcs_osnsp *p, const double *u,
+static struct scales physical_scales(const struct dalcs_osnsp *p, struct scales drive,
                                      const double *y) {
     const struct dalcs_step_form *f = p->form[0];
-    struct scales drive = driving_scales(p, u);
     double largest[2] = {drive.volt, drive.ampere};
     for (int k = 0; k < p->n_runs; k++) {
         const struct dalcs_unit_run *run = &p->run[k];
@@ -194,7 +193,7 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
     const double *lambda = y + dalcs_system_n_equations(s);
     double tolerance = p->options.certificate_tolerance;
     int n_equations = dalcs_system_n_equations(s);
-    int n_tied = 0;
+    p->n_tied = 0;
     for (int d = 0; d < s->n_pairs; d++) {
         double w = pair_voltage(p, u, y, d);
         bool is_diode = p->is_diode[d];
@@ -206,21 +205,19 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
                               : fmax(scale.volt, pair_size(p, u, y, d));
             note(&p->certificate, residual, size, n_equations + d);
             p->w[d] = 0.0;
-            n_tied += is_diode && lambda[d] <= tolerance * scale.ampere ? 1 : 0;
+            p->tied[d] = is_diode && lambda[d] <= tolerance * scale.ampere;
             if (is_diode && lambda[d] < 0.0) {
                 judge_sign(p, d, -lambda[d], current_scale(p, d, scale));
             }
         } else {
             p->w[d] = w;
-            n_tied += is_diode && w <= tolerance * scale.volt ? 1 : 0;
+            p->tied[d] = is_diode && w <= tolerance * scale.volt;
             if (is_diode && w < 0.0) {
                 judge_sign(p, d, -w, fmax(scale.volt, pair_size(p, u, y, d)));
             }
         }
+        p->n_tied += p->tied[d] ? 1 : 0;
     }
-    p->n_tied = n_tied;
-    p->tie_volt = tolerance * scale.volt;
-    p->tie_ampere = tolerance * scale.ampere;
 }
 
 /* A current that is this part of what drives the circuit, and this many roundings, is no rounding. */
@@ -229,8 +226,8 @@ static const double clash_roundings = 32.0 * DBL_EPSILON;
 
 /* The reference of a floating island would have to carry what its current sources do not balance. It
  * is the sum of the island's KCL, known as well as the largest of them. */
-static void check_references(struct dalcs_osnsp *p, const double *u, const double *y,
-                             struct scales scale, bool *sources_clash) {
+static void check_references(struct dalcs_osnsp *p, const double *y, struct scales scale,
+                             struct scales drive, bool *sources_clash) {
     const struct dalcs_system *s = p->system;
     if (p->n_references == 0) {
         return;
@@ -240,7 +237,7 @@ static void check_references(struct dalcs_osnsp *p, const double *u, const doubl
         size = s->row_is_current[r] ? fmax(size, row_size(p->form[0], scale, r)) : size;
     }
     double limit = fmin(p->options.certificate_tolerance * size,
-                        fmax(clash_part * driving_scales(p, u).ampere, clash_roundings * size));
+                        fmax(clash_part * drive.ampere, clash_roundings * size));
     for (int k = 0; k < p->n_references; k++) {
         double residual = fabs(y[p->reference[k]]);
         *sources_clash = *sources_clash || residual > limit;
@@ -254,8 +251,9 @@ void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *
     p->n_violating = 0;
     *sources_clash = false;
     recover_states(p, u, y);
-    struct scales scale = physical_scales(p, u, y);
+    struct scales drive = driving_scales(p, u);
+    struct scales scale = physical_scales(p, drive, y);
     check_equations(p, u, y, scale);
     check_pairs(p, u, y, scale);
-    check_references(p, u, y, scale, sources_clash);
+    check_references(p, y, scale, drive, sources_clash);
 }

@@ -28,8 +28,7 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double
         }
         bool sources_clash;
         enum dalcs_status status = dalcs_osnsp_try_mode(p, u, y, &sources_clash);
-        if (status == DALCS_OK && p->n_violating == 0 && !sources_clash &&
-            p->certificate.worst <= p->options.certificate_tolerance) {
+        if (status == DALCS_OK && dalcs_certificate_holds(p, sources_clash)) {
             return DALCS_OK;
         }
         if (status == DALCS_SINGULAR && !s->monotone) {

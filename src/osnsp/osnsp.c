@@ -335,8 +335,8 @@ enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, doub
                 dalcs_osnsp_flip(p, p->violating[k]);
             }
         } else {
-            dalcs_osnsp_flip(
-                p, p->violating[p->n_violating - 1]); /* Murty: ascending list, largest index */
+            /* Murty: the list ascends, the largest index changes */
+            dalcs_osnsp_flip(p, p->violating[p->n_violating - 1]);
         }
     }
     return DALCS_NOT_CONVERGED;

@@ -100,9 +100,8 @@ struct dalcs_osnsp {
     int *w_ends;    /* [n_pairs][2] columns whose difference is w; -1 where w is more than that */
     int *violating; /* [n_pairs] */
     int n_violating;
-    int n_tied; /* diodes with lambda = 0 = w, up to these scaled roundings */
-    double tie_volt, tie_ampere;
-    bool *tied;                     /* [n_pairs] */
+    bool *tied; /* [n_pairs] diodes with lambda = 0 = w, up to rounding, in the last evaluation */
+    int n_tied;
     uint64_t *tied_mode;            /* [n_words] */
     double *tied_answer;            /* [n_columns] */
     double *mapped;                 /* [n + n_pairs, padded to 8] what a map gave */

@@ -67,6 +67,12 @@ void dalcs_modes_finish(struct dalcs_osnsp *p);
 void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *y,
                                 bool *sources_clash);
 
+/* Was the answer evaluated last one? */
+static inline bool dalcs_certificate_holds(const struct dalcs_osnsp *p, bool sources_clash) {
+    return p->n_violating == 0 && !sources_clash &&
+           p->certificate.worst <= p->options.certificate_tolerance;
+}
+
 /* ---- proximal.c ---------------------------------------------------------------------------- */
 
 enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u,

@@ -247,8 +247,7 @@ static bool is_certified(struct dalcs_osnsp *p, const double *u, double *y, bool
         lambda[d] = dalcs_osnsp_is_on(p, d) ? lambda[d] : 0.0;
     }
     dalcs_certificate_evaluate(p, u, y, sources_clash);
-    return p->n_violating == 0 && !*sources_clash &&
-           p->certificate.worst <= p->options.certificate_tolerance;
+    return dalcs_certificate_holds(p, *sources_clash);
 }
 
 static void restart(struct dalcs_osnsp *p) {

@@ -48,13 +48,10 @@ static enum dalcs_status count_answers(struct dalcs_osnsp *p) {
     return status;
 }
 
-/* Marks the tied pairs of the last certified answer and names the set: FNV-1a, never 0. */
-static uint64_t mark_ties(struct dalcs_osnsp *p, const double *lambda) {
+/* Names the set of tied pairs: FNV-1a, never 0. */
+static uint64_t name_of_ties(const struct dalcs_osnsp *p) {
     uint64_t name = 14695981039346656037u;
     for (int d = 0; d < p->system->n_pairs; d++) {
-        bool vanishes =
-            dalcs_osnsp_is_on(p, d) ? lambda[d] <= p->tie_ampere : p->w[d] <= p->tie_volt;
-        p->tied[d] = p->is_diode[d] && vanishes;
         if (p->tied[d]) {
             name = (name ^ (uint64_t)d) * 1099511628211u;
         }
@@ -108,10 +105,9 @@ enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, doub
     if (p->form[0]->answers == DALCS_UNIQUE) {
         return DALCS_OK;
     }
-    const double *lambda = y + dalcs_system_n_equations(p->system);
     size_t mode_bytes = (size_t)p->n_words * sizeof(*p->mode);
     size_t answer_bytes = (size_t)dalcs_system_n_columns(p->system) * sizeof(*y);
-    uint64_t tie = mark_ties(p, lambda);
+    uint64_t tie = name_of_ties(p);
     struct dalcs_mode_entry *e;
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
     if (e->tie == tie && !e->tie_has_choice) {
@@ -123,11 +119,11 @@ enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, doub
     enum dalcs_status status = DALCS_OK;
     if (e->tie != tie) {
         status = look_for_choice(p, u, y, &has_choice);
-        bool is_final = has_choice || !was_stopped(p);
-        has_choice = has_choice || !is_final;
+        bool stopped = !has_choice && was_stopped(p);
+        has_choice = has_choice || stopped;
         memcpy(p->mode, p->tied_mode, mode_bytes);
         DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
-        e->tie = is_final ? tie : 0;
+        e->tie = stopped ? 0 : tie; /* to be asked again */
         e->tie_has_choice = has_choice;
     }
     if (status == DALCS_OK && has_choice) {
