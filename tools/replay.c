@@ -72,10 +72,6 @@ static double add_difference(const struct dalcs_csr *a, int row, const double *a
 
 static void print_residuals(const struct replay *r) {
     const struct dalcs_system *s = &r->file.system;
-    static const char *const what[] = {[DALCS_LABEL_STATE] = "branch",
-                                       [DALCS_LABEL_NODE] = "KCL at",
-                                       [DALCS_LABEL_BRANCH] = "branch",
-                                       [DALCS_LABEL_REFERENCE] = "reference"};
     const double *u = r->file.u;
     printf("residual of every equation, and the largest term in it\n");
     for (int i = 0; i < dalcs_system_n_equations(s); i++) {
@@ -84,8 +80,8 @@ static void print_residuals(const struct replay *r) {
         if (i < s->n_x) {
             sum -= add_difference(&s->P, i, r->y, u, r->file.sigma, &largest);
         }
-        printf("  %-12s %-12s %14.2e of %10.3g %c\n", what[s->row[i].kind], s->row[i].element,
-               fabs(sum), largest, s->row_is_current[i] ? 'A' : 'V');
+        printf("  %-12s %-12s %14.2e of %10.3g %c\n", dalcs_label_equation(s->row[i].kind),
+               s->row[i].element, fabs(sum), largest, s->row_is_current[i] ? 'A' : 'V');
     }
 }
 

@@ -126,4 +126,19 @@ enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
 
 void dalcs_circuit_finish(struct dalcs_circuit *circuit);
 
+/* A resistor of 0 ohm: its two nodes are one, unless a signal asks for its current. */
+static inline bool dalcs_device_is_short(const struct dalcs_device *device) {
+    return device->kind == DALCS_RESISTOR && device->value == 0.0;
+}
+
+/* wanted[n_devices], zeroed by the caller: the devices whose current a signal asks for. */
+static inline void dalcs_circuit_mark_wanted_currents(const struct dalcs_circuit *circuit,
+                                                      bool *wanted) {
+    for (int i = 0; i < circuit->n_signals; i++) {
+        if (circuit->signal[i].kind == DALCS_SIGNAL_CURRENT) {
+            wanted[circuit->signal[i].device] = true;
+        }
+    }
+}
+
 #endif

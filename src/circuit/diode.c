@@ -1,8 +1,8 @@
 /* diode.c - D elements and their models.
  *
  * A model is piecewise linear, with the lines of LTspice's idealised diode: slope 1/Roff up to Vfwd,
- * then 1/Ron, and 1/Rrev below -Vrev. What is left out is ideal: Ron = 0, Roff infinite, Vfwd = 0, no breakdown. The
- * parameters of the exponential diode are refused rather than guessed at. */
+ * then 1/Ron, and 1/Rrev below -Vrev. What is left out is ideal: Ron = 0, Roff infinite, Vfwd = 0, no
+ * breakdown. The parameters of the exponential diode are refused rather than guessed at. */
 #include "builder.h"
 
 #include <math.h>

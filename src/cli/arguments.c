@@ -133,9 +133,6 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     }
 }
 
-/* Besides the outputs. */
-enum { N_OTHER_RESULTS = 3 };
-
 static enum dalcs_status refuse_count(const struct dalcs_cli *cli, int argc, char **argv) {
     if (optind == argc) {
         dalcs_cli_error(cli, "no netlist given; see 'dalcs run --help'");

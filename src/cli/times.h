@@ -9,8 +9,8 @@ struct dalcs_times {
     size_t n;
 };
 
-/* One time a line up to `stop`, SPICE suffixes allowed; blank lines and lines starting with # or * are skipped.
- * Messages go to cli->err. */
+/* One time a line up to `stop`, SPICE suffixes allowed; blank lines and lines starting with # or * are
+ * skipped. Messages go to cli->err. */
 enum dalcs_status dalcs_times_read(struct dalcs_times *times, const struct dalcs_cli *cli,
                                    const char *path, double stop) DALCS_MUST_CHECK;
 

@@ -202,9 +202,10 @@ static enum dalcs_status stamp_pair(struct stamps *b, int anode, int cathode, do
     return threshold == 0.0 ? DALCS_OK : dalcs_triplets_add(&b->F, k, 0, threshold);
 }
 
-/* What makes up r together with roff in parallel. A model's r is below its roff. */
+/* What makes up r together with roff in parallel. A model's r is below its
+ * roff; without one, roff is infinite and this is r. */
 static double series_part(double r, double roff) {
-    return isfinite(roff) ? r / (1.0 - r / roff) : r;
+    return r / (1.0 - r / roff);
 }
 
 /* Roff lies across all the rest, so that the lines are those of LTspice's idealised diode: they

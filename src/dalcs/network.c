@@ -440,11 +440,7 @@ enum dalcs_status dalcs_network_build(struct dalcs_network *network,
     if (wants_current == NULL) {
         goto done;
     }
-    for (int i = 0; i < circuit->n_signals; i++) {
-        if (circuit->signal[i].kind == DALCS_SIGNAL_CURRENT) {
-            wants_current[circuit->signal[i].device] = true;
-        }
-    }
+    dalcs_circuit_mark_wanted_currents(circuit, wants_current);
     status = layout_allocate(&layout);
     if (status == DALCS_OK) {
         status = dalcs_topology_build(&layout.topology, circuit, wants_current);

@@ -3,6 +3,14 @@
 
 #include <stdlib.h>
 
+const char *dalcs_label_equation(enum dalcs_label_kind kind) {
+    static const char *const what[] = {[DALCS_LABEL_STATE] = "branch",
+                                       [DALCS_LABEL_NODE] = "KCL at",
+                                       [DALCS_LABEL_BRANCH] = "branch",
+                                       [DALCS_LABEL_REFERENCE] = "reference"};
+    return what[kind];
+}
+
 void dalcs_system_finish(struct dalcs_system *system) {
     dalcs_csr_finish(&system->P);
     dalcs_csr_finish(&system->A);

@@ -35,6 +35,9 @@ struct dalcs_label {
     } kind;
 };
 
+/* What an equation of this kind is: "KCL at" a node, "branch" of an element. */
+const char *dalcs_label_equation(enum dalcs_label_kind kind);
+
 struct dalcs_pair {
     enum dalcs_pair_kind kind;
     const char *element;      /* "d1", "s1" */
@@ -62,7 +65,7 @@ struct dalcs_system {
      * columns. */
     int *dual;               /* [n_x + n_z] */
     int *forest_root;        /* [n_x + n_z] of a node's voltage in a capacitor tree: the column of
-                                   the root's, whose row sums the KCL of the tree; else itself */
+                                the root's, whose row sums the KCL of the tree; else itself */
     bool *column_is_current; /* [n_columns] unit A, else V */
     bool *row_is_current;    /* [n_x + n_z] unit of the row's equation */
     struct dalcs_label *row; /* [n_x + n_z] */

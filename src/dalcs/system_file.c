@@ -5,6 +5,7 @@
 #include "system_file.h"
 
 #include "number.h"
+#include "text_file.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -514,30 +515,12 @@ enum dalcs_status dalcs_system_file_read_text(struct dalcs_system_file *file, co
     return status;
 }
 
-static enum dalcs_status read_stream(FILE *f, char **text, size_t *length) {
-    size_t capacity = 0;
-    for (size_t got = 1; got > 0;) {
-        DALCS_TRY(dalcs_grow(text, &capacity, *length + 4096, 1));
-        got = fread(*text + *length, 1, capacity - *length, f);
-        *length += got;
-    }
-    return ferror(f) ? DALCS_E_IO : DALCS_OK;
-}
-
 enum dalcs_status dalcs_system_file_read(struct dalcs_system_file *file, const char *path,
                                          struct dalcs_diag *diag) {
     *file = (struct dalcs_system_file){0};
-    char *text = NULL;
-    size_t length = 0;
-    FILE *f = fopen(path, "r");
-    enum dalcs_status status = f == NULL ? DALCS_E_IO : read_stream(f, &text, &length);
-    if (status == DALCS_E_IO) {
-        dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "cannot read '%s': %s", path,
-                       strerror(errno));
-    }
-    if (f != NULL) {
-        fclose(f);
-    }
+    char *text;
+    size_t length;
+    enum dalcs_status status = dalcs_text_file_read(path, SIZE_MAX, &text, &length, diag);
     if (status == DALCS_OK) {
         status = dalcs_system_file_read_text(file, path, text, length, diag);
     }

@@ -6,10 +6,6 @@
 
 #include <stdlib.h>
 
-static bool is_short(const struct dalcs_device *d) {
-    return d->kind == DALCS_RESISTOR && d->value == 0.0;
-}
-
 static int controlling_nodes(const struct dalcs_device *d) {
     return d->kind == DALCS_VCVS || d->kind == DALCS_VCCS || d->kind == DALCS_SWITCH ? 2 : 0;
 }
@@ -25,7 +21,7 @@ static void merge_shorts(struct dalcs_topology *t, const struct dalcs_circuit *c
     dalcs_union_reset(parent, c->n_nodes);
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
-        if (is_short(d)) {
+        if (dalcs_device_is_short(d)) {
             t->has_current[i] = wants_current[i];
             if (!wants_current[i]) {
                 dalcs_union_join(parent, d->node[0], d->node[1]);
@@ -76,7 +72,7 @@ static void find_components(struct dalcs_topology *t, const struct dalcs_circuit
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
         t->device_component[i] = -1;
-        if (is_short(d) && !t->has_current[i]) {
+        if (dalcs_device_is_short(d) && !t->has_current[i]) {
             continue;
         }
         int *slot = &number[dalcs_union_find(parent, c->n_nodes + i)];

@@ -5,10 +5,9 @@
 #include "netlist.h"
 
 #include "lexer.h"
+#include "text_file.h"
 
-#include <errno.h>
 #include <limits.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -79,39 +78,12 @@ enum dalcs_status dalcs_netlist_read_text(struct dalcs_netlist *netlist, const c
     return status;
 }
 
-static enum dalcs_status read_all(FILE *file, char **text, size_t *length) {
-    size_t capacity = 0;
-    *text = NULL;
-    *length = 0;
-    for (;;) {
-        DALCS_TRY(dalcs_grow(text, &capacity, *length + 65536, 1));
-        const size_t got = fread(*text + *length, 1, capacity - *length, file);
-        *length += got;
-        if (got == 0) {
-            return ferror(file) ? DALCS_E_IO : DALCS_OK;
-        }
-        if (*length > INT_MAX) {
-            return DALCS_OK; /* read_text will say that it is too large */
-        }
-    }
-}
-
 enum dalcs_status dalcs_netlist_read_file(struct dalcs_netlist *netlist, const char *path,
                                           struct dalcs_diag *diag) {
-    char *text = NULL;
-    size_t length = 0;
-    enum dalcs_status status = DALCS_E_IO;
-    FILE *file = fopen(path, "rb");
-    if (file != NULL) {
-        status = read_all(file, &text, &length);
-    }
-    if (status == DALCS_E_IO) {
-        dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "cannot read '%s': %s", path,
-                       strerror(errno));
-    }
-    if (file != NULL) {
-        fclose(file);
-    }
+    char *text;
+    size_t length;
+    /* Beyond the limit, read_text says that it is too large. */
+    enum dalcs_status status = dalcs_text_file_read(path, INT_MAX, &text, &length, diag);
     if (status == DALCS_OK) {
         status = dalcs_netlist_read_text(netlist, path, text, length, diag);
     }

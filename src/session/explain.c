@@ -18,11 +18,8 @@ const char *dalcs_explain_row(struct dalcs_session *s, const struct dalcs_euler 
         return dalcs_arena_printf(&s->arena, "complementarity of %s",
                                   d->pair[where - n_equations].element);
     }
-    static const char *const what[] = {[DALCS_LABEL_STATE] = "branch",
-                                       [DALCS_LABEL_NODE] = "KCL at",
-                                       [DALCS_LABEL_BRANCH] = "branch",
-                                       [DALCS_LABEL_REFERENCE] = "reference"};
-    return dalcs_arena_printf(&s->arena, "%s %s", what[d->row[where].kind], d->row[where].element);
+    return dalcs_arena_printf(&s->arena, "%s %s", dalcs_label_equation(d->row[where].kind),
+                              d->row[where].element);
 }
 
 /* A list "v1, d1" of names, in the session's arena. */
@@ -68,8 +65,8 @@ static void add_coupled_coils(const struct dalcs_circuit *c, bool *is_named) {
     }
 }
 
-/* The names of a witness in the session's arena; without memory NULL, of which there are 0. To a loop belong also what no
- * equation of its own tells: the partners of a coil, and shorts. */
+/* The names of a witness in the session's arena; NULL, and 0 of them, without memory. To a loop belongs
+ * also what no equation of its own tells: the partners of a coil, and shorts. */
 static const char **whole_witness(struct dalcs_session *s, const struct dalcs_witness *w,
                                   size_t *n_elements) {
     const struct dalcs_circuit *c = &s->circuit;

@@ -21,14 +21,10 @@ struct forest {
 static void plant(struct forest *f, const struct dalcs_circuit *c, const bool *is_named,
                   bool *is_part) {
     dalcs_union_reset(f->parent, c->n_nodes);
-    for (int i = 0; i < c->n_signals; i++) {
-        if (c->signal[i].kind == DALCS_SIGNAL_CURRENT) {
-            f->is_asked[c->signal[i].device] = true;
-        }
-    }
+    dalcs_circuit_mark_wanted_currents(c, f->is_asked);
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
-        bool is_short = d->kind == DALCS_RESISTOR && d->value == 0.0 && !f->is_asked[i];
+        bool is_short = dalcs_device_is_short(d) && !f->is_asked[i];
         is_part[i] = is_short && dalcs_union_join(f->parent, d->node[0], d->node[1]);
         for (int e = 0; e < 2; e++) {
             f->is_end[d->node[e]] = f->is_end[d->node[e]] || is_named[i];

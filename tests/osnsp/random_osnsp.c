@@ -6,8 +6,9 @@
  * Circuits of 2 to 7 nodes and up to 9 diodes go the whole way from text. Every problem that has a
  * solution must be solved with a residual, recomputed here, of at most 2e-13; every other must be
  * refused with a witness that is one. Where values spread over 18 decades or a circuit is not passive,
- * one solvable problem in a hundred may be refused; none may be answered wrongly. The same problem gives the same bits, however small the cache;
- * solved again from another mode, or again and again, it gives the same answer. */
+ * one solvable problem in a hundred may be refused; none may be answered wrongly. The same problem
+ * gives the same bits, however small the cache; solved again from another mode, or again and again,
+ * it gives the same answer. */
 #include "oracle.h"
 #include "residual.h"
 #include "sketch.h"

@@ -1,23 +1,12 @@
 /* test_grid.c - times are counted, edges are landed on, pieces recur. */
 #include "grid.h"
 
+#include "make_pulse.h"
 #include "run_tests.h"
 
 #include <math.h>
 
 static struct dalcs_grid grid;
-
-static struct dalcs_stimulus pulse(double delay, double rise, double fall, double width,
-                                   double period) {
-    struct dalcs_stimulus s = {.kind = DALCS_STIMULUS_PULSE};
-    s.u.pulse.high = 1.0;
-    s.u.pulse.delay = delay;
-    s.u.pulse.rise = rise;
-    s.u.pulse.fall = fall;
-    s.u.pulse.width = width;
-    s.u.pulse.period = period;
-    return s;
-}
 
 /* A million steps of 0.1 us, which no double holds: the k-th time is k h rounded once, and every
  * step has the very length h, the last one too. */
@@ -58,8 +47,9 @@ END_TEST
 
 /* Every edge is a time of the grid, to the bit; multiples of h stay where they were. */
 START_TEST(test_edges) {
-    const struct dalcs_stimulus source[] = {pulse(0.25e-6, 0.0, 0.0, 1.3e-6, 3.1e-6),
-                                            pulse(1e-6, 0.5e-6, 0.2e-6, 2e-6, INFINITY)};
+    const struct dalcs_stimulus source[] = {
+        make_pulse(0.0, 1.0, 0.25e-6, 0.0, 0.0, 1.3e-6, 3.1e-6),
+        make_pulse(0.0, 1.0, 1e-6, 0.5e-6, 0.2e-6, 2e-6, INFINITY)};
     const double h = 1e-6;
     const double stop = 1e-3;
     dalcs_grid_init(&grid, h, stop, 2, source);
@@ -93,7 +83,7 @@ END_TEST
 
 /* An edge on a multiple of h is no second step, however the two roundings differ. */
 START_TEST(test_edges_on_the_grid) {
-    const struct dalcs_stimulus source = pulse(0.3e-6, 0.0, 0.0, 0.7e-6, 1e-6);
+    const struct dalcs_stimulus source = make_pulse(0.0, 1.0, 0.3e-6, 0.0, 0.0, 0.7e-6, 1e-6);
     dalcs_grid_init(&grid, 1e-7, 1e-3, 1, &source);
     long n = 0;
     long n_jumps = 0;
@@ -115,7 +105,7 @@ END_TEST
  * lengths may fall on either side of a rounding but take no third value, so that their factors are
  * found in the cache. */
 START_TEST(test_pieces_recur) {
-    const struct dalcs_stimulus source = pulse(0.0, 0.0, 0.0, 3.3e-6, 10.5e-6);
+    const struct dalcs_stimulus source = make_pulse(0.0, 1.0, 0.0, 0.0, 0.0, 3.3e-6, 10.5e-6);
     dalcs_grid_init(&grid, 1e-6, 0.021, 1, &source);
     double seen[17];
     int n_seen = 0;

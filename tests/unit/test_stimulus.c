@@ -4,6 +4,7 @@
  * between two edges the value is smooth, and the limits at an edge are the values beside it. */
 #include "stimulus.h"
 
+#include "make_pulse.h"
 #include "run_tests.h"
 
 #include <float.h>
@@ -11,19 +12,6 @@
 #include <stdint.h>
 
 static const double PI = 3.14159265358979323846;
-
-static struct dalcs_stimulus make_pulse(double low, double high, double delay, double rise,
-                                        double fall, double width, double period) {
-    struct dalcs_stimulus s = {.kind = DALCS_STIMULUS_PULSE};
-    s.u.pulse.low = low;
-    s.u.pulse.high = high;
-    s.u.pulse.delay = delay;
-    s.u.pulse.rise = rise;
-    s.u.pulse.fall = fall;
-    s.u.pulse.width = width;
-    s.u.pulse.period = period;
-    return s;
-}
 
 static struct dalcs_stimulus make_sine(double offset, double amplitude, double frequency,
                                        double delay, double damping, double phase) {

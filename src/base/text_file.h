@@ -1,0 +1,12 @@
+/* text_file.h - a whole file in memory. */
+#ifndef DALCS_TEXT_FILE_H
+#define DALCS_TEXT_FILE_H
+
+#include "diag.h"
+
+/* Reads the file at `path`, but not much more than `limit` bytes of it, into *text[*length], which the
+ * caller frees; *text is NULL on failure. DALCS_E_IO comes with a message. */
+enum dalcs_status dalcs_text_file_read(const char *path, size_t limit, char **text, size_t *length,
+                                       struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
+#endif
