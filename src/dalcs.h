@@ -125,12 +125,20 @@ struct dalcs_sink {
 const char *dalcs_method_name(size_t index);
 
 struct dalcs_run_options {
-    const char
-        *method;      /* "euler", the papers' implicit Euler; NULL: the netlist's or the default */
-    double step;      /* s; 0: .options step, else the tmax of .tran, else its tstep */
+    const char *method; /* "auto", "radau" or "euler", the papers' implicit Euler; NULL: the
+                           netlist's or the default */
+    double tolerance;   /* of radau and auto: largest error of a waveform over its scale; 0: .options
+                           reltol, else 1e-6 */
+    int stages;         /* of radau: 1, 3, 5 or 7; 0: .options stages, else chosen */
+    double step;        /* s; the fixed step of euler and radau; 0: .options step; without either
+                           euler takes the tmax of .tran, else its tstep, and radau controls its
+                           error with steps of at most tmax */
+    double compress;    /* leave rows out as long as straight lines through the others stay this near,
+                           over each signal's scale; 0: .options compress, else keep all rows */
     const double *at; /* [n_at] ascending output times in s, none after the stop time,
-                           interpolated linearly between steps;
-                           NULL: the .tran grid where it falls on steps, else every step */
+                           interpolated linearly between steps by euler;
+                           NULL: the .tran grid (euler: where it falls on steps, else every step)
+                           and both sides of every event */
     size_t n_at;
     bool record; /* keep events and jumps for the report */
 
@@ -190,16 +198,27 @@ struct dalcs_jump {
 struct dalcs_report {
     const char *netlist; /* path or name */
     const char *title;
-    const char *method;
-    double step; /* s, the step used in .tran; 0 when there was none */
-    double stop; /* s */
+    const char *method; /* as asked for, or the default */
+    double tolerance;   /* of radau and auto, else 0 */
+    double step;        /* s, the fixed step of .tran; 0 when there was none */
+    double stop;        /* s */
+    size_t n_components;
+
+    const struct dalcs_component_method {
+        const char *method;  /* "euler", "radau", or "algebraic": no memory, solved where wanted */
+        int stages;          /* of radau, else 1 */
+        const char *because; /* "tolerance 1e-06", "no state and no diode" */
+    } * component;           /* [n_components], .tran only */
 
     struct {
         int nodes, x, z, lambda, switches, components;
     } size;
 
     struct {
-        long steps;          /* accepted time steps */
+        long steps;          /* accepted time steps, over all components */
+        long rejected;       /* steps repeated with a smaller one */
+        long restarts;       /* micro-steps of implicit Euler that decided a mode or a jump */
+        long euler_steps;    /* steps where radau fell back to implicit Euler */
         long osnsp;          /* one-step problems solved, over all components */
         long pivots;         /* mode changes tried */
         long factorizations; /* of KLU and LAPACK */

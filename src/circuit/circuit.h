@@ -110,7 +110,9 @@ struct dalcs_circuit {
         struct dalcs_location tolerance_where; /* of the first of these */
         const char *method;                    /* NULL: not given */
         struct dalcs_location method_where;
-        double step; /* 0: not given */
+        double step;     /* 0: not given */
+        int stages;      /* of radau; 0: not given */
+        double compress; /* 0: not given */
     } options;
     struct dalcs_arena arena; /* owns everything above, source text of locations included */
 };
