@@ -37,17 +37,20 @@ static double sin_of_cycles(double x) {
     return sin(2 * PI * r);
 }
 
-static double sine_value(const struct dalcs_stimulus *s, double t) {
-    const double since = t - s->u.sine.delay;
-    const double phase = s->u.sine.phase / 360;
-    if (since <= 0) {
-        return s->u.sine.offset + s->u.sine.amplitude * sin_of_cycles(phase);
-    }
-    /* The product's rounding error, which grows with the number of cycles, is put back. */
+/* Phase in cycles, less whole ones, at `since` after the delay. The product's rounding error, which
+ * grows with the number of cycles, is put back. */
+static double cycles_of(const struct dalcs_stimulus *s, double since) {
     const double cycles = s->u.sine.frequency * since;
     const double lost = fma(s->u.sine.frequency, since, -cycles);
-    double value =
-        s->u.sine.amplitude * sin_of_cycles((cycles - nearest_whole(cycles)) + (phase + lost));
+    return (cycles - nearest_whole(cycles)) + (s->u.sine.phase / 360 + lost);
+}
+
+static double sine_value(const struct dalcs_stimulus *s, double t) {
+    const double since = t - s->u.sine.delay;
+    if (since <= 0) {
+        return s->u.sine.offset + s->u.sine.amplitude * sin_of_cycles(s->u.sine.phase / 360);
+    }
+    double value = s->u.sine.amplitude * sin_of_cycles(cycles_of(s, since));
     if (s->u.sine.damping != 0) {
         value *= exp(-s->u.sine.damping * since);
     }
@@ -269,6 +272,66 @@ double dalcs_stimulus_next_edge(const struct dalcs_stimulus *s, double t) {
 
 bool dalcs_stimulus_jumps_at(const struct dalcs_stimulus *s, double t) {
     return dalcs_stimulus_value(s, t, DALCS_LEFT) != dalcs_stimulus_value(s, t, DALCS_RIGHT);
+}
+
+static void sine_piece(const struct dalcs_stimulus *s, double t,
+                       struct dalcs_stimulus_piece *piece) {
+    const double since = t - s->u.sine.delay;
+    piece->n_terms = 1;
+    struct dalcs_stimulus_term *term = piece->term;
+    *term = (struct dalcs_stimulus_term){.decay = s->u.sine.damping,
+                                         .omega = 2 * PI * s->u.sine.frequency};
+    piece->level = s->u.sine.offset;
+    if (isfinite(piece->to)) { /* before the delay */
+        piece->level = sine_value(s, t);
+        return;
+    }
+    const double cycles = cycles_of(s, since);
+    double amplitude = s->u.sine.amplitude;
+    amplitude *= s->u.sine.damping != 0 ? exp(-s->u.sine.damping * since) : 1;
+    term->cosine = amplitude * sin_of_cycles(cycles);
+    term->sine = amplitude * sin_of_cycles(cycles + 0.25);
+}
+
+static void exponential_piece(const struct dalcs_stimulus *s, double t,
+                              struct dalcs_stimulus_piece *piece) {
+    const double delay[2] = {s->u.exponential.rise_delay, s->u.exponential.fall_delay};
+    const double tau[2] = {s->u.exponential.rise_tau, s->u.exponential.fall_tau};
+    piece->level = s->u.exponential.low;
+    piece->n_terms = 2;
+    for (int k = 0; k < 2; k++) {
+        const double near = tolerance(t, 0);
+        double height = s->u.exponential.high - s->u.exponential.low;
+        height = k == 0 ? height : -height;
+        const bool is_jump = tau[k] <= near;
+        piece->term[k] = (struct dalcs_stimulus_term){.decay = is_jump ? 0 : 1 / tau[k]};
+        if (t >= delay[k] - near) {
+            piece->level += height;
+            piece->term[k].cosine = is_jump ? 0 : -height * exp(-fmax(t - delay[k], 0) / tau[k]);
+        }
+    }
+}
+
+void dalcs_stimulus_piece_at(const struct dalcs_stimulus *s, double t,
+                             struct dalcs_stimulus_piece *piece) {
+    *piece = (struct dalcs_stimulus_piece){.to = dalcs_stimulus_next_edge(s, t)};
+    switch (s->kind) {
+    case DALCS_STIMULUS_SIN:
+        sine_piece(s, t, piece);
+        return;
+    case DALCS_STIMULUS_EXP:
+        exponential_piece(s, t, piece);
+        return;
+    case DALCS_STIMULUS_DC:
+    case DALCS_STIMULUS_PULSE:
+    case DALCS_STIMULUS_PWL:
+        piece->level = dalcs_stimulus_value(s, t, DALCS_RIGHT);
+        if (isfinite(piece->to)) {
+            const double rise = dalcs_stimulus_value(s, piece->to, DALCS_LEFT) - piece->level;
+            piece->slope = rise == 0 ? 0 : rise / (piece->to - t);
+        }
+        return;
+    }
 }
 
 double dalcs_stimulus_operating_value(const struct dalcs_stimulus *s, bool transient_follows) {

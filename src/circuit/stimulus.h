@@ -68,6 +68,23 @@ double dalcs_stimulus_next_edge(const struct dalcs_stimulus *s, double t);
 /* Does the value itself jump at time t? */
 bool dalcs_stimulus_jumps_at(const struct dalcs_stimulus *s, double t);
 
+/* What a stimulus is from t (right limit) to its next edge, with tau the time since t:
+ *     level + slope tau + sum of exp(-decay tau) (cosine cos(omega tau) + sine sin(omega tau)).
+ * The number of terms, their decay and omega are the same at all times. */
+struct dalcs_stimulus_piece {
+    double to; /* s, the next edge or INFINITY */
+    double level, slope;
+    int n_terms;
+
+    struct dalcs_stimulus_term {
+        double decay, omega; /* 1/s */
+        double cosine, sine;
+    } term[2];
+};
+
+void dalcs_stimulus_piece_at(const struct dalcs_stimulus *s, double t,
+                             struct dalcs_stimulus_piece *piece);
+
 /* The value for the operating point, as ngspice chooses it: for a plain .op the card's DC value
  * when it has one; for the start of a transient, or without a DC value, the right limit at 0. */
 double dalcs_stimulus_operating_value(const struct dalcs_stimulus *s, bool transient_follows);

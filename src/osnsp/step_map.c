@@ -4,8 +4,9 @@
  * cheaper than a sparse solve of the same size. The answer is certified like any other; where the
  * map's rounding is not good enough the factors are used instead.
  *
- * Rows: the n unknowns, then all pairs (zero where the mode blocks), padded to a multiple of 8;
- * stored by columns, so that each row is summed in the same order whatever the vector width. */
+ * Rows: the n unknowns, then all pairs (zero where the mode blocks), padded: see
+ * dense_map.h. */
+#include "dense_map.h"
 #include "osnsp_internal.h"
 
 #include <stdlib.h>
@@ -15,7 +16,7 @@
 enum { MAX_MAP_COLUMNS = 48, UNKNOWN_ROUNDS = 3, PROXIMAL_ROUNDS = UNKNOWN_ROUNDS + 4 };
 
 static int padded_rows(const struct dalcs_osnsp *p) {
-    return (p->form[0]->n + p->form[0]->n_pairs + 7) / 8 * 8;
+    return dalcs_dense_map_rows(p->form[0]->n + p->form[0]->n_pairs);
 }
 
 bool dalcs_step_map_pays(const struct dalcs_osnsp *p) {
@@ -65,11 +66,10 @@ enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_
     }
     size_t rows = (size_t)padded_rows(p);
     size_t size = rows * (size_t)f->n_u;
-    double *map = aligned_alloc(64, size * sizeof(double));
+    double *map = dalcs_dense_map_alloc(padded_rows(p), f->n_u);
     if (map == NULL) {
         return DALCS_E_NOMEM;
     }
-    memset(map, 0, size * sizeof(double));
     int n = f->n + f->n_pairs;
     for (int j = 0; j < f->n_u; j++) {
         for (int i = 0; i < n; i++) {
@@ -92,37 +92,11 @@ enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_
     return DALCS_OK;
 }
 
-typedef double vector4 __attribute__((vector_size(32), aligned(32)));
-
-/* out[rows] = map u, eight rows at a time. The clones differ in vector width only: without
- * contraction every element is computed by the same operations in the same order. */
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) &&                             \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-__attribute__((target_clones("avx2", "default")))
-#endif
-static void
-multiply(int rows, int n_u, const double *restrict map, const double *restrict u,
-         double *restrict out) {
-    for (int i = 0; i < rows; i += 8) {
-        vector4 a = {0.0};
-        vector4 b = {0.0};
-        const double *column = map + i;
-        for (int j = 0; j < n_u; j++, column += rows) {
-            const vector4 *m = (const vector4 *)column;
-            vector4 v = {u[j], u[j], u[j], u[j]};
-            a += m[0] * v;
-            b += m[1] * v;
-        }
-        memcpy(out + i, &a, sizeof(a));
-        memcpy(out + i + 4, &b, sizeof(b));
-    }
-}
-
 void dalcs_step_map_apply(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
                           const double *u, double *y) {
     const struct dalcs_step_form *f = p->form[0];
     int n_equations = dalcs_system_n_equations(p->system);
-    multiply(padded_rows(p), f->n_u, entry->map, u, p->mapped);
+    dalcs_dense_map_apply(padded_rows(p), f->n_u, entry->map, u, p->mapped);
     for (int i = 0; i < f->n; i++) {
         y[f->column_of[i]] = p->mapped[i];
     }

@@ -6,7 +6,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <stdio.h>
 #include <time.h>
+#include "radau.h"
 
 /* Unknowns solved for between calls of the sink's progress, a fraction of a second of work, but no
  * more steps than that. */
@@ -26,7 +28,7 @@ struct dalcs_run_options dalcs_run_options_default(void) {
                                       .max_events = 1000000};
 }
 
-static const char *const METHODS[] = {"euler"};
+static const char *const METHODS[] = {"auto", "radau", "euler"};
 
 enum { N_METHODS = sizeof METHODS / sizeof METHODS[0] };
 
@@ -255,7 +257,9 @@ static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
 }
 
 /* The operating point with .ic held, by a network of its own; its states start the transient. */
-static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_euler *e) {
+static enum dalcs_status start_radau(struct dalcs_run *r, struct dalcs_radau *radau);
+
+static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_euler *e, struct dalcs_radau *radau) {
     struct dalcs_session *s = r->s;
     struct dalcs_network clamped;
     struct dalcs_euler held;
@@ -275,7 +279,7 @@ static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_eul
         for (int k = 0; k < held.n_components; k++) {
             initial[k] = held.component[k].u; /* the same x: clamps add algebraic unknowns only */
         }
-        status = dalcs_euler_start(e, initial);
+        status = radau != NULL ? dalcs_radau_start(radau, initial) : dalcs_euler_start(e, initial);
     }
     free(initial);
     dalcs_euler_finish(&held);
@@ -289,10 +293,22 @@ static enum dalcs_status start_transient(struct dalcs_run *r, struct dalcs_euler
         return dalcs_euler_start(e, r->s->network.initial);
     }
     if (c->n_initial_conditions > 0) {
-        return start_from_clamps(r, e);
+        return start_from_clamps(r, e, NULL);
     }
     DALCS_TRY(dalcs_euler_operating_point(e, true));
     return dalcs_euler_start(e, NULL);
+}
+
+static enum dalcs_status start_radau(struct dalcs_run *r, struct dalcs_radau *radau) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    if (c->transient.use_initial_conditions) {
+        return dalcs_radau_start(radau, r->s->network.initial);
+    }
+    if (c->n_initial_conditions > 0) {
+        return start_from_clamps(r, radau->base, radau);
+    }
+    DALCS_TRY(dalcs_euler_operating_point(radau->base, true));
+    return dalcs_radau_start(radau, NULL);
 }
 
 /* Steps between calls of the sink's progress. */
@@ -335,7 +351,18 @@ static enum dalcs_status run_transient(struct dalcs_run *r) {
     e.on_jump = dalcs_recorder_jump;
     s->report.step = r->h;
     s->report.stop = s->circuit.transient.stop;
-    enum dalcs_status status = start_transient(r, &e);
+    bool is_radau = !getenv("DALCS_EULER") && !(r->options->method && !strcmp(r->options->method,"euler"));
+    struct dalcs_radau radau = {0};
+    if (is_radau) {
+        struct dalcs_radau_options o = {.tolerance = getenv("DALCS_TOL") ? atof(getenv("DALCS_TOL")) : 1e-6,
+            .stages = getenv("DALCS_STAGES") ? atoi(getenv("DALCS_STAGES")) : 0, .max_step = s->circuit.transient.max_step, .stop = s->circuit.transient.stop};
+        DALCS_TRY(dalcs_radau_setup(&radau, &e, &o, &r->osnsp));
+        if (s->recorder.schedule.kind == DALCS_EVERY_STEP) { s->recorder.schedule.kind = DALCS_ON_GRID; }
+    }
+    enum dalcs_status status = is_radau ? start_radau(r, &radau) : start_transient(r, &e);
+    if (status == DALCS_OK && is_radau) {
+        status = dalcs_radau_evaluate(&radau, 0.0, DALCS_RIGHT);
+    }
     if (status == DALCS_OK) {
         dalcs_recorder_states(&s->network, &e, s->start);
         status = begin_plot(r, DALCS_TRANSIENT);
@@ -344,7 +371,14 @@ static enum dalcs_status run_transient(struct dalcs_run *r) {
         status = dalcs_recorder_start(&s->recorder, &e);
     }
     if (status == DALCS_OK) {
-        status = step_to_the_end(r, &e);
+        status = is_radau ? dalcs_transient_run(r, &radau) : step_to_the_end(r, &e);
+        if (is_radau) {
+            e.steps = radau.steps; s->report.work.rejected=radau.rejected; s->report.work.restarts=radau.restarts; s->report.work.euler_steps=radau.euler_steps;
+            if (getenv("DALCS_V")) { long f=0; for(int k=0;k<radau.n_parts;k++) f+=radau.part[k].stages.factorizations;
+              fprintf(stderr,"steps %ld rejected %ld restarts %ld euler %ld maps %ld\n",radau.steps,radau.rejected,radau.restarts,radau.euler_steps,f);}
+            if (status == DALCS_OK) status = dalcs_radau_evaluate(&radau, s->circuit.transient.stop, DALCS_LEFT);
+            dalcs_radau_finish(&radau);
+        }
         dalcs_recorder_states(&s->network, &e, s->final);
     }
     if (status == DALCS_OK) {

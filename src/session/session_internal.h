@@ -31,6 +31,11 @@ struct dalcs_run {
 /* Frees what the last run left. */
 void dalcs_session_forget_run(struct dalcs_session *session);
 
+/* Rows, events and jumps from the start, where radau stands, to the stop time. */
+struct dalcs_radau;
+enum dalcs_status dalcs_transient_run(struct dalcs_run *r,
+                                      struct dalcs_radau *radau) DALCS_MUST_CHECK;
+
 /* "KCL at out", "branch v1", "complementarity of d1"; NULL when out of memory. `where` is a row, or a
  * pair behind them, of a system of e's network, which need not be the session's. */
 const char *dalcs_explain_row(struct dalcs_session *session, const struct dalcs_euler *e,

@@ -209,6 +209,26 @@ enum dalcs_status dalcs_recorder_cross(struct dalcs_recorder *r, const struct da
     return wanted ? emit(r, e->t, r->now) : DALCS_OK;
 }
 
+double dalcs_recorder_due(const struct dalcs_recorder *r) {
+    double due = next_output(&r->schedule);
+    return due <= r->schedule.stop * (1.0 + same_time) ? fmin(due, r->schedule.stop) : INFINITY;
+}
+
+bool dalcs_recorder_wants_sides(const struct dalcs_recorder *r, double t) {
+    return r->schedule.kind != DALCS_AT_TIMES && t >= r->schedule.start;
+}
+
+enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_euler *e, double t,
+                                     bool is_due) {
+    r->schedule.next += is_due ? 1 : 0;
+    dalcs_recorder_evaluate(r->network, e, r->now);
+    return emit(r, t, r->now);
+}
+
+enum dalcs_status dalcs_recorder_events(struct dalcs_recorder *r, const struct dalcs_euler *e) {
+    return r->keep ? note_events(r, e, true) : DALCS_OK;
+}
+
 /* Which states and pairs of a jump are worth a line: those that changed by more than rounding. */
 static bool is_noticeable(double change, double largest) {
     return fabs(change) > 1e-9 * largest;

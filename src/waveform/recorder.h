@@ -58,6 +58,21 @@ enum dalcs_status dalcs_recorder_step(struct dalcs_recorder *r,
 enum dalcs_status dalcs_recorder_cross(struct dalcs_recorder *r,
                                        const struct dalcs_euler *e) DALCS_MUST_CHECK;
 
+/* For a run that says itself where it is, with values exact at any time: the next time a row is due,
+ * INFINITY when none is. */
+double dalcs_recorder_due(const struct dalcs_recorder *r);
+
+/* Should there be rows at edges and on both sides of events, besides the due ones, at time t? */
+bool dalcs_recorder_wants_sides(const struct dalcs_recorder *r, double t);
+
+/* A row of e's values, evaluated at time t; is_due: the one that was due. */
+enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_euler *e, double t,
+                                     bool is_due) DALCS_MUST_CHECK;
+
+/* Modes that changed at e->t become events. */
+enum dalcs_status dalcs_recorder_events(struct dalcs_recorder *r,
+                                        const struct dalcs_euler *e) DALCS_MUST_CHECK;
+
 /* dalcs_euler's on_jump; user is the recorder. */
 enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump *jump);
 

@@ -1,0 +1,48 @@
+/* collocation.h - the Radau IIA methods: implicit Euler's family of order 2s - 1.
+ *
+ * A step of length h looks for the polynomial of degree s that starts at the present state and obeys
+ * the equations at the nodes c_1 < ... < c_s = 1 (Ehle 1969; Hairer and Wanner, Solving ODEs II,
+ * sec. IV.5 and VI.1). With Y_i the values there and A the Butcher matrix,
+ *     sum_j (A^-1)_ij P (X_j - x_0) / h = A_I Y_i + E_I s_i,     0 = A_II Y_i + E_II s_i.
+ * A^-1 has one real and (s-1)/2 pairs of conjugate eigenvalues mu; in the coordinates of its
+ * eigenvectors, scaled so that each sees the constant 1 as 1, the stages separate into steps of
+ * implicit Euler with sigma = mu / h, all but one complex. s = 1 is implicit Euler itself.
+ *
+ * The numbers are computed in extended precision when a method is set up, not typed in. */
+#ifndef DALCS_COLLOCATION_H
+#define DALCS_COLLOCATION_H
+
+#include "status.h"
+
+#include <complex.h>
+
+enum { DALCS_MAX_STAGES = 7, DALCS_MAX_NODES = DALCS_MAX_STAGES + 1, DALCS_MAX_CONJUGATES = 3 };
+
+struct dalcs_collocation {
+    int s;                        /* stages: 1, 3, 5 or 7 */
+    int n_pairs;                  /* conjugate pairs of eigenvalues */
+    double node[DALCS_MAX_NODES]; /* 0, c_1, ..., c_s */
+    double lambda;                /* the real eigenvalue of A^-1 */
+    double complex mu[DALCS_MAX_CONJUGATES];
+
+    /* Y_i = to[i] W + sum over pairs of 2 Re(to_pair[i][p] W_p), and back */
+    double to[DALCS_MAX_STAGES], from[DALCS_MAX_STAGES];
+    double complex to_pair[DALCS_MAX_STAGES][DALCS_MAX_CONJUGATES];
+    double complex from_pair[DALCS_MAX_CONJUGATES][DALCS_MAX_STAGES];
+    double barycentric[DALCS_MAX_NODES]; /* weights of all s + 1 nodes */
+    double back[DALCS_MAX_STAGES];       /* value at 0 of the polynomial through the stages alone */
+    double test_node;                    /* where polynomials on all nodes are worst */
+    double test[DALCS_MAX_NODES];        /* their value there */
+    double test_factor; /* how much more their derivative may be off than the filter of the error
+                           estimate lets through */
+    double to_bernstein[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* [coefficient][node] */
+    double bernstein_spread; /* coefficients leave the range of the values by at most this part */
+};
+
+/* s must be 1, 3, 5 or 7. */
+void dalcs_collocation_init(struct dalcs_collocation *c, int s);
+
+/* weight[s + 1] such that a quantity at theta (in steps) is the sum of weight * value at node. */
+void dalcs_collocation_weights(const struct dalcs_collocation *c, double theta, double *weight);
+
+#endif

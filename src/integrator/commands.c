@@ -1,0 +1,197 @@
+/* commands.c - walking the edges of control sources, or counting the periods of a PULSE. */
+#include "commands.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Edges looked at in one search; a control that never crosses must not cost its whole future. */
+enum { EDGES_AT_A_TIME = 64 };
+
+static bool is_straight(const struct dalcs_stimulus *s) {
+    return s->kind == DALCS_STIMULUS_DC || s->kind == DALCS_STIMULUS_PULSE ||
+           s->kind == DALCS_STIMULUS_PWL;
+}
+
+static const struct dalcs_stimulus *stimulus_of(const struct dalcs_commands *c, int input) {
+    int index = c->system->stimulus[input];
+    return index < 0 ? NULL : &c->circuit->stimulus[index];
+}
+
+static double control_at(const struct dalcs_commands *c, int pair, double t, enum dalcs_side side) {
+    const struct dalcs_csr *a = &c->system->direct_control;
+    double sum = 0.0;
+    for (int k = a->p[pair]; k < a->p[pair + 1]; k++) {
+        const struct dalcs_stimulus *s = stimulus_of(c, a->j[k]);
+        sum += a->x[k] * (s != NULL ? dalcs_stimulus_value(s, t, side) : 1.0);
+    }
+    return sum;
+}
+
+static double edge_after(const struct dalcs_commands *c, int pair, double t) {
+    const struct dalcs_csr *a = &c->system->direct_control;
+    double edge = INFINITY;
+    for (int k = a->p[pair]; k < a->p[pair + 1]; k++) {
+        const struct dalcs_stimulus *s = stimulus_of(c, a->j[k]);
+        edge = s != NULL ? fmin(edge, dalcs_stimulus_next_edge(s, t)) : edge;
+    }
+    return edge;
+}
+
+/* Where the switch wants to be at this control, coming from where it is. */
+static bool wants(const struct dalcs_pair *s, bool is_on, double control) {
+    return is_on ? !(control < s->turn_off) : control > s->turn_on;
+}
+
+static void search(const struct dalcs_commands *c, struct dalcs_command *m) {
+    const struct dalcs_pair *pair = &c->system->pair[m->pair];
+    double t = m->searched;
+    double threshold = m->is_on ? pair->turn_off : pair->turn_on;
+    bool on_ramp = m->on_ramp;
+    m->moves = true;
+    m->on_ramp = false;
+    for (int k = 0; k < EDGES_AT_A_TIME; k++, on_ramp = false) {
+        double first = control_at(c, m->pair, t, DALCS_RIGHT);
+        if (!on_ramp && wants(pair, m->is_on, first) != m->is_on) {
+            m->next = t;
+            return;
+        }
+        double edge = edge_after(c, m->pair, t);
+        if (isinf(edge)) {
+            m->next = INFINITY;
+            return;
+        }
+        double last = control_at(c, m->pair, edge, DALCS_LEFT);
+        if (wants(pair, m->is_on, last) != m->is_on) {
+            m->next = t + (edge - t) * fmax(0.0, (threshold - first) / (last - first));
+            m->on_ramp = true;
+            return;
+        }
+        t = edge;
+    }
+    m->moves = false;
+    m->next = t;
+}
+
+/* A PULSE of a regular shape, all else constant, that crosses both thresholds on its ramps. */
+static void recognise_pulse(const struct dalcs_commands *c, struct dalcs_command *m) {
+    const struct dalcs_csr *a = &c->system->direct_control;
+    const struct dalcs_pair *pair = &c->system->pair[m->pair];
+    const struct dalcs_stimulus *pulse = NULL;
+    double level = 0.0;
+    double factor = 0.0;
+    for (int k = a->p[m->pair]; k < a->p[m->pair + 1]; k++) {
+        const struct dalcs_stimulus *s = stimulus_of(c, a->j[k]);
+        if (s == NULL || s->kind == DALCS_STIMULUS_DC) {
+            level += a->x[k] * (s != NULL ? s->dc : 1.0);
+        } else if (s->kind == DALCS_STIMULUS_PULSE && pulse == NULL) {
+            pulse = s;
+            factor = a->x[k];
+        } else {
+            return;
+        }
+    }
+    if (pulse == NULL || isinf(pulse->u.pulse.period) ||
+        pulse->u.pulse.rise + pulse->u.pulse.width + pulse->u.pulse.fall >=
+            pulse->u.pulse.period * (1 - 8 * DBL_EPSILON)) {
+        return;
+    }
+    double low = level + factor * pulse->u.pulse.low;
+    double high = level + factor * pulse->u.pulse.high;
+    double fall_start = pulse->u.pulse.rise + pulse->u.pulse.width;
+    if (low < pair->turn_off && high > pair->turn_on) {
+        m->offset[0] = pulse->u.pulse.rise * ((pair->turn_on - low) / (high - low));
+        m->offset[1] = fall_start + pulse->u.pulse.fall * ((high - pair->turn_off) / (high - low));
+    } else if (high < pair->turn_off && low > pair->turn_on) {
+        m->offset[1] = pulse->u.pulse.rise * ((low - pair->turn_off) / (low - high));
+        m->offset[0] = fall_start + pulse->u.pulse.fall * ((pair->turn_on - high) / (low - high));
+    } else {
+        return;
+    }
+    m->pulse = pulse;
+}
+
+static void next_of_pulse(struct dalcs_command *m) {
+    int way = m->is_on ? 1 : 0;
+    m->next =
+        m->pulse->u.pulse.delay + (double)m->n[way] * m->pulse->u.pulse.period + m->offset[way];
+    m->moves = true;
+}
+
+enum dalcs_status dalcs_commands_setup(struct dalcs_commands *commands,
+                                       const struct dalcs_circuit *circuit,
+                                       const struct dalcs_system *system) {
+    *commands = (struct dalcs_commands){.circuit = circuit, .system = system, .next = INFINITY};
+    commands->command = dalcs_alloc((size_t)system->n_pairs, sizeof(*commands->command));
+    if (commands->command == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int d = 0; d < system->n_pairs; d++) {
+        bool straight = system->pair[d].kind == DALCS_PAIR_SWITCH && system->pair[d].is_direct;
+        for (int k = system->direct_control.p[d]; straight && k < system->direct_control.p[d + 1];
+             k++) {
+            const struct dalcs_stimulus *s = stimulus_of(commands, system->direct_control.j[k]);
+            straight = s == NULL || is_straight(s);
+        }
+        if (straight) {
+            commands->command[commands->n++] = (struct dalcs_command){
+                .pair = d, .is_on = system->pair[d].initially_on, .next = INFINITY};
+        }
+    }
+    return DALCS_OK;
+}
+
+void dalcs_commands_finish(struct dalcs_commands *commands) {
+    free(commands->command);
+    *commands = (struct dalcs_commands){0};
+}
+
+static void find_earliest(struct dalcs_commands *commands) {
+    commands->next = INFINITY;
+    for (int k = 0; k < commands->n; k++) {
+        commands->next = fmin(commands->next, commands->command[k].next);
+    }
+}
+
+void dalcs_commands_start(struct dalcs_commands *commands) {
+    for (int k = 0; k < commands->n; k++) {
+        struct dalcs_command *m = &commands->command[k];
+        const struct dalcs_pair *pair = &commands->system->pair[m->pair];
+        m->is_on = wants(pair, m->is_on, control_at(commands, m->pair, 0.0, DALCS_RIGHT));
+        m->searched = 0.0;
+        recognise_pulse(commands, m);
+        if (m->pulse == NULL) {
+            search(commands, m);
+            continue;
+        }
+        /* the first move after 0 alternates from where the switch stands */
+        bool closes_first = m->offset[0] < m->offset[1];
+        m->n[0] = m->is_on && closes_first ? 1 : 0;
+        m->n[1] = !m->is_on && !closes_first ? 1 : 0;
+        next_of_pulse(m);
+    }
+    find_earliest(commands);
+}
+
+bool dalcs_commands_obey(struct dalcs_commands *commands, double t) {
+    bool moved = false;
+    for (int k = 0; k < commands->n; k++) {
+        struct dalcs_command *m = &commands->command[k];
+        if (m->next > t + 4 * DBL_EPSILON * t) {
+            continue;
+        }
+        if (m->moves) {
+            m->n[m->is_on ? 1 : 0]++;
+            m->is_on = !m->is_on;
+            moved = true;
+        }
+        m->searched = m->next;
+        if (m->pulse != NULL) {
+            next_of_pulse(m);
+        } else {
+            search(commands, m);
+        }
+    }
+    find_earliest(commands);
+    return moved;
+}

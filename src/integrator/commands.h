@@ -1,0 +1,47 @@
+/* commands.h - when sources open and close the switches of one system.
+ *
+ * A switch whose control is a sum of sources that run along straight lines moves at times that are
+ * known beforehand. They come from the sources' own edges, counted by periods, never accumulated.
+ * The edges themselves are no reason for a step to end. */
+#ifndef DALCS_COMMANDS_H
+#define DALCS_COMMANDS_H
+
+#include "circuit.h"
+#include "system.h"
+
+struct dalcs_command {
+    int pair;
+    bool is_on;      /* now */
+    double searched; /* s: no move up to here that is not `next` */
+    double next;     /* s: it moves then, or when `moves` is false the search goes on then */
+    bool moves;
+    bool on_ramp; /* `next` is in the middle of a ramp, on which the control then runs away from the
+                     threshold */
+
+    /* a PULSE alone that crosses both thresholds in every period: at delay + n period + offset */
+    const struct dalcs_stimulus *pulse; /* NULL: the general way */
+    double offset[2];                   /* s: closes, opens */
+    long n[2];                          /* period of the next of each */
+};
+
+struct dalcs_commands {
+    const struct dalcs_circuit *circuit;
+    const struct dalcs_system *system;
+    int n;
+    struct dalcs_command *command;
+    double next; /* s, the earliest */
+};
+
+enum dalcs_status dalcs_commands_setup(struct dalcs_commands *commands,
+                                       const struct dalcs_circuit *circuit,
+                                       const struct dalcs_system *system) DALCS_MUST_CHECK;
+
+void dalcs_commands_finish(struct dalcs_commands *commands);
+
+/* At t = 0: is_on of every command from its control; the first search. */
+void dalcs_commands_start(struct dalcs_commands *commands);
+
+/* Moves what is due at t, and looks for the next. Returns whether anything moved. */
+bool dalcs_commands_obey(struct dalcs_commands *commands, double t);
+
+#endif

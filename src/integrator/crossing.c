@@ -1,0 +1,151 @@
+/* crossing.c - subdivision in Bernstein's basis, then a bracketed secant. */
+#include "crossing.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* Halvings of the step before a cluster of roots counts as one. */
+enum { MAX_DEPTH = 48, ROOT_ROUNDS = 60 };
+
+/* The polynomial on [0, split] and on [split, 1] (de Casteljau). left may be coefficient itself. */
+static void subdivide(int n, const double *coefficient, double split, double *left, double *right) {
+    double work[DALCS_MAX_NODES];
+    memcpy(work, coefficient, (size_t)n * sizeof(*work));
+    for (int level = 0; level < n; level++) {
+        left[level] = work[0];
+        right[n - 1 - level] = work[n - 1 - level];
+        for (int i = 0; i < n - 1 - level; i++) {
+            work[i] += split * (work[i + 1] - work[i]);
+        }
+    }
+}
+
+static double evaluate(int n, const double *coefficient, double theta) {
+    double work[DALCS_MAX_NODES];
+    memcpy(work, coefficient, (size_t)n * sizeof(*work));
+    for (int level = n - 1; level > 0; level--) {
+        for (int i = 0; i < level; i++) {
+            work[i] += theta * (work[i + 1] - work[i]);
+        }
+    }
+    return work[0];
+}
+
+static int sign_changes(int n, const double *coefficient) {
+    int changes = 0;
+    bool negative = coefficient[0] < 0.0;
+    for (int i = 1; i < n; i++) {
+        changes += (coefficient[i] < 0.0) != negative ? 1 : 0;
+        negative = coefficient[i] < 0.0;
+    }
+    return changes;
+}
+
+/* The one root on [0, 1], where the ends have different signs: secants that keep the bracket
+ * (Illinois). */
+static double only_root(int n, const double *coefficient) {
+    double a = 0.0;
+    double b = 1.0;
+    double at_a = coefficient[0];
+    double at_b = coefficient[n - 1];
+    if (at_a == 0.0) {
+        return 0.0;
+    }
+    int side = 0;
+    for (int round = 0; round < ROOT_ROUNDS && at_b != 0.0 && b - a > DBL_EPSILON * b; round++) {
+        double x = a + (b - a) * (at_a / (at_a - at_b));
+        if (!(x > a && x < b)) {
+            x = 0.5 * (a + b);
+        }
+        if (x == a || x == b) {
+            break;
+        }
+        double at_x = evaluate(n, coefficient, x);
+        if ((at_x < 0.0) == (at_b < 0.0)) {
+            double moved = b - x;
+            b = x;
+            at_b = at_x;
+            at_a *= side < 0 ? 0.5 : 1.0;
+            side = -1;
+            if (moved <= DBL_EPSILON * b) {
+                break;
+            }
+        } else {
+            double moved = x - a;
+            a = x;
+            at_a = at_x;
+            at_b *= side > 0 ? 0.5 : 1.0;
+            side = 1;
+            if (moved <= DBL_EPSILON * b) {
+                break;
+            }
+        }
+    }
+    return fabs(at_a) < fabs(at_b) ? a : b;
+}
+
+/* The first (or last) root on [from, from + length], or -1. */
+static double find_root(int n, const double *coefficient, double from, double length, bool first,
+                        int depth) {
+    int changes = sign_changes(n, coefficient);
+    if (changes == 0) {
+        return -1.0;
+    }
+    if (changes == 1 || depth == 0) {
+        bool differ = (coefficient[0] < 0.0) != (coefficient[n - 1] < 0.0);
+        return differ ? from + length * only_root(n, coefficient) : changes == 1 ? from : -1.0;
+    }
+    double half[2][DALCS_MAX_NODES];
+    subdivide(n, coefficient, 0.5, half[0], half[1]);
+    for (int k = 0; k < 2; k++) {
+        int side = first ? k : 1 - k;
+        double root = find_root(n, half[side], from + 0.5 * (double)side * length, 0.5 * length,
+                                first, depth - 1);
+        if (root >= 0.0) {
+            return root;
+        }
+    }
+    return -1.0;
+}
+
+struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, const double *value,
+                                          int stride, double end, double depth) {
+    int n = c->s + 1;
+    struct dalcs_crossing found = {.falls = false};
+    double b[DALCS_MAX_NODES] = {0.0};
+    double least = INFINITY;
+    for (int i = 0; i < n; i++) {
+        double sum = 0.0;
+        for (int k = 0; k < n; k++) {
+            sum += c->to_bernstein[i][k] * value[k * stride];
+        }
+        b[i] = sum;
+        least = fmin(least, sum);
+    }
+    if (least >= -depth) {
+        return found;
+    }
+    double rest[DALCS_MAX_NODES];
+    if (end < 1.0) {
+        subdivide(n, b, end, b, rest);
+    }
+    double shifted[DALCS_MAX_NODES];
+    for (int i = 0; i < n; i++) {
+        shifted[i] = b[i] + depth;
+    }
+    double below = shifted[0] < 0.0 ? 0.0 : find_root(n, shifted, 0.0, 1.0, true, MAX_DEPTH);
+    if (below < 0.0) {
+        return found;
+    }
+    found.falls = true;
+    double root = -1.0;
+    if (below > 0.0) {
+        double before[DALCS_MAX_NODES];
+        subdivide(n, b, below, before, rest);
+        root = find_root(n, before, 0.0, below, false, MAX_DEPTH);
+    }
+    found.at_once = root < 0.0;
+    found.theta = found.at_once ? 0.0 : root * end;
+    return found;
+}

@@ -1,0 +1,22 @@
+/* crossing.h - when a polynomial given at the nodes of a step first falls below zero.
+ *
+ * In Bernstein's basis a polynomial stays between its least and largest coefficient on the interval
+ * (Farouki 2012), so a step that hides two crossings between its nodes cannot pass for one that has
+ * none. */
+#ifndef DALCS_CROSSING_H
+#define DALCS_CROSSING_H
+
+#include "collocation.h"
+
+struct dalcs_crossing {
+    bool falls;   /* below -depth somewhere on [0, end] */
+    double theta; /* the last zero before that; 0 when it is never positive before */
+    bool at_once; /* it is never positive before */
+};
+
+/* value[k * stride] is the quantity at node k. Looks at theta in [0, end], end <= 1. Falls that stay
+ * above -depth (>= 0) do not count. */
+struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, const double *value,
+                                          int stride, double end, double depth);
+
+#endif

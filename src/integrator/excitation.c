@@ -1,0 +1,174 @@
+/* excitation.c - which functions of time a system sees, and their coefficients. */
+#include "excitation.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Does input k enter an equation or a threshold, or command a switch along a curve? */
+static bool acts(const struct dalcs_system *s, int k, const struct dalcs_stimulus *stimulus) {
+    bool found = false;
+    for (int i = 0; i < s->E.p[s->E.n_rows] && !found; i++) {
+        found = s->E.j[i] == k;
+    }
+    for (int i = 0; i < s->F.p[s->F.n_rows] && !found; i++) {
+        found = s->F.j[i] == k;
+    }
+    for (int i = 0; i < s->direct_control.p[s->n_pairs] && !found; i++) {
+        found = s->direct_control.j[i] == k && !dalcs_excitation_is_straight(stimulus);
+    }
+    return found;
+}
+
+static void add_function(struct dalcs_excitation *excitation, struct dalcs_excitation_wave *wave,
+                         enum dalcs_excitation_shape shape,
+                         const struct dalcs_stimulus_term *term) {
+    excitation->function[excitation->n_functions++] = (struct dalcs_excitation_function){
+        .input = wave->input,
+        .shape = shape,
+        .decay = term != NULL ? term->decay : 0.0,
+        .omega = term != NULL ? term->omega : 0.0,
+    };
+    wave->n_functions++;
+}
+
+static void add_wave(struct dalcs_excitation *excitation, int input,
+                     const struct dalcs_stimulus *stimulus) {
+    struct dalcs_excitation_wave *wave = &excitation->wave[excitation->n_waves++];
+    *wave = (struct dalcs_excitation_wave){
+        .input = input, .stimulus = stimulus, .first = excitation->n_functions};
+    dalcs_stimulus_piece_at(stimulus, 0.0, &wave->piece);
+    wave->is_curved = wave->piece.n_terms > 0;
+    excitation->is_curved = excitation->is_curved || wave->is_curved;
+    add_function(excitation, wave, DALCS_EXCITATION_LEVEL, NULL);
+    if (!wave->is_curved) {
+        add_function(excitation, wave, DALCS_EXCITATION_RAMP, NULL);
+    }
+    for (int k = 0; k < wave->piece.n_terms; k++) {
+        const struct dalcs_stimulus_term *term = &wave->piece.term[k];
+        add_function(excitation, wave, DALCS_EXCITATION_COSINE, term);
+        if (term->omega != 0.0) {
+            add_function(excitation, wave, DALCS_EXCITATION_SINE, term);
+            excitation->shortest_period =
+                fmin(excitation->shortest_period, 6.283185307179586 / fabs(term->omega));
+        }
+    }
+}
+
+enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
+                                         const struct dalcs_circuit *circuit,
+                                         const struct dalcs_system *system) {
+    *excitation = (struct dalcs_excitation){.system = system, .shortest_period = INFINITY};
+    size_t n = (size_t)system->n_inputs;
+    excitation->wave = dalcs_alloc(n, sizeof(*excitation->wave));
+    excitation->function = dalcs_alloc(5 * n, sizeof(*excitation->function));
+    excitation->constant = dalcs_alloc(n, sizeof(double));
+    if (excitation->wave == NULL || excitation->function == NULL || excitation->constant == NULL) {
+        dalcs_excitation_finish(excitation);
+        return DALCS_E_NOMEM;
+    }
+    excitation->constant[0] = 1.0;
+    for (int k = 1; k < system->n_inputs; k++) {
+        const struct dalcs_stimulus *stimulus = &circuit->stimulus[system->stimulus[k]];
+        if (stimulus->kind == DALCS_STIMULUS_DC) {
+            excitation->constant[k] = stimulus->dc;
+        } else if (acts(system, k, stimulus)) {
+            add_wave(excitation, k, stimulus);
+        }
+    }
+    dalcs_excitation_enter(excitation, 0.0);
+    return DALCS_OK;
+}
+
+void dalcs_excitation_finish(struct dalcs_excitation *excitation) {
+    free(excitation->wave);
+    free(excitation->function);
+    free(excitation->constant);
+    *excitation = (struct dalcs_excitation){0};
+}
+
+void dalcs_excitation_enter(struct dalcs_excitation *excitation, double t) {
+    excitation->next_edge = INFINITY;
+    for (int k = 0; k < excitation->n_waves; k++) {
+        struct dalcs_excitation_wave *wave = &excitation->wave[k];
+        dalcs_stimulus_piece_at(wave->stimulus, t, &wave->piece);
+        wave->from = t;
+        excitation->next_edge = fmin(excitation->next_edge, wave->piece.to);
+    }
+}
+
+void dalcs_excitation_coefficients(const struct dalcs_excitation *excitation, double t, double h,
+                                   double *coefficient) {
+    for (int k = 0; k < excitation->n_waves; k++) {
+        const struct dalcs_excitation_wave *wave = &excitation->wave[k];
+        double *out = coefficient + wave->first;
+        if (!wave->is_curved) {
+            out[0] = wave->piece.level + wave->piece.slope * (t - wave->from);
+            out[1] = wave->piece.slope * h;
+            continue;
+        }
+        struct dalcs_stimulus_piece now = wave->piece;
+        if (t != wave->from) {
+            /* the piece, not the neighbour that rounding may put t into */
+            if (isinf(wave->piece.to)) {
+                dalcs_stimulus_piece_at(wave->stimulus, t, &now);
+            } else {
+                for (int i = 0; i < now.n_terms; i++) {
+                    struct dalcs_stimulus_term *term = &now.term[i];
+                    double factor = exp(-term->decay * (t - wave->from));
+                    double c = cos(term->omega * (t - wave->from));
+                    double s = sin(term->omega * (t - wave->from));
+                    double cosine = factor * (term->cosine * c + term->sine * s);
+                    term->sine = factor * (term->sine * c - term->cosine * s);
+                    term->cosine = cosine;
+                }
+            }
+        }
+        *out++ = now.level;
+        for (int i = 0; i < now.n_terms; i++) {
+            *out++ = now.term[i].cosine;
+            if (now.term[i].omega != 0.0) {
+                *out++ = now.term[i].sine;
+            }
+        }
+    }
+}
+
+double dalcs_excitation_function_at(const struct dalcs_excitation_function *f, double h,
+                                    double theta) {
+    switch (f->shape) {
+    case DALCS_EXCITATION_LEVEL:
+        return 1.0;
+    case DALCS_EXCITATION_RAMP:
+        return theta;
+    case DALCS_EXCITATION_COSINE:
+        return exp(-f->decay * h * theta) * cos(f->omega * h * theta);
+    case DALCS_EXCITATION_SINE:
+        return exp(-f->decay * h * theta) * sin(f->omega * h * theta);
+    }
+    return 0.0;
+}
+
+void dalcs_excitation_inputs(const struct dalcs_excitation *excitation, double t, double tau,
+                             double *inputs) {
+    for (int k = 0; k < excitation->system->n_inputs; k++) {
+        inputs[k] = excitation->constant[k];
+    }
+    for (int k = 0; k < excitation->n_waves; k++) {
+        const struct dalcs_excitation_wave *wave = &excitation->wave[k];
+        const struct dalcs_stimulus_piece *piece = &wave->piece;
+        if (!wave->is_curved) {
+            inputs[wave->input] = piece->level + piece->slope * ((t - wave->from) + tau);
+        } else if (isinf(piece->to)) {
+            inputs[wave->input] = dalcs_stimulus_value(wave->stimulus, t + tau, DALCS_RIGHT);
+        } else {
+            double since = (t - wave->from) + tau;
+            double value = piece->level;
+            for (int i = 0; i < piece->n_terms; i++) {
+                const struct dalcs_stimulus_term *term = &piece->term[i];
+                value += exp(-term->decay * since) * (term->cosine * cos(term->omega * since) +
+                                                      term->sine * sin(term->omega * since));
+            }
+            inputs[wave->input] = value;
+        }
+    }
+}

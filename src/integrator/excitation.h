@@ -1,0 +1,76 @@
+/* excitation.h - the sources of one system as a combination of few functions of time.
+ *
+ * Between two edges each source is a level, a ramp and decaying oscillations (stimulus.h). Over a
+ * step from t of length h, with theta = 0..1 in between, these are fixed functions of theta times
+ * coefficients that change with t, so that all samples of a step are linear in the coefficients. */
+#ifndef DALCS_EXCITATION_H
+#define DALCS_EXCITATION_H
+
+#include "circuit.h"
+#include "system.h"
+
+/* One function of theta that multiplies one input. */
+struct dalcs_excitation_function {
+    int input;
+
+    enum dalcs_excitation_shape {
+        DALCS_EXCITATION_LEVEL,  /* 1 */
+        DALCS_EXCITATION_RAMP,   /* theta */
+        DALCS_EXCITATION_COSINE, /* exp(-decay h theta) cos(omega h theta) */
+        DALCS_EXCITATION_SINE
+    } shape;
+
+    double decay, omega; /* 1/s */
+};
+
+struct dalcs_excitation_wave {
+    int input; /* of the system */
+    const struct dalcs_stimulus *stimulus;
+    int first; /* function */
+    int n_functions;
+    bool is_curved; /* has oscillations: asked anew for every step */
+    double from;    /* s, where `piece` was taken */
+    struct dalcs_stimulus_piece piece;
+};
+
+struct dalcs_excitation {
+    const struct dalcs_system *system;
+    int n_waves;
+    struct dalcs_excitation_wave *wave; /* sources that vary and act on the system */
+    int n_functions;
+    struct dalcs_excitation_function *function;
+    double *constant;       /* [n_inputs] the inputs that never change; 0 for waves */
+    bool is_curved;         /* any wave is */
+    double shortest_period; /* s, of the oscillations; INFINITY without */
+    double next_edge;       /* s, of the waves */
+};
+
+/* Inputs that only command switches, and do so along straight lines, are left out: commands have
+ * their own schedule. */
+enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
+                                         const struct dalcs_circuit *circuit,
+                                         const struct dalcs_system *system) DALCS_MUST_CHECK;
+
+void dalcs_excitation_finish(struct dalcs_excitation *excitation);
+
+/* Looks at the sources at t from the right: at the start and at edges. */
+void dalcs_excitation_enter(struct dalcs_excitation *excitation, double t);
+
+/* coefficient[n_functions] of a step from t of length h. */
+void dalcs_excitation_coefficients(const struct dalcs_excitation *excitation, double t, double h,
+                                   double *coefficient);
+
+double dalcs_excitation_function_at(const struct dalcs_excitation_function *f, double h,
+                                    double theta);
+
+/* inputs[n_inputs] at t + tau, continuing the present pieces, over edges if need be. */
+void dalcs_excitation_inputs(const struct dalcs_excitation *excitation, double t, double tau,
+                             double *inputs);
+
+/* Do straight lines between edges describe the stimulus? */
+static inline bool dalcs_excitation_is_straight(const struct dalcs_stimulus *s) {
+    return s->kind == DALCS_STIMULUS_DC || s->kind == DALCS_STIMULUS_PULSE ||
+           s->kind == DALCS_STIMULUS_PWL;
+}
+
+#endif

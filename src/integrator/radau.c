@@ -1,0 +1,301 @@
+/* radau.c - the parts of a run: set up, started, passed from segment to segment, evaluated. */
+#include "radau_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Errors are kept this much smaller than asked for: they add up over a run. */
+static const double inner_part = 0.03;
+static const double largest_inner = 1e-5;
+static const double smallest_inner = 1e-12;
+
+/* Where the number of stages changes: measured, doc/methods.md. */
+static const double loose = 3e-4, tight = 3e-8;
+
+enum { FIRST_STEPS = 64 };
+
+static int choose_stages(const struct dalcs_radau_options *o) {
+    if (o->stages > 0) {
+        return o->stages;
+    }
+    return o->tolerance >= loose ? 3 : o->tolerance >= tight ? 5 : 7;
+}
+
+static bool has_memory_or_sides(const struct dalcs_system *s) {
+    return s->n_x > 0 || s->n_pairs > 0;
+}
+
+/* Inputs that probes of this system read. */
+static void list_used_inputs(struct dalcs_radau_part *part, const struct dalcs_network *n,
+                             bool *used) {
+    for (int i = 0; i < n->n_outputs; i++) {
+        const struct dalcs_probe *probe[2] = {&n->output[i].plus, &n->output[i].minus};
+        for (int side = 0; side < 2; side++) {
+            if (probe[side]->system != part->index) {
+                continue;
+            }
+            for (int k = 0; k < probe[side]->n_inputs; k++) {
+                used[probe[side]->term[probe[side]->n_terms + k].index] = true;
+            }
+        }
+    }
+    const struct dalcs_system *s = part->component->system;
+    for (int k = 1; k < s->n_inputs; k++) {
+        if (used[k] &&
+            part->component->circuit->stimulus[s->stimulus[k]].kind != DALCS_STIMULUS_DC) {
+            part->used_input[part->n_used_inputs++] = k;
+        }
+    }
+}
+
+static enum dalcs_status allocate(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    size_t n_columns = (size_t)dalcs_system_n_columns(s);
+    size_t n_guards = (size_t)(s->n_pairs + part->stages.n_watched);
+    size_t n_out = (size_t)l->n_fixed + (size_t)part->stages.method.s * n_columns + 8;
+    part->x = dalcs_alloc((size_t)s->n_x, sizeof(double));
+    part->in = dalcs_alloc((size_t)part->stages.n_in, sizeof(double));
+    part->out = dalcs_alloc(n_out, sizeof(double));
+    part->scale = dalcs_alloc(n_columns, sizeof(double));
+    part->armed = dalcs_alloc(n_guards, sizeof(bool));
+    part->crossed = dalcs_alloc(n_guards, sizeof(int));
+    part->u = dalcs_alloc((size_t)(s->n_x + s->n_inputs), sizeof(double));
+    part->y1 = dalcs_alloc((size_t)l->stride, sizeof(double));
+    part->y2 = dalcs_alloc((size_t)l->stride, sizeof(double));
+    part->w1 = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
+    part->after = dalcs_alloc((size_t)s->n_x, sizeof(double));
+    part->used_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
+    bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
+                    part->scale != NULL && part->armed != NULL && part->crossed != NULL &&
+                    part->u != NULL && part->y1 != NULL && part->y2 != NULL && part->w1 != NULL &&
+                    part->after != NULL && part->used_input != NULL;
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* Where a circuit carries no current, rounding must not be taken for one: its voltages could drive a
+ * current through the least of its conductances, and a millionth of that counts as nothing. */
+static const double nothing = 1e-6;
+
+static void find_cross_scales(const struct dalcs_system *s, double stop, double *cross) {
+    double least = INFINITY;
+    double most = 0.0;
+    for (int r = 0; r < dalcs_system_n_equations(s); r++) {
+        bool is_current = s->row_is_current[r];
+        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
+            if (s->column_is_current[s->A.j[k]] != is_current && s->A.x[k] != 0.0) {
+                double g = is_current ? fabs(s->A.x[k]) : 1.0 / fabs(s->A.x[k]);
+                least = fmin(least, g);
+                most = fmax(most, g);
+            }
+        }
+        for (int k = s->P.p[r]; r < s->n_x && k < s->P.p[r + 1]; k++) {
+            if (s->column_is_current[s->P.j[k]] != is_current && s->P.x[k] != 0.0) {
+                double g = is_current ? fabs(s->P.x[k]) / stop : stop / fabs(s->P.x[k]);
+                least = fmin(least, g);
+                most = fmax(most, g);
+            }
+        }
+    }
+    cross[0] = most > 0.0 ? nothing / most : nothing;
+    cross[1] = most > 0.0 ? nothing * least : nothing;
+}
+
+static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                    const struct dalcs_osnsp_options *osnsp, int stages) {
+    struct dalcs_component *c = part->component;
+    part->kind = has_memory_or_sides(c->system) ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
+    DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system));
+    DALCS_TRY(dalcs_commands_setup(&part->commands, c->circuit, c->system));
+    DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, stages,
+                                 osnsp->dense_limit, osnsp->rcond_min,
+                                 osnsp->cache_bytes / (size_t)r->n_parts));
+    DALCS_TRY(allocate(part));
+    bool *used = dalcs_alloc((size_t)c->system->n_inputs, sizeof(bool));
+    if (used == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    list_used_inputs(part, r->base->network, used);
+    free(used);
+    find_cross_scales(c->system, r->options.stop, part->cross);
+    part->longest = dalcs_segment_longest(r, part);
+    double first = fmin(part->longest, r->options.stop / FIRST_STEPS);
+    part->level = -ilogb(first);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *base,
+                                    const struct dalcs_radau_options *options,
+                                    const struct dalcs_osnsp_options *osnsp) {
+    *r = (struct dalcs_radau){.base = base, .options = *options, .n_parts = base->n_components};
+    int exponent;
+    (void)frexp(options->stop, &exponent);
+    r->resolution = ldexp(1.0, exponent - 50);
+    r->inner_tolerance = fmax(smallest_inner, fmin(largest_inner, inner_part * options->tolerance));
+    r->part = dalcs_alloc((size_t)r->n_parts, sizeof(*r->part));
+    enum dalcs_status status = r->part != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    for (int k = 0; k < r->n_parts && status == DALCS_OK; k++) {
+        r->part[k].component = &base->component[k];
+        r->part[k].index = k;
+        status = part_setup(r, &r->part[k], osnsp, choose_stages(options));
+    }
+    if (status != DALCS_OK) {
+        dalcs_radau_finish(r);
+    }
+    return status;
+}
+
+static void part_finish(struct dalcs_radau_part *part) {
+    if (part->stages.system != NULL) {
+        dalcs_stages_finish(&part->stages);
+    }
+    dalcs_excitation_finish(&part->excitation);
+    dalcs_commands_finish(&part->commands);
+    free(part->x);
+    free(part->in);
+    free(part->out);
+    free(part->scale);
+    free(part->armed);
+    free(part->crossed);
+    free(part->u);
+    free(part->y1);
+    free(part->y2);
+    free(part->w1);
+    free(part->after);
+    free(part->used_input);
+}
+
+void dalcs_radau_finish(struct dalcs_radau *r) {
+    for (int k = 0; r->part != NULL && k < r->n_parts; k++) {
+        part_finish(&r->part[k]);
+    }
+    free(r->part);
+    *r = (struct dalcs_radau){0};
+}
+
+static void obey_commands(struct dalcs_radau_part *part) {
+    for (int k = 0; k < part->commands.n; k++) {
+        const struct dalcs_command *m = &part->commands.command[k];
+        dalcs_osnsp_command(&part->component->osnsp, m->pair, m->is_on);
+    }
+}
+
+enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initial) {
+    for (int k = 0; k < r->n_parts; k++) {
+        struct dalcs_radau_part *part = &r->part[k];
+        struct dalcs_component *c = part->component;
+        const double *x = initial != NULL ? initial[k] : c->y;
+        memcpy(part->x, x, (size_t)c->system->n_x * sizeof(double));
+        dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->u);
+        if (part->kind == DALCS_PART_ALGEBRAIC) {
+            part->t_end = INFINITY;
+            continue;
+        }
+        dalcs_commands_start(&part->commands);
+        obey_commands(part);
+        part->fresh = true;
+        if (initial != NULL) {
+            DALCS_TRY(dalcs_radau_restart(r, part, 0));
+        }
+        DALCS_TRY(dalcs_segment_begin(r, part));
+    }
+    return DALCS_OK;
+}
+
+double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens) {
+    double next = INFINITY;
+    *happens = false;
+    for (int k = 0; k < r->n_parts; k++) {
+        const struct dalcs_radau_part *part = &r->part[k];
+        bool event = part->why != DALCS_END_OF_STEP;
+        if (part->t_end < next) {
+            next = part->t_end;
+            *happens = event;
+        } else if (part->t_end == next) {
+            *happens = *happens || event;
+        }
+    }
+    return next;
+}
+
+/* Too many events in no time: an accumulation, or a mode that cannot be told. */
+static void count_crowd(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    if (part->t - part->crowd_since > 1e4 * r->resolution) {
+        part->crowd_since = part->t;
+        part->crowd = 0;
+    }
+    part->crowd++;
+}
+
+static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
+    part->jumped = false;
+    if (part->end == 1.0) {
+        memcpy(part->x, part->out + (l->n_nodes - 1) * l->stride, state_bytes);
+    } else {
+        dalcs_segment_values(part, part->end, part->y1);
+        memcpy(part->x, part->y1, state_bytes);
+    }
+    part->t = part->t_end;
+    if (part->n_crossed > 0) {
+        dalcs_segment_flip(part);
+        part->fresh = true;
+        count_crowd(r, part);
+    }
+    if (part->excitation.next_edge <= part->t + r->resolution) {
+        dalcs_excitation_enter(&part->excitation, part->t);
+        part->fresh = true;
+    }
+    if (part->commands.next <= part->t + r->resolution &&
+        dalcs_commands_obey(&part->commands, part->t)) {
+        obey_commands(part);
+        part->fresh = true;
+    }
+    return part->t < r->options.stop ? dalcs_segment_begin(r, part) : DALCS_OK;
+}
+
+enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) {
+    for (int k = 0; k < r->n_parts; k++) {
+        if (r->part[k].t_end <= t && r->part[k].t < r->options.stop) {
+            DALCS_TRY(pass(r, &r->part[k]));
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status evaluate(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                  double t, enum dalcs_side side) {
+    struct dalcs_component *c = part->component;
+    const struct dalcs_system *s = c->system;
+    if (part->kind == DALCS_PART_ALGEBRAIC) {
+        if (c->n_varying == 0 && t > 0.0) {
+            return DALCS_OK;
+        }
+        for (int i = 0; i < c->n_varying; i++) {
+            int k = c->varying[i];
+            c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+        }
+        r->base->t = t;
+        return dalcs_component_solve(c, 0.0, c->u, c->y);
+    }
+    int n_equations = dalcs_system_n_equations(s);
+    dalcs_segment_values(part, fmin(1.0, (t - part->t) / part->h), part->y1);
+    memcpy(c->y, part->y1, (size_t)dalcs_system_n_columns(s) * sizeof(double));
+    for (int d = 0; d < s->n_pairs; d++) {
+        c->y[n_equations + d] *= dalcs_osnsp_is_on(&c->osnsp, d) ? 1.0 : 0.0;
+    }
+    for (int i = 0; i < part->n_used_inputs; i++) {
+        int k = part->used_input[i];
+        c->u[s->n_x + k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t, enum dalcs_side side) {
+    for (int k = 0; k < r->n_parts; k++) {
+        DALCS_TRY(evaluate(r, &r->part[k], t, side));
+    }
+    return DALCS_OK;
+}

@@ -1,0 +1,101 @@
+/* radau.h - Radau IIA with error control over all components, events located by their polynomials.
+ *
+ * Each component goes its own way: from a consistent state it makes a step in its present mode, and
+ * on the step's polynomials looks for the first time when the mode ends: a lambda or w that falls
+ * below 0, a voltage that moves a switch. There, at edges of its sources and at commanded switches
+ * the segment ends, though the step may have gone further; a new one starts. Which mode comes next is
+ * first guessed (what crossed changes sides) and then certified, by a step whose lambda and w are
+ * positive from the start; where that fails, two micro-steps of implicit Euler decide mode and jump.
+ *
+ * The loop over time is the caller's, dalcs_radau_next_stop telling where to go next. */
+#ifndef DALCS_RADAU_H
+#define DALCS_RADAU_H
+
+#include "commands.h"
+#include "euler.h"
+#include "stages.h"
+
+struct dalcs_radau_options {
+    double tolerance;     /* largest error over each waveform's scale */
+    double abstol, vntol; /* A, V: error allowed besides */
+    int stages;           /* 0: chosen */
+    double fixed_step;    /* s; 0: the error is controlled */
+    double max_step;      /* s; 0: none */
+    double stop;          /* s */
+};
+
+/* Why a segment ends. */
+enum dalcs_radau_end {
+    DALCS_END_OF_STEP,
+    DALCS_END_AT_EVENT,
+    DALCS_END_AT_EDGE /* or at a command, or where the search for one goes on */
+};
+
+struct dalcs_radau_part {
+    struct dalcs_component *component; /* its OSNSP, and y and u when evaluated */
+    int index;
+
+    enum dalcs_radau_kind {
+        DALCS_PART_ALGEBRAIC, /* no memory, nothing that changes sides: solved where asked for */
+        DALCS_PART_STEPPED
+    } kind;
+
+    struct dalcs_excitation excitation;
+    struct dalcs_commands commands;
+    struct dalcs_stages stages;
+    double t, h; /* s: the step of the present segment */
+    double end;  /* of the segment, in steps */
+    double t_end;
+    enum dalcs_radau_end why;
+    int level;      /* h = 2^-level */
+    int may_grow;   /* steps until a longer one is tried again after a failure */
+    double longest; /* s, step worth trying */
+    int tries;      /* falls back to implicit Euler in a row */
+    bool fresh;     /* something just happened at t: nothing is known of how pairs start */
+    double *x;      /* [n_x] at t */
+    double *in, *out;
+    double *scale;        /* [n_columns] largest magnitudes so far */
+    double unit_scale[2]; /* V, A: the largest of each */
+    double cross[2];      /* V per A, A per V: how far the scale of one unit vouches for the other */
+    bool *armed;          /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
+    int n_crossed;
+    int *crossed; /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
+    bool jumped;  /* at t, when the segment began */
+    double *u, *y1, *y2, *w1, *after; /* work */
+    int n_used_inputs, *used_input;   /* that probes read */
+    long crowd;                       /* events since `crowd_since` */
+    double crowd_since;
+};
+
+struct dalcs_radau {
+    struct dalcs_euler *base; /* components, start, what failed; borrowed */
+    struct dalcs_radau_options options;
+    int n_parts;
+    struct dalcs_radau_part *part;
+    double resolution; /* s: times nearer than this are the same */
+    double inner_tolerance;
+    long steps, rejected, restarts, euler_steps;
+};
+
+enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *base,
+                                    const struct dalcs_radau_options *options,
+                                    const struct dalcs_osnsp_options *osnsp) DALCS_MUST_CHECK;
+
+void dalcs_radau_finish(struct dalcs_radau *r);
+
+/* Starts at t = 0 from the components' states: initial[k][n_x] = x(0-), or NULL for the operating
+ * point that base has solved. */
+enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initial) DALCS_MUST_CHECK;
+
+/* The earliest end of a segment; INFINITY when nothing steps. *happens: not just the end of a step. */
+double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens);
+
+/* Ends all segments that end at t and starts the next ones. */
+enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) DALCS_MUST_CHECK;
+
+/* y and u of every component at t, which lies in the present segments: the left limit at their ends,
+ * the right one at their starts. */
+enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t,
+                                       enum dalcs_side side) DALCS_MUST_CHECK;
+
+#endif

@@ -1,0 +1,36 @@
+/* radau_internal.h - what the files behind radau.h share. */
+#ifndef DALCS_RADAU_INTERNAL_H
+#define DALCS_RADAU_INTERNAL_H
+
+#include "radau.h"
+
+/* segment.c: from part->t, part->x and the mode to a segment that holds until part->t_end. */
+enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r,
+                                      struct dalcs_radau_part *part) DALCS_MUST_CHECK;
+
+/* The longest step worth trying. */
+double dalcs_segment_longest(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
+
+/* value[n_columns + n_watched] at theta of the present step. */
+void dalcs_segment_values(const struct dalcs_radau_part *part, double theta, double *value);
+
+/* What crossed changes sides. */
+void dalcs_segment_flip(struct dalcs_radau_part *part);
+
+/* restart.c: two micro-steps from part->t decide mode and state; a jump is reported. `longer` makes
+ * them 2^(5 longer) times as long. */
+enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                      int longer) DALCS_MUST_CHECK;
+
+/* One step of implicit Euler of length h as the present segment. */
+enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                         double h) DALCS_MUST_CHECK;
+
+/* The next edge, command or the stop time. */
+double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
+
+static inline double dalcs_radau_ladder(int level) {
+    return __builtin_ldexp(1.0, -level);
+}
+
+#endif

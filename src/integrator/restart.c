@@ -1,0 +1,202 @@
+/* restart.c - micro-steps of implicit Euler where a mode is not known or a state may jump.
+ *
+ * A first micro-step takes a state that the mode does not allow to one that it does (a jump, or the
+ * interpolation error of an event); from there a second one sees how the circuit goes on. The jump is
+ * the limit of vanishing steps, which for passive circuits is the projection in the energy norm
+ * (Heemels, Schumacher and Weiland 1999; Brogliato 2022, sec. 4). */
+#include "radau_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A micro-step over the step of the ladder: 2^-MICRO. */
+enum { MICRO = 20, COMMAND_ROUNDS = 20, LONGER_TRIES = 4 };
+
+/* States that move in the first micro-step by more than this many times the second have jumped. */
+static const double jump_ratio = 4.0;
+
+static enum dalcs_status fail(struct dalcs_radau *r, struct dalcs_radau_part *part, double sigma,
+                              const double *u, enum dalcs_status status) {
+    struct dalcs_euler *e = r->base;
+    part->component->failed_sigma = sigma;
+    part->component->failed_u = u;
+    e->failed_system = part->index;
+    e->failed_time = part->t;
+    e->failed_h = 1.0 / sigma;
+    return status;
+}
+
+/* Solves one step of length h to t + tau from state[n_x], following the voltages that move switches. */
+static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                               double tau, const double *state, double *y) {
+    struct dalcs_component *c = part->component;
+    const struct dalcs_system *s = c->system;
+    double sigma = s->n_x > 0 ? 1.0 / h : 0.0;
+    memmove(part->u, state, (size_t)s->n_x * sizeof(double));
+    dalcs_excitation_inputs(&part->excitation, part->t, tau, part->u + s->n_x);
+    enum dalcs_status status = dalcs_osnsp_solve(&c->osnsp, sigma, part->u, y);
+    for (int round = 0; status == DALCS_OK && round < COMMAND_ROUNDS; round++) {
+        bool moved = false;
+        for (int i = 0; i < part->stages.n_watched; i++) {
+            int d = part->stages.watched[i];
+            const struct dalcs_pair *p = &s->pair[d];
+            bool is_on = dalcs_osnsp_is_on(&c->osnsp, d);
+            double v = p->is_direct ? dalcs_csr_row_dot(&s->direct_control, d, part->u + s->n_x)
+                                    : dalcs_csr_row_dot(&s->control, d, y);
+            double slack = part->t > 0.0 ? 10.0 * r->inner_tolerance *
+                                               fmax(part->unit_scale[0], fabs(p->turn_on))
+                                         : 0.0;
+            bool wants = is_on ? !(v < p->turn_off - slack) : v > p->turn_on + slack;
+            if (wants != is_on) {
+                dalcs_osnsp_command(&c->osnsp, d, wants);
+                moved = true;
+            }
+        }
+        if (!moved) {
+            break;
+        }
+        status = dalcs_osnsp_solve(&c->osnsp, sigma, part->u, y);
+    }
+    if (status != DALCS_OK) {
+        return fail(r, part, sigma, part->u, status);
+    }
+    if (c->osnsp.certificate.worst > r->base->worst.worst) {
+        r->base->worst = c->osnsp.certificate;
+        r->base->worst_time = part->t;
+        r->base->worst_system = part->index;
+    }
+    return DALCS_OK;
+}
+
+static double jump_energy(const struct dalcs_system *s, const double *before, const double *after) {
+    double energy = 0.0;
+    for (int i = 0; i < s->n_x; i++) {
+        for (int k = s->storage.p[i]; k < s->storage.p[i + 1]; k++) {
+            int j = s->storage.j[k];
+            energy += 0.5 * s->storage.x[k] * (after[i] - before[i]) * (after[j] - before[j]);
+        }
+    }
+    return energy;
+}
+
+/* The states after the micro-steps y1 and y2; is it a jump? */
+static bool extrapolate(const struct dalcs_radau *r, struct dalcs_radau_part *part, double *after,
+                        bool *noticeable) {
+    const struct dalcs_system *s = part->component->system;
+    double largest[2] = {part->unit_scale[0], part->unit_scale[1]};
+    for (int x = 0; x < s->n_x; x++) {
+        int of = s->column_is_current[x];
+        largest[of] = fmax(largest[of], fmax(fabs(part->x[x]), fabs(part->y1[x])));
+    }
+    bool jumps = false;
+    *noticeable = false;
+    for (int x = 0; x < s->n_x; x++) {
+        double first = fabs(part->y1[x] - part->x[x]);
+        double second = fabs(part->y2[x] - part->y1[x]);
+        double scale = largest[s->column_is_current[x]];
+        bool moved = first > jump_ratio * second && first > 1e-14 * scale;
+        jumps = jumps || moved;
+        *noticeable =
+            *noticeable || (moved && first > fmax(1e3 * r->inner_tolerance, 1e-9) * scale);
+        after[x] = 2.0 * part->y1[x] - part->y2[x];
+    }
+    return jumps;
+}
+
+static enum dalcs_status report_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                                     const double *w1, const double *after) {
+    struct dalcs_euler *e = r->base;
+    const struct dalcs_system *s = part->component->system;
+    int n_equations = dalcs_system_n_equations(s);
+    if (e->on_jump == NULL) {
+        return DALCS_OK;
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        double charge = h * (part->y1[n_equations + d] - part->y2[n_equations + d]);
+        double flux = h * (w1[d] - part->component->osnsp.w[d]);
+        /* a regular current changes little in a micro-step, an impulse goes */
+        e->charge[d] = charge > 0.5 * h * part->y1[n_equations + d] ? charge : 0.0;
+        e->flux[d] = flux > 0.5 * h * w1[d] ? flux : 0.0;
+    }
+    e->t = part->t;
+    return e->on_jump(e->jump_user, &(struct dalcs_euler_jump){
+                                        .time = part->t,
+                                        .system = part->index,
+                                        .before = part->x,
+                                        .after = after,
+                                        .charge = e->charge,
+                                        .flux = e->flux,
+                                        .energy_lost = jump_energy(s, part->x, after),
+                                    });
+}
+
+static double micro_length(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                           int longer) {
+    double h = r->options.fixed_step > 0.0 ? ldexp(r->options.fixed_step, -MICRO)
+                                           : dalcs_radau_ladder((part->level & ~3) + MICRO);
+    h = ldexp(h, 5 * longer);
+    double room = dalcs_radau_limit(r, part) - part->t;
+    for (int k = 0; k < 8 && 4.0 * h > room; k++) {
+        h *= 0.0625;
+    }
+    return h;
+}
+
+enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                      int longer) {
+    struct dalcs_component *c = part->component;
+    const struct dalcs_system *s = c->system;
+    enum dalcs_status status = DALCS_NOT_CONVERGED;
+    double h = 0.0;
+    for (int k = 0; k < LONGER_TRIES && status > DALCS_OK; k++) {
+        h = micro_length(r, part, longer + k);
+        r->restarts++;
+        status = solve(r, part, h, h, part->x, part->y1);
+        if (status == DALCS_OK) {
+            memcpy(part->w1, c->osnsp.w, (size_t)s->n_pairs * sizeof(double));
+            status = solve(r, part, h, 2.0 * h, part->y1, part->y2);
+        }
+    }
+    DALCS_TRY(status);
+    if (s->n_x == 0) {
+        return DALCS_OK;
+    }
+    bool noticeable;
+    if (extrapolate(r, part, part->after, &noticeable)) {
+        if (noticeable) {
+            DALCS_TRY(report_jump(r, part, h, part->w1, part->after));
+            part->jumped = true;
+        }
+        memcpy(part->x, part->after, (size_t)s->n_x * sizeof(double));
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                         double h) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    int n_equations = dalcs_system_n_equations(s);
+    DALCS_TRY(solve(r, part, h, h, part->x, part->y1));
+    for (int k = 0; k < l->n_nodes; k++) {
+        double *out = part->out + k * l->stride;
+        memcpy(out, part->y1, (size_t)dalcs_system_n_columns(s) * sizeof(double));
+        for (int x = 0; x < s->n_x; x++) {
+            out[x] = part->x[x] + part->stages.method.node[k] * (part->y1[x] - part->x[x]);
+        }
+        for (int d = 0; d < s->n_pairs; d++) {
+            out[n_equations + d] += part->component->osnsp.w[d];
+        }
+        for (int i = 0; i < part->stages.n_watched; i++) {
+            out[dalcs_system_n_columns(s) + i] = 0.0;
+        }
+    }
+    double limit = dalcs_radau_limit(r, part);
+    part->h = h;
+    part->end = 1.0;
+    part->t_end = fmin(part->t + h, limit);
+    part->why = part->t_end >= limit ? DALCS_END_AT_EDGE : DALCS_END_OF_STEP;
+    part->n_crossed = 0;
+    part->fresh = true;
+    return DALCS_OK;
+}

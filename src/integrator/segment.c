@@ -1,0 +1,374 @@
+/* segment.c - one step: its length, its error, and the first thing that ends its mode. */
+#include "crossing.h"
+#include "radau_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Signals smaller than this part of the largest of their unit are held to that one's scale. */
+static const double smallest_scale = 1e-5;
+
+/* Errors up to this part of the unit's scale in a pair that has just changed sides are no event. */
+static const double band_over_tolerance = 10.0;
+
+/* What rounding leaves of a zero, over the unit's scale. */
+static const double noise = 2e-13;
+
+/* No column is known better than this part of what would balance the largest of the others. */
+static const double rounding_part = 4e-15;
+
+/* The error estimate may be this much smaller before the step is doubled. */
+static const double safety = 0.8;
+
+#include <stdio.h>
+#include <stdlib.h>
+#define DBG(...) do { if (getenv("DALCS_D")) { fprintf(stderr, __VA_ARGS__); } } while (0)
+enum { MOST_RUNGS = 6, PIVOTS = 12, MOST_RESTARTS = 4, CROWD = 40 };
+
+/* The wildest step over the shortest period of a source, by stages: fewer nodes see less. */
+static double most_periods(int stages) {
+    return stages >= 7 ? 0.6 : stages >= 5 ? 0.45 : 0.25;
+}
+
+double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    return fmin(fmin(part->excitation.next_edge, part->commands.next), r->options.stop);
+}
+
+/* Terms of the equations that no column shows, such as currents of resistors, tell what a current or
+ * voltage is here. */
+static void find_terms(const struct dalcs_system *s, const double *y, double *unit) {
+    for (int r = 0; r < dalcs_system_n_equations(s); r++) {
+        double *of = &unit[s->row_is_current[r] ? 1 : 0];
+        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
+            if (s->A.j[k] < dalcs_system_n_equations(s)) {
+                *of = fmax(*of, fabs(s->A.x[k] * y[s->A.j[k]]));
+            }
+        }
+    }
+}
+
+/* Largest magnitudes of the answer up to `end`, with what is known from before: to[n_columns], and by
+ * unit. */
+static void find_scales(const struct dalcs_radau_part *part, double end, double *to, double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stages *st = &part->stages;
+    int n_columns = dalcs_system_n_columns(s);
+    int last = 0;
+    while (last < st->method.s && st->method.node[last + 1] <= end) {
+        last++;
+    }
+    memcpy(to, part->scale, (size_t)n_columns * sizeof(double));
+    for (int k = 0; k <= last; k++) {
+        const double *y = part->out + k * st->layout.stride;
+        for (int c = 0; c < n_columns; c++) {
+            double a = fabs(y[c]);
+            to[c] = a > to[c] ? a : to[c];
+        }
+    }
+    unit[0] = part->unit_scale[0];
+    unit[1] = part->unit_scale[1];
+    int n_equations = dalcs_system_n_equations(s);
+    for (int c = 0; c < n_equations; c++) {
+        int of = s->column_is_current[c];
+        unit[of] = to[c] > unit[of] ? to[c] : unit[of];
+    }
+    if (part->fresh) {
+        find_terms(s, part->out, unit);
+    }
+    double volt = unit[0];
+    unit[0] = fmax(unit[0], part->cross[0] * unit[1]);
+    unit[1] = fmax(unit[1], part->cross[1] * volt);
+}
+
+/* The estimated error over what is allowed. */
+static double error_of(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                       const struct dalcs_stage_entry *entry, double end, double *size,
+                       double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const double besides[2] = {r->options.vntol, r->options.abstol};
+    find_scales(part, end, size, unit);
+    double worst = 0.0;
+    double tolerance = r->inner_tolerance;
+    int n_equations = dalcs_system_n_equations(s);
+    const double *natural = dalcs_stage_natural_units(entry);
+    double largest = 0.0;
+    const double *last = part->out + part->stages.method.s * l->stride;
+    for (int c = 0; c < n_equations; c++) {
+        largest = fmax(largest, fabs(last[c]) / natural[c]);
+    }
+    double rounding = rounding_part * largest;
+    for (int c = 0; c < n_equations; c++) {
+        double error = c < s->n_x ? fabs(part->out[l->drift + c]) : 0.0;
+        if (part->excitation.is_curved) {
+            error = fmax(error, fabs(part->out[l->ripple + c]));
+        }
+        if (error == 0.0) {
+            continue;
+        }
+        int of = s->column_is_current[c];
+        double scale = fmax(size[c], smallest_scale * unit[of]);
+        double ratio =
+            error / (tolerance * scale + rounding * natural[c] + 0.1 * besides[of]);
+        if (getenv("DALCS_D") && ratio > 0.5) fprintf(stderr," [%s col%d x=%d err=%g scale=%g unit=%g]", s->column[c].element, c, c<s->n_x, error, scale, unit[of]);
+        worst = ratio > worst || ratio != ratio ? ratio : worst;
+    }
+    return worst;
+}
+
+static enum dalcs_status solve_step(struct dalcs_radau_part *part,
+                                    struct dalcs_stage_entry **entry) {
+    const struct dalcs_system *s = part->component->system;
+    DALCS_TRY(dalcs_stages_get(&part->stages, part->component->osnsp.mode, part->h, entry));
+    memcpy(part->in, part->x, (size_t)s->n_x * sizeof(double));
+    part->in[s->n_x] = 1.0;
+    dalcs_excitation_coefficients(&part->excitation, part->t, part->h, part->in + s->n_x + 1);
+    return dalcs_stages_apply(&part->stages, *entry, part->in, part->out);
+}
+
+/* Sources that disagree in a singular mode: it cannot be this one. */
+static bool clashes(const struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry,
+                    double end, const double *unit) {
+    int n = dalcs_stage_n_clashes(entry);
+    int s = part->stages.method.s;
+    double limit = 1e-9 * fmax(unit[0], unit[1]);
+    bool found = false;
+    for (int k = 0; k < n; k++) {
+        bool counts = k % s == 0 || part->stages.method.node[k % s + 1] <= end;
+        found = found || (counts && fabs(part->out[part->stages.layout.n_fixed + k]) > limit);
+    }
+    return found;
+}
+
+/* What must stay positive: guard < n_pairs is a diode, behind are watched switches. Returns the
+ * values at the nodes with their stride, NULL for a switch without a guard. */
+static const double *guard_values(const struct dalcs_radau_part *part, int guard, double *work,
+                                  int *stride) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    if (guard < s->n_pairs) {
+        *stride = l->stride;
+        return s->pair[guard].kind == DALCS_PAIR_DIODE
+                   ? part->out + dalcs_system_n_equations(s) + guard
+                   : NULL;
+    }
+    int d = part->stages.watched[guard - s->n_pairs];
+    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, d);
+    const double *v = part->out + dalcs_system_n_columns(s) + guard - s->n_pairs;
+    for (int k = 0; k < l->n_nodes; k++) {
+        work[k] =
+            is_on ? v[k * l->stride] - s->pair[d].turn_off : s->pair[d].turn_on - v[k * l->stride];
+    }
+    *stride = 1;
+    return work;
+}
+
+static double guard_scale(const struct dalcs_radau_part *part, int guard, const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    bool is_current = guard < s->n_pairs && dalcs_osnsp_is_on(&part->component->osnsp, guard);
+    if (guard >= s->n_pairs) {
+        const struct dalcs_pair *p = &s->pair[part->stages.watched[guard - s->n_pairs]];
+        return fmax(unit[0], fmax(fabs(p->turn_on), fabs(p->turn_off)));
+    }
+    return unit[is_current ? 1 : 0];
+}
+
+static double band_of(const struct dalcs_radau *r) {
+    return fmax(band_over_tolerance * r->inner_tolerance, 4.0 * noise);
+}
+
+static void arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
+                const double *unit) {
+    int n_guards = part->component->system->n_pairs + part->stages.n_watched;
+    double weight[DALCS_MAX_NODES];
+    dalcs_collocation_weights(&part->stages.method, theta, weight);
+    for (int g = 0; g < n_guards; g++) {
+        double work[DALCS_MAX_NODES];
+        int stride;
+        const double *value = guard_values(part, g, work, &stride);
+        double now = 0.0;
+        for (int k = 0; value != NULL && k < part->stages.layout.n_nodes; k++) {
+            now += weight[k] * value[k * stride];
+        }
+        bool clear = now > band_of(r) * guard_scale(part, g, unit);
+        part->armed[g] = clear || (theta > 0.0 && part->armed[g]);
+    }
+}
+
+/* The first guards to fall, listed in part->crossed. Returns theta; *at_once: wrong from the start. */
+static double find_crossing(const struct dalcs_radau *r, struct dalcs_radau_part *part, double end,
+                            const double *unit, bool *at_once) {
+    int n_guards = part->component->system->n_pairs + part->stages.n_watched;
+    double first = INFINITY;
+    double together = fmax(1e-13, 2.0 * r->resolution / part->h);
+    part->n_crossed = 0;
+    *at_once = false;
+    for (int g = 0; g < n_guards; g++) {
+        double work[DALCS_MAX_NODES];
+        int stride;
+        const double *value = guard_values(part, g, work, &stride);
+        if (value == NULL) {
+            continue;
+        }
+        double scale = guard_scale(part, g, unit);
+        double depth = (part->armed[g] ? noise : band_of(r)) * scale;
+        struct dalcs_crossing c =
+            dalcs_crossing_find(&part->stages.method, value, stride, end, depth);
+        if (!c.falls || c.theta > first + together) {
+            continue;
+        }
+        if (c.theta < first - together) {
+            part->n_crossed = 0;
+            *at_once = false;
+        }
+        first = fmin(first, c.theta);
+        *at_once = *at_once || (c.at_once && !part->armed[g]);
+        part->crossed[part->n_crossed++] = g;
+    }
+    return first;
+}
+
+/* Where the ladder should go for an error of `ratio` times what is allowed. */
+static int rungs_for(double ratio, int stages) {
+    double rungs = log2(fmax(ratio, 1e-30)) / (double)(stages + 1);
+    return !(rungs < MOST_RUNGS) ? MOST_RUNGS : (int)ceil(rungs);
+}
+
+void dalcs_segment_flip(struct dalcs_radau_part *part) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    for (int k = 0; k < part->n_crossed; k++) {
+        int g = part->crossed[k];
+        int d = g < p->system->n_pairs ? g : part->stages.watched[g - p->system->n_pairs];
+        dalcs_osnsp_command(p, d, !dalcs_osnsp_is_on(p, d));
+    }
+}
+
+static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part, double theta, double limit,
+                   const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    part->end = theta;
+    double t_end = part->t + theta * part->h;
+    part->why = part->n_crossed > 0 ? DALCS_END_AT_EVENT : DALCS_END_OF_STEP;
+    if (part->n_crossed == 0 && t_end >= limit - r->resolution) {
+        t_end = limit;
+        part->why = DALCS_END_AT_EDGE;
+    }
+    part->t_end = fmin(t_end, limit);
+    int last = 0;
+    while (last < part->stages.method.s && part->stages.method.node[last + 1] <= theta) {
+        last++;
+    }
+    for (int k = 0; k <= last; k++) {
+        const double *y = part->out + k * part->stages.layout.stride;
+        for (int c = 0; c < dalcs_system_n_columns(s); c++) {
+            double a = fabs(y[c]);
+            part->scale[c] = a > part->scale[c] ? a : part->scale[c];
+        }
+    }
+    part->unit_scale[0] = unit[0];
+    part->unit_scale[1] = unit[1];
+    arm(r, part, theta, unit);
+    r->steps++;
+}
+
+static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                   double limit, int tries) {
+    double h = dalcs_radau_ladder(part->level + 14);
+    h = fmax(ldexp(h, tries), 64.0 * r->resolution);
+    r->euler_steps++;
+    return dalcs_radau_euler_step(r, part, fmin(h, limit - part->t));
+}
+
+enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    double limit = dalcs_radau_limit(r, part);
+    int stages = part->stages.method.s;
+    int lowest = part->level + 40;
+    int restarts = 0;
+    int pivots = 0;
+    bool fixed = r->options.fixed_step > 0.0;
+    bool crowded = part->crowd > CROWD + 4 * part->component->system->n_pairs;
+    if (crowded) {
+        part->fresh = true;
+        return fall_back(r, part, limit, (int)(part->crowd / CROWD));
+    }
+    for (;;) {
+        part->h = fixed ? r->options.fixed_step : dalcs_radau_ladder(part->level);
+        struct dalcs_stage_entry *entry = NULL;
+        enum dalcs_status status = solve_step(part, &entry);
+        if (status < DALCS_OK) {
+            return status;
+        }
+        double end = fmin(1.0, (limit - part->t) / part->h);
+        DBG("p%d t=%.12g h=%g mode=%lx fresh=%d st=%d", part->index, part->t, part->h, part->component->osnsp.n_words ? (long)part->component->osnsp.mode[0] : 0, part->fresh, (int)status);
+        double unit[2];
+        double ratio = INFINITY;
+        if (status == DALCS_OK) {
+            ratio = error_of(r, part, entry, end, part->y1, unit);
+        }
+        DBG(" err=%g clash=%d x=", ratio, clashes(part, entry, end, unit)); for (int q=0;q<part->component->system->n_x;q++) DBG(" %.9g",part->x[q]); DBG("\n");
+        if (status != DALCS_OK || clashes(part, entry, end, unit) || (!fixed && !(ratio <= 1.0)) ||
+            ratio != ratio) {
+            if (part->fresh && restarts == 0) {
+                DALCS_TRY(dalcs_radau_restart(r, part, restarts++));
+                continue;
+            }
+            r->rejected++;
+            if (fixed || part->level >= lowest) {
+                return fall_back(r, part, limit, 0);
+            }
+            part->level += rungs_for(ratio, stages) < 1 ? 1 : rungs_for(ratio, stages);
+            part->may_grow = 2;
+            continue;
+        }
+        if (part->fresh) {
+            arm(r, part, 0.0, unit);
+        }
+        bool at_once;
+        double theta = find_crossing(r, part, end, unit, &at_once);
+        if (part->n_crossed) { DBG("  cross theta=%g at_once=%d armed=%d:", theta, at_once, part->armed[part->crossed[0]]); for (int q=0;q<part->n_crossed;q++) DBG(" %d", part->crossed[q]); DBG("\n"); }
+        if (at_once && part->fresh) {
+            if (restarts < MOST_RESTARTS && pivots == 0) {
+                DALCS_TRY(dalcs_radau_restart(r, part, restarts++));
+            } else if (pivots++ < PIVOTS) {
+                dalcs_segment_flip(part);
+            } else {
+                part->fresh = true;
+                return fall_back(r, part, limit, part->tries++);
+            }
+            continue;
+        }
+        part->tries = 0;
+        accept(r, part, fmin(theta, end), limit, unit);
+        part->fresh = false;
+        if (!fixed && part->may_grow > 0) {
+            part->may_grow--;
+        } else if (!fixed && theta >= 1.0 && ratio * ldexp(1.0, stages + 1) < safety &&
+                   dalcs_radau_ladder(part->level - 1) <= part->longest) {
+            part->level--;
+        }
+        return DALCS_OK;
+    }
+}
+
+double dalcs_segment_longest(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    double longest = r->options.stop;
+    if (r->options.max_step > 0.0) {
+        longest = fmin(longest, r->options.max_step);
+    }
+    return fmin(longest, most_periods(part->stages.method.s) * part->excitation.shortest_period);
+}
+
+void dalcs_segment_values(const struct dalcs_radau_part *part, double theta, double *value) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    double weight[DALCS_MAX_NODES];
+    dalcs_collocation_weights(&part->stages.method, theta, weight);
+    for (int c = 0; c < l->stride; c++) {
+        value[c] = 0.0;
+    }
+    for (int k = 0; k < l->n_nodes; k++) {
+        const double *y = part->out + k * l->stride;
+        for (int c = 0; c < l->stride; c++) {
+            value[c] += weight[k] * y[c];
+        }
+    }
+}

@@ -1,0 +1,200 @@
+/* stages.c - entries by (mode, h), least recently used out first. */
+#include "stages_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,
+                                     const struct dalcs_excitation *excitation, int s,
+                                     int dense_limit, double rcond_min, size_t most_bytes) {
+    *stages = (struct dalcs_stages){.system = system,
+                                    .excitation = excitation,
+                                    .n_in = system->n_x + 1 + excitation->n_functions,
+                                    .n_words = (system->n_pairs + 63) / 64,
+                                    .dense_limit = dense_limit,
+                                    .rcond_min = rcond_min,
+                                    .most_bytes = most_bytes};
+    dalcs_collocation_init(&stages->method, s);
+    dalcs_lu_common_init(&stages->klu);
+    dalcs_lu_common_init(&stages->klu_complex);
+    stages->watched = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
+    stages->key = dalcs_alloc((size_t)stages->n_words + 1, sizeof(*stages->key));
+    if (stages->watched == NULL || stages->key == NULL) {
+        dalcs_stages_finish(stages);
+        return DALCS_E_NOMEM;
+    }
+    for (int d = 0; d < system->n_pairs; d++) {
+        const struct dalcs_pair *p = &system->pair[d];
+        if (p->kind != DALCS_PAIR_SWITCH) {
+            continue;
+        }
+        bool is_curved = false;
+        for (int k = system->direct_control.p[d];
+             p->is_direct && k < system->direct_control.p[d + 1]; k++) {
+            int input = system->direct_control.j[k];
+            for (int w = 0; w < excitation->n_waves; w++) {
+                const struct dalcs_excitation_wave *wave = &excitation->wave[w];
+                is_curved = is_curved || (wave->input == input && wave->is_curved);
+            }
+        }
+        if (!p->is_direct || is_curved) {
+            stages->watched[stages->n_watched++] = d;
+        }
+    }
+    int n_columns = dalcs_system_n_columns(system);
+    struct dalcs_stage_layout *l = &stages->layout;
+    l->stride = n_columns + stages->n_watched;
+    l->n_nodes = s + 1;
+    l->drift = l->n_nodes * l->stride;
+    l->ripple = l->drift + system->n_x;
+    l->n_fixed = l->ripple + (excitation->is_curved ? n_columns : 0);
+    return DALCS_OK;
+}
+
+static void unlink_entry(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
+    *(e->newer != NULL ? &e->newer->older : &stages->newest) = e->older;
+    *(e->older != NULL ? &e->older->newer : &stages->oldest) = e->newer;
+    e->newer = NULL;
+    e->older = NULL;
+}
+
+static void link_newest(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
+    e->older = stages->newest;
+    e->newer = NULL;
+    *(stages->newest != NULL ? &stages->newest->newer : &stages->oldest) = e;
+    stages->newest = e;
+}
+
+static void entry_destroy(struct dalcs_stage_entry *e) {
+    dalcs_stage_factors_destroy(e->factors);
+    free(e->key);
+    free(e->on);
+    free(e->map);
+    free(e->natural);
+    free(e);
+}
+
+static void remove_entry(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
+    HASH_DELETE(hh, stages->entries, e);
+    unlink_entry(stages, e);
+    stages->bytes -= e->bytes;
+    entry_destroy(e);
+}
+
+void dalcs_stages_finish(struct dalcs_stages *stages) {
+    while (stages->oldest != NULL) {
+        remove_entry(stages, stages->oldest);
+    }
+    free(stages->watched);
+    free(stages->key);
+    *stages = (struct dalcs_stages){0};
+}
+
+static enum dalcs_status entry_create(struct dalcs_stages *stages, double h,
+                                      struct dalcs_stage_entry **entry) {
+    struct dalcs_stage_entry *e = dalcs_alloc(1, sizeof(*e));
+    *entry = NULL;
+    if (e == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    int n_pairs = stages->system->n_pairs;
+    e->h = h;
+    e->key = dalcs_alloc((size_t)stages->n_words + 1, sizeof(*e->key));
+    e->on = dalcs_alloc((size_t)n_pairs, sizeof(*e->on));
+    e->natural =
+        dalcs_alloc((size_t)dalcs_system_n_equations(stages->system), sizeof(*e->natural));
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (e->key != NULL && e->on != NULL && e->natural != NULL) {
+        memcpy(e->key, stages->key, ((size_t)stages->n_words + 1) * sizeof(*e->key));
+        e->mode = e->key;
+        for (int d = 0; d < n_pairs; d++) {
+            if (dalcs_stage_is_on(e, d)) {
+                e->on[e->n_on++] = d;
+            }
+        }
+        e->n = dalcs_system_n_equations(stages->system) + e->n_on;
+        stages->factorizations++;
+        status = e->n <= stages->dense_limit ? dalcs_stage_map_build(stages, e)
+                                             : dalcs_stage_factors_build(stages, e);
+    }
+    if (status != DALCS_OK) {
+        entry_destroy(e);
+        return status;
+    }
+    e->bytes += sizeof(*e) + ((size_t)stages->n_words + 1) * sizeof(uint64_t) +
+                (size_t)n_pairs * sizeof(int);
+    *entry = e;
+    return DALCS_OK;
+}
+
+static bool is_key(const struct dalcs_stage_entry *e, const uint64_t *mode, size_t words,
+                   double h) {
+    return e->h == h && memcmp(e->mode, mode, words * sizeof(*mode)) == 0;
+}
+
+static struct dalcs_stage_entry *find(struct dalcs_stages *stages, const uint64_t *mode, double h) {
+    size_t words = (size_t)stages->n_words;
+    memcpy(stages->key, mode, words * sizeof(*mode));
+    memcpy(stages->key + words, &h, sizeof(h));
+    struct dalcs_stage_entry *e;
+    HASH_FIND(hh, stages->entries, stages->key, (words + 1) * sizeof(*mode), e);
+    return e;
+}
+
+bool dalcs_stages_have(struct dalcs_stages *stages, const uint64_t *mode, double h) {
+    return find(stages, mode, h) != NULL;
+}
+
+enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *mode, double h,
+                                   struct dalcs_stage_entry **entry) {
+    size_t words = (size_t)stages->n_words;
+    struct dalcs_stage_entry *e = stages->newest;
+    if (e != NULL && is_key(e, mode, words, h)) {
+        stages->cache_hits++;
+        *entry = e;
+        return DALCS_OK;
+    }
+    e = find(stages, mode, h);
+    if (e != NULL) {
+        stages->cache_hits++;
+        unlink_entry(stages, e);
+        link_newest(stages, e);
+        *entry = e;
+        return DALCS_OK;
+    }
+    DALCS_TRY(entry_create(stages, h, &e));
+    HASH_ADD_KEYPTR(hh, stages->entries, e->key, (words + 1) * sizeof(*mode), e);
+    if (e->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
+        entry_destroy(e);
+        return DALCS_E_NOMEM;
+    }
+    link_newest(stages, e);
+    stages->bytes += e->bytes;
+    while (stages->bytes > stages->most_bytes && stages->oldest != e) {
+        remove_entry(stages, stages->oldest);
+    }
+    *entry = e;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages,
+                                     const struct dalcs_stage_entry *entry, const double *in,
+                                     double *out) {
+    if (entry->map != NULL) {
+        dalcs_stage_map_apply(stages, entry, in, out);
+        return DALCS_OK;
+    }
+    return dalcs_stage_factors_apply(stages, entry, in, out);
+}
+
+int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry) {
+    return entry->n_clashes;
+}
+
+double dalcs_stage_residual(const struct dalcs_stage_entry *entry) {
+    return entry->residual;
+}
+
+const double *dalcs_stage_natural_units(const struct dalcs_stage_entry *entry) {
+    return entry->natural;
+}

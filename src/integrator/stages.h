@@ -1,0 +1,78 @@
+/* stages.h - the stage equations of one system in a given mode and step length, solved.
+ *
+ * In a fixed mode a step is linear in the state and in the coefficients of the sources: what comes
+ * out are all columns, the other side of every pair, and the voltages that move switches, at the
+ * start and at the stages, with estimates of the error. For small systems the whole is one dense
+ * matrix; for large ones it is solved on one real and (s-1)/2 complex factorisations.
+ *
+ * A mode whose matrix is singular (floating voltages, currents in loops of diodes) is solved where
+ * its equations agree, with the least-norm choice of what they leave open; where they do not agree,
+ * the clash says by how much. */
+#ifndef DALCS_STAGES_H
+#define DALCS_STAGES_H
+
+#include "collocation.h"
+#include "excitation.h"
+
+#include <stdint.h>
+#include <suitesparse/klu.h>
+
+struct dalcs_stage_entry;
+
+/* Where things are in an answer. Node k of the step starts at k * stride: the columns, then the
+ * watched voltages. In the place of lambda_d an open pair has its w_d. */
+struct dalcs_stage_layout {
+    int stride;
+    int n_nodes; /* s + 1 */
+    int drift;   /* [n_x] how far the states miss a solution of order s at the start */
+    int ripple; /* [n_columns] what sources do between the nodes; only if the excitation is curved */
+    int n_fixed; /* all of the above; the clashes of a singular mode follow */
+};
+
+struct dalcs_stages {
+    const struct dalcs_system *system;
+    const struct dalcs_excitation *excitation;
+    struct dalcs_collocation method;
+    struct dalcs_stage_layout layout;
+    int n_watched;
+    int *watched; /* [n_watched] pairs: switches that follow a voltage, or a source along a curve */
+    int n_in;     /* n_x + 1 + functions: (x_0, 1, coefficients) */
+    int n_words;
+    int dense_limit;
+    double rcond_min;
+    size_t bytes, most_bytes;
+    struct dalcs_stage_entry *entries, *newest, *oldest;
+    uint64_t *key; /* [n_words + 1] */
+    long factorizations, cache_hits;
+    klu_common klu, klu_complex;
+};
+
+enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,
+                                     const struct dalcs_excitation *excitation, int s,
+                                     int dense_limit, double rcond_min,
+                                     size_t most_bytes) DALCS_MUST_CHECK;
+
+void dalcs_stages_finish(struct dalcs_stages *stages);
+
+/* The entry of (mode[n_words], h), prepared now if it is new. Older ones make room, it is valid until
+ * the next call. */
+enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *mode, double h,
+                                   struct dalcs_stage_entry **entry) DALCS_MUST_CHECK;
+
+/* Is it there already? */
+bool dalcs_stages_have(struct dalcs_stages *stages, const uint64_t *mode, double h);
+
+/* in[n_in] to out[n_fixed + n_clashes]. */
+enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages,
+                                     const struct dalcs_stage_entry *entry, const double *in,
+                                     double *out) DALCS_MUST_CHECK;
+
+int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry);
+
+/* [n_equations] columns divided by these are in balance with each other. */
+const double *dalcs_stage_natural_units(const struct dalcs_stage_entry *entry);
+
+/* Largest residual of the stage equations over the size of their terms. */
+double dalcs_stage_residual(const struct dalcs_stage_entry *entry);
+
+#endif

@@ -1,0 +1,49 @@
+/* stages_internal.h - what the files behind stages.h share. */
+#ifndef DALCS_STAGES_INTERNAL_H
+#define DALCS_STAGES_INTERNAL_H
+
+#include "lu.h"
+#include "stages.h"
+
+#define HASH_NONFATAL_OOM 1
+#include <uthash.h>
+
+struct dalcs_stage_factors;
+
+struct dalcs_stage_entry {
+    UT_hash_handle hh;
+    struct dalcs_stage_entry *newer, *older;
+    uint64_t *key; /* mode words, then the bits of h */
+    const uint64_t *mode;
+    double h;
+    int n; /* unknowns: x, z, lambda of closed pairs */
+    int n_on;
+    int *on; /* [n_on] ascending */
+    int n_clashes;
+    double *natural; /* [n_equations] */
+    double residual;
+    int rows;    /* of map, padded to 8 */
+    double *map; /* [rows][n_in] by columns; NULL: factors */
+    struct dalcs_stage_factors *factors;
+    size_t bytes;
+};
+
+static inline bool dalcs_stage_is_on(const struct dalcs_stage_entry *e, int pair) {
+    return (e->mode[pair / 64] >> (pair % 64) & 1) != 0;
+}
+
+/* stage_map.c: the dense matrix of an entry. */
+enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
+                                        struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
+void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
+                           const double *in, double *out);
+
+/* stage_factors.c: sparse factors of an entry. */
+enum dalcs_status dalcs_stage_factors_build(struct dalcs_stages *stages,
+                                            struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
+                                            const struct dalcs_stage_entry *entry, const double *in,
+                                            double *out) DALCS_MUST_CHECK;
+void dalcs_stage_factors_destroy(struct dalcs_stage_factors *factors);
+
+#endif
