@@ -212,7 +212,7 @@ struct dalcs_report {
     const struct dalcs_component_method {
         const char *method;  /* "euler", "radau", or "algebraic": no memory, solved where wanted */
         int stages;          /* of radau, else 1 */
-        const char *because; /* "tolerance 1e-06", "no state and no diode" */
+        const char *because; /* "tolerance 1e-06", "no state and no diode"; NULL: asked for */
     } * component;           /* [n_components], .tran only */
 
     struct {

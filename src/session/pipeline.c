@@ -5,143 +5,11 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 /* Unknowns solved for between calls of the sink's progress, a fraction of a second of work, but no
  * more steps than that. */
 enum { PROGRESS_UNKNOWNS = 1 << 18, PROGRESS_STEPS = 4096 };
-
-/* The grid tells times apart to a few 1e-15 of the stop time; leave room for edges between. */
-static const double MOST_STEPS = 1e13;
-
-struct dalcs_run_options dalcs_run_options_default(void) {
-    return (struct dalcs_run_options){.certificate_tolerance = 2e-13,
-                                      .proximal_weight = {1e-8, 1e-7, 1e-6},
-                                      .rcond_min = 1e-14,
-                                      .max_outer = 40,
-                                      .max_pivots = 200,
-                                      .cache_bytes = (size_t)256 << 20,
-                                      .dense_limit = 64,
-                                      .max_events = 1000000};
-}
-
-static const char *const METHODS[] = {"euler"};
-
-enum { N_METHODS = sizeof METHODS / sizeof METHODS[0] };
-
-const char *dalcs_method_name(size_t index) {
-    return index < N_METHODS ? METHODS[index] : NULL;
-}
-
-static bool is_method(const char *name) {
-    bool found = false;
-    for (size_t k = 0; k < N_METHODS && !found; k++) {
-        found = strcmp(METHODS[k], name) == 0;
-    }
-    return found;
-}
-
-static enum dalcs_status option_error(struct dalcs_session *s, const char *text) {
-    dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, NULL, "%s", text);
-    return DALCS_E_OPTION;
-}
-
-static enum dalcs_status check_method(struct dalcs_session *s, const struct dalcs_run_options *o) {
-    if (o->method != NULL && !is_method(o->method)) {
-        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "the methods are: euler", "unknown method '%s'",
-                       o->method);
-        return DALCS_E_OPTION;
-    }
-    const struct dalcs_circuit_options *netlist = &s->circuit.options;
-    if (o->method == NULL && netlist->method != NULL && !is_method(netlist->method)) {
-        dalcs_diag_add(&s->diag, DALCS_NOTE, &netlist->method_where, NULL,
-                       "method=%s has no meaning here: using implicit Euler", netlist->method);
-    }
-    if (netlist->tolerance_where.line > 0) {
-        dalcs_diag_add(&s->diag, DALCS_NOTE, &netlist->tolerance_where,
-                       "choose the step with --step or .options step=",
-                       "reltol, abstol and vntol have no effect with the fixed step of euler");
-    }
-    return DALCS_OK;
-}
-
-static enum dalcs_status check_output_times(struct dalcs_session *s,
-                                            const struct dalcs_run_options *o) {
-    const struct dalcs_transient *t = &s->circuit.transient;
-    for (size_t k = 0; o->at != NULL && k < o->n_at; k++) {
-        if (!(o->at[k] >= (k > 0 ? o->at[k - 1] : 0.0)) || !isfinite(o->at[k])) {
-            return option_error(s, "output times must be ascending and not negative");
-        }
-        if (t->present && o->at[k] > t->stop) {
-            return option_error(s, "output times must not come after the stop time");
-        }
-    }
-    return DALCS_OK;
-}
-
-static enum dalcs_status check_tolerances(struct dalcs_session *s,
-                                          const struct dalcs_run_options *o) {
-    bool positive = o->certificate_tolerance > 0.0 && o->max_outer > 0 && o->max_pivots > 0;
-    for (int k = 0; k < 3; k++) {
-        positive = positive && o->proximal_weight[k] > 0.0 && o->proximal_weight[k] < 1.0;
-    }
-    if (!positive || !(o->certificate_tolerance < 1.0) || !(o->rcond_min >= 0.0) ||
-        !(o->rcond_min < 1.0) || o->dense_limit < 0) {
-        return option_error(s, "tolerances and limits must be positive, tolerances less than 1");
-    }
-    return DALCS_OK;
-}
-
-/* Does the next step depend on the one before? */
-static bool has_memory(const struct dalcs_network *n) {
-    bool found = false;
-    for (int k = 0; k < n->n_systems && !found; k++) {
-        found = n->system[k].n_x > 0;
-        for (int d = 0; d < n->system[k].n_pairs && !found; d++) {
-            const struct dalcs_pair *p = &n->system[k].pair[d];
-            found = p->kind == DALCS_PAIR_SWITCH && p->turn_on != p->turn_off;
-        }
-    }
-    return found;
-}
-
-static enum dalcs_status choose_step(struct dalcs_run *r) {
-    struct dalcs_session *s = r->s;
-    const struct dalcs_transient *t = &s->circuit.transient;
-    const double given = r->options->step;
-    if (!(given >= 0.0) || !isfinite(given)) {
-        return option_error(s, "the step must be positive");
-    }
-    if (!t->present) {
-        return DALCS_OK;
-    }
-    if (given > t->stop) {
-        return option_error(s, "the step is longer than the run");
-    }
-    if (given > 0.0) {
-        r->h = given;
-    } else if (s->circuit.options.step > 0.0) {
-        r->h = s->circuit.options.step;
-    } else if (t->max_step > 0.0 && (t->step == 0.0 || has_memory(&s->network))) {
-        r->h = t->max_step;
-    } else { /* without memory only the times that are printed matter */
-        r->h = t->step > 0.0 ? t->step : t->stop / 1000.0;
-    }
-    if (t->stop / r->h > MOST_STEPS) {
-        return option_error(s,
-                            "the step is too small for the stop time: times would not be distinct");
-    }
-    return DALCS_OK;
-}
-
-static enum dalcs_status check_options(struct dalcs_run *r) {
-    DALCS_TRY(check_method(r->s, r->options));
-    DALCS_TRY(check_output_times(r->s, r->options));
-    DALCS_TRY(check_tolerances(r->s, r->options));
-    r->osnsp = dalcs_osnsp_options_of(r->options);
-    return choose_step(r);
-}
 
 static enum dalcs_status name_signals(struct dalcs_run *r) {
     const struct dalcs_network *n = &r->s->network;
@@ -322,10 +190,27 @@ static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct dalcs_euler
     return DALCS_OK;
 }
 
+/* All components go with implicit Euler. */
+static enum dalcs_status report_euler(struct dalcs_run *r) {
+    const size_t n = (size_t)r->s->network.n_systems;
+    struct dalcs_component_method *component =
+        dalcs_arena_alloc(&r->s->arena, n, sizeof(*component));
+    if (component == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k < n; k++) {
+        component[k] = (struct dalcs_component_method){.method = "euler", .stages = 1};
+    }
+    r->s->report.component = component;
+    r->s->report.n_components = n;
+    return DALCS_OK;
+}
+
 static enum dalcs_status run_transient(struct dalcs_run *r) {
     struct dalcs_session *s = r->s;
     struct dalcs_euler e;
     struct dalcs_schedule schedule = choose_schedule(r);
+    DALCS_TRY(report_euler(r));
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, r->h,
@@ -354,6 +239,14 @@ static enum dalcs_status run_transient(struct dalcs_run *r) {
     add_work(r, &e);
     dalcs_euler_finish(&e);
     return status;
+}
+
+/* The method that was chosen. */
+static enum dalcs_status run_method(struct dalcs_run *r) {
+    if (r->method != DALCS_METHOD_EULER) {
+        return run_transient(r); /* until there is a run_transient_radau(r) */
+    }
+    return run_transient(r);
 }
 
 static void report_size(struct dalcs_report *report, const struct dalcs_network *n) {
@@ -392,7 +285,7 @@ static enum dalcs_status prepare_report(struct dalcs_run *r) {
     }
     s->report = (struct dalcs_report){.netlist = s->name,
                                       .title = s->circuit.title,
-                                      .method = "euler",
+                                      .method = dalcs_method_name(0),
                                       .certificate = {.where = ""},
                                       .n_states = (size_t)n->n_states,
                                       .state_name = name,
@@ -446,7 +339,7 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
     double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     double wall = seconds(CLOCK_MONOTONIC);
     DALCS_TRY(prepare_report(&r));
-    enum dalcs_status status = check_options(&r);
+    enum dalcs_status status = dalcs_run_choose(&r);
     if (status == DALCS_OK) {
         status = name_signals(&r);
     }
@@ -454,7 +347,7 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
         status = run_operating_point(&r);
     }
     if (status == DALCS_OK && session->circuit.transient.present) {
-        status = run_transient(&r);
+        status = run_method(&r);
     }
     struct dalcs_report *report = &session->report;
     report->n_events = session->recorder.n_events;

@@ -18,15 +18,31 @@ struct dalcs_session {
     struct dalcs_arena arena; /* names of the report and of the plots */
 };
 
+/* In the order of dalcs_method_name. */
+enum dalcs_method { DALCS_METHOD_AUTO, DALCS_METHOD_RADAU, DALCS_METHOD_EULER };
+
 struct dalcs_run {
     struct dalcs_session *s;
     const struct dalcs_run_options *options;
     const struct dalcs_sink *sink;
+
+    /* From here to max_step: chosen by dalcs_run_choose. */
     struct dalcs_osnsp_options osnsp;
-    double h;
+    enum dalcs_method method;
+    double tolerance;     /* of radau and auto */
+    double abstol, vntol; /* A, V; allowed on top of it */
+    int stages;           /* of radau; 0: not asked for */
+    double compress;      /* 0: keep all rows */
+    double h;             /* s; the step of euler */
+    double fixed_step;    /* s; of radau without error control; 0: with it */
+    double max_step;      /* s; of radau with error control; 0: no bound */
+
     const char **name;
     enum dalcs_unit *unit;
 };
+
+/* Settles what the options of the run and of the netlist leave open; checks them. */
+enum dalcs_status dalcs_run_choose(struct dalcs_run *r) DALCS_MUST_CHECK;
 
 /* Frees what the last run left. */
 void dalcs_session_forget_run(struct dalcs_session *session);
