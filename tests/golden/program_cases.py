@@ -91,8 +91,8 @@ class Usage(Case):
 
     def test_every_option_is_in_the_help(self):
         text = self.dalcs("run", "--help").stdout
-        for option in ["--output", "--method", "--step", "--at", "--report", "--plot", "--dump",
-                       "--all-signals", "--quiet"]:
+        for option in ["--output", "--method", "--tol", "--stages", "--step", "--compress", "--at",
+                       "--report", "--plot", "--dump", "--all-signals", "--quiet"]:
             self.assertIn(option, text)
 
     def test_version(self):
@@ -122,6 +122,19 @@ class Usage(Case):
         self.assertIn("'abc' is not a number", self.refused("run", "a.cir", "--step", "abc"))
         self.assertIn("greater than 0", self.refused("run", "a.cir", "--step", "0"))
         self.assertIn("greater than 0", self.refused("run", "a.cir", "--step", "-1u"))
+        for option in "--tol", "--compress":
+            self.assertIn(f"{option}: 'abc' is not a number",
+                          self.refused("run", "a.cir", option, "abc"))
+        for value in "0.9e-13", "0.11", "0", "-1u":
+            self.assertIn(f"--tol: '{value}' does not lie between 1e-13 and 0.1",
+                          self.refused("run", "a.cir", "--tol", value))
+        for value in "0", "2", "9", "3.5", "-1", "five":
+            self.assertIn(f"--stages: '{value}' is none of 1, 3, 5, 7",
+                          self.refused("run", "a.cir", "--stages", value))
+        for value in "0", "1", "-1m":
+            self.assertIn(f"--compress: '{value}' must be greater than 0 and less than 1",
+                          self.refused("run", "a.cir", "--compress", value))
+        self.assertIn("choose one", self.refused("run", "a.cir", "--compress", "1m", "--at", "x"))
         self.assertIn(".csv or .raw", self.refused("run", "a.cir", "-o", "out.txt"))
         self.assertIn(".svg or .png", self.refused("run", "a.cir", "--plot", "p.pdf"))
         self.assertIn("no netlist", self.refused("run"))
@@ -152,7 +165,7 @@ class Usage(Case):
     def test_unknown_method(self):
         self.write(RECTIFIER)
         message = self.refused("run", "a.cir", "--method", "eluer")
-        self.assertIn("unknown method 'eluer'; the methods are: euler\n", message)
+        self.assertIn("unknown method 'eluer'; the methods are: auto radau euler\n", message)
         self.write(MISTAKE)  # which is not read
         self.assertEqual(self.refused("run", "a.cir", "--method", "eluer"), message)
 
@@ -175,7 +188,8 @@ class Results(Case):
 
     def test_step_takes_suffixes(self):
         self.write(RECTIFIER)
-        self.dalcs("run", "a.cir", "--step", "20us", "--report", "r.json", "-q")
+        self.dalcs("run", "a.cir", "--method", "euler", "--step", "20us", "--report", "r.json",
+                   "-q")
         report = json.loads(self.path("r.json").read_text())
         self.assertEqual(report["step"], 20e-6)
         self.assertEqual(report["work"]["steps"], 2000)
@@ -236,7 +250,7 @@ class Results(Case):
             self.assertAlmostEqual(rows[0][header.index("i(s1)")], amperes, places=15)
 
     def test_report(self):
-        self.dalcs("run", self.write(CHARGES), "--report", "r.json", "-q")
+        self.dalcs("run", self.write(CHARGES), "--method", "euler", "--report", "r.json", "-q")
         report = json.loads(self.path("r.json").read_text())
         self.assertEqual(report["status"], "ok")
         self.assertEqual(report["method"], {"component 1": "euler"})
@@ -264,7 +278,7 @@ class Results(Case):
 
 class Summary(Case):
     def test_text(self):
-        done = self.dalcs("run", self.write(CHARGES))
+        done = self.dalcs("run", self.write(CHARGES), "--method", "euler")
         for piece in ["two capacitors share their charge\n", "2 states", "euler, step 10 us",
                       "worst residual", "signal", "v(1)",
                       "jump at t=0: c1 10 V -> 4 V, c2 2 V -> 4 V; charge through d1 6 uC; "
@@ -301,6 +315,24 @@ class Summary(Case):
         self.assertIn("a.cir:6:23: note: reltol, abstol and vntol have no effect with the fixed "
                       "step of euler\n", done.stderr)
         self.assertEqual(done.stderr.count("note: "), 1)
+
+    def test_tolerance_without_use(self):
+        self.write(RECTIFIER)
+        done = self.dalcs("run", "a.cir", "--method", "euler", "--tol", "1m")
+        self.assertEqual(done.stderr, "dalcs: note: a tolerance and a number of stages have no "
+                         "effect with euler\n")
+        done = self.dalcs("run", self.write(POINT), "-q", "--tol", "1m")
+        self.assertIn("warning: the netlist has no .tran: --tol has no effect", done.stderr)
+
+    def test_unknown_method_of_the_netlist(self):
+        self.write(RECTIFIER.replace(".tran", ".options method=magic\n.tran"))
+        self.assertIn("a.cir:6:17: note: method=magic has no meaning here: using auto\n",
+                      self.dalcs("run", "a.cir").stderr)
+        self.assertEqual(self.dalcs("run", "a.cir", "--method", "euler").stderr, "")
+
+    def test_what_auto_chose(self):
+        done = self.dalcs("run", self.write(CHARGES))
+        self.assertRegex(done.stdout, r"\n  method    auto: .*: \d+ steps?\b")
 
     def test_switches_that_never_agree(self):
         """A switch that takes away what holds it closed, with and without another step to come."""
