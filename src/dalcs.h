@@ -113,7 +113,8 @@ struct dalcs_sink {
     void *user;
     enum dalcs_status (*begin)(void *user, const struct dalcs_plot *plot);
     /* Times ascend; two rows of equal time are the two sides of a discontinuity. Values are
-     * borrowed until the callback returns. An operating point has one row, at time 0. */
+     * borrowed until the callback returns. An operating point has one row, at time 0. Where rows are
+     * left out (compress) the newest is held back: it may come after progress said to stop. */
     enum dalcs_status (*row)(void *user, double time, const double *value /* [n_signals] */);
     enum dalcs_status (*end)(void *user);
     /* Called now and then, not more than every few thousand steps. Return DALCS_OK to

@@ -3,6 +3,8 @@
  * dalcs_session_run at the end is the table of contents. */
 #include "session_internal.h"
 
+#include "thinning.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <time.h>
@@ -249,6 +251,19 @@ static enum dalcs_status run_method(struct dalcs_run *r) {
     return run_transient(r);
 }
 
+/* The same with fewer rows. */
+static enum dalcs_status run_thinned(struct dalcs_run *r) {
+    struct dalcs_thinning thinning;
+    const struct dalcs_sink *sink = r->sink;
+    DALCS_TRY(dalcs_thinning_setup(&thinning, sink, (size_t)r->s->network.n_outputs, r->compress));
+    r->sink = &thinning.sink;
+    enum dalcs_status status = run_method(r);
+    enum dalcs_status flushed = dalcs_thinning_flush(&thinning); /* of a run that stopped early */
+    r->sink = sink;
+    dalcs_thinning_finish(&thinning);
+    return status == DALCS_OK ? flushed : status;
+}
+
 static void report_size(struct dalcs_report *report, const struct dalcs_network *n) {
     report->size.nodes = n->n_nodes;
     report->size.components = n->n_systems;
@@ -347,7 +362,7 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
         status = run_operating_point(&r);
     }
     if (status == DALCS_OK && session->circuit.transient.present) {
-        status = run_method(&r);
+        status = r.compress > 0.0 ? run_thinned(&r) : run_method(&r);
     }
     struct dalcs_report *report = &session->report;
     report->n_events = session->recorder.n_events;

@@ -199,6 +199,40 @@ class Results(Case):
         self.dalcs("run", self.write(RECTIFIER), "--at", "times.txt", "-o", "out.csv")
         self.assertEqual([row[0] for row in self.table("out.csv")[1]], [0.0, 1e-3, 2.5e-3, 0.0333])
 
+    def test_compress(self):
+        """Fewer rows, each of them one of all; an operating point keeps its own."""
+        self.write(BOTH)
+        self.dalcs("run", "a.cir", "-q", "--method", "euler", "-o", "all.csv")
+        self.dalcs("run", "a.cir", "-q", "--method", "euler", "--compress", "10m", "-o", "few.csv",
+                   "-o", "few.raw")
+        header, every = self.table("all.csv")
+        _, few = self.table("few.csv")
+        self.assertLess(3 * len(few), len(every))
+        self.assertTrue(all(row in every for row in few))
+        self.assertEqual((few[0], few[-1]), (every[0], every[-1]))
+        self.assertIn(b"No. Points: 1 ", self.path("few.raw").read_bytes())
+        scale = [max(abs(row[k]) for row in every) for k in range(len(header))]
+        after = 0
+        for row in every:
+            after += few[after][0] < row[0]
+            one, other = few[max(after - 1, 0)], few[after]
+            part = (row[0] - one[0]) / ((other[0] - one[0]) or 1.0)
+            for k in range(1, len(header)):
+                line = one[k] + part * (other[k] - one[k])
+                self.assertLessEqual(abs(line - row[k]), 0.01 * scale[k] + 1e-15)
+        self.write(BOTH.replace(".op", ".options compress=10m\n.op"), "b.cir")
+        self.dalcs("run", "b.cir", "-q", "--method", "euler", "-o", "b.csv")
+        self.assertEqual(self.path("b.csv").read_bytes(), self.path("few.csv").read_bytes())
+
+    def test_compress_at_times(self):
+        """Times that are asked for have their rows, whatever the netlist says."""
+        self.write("0\n1m\n2m\n3m\n", "times.txt")
+        self.write(RECTIFIER.replace(".tran", ".options compress=0.9\n.tran"))
+        done = self.dalcs("run", "a.cir", "--at", "times.txt", "-o", "out.csv")
+        self.assertIn("a.cir:6:19: note: compress has no effect: every output time asked for gets "
+                      "its row\n", done.stderr)
+        self.assertEqual([row[0] for row in self.table("out.csv")[1]], [0.0, 1e-3, 2e-3, 3e-3])
+
     def test_last_time_is_rounded(self):
         self.write("1m\n0.04000000000001\n", "times.txt")
         self.dalcs("run", self.write(RECTIFIER), "--at", "times.txt", "-o", "out.csv")
@@ -471,6 +505,17 @@ class Failures(Case):
         self.assertNotEqual(report["status"], "ok")
         self.assertEqual(sorted(report["infeasible"]["elements"]), ["d1", "v1", "v2"])
         self.assertEqual(report["infeasible"]["kind"], "loop")
+
+    def test_infeasible_with_fewer_rows(self):
+        """What was held back when the run failed is written as well."""
+        self.write(IMPOSSIBLE)
+        for name, options in [("all", []), ("few", ["--compress", "0.5"])]:
+            self.dalcs("run", "a.cir", "-q", "--method", "euler", "-o", f"{name}.csv", *options,
+                       expect=RUN_FAILED)
+        _, every = self.table("all.partial.csv")
+        _, few = self.table("few.partial.csv")
+        self.assertLess(len(few), len(every))
+        self.assertEqual(few[-1], every[-1])
 
     def test_infeasible_from_the_start(self):
         text = IMPOSSIBLE.replace("PULSE(10 1 1m 0 0 1 2)", "1")
