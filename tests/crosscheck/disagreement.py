@@ -65,8 +65,7 @@ def main():
             nonlocal failures
             done = subprocess.run([sys.executable, "-B", crosscheck, str(folder / "a.cir"),
                                    "--dalcs", str(program), "--method", "euler"],
-                                  capture_output=True, text=True,
-                                  check=False, **options)
+                                  capture_output=True, text=True, check=False, **options)
             if done.returncode != expected:
                 failures += 1
                 print(f"FAIL {what}: status {done.returncode}, not {expected}\n{done.stdout}"
