@@ -113,7 +113,8 @@ struct dalcs_sink {
     void *user;
     enum dalcs_status (*begin)(void *user, const struct dalcs_plot *plot);
     /* Times ascend; two rows of equal time are the two sides of a discontinuity. Values are
-     * borrowed until the callback returns. An operating point has one row, at time 0. */
+     * borrowed until the callback returns. An operating point has one row, at time 0. Where rows are
+     * left out (compress) the newest is held back: it may come after progress said to stop. */
     enum dalcs_status (*row)(void *user, double time, const double *value /* [n_signals] */);
     enum dalcs_status (*end)(void *user);
     /* Called now and then, not more than every few thousand steps. Return DALCS_OK to
@@ -124,16 +125,21 @@ struct dalcs_sink {
 /* The methods by name, the default first; NULL when index is too large. */
 const char *dalcs_method_name(size_t index);
 
+/* Bounds of the tolerance: below the first rounding decides, above the second little is left of a
+ * waveform. */
+#define DALCS_TOLERANCE_MIN 1e-13
+#define DALCS_TOLERANCE_MAX 0.1
+
 struct dalcs_run_options {
     const char *method; /* "auto", "radau" or "euler", the papers' implicit Euler; NULL: the
                            netlist's or the default */
-    double tolerance;   /* of radau and auto: largest error of a waveform over its scale; 0: .options
+    double tolerance; /* of radau and auto: largest error of a waveform over its scale; 0: .options
                            reltol, else 1e-6 */
-    int stages;         /* of radau: 1, 3, 5 or 7; 0: .options stages, else chosen */
-    double step;        /* s; the fixed step of euler and radau; 0: .options step; without either
+    int stages;       /* of radau: 1, 3, 5 or 7; 0: .options stages, else chosen */
+    double step;      /* s; the fixed step of euler and radau; 0: .options step; without either
                            euler takes the tmax of .tran, else its tstep, and radau controls its
                            error with steps of at most tmax */
-    double compress;    /* leave rows out as long as straight lines through the others stay this near,
+    double compress;  /* leave rows out as long as straight lines through the others stay this near,
                            over each signal's scale; 0: .options compress, else keep all rows */
     const double *at; /* [n_at] ascending output times in s, none after the stop time,
                            interpolated linearly between steps by euler;
@@ -207,7 +213,7 @@ struct dalcs_report {
     const struct dalcs_component_method {
         const char *method;  /* "euler", "radau", or "algebraic": no memory, solved where wanted */
         int stages;          /* of radau, else 1 */
-        const char *because; /* "tolerance 1e-06", "no state and no diode" */
+        const char *because; /* "tolerance 1e-06", "no state and no diode"; NULL: asked for */
     } * component;           /* [n_components], .tran only */
 
     struct {

@@ -106,13 +106,14 @@ struct dalcs_circuit {
     bool operating_point; /* .op */
 
     struct dalcs_circuit_options {
-        double reltol, abstol, vntol;          /* 0: not given */
+        double reltol, abstol, vntol;          /* 0: not given; the last two in A, V */
         struct dalcs_location tolerance_where; /* of the first of these */
         const char *method;                    /* NULL: not given */
         struct dalcs_location method_where;
         double step;     /* 0: not given */
         int stages;      /* of radau; 0: not given */
         double compress; /* 0: not given */
+        struct dalcs_location compress_where;
     } options;
     struct dalcs_arena arena; /* owns everything above, source text of locations included */
 };

@@ -8,7 +8,8 @@
 #include <string.h>
 
 /* Known here. */
-static const char *const OURS[] = {"reltol", "abstol", "vntol", "method", "step"};
+static const char *const OURS[] = {"reltol", "abstol", "vntol",   "method",
+                                   "step",   "stages", "compress"};
 
 static const char *const FOREIGN[] = {
     "itl1",          "itl2",        "itl3",         "itl4",        "itl5",         "itl6",
@@ -54,6 +55,50 @@ static bool read_positive(struct dalcs_reader *reader, enum dalcs_quantity quant
     return true;
 }
 
+/* The tolerance of the methods that control their error. */
+static bool read_tolerance(struct dalcs_reader *reader, double *value) {
+    if (!dalcs_reader_number(reader, DALCS_PLAIN, "a value", value)) {
+        return false;
+    }
+    if (*value < DALCS_TOLERANCE_MIN || *value > DALCS_TOLERANCE_MAX) {
+        dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
+                            "reltol must lie between %g and %g", DALCS_TOLERANCE_MIN,
+                            DALCS_TOLERANCE_MAX);
+        return false;
+    }
+    return true;
+}
+
+static bool read_stages(struct dalcs_reader *reader, int *stages) {
+    double value;
+    if (!dalcs_reader_number(reader, DALCS_PLAIN, "a number of stages", &value)) {
+        return false;
+    }
+    if (value != 1 && value != 3 && value != 5 && value != 7) {
+        dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
+                            "stages must be 1, 3, 5 or 7");
+        return false;
+    }
+    *stages = (int)value;
+    return true;
+}
+
+static bool read_compress(struct dalcs_reader *reader, struct dalcs_circuit_options *options) {
+    double value;
+    if (!dalcs_reader_number(reader, DALCS_PLAIN, "a value", &value)) {
+        return false;
+    }
+    const struct dalcs_token *place = dalcs_reader_previous(reader);
+    if (value <= 0 || value >= 1) {
+        dalcs_builder_error(reader->builder, place, NULL,
+                            "compress must be greater than 0 and less than 1");
+        return false;
+    }
+    options->compress = value;
+    options->compress_where = dalcs_builder_keep_location(reader->builder, place);
+    return true;
+}
+
 static bool read_method(struct dalcs_reader *reader) {
     static const char *const theirs[] = {"trap", "trapezoidal", "gear", "bdf"};
     struct dalcs_builder *builder = reader->builder;
@@ -83,7 +128,7 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
         options->tolerance_where = dalcs_builder_keep_location(reader->builder, token);
     }
     if (strcmp(name, "reltol") == 0) {
-        return read_positive(reader, DALCS_PLAIN, &options->reltol);
+        return read_tolerance(reader, &options->reltol);
     }
     if (strcmp(name, "abstol") == 0) {
         return read_positive(reader, DALCS_CURRENT, &options->abstol);
@@ -93,6 +138,12 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     }
     if (strcmp(name, "step") == 0) {
         return read_positive(reader, DALCS_SECOND, &options->step);
+    }
+    if (strcmp(name, "stages") == 0) {
+        return read_stages(reader, &options->stages);
+    }
+    if (strcmp(name, "compress") == 0) {
+        return read_compress(reader, options);
     }
     return read_method(reader);
 }

@@ -10,12 +10,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { METHOD = 256, STEP, AT, REPORT, PLOT, DUMP, ALL_SIGNALS };
+enum { METHOD = 256, TOL, STAGES, STEP, COMPRESS, AT, REPORT, PLOT, DUMP, ALL_SIGNALS };
 
 static const struct option option[] = {
     {"output", required_argument, NULL, 'o'},
     {"method", required_argument, NULL, METHOD},
+    {"tol", required_argument, NULL, TOL},
+    {"stages", required_argument, NULL, STAGES},
     {"step", required_argument, NULL, STEP},
+    {"compress", required_argument, NULL, COMPRESS},
     {"at", required_argument, NULL, AT},
     {"report", required_argument, NULL, REPORT},
     {"plot", required_argument, NULL, PLOT},
@@ -80,14 +83,53 @@ static enum dalcs_status parse_method(struct dalcs_arguments *arguments,
     return DALCS_E_OPTION;
 }
 
-static enum dalcs_status parse_step(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
-                                    const char *text) {
-    if (dalcs_parse_number(text, &arguments->step) != DALCS_OK) {
-        dalcs_cli_error(cli, "--step: '%s' is not a number; write 1u or 1e-6", text);
+static enum dalcs_status parse_number(const struct dalcs_cli *cli, const char *name,
+                                      const char *text, double *value) {
+    if (dalcs_parse_number(text, value) != DALCS_OK) {
+        dalcs_cli_error(cli, "%s: '%s' is not a number; write 1u or 1e-6", name, text);
         return DALCS_E_OPTION;
     }
+    return DALCS_OK;
+}
+
+static enum dalcs_status parse_tolerance(struct dalcs_arguments *arguments,
+                                         const struct dalcs_cli *cli, const char *text) {
+    DALCS_TRY(parse_number(cli, "--tol", text, &arguments->tolerance));
+    if (arguments->tolerance < DALCS_TOLERANCE_MIN || arguments->tolerance > DALCS_TOLERANCE_MAX) {
+        dalcs_cli_error(cli, "--tol: '%s' does not lie between %g and %g", text,
+                        DALCS_TOLERANCE_MIN, DALCS_TOLERANCE_MAX);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status parse_stages(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *text) {
+    double value = 0.0;
+    if (dalcs_parse_number(text, &value) != DALCS_OK ||
+        (value != 1.0 && value != 3.0 && value != 5.0 && value != 7.0)) {
+        dalcs_cli_error(cli, "--stages: '%s' is none of 1, 3, 5, 7", text);
+        return DALCS_E_OPTION;
+    }
+    arguments->stages = (int)value;
+    return DALCS_OK;
+}
+
+static enum dalcs_status parse_step(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
+                                    const char *text) {
+    DALCS_TRY(parse_number(cli, "--step", text, &arguments->step));
     if (!(arguments->step > 0.0)) {
         dalcs_cli_error(cli, "--step: '%s' must be greater than 0", text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status parse_compress(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli, const char *text) {
+    DALCS_TRY(parse_number(cli, "--compress", text, &arguments->compress));
+    if (!(arguments->compress > 0.0 && arguments->compress < 1.0)) {
+        dalcs_cli_error(cli, "--compress: '%s' must be greater than 0 and less than 1", text);
         return DALCS_E_OPTION;
     }
     return DALCS_OK;
@@ -100,8 +142,14 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return add_output(arguments, cli, optarg);
     case METHOD:
         return parse_method(arguments, cli, optarg);
+    case TOL:
+        return parse_tolerance(arguments, cli, optarg);
+    case STAGES:
+        return parse_stages(arguments, cli, optarg);
     case STEP:
         return parse_step(arguments, cli, optarg);
+    case COMPRESS:
+        return parse_compress(arguments, cli, optarg);
     case AT:
         arguments->at = optarg;
         return DALCS_OK;
@@ -192,6 +240,11 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
     for (int code; status == DALCS_OK && !arguments->help &&
                    (code = getopt_long(argc, argv, ":o:qh", option, NULL)) != -1;) {
         status = take(arguments, cli, code, argv);
+    }
+    if (status == DALCS_OK && !arguments->help && arguments->at && arguments->compress > 0.0) {
+        dalcs_cli_error(cli,
+                        "--compress leaves rows out, --at asks for each of its own: choose one");
+        status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && !arguments->help) {
         if (optind != argc - 1) {

@@ -10,7 +10,10 @@ struct dalcs_arguments {
     const char **output; /* [n_outputs], at least one; owned array */
     size_t n_outputs;
     const char *method; /* NULL: the netlist's */
-    double step;        /* s; 0: the netlist's */
+    double tolerance;   /* 0: the netlist's; so with the next three */
+    int stages;
+    double step; /* s */
+    double compress;
     const char *at, *report, *plot;
     const char *dump;
     char *default_output, *default_dump; /* NULL: not needed */

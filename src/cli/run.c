@@ -28,8 +28,15 @@ static const char help[] =
     "\n"
     "  -o, --output FILE   write waveforms; the format is that of the name, .csv or .raw (may be\n"
     "                      repeated; without it FILE's name with .raw, in the current folder)\n"
-    "      --method NAME   integration method: euler\n"
-    "      --step H        time step in s, SPICE suffixes allowed: 1u (default: from .tran)\n"
+    "      --method NAME   auto, radau (Radau IIA) or euler (implicit Euler with a fixed step);\n"
+    "                      default: the netlist's, else auto, which chooses for each part\n"
+    "      --tol X         how far a waveform may be wrong, over its largest value; 1e-13 to 0.1\n"
+    "                      (default: .options reltol, else 1e-6)\n"
+    "      --stages N      of radau: 1, 3, 5 or 7 (default: chosen from the tolerance)\n"
+    "      --step H        time step in s, SPICE suffixes allowed: 1u. The largest one with auto,\n"
+    "                      fixed with radau and euler (default: from .tran)\n"
+    "      --compress X    leave out rows that straight lines between others give, up to X times\n"
+    "                      a signal's largest value\n"
     "      --at FILE       print at exactly the times in FILE, one a line\n"
     "      --report FILE   write what the run did as JSON\n"
     "      --plot FILE     draw the waveforms with gnuplot, .svg or .png\n"
@@ -101,9 +108,9 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
     const struct {
         const char *name;
         bool given;
-    } option[] = {{"--step", arguments->step > 0.0},
-                  {"--at", arguments->at != NULL},
-                  {"--plot", arguments->plot != NULL}};
+    } option[] = {{"--tol", arguments->tolerance > 0.0}, {"--stages", arguments->stages > 0},
+                  {"--step", arguments->step > 0.0},     {"--compress", arguments->compress > 0.0},
+                  {"--at", arguments->at != NULL},       {"--plot", arguments->plot != NULL}};
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
         if (option[i].given && !request->transient) {
@@ -141,7 +148,10 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
                                      const struct dalcs_times *times, size_t *n_written) {
     struct dalcs_run_options options = dalcs_run_options_default();
     options.method = arguments->method;
+    options.tolerance = arguments->tolerance;
+    options.stages = arguments->stages;
     options.step = arguments->step;
+    options.compress = arguments->compress;
     options.at = times->time;
     options.n_at = times->n;
     options.dump_path = arguments->dump;

@@ -2,6 +2,7 @@
  * jumps. */
 #include "summary.h"
 
+#include "method_text.h"
 #include "quantity.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@
 
 #define INVISIBLE 1e-12
 
-enum { MAX_SIGNALS = 24, MAX_JUMPS = 5, MAX_PARTS = 6, DIGITS = 4 };
+enum { MAX_SIGNALS = 24, MAX_JUMPS = 5, MAX_PARTS = 6, MAX_METHODS = 4, DIGITS = 4 };
 
 static const char *plural(long n) {
     return n == 1 ? "" : "s";
@@ -29,13 +30,82 @@ static void write_size(FILE *out, const struct dalcs_report *report) {
     fputc('\n', out);
 }
 
+static bool same_method(const struct dalcs_component_method *a,
+                        const struct dalcs_component_method *b) {
+    const char *why_a = a->because ? a->because : "", *why_b = b->because ? b->because : "";
+    return strcmp(a->method, b->method) == 0 && a->stages == b->stages && strcmp(why_a, why_b) == 0;
+}
+
+/* Was the method left to the program? */
+static bool is_chosen(const struct dalcs_report *report) {
+    return report->method && strcmp(report->method, "auto") == 0;
+}
+
+/* "radau, 5 stages in 250 components (tolerance 1e-06)"; how many only where that says something. */
+static void write_group(FILE *out, const struct dalcs_report *report,
+                        const struct dalcs_component_method *method) {
+    char text[DALCS_METHOD_TEXT_SIZE];
+    size_t n = 0;
+    for (size_t k = 0; k < report->n_components; k++) {
+        n += same_method(method, &report->component[k]) ? 1 : 0;
+    }
+    fputs(dalcs_method_text(text, method), out);
+    if (n < report->n_components || (is_chosen(report) && n > 1)) {
+        fprintf(out, " in %zu component%s", n, plural((long)n));
+    }
+    if (method->because) {
+        fprintf(out, " (%s)", method->because);
+    } else if (report->step == 0.0 && strcmp(method->method, "radau") == 0) {
+        fprintf(out, " (tolerance %g)", report->tolerance);
+    }
+}
+
+/* Equal components once. */
+static void write_groups(FILE *out, const struct dalcs_report *report) {
+    size_t n_groups = 0;
+    for (size_t k = 0; k < report->n_components; k++) {
+        bool seen = false;
+        for (size_t j = 0; j < k && !seen; j++) {
+            seen = same_method(&report->component[j], &report->component[k]);
+        }
+        if (seen) {
+            continue;
+        }
+        if (n_groups++ == MAX_METHODS) {
+            fputs("; ...", out);
+            return;
+        }
+        fputs(n_groups > 1 ? "; " : "", out);
+        write_group(out, report, &report->component[k]);
+    }
+}
+
+/* What was asked for, what was taken, and how often. Nothing without .tran. */
+static void write_method(FILE *out, const struct dalcs_report *report) {
+    if (report->n_components == 0) {
+        return;
+    }
+    char text[DALCS_QUANTITY_SIZE];
+    fprintf(out, "  method    %s", is_chosen(report) ? "auto: " : "");
+    write_groups(out, report);
+    if (report->step > 0.0) {
+        fprintf(out, ", step %s", dalcs_quantity_write(text, report->step, "s", DIGITS));
+    }
+    fprintf(out, ": %ld step%s", report->work.steps, plural(report->work.steps));
+    if (report->work.rejected > 0) {
+        fprintf(out, ", %ld rejected", report->work.rejected);
+    }
+    if (report->work.restarts > 0) {
+        fprintf(out, ", %ld restart%s", report->work.restarts, plural(report->work.restarts));
+    }
+    if (report->work.euler_steps > 0) {
+        fprintf(out, ", %ld by euler", report->work.euler_steps);
+    }
+    fputc('\n', out);
+}
+
 static void write_work(FILE *out, const struct dalcs_report *report) {
     char text[DALCS_QUANTITY_SIZE];
-    if (report->step > 0.0) {
-        fprintf(out, "  method    %s, step %s: %ld step%s\n", report->method ? report->method : "?",
-                dalcs_quantity_write(text, report->step, "s", DIGITS), report->work.steps,
-                plural(report->work.steps));
-    }
     fprintf(out, "  work      %ld one-step problem%s, %ld pivot%s, %ld factorisation%s",
             report->work.osnsp, plural(report->work.osnsp), report->work.pivots,
             plural(report->work.pivots), report->work.factorizations,
@@ -64,6 +134,7 @@ void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report) {
     title += strspn(title, "* "); /* many a netlist's title is written as a comment */
     fprintf(out, "%s\n", title);
     write_size(out, report);
+    write_method(out, report);
     write_work(out, report);
     write_certificate(out, report);
 }

@@ -22,6 +22,10 @@ static int choose_stages(const struct dalcs_radau_options *o) {
     return o->tolerance >= loose ? 3 : o->tolerance >= tight ? 5 : 7;
 }
 
+static const char *reason_for(int stages) {
+    return stages == 3 ? "loose tolerance" : stages == 5 ? "middling tolerance" : "tight tolerance";
+}
+
 static bool has_memory_or_sides(const struct dalcs_system *s) {
     return s->n_x > 0 || s->n_pairs > 0;
 }
@@ -105,7 +109,12 @@ static void find_cross_scales(const struct dalcs_system *s, double stop, double 
 static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                     const struct dalcs_osnsp_options *osnsp, int stages) {
     struct dalcs_component *c = part->component;
-    part->kind = has_memory_or_sides(c->system) ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
+    bool steps = has_memory_or_sides(c->system);
+    part->kind = steps ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
+    part->because = !steps                      ? "no state, no diode and no switch"
+                    : r->options.stages > 0     ? NULL
+                    : r->options.fixed_step > 0 ? "fixed step"
+                                                : reason_for(stages);
     DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system));
     DALCS_TRY(dalcs_commands_setup(&part->commands, c->circuit, c->system));
     DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, stages,

@@ -40,6 +40,7 @@ struct dalcs_radau_part {
         DALCS_PART_STEPPED
     } kind;
 
+    const char *because; /* why this kind and number of stages; NULL: asked for */
     struct dalcs_excitation excitation;
     struct dalcs_commands commands;
     struct dalcs_stages stages;
@@ -56,8 +57,8 @@ struct dalcs_radau_part {
     double *in, *out;
     double *scale;        /* [n_columns] largest magnitudes so far */
     double unit_scale[2]; /* V, A: the largest of each */
-    double cross[2];      /* V per A, A per V: how far the scale of one unit vouches for the other */
-    bool *armed;          /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
+    double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
+    bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
     int n_crossed;
     int *crossed; /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
     bool jumped;  /* at t, when the segment began */

@@ -3,13 +3,18 @@
 #include "report.h"
 
 #include "json.h"
+#include "method_text.h"
 
+/* For each component; what was asked for where there was no .tran. */
 static void write_method(struct dalcs_json *json, const struct dalcs_report *report) {
     dalcs_json_open(json, "method", '{', false);
     for (int i = 0; i < report->size.components; i++) {
-        char component[32];
+        char component[32], text[DALCS_METHOD_TEXT_SIZE];
         snprintf(component, sizeof component, "component %d", i + 1);
-        dalcs_json_string(json, component, report->method);
+        dalcs_json_string(json, component,
+                          (size_t)i < report->n_components
+                              ? dalcs_method_text(text, &report->component[i])
+                              : report->method);
     }
     dalcs_json_close(json, '}');
 }
@@ -28,6 +33,9 @@ static void write_size(struct dalcs_json *json, const struct dalcs_report *repor
 static void write_work(struct dalcs_json *json, const struct dalcs_report *report) {
     dalcs_json_open(json, "work", '{', false);
     dalcs_json_integer(json, "steps", report->work.steps);
+    dalcs_json_integer(json, "rejected", report->work.rejected);
+    dalcs_json_integer(json, "restarts", report->work.restarts);
+    dalcs_json_integer(json, "euler_steps", report->work.euler_steps);
     dalcs_json_integer(json, "osnsp", report->work.osnsp);
     dalcs_json_integer(json, "pivots", report->work.pivots);
     dalcs_json_integer(json, "factorizations", report->work.factorizations);
@@ -128,6 +136,7 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     dalcs_json_string(&json, "title", report->title);
     dalcs_json_string(&json, "status", dalcs_status_text(status));
     write_method(&json, report);
+    dalcs_json_number(&json, "tolerance", report->tolerance);
     dalcs_json_number(&json, "step", report->step);
     dalcs_json_number(&json, "stop", report->stop);
     write_size(&json, report);

@@ -18,23 +18,44 @@ struct dalcs_session {
     struct dalcs_arena arena; /* names of the report and of the plots */
 };
 
+/* In the order of dalcs_method_name. */
+enum dalcs_method { DALCS_METHOD_AUTO, DALCS_METHOD_RADAU, DALCS_METHOD_EULER };
+
 struct dalcs_run {
     struct dalcs_session *s;
     const struct dalcs_run_options *options;
     const struct dalcs_sink *sink;
+
+    /* From here to max_step: chosen by dalcs_run_choose. */
     struct dalcs_osnsp_options osnsp;
-    double h;
+    enum dalcs_method method;
+    double tolerance;     /* of radau and auto */
+    double abstol, vntol; /* A, V; allowed on top of it */
+    int stages;           /* of radau; 0: not asked for */
+    double compress;      /* 0: keep all rows */
+    double h;             /* s; the step of euler */
+    double fixed_step;    /* s; of radau without error control; 0: with it */
+    double max_step;      /* s; of radau with error control; 0: no bound */
+
     const char **name;
     enum dalcs_unit *unit;
 };
 
+/* Settles what the options of the run and of the netlist leave open; checks them. */
+enum dalcs_status dalcs_run_choose(struct dalcs_run *r) DALCS_MUST_CHECK;
+
 /* Frees what the last run left. */
 void dalcs_session_forget_run(struct dalcs_session *session);
 
-/* Rows, events and jumps from the start, where radau stands, to the stop time. */
-struct dalcs_radau;
-enum dalcs_status dalcs_transient_run(struct dalcs_run *r,
-                                      struct dalcs_radau *radau) DALCS_MUST_CHECK;
+/* Runs .tran into r->sink. */
+enum dalcs_status dalcs_transient_run(struct dalcs_run *r) DALCS_MUST_CHECK;
+
+/* Announces a plot to the sink. */
+enum dalcs_status dalcs_run_begin_plot(struct dalcs_run *r,
+                                       enum dalcs_analysis analysis) DALCS_MUST_CHECK;
+
+/* The counts of one engine run into the report. */
+void dalcs_run_add_work(struct dalcs_run *r, const struct dalcs_euler *e);
 
 /* "KCL at out", "branch v1", "complementarity of d1"; NULL when out of memory. `where` is a row, or a
  * pair behind them, of a system of e's network, which need not be the session's. */

@@ -1,11 +1,115 @@
-/* transient.c - the loop over time of the Radau methods: rows when they are due, both sides of what
- * happens in between. */
+/* transient.c - .tran: the start, then the loop over time of either method.
+ *
+ * Implicit Euler walks its grid and rows follow. The Radau methods go where something happens, and
+ * rows are evaluated when they are due. dalcs_transient_run at the end is the table of contents. */
 #include "session_internal.h"
 
 #include "radau.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+/* Unknowns solved for between calls of the sink's progress, a fraction of a second of work, but no
+ * more steps than that. */
+enum { PROGRESS_UNKNOWNS = 1 << 18, PROGRESS_STEPS = 4096 };
+
+/* Where .tran has no tstep. */
+static const double ROWS_WITHOUT_A_STEP = 1000.0;
+
+static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
+    const struct dalcs_transient *t = &r->s->circuit.transient;
+    struct dalcs_schedule schedule = {.start = t->start, .step = t->step, .stop = t->stop};
+    double ratio = t->step / r->h;
+    if (r->options->at != NULL) {
+        schedule.kind = DALCS_AT_TIMES;
+        schedule.at = r->options->at;
+        schedule.n_at = r->options->n_at;
+    } else if (r->method != DALCS_METHOD_EULER) {
+        schedule.kind = DALCS_ON_GRID;
+        schedule.step = t->step > 0.0 ? t->step : t->stop / ROWS_WITHOUT_A_STEP;
+    } else if (ratio >= 1.0 - 1e-9 && fabs(ratio - rint(ratio)) <= 1e-9 * ratio) {
+        schedule.kind = DALCS_ON_GRID;
+    } else {
+        schedule.kind = DALCS_EVERY_STEP; /* the print grid does not fall on steps */
+    }
+    return schedule;
+}
+
+/* From x(0-), or from the operating point (NULL). */
+static enum dalcs_status start_at(struct dalcs_euler *e, struct dalcs_radau *radau,
+                                  double *const *initial) {
+    return radau != NULL ? dalcs_radau_start(radau, initial) : dalcs_euler_start(e, initial);
+}
+
+/* The operating point with .ic held, by a network of its own; its states start the transient. */
+static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_euler *e,
+                                           struct dalcs_radau *radau) {
+    struct dalcs_session *s = r->s;
+    struct dalcs_network clamped;
+    struct dalcs_euler held;
+    DALCS_TRY(dalcs_network_build(&clamped, &s->circuit,
+                                  &(struct dalcs_network_options){.clamp_initial_conditions = true},
+                                  &s->diag));
+    enum dalcs_status status = dalcs_euler_setup(&held, &s->circuit, &clamped, &r->osnsp, 1.0, 1.0);
+    if (status != DALCS_OK) {
+        dalcs_network_finish(&clamped);
+        return status;
+    }
+    double **initial = dalcs_alloc((size_t)held.n_components, sizeof(*initial));
+    status = initial == NULL ? DALCS_E_NOMEM : dalcs_euler_operating_point(&held, true);
+    dalcs_explain_failure(r, &held, status);
+    dalcs_run_add_work(r, &held);
+    if (status == DALCS_OK) {
+        for (int k = 0; k < held.n_components; k++) {
+            initial[k] = held.component[k].u; /* the same x: clamps add algebraic unknowns only */
+        }
+        status = start_at(e, radau, initial);
+    }
+    free(initial);
+    dalcs_euler_finish(&held);
+    dalcs_network_finish(&clamped);
+    return status;
+}
+
+static enum dalcs_status start_transient(struct dalcs_run *r, struct dalcs_euler *e,
+                                         struct dalcs_radau *radau) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    if (c->transient.use_initial_conditions) {
+        return start_at(e, radau, r->s->network.initial);
+    }
+    if (c->n_initial_conditions > 0) {
+        return start_from_clamps(r, e, radau);
+    }
+    DALCS_TRY(dalcs_euler_operating_point(e, true));
+    return start_at(e, radau, NULL);
+}
+
+/* Steps between calls of the sink's progress. */
+static long progress_interval(const struct dalcs_network *n) {
+    long n_unknowns = 1;
+    for (int k = 0; k < n->n_systems; k++) {
+        n_unknowns += dalcs_system_n_columns(&n->system[k]);
+    }
+    long n_steps = PROGRESS_UNKNOWNS / n_unknowns;
+    return n_steps < 1 ? 1 : n_steps < PROGRESS_STEPS ? n_steps : PROGRESS_STEPS;
+}
+
+static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct dalcs_euler *e) {
+    struct dalcs_recorder *recorder = &r->s->recorder;
+    const long interval = progress_interval(&r->s->network);
+    while (!dalcs_grid_at_end(&e->grid)) {
+        DALCS_TRY(dalcs_euler_step(e));
+        DALCS_TRY(dalcs_recorder_step(recorder, e));
+        if (e->at_jump && !dalcs_grid_at_end(&e->grid)) {
+            DALCS_TRY(dalcs_euler_cross(e));
+            DALCS_TRY(dalcs_recorder_cross(recorder, e));
+        }
+        if (e->steps % interval == 0) {
+            DALCS_TRY(r->sink->progress(r->sink->user, e->t, e->grid.stop));
+        }
+    }
+    return DALCS_OK;
+}
 
 struct transient {
     struct dalcs_run *run;
@@ -82,15 +186,113 @@ static enum dalcs_status advance(struct transient *c) {
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_transient_run(struct dalcs_run *r, struct dalcs_radau *radau) {
+static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau *radau) {
     struct transient c = {.run = r, .recorder = &r->s->recorder, .radau = radau};
     c.next_edge = edge_after(&c, 0.0);
+    const long interval = progress_interval(&r->s->network);
     long rounds = 0;
     while (c.t < radau->options.stop) {
         DALCS_TRY(advance(&c));
-        if ((++rounds & 0xfff) == 0) {
+        if (++rounds % interval == 0) {
             DALCS_TRY(r->sink->progress(r->sink->user, c.t, radau->options.stop));
         }
     }
     return DALCS_OK;
+}
+
+/* Which method each component goes with, and why. */
+static enum dalcs_status report_methods(struct dalcs_run *r, const struct dalcs_radau *radau) {
+    const size_t n = (size_t)r->s->network.n_systems;
+    struct dalcs_component_method *component =
+        dalcs_arena_alloc(&r->s->arena, n, sizeof(*component));
+    if (component == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k < n; k++) {
+        component[k] = (struct dalcs_component_method){.method = "euler", .stages = 1};
+        if (radau != NULL) {
+            const struct dalcs_radau_part *part = &radau->part[k];
+            bool steps = part->kind == DALCS_PART_STEPPED;
+            component[k].method = steps ? "radau" : "algebraic";
+            component[k].stages = steps ? part->stages.method.s : 1;
+            component[k].because = part->because;
+        }
+    }
+    r->s->report.component = component;
+    r->s->report.n_components = n;
+    return DALCS_OK;
+}
+
+static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e,
+                              struct dalcs_radau *radau) {
+    struct dalcs_session *s = r->s;
+    DALCS_TRY(report_methods(r, radau));
+    DALCS_TRY(start_transient(r, e, radau));
+    if (radau != NULL) {
+        DALCS_TRY(dalcs_radau_evaluate(radau, 0.0, DALCS_RIGHT));
+    }
+    dalcs_recorder_states(&s->network, e, s->start);
+    DALCS_TRY(dalcs_run_begin_plot(r, DALCS_TRANSIENT));
+    DALCS_TRY(dalcs_recorder_start(&s->recorder, e));
+    enum dalcs_status status = radau != NULL ? run_to_the_end(r, radau) : step_to_the_end(r, e);
+    if (status == DALCS_OK && radau != NULL) {
+        status = dalcs_radau_evaluate(radau, radau->options.stop, DALCS_LEFT);
+    }
+    dalcs_recorder_states(&s->network, e, s->final);
+    DALCS_TRY(status);
+    return r->sink->end(r->sink->user);
+}
+
+static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau) {
+    struct dalcs_report *report = &r->s->report;
+    report->work.steps += radau->steps;
+    report->work.rejected += radau->rejected;
+    report->work.restarts += radau->restarts;
+    report->work.euler_steps += radau->euler_steps;
+    for (int k = 0; k < radau->n_parts; k++) {
+        report->work.factorizations += radau->part[k].stages.factorizations;
+        report->work.cache_hits += radau->part[k].stages.cache_hits;
+    }
+    if (radau->euler_steps > 0) {
+        dalcs_diag_add(&r->s->diag, DALCS_NOTE, NULL, NULL,
+                       "where events crowded, radau fell back to implicit Euler for %ld step%s",
+                       radau->euler_steps, radau->euler_steps == 1 ? "" : "s");
+    }
+}
+
+enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
+    struct dalcs_session *s = r->s;
+    const double stop = s->circuit.transient.stop;
+    bool is_euler = r->method == DALCS_METHOD_EULER;
+    struct dalcs_euler e;
+    struct dalcs_radau radau = {0};
+    struct dalcs_schedule schedule = choose_schedule(r);
+    DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
+                                   r->options->record, r->options->max_events));
+    DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, r->h, stop));
+    e.detect_jumps = r->options->record;
+    e.jump_user = &s->recorder;
+    e.on_jump = dalcs_recorder_jump;
+    s->report.step = is_euler ? r->h : r->fixed_step;
+    s->report.stop = stop;
+    enum dalcs_status status = DALCS_OK;
+    if (!is_euler) {
+        const struct dalcs_radau_options options = {.tolerance = r->tolerance,
+                                                    .abstol = r->abstol,
+                                                    .vntol = r->vntol,
+                                                    .stages = r->stages,
+                                                    .fixed_step = r->fixed_step,
+                                                    .max_step = r->max_step,
+                                                    .stop = stop};
+        status = dalcs_radau_setup(&radau, &e, &options, &r->osnsp);
+    }
+    if (status == DALCS_OK) {
+        status = walk(r, &e, is_euler ? NULL : &radau);
+    }
+    dalcs_explain_failure(r, &e, status);
+    dalcs_run_add_work(r, &e);
+    add_radau_work(r, &radau);
+    dalcs_radau_finish(&radau);
+    dalcs_euler_finish(&e);
+    return status;
 }

@@ -35,6 +35,7 @@ D4 m b
 C1 p m 100u
 R1 p m 1k
 .tran 1m 30m uic
+.options compress=1m
 .op
 .save v(p,m) i(d1)
 .end

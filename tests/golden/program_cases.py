@@ -91,8 +91,8 @@ class Usage(Case):
 
     def test_every_option_is_in_the_help(self):
         text = self.dalcs("run", "--help").stdout
-        for option in ["--output", "--method", "--step", "--at", "--report", "--plot", "--dump",
-                       "--all-signals", "--quiet"]:
+        for option in ["--output", "--method", "--tol", "--stages", "--step", "--compress", "--at",
+                       "--report", "--plot", "--dump", "--all-signals", "--quiet"]:
             self.assertIn(option, text)
 
     def test_version(self):
@@ -122,6 +122,19 @@ class Usage(Case):
         self.assertIn("'abc' is not a number", self.refused("run", "a.cir", "--step", "abc"))
         self.assertIn("greater than 0", self.refused("run", "a.cir", "--step", "0"))
         self.assertIn("greater than 0", self.refused("run", "a.cir", "--step", "-1u"))
+        for option in "--tol", "--compress":
+            self.assertIn(f"{option}: 'abc' is not a number",
+                          self.refused("run", "a.cir", option, "abc"))
+        for value in "0.9e-13", "0.11", "0", "-1u":
+            self.assertIn(f"--tol: '{value}' does not lie between 1e-13 and 0.1",
+                          self.refused("run", "a.cir", "--tol", value))
+        for value in "0", "2", "9", "3.5", "-1", "five":
+            self.assertIn(f"--stages: '{value}' is none of 1, 3, 5, 7",
+                          self.refused("run", "a.cir", "--stages", value))
+        for value in "0", "1", "-1m":
+            self.assertIn(f"--compress: '{value}' must be greater than 0 and less than 1",
+                          self.refused("run", "a.cir", "--compress", value))
+        self.assertIn("choose one", self.refused("run", "a.cir", "--compress", "1m", "--at", "x"))
         self.assertIn(".csv or .raw", self.refused("run", "a.cir", "-o", "out.txt"))
         self.assertIn(".svg or .png", self.refused("run", "a.cir", "--plot", "p.pdf"))
         self.assertIn("no netlist", self.refused("run"))
@@ -152,7 +165,7 @@ class Usage(Case):
     def test_unknown_method(self):
         self.write(RECTIFIER)
         message = self.refused("run", "a.cir", "--method", "eluer")
-        self.assertIn("unknown method 'eluer'; the methods are: euler\n", message)
+        self.assertIn("unknown method 'eluer'; the methods are: auto radau euler\n", message)
         self.write(MISTAKE)  # which is not read
         self.assertEqual(self.refused("run", "a.cir", "--method", "eluer"), message)
 
@@ -175,7 +188,8 @@ class Results(Case):
 
     def test_step_takes_suffixes(self):
         self.write(RECTIFIER)
-        self.dalcs("run", "a.cir", "--step", "20us", "--report", "r.json", "-q")
+        self.dalcs("run", "a.cir", "--method", "euler", "--step", "20us", "--report", "r.json",
+                   "-q")
         report = json.loads(self.path("r.json").read_text())
         self.assertEqual(report["step"], 20e-6)
         self.assertEqual(report["work"]["steps"], 2000)
@@ -184,6 +198,40 @@ class Results(Case):
         self.write("# times\n0\n\n1m\n2.5m ignored\n* note\n0.0333\n", "times.txt")
         self.dalcs("run", self.write(RECTIFIER), "--at", "times.txt", "-o", "out.csv")
         self.assertEqual([row[0] for row in self.table("out.csv")[1]], [0.0, 1e-3, 2.5e-3, 0.0333])
+
+    def test_compress(self):
+        """Fewer rows, each of them one of all; an operating point keeps its own."""
+        self.write(BOTH)
+        self.dalcs("run", "a.cir", "-q", "--method", "euler", "-o", "all.csv")
+        self.dalcs("run", "a.cir", "-q", "--method", "euler", "--compress", "10m", "-o", "few.csv",
+                   "-o", "few.raw")
+        header, every = self.table("all.csv")
+        _, few = self.table("few.csv")
+        self.assertLess(3 * len(few), len(every))
+        self.assertTrue(all(row in every for row in few))
+        self.assertEqual((few[0], few[-1]), (every[0], every[-1]))
+        self.assertIn(b"No. Points: 1 ", self.path("few.raw").read_bytes())
+        scale = [max(abs(row[k]) for row in every) for k in range(len(header))]
+        after = 0
+        for row in every:
+            after += few[after][0] < row[0]
+            one, other = few[max(after - 1, 0)], few[after]
+            part = (row[0] - one[0]) / ((other[0] - one[0]) or 1.0)
+            for k in range(1, len(header)):
+                line = one[k] + part * (other[k] - one[k])
+                self.assertLessEqual(abs(line - row[k]), 0.01 * scale[k] + 1e-15)
+        self.write(BOTH.replace(".op", ".options compress=10m\n.op"), "b.cir")
+        self.dalcs("run", "b.cir", "-q", "--method", "euler", "-o", "b.csv")
+        self.assertEqual(self.path("b.csv").read_bytes(), self.path("few.csv").read_bytes())
+
+    def test_compress_at_times(self):
+        """Times that are asked for have their rows, whatever the netlist says."""
+        self.write("0\n1m\n2m\n3m\n", "times.txt")
+        self.write(RECTIFIER.replace(".tran", ".options compress=0.9\n.tran"))
+        done = self.dalcs("run", "a.cir", "--at", "times.txt", "-o", "out.csv")
+        self.assertIn("a.cir:6:19: note: compress has no effect: every output time asked for gets "
+                      "its row\n", done.stderr)
+        self.assertEqual([row[0] for row in self.table("out.csv")[1]], [0.0, 1e-3, 2e-3, 3e-3])
 
     def test_last_time_is_rounded(self):
         self.write("1m\n0.04000000000001\n", "times.txt")
@@ -236,7 +284,7 @@ class Results(Case):
             self.assertAlmostEqual(rows[0][header.index("i(s1)")], amperes, places=15)
 
     def test_report(self):
-        self.dalcs("run", self.write(CHARGES), "--report", "r.json", "-q")
+        self.dalcs("run", self.write(CHARGES), "--method", "euler", "--report", "r.json", "-q")
         report = json.loads(self.path("r.json").read_text())
         self.assertEqual(report["status"], "ok")
         self.assertEqual(report["method"], {"component 1": "euler"})
@@ -264,7 +312,7 @@ class Results(Case):
 
 class Summary(Case):
     def test_text(self):
-        done = self.dalcs("run", self.write(CHARGES))
+        done = self.dalcs("run", self.write(CHARGES), "--method", "euler")
         for piece in ["two capacitors share their charge\n", "2 states", "euler, step 10 us",
                       "worst residual", "signal", "v(1)",
                       "jump at t=0: c1 10 V -> 4 V, c2 2 V -> 4 V; charge through d1 6 uC; "
@@ -302,6 +350,24 @@ class Summary(Case):
                       "step of euler\n", done.stderr)
         self.assertEqual(done.stderr.count("note: "), 1)
 
+    def test_tolerance_without_use(self):
+        self.write(RECTIFIER)
+        done = self.dalcs("run", "a.cir", "--method", "euler", "--tol", "1m")
+        self.assertEqual(done.stderr, "dalcs: note: a tolerance and a number of stages have no "
+                         "effect with euler\n")
+        done = self.dalcs("run", self.write(POINT), "-q", "--tol", "1m")
+        self.assertIn("warning: the netlist has no .tran: --tol has no effect", done.stderr)
+
+    def test_unknown_method_of_the_netlist(self):
+        self.write(RECTIFIER.replace(".tran", ".options method=magic\n.tran"))
+        self.assertIn("a.cir:6:17: note: method=magic has no meaning here: using auto\n",
+                      self.dalcs("run", "a.cir").stderr)
+        self.assertEqual(self.dalcs("run", "a.cir", "--method", "euler").stderr, "")
+
+    def test_what_auto_chose(self):
+        done = self.dalcs("run", self.write(CHARGES))
+        self.assertRegex(done.stdout, r"\n  method    auto: .*: \d+ steps?\b")
+
     def test_switches_that_never_agree(self):
         """A switch that takes away what holds it closed, with and without another step to come."""
         flutter = ("a switch that opens itself\nV1 a 0 1\nR1 a b 1\nS1 b 0 b 0 m\n"
@@ -311,7 +377,7 @@ class Summary(Case):
         self.assertEqual(done.stderr, "dalcs: warning: a switch and the voltage that controls it "
                          "do not agree, open or closed; the values are those of its last command\n")
         self.write(flutter.format("C1 a c 1n\nV2 c 0 SIN(0 1 1k)\nR2 c 0 1\n.tran 100u 200u"))
-        done = self.dalcs("run", "a.cir", "-q")
+        done = self.dalcs("run", "a.cir", "-q", "--method", "euler")
         self.assertRegex(done.stderr, r"^dalcs: warning: in \d+ one-step problems a switch and the "
                          r"voltage that controls it did not agree; its last command stood until "
                          r"the next one\n$")
@@ -440,6 +506,17 @@ class Failures(Case):
         self.assertEqual(sorted(report["infeasible"]["elements"]), ["d1", "v1", "v2"])
         self.assertEqual(report["infeasible"]["kind"], "loop")
 
+    def test_infeasible_with_fewer_rows(self):
+        """What was held back when the run failed is written as well."""
+        self.write(IMPOSSIBLE)
+        for name, options in [("all", []), ("few", ["--compress", "0.5"])]:
+            self.dalcs("run", "a.cir", "-q", "--method", "euler", "-o", f"{name}.csv", *options,
+                       expect=RUN_FAILED)
+        _, every = self.table("all.partial.csv")
+        _, few = self.table("few.partial.csv")
+        self.assertLess(len(few), len(every))
+        self.assertEqual(few[-1], every[-1])
+
     def test_infeasible_from_the_start(self):
         text = IMPOSSIBLE.replace("PULSE(10 1 1m 0 0 1 2)", "1")
         self.dalcs("run", self.write(text), "-o", "out.csv", expect=RUN_FAILED)
@@ -499,7 +576,7 @@ class Ngspice(Case):
     def test_load(self):
         if not shutil.which("ngspice"):
             self.skipTest("ngspice is not installed")
-        self.dalcs("run", self.write(BOTH), "-q", "-o", "ours.raw")
+        self.dalcs("run", self.write(BOTH), "-q", "--method", "euler", "-o", "ours.raw")
         # ngspice makes the last plot of the file the current one.
         self.write("* load\n.control\nset filetype=binary\nload ours.raw\nsetplot\n"
                    "setplot tran1\nwrite tran.raw\nsetplot op1\nwrite op.raw\nquit 0\n.endc\n.end\n",

@@ -3,6 +3,7 @@
 #include "sample_plot.h"
 
 #include <math.h>
+#include <string.h>
 
 static const char *const state_name[] = {"c1", "l1"};
 static const double start[] = {4.0, -0.1}, final[] = {NAN, -INFINITY};
@@ -11,6 +12,8 @@ static const struct dalcs_jump_state jump_state[] = {{"c1", 10.0, 4.0}};
 static const struct dalcs_impulse impulse[] = {{"d1", false, 6e-6}, {"d2", true, 0.001}};
 static const struct dalcs_jump jump[] = {{0.0, 1, jump_state, 2, impulse, 24e-6}};
 static const char *const element[] = {"v1", "d1"};
+static const struct dalcs_component_method component[] = {{"radau", 5, "tolerance 1e-06"},
+                                                          {"algebraic", 1, "no state"}};
 
 static void check_report(const struct dalcs_report *report, enum dalcs_status status,
                          const char *expected) {
@@ -25,11 +28,14 @@ START_TEST(test_everything) {
     const struct dalcs_report report = {
         .netlist = "a \"b\".cir",
         .title = "caf\303\251 \\ \377\tend",
-        .method = "euler",
+        .method = "auto",
+        .tolerance = 1e-6,
+        .n_components = 2,
+        .component = component,
         .step = 1e-6,
         .stop = 0.5,
         .size = {1, 2, 3, 4, 5, 2},
-        .work = {11, 12, 13, 14, 15, 16, 0.5, 0.75},
+        .work = {11, 12, 13, 14, 15, 16, 17, 18, 19, 0.5, 0.75},
         .certificate = {1e-15, 0.125, "KCL at out"},
         .n_states = 2,
         .state_name = state_name,
@@ -48,20 +54,24 @@ START_TEST(test_everything) {
                  "  \"title\": \"caf\303\251 \\\\ \\ufffd\\u0009end\",\n"
                  "  \"status\": \"the one-step problem has no solution\",\n"
                  "  \"method\": {\n"
-                 "    \"component 1\": \"euler\",\n"
-                 "    \"component 2\": \"euler\"\n"
+                 "    \"component 1\": \"radau, 5 stages\",\n"
+                 "    \"component 2\": \"algebraic\"\n"
                  "  },\n"
+                 "  \"tolerance\": 9.9999999999999995e-07,\n"
                  "  \"step\": 9.9999999999999995e-07,\n"
                  "  \"stop\": 0.5,\n"
                  "  \"size\": {\"nodes\": 1, \"x\": 2, \"z\": 3, \"lambda\": 4, \"switches\": 5, "
                  "\"components\": 2},\n"
                  "  \"work\": {\n"
                  "    \"steps\": 11,\n"
-                 "    \"osnsp\": 12,\n"
-                 "    \"pivots\": 13,\n"
-                 "    \"factorizations\": 14,\n"
-                 "    \"cache_hits\": 15,\n"
-                 "    \"singular\": 16,\n"
+                 "    \"rejected\": 12,\n"
+                 "    \"restarts\": 13,\n"
+                 "    \"euler_steps\": 14,\n"
+                 "    \"osnsp\": 15,\n"
+                 "    \"pivots\": 16,\n"
+                 "    \"factorizations\": 17,\n"
+                 "    \"cache_hits\": 18,\n"
+                 "    \"singular\": 19,\n"
                  "    \"cpu_s\": 0.5,\n"
                  "    \"wall_s\": 0.75\n"
                  "  },\n"
@@ -103,6 +113,21 @@ START_TEST(test_everything) {
 
 END_TEST
 
+/* Without .tran no method was chosen: the one asked for stands. */
+START_TEST(test_method_without_transient) {
+    const struct dalcs_report report = {.method = "auto", .size.components = 1};
+    FILE *stream = fopen("report.json", "w+b");
+    ck_assert_ptr_nonnull(stream);
+    dalcs_report_write(stream, &report, DALCS_OK);
+    char text[200] = "";
+    rewind(stream);
+    ck_assert_uint_gt(fread(text, 1, sizeof text - 1, stream), 0);
+    ck_assert_int_eq(fclose(stream), 0);
+    ck_assert_ptr_nonnull(strstr(text, "\"method\": {\n    \"component 1\": \"auto\"\n  }"));
+}
+
+END_TEST
+
 /* A run that failed before it knew anything. */
 START_TEST(test_nothing) {
     const struct dalcs_report report = {.method = "euler"};
@@ -112,12 +137,16 @@ START_TEST(test_nothing) {
                  "  \"title\": null,\n"
                  "  \"status\": \"ok\",\n"
                  "  \"method\": {},\n"
+                 "  \"tolerance\": 0,\n"
                  "  \"step\": 0,\n"
                  "  \"stop\": 0,\n"
                  "  \"size\": {\"nodes\": 0, \"x\": 0, \"z\": 0, \"lambda\": 0, \"switches\": 0, "
                  "\"components\": 0},\n"
                  "  \"work\": {\n"
                  "    \"steps\": 0,\n"
+                 "    \"rejected\": 0,\n"
+                 "    \"restarts\": 0,\n"
+                 "    \"euler_steps\": 0,\n"
                  "    \"osnsp\": 0,\n"
                  "    \"pivots\": 0,\n"
                  "    \"factorizations\": 0,\n"
@@ -136,4 +165,4 @@ START_TEST(test_nothing) {
 
 END_TEST
 
-RUN_SUITE("report", test_everything, test_nothing)
+RUN_SUITE("report", test_everything, test_method_without_transient, test_nothing)

@@ -41,7 +41,8 @@ static struct dalcs_session *read_good(const char *text) {
 }
 
 static enum dalcs_status run(struct dalcs_session *session, struct rows *rows) {
-    const struct dalcs_run_options options = dalcs_run_options_default();
+    struct dalcs_run_options options = dalcs_run_options_default();
+    options.method = "euler";
     const struct dalcs_sink sink = {.user = rows, .begin = take_plot, .row = take_row};
     rows->n_values = 0;
     return dalcs_session_run(session, &options, &sink);
@@ -62,8 +63,9 @@ static const double *first_row(const char *text) {
 static const char divider[] = "divider\nV1 in 0 1\nR1 in out 1\nC1 out 0 1\n.tran 0.1 1\n";
 
 START_TEST(test_wrong_options) {
-    const struct dalcs_run_options usual = dalcs_run_options_default();
-    struct dalcs_run_options wrong[13];
+    struct dalcs_run_options usual = dalcs_run_options_default();
+    usual.method = "euler";
+    struct dalcs_run_options wrong[25];
     size_t n = 0;
     for (size_t k = 0; k < sizeof(wrong) / sizeof(*wrong); k++) {
         wrong[k] = usual;
@@ -79,6 +81,21 @@ START_TEST(test_wrong_options) {
     wrong[n++].n_at = 2;
     wrong[n].at = late;
     wrong[n++].n_at = 2;
+    wrong[n++].tolerance = 0.9e-13;
+    wrong[n++].tolerance = 0.11;
+    wrong[n++].tolerance = -1e-6;
+    wrong[n++].tolerance = NAN;
+    wrong[n++].stages = 2;
+    wrong[n++].stages = 9;
+    wrong[n++].stages = -1;
+    wrong[n++].compress = -1e-3;
+    wrong[n++].compress = 1.0;
+    wrong[n++].compress = NAN;
+    wrong[n].compress = 1e-3;
+    wrong[n].at = late;
+    wrong[n++].n_at = 1;
+    wrong[n].method = "auto"; /* whose step is the largest one */
+    wrong[n++].step = 1e-14;
     wrong[n++].certificate_tolerance = NAN;
     wrong[n++].certificate_tolerance = INFINITY;
     wrong[n++].proximal_weight[1] = 0.0;
@@ -96,6 +113,45 @@ START_TEST(test_wrong_options) {
         /* The session is as good as new. */
         ck_assert_int_eq(dalcs_session_run(session, &usual, &sink), DALCS_OK);
         ck_assert_int_eq(dalcs_session_report(session)->work.steps, 10);
+        dalcs_session_destroy(session);
+    }
+}
+
+END_TEST
+
+/* What is asked for wins over the netlist, the netlist over the default. */
+START_TEST(test_method_and_tolerance) {
+    static const struct {
+        const char *card, *method;
+        double tolerance;
+        const char *used;
+        double used_tolerance;
+        size_t n_messages;
+    } given[] = {
+        {"", NULL, 0.0, "auto", 1e-6, 0},
+        {".options method=radau reltol=1e-3 stages=3\n", NULL, 0.0, "radau", 1e-3, 0},
+        {".options method=radau reltol=1e-3\n", "auto", 1e-5, "auto", 1e-5, 0},
+        {".options method=magic\n", NULL, 0.0, "auto", 1e-6, 1},
+        {".options method=magic\n", "radau", 0.0, "radau", 1e-6, 0},
+        {".options reltol=1e-3\n", "euler", 0.0, "euler", 0.0, 1},
+        {"", "euler", 1e-3, "euler", 0.0, 1},
+        {".options method=euler stages=5\n", NULL, 0.0, "euler", 0.0, 0},
+    };
+
+    for (size_t k = 0; k < sizeof(given) / sizeof(*given); k++) {
+        char text[200];
+        snprintf(text, sizeof(text), "%s%s", divider, given[k].card);
+        struct dalcs_session *session = read_good(text);
+        struct dalcs_run_options options = dalcs_run_options_default();
+        options.method = given[k].method;
+        options.tolerance = given[k].tolerance;
+        const struct dalcs_sink sink = {0};
+        ck_assert_int_eq(dalcs_session_run(session, &options, &sink), DALCS_OK);
+        const struct dalcs_report *report = dalcs_session_report(session);
+        ck_assert_str_eq(report->method, given[k].used);
+        ck_assert_double_eq(report->tolerance, given[k].used_tolerance);
+        ck_assert_uint_eq(report->n_components, 1);
+        ck_assert_uint_eq(dalcs_session_n_messages(session), given[k].n_messages);
         dalcs_session_destroy(session);
     }
 }
@@ -138,7 +194,8 @@ START_TEST(test_cancel) {
     }
     sprintf(text + length, ".save v(n1)\n.tran 1u 1\n");
     struct dalcs_session *session = read_good(text);
-    const struct dalcs_run_options options = dalcs_run_options_default();
+    struct dalcs_run_options options = dalcs_run_options_default();
+    options.method = "euler";
     long n_calls = 0;
     const struct dalcs_sink sink = {.user = &n_calls, .progress = cancel};
     ck_assert_int_eq(dalcs_session_run(session, &options, &sink), DALCS_E_CANCELLED);
@@ -165,6 +222,7 @@ START_TEST(test_memory_of_jumps) {
     sprintf(text + length, ".save v(b)\n.tran 0.5u 1m\n");
     struct dalcs_session *session = read_good(text);
     struct dalcs_run_options options = dalcs_run_options_default();
+    options.method = "euler";
     options.record = true;
     const struct dalcs_sink sink = {0};
     size_t before = bytes_in_use();
@@ -310,7 +368,7 @@ START_TEST(test_threads) {
 
 END_TEST
 
-RUN_TESTS("session", test_wrong_options, test_step_without_states, test_cancel,
-          test_memory_of_jumps, test_initial_across_parts, test_initial_beside_short,
+RUN_TESTS("session", test_wrong_options, test_method_and_tolerance, test_step_without_states,
+          test_cancel, test_memory_of_jumps, test_initial_across_parts, test_initial_beside_short,
           test_initial_of_floating_part, test_certificate_of_held_point, test_shorts_in_a_loop,
           test_threads)

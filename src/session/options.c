@@ -1,0 +1,208 @@
+/* options.c - what a run is told: by the run's options, else by the netlist's, else by default.
+ *
+ * dalcs_run_choose at the end is the table of contents. Nothing after it looks at where a choice came
+ * from. */
+#include "session_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The grid tells times apart to a few 1e-15 of the stop time; leave room for edges between. */
+static const double MOST_STEPS = 1e13;
+
+static const double USUAL_TOLERANCE = 1e-6;
+
+struct dalcs_run_options dalcs_run_options_default(void) {
+    return (struct dalcs_run_options){.certificate_tolerance = 2e-13,
+                                      .proximal_weight = {1e-8, 1e-7, 1e-6},
+                                      .rcond_min = 1e-14,
+                                      .max_outer = 40,
+                                      .max_pivots = 200,
+                                      .cache_bytes = (size_t)256 << 20,
+                                      .dense_limit = 64,
+                                      .max_events = 1000000};
+}
+
+/* By enum dalcs_method. */
+static const char *const METHODS[] = {"auto", "radau", "euler"};
+
+enum { N_METHODS = sizeof METHODS / sizeof METHODS[0] };
+
+const char *dalcs_method_name(size_t index) {
+    return index < N_METHODS ? METHODS[index] : NULL;
+}
+
+static bool find_method(const char *name, enum dalcs_method *method) {
+    for (int k = 0; k < N_METHODS; k++) {
+        if (strcmp(METHODS[k], name) == 0) {
+            *method = (enum dalcs_method)k;
+            return true;
+        }
+    }
+    return false;
+}
+
+static enum dalcs_status option_error(struct dalcs_session *s, const char *text) {
+    dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, NULL, "%s", text);
+    return DALCS_E_OPTION;
+}
+
+static enum dalcs_status choose_method(struct dalcs_run *r) {
+    const char *given = r->options->method;
+    const struct dalcs_circuit_options *netlist = &r->s->circuit.options;
+    r->method = DALCS_METHOD_AUTO;
+    if (given != NULL && !find_method(given, &r->method)) {
+        dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, "the methods are: auto radau euler",
+                       "unknown method '%s'", given);
+        return DALCS_E_OPTION;
+    }
+    if (given == NULL && netlist->method != NULL && !find_method(netlist->method, &r->method)) {
+        dalcs_diag_add(&r->s->diag, DALCS_NOTE, &netlist->method_where, NULL,
+                       "method=%s has no meaning here: using auto", netlist->method);
+    }
+    return DALCS_OK;
+}
+
+/* Says what a fixed step has no use for. */
+static void note_unused_accuracy(struct dalcs_run *r) {
+    const struct dalcs_circuit_options *netlist = &r->s->circuit.options;
+    if (netlist->tolerance_where.line > 0) {
+        dalcs_diag_add(&r->s->diag, DALCS_NOTE, &netlist->tolerance_where,
+                       "choose the step with --step or .options step=",
+                       "reltol, abstol and vntol have no effect with the fixed step of euler");
+    }
+    if (r->options->tolerance > 0.0 || r->options->stages > 0) {
+        dalcs_diag_add(&r->s->diag, DALCS_NOTE, NULL, NULL,
+                       "a tolerance and a number of stages have no effect with euler");
+    }
+}
+
+static enum dalcs_status choose_accuracy(struct dalcs_run *r) {
+    const struct dalcs_run_options *o = r->options;
+    const struct dalcs_circuit_options *netlist = &r->s->circuit.options;
+    if (o->tolerance != 0.0 &&
+        !(o->tolerance >= DALCS_TOLERANCE_MIN && o->tolerance <= DALCS_TOLERANCE_MAX)) {
+        dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, NULL,
+                       "the tolerance must lie between %g and %g", DALCS_TOLERANCE_MIN,
+                       DALCS_TOLERANCE_MAX);
+        return DALCS_E_OPTION;
+    }
+    if (o->stages != 0 && o->stages != 1 && o->stages != 3 && o->stages != 5 && o->stages != 7) {
+        return option_error(r->s, "the number of stages must be 1, 3, 5 or 7");
+    }
+    r->tolerance = o->tolerance > 0.0      ? o->tolerance
+                   : netlist->reltol > 0.0 ? netlist->reltol
+                                           : USUAL_TOLERANCE;
+    r->abstol = netlist->abstol;
+    r->vntol = netlist->vntol;
+    r->stages = o->stages > 0 ? o->stages : netlist->stages;
+    if (r->method == DALCS_METHOD_EULER) {
+        note_unused_accuracy(r);
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status check_output_times(struct dalcs_session *s,
+                                            const struct dalcs_run_options *o) {
+    const struct dalcs_transient *t = &s->circuit.transient;
+    for (size_t k = 0; o->at != NULL && k < o->n_at; k++) {
+        if (!(o->at[k] >= (k > 0 ? o->at[k - 1] : 0.0)) || !isfinite(o->at[k])) {
+            return option_error(s, "output times must be ascending and not negative");
+        }
+        if (t->present && o->at[k] > t->stop) {
+            return option_error(s, "output times must not come after the stop time");
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status choose_compression(struct dalcs_run *r) {
+    const struct dalcs_run_options *o = r->options;
+    const struct dalcs_circuit_options *netlist = &r->s->circuit.options;
+    if (o->compress != 0.0 && !(o->compress > 0.0 && o->compress < 1.0)) {
+        return option_error(r->s, "compress must be greater than 0 and less than 1");
+    }
+    if (o->compress > 0.0 && o->at != NULL) {
+        return option_error(r->s, "compress leaves rows out, output times ask for each of theirs: "
+                                  "it is one or the other");
+    }
+    r->compress = o->compress > 0.0 ? o->compress : netlist->compress;
+    if (r->compress > 0.0 && o->at != NULL) {
+        dalcs_diag_add(&r->s->diag, DALCS_NOTE, &netlist->compress_where, NULL,
+                       "compress has no effect: every output time asked for gets its row");
+        r->compress = 0.0;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status check_tolerances(struct dalcs_session *s,
+                                          const struct dalcs_run_options *o) {
+    bool positive = o->certificate_tolerance > 0.0 && o->max_outer > 0 && o->max_pivots > 0;
+    for (int k = 0; k < 3; k++) {
+        positive = positive && o->proximal_weight[k] > 0.0 && o->proximal_weight[k] < 1.0;
+    }
+    if (!positive || !(o->certificate_tolerance < 1.0) || !(o->rcond_min >= 0.0) ||
+        !(o->rcond_min < 1.0) || o->dense_limit < 0) {
+        return option_error(s, "tolerances and limits must be positive, tolerances less than 1");
+    }
+    return DALCS_OK;
+}
+
+/* Does the next step depend on the one before? */
+static bool has_memory(const struct dalcs_network *n) {
+    bool found = false;
+    for (int k = 0; k < n->n_systems && !found; k++) {
+        found = n->system[k].n_x > 0;
+        for (int d = 0; d < n->system[k].n_pairs && !found; d++) {
+            const struct dalcs_pair *p = &n->system[k].pair[d];
+            found = p->kind == DALCS_PAIR_SWITCH && p->turn_on != p->turn_off;
+        }
+    }
+    return found;
+}
+
+static enum dalcs_status choose_step(struct dalcs_run *r) {
+    struct dalcs_session *s = r->s;
+    const struct dalcs_transient *t = &s->circuit.transient;
+    const double given = r->options->step;
+    if (!(given >= 0.0) || !isfinite(given)) {
+        return option_error(s, "the step must be positive");
+    }
+    if (!t->present) {
+        return DALCS_OK;
+    }
+    if (given > t->stop) {
+        return option_error(s, "the step is longer than the run");
+    }
+    const double asked = given > 0.0 ? given : s->circuit.options.step;
+    if (asked > 0.0) {
+        r->h = asked;
+    } else if (t->max_step > 0.0 && (t->step == 0.0 || has_memory(&s->network))) {
+        r->h = t->max_step;
+    } else { /* without memory only the times that are printed matter */
+        r->h = t->step > 0.0 ? t->step : t->stop / 1000.0;
+    }
+    r->fixed_step = r->method == DALCS_METHOD_RADAU ? asked : 0.0;
+    r->max_step = asked > 0.0 ? asked : t->max_step;
+    double least = r->h;
+    if (r->method != DALCS_METHOD_EULER && r->max_step > 0.0) {
+        least = fmin(least, r->max_step);
+    }
+    if (t->stop / least > MOST_STEPS) {
+        return option_error(s,
+                            "the step is too small for the stop time: times would not be distinct");
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_run_choose(struct dalcs_run *r) {
+    DALCS_TRY(choose_method(r));
+    r->s->report.method = METHODS[r->method];
+    DALCS_TRY(choose_accuracy(r));
+    r->s->report.tolerance = r->method == DALCS_METHOD_EULER ? 0.0 : r->tolerance;
+    DALCS_TRY(check_output_times(r->s, r->options));
+    DALCS_TRY(choose_compression(r));
+    DALCS_TRY(check_tolerances(r->s, r->options));
+    r->osnsp = dalcs_osnsp_options_of(r->options);
+    return choose_step(r);
+}
