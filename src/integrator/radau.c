@@ -131,6 +131,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->longest = dalcs_segment_longest(r, part);
     double first = fmin(part->longest, r->options.stop / FIRST_STEPS);
     part->level = -ilogb(first);
+    part->patience = 8;
     return DALCS_OK;
 }
 

@@ -49,7 +49,8 @@ struct dalcs_radau_part {
     double t_end;
     enum dalcs_radau_end why;
     int level;      /* h = 2^-level */
-    int may_grow;   /* steps until a longer one is tried again after a failure */
+    int waited, patience; /* steps since the length changed; until a longer one is tried anyhow */
+    bool grew;            /* the present length is such a try */
     double longest; /* s, step worth trying */
     int tries;      /* falls back to implicit Euler in a row */
     bool fresh;     /* something just happened at t: nothing is known of how pairs start */

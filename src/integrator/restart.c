@@ -79,25 +79,27 @@ static double jump_energy(const struct dalcs_system *s, const double *before, co
     return energy;
 }
 
-/* The states after the micro-steps y1 and y2; is it a jump? */
-static bool extrapolate(const struct dalcs_radau *r, struct dalcs_radau_part *part, double *after,
-                        bool *noticeable) {
+/* The states just after part->t from the micro-steps y1 and y2. Does any jump, and by more than the
+ * error that the state of an event has? A fast transient moves in both micro-steps and is left to be
+ * stepped through. */
+static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                        double *after, bool *noticeable) {
     const struct dalcs_system *s = part->component->system;
     double largest[2] = {part->unit_scale[0], part->unit_scale[1]};
     for (int x = 0; x < s->n_x; x++) {
         int of = s->column_is_current[x];
         largest[of] = fmax(largest[of], fmax(fabs(part->x[x]), fabs(part->y1[x])));
     }
+    double smallest = fmax(1e3 * r->inner_tolerance, 1e-9);
     bool jumps = false;
     *noticeable = false;
     for (int x = 0; x < s->n_x; x++) {
         double first = fabs(part->y1[x] - part->x[x]);
         double second = fabs(part->y2[x] - part->y1[x]);
-        double scale = largest[s->column_is_current[x]];
-        bool moved = first > jump_ratio * second && first > 1e-14 * scale;
+        bool moved = first > jump_ratio * second;
         jumps = jumps || moved;
-        *noticeable =
-            *noticeable || (moved && first > fmax(1e3 * r->inner_tolerance, 1e-9) * scale);
+        *noticeable = *noticeable ||
+                      (moved && first > smallest * largest[s->column_is_current[x]]);
         after[x] = 2.0 * part->y1[x] - part->y2[x];
     }
     return jumps;

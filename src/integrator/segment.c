@@ -15,7 +15,7 @@ static const double band_over_tolerance = 10.0;
 static const double noise = 2e-13;
 
 /* No column is known better than this part of what would balance the largest of the others. */
-static const double rounding_part = 4e-15;
+static const double rounding_part = 2e-14;
 
 /* The error estimate may be this much smaller before the step is doubled. */
 static const double safety = 0.8;
@@ -23,7 +23,12 @@ static const double safety = 0.8;
 #include <stdio.h>
 #include <stdlib.h>
 #define DBG(...) do { if (getenv("DALCS_D")) { fprintf(stderr, __VA_ARGS__); } } while (0)
-enum { MOST_RUNGS = 6, PIVOTS = 12, MOST_RESTARTS = 4, CROWD = 40 };
+static const double most_tolerated = 2e-13;
+
+/* Defects of a state, over what is allowed, that interpolation may leave; more is a jump. */
+static const double most_projected = 1e4;
+
+enum { LEAST_PATIENCE = 8, MOST_PATIENCE = 1024, STUCK = 3, PROJECTION = 30, MOST_RUNGS = 6, PIVOTS = 12, MOST_RESTARTS = 4, CROWD = 40 };
 
 /* The wildest step over the shortest period of a source, by stages: fewer nodes see less. */
 static double most_periods(int stages) {
@@ -83,12 +88,13 @@ static void find_scales(const struct dalcs_radau_part *part, double end, double 
 /* The estimated error over what is allowed. */
 static double error_of(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                        const struct dalcs_stage_entry *entry, double end, double *size,
-                       double *unit) {
+                       double *unit, double *of_unit) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const double besides[2] = {r->options.vntol, r->options.abstol};
     find_scales(part, end, size, unit);
     double worst = 0.0;
+    *of_unit = 0.0;
     double tolerance = r->inner_tolerance;
     int n_equations = dalcs_system_n_equations(s);
     const double *natural = dalcs_stage_natural_units(entry);
@@ -112,6 +118,7 @@ static double error_of(const struct dalcs_radau *r, const struct dalcs_radau_par
             error / (tolerance * scale + rounding * natural[c] + 0.1 * besides[of]);
         if (getenv("DALCS_D") && ratio > 0.5) fprintf(stderr," [%s col%d x=%d err=%g scale=%g unit=%g]", s->column[c].element, c, c<s->n_x, error, scale, unit[of]);
         worst = ratio > worst || ratio != ratio ? ratio : worst;
+        *of_unit = ratio > 1.0 ? fmax(*of_unit, error / unit[of]) : *of_unit;
     }
     return worst;
 }
@@ -124,6 +131,38 @@ static enum dalcs_status solve_step(struct dalcs_radau_part *part,
     part->in[s->n_x] = 1.0;
     dalcs_excitation_coefficients(&part->excitation, part->t, part->h, part->in + s->n_x + 1);
     return dalcs_stages_apply(&part->stages, *entry, part->in, part->out);
+}
+
+/* Puts a state that is a little off, as interpolation leaves it at an event, on what its mode allows:
+ * that is where the stages of a step in the mode are, here so short a step that only such a defect
+ * moves the state, and where their polynomial starts. */
+static enum dalcs_status project(struct dalcs_radau_part *part, double limit, bool *moved) {
+    const struct dalcs_collocation *m = &part->stages.method;
+    int n_x = part->component->system->n_x;
+    int stride = part->stages.layout.stride;
+    struct dalcs_stage_entry *entry;
+    *moved = false;
+    part->h = dalcs_radau_ladder((part->level & ~7) + PROJECTION);
+    if (n_x == 0 || part->h > limit - part->t) {
+        return DALCS_OK;
+    }
+    enum dalcs_status status = solve_step(part, &entry);
+    if (status != DALCS_OK) {
+        return status < DALCS_OK ? status : DALCS_OK;
+    }
+    for (int x = 0; x < n_x; x++) {
+        part->after[x] = 0.0;
+        for (int i = 1; i <= m->s; i++) {
+            part->after[x] += m->back[i - 1] * part->out[i * stride + x];
+        }
+        double defect = fabs(part->after[x] - part->x[x]);
+        double regular = fabs(part->out[m->s * stride + x] - part->after[x]);
+        *moved = *moved || defect > 4.0 * regular;
+    }
+    if (*moved) {
+        memcpy(part->x, part->after, (size_t)n_x * sizeof(double));
+    }
+    return DALCS_OK;
 }
 
 /* Sources that disagree in a singular mode: it cannot be this one. */
@@ -201,6 +240,8 @@ static double find_crossing(const struct dalcs_radau *r, struct dalcs_radau_part
     int n_guards = part->component->system->n_pairs + part->stages.n_watched;
     double first = INFINITY;
     double together = fmax(1e-13, 2.0 * r->resolution / part->h);
+    /* What crosses at the stop time, up to the error, is left to a longer run. */
+    bool last = end <= 1.0 && part->t + end * part->h >= r->options.stop - r->resolution;
     part->n_crossed = 0;
     *at_once = false;
     for (int g = 0; g < n_guards; g++) {
@@ -211,7 +252,7 @@ static double find_crossing(const struct dalcs_radau *r, struct dalcs_radau_part
             continue;
         }
         double scale = guard_scale(part, g, unit);
-        double depth = (part->armed[g] ? noise : band_of(r)) * scale;
+        double depth = (part->armed[g] && !last ? noise : band_of(r)) * scale;
         struct dalcs_crossing c =
             dalcs_crossing_find(&part->stages.method, value, stride, end, depth);
         if (!c.falls || c.theta > first + together) {
@@ -279,10 +320,27 @@ static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_par
     return dalcs_radau_euler_step(r, part, fmin(h, limit - part->t));
 }
 
+/* A longer step next time if the error promises it, or, as errors near rounding promise nothing, now
+ * and then to see. */
+static void grow(struct dalcs_radau_part *part, bool promising) {
+    part->waited++;
+    part->grew = false;
+    bool ready = promising ? part->waited > 1 : part->waited > part->patience;
+    if (ready && dalcs_radau_ladder(part->level - 1) <= part->longest) {
+        part->level--;
+        part->waited = 0;
+        part->grew = true;
+    }
+}
+
 enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     double limit = dalcs_radau_limit(r, part);
     int stages = part->stages.method.s;
-    int lowest = part->level + 40;
+    int first_level = part->level;
+    double before = INFINITY;
+    double tolerated = 1.0;
+    int stuck = 0;
+    bool projected = false;
     int restarts = 0;
     int pivots = 0;
     bool fixed = r->options.fixed_step > 0.0;
@@ -302,22 +360,48 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
         DBG("p%d t=%.12g h=%g mode=%lx fresh=%d st=%d", part->index, part->t, part->h, part->component->osnsp.n_words ? (long)part->component->osnsp.mode[0] : 0, part->fresh, (int)status);
         double unit[2];
         double ratio = INFINITY;
+        double of_unit = INFINITY;
         if (status == DALCS_OK) {
-            ratio = error_of(r, part, entry, end, part->y1, unit);
+            ratio = error_of(r, part, entry, end, part->y1, unit, &of_unit);
         }
         DBG(" err=%g clash=%d x=", ratio, clashes(part, entry, end, unit)); for (int q=0;q<part->component->system->n_x;q++) DBG(" %.9g",part->x[q]); DBG("\n");
-        if (status != DALCS_OK || clashes(part, entry, end, unit) || (!fixed && !(ratio <= 1.0)) ||
+        if (status != DALCS_OK || clashes(part, entry, end, unit) || (!(ratio <= tolerated) && (!fixed || (part->fresh && restarts == 0))) ||
             ratio != ratio) {
-            if (part->fresh && restarts == 0) {
+            bool small = ratio < most_projected;
+            if (part->fresh && restarts == 0 && (!small || stuck >= STUCK)) {
                 DALCS_TRY(dalcs_radau_restart(r, part, restarts++));
+                part->level = fixed ? part->level : first_level;
+                stuck = 0;
+                before = INFINITY;
                 continue;
             }
+            if (small && !fixed && !projected) {
+                bool moved;
+                projected = true;
+                DALCS_TRY(project(part, limit, &moved));
+                if (moved) {
+                    continue;
+                }
+            }
             r->rejected++;
-            if (fixed || part->level >= lowest) {
-                return fall_back(r, part, limit, 0);
+            /* An error that does not shrink with the step is what the state is off by, from an event
+             * or by rounding: a smaller step would not mend it. */
+            stuck = ratio > 0.3 * before ? stuck + 1 : 0;
+            before = ratio;
+            if (stuck >= STUCK && of_unit < most_tolerated && tolerated == 1.0) {
+                tolerated = 4.0 * ratio;
+                part->level = first_level;
+                continue;
+            }
+            if (fixed || part->h < 64.0 * r->resolution) {
+                part->level = first_level;
+                return fall_back(r, part, limit, part->tries++);
             }
             part->level += rungs_for(ratio, stages) < 1 ? 1 : rungs_for(ratio, stages);
-            part->may_grow = 2;
+            part->patience = part->grew ? 2 * part->patience : LEAST_PATIENCE;
+            part->patience = part->patience < MOST_PATIENCE ? part->patience : MOST_PATIENCE;
+            part->waited = 0;
+            part->grew = false;
             continue;
         }
         if (part->fresh) {
@@ -340,11 +424,8 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
         part->tries = 0;
         accept(r, part, fmin(theta, end), limit, unit);
         part->fresh = false;
-        if (!fixed && part->may_grow > 0) {
-            part->may_grow--;
-        } else if (!fixed && theta >= 1.0 && ratio * ldexp(1.0, stages + 1) < safety &&
-                   dalcs_radau_ladder(part->level - 1) <= part->longest) {
-            part->level--;
+        if (!fixed && theta >= 1.0) {
+            grow(part, ratio * ldexp(1.0, stages + 1) < safety);
         }
         return DALCS_OK;
     }
