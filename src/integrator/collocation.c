@@ -199,16 +199,22 @@ static void diagonalise(struct dalcs_collocation *c, real A[MAX][MAX]) {
             complex_real back = left[i] / of_one;
             complex_real forth = right[i] * of_one / product;
             if (is_real) {
+                c->exact_from[i] = creall(back);
+                c->exact_to[i] = creall(forth);
                 c->from[i] = (double)creall(back);
                 c->to[i] = (double)creall(forth);
             } else {
+                c->exact_from_pair[c->n_pairs][i] = back;
+                c->exact_to_pair[i][c->n_pairs] = forth;
                 c->from_pair[c->n_pairs][i] = (double complex)back;
                 c->to_pair[i][c->n_pairs] = (double complex)forth;
             }
         }
         if (is_real) {
+            c->exact_lambda = creall(mu[k]);
             c->lambda = (double)creall(mu[k]);
         } else {
+            c->exact_mu[c->n_pairs] = mu[k];
             c->mu[c->n_pairs++] = (double complex)mu[k];
         }
     }

@@ -29,6 +29,12 @@ struct dalcs_collocation {
     double to[DALCS_MAX_STAGES], from[DALCS_MAX_STAGES];
     double complex to_pair[DALCS_MAX_STAGES][DALCS_MAX_CONJUGATES];
     double complex from_pair[DALCS_MAX_CONJUGATES][DALCS_MAX_STAGES];
+
+    /* the same with the digits that their large elements (25 for s = 5, 300 for s = 7) cost */
+    long double exact_lambda, exact_to[DALCS_MAX_STAGES], exact_from[DALCS_MAX_STAGES];
+    long double complex exact_mu[DALCS_MAX_CONJUGATES];
+    long double complex exact_to_pair[DALCS_MAX_STAGES][DALCS_MAX_CONJUGATES];
+    long double complex exact_from_pair[DALCS_MAX_CONJUGATES][DALCS_MAX_STAGES];
     double barycentric[DALCS_MAX_NODES]; /* weights of all s + 1 nodes */
     double back[DALCS_MAX_STAGES];       /* value at 0 of the polynomial through the stages alone */
     double test_node;                    /* where polynomials on all nodes are worst */

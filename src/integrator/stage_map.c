@@ -3,9 +3,10 @@
  * Unknowns are the increments of the states over x_0, z, and lambda of the closed pairs. For each
  * eigenvalue mu the matrix is
  *     S = [mu/h P - A; C_on],     right-hand sides [A; -C_on] x_0 + [E; -F_on] s,
- * balanced by powers of 2 and factored by LAPACK. Columns of the map are combinations of the few
+ * balanced by powers of 2 and solved in extended precision. Columns of the map are combinations of the few
  * solutions for unit states and unit inputs. */
 #include "dense_map.h"
+#include "extended.h"
 #include "stages_internal.h"
 
 #include <float.h>
@@ -30,11 +31,11 @@ struct builder {
     double *base;                     /* [n][n] balanced S without P */
     double *P;                        /* [n_x][n_x] balanced */
     double *rhs;                      /* [n][n_rhs] balanced: unit states, constants, unit waves */
-    double *S;                        /* [n][n] factors of the real one */
-    double *real;                     /* [n][n_rhs] solutions */
-    double complex *Z;                /* [n][n] */
-    double complex *pair[DALCS_MAX_CONJUGATES]; /* [n][n_rhs] solutions */
-    lapack_int *pivot;                          /* [n] */
+    double *S;                        /* [n][n] the real one, balanced */
+    long double *re, *im;             /* [n][n + n_rhs] a system by rows, then its solutions */
+    long double *real;                /* [n_rhs][n] solutions of the real one */
+    long double *pair_re[DALCS_MAX_CONJUGATES]; /* [n_rhs][n] of the complex ones */
+    long double *pair_im[DALCS_MAX_CONJUGATES];
     int nullity;
     double *left, *right; /* [n][nullity] null vectors, balanced */
     double *choice;       /* [nullity][n_pairs] what the other sides of pairs add of them */
@@ -49,28 +50,31 @@ static double *reals(struct builder *b, int n) {
     return dalcs_arena_alloc(&b->arena, (size_t)(n > 0 ? n : 1), sizeof(double));
 }
 
+static long double *extendeds(struct builder *b, int n) {
+    return dalcs_arena_alloc(&b->arena, (size_t)(n > 0 ? n : 1), sizeof(long double));
+}
+
 static bool allocate(struct builder *b) {
-    size_t n = (size_t)b->n;
-    size_t n_rhs = (size_t)b->n_rhs;
     b->row_scale = reals(b, b->n);
     b->column_scale = reals(b, b->n);
     b->base = reals(b, b->n * b->n);
     b->P = reals(b, b->n_x * b->n_x);
     b->rhs = reals(b, b->n * b->n_rhs);
     b->S = reals(b, b->n * b->n);
-    b->real = reals(b, b->n * b->n_rhs);
-    b->Z = dalcs_arena_alloc(&b->arena, n * n + 1, sizeof(*b->Z));
-    b->pivot = dalcs_arena_alloc(&b->arena, n + 1, sizeof(*b->pivot));
+    b->re = extendeds(b, b->n * (b->n + b->n_rhs));
+    b->im = extendeds(b, b->n * (b->n + b->n_rhs));
+    b->real = extendeds(b, b->n * b->n_rhs);
     b->node = reals(b, b->n * b->stages->layout.n_nodes);
     b->guard = reals(b, b->system->n_pairs);
     b->drift = reals(b, b->n);
     bool complete = b->row_scale != NULL && b->column_scale != NULL && b->base != NULL &&
                     b->P != NULL && b->rhs != NULL && b->S != NULL && b->real != NULL &&
-                    b->Z != NULL && b->pivot != NULL && b->node != NULL && b->guard != NULL &&
+                    b->re != NULL && b->im != NULL && b->node != NULL && b->guard != NULL &&
                     b->drift != NULL;
     for (int p = 0; p < b->stages->method.n_pairs; p++) {
-        b->pair[p] = dalcs_arena_alloc(&b->arena, n * n_rhs + 1, sizeof(*b->pair[p]));
-        complete = complete && b->pair[p] != NULL;
+        b->pair_re[p] = extendeds(b, b->n * b->n_rhs);
+        b->pair_im[p] = extendeds(b, b->n * b->n_rhs);
+        complete = complete && b->pair_re[p] != NULL && b->pair_im[p] != NULL;
     }
     return complete;
 }
@@ -270,60 +274,55 @@ static double border(const struct builder *b, int i, int j) {
     return sum;
 }
 
-static double smallest_pivot(int n, const double *lu) {
-    double least = INFINITY;
+/* The system at sigma, with its right-hand sides. */
+static void fill_system(const struct builder *b, long double re, long double im) {
+    int n = b->n;
+    int width = n + b->n_rhs;
     for (int i = 0; i < n; i++) {
-        least = fmin(least, fabs(lu[i * n + i]));
+        for (int j = 0; j < width; j++) {
+            long double value = j < n ? b->base[j * n + i] : b->rhs[(j - n) * n + i];
+            long double imaginary = 0.0L;
+            if (i < b->n_x && j < b->n_x) {
+                value += re * b->P[j * b->n_x + i];
+                imaginary = im * b->P[j * b->n_x + i];
+            }
+            if (b->nullity > 0 && j < n) {
+                value += border(b, i, j);
+            }
+            b->re[i * width + j] = value;
+            b->im[i * width + j] = imaginary;
+        }
     }
-    return least;
+}
+
+static void take_solutions(const struct builder *b, const long double *from, long double *to) {
+    for (int j = 0; j < b->n_rhs; j++) {
+        for (int i = 0; i < b->n; i++) {
+            to[j * b->n + i] = from[i * (b->n + b->n_rhs) + b->n + j];
+        }
+    }
 }
 
 static enum dalcs_status solve_real(struct builder *b) {
-    int n = b->n;
-    memcpy(b->real, b->rhs, (size_t)n * (size_t)b->n_rhs * sizeof(double));
-    double *copy = (double *)b->Z;
-    memcpy(copy, b->S, (size_t)n * (size_t)n * sizeof(double));
-    lapack_int info = LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, b->S, n, b->pivot);
-    if (info != 0 || smallest_pivot(n, b->S) < doubtful_pivot) {
-        DALCS_TRY(find_null_space(b, copy));
-        for (int j = 0; j < n && b->nullity > 0; j++) {
-            for (int i = 0; i < n; i++) {
-                copy[j * n + i] += border(b, i, j);
-            }
-        }
-        memcpy(b->S, copy, (size_t)n * (size_t)n * sizeof(double));
-        info = LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, b->S, n, b->pivot);
-        if (info != 0) {
-            return DALCS_SINGULAR;
-        }
+    long double sigma = b->stages->method.exact_lambda / b->entry->h;
+    fill_system(b, sigma, 0.0L);
+    long double pivot = dalcs_extended_solve(b->n, b->n_rhs, b->re, NULL);
+    if (pivot < doubtful_pivot) {
+        DALCS_TRY(find_null_space(b, b->S));
+        fill_system(b, sigma, 0.0L);
+        pivot = dalcs_extended_solve(b->n, b->n_rhs, b->re, NULL);
     }
-    (void)LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', n, b->n_rhs, b->S, n, b->pivot, b->real, n);
-    return DALCS_OK;
+    take_solutions(b, b->re, b->real);
+    return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
 }
 
 static enum dalcs_status solve_pair(struct builder *b, int p) {
-    int n = b->n;
-    double complex sigma = b->stages->method.mu[p] / b->entry->h;
-    for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n; i++) {
-            b->Z[j * n + i] = b->base[j * n + i];
-            if (i < b->n_x && j < b->n_x) {
-                b->Z[j * n + i] += sigma * b->P[j * b->n_x + i];
-            }
-            if (b->nullity > 0) {
-                b->Z[j * n + i] += border(b, i, j);
-            }
-        }
-    }
-    for (int i = 0; i < n * b->n_rhs; i++) {
-        b->pair[p][i] = b->rhs[i];
-    }
-    lapack_int info = LAPACKE_zgetrf_work(LAPACK_COL_MAJOR, n, n, b->Z, n, b->pivot);
-    if (info != 0) {
-        return DALCS_SINGULAR;
-    }
-    (void)LAPACKE_zgetrs_work(LAPACK_COL_MAJOR, 'N', n, b->n_rhs, b->Z, n, b->pivot, b->pair[p], n);
-    return DALCS_OK;
+    long double complex sigma = b->stages->method.exact_mu[p] / b->entry->h;
+    fill_system(b, creall(sigma), cimagl(sigma));
+    long double pivot = dalcs_extended_solve(b->n, b->n_rhs, b->re, b->im);
+    take_solutions(b, b->re, b->pair_re[p]);
+    take_solutions(b, b->im, b->pair_im[p]);
+    return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
 }
 
 /* The other side of pair d: lambda where it is closed, w where it is open, from unknowns and from the
@@ -468,30 +467,35 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
     int n = b->n;
     int n_equations = dalcs_system_n_equations(s);
     bool is_state = column < b->n_x;
-    double weight = is_state ? 1.0 : 0.0;
-    double complex pair_weight[DALCS_MAX_CONJUGATES];
+    long double weight = is_state ? 1.0L : 0.0L;
+    long double complex pair_weight[DALCS_MAX_CONJUGATES];
     for (int q = 0; q < m->s; q++) {
-        weight += m->from[q] * share[q + 1];
+        weight += m->exact_from[q] * share[q + 1];
     }
     for (int p = 0; p < m->n_pairs; p++) {
-        pair_weight[p] = is_state ? 1.0 : 0.0;
+        pair_weight[p] = is_state ? 1.0L : 0.0L;
         for (int q = 0; q < m->s; q++) {
-            pair_weight[p] += m->from_pair[p][q] * share[q + 1];
+            pair_weight[p] += m->exact_from_pair[p][q] * share[q + 1];
         }
     }
-    const double *real = b->real + rhs_column * n;
+    const long double *real = b->real + rhs_column * n;
     for (int i = 1; i <= m->s; i++) {
         double *y = b->node + i * n;
-        for (int r = 0; r < n; r++) {
-            double sum = m->to[i - 1] * weight * real[r];
-            for (int p = 0; p < m->n_pairs; p++) {
-                double complex z = b->pair[p][rhs_column * n + r] * pair_weight[p];
-                sum += 2.0 * creal(m->to_pair[i - 1][p] * z);
-            }
-            y[r] = sum * b->column_scale[r];
+        long double real_factor = m->exact_to[i - 1] * weight;
+        long double re[DALCS_MAX_CONJUGATES];
+        long double im[DALCS_MAX_CONJUGATES];
+        for (int p = 0; p < m->n_pairs; p++) {
+            long double complex factor = m->exact_to_pair[i - 1][p] * pair_weight[p];
+            re[p] = 2.0L * creall(factor);
+            im[p] = 2.0L * cimagl(factor);
         }
-        if (is_state) {
-            y[column] += 1.0;
+        for (int r = 0; r < n; r++) {
+            int at = rhs_column * n + r;
+            long double sum = real_factor * real[r];
+            for (int p = 0; p < m->n_pairs; p++) {
+                sum += re[p] * b->pair_re[p][at] - im[p] * b->pair_im[p][at];
+            }
+            y[r] = (double)(sum * b->column_scale[r] + (is_state && r == column ? 1.0L : 0.0L));
         }
     }
     /* How far the polynomial through the stages alone misses the start, and what the filter makes
@@ -511,12 +515,12 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
     for (int x = 0; x < b->n_x; x++) {
         double missed = (x == column ? 1.0 : 0.0) - start[x];
         for (int r = 0; r < n; r++) {
-            b->drift[r] += b->real[x * n + r] * b->column_scale[r] * missed;
+            b->drift[r] += (double)b->real[x * n + r] * b->column_scale[r] * missed;
         }
         start[x] = x == column ? 1.0 : 0.0;
     }
     for (int r = 0; r < n && !is_state; r++) {
-        b->drift[r] += real[r] * b->column_scale[r] * source_drift;
+        b->drift[r] += (double)real[r] * b->column_scale[r] * source_drift;
     }
     for (int r = b->n_x; r < n; r++) {
         start[r] += b->drift[r];
@@ -537,7 +541,7 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
             missed -= m->test[k] * share[k];
         }
         for (int r = 0; r < n; r++) {
-            b->drift[r] = real[r] * b->column_scale[r] * missed * m->test_factor;
+            b->drift[r] = (double)real[r] * b->column_scale[r] * missed * m->test_factor;
         }
         find_guards(b, b->drift, rhs_column, missed);
         put_columns(b, b->drift, out + l->ripple);
