@@ -115,6 +115,11 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
     struct dalcs_crossing found = {.falls = false};
     double b[DALCS_MAX_NODES] = {0.0};
     double least = INFINITY;
+    double largest = 0.0;
+    for (int k = 0; k < n; k++) {
+        largest = fmax(largest, fabs(value[k * stride]));
+    }
+    depth = fmax(depth, 4.0 * DBL_EPSILON * (1.0 + c->bernstein_spread) * largest);
     for (int i = 0; i < n; i++) {
         double sum = 0.0;
         for (int k = 0; k < n; k++) {

@@ -317,6 +317,7 @@ static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_par
     double h = dalcs_radau_ladder(part->level + 14);
     h = fmax(ldexp(h, tries), 64.0 * r->resolution);
     r->euler_steps++;
+    DBG("FALLBACK h=%g tries=%d\n", h, tries);
     return dalcs_radau_euler_step(r, part, fmin(h, limit - part->t));
 }
 
@@ -393,7 +394,7 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
                 part->level = first_level;
                 continue;
             }
-            if (fixed || part->h < 64.0 * r->resolution) {
+            if (fixed || dalcs_radau_ladder(part->level) < 64.0 * r->resolution) {
                 part->level = first_level;
                 return fall_back(r, part, limit, part->tries++);
             }
