@@ -303,6 +303,7 @@ void dalcs_collocation_init(struct dalcs_collocation *c, int s) {
     real value[MAX];
     lagrange(s, node + 1, 0.0L, value);
     for (int i = 0; i < s; i++) {
+        c->exact_back[i] = value[i];
         c->back[i] = (double)value[i];
     }
     choose_test_node(c, node);

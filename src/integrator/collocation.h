@@ -31,6 +31,7 @@ struct dalcs_collocation {
     double complex from_pair[DALCS_MAX_CONJUGATES][DALCS_MAX_STAGES];
 
     /* the same with the digits that their large elements (25 for s = 5, 300 for s = 7) cost */
+    long double exact_back[DALCS_MAX_STAGES];
     long double exact_lambda, exact_to[DALCS_MAX_STAGES], exact_from[DALCS_MAX_STAGES];
     long double complex exact_mu[DALCS_MAX_CONJUGATES];
     long double complex exact_to_pair[DALCS_MAX_STAGES][DALCS_MAX_CONJUGATES];

@@ -39,19 +39,6 @@ double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_p
     return fmin(fmin(part->excitation.next_edge, part->commands.next), r->options.stop);
 }
 
-/* Terms of the equations that no column shows, such as currents of resistors, tell what a current or
- * voltage is here. */
-static void find_terms(const struct dalcs_system *s, const double *y, double *unit) {
-    for (int r = 0; r < dalcs_system_n_equations(s); r++) {
-        double *of = &unit[s->row_is_current[r] ? 1 : 0];
-        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
-            if (s->A.j[k] < dalcs_system_n_equations(s)) {
-                *of = fmax(*of, fabs(s->A.x[k] * y[s->A.j[k]]));
-            }
-        }
-    }
-}
-
 /* Largest magnitudes of the answer up to `end`, with what is known from before: to[n_columns], and by
  * unit. */
 static void find_scales(const struct dalcs_radau_part *part, double end, double *to, double *unit) {
@@ -76,9 +63,6 @@ static void find_scales(const struct dalcs_radau_part *part, double end, double 
     for (int c = 0; c < n_equations; c++) {
         int of = s->column_is_current[c];
         unit[of] = to[c] > unit[of] ? to[c] : unit[of];
-    }
-    if (part->fresh) {
-        find_terms(s, part->out, unit);
     }
     double volt = unit[0];
     unit[0] = fmax(unit[0], part->cross[0] * unit[1]);
@@ -262,6 +246,7 @@ static double find_crossing(const struct dalcs_radau *r, struct dalcs_radau_part
             part->n_crossed = 0;
             *at_once = false;
         }
+        DBG("   g%d depth=%g end=%g vals", g, depth, end); for (int q=0;q<part->stages.layout.n_nodes;q++) DBG(" %g", value[q*stride]); DBG("\n");
         first = fmin(first, c.theta);
         *at_once = *at_once || (c.at_once && !part->armed[g]);
         part->crossed[part->n_crossed++] = g;

@@ -39,10 +39,11 @@ struct builder {
     int nullity;
     double *left, *right; /* [n][nullity] null vectors, balanced */
     double *choice;       /* [nullity][n_pairs] what the other sides of pairs add of them */
-    double *unit;         /* [n] the answer at one node */
-    double *node;         /* [s + 1][n] */
+    double *node;         /* [s + 1][n] the answer at the nodes */
+    long double *exact;   /* [s + 1][n] the same before rounding */
     double *guard;        /* [n_pairs] */
     double *drift;        /* [n] */
+    long double *defect;  /* [n] the same before rounding */
     struct dalcs_arena arena;
 };
 
@@ -65,12 +66,14 @@ static bool allocate(struct builder *b) {
     b->im = extendeds(b, b->n * (b->n + b->n_rhs));
     b->real = extendeds(b, b->n * b->n_rhs);
     b->node = reals(b, b->n * b->stages->layout.n_nodes);
+    b->exact = extendeds(b, b->n * b->stages->layout.n_nodes);
+    b->defect = extendeds(b, b->n);
     b->guard = reals(b, b->system->n_pairs);
     b->drift = reals(b, b->n);
     bool complete = b->row_scale != NULL && b->column_scale != NULL && b->base != NULL &&
                     b->P != NULL && b->rhs != NULL && b->S != NULL && b->real != NULL &&
                     b->re != NULL && b->im != NULL && b->node != NULL && b->guard != NULL &&
-                    b->drift != NULL;
+                    b->drift != NULL && b->exact != NULL && b->defect != NULL;
     for (int p = 0; p < b->stages->method.n_pairs; p++) {
         b->pair_re[p] = extendeds(b, b->n * b->n_rhs);
         b->pair_im[p] = extendeds(b, b->n * b->n_rhs);
@@ -480,7 +483,7 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
     }
     const long double *real = b->real + rhs_column * n;
     for (int i = 1; i <= m->s; i++) {
-        double *y = b->node + i * n;
+        long double *y = b->exact + i * n;
         long double real_factor = m->exact_to[i - 1] * weight;
         long double re[DALCS_MAX_CONJUGATES];
         long double im[DALCS_MAX_CONJUGATES];
@@ -495,35 +498,37 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
             for (int p = 0; p < m->n_pairs; p++) {
                 sum += re[p] * b->pair_re[p][at] - im[p] * b->pair_im[p][at];
             }
-            y[r] = (double)(sum * b->column_scale[r] + (is_state && r == column ? 1.0L : 0.0L));
+            y[r] = sum * b->column_scale[r] + (is_state && r == column ? 1.0L : 0.0L);
         }
     }
     /* How far the polynomial through the stages alone misses the start, and what the filter makes
      * of it. */
-    double source_drift = share[0];
+    long double source_drift = share[0];
     for (int i = 1; i <= m->s; i++) {
-        source_drift -= m->back[i - 1] * share[i];
+        source_drift -= m->exact_back[i - 1] * share[i];
     }
-    memset(b->drift, 0, (size_t)n * sizeof(double));
-    double *start = b->node;
+    long double *start = b->exact;
     for (int r = 0; r < n; r++) {
-        start[r] = 0.0;
+        start[r] = 0.0L;
         for (int i = 1; i <= m->s; i++) {
-            start[r] += m->back[i - 1] * b->node[i * n + r];
+            start[r] += m->exact_back[i - 1] * b->exact[i * n + r];
         }
+        b->defect[r] = is_state ? 0.0L : real[r] * source_drift;
     }
     for (int x = 0; x < b->n_x; x++) {
-        double missed = (x == column ? 1.0 : 0.0) - start[x];
-        for (int r = 0; r < n; r++) {
-            b->drift[r] += (double)b->real[x * n + r] * b->column_scale[r] * missed;
+        long double missed = (x == column ? 1.0L : 0.0L) - start[x];
+        for (int r = 0; r < n && missed != 0.0L; r++) {
+            b->defect[r] += b->real[x * n + r] * missed;
         }
-        start[x] = x == column ? 1.0 : 0.0;
+        start[x] = x == column ? 1.0L : 0.0L;
     }
-    for (int r = 0; r < n && !is_state; r++) {
-        b->drift[r] += (double)real[r] * b->column_scale[r] * source_drift;
+    for (int r = 0; r < n; r++) {
+        b->defect[r] *= b->column_scale[r];
+        b->drift[r] = (double)b->defect[r];
+        start[r] += r < b->n_x ? 0.0L : b->defect[r];
     }
-    for (int r = b->n_x; r < n; r++) {
-        start[r] += b->drift[r];
+    for (int i = 0; i < (m->s + 1) * n; i++) {
+        b->node[i] = (double)b->exact[i];
     }
     for (int k = 0; k <= m->s; k++) {
         double *columns = out + k * l->stride;
