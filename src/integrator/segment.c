@@ -186,6 +186,21 @@ static const double *guard_values(const struct dalcs_radau_part *part, int guard
     return work;
 }
 
+/* The largest values of the whole step, which may go past the end of the segment: what its
+ * polynomials are off by goes with these. */
+static void find_reach(const struct dalcs_radau_part *part, const double *unit, double *reach) {
+    const struct dalcs_system *s = part->component->system;
+    reach[0] = unit[0];
+    reach[1] = unit[1];
+    for (int k = 0; k < part->stages.layout.n_nodes; k++) {
+        const double *y = part->out + k * part->stages.layout.stride;
+        for (int c = 0; c < dalcs_system_n_equations(s); c++) {
+            int of = s->column_is_current[c];
+            reach[of] = fmax(reach[of], fabs(y[c]));
+        }
+    }
+}
+
 static double guard_scale(const struct dalcs_radau_part *part, int guard, const double *unit) {
     const struct dalcs_system *s = part->component->system;
     bool is_current = guard < s->n_pairs && dalcs_osnsp_is_on(&part->component->osnsp, guard);
@@ -354,7 +369,7 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
         if (status != DALCS_OK || clashes(part, entry, end, unit) || (!(ratio <= tolerated) && (!fixed || (part->fresh && restarts == 0))) ||
             ratio != ratio) {
             bool small = ratio < most_projected;
-            if (part->fresh && restarts == 0 && (!small || stuck >= STUCK)) {
+            if (part->fresh && restarts == 0) {
                 DALCS_TRY(dalcs_radau_restart(r, part, restarts++));
                 part->level = fixed ? part->level : first_level;
                 stuck = 0;
@@ -390,11 +405,13 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
             part->grew = false;
             continue;
         }
+        double reach[2];
+        find_reach(part, unit, reach);
         if (part->fresh) {
-            arm(r, part, 0.0, unit);
+            arm(r, part, 0.0, reach);
         }
         bool at_once;
-        double theta = find_crossing(r, part, end, unit, &at_once);
+        double theta = find_crossing(r, part, end, reach, &at_once);
         if (part->n_crossed) { DBG("  cross theta=%g at_once=%d armed=%d:", theta, at_once, part->armed[part->crossed[0]]); for (int q=0;q<part->n_crossed;q++) DBG(" %d", part->crossed[q]); DBG("\n"); }
         if (at_once && part->fresh) {
             if (restarts < MOST_RESTARTS && pivots == 0) {
