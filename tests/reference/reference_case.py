@@ -17,9 +17,10 @@ tolerance of 1e-9 are held against the rows, none of which is nearer to an event
 stop time: an event that comes late by less does not hide in a row, nor does it spoil one.
 
 Events must be the exact ones, in number and order, at each tolerance from 1e-3 to 1e-10. Their times
-are exact to the tolerance times the stop time, and to 1e-11 of it from 1e-9 on: a waveform error of
-1e-9 moves a crossing of a sine by 1e-9/(2 pi) of its period, of which most runs here have several.
-Two whose exact times differ by less may come in either order.
+are exact to ten times the tolerance times the stop time, for a current may come down to zero slowly;
+and to 1e-11 of the stop time from 1e-9 on: a waveform error of 1e-9 moves a crossing of a sine by
+1e-9/(2 pi) of its period, of which most runs here have several. Two whose exact times differ by less
+may come in either order. One at the very end may come or not.
 """
 
 import json
@@ -34,6 +35,7 @@ from dalcs_program import Checker, run  # noqa: E402
 DEFAULT = 1e-6
 FINE = 1e-9          # the tolerance whose rows and event times are compared closely
 FINE_TIME = 1e-11    # of the stop time
+SLOW = 10
 CERTIFIED = 2e-13
 TOLERANCES = [10.0 ** -k for k in range(3, 11)]
 
@@ -71,8 +73,10 @@ def found_events(case, result):
 def compare_events(checker, case, result, tolerance, label):
     """Number, order and times of events; returns the worst error in time over the stop time."""
     stop, found = case["stop"], found_events(case, result)
-    slack = FINE_TIME * stop if tolerance <= FINE else tolerance * stop
+    slack = FINE_TIME * stop if tolerance <= FINE else SLOW * tolerance * stop
     wanted = [event for event in case["events"] if event[0] > 0]
+    while len(found) > len(wanted) and found[-1][0] >= stop - slack:
+        found.pop()
     checker.check(len(found) == len(wanted),
                   f"{label}: {len(found)} events, not {len(wanted)}")
     # The k-th event of an element is the k-th one of the exact solution. When each comes at its
