@@ -26,7 +26,7 @@ from dalcs_program import Checker, run  # noqa: E402
 STAGES = (1, 3, 5, 7)
 BELOW, ABOVE = 0.5, 0.7
 SMALLEST, LARGEST = 1e-13, 3e-2
-NEIGHBOURS = 4  # runs for each rung of a circuit with events, whose error depends on where they fall
+NEIGHBOURS = 4  # runs for a rung of a circuit with events: its error depends on where they fall
 SAMPLED = 400  # steps, of a run that has many
 BETWEEN = [(k + 0.5) / 10 for k in range(10)]  # of a step
 
@@ -173,7 +173,7 @@ R1 out 0 100
 
 
 class Relaxation:
-    """A capacitor between two thresholds of a switch: an event that is late moves all that follows."""
+    """A capacitor between two thresholds of a switch: a late event moves all that follows."""
 
     NETLIST = """A relaxation oscillator
 V1 in 0 10
@@ -186,8 +186,8 @@ R2 d 0 1k
 .end
 """
     stop = 5e-3
-    steps = {1: (4000, 8000, 16000, 32000), 3: (100, 140, 200, 280, 400), 5: (50, 70, 100, 140, 200),
-             7: (32, 44, 60, 84, 120)}
+    steps = {1: (4000, 8000, 16000, 32000), 3: (100, 140, 200, 280, 400),
+             5: (50, 70, 100, 140, 200), 7: (32, 44, 60, 84, 120)}
     scale = {"v(a)": 7}
     ends = []
     dense = ["v(a)"]
@@ -224,7 +224,8 @@ def errors(checker, program, circuit, stages, count):
     result = run(program, circuit.NETLIST, step=step, at=times, method="radau", stages=stages)
     label = f"{stages} stages, {count} steps"
     if not checker.check(result.status == 0 and len(result.rows) == len(times),
-                         f"{label}: exit {result.status}, {len(result.rows)} rows: {result.stderr}"):
+                         f"{label}: exit {result.status}, {len(result.rows)} rows: "
+                         f"{result.stderr}"):
         raise SystemExit(checker.finish())
     exact, at_end = [circuit.exact(t) for t in times], set(grid)
     worst = {}

@@ -16,11 +16,11 @@ A tolerance promises the largest error of a waveform over its scale. So the defa
 tolerance of 1e-9 are held against the rows, none of which is nearer to an event than 1e-6 of the
 stop time: an event that comes late by less does not hide in a row, nor does it spoil one.
 
-Events must be the exact ones, in number and order, at each tolerance from 1e-3 to 1e-10. Their times
-are exact to ten times the tolerance times the stop time, for a current may come down to zero slowly;
-and to 1e-11 of the stop time from 1e-9 on: a waveform error of 1e-9 moves a crossing of a sine by
-1e-9/(2 pi) of its period, of which most runs here have several. Two whose exact times differ by less
-may come in either order. One at the very end may come or not.
+Events must be the exact ones, in number and order, at each tolerance from 1e-3 to 1e-10. Their
+times are exact to ten times the tolerance times the stop time, for a current may come down to zero
+slowly; and to 1e-11 of the stop time from 1e-9 on: a waveform error of 1e-9 moves a crossing of a
+sine by 1e-9/(2 pi) of its period, of which most runs here have several. Two whose exact times
+differ by less may come in either order. One at the very end may come or not.
 """
 
 import json

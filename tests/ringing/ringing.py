@@ -54,7 +54,7 @@ def main():
         for signal in result.names[1:]:
             part = alternating(result.column(signal))
             print(f"{signal}: {100 * part:.3f} % of the increments alternate")
-            checker.check(part < MOST, f"{100 * part:.2f} % of the increments of {signal} alternate")
+            checker.check(part < MOST, f"{100 * part:.2f} % of {signal}'s increments alternate")
     return checker.finish()
 
 

@@ -4,18 +4,20 @@
 usage: second_method.py PROGRAM CASE
 
 The first is the default method with a tolerance of 1e-9. The second is implicit Euler with a fixed
-step h, h/2 and h/4, its errors of first order taken out by Richardson: E(h) = 2 x(h/2) - x(h). Where
-diodes change inside a step the rest of E is of second order with a factor that depends on where they
-do, so a further extrapolation would gain nothing; but the spread |E(h) - E(h/2)| shows that rest: it
-is about three times the error of E(h/2), a few times less where the factors happen to be alike. Hence
-two waveforms may differ by ten times the largest spread of the signal. That spread must be below
-1e-5 of the signal, so what passes agrees to 1e-4 at least, and a wrong mode is worse by far.
+step h, h/2 and h/4, its errors of first order taken out by Richardson: E(h) = 2 x(h/2) - x(h).
+Where diodes change inside a step the rest of E is of second order with a factor that depends on
+where they do, so a further extrapolation would gain nothing; but the spread |E(h) - E(h/2)| shows
+that rest: it is about three times the error of E(h/2), a few times less where the factors happen
+to be alike. Hence two waveforms may differ by ten times the largest spread of the signal. That
+spread must be below 1e-5 of the signal, so what passes agrees to 1e-4 at least, and a wrong mode
+is worse by far.
 
-No circuit here has a switch that is commanded by anything but edges of width 0: Euler closes others at
-the end of a step, an error of first order that three steps may share and no spread shows.
+No circuit here has a switch that is commanded by anything but edges of width 0: Euler closes
+others at the end of a step, an error of first order that three steps may share and no spread
+shows.
 
-Rows nearer to an event than six steps are left out: there one solution may be behind the event
-and the other before it.
+Rows nearer to an event than six steps are left out: there one solution may be behind the event and
+the other before it.
 
 Besides, 3, 5 and 7 stages at the same tolerance must agree with each other to 1e-8.
 """
