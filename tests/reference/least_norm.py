@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Where a current or a voltage is not unique, the answer is the one of least norm, in transients too
-and whatever the method: equal diodes in parallel share equally, diodes in series share the voltage
-they block, and what floats while all diodes block stays in the middle.
+"""Where a current or a voltage is not unique, the answer is the one of least norm, in transients
+too and whatever the method: equal diodes in parallel share equally, diodes in series share the
+voltage they block, and what floats while all diodes block stays in the middle.
 
 usage: least_norm.py PROGRAM euler|default
 
