@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Runs one hard case of netlists/hard and compares it with tests/hard/expected.json.
 
-usage: hard_case.py PROGRAM CASE
+usage: hard_case.py PROGRAM CASE euler|default
 
-Kinds of entries, all for `--method euler`:
+Kinds of entries, for `--method euler`:
   be          the value at time t, exact at every step: checked for h, h/2 and h/5. A string is an
               expression in h, t and n = t/h (a closed form of the implicit Euler sequence).
   diff        the same, to 1e-6: a combination of quantities that the least-norm choice fixes
@@ -18,6 +18,13 @@ Kinds of entries, all for `--method euler`:
   hmax        runs with a step of a tenth of the largest one
 Without "tol" the tolerance is 1e-12 of the value, or of the scale (the largest voltage or current
 of the run, or "scale") where the value is zero.
+
+The default method has no step of its own: it runs with tolerances of 1e-6 and of 1e-9, and each
+value of be, tran and diff must be the exact one to that part of the largest value of its signal
+(of the largest voltage or current of the run for a sum of signals and for what is zero). "exact"
+is a closed form of the circuit where "val" is one of implicit Euler, or an approximation. range,
+op, mean, rcp, infeasible and multi mean the same as above; event times are exact to 1e-11 of the
+stop time at 1e-9; sum, hmax and what has a "step" belong to implicit Euler alone.
 """
 
 import json
@@ -35,9 +42,15 @@ CERTIFIED = 2e-13    # scaled residual of every step
 JUMP = 1e-9          # relative, states after jumps and impulses
 LEAST_NORM = 1e-6    # of the scale, least-norm values
 FRACTIONS = (1, 2, 5)
+DEFAULT = 1e-6       # the default tolerance
+FINE = 1e-9
+EVENT_TIME = 1e-11   # of the stop time, at the fine tolerance
+NOTHING = 1e-9       # of the largest signal of its kind: a signal that is zero
 
 
 class HardCase:
+    method = "euler"
+
     def __init__(self, program, name, entries):
         self.program = program
         self.netlist = NETLISTS / "hard" / f"{name}.cir"
@@ -63,28 +76,33 @@ class HardCase:
                 stop = self.stop()
                 count = min(round(stop / grid), 20000)
                 at = [min(k * grid, stop) for k in range(count + 1)]
-            result = run(self.program, self.netlist, step=step, at=at)
-            if not self.checker.check(result.status == 0 and result.rows,
-                                      f"exit {result.status} at step {step}: {result.stderr}"):
-                raise SystemExit(self.checker.finish())
-            worst = result.report["certificate"]["worst"]
-            self.checker.check(worst <= CERTIFIED, f"certificate {worst:.2e} at step {step}")
-            self.checker.check(all(math.isfinite(x) for row in result.rows for x in row),
-                               f"a value is not finite at step {step}")
-            self.runs[key] = result
+            self.runs[key] = self.accepted(f"step {step}", step=step, at=at)
         return self.runs[key]
+
+    def accepted(self, label, **options):
+        """A run that must succeed, with certified steps and finite values."""
+        result = run(self.program, self.netlist, **options)
+        if not self.checker.check(result.status == 0 and result.rows,
+                                  f"exit {result.status} at {label}: {result.stderr}"):
+            raise SystemExit(self.checker.finish())
+        worst = result.report["certificate"]["worst"]
+        self.checker.check(worst <= CERTIFIED, f"certificate {worst:.2e} at {label}")
+        self.checker.check(all(math.isfinite(x) for row in result.rows for x in row),
+                           f"a value is not finite at {label}")
+        return result
 
     def stepped(self, entry):
         """Runs at h, h/2 and h/5, on the output grid of h."""
         h = entry["h"]
         return [(h / part, self.run(h / part, h)) for part in FRACTIONS]
 
-    def value_of(self, entry, step):
-        value = entry["val"]
+    def value_of(self, entry, step, key="val"):
+        value = entry[key]
         if isinstance(value, str):
-            names = {name: getattr(math, name) for name in ("sin", "exp", "pi")}
-            names.update(t=entry["t"], h=step, n=round(entry["t"] / step),
-                         max=max, min=min, abs=abs)
+            names = {name: getattr(math, name) for name in ("sin", "cos", "exp", "pi")}
+            names.update(t=entry["t"], max=max, min=min, abs=abs)
+            if step is not None:
+                names.update(h=step, n=round(entry["t"] / step))
             value = eval(value, {"__builtins__": {}}, names)  # our own file
         return float(value)
 
@@ -167,7 +185,7 @@ class HardCase:
                                    f"time when {entry['q']} turns {state}, step {step:g}")
 
     def infeasible(self, entry):
-        result = run(self.program, self.netlist, step=entry.get("step"))
+        result = run(self.program, self.netlist, step=entry.get("step"), method=self.method)
         self.checker.check(result.status == 1, f"exit {result.status}, not refused")
         self.checker.check(result.output is None, "an output file was left")
         for element in entry["elements"]:
@@ -196,11 +214,89 @@ class HardCase:
         return self.checker.finish()
 
 
+class DefaultCase(HardCase):
+    """The same entries for the default method: what they say about the circuit itself."""
+
+    method = None
+
+    def times(self):
+        """Where some entry looks, and enough between to know how large a signal gets."""
+        stop = self.stop()
+        if stop is None:
+            return None
+        wanted = {entry["t"] for entry in self.entries
+                  if entry["kind"] in ("be", "tran", "diff", "range") and "t" in entry}
+        return sorted(wanted | {min(stop * k / 200, stop) for k in range(201)})
+
+    def run(self, step=None, grid=None):
+        return self.toleranced(None, grid)
+
+    def toleranced(self, tolerance, grid=None):
+        key = (tolerance, grid)
+        if key not in self.runs:
+            if grid is None:
+                at = self.times()
+            else:
+                at = [min(k * grid, self.stop()) for k in range(round(self.stop() / grid) + 1)]
+            self.runs[key] = self.accepted(f"tolerance {tolerance or DEFAULT:g}",
+                                           at=at, method=None, tolerance=tolerance)
+        return self.runs[key]
+
+    def be(self, entry):
+        key = "exact" if "exact" in entry else "val"
+        if key == "val" and re.search(r"\b[hn]\b", str(entry["val"])):
+            return  # a closed form of implicit Euler, not of the circuit
+        for tolerance in (None, FINE):
+            result = self.toleranced(tolerance)
+            wanted = self.value_of(entry, None, key)
+            largest = max(abs(value) for value in result.column(entry["q"]))
+            if re.search(r"\)[+-]", entry["q"]) or largest <= NOTHING * result.scale(entry["q"]):
+                largest = max(result.scale(entry["q"]), entry.get("scale", 0))
+            self.checker.close(result.at(entry["q"], entry["t"]), wanted,
+                               (tolerance or DEFAULT) * largest,
+                               f"{entry['q']} at {entry['t']}, tolerance {tolerance or DEFAULT:g}")
+
+    tran = be
+    diff = be
+
+    def stepped(self, entry):
+        return [(None, self.toleranced(FINE))]
+
+    def event(self, entry):
+        result = self.toleranced(FINE)
+        state = "on" if entry["on"] else "off"
+        times = [event["time"] for event in result.report["events"]
+                 if event["element"] == entry["q"] and event["state"] == state]
+        if entry["t"] is None:
+            self.checker.check(not times, f"{entry['q']} turns {state} at {times[:3]}")
+        else:
+            nearest = min(times, key=lambda t: abs(t - entry["t"]), default=math.inf)
+            self.checker.close(nearest, entry["t"], EVENT_TIME * self.stop(),
+                               f"time when {entry['q']} turns {state}")
+
+    def infeasible(self, entry):
+        if "step" not in entry:
+            super().infeasible(entry)
+
+    def sum(self, entry):
+        pass
+
+    def hmax(self, entry):
+        pass
+
+    def finish(self):
+        # A case of which nothing else is left must at least run.
+        if not any(entry["kind"] == "infeasible" and "step" not in entry for entry in self.entries):
+            self.toleranced(None)
+            self.toleranced(FINE)
+        return super().finish()
+
+
 def main():
-    program, name = sys.argv[1:]
+    program, name, method = sys.argv[1:]
     entries = json.loads((HERE / "expected.json").read_text())
     entries = [entry for entry in entries if entry["case"] == name]
-    return HardCase(program, name, entries).finish()
+    return {"euler": HardCase, "default": DefaultCase}[method](program, name, entries).finish()
 
 
 if __name__ == "__main__":

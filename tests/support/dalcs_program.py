@@ -78,8 +78,11 @@ class Run:
                    if jump["time"] == time)
 
 
-def run(program, netlist, step=None, at=None, options=(), report=True, environment=None):
-    """Runs a netlist (a path, or text) and returns a Run. `at` lists the output times."""
+def run(program, netlist, step=None, at=None, options=(), report=True, environment=None,
+        method="euler", tolerance=None, stages=None):
+    """Runs a netlist (a path, or text) and returns a Run. `at` lists the output times.
+
+    method None leaves the choice to the program, as tolerance None and stages None do."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         if "\n" in str(netlist):
@@ -88,7 +91,13 @@ def run(program, netlist, step=None, at=None, options=(), report=True, environme
         else:
             path = pathlib.Path(netlist)
         output, saved_report = folder / "out.csv", folder / "report.json"
-        command = [program, "run", str(path), "--method", "euler", "-o", str(output), "--quiet"]
+        command = [program, "run", str(path), "-o", str(output), "--quiet"]
+        if method is not None:
+            command += ["--method", method]
+        if tolerance is not None:
+            command += ["--tol", repr(float(tolerance))]
+        if stages is not None:
+            command += ["--stages", str(stages)]
         if report:
             command += ["--report", str(saved_report)]
         if step is not None:
