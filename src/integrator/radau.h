@@ -56,6 +56,7 @@ struct dalcs_radau_part {
     bool fresh;     /* something just happened at t: nothing is known of how pairs start */
     double *x;      /* [n_x] at t */
     double *in, *out;
+    double *last; /* [stride] out at the end of the step before, if that is where this one starts */
     double *scale;        /* [n_columns] largest magnitudes so far */
     double unit_scale[2]; /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */

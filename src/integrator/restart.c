@@ -98,8 +98,7 @@ static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_pa
         double second = fabs(part->y2[x] - part->y1[x]);
         bool moved = first > jump_ratio * second;
         jumps = jumps || moved;
-        *noticeable = *noticeable ||
-                      (moved && first > smallest * largest[s->column_is_current[x]]);
+        *noticeable = *noticeable || (moved && first > smallest * largest[s->column_is_current[x]]);
         after[x] = 2.0 * part->y1[x] - part->y2[x];
     }
     return jumps;

@@ -8,6 +8,9 @@
 /* Signals smaller than this part of the largest of their unit are held to that one's scale. */
 static const double smallest_scale = 1e-5;
 
+/* The same for the current of a pair. */
+static const double pair_scale = 1e-2;
+
 /* Errors up to this part of the unit's scale in a pair that has just changed sides are no event. */
 static const double band_over_tolerance = 10.0;
 
@@ -22,13 +25,27 @@ static const double safety = 0.8;
 
 #include <stdio.h>
 #include <stdlib.h>
-#define DBG(...) do { if (getenv("DALCS_D")) { fprintf(stderr, __VA_ARGS__); } } while (0)
+#define DBG(...)                                                                                   \
+    do {                                                                                           \
+        if (getenv("DALCS_D")) {                                                                   \
+            fprintf(stderr, __VA_ARGS__);                                                          \
+        }                                                                                          \
+    } while (0)
 static const double most_tolerated = 2e-13;
 
 /* Defects of a state, over what is allowed, that interpolation may leave; more is a jump. */
 static const double most_projected = 1e4;
 
-enum { LEAST_PATIENCE = 8, MOST_PATIENCE = 1024, STUCK = 3, PROJECTION = 30, MOST_RUNGS = 6, PIVOTS = 12, MOST_RESTARTS = 4, CROWD = 40 };
+enum {
+    LEAST_PATIENCE = 8,
+    MOST_PATIENCE = 1024,
+    STUCK = 3,
+    PROJECTION = 30,
+    MOST_RUNGS = 6,
+    PIVOTS = 12,
+    MOST_RESTARTS = 4,
+    CROWD = 40
+};
 
 /* The wildest step over the shortest period of a source, by stages: fewer nodes see less. */
 static double most_periods(int stages) {
@@ -64,9 +81,38 @@ static void find_scales(const struct dalcs_radau_part *part, double end, double 
         int of = s->column_is_current[c];
         unit[of] = to[c] > unit[of] ? to[c] : unit[of];
     }
+    for (int d = 0; d < s->n_pairs; d++) {
+        int of = dalcs_osnsp_is_on(&part->component->osnsp, d) ? 1 : 0;
+        for (int k = 0; k <= last; k++) {
+            double a = fabs(part->out[k * st->layout.stride + n_equations + d]);
+            unit[of] = a > unit[of] ? a : unit[of];
+        }
+    }
     double volt = unit[0];
     unit[0] = fmax(unit[0], part->cross[0] * unit[1]);
     unit[1] = fmax(unit[1], part->cross[1] * volt);
+}
+
+/* The same for the currents of closed pairs, whose voltages are columns. */
+static double error_of_pairs(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                             double rounding, const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    int n_equations = dalcs_system_n_equations(s);
+    double worst = 0.0;
+    for (int d = 0; d < s->n_pairs && part->excitation.is_curved; d++) {
+        if (!dalcs_osnsp_is_on(&part->component->osnsp, d)) {
+            continue;
+        }
+        double scale = pair_scale * unit[1];
+        for (int k = 0; k < l->n_nodes; k++) {
+            scale = fmax(scale, fabs(part->out[k * l->stride + n_equations + d]));
+        }
+        double error = fabs(part->out[l->ripple + n_equations + d]);
+        double ratio = error / (r->inner_tolerance * scale + rounding + 0.1 * r->options.abstol);
+        worst = error > 0.0 && ratio > worst ? ratio : worst;
+    }
+    return worst;
 }
 
 /* The estimated error over what is allowed. */
@@ -98,13 +144,15 @@ static double error_of(const struct dalcs_radau *r, const struct dalcs_radau_par
         }
         int of = s->column_is_current[c];
         double scale = fmax(size[c], smallest_scale * unit[of]);
-        double ratio =
-            error / (tolerance * scale + rounding * natural[c] + 0.1 * besides[of]);
-        if (getenv("DALCS_D") && ratio > 0.5) fprintf(stderr," [%s col%d x=%d err=%g scale=%g unit=%g]", s->column[c].element, c, c<s->n_x, error, scale, unit[of]);
+        double ratio = error / (tolerance * scale + rounding * natural[c] + 0.1 * besides[of]);
+        if (getenv("DALCS_D") && ratio > 0.5)
+            fprintf(stderr, " [%s col%d x=%d err=%g scale=%g unit=%g]", s->column[c].element, c,
+                    c < s->n_x, error, scale, unit[of]);
         worst = ratio > worst || ratio != ratio ? ratio : worst;
         *of_unit = ratio > 1.0 ? fmax(*of_unit, error / unit[of]) : *of_unit;
     }
-    return worst;
+    double pairs = error_of_pairs(r, part, rounding_part * unit[1], unit);
+    return pairs > worst ? pairs : worst;
 }
 
 static enum dalcs_status solve_step(struct dalcs_radau_part *part,
@@ -114,7 +162,11 @@ static enum dalcs_status solve_step(struct dalcs_radau_part *part,
     memcpy(part->in, part->x, (size_t)s->n_x * sizeof(double));
     part->in[s->n_x] = 1.0;
     dalcs_excitation_coefficients(&part->excitation, part->t, part->h, part->in + s->n_x + 1);
-    return dalcs_stages_apply(&part->stages, *entry, part->in, part->out);
+    DALCS_TRY(dalcs_stages_apply(&part->stages, *entry, part->in, part->out));
+    if (!part->fresh) { /* where the last step ended is known better than where this one starts */
+        memcpy(part->out, part->last, (size_t)part->stages.layout.stride * sizeof(double));
+    }
+    return DALCS_OK;
 }
 
 /* Puts a state that is a little off, as interpolation leaves it at an event, on what its mode allows:
@@ -261,12 +313,36 @@ static double find_crossing(const struct dalcs_radau *r, struct dalcs_radau_part
             part->n_crossed = 0;
             *at_once = false;
         }
-        DBG("   g%d depth=%g end=%g vals", g, depth, end); for (int q=0;q<part->stages.layout.n_nodes;q++) DBG(" %g", value[q*stride]); DBG("\n");
+        DBG("   g%d depth=%g end=%g vals", g, depth, end);
+        for (int q = 0; q < part->stages.layout.n_nodes; q++)
+            DBG(" %g", value[q * stride]);
+        DBG("\n");
         first = fmin(first, c.theta);
         *at_once = *at_once || (c.at_once && !part->armed[g]);
         part->crossed[part->n_crossed++] = g;
     }
     return first;
+}
+
+/* Is there a diode with neither current nor voltage during the whole step? It may change sides without
+ * anything else, and where that leaves a choice (sources in parallel, floating nodes) only the OSNSP
+ * knows which is of least norm. */
+static bool stays_tied(const struct dalcs_radau_part *part, const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    bool tied = false;
+    for (int d = 0; d < s->n_pairs && !tied; d++) {
+        if (s->pair[d].kind != DALCS_PAIR_DIODE) {
+            continue;
+        }
+        const double *value = part->out + dalcs_system_n_equations(s) + d;
+        double limit = noise * guard_scale(part, d, unit);
+        tied = true;
+        for (int k = 0; k < l->n_nodes && tied; k++) {
+            tied = fabs(value[k * l->stride]) <= limit;
+        }
+    }
+    return tied;
 }
 
 /* Where the ladder should go for an error of `ratio` times what is allowed. */
@@ -293,6 +369,10 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part, double 
     if (part->n_crossed == 0 && t_end >= limit - r->resolution) {
         t_end = limit;
         part->why = DALCS_END_AT_EDGE;
+    }
+    if (r->options.fixed_step > 0.0 && part->why == DALCS_END_OF_STEP) {
+        double whole = rint(t_end / part->h) * part->h; /* counted, not accumulated */
+        t_end = fabs(t_end - whole) <= 4.0 * r->resolution ? whole : t_end;
     }
     part->t_end = fmin(t_end, limit);
     int last = 0;
@@ -358,15 +438,21 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
             return status;
         }
         double end = fmin(1.0, (limit - part->t) / part->h);
-        DBG("p%d t=%.12g h=%g mode=%lx fresh=%d st=%d", part->index, part->t, part->h, part->component->osnsp.n_words ? (long)part->component->osnsp.mode[0] : 0, part->fresh, (int)status);
+        DBG("p%d t=%.12g h=%g mode=%lx fresh=%d st=%d", part->index, part->t, part->h,
+            part->component->osnsp.n_words ? (long)part->component->osnsp.mode[0] : 0, part->fresh,
+            (int)status);
         double unit[2];
         double ratio = INFINITY;
         double of_unit = INFINITY;
         if (status == DALCS_OK) {
             ratio = error_of(r, part, entry, end, part->y1, unit, &of_unit);
         }
-        DBG(" err=%g clash=%d x=", ratio, clashes(part, entry, end, unit)); for (int q=0;q<part->component->system->n_x;q++) DBG(" %.9g",part->x[q]); DBG("\n");
-        if (status != DALCS_OK || clashes(part, entry, end, unit) || (!(ratio <= tolerated) && (!fixed || (part->fresh && restarts == 0))) ||
+        DBG(" err=%g clash=%d x=", ratio, clashes(part, entry, end, unit));
+        for (int q = 0; q < part->component->system->n_x; q++)
+            DBG(" %.9g", part->x[q]);
+        DBG("\n");
+        if (status != DALCS_OK || clashes(part, entry, end, unit) ||
+            (!(ratio <= tolerated) && (!fixed || (part->fresh && restarts == 0))) ||
             ratio != ratio) {
             bool small = ratio < most_projected;
             if (part->fresh && restarts == 0) {
@@ -412,7 +498,13 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
         }
         bool at_once;
         double theta = find_crossing(r, part, end, reach, &at_once);
-        if (part->n_crossed) { DBG("  cross theta=%g at_once=%d armed=%d:", theta, at_once, part->armed[part->crossed[0]]); for (int q=0;q<part->n_crossed;q++) DBG(" %d", part->crossed[q]); DBG("\n"); }
+        if (part->n_crossed) {
+            DBG("  cross theta=%g at_once=%d armed=%d:", theta, at_once,
+                part->armed[part->crossed[0]]);
+            for (int q = 0; q < part->n_crossed; q++)
+                DBG(" %d", part->crossed[q]);
+            DBG("\n");
+        }
         if (at_once && part->fresh) {
             if (restarts < MOST_RESTARTS && pivots == 0) {
                 DALCS_TRY(dalcs_radau_restart(r, part, restarts++));
@@ -422,6 +514,10 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
                 part->fresh = true;
                 return fall_back(r, part, limit, part->tries++);
             }
+            continue;
+        }
+        if (part->fresh && restarts == 0 && stays_tied(part, reach)) {
+            DALCS_TRY(dalcs_radau_restart(r, part, restarts++));
             continue;
         }
         part->tries = 0;

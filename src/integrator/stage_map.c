@@ -527,6 +527,12 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
         b->drift[r] = (double)b->defect[r];
         start[r] += r < b->n_x ? 0.0L : b->defect[r];
     }
+    /* What was added goes with states that are off by the defect: take that back as well. */
+    for (int x = 0; x < b->n_x; x++) {
+        for (int r = b->n_x; r < n; r++) {
+            start[r] -= b->real[x * n + r] * b->column_scale[r] * b->defect[x];
+        }
+    }
     for (int i = 0; i < (m->s + 1) * n; i++) {
         b->node[i] = (double)b->exact[i];
     }
