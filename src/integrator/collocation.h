@@ -8,7 +8,7 @@
  * eigenvectors, scaled so that each sees the constant 1 as 1, the stages separate into steps of
  * implicit Euler with sigma = mu / h, all but one complex. s = 1 is implicit Euler itself.
  *
- * The numbers are computed in extended precision when a method is set up, not typed in. */
+ * The numbers are computed in extended precision when dalcs is built, not typed in. */
 #ifndef DALCS_COLLOCATION_H
 #define DALCS_COLLOCATION_H
 
@@ -47,7 +47,7 @@ struct dalcs_collocation {
 };
 
 /* s must be 1, 3, 5 or 7. */
-void dalcs_collocation_init(struct dalcs_collocation *c, int s);
+const struct dalcs_collocation *dalcs_collocation_of(int s);
 
 /* weight[s + 1] such that a quantity at theta (in steps) is the sum of weight * value at node. */
 void dalcs_collocation_weights(const struct dalcs_collocation *c, double theta, double *weight);

@@ -135,7 +135,7 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
     if (end < 1.0) {
         subdivide(n, b, end, b, rest);
     }
-    double shifted[DALCS_MAX_NODES];
+    double shifted[DALCS_MAX_NODES] = {0.0};
     for (int i = 0; i < n; i++) {
         shifted[i] = b[i] + depth;
     }
@@ -145,10 +145,13 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
     }
     found.falls = true;
     double root = -1.0;
+    double before[DALCS_MAX_NODES];
     if (below > 0.0) {
-        double before[DALCS_MAX_NODES];
         subdivide(n, b, below, before, rest);
         root = find_root(n, before, 0.0, below, false, MAX_DEPTH);
+    }
+    for (int i = 0; i < n && below > 0.0; i++) {
+        found.peak = fmax(found.peak, before[i]);
     }
     found.at_once = root < 0.0;
     found.theta = found.at_once ? 0.0 : root * end;

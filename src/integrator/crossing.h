@@ -12,6 +12,7 @@ struct dalcs_crossing {
     bool falls;   /* below -depth somewhere on [0, end] */
     double theta; /* the last zero before that; 0 when it is never positive before */
     bool at_once; /* it is never positive before */
+    double peak;  /* no value before the fall is larger */
 };
 
 /* value[k * stride] is the quantity at node k. Looks at theta in [0, end], end <= 1. Falls that stay

@@ -1,4 +1,5 @@
 /* radau.c - the parts of a run: set up, started, passed from segment to segment, evaluated. */
+#include "guards.h"
 #include "radau_internal.h"
 
 #include <math.h>
@@ -58,7 +59,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     size_t n_columns = (size_t)dalcs_system_n_columns(s);
     size_t n_guards = (size_t)(s->n_pairs + part->stages.n_watched);
-    size_t n_out = (size_t)l->n_fixed + (size_t)part->stages.method.s * n_columns + 8;
+    size_t n_out = (size_t)l->n_fixed + (size_t)part->stages.method->s * n_columns + 8;
     part->x = dalcs_alloc((size_t)s->n_x, sizeof(double));
     part->in = dalcs_alloc((size_t)part->stages.n_in, sizeof(double));
     part->out = dalcs_alloc(n_out, sizeof(double));
@@ -123,6 +124,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
                                  osnsp->dense_limit, osnsp->rcond_min,
                                  osnsp->cache_bytes / (size_t)r->n_parts));
     DALCS_TRY(allocate(part));
+    DALCS_TRY(dalcs_transition_setup(part));
     bool *used = dalcs_alloc((size_t)c->system->n_inputs, sizeof(bool));
     if (used == NULL) {
         return DALCS_E_NOMEM;
@@ -133,7 +135,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->longest = dalcs_segment_longest(r, part);
     double first = fmin(part->longest, r->options.stop / FIRST_STEPS);
     part->level = -ilogb(first);
-    part->patience = 8;
+    part->patience = 32;
     return DALCS_OK;
 }
 
@@ -177,6 +179,9 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->w1);
     free(part->after);
     free(part->used_input);
+    free(part->transitions);
+    free(part->transition_known);
+    free(part->mode_before);
 }
 
 void dalcs_radau_finish(struct dalcs_radau *r) {
@@ -248,8 +253,9 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     memcpy(part->x, part->last, state_bytes);
     part->t = part->t_end;
     if (part->n_crossed > 0) {
-        dalcs_segment_flip(part);
+        dalcs_guards_flip(part);
         part->fresh = true;
+        part->flipped = true;
         count_crowd(r, part);
     }
     if (part->excitation.next_edge <= part->t + r->resolution) {
@@ -260,6 +266,7 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
         dalcs_commands_obey(&part->commands, part->t)) {
         obey_commands(part);
         part->fresh = true;
+        part->flipped = true;
     }
     return part->t < r->options.stop ? dalcs_segment_begin(r, part) : DALCS_OK;
 }

@@ -48,13 +48,14 @@ struct dalcs_radau_part {
     double end;  /* of the segment, in steps */
     double t_end;
     enum dalcs_radau_end why;
-    int level;      /* h = 2^-level */
+    int level;            /* h = 2^-level */
     int waited, patience; /* steps since the length changed; until a longer one is tried anyhow */
     bool grew;            /* the present length is such a try */
-    double longest; /* s, step worth trying */
-    int tries;      /* falls back to implicit Euler in a row */
-    bool fresh;     /* something just happened at t: nothing is known of how pairs start */
-    double *x;      /* [n_x] at t */
+    double longest;       /* s, step worth trying */
+    int tries;            /* falls back to implicit Euler in a row */
+    bool fresh;           /* something just happened at t: nothing is known of how pairs start */
+    bool flipped;   /* and it is that pairs changed sides */
+    double *x;            /* [n_x] at t */
     double *in, *out;
     double *last; /* [stride] out at the end of the step before, if that is where this one starts */
     double *scale;        /* [n_columns] largest magnitudes so far */
@@ -66,7 +67,10 @@ struct dalcs_radau_part {
     bool jumped;  /* at t, when the segment began */
     double *u, *y1, *y2, *w1, *after; /* work */
     int n_used_inputs, *used_input;   /* that probes read */
-    long crowd;                       /* events since `crowd_since` */
+    uint64_t *transitions;            /* see transition.h */
+    bool *transition_known;
+    uint64_t *mode_before;
+    long crowd; /* events since `crowd_since` */
     double crowd_since;
 };
 

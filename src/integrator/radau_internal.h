@@ -3,6 +3,7 @@
 #define DALCS_RADAU_INTERNAL_H
 
 #include "radau.h"
+#include "transition.h"
 
 /* segment.c: from part->t, part->x and the mode to a segment that holds until part->t_end. */
 enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r,
@@ -13,9 +14,6 @@ double dalcs_segment_longest(const struct dalcs_radau *r, const struct dalcs_rad
 
 /* value[n_columns + n_watched] at theta of the present step. */
 void dalcs_segment_values(const struct dalcs_radau_part *part, double theta, double *value);
-
-/* What crossed changes sides. */
-void dalcs_segment_flip(struct dalcs_radau_part *part);
 
 /* restart.c: two micro-steps from part->t decide mode and state; a jump is reported. `longer` makes
  * them 2^(5 longer) times as long. */

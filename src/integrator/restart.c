@@ -183,7 +183,7 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
         double *out = part->out + k * l->stride;
         memcpy(out, part->y1, (size_t)dalcs_system_n_columns(s) * sizeof(double));
         for (int x = 0; x < s->n_x; x++) {
-            out[x] = part->x[x] + part->stages.method.node[k] * (part->y1[x] - part->x[x]);
+            out[x] = part->x[x] + part->stages.method->node[k] * (part->y1[x] - part->x[x]);
         }
         for (int d = 0; d < s->n_pairs; d++) {
             out[n_equations + d] += part->component->osnsp.w[d];

@@ -74,7 +74,7 @@ static bool allocate(struct builder *b) {
                     b->P != NULL && b->rhs != NULL && b->S != NULL && b->real != NULL &&
                     b->re != NULL && b->im != NULL && b->node != NULL && b->guard != NULL &&
                     b->drift != NULL && b->exact != NULL && b->defect != NULL;
-    for (int p = 0; p < b->stages->method.n_pairs; p++) {
+    for (int p = 0; p < b->stages->method->n_pairs; p++) {
         b->pair_re[p] = extendeds(b, b->n * b->n_rhs);
         b->pair_im[p] = extendeds(b, b->n * b->n_rhs);
         complete = complete && b->pair_re[p] != NULL && b->pair_im[p] != NULL;
@@ -169,7 +169,7 @@ static double power_of_2(double largest) {
 /* Rows and columns of |S| at the real eigenvalue get a largest entry near 1. */
 static void balance(struct builder *b) {
     int n = b->n;
-    double sigma = b->stages->method.lambda / b->entry->h;
+    double sigma = b->stages->method->lambda / b->entry->h;
     for (int i = 0; i < n; i++) {
         b->row_scale[i] = 1.0;
         b->column_scale[i] = 1.0;
@@ -307,7 +307,7 @@ static void take_solutions(const struct builder *b, const long double *from, lon
 }
 
 static enum dalcs_status solve_real(struct builder *b) {
-    long double sigma = b->stages->method.exact_lambda / b->entry->h;
+    long double sigma = b->stages->method->exact_lambda / b->entry->h;
     fill_system(b, sigma, 0.0L);
     long double pivot = dalcs_extended_solve(b->n, b->n_rhs, b->re, NULL);
     if (pivot < doubtful_pivot) {
@@ -320,7 +320,7 @@ static enum dalcs_status solve_real(struct builder *b) {
 }
 
 static enum dalcs_status solve_pair(struct builder *b, int p) {
-    long double complex sigma = b->stages->method.exact_mu[p] / b->entry->h;
+    long double complex sigma = b->stages->method->exact_mu[p] / b->entry->h;
     fill_system(b, creall(sigma), cimagl(sigma));
     long double pivot = dalcs_extended_solve(b->n, b->n_rhs, b->re, b->im);
     take_solutions(b, b->re, b->pair_re[p]);
@@ -464,7 +464,7 @@ static double watched_voltage(const struct builder *b, int d, const double *colu
  * the source there; for a state they are 0. */
 static void fill_column(struct builder *b, int column, int rhs_column, const double *share,
                         double test_share, double *out) {
-    const struct dalcs_collocation *m = &b->stages->method;
+    const struct dalcs_collocation *m = b->stages->method;
     const struct dalcs_stage_layout *l = &b->stages->layout;
     const struct dalcs_system *s = b->system;
     int n = b->n;
@@ -570,7 +570,7 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
 
 static void fill_map(struct builder *b) {
     const struct dalcs_excitation *e = b->stages->excitation;
-    const struct dalcs_collocation *m = &b->stages->method;
+    const struct dalcs_collocation *m = b->stages->method;
     double share[DALCS_MAX_NODES] = {0.0};
     double *out = b->entry->map;
     for (int x = 0; x < b->n_x; x++, out += b->entry->rows) {
@@ -598,13 +598,13 @@ static enum dalcs_status build(struct builder *b) {
     balance(b);
     if (b->n > 0) {
         DALCS_TRY(solve_real(b));
-        for (int p = 0; p < b->stages->method.n_pairs; p++) {
+        for (int p = 0; p < b->stages->method->n_pairs; p++) {
             DALCS_TRY(solve_pair(b, p));
         }
         DALCS_TRY(prepare_choice(b));
     }
     struct dalcs_stage_entry *e = b->entry;
-    e->n_clashes = b->nullity * b->stages->method.s;
+    e->n_clashes = b->nullity * b->stages->method->s;
     e->rows = dalcs_dense_map_rows(b->stages->layout.n_fixed + e->n_clashes);
     e->map = dalcs_dense_map_alloc(e->rows, b->stages->n_in);
     if (e->map == NULL) {

@@ -14,7 +14,7 @@ enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct d
                                     .dense_limit = dense_limit,
                                     .rcond_min = rcond_min,
                                     .most_bytes = most_bytes};
-    dalcs_collocation_init(&stages->method, s);
+    stages->method = dalcs_collocation_of(s);
     dalcs_lu_common_init(&stages->klu);
     dalcs_lu_common_init(&stages->klu_complex);
     stages->watched = dalcs_alloc((size_t)system->n_pairs, sizeof(int));

@@ -32,7 +32,7 @@ struct dalcs_stage_layout {
 struct dalcs_stages {
     const struct dalcs_system *system;
     const struct dalcs_excitation *excitation;
-    struct dalcs_collocation method;
+    const struct dalcs_collocation *method;
     struct dalcs_stage_layout layout;
     int n_watched;
     int *watched; /* [n_watched] pairs: switches that follow a voltage, or a source along a curve */

@@ -214,7 +214,7 @@ static enum dalcs_status report_methods(struct dalcs_run *r, const struct dalcs_
             const struct dalcs_radau_part *part = &radau->part[k];
             bool steps = part->kind == DALCS_PART_STEPPED;
             component[k].method = steps ? "radau" : "algebraic";
-            component[k].stages = steps ? part->stages.method.s : 1;
+            component[k].stages = steps ? part->stages.method->s : 1;
             component[k].because = part->because;
         }
     }

@@ -1,0 +1,144 @@
+/* guards.c - guards as polynomials on the step. */
+#include "guards.h"
+
+#include "crossing.h"
+
+#include <math.h>
+
+/* Errors up to this many times the inner tolerance in a pair that has just changed sides are no
+ * event. */
+static const double band_over_tolerance = 10.0;
+
+/* What rounding leaves of a zero, over the unit's scale. */
+static const double noise = 2e-13;
+
+static double band_of(const struct dalcs_radau *r) {
+    double band = band_over_tolerance * r->inner_tolerance;
+    return band > 4.0 * noise ? band : 4.0 * noise;
+}
+
+static int n_guards(const struct dalcs_radau_part *part) {
+    return part->component->system->n_pairs + part->stages.n_watched;
+}
+
+/* The pair of a guard. */
+static int pair_of(const struct dalcs_radau_part *part, int guard) {
+    int n_pairs = part->component->system->n_pairs;
+    return guard < n_pairs ? guard : part->stages.watched[guard - n_pairs];
+}
+
+/* Values at the nodes, with their stride; NULL for a switch, which has no sign to keep. */
+static const double *values_of(const struct dalcs_radau_part *part, int guard, double *work,
+                               int *stride) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    *stride = l->stride;
+    if (guard < s->n_pairs) {
+        bool is_diode = s->pair[guard].kind == DALCS_PAIR_DIODE;
+        return is_diode ? part->out + dalcs_system_n_equations(s) + guard : NULL;
+    }
+    int d = pair_of(part, guard);
+    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, d);
+    const double *v = part->out + dalcs_system_n_columns(s) + guard - s->n_pairs;
+    for (int k = 0; k < l->n_nodes; k++) {
+        work[k] =
+            is_on ? v[k * l->stride] - s->pair[d].turn_off : s->pair[d].turn_on - v[k * l->stride];
+    }
+    *stride = 1;
+    return work;
+}
+
+static double scale_of(const struct dalcs_radau_part *part, int guard, const double *reach) {
+    const struct dalcs_system *s = part->component->system;
+    int d = pair_of(part, guard);
+    if (guard < s->n_pairs) {
+        return reach[dalcs_osnsp_is_on(&part->component->osnsp, d) ? 1 : 0];
+    }
+    return fmax(reach[0], fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off)));
+}
+
+void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
+                      const double *reach) {
+    int n_nodes = part->stages.layout.n_nodes;
+    double band = band_of(r);
+    double weight[DALCS_MAX_NODES];
+    bool at_node = theta == 0.0 || theta == 1.0;
+    int node = theta == 0.0 ? 0 : n_nodes - 1;
+    if (!at_node) {
+        dalcs_collocation_weights(part->stages.method, theta, weight);
+    }
+    for (int g = 0; g < n_guards(part); g++) {
+        if (theta > 0.0 && part->armed[g]) {
+            continue;
+        }
+        double work[DALCS_MAX_NODES];
+        int stride;
+        const double *value = values_of(part, g, work, &stride);
+        if (value == NULL) {
+            continue;
+        }
+        double now = at_node ? value[node * stride] : 0.0;
+        for (int k = 0; k < n_nodes && !at_node; k++) {
+            now += weight[k] * value[k * stride];
+        }
+        part->armed[g] = now > band * scale_of(part, g, reach);
+    }
+}
+
+double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                               double end, const double *reach, bool *at_once) {
+    double first = INFINITY;
+    double together = fmax(1e-13, 2.0 * r->resolution / part->h);
+    double band = band_of(r);
+    /* What crosses at the stop time, up to the error, is left to a longer run. */
+    bool stops = end <= 1.0 && part->t + end * part->h >= r->options.stop - r->resolution;
+    part->n_crossed = 0;
+    *at_once = false;
+    for (int g = 0; g < n_guards(part); g++) {
+        double work[DALCS_MAX_NODES];
+        int stride;
+        const double *value = values_of(part, g, work, &stride);
+        if (value == NULL) {
+            continue;
+        }
+        double scale = scale_of(part, g, reach);
+        double depth = (part->armed[g] && !stops ? noise : band) * scale;
+        struct dalcs_crossing c =
+            dalcs_crossing_find(part->stages.method, value, stride, end, depth);
+        if (!c.falls || c.theta > first + together) {
+            continue;
+        }
+        if (c.theta < first - together) {
+            part->n_crossed = 0;
+            *at_once = false;
+        }
+        first = fmin(first, c.theta);
+        *at_once = *at_once || (!part->armed[g] && c.peak <= band * scale);
+        part->crossed[part->n_crossed++] = g;
+    }
+    return first;
+}
+
+bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *reach) {
+    const struct dalcs_system *s = part->component->system;
+    bool tied = false;
+    for (int d = 0; d < s->n_pairs && !tied; d++) {
+        double work[DALCS_MAX_NODES];
+        int stride;
+        const double *value = values_of(part, d, work, &stride);
+        double limit = noise * scale_of(part, d, reach);
+        tied = value != NULL;
+        for (int k = 0; k < part->stages.layout.n_nodes && tied; k++) {
+            tied = fabs(value[k * stride]) <= limit;
+        }
+    }
+    return tied;
+}
+
+void dalcs_guards_flip(struct dalcs_radau_part *part) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    for (int k = 0; k < part->n_crossed; k++) {
+        int d = pair_of(part, part->crossed[k]);
+        dalcs_osnsp_command(p, d, !dalcs_osnsp_is_on(p, d));
+    }
+}

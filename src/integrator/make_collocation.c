@@ -1,0 +1,407 @@
+/* make_collocation.c - runs while dalcs is built: nodes, eigenvectors and polynomial bases of Radau IIA
+ * in extended precision, printed as the table that collocation.c includes. */
+#include "collocation.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { MAX = DALCS_MAX_NODES, NEWTON_ROUNDS = 60, INVERSE_ROUNDS = 4, SCAN = 2000 };
+
+typedef long double real;
+typedef long double complex complex_real;
+
+/* Legendre polynomials of degree n and n - 1 at t. */
+static void legendre(int n, real t, real *p, real *before) {
+    real a = 1.0L; /* degree 0 */
+    real b = 0.0L;
+    for (int k = 1; k <= n; k++) {
+        real next = ((real)(2 * k - 1) * t * a - (real)(k - 1) * b) / (real)k;
+        b = a;
+        a = next;
+    }
+    *p = a;
+    *before = b;
+}
+
+/* Whose roots are sought in (-1, 1): Legendre for Gauss, the difference for Radau. */
+static real node_polynomial(int n, bool radau, real t) {
+    real p;
+    real before;
+    legendre(n, t, &p, &before);
+    return radau ? p - before : p;
+}
+
+/* Roots in (0, 1), ascending: each sign change of a scan, bisected. Returns their number. */
+static int roots_in_unit_interval(int n, bool radau, real *root) {
+    int found = 0;
+    for (int k = 0; k < SCAN && found < n; k++) {
+        real a = (real)k / SCAN;
+        real b = (real)(k + 1) / SCAN;
+        real at_a = node_polynomial(n, radau, 2 * a - 1);
+        if (at_a == 0.0L) {
+            if (a > 0.0L) {
+                root[found++] = a;
+            }
+            continue;
+        }
+        if (k == SCAN - 1 || at_a * node_polynomial(n, radau, 2 * b - 1) >= 0.0L) {
+            continue;
+        }
+        for (int round = 0; round < 80; round++) {
+            real middle = 0.5L * (a + b);
+            bool left = at_a * node_polynomial(n, radau, 2 * middle - 1) <= 0.0L;
+            *(left ? &b : &a) = middle;
+        }
+        root[found++] = 0.5L * (a + b);
+    }
+    return found;
+}
+
+/* Lagrange's polynomials on node[n], at x. */
+static void lagrange(int n, const real *node, real x, real *value) {
+    for (int j = 0; j < n; j++) {
+        value[j] = 1.0L;
+        for (int k = 0; k < n; k++) {
+            value[j] *= k != j ? (x - node[k]) / (node[j] - node[k]) : 1.0L;
+        }
+    }
+}
+
+/* A_ij = integral of the j-th Lagrange polynomial from 0 to c_i, by Gauss' rule, which is exact. */
+static void butcher_matrix(int s, const real *c, real A[MAX][MAX]) {
+    real gauss[MAX];
+    int n = roots_in_unit_interval(s, false, gauss);
+    for (int i = 0; i < s; i++) {
+        for (int j = 0; j < s; j++) {
+            A[i][j] = 0.0L;
+        }
+        for (int g = 0; g < n; g++) {
+            real p;
+            real before;
+            real t = 2 * gauss[g] - 1;
+            legendre(n, t, &p, &before);
+            real slope = (real)n * before / (1 - t * t); /* P_n(t) = 0 */
+            real weight = 1 / ((1 - t * t) * slope * slope);
+            real value[MAX];
+            lagrange(s, c, c[i] * gauss[g], value);
+            for (int j = 0; j < s; j++) {
+                A[i][j] += c[i] * weight * value[j];
+            }
+        }
+    }
+}
+
+/* The eigenvalues of A^-1 are the poles of the stability function, the (s-1, s) Pade approximant of
+ * exp (Hairer and Wanner, sec. IV.3, eq. (3.29)): all at once by Weierstrass' iteration. */
+static void eigenvalues(int s, complex_real *mu) {
+    real coefficient[MAX + 1];
+    coefficient[0] = 1.0L;
+    for (int j = 1; j <= s; j++) {
+        coefficient[j] = -coefficient[j - 1] * (real)(s - j + 1) / (real)((2 * s - j) * j);
+    }
+    complex_real start = 0.4L + 0.9L * I;
+    for (int i = 0; i < s; i++) {
+        mu[i] = (real)s * cpowl(start, i);
+    }
+    for (int round = 0; round < 500; round++) {
+        for (int i = 0; i < s; i++) {
+            complex_real value = coefficient[s];
+            for (int j = s - 1; j >= 0; j--) {
+                value = value * mu[i] + coefficient[j];
+            }
+            complex_real others = coefficient[s];
+            for (int k = 0; k < s; k++) {
+                others *= k != i ? mu[i] - mu[k] : 1.0L;
+            }
+            mu[i] -= value / others;
+        }
+    }
+}
+
+/* Solves a v = b, overwriting both, by elimination with row exchanges; a pivot of 0 counts as a
+ * rounding, which is what inverse iteration wants. */
+static void solve_small(int n, complex_real a[MAX][MAX], complex_real *b) {
+    for (int k = 0; k < n; k++) {
+        int pivot = k;
+        for (int i = k + 1; i < n; i++) {
+            pivot = cabsl(a[i][k]) > cabsl(a[pivot][k]) ? i : pivot;
+        }
+        for (int j = 0; j < n; j++) {
+            complex_real swap = a[k][j];
+            a[k][j] = a[pivot][j];
+            a[pivot][j] = swap;
+        }
+        complex_real swap = b[k];
+        b[k] = b[pivot];
+        b[pivot] = swap;
+        if (cabsl(a[k][k]) < 1e-22L) {
+            a[k][k] = 1e-22L;
+        }
+        for (int i = k + 1; i < n; i++) {
+            complex_real factor = a[i][k] / a[k][k];
+            for (int j = k; j < n; j++) {
+                a[i][j] -= factor * a[k][j];
+            }
+            b[i] -= factor * b[k];
+        }
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        for (int j = i + 1; j < n; j++) {
+            b[i] -= a[i][j] * b[j];
+        }
+        b[i] /= a[i][i];
+    }
+}
+
+/* v with (I - mu A) v = 0, or its transpose, by inverse iteration. */
+static void eigenvector(int s, real A[MAX][MAX], complex_real mu, bool transposed,
+                        complex_real *v) {
+    for (int i = 0; i < s; i++) {
+        v[i] = 1.0L + 0.1L * (real)i;
+    }
+    for (int round = 0; round < INVERSE_ROUNDS; round++) {
+        complex_real a[MAX][MAX];
+        for (int i = 0; i < s; i++) {
+            for (int j = 0; j < s; j++) {
+                a[i][j] = (i == j ? 1.0L : 0.0L) - mu * (transposed ? A[j][i] : A[i][j]);
+            }
+        }
+        solve_small(s, a, v);
+        real largest = 0.0L;
+        for (int i = 0; i < s; i++) {
+            largest = fmaxl(largest, cabsl(v[i]));
+        }
+        for (int i = 0; i < s; i++) {
+            v[i] /= largest;
+        }
+    }
+}
+
+static void diagonalise(struct dalcs_collocation *c, real A[MAX][MAX]) {
+    int s = c->s;
+    complex_real mu[MAX];
+    eigenvalues(s, mu);
+    for (int k = 0; k < s; k++) {
+        if (cimagl(mu[k]) < -1e-9L) {
+            continue; /* the conjugate of another */
+        }
+        complex_real right[MAX];
+        complex_real left[MAX];
+        eigenvector(s, A, mu[k], false, right);
+        eigenvector(s, A, mu[k], true, left);
+        complex_real of_one = 0.0L;
+        complex_real product = 0.0L;
+        for (int i = 0; i < s; i++) {
+            of_one += left[i];
+            product += left[i] * right[i];
+        }
+        bool is_real = cimagl(mu[k]) <= 1e-9L;
+        for (int i = 0; i < s; i++) {
+            complex_real back = left[i] / of_one;
+            complex_real forth = right[i] * of_one / product;
+            if (is_real) {
+                c->exact_from[i] = creall(back);
+                c->exact_to[i] = creall(forth);
+                c->from[i] = (double)creall(back);
+                c->to[i] = (double)creall(forth);
+            } else {
+                c->exact_from_pair[c->n_pairs][i] = back;
+                c->exact_to_pair[i][c->n_pairs] = forth;
+                c->from_pair[c->n_pairs][i] = (double complex)back;
+                c->to_pair[i][c->n_pairs] = (double complex)forth;
+            }
+        }
+        if (is_real) {
+            c->exact_lambda = creall(mu[k]);
+            c->lambda = (double)creall(mu[k]);
+        } else {
+            c->exact_mu[c->n_pairs] = mu[k];
+            c->mu[c->n_pairs++] = (double complex)mu[k];
+        }
+    }
+}
+
+static real product_of_differences(int n, const real *node, real x) {
+    real product = 1.0L;
+    for (int k = 0; k < n; k++) {
+        product *= x - node[k];
+    }
+    return product;
+}
+
+static void choose_test_node(struct dalcs_collocation *c, const real *node) {
+    int n = c->s + 1;
+    real worst = 0.0L;
+    for (int k = 1; k < SCAN; k++) {
+        real x = (real)k / SCAN;
+        real size = fabsl(product_of_differences(n, node, x));
+        if (size > worst) {
+            worst = size;
+            c->test_node = (double)x;
+        }
+    }
+    real value[MAX];
+    lagrange(n, node, c->test_node, value);
+    real steepest = 0.0L;
+    for (int i = 0; i < n; i++) {
+        c->test[i] = (double)value[i];
+        real slope = 1.0L;
+        for (int k = 0; k < n; k++) {
+            slope *= k != i ? node[i] - node[k] : 1.0L;
+        }
+        steepest = i > 0 ? fmaxl(steepest, fabsl(slope)) : 0.0L;
+    }
+    c->test_factor = fmax(1.0, (double)(steepest / worst) / c->lambda);
+}
+
+/* Values at the nodes to coefficients of Bernstein's polynomials, between whose least and largest
+ * the polynomial stays. */
+static void bernstein_matrix(struct dalcs_collocation *c, const real *node) {
+    int n = c->s + 1;
+    real spread = 0.0L;
+    for (int k = 0; k < n; k++) {
+        complex_real a[MAX][MAX];
+        complex_real b[MAX];
+        for (int i = 0; i < n; i++) {
+            real binomial = 1.0L;
+            for (int j = 0; j < n; j++) {
+                a[i][j] = binomial * powl(node[i], j) * powl(1 - node[i], n - 1 - j);
+                binomial = binomial * (real)(n - 1 - j) / (real)(j + 1);
+            }
+            b[i] = i == k ? 1.0L : 0.0L;
+        }
+        solve_small(n, a, b);
+        for (int j = 0; j < n; j++) {
+            c->to_bernstein[j][k] = (double)creall(b[j]);
+        }
+    }
+    for (int j = 0; j < n; j++) {
+        real sum = 0.0L;
+        for (int k = 0; k < n; k++) {
+            sum += fabs(c->to_bernstein[j][k]);
+        }
+        spread = fmaxl(spread, 0.5L * (sum - 1.0L));
+    }
+    c->bernstein_spread = (double)spread;
+}
+
+static void compute(struct dalcs_collocation *c, int s) {
+    *c = (struct dalcs_collocation){.s = s};
+    real node[MAX] = {0.0L};
+    (void)roots_in_unit_interval(s, true, node + 1);
+    node[s] = 1.0L;
+    for (int i = 0; i <= s; i++) {
+        c->node[i] = (double)node[i];
+        real weight = 1.0L;
+        for (int k = 0; k <= s; k++) {
+            weight *= k != i ? node[i] - node[k] : 1.0L;
+        }
+        c->barycentric[i] = (double)(1.0L / weight);
+    }
+    real A[MAX][MAX];
+    butcher_matrix(s, node + 1, A);
+    diagonalise(c, A);
+    real value[MAX];
+    lagrange(s, node + 1, 0.0L, value);
+    for (int i = 0; i < s; i++) {
+        c->exact_back[i] = value[i];
+        c->back[i] = (double)value[i];
+    }
+    choose_test_node(c, node);
+    bernstein_matrix(c, node);
+}
+
+static void print_reals(const char *name, int n, const double *x) {
+    printf("        .%s = {", name);
+    for (int i = 0; i < n; i++) {
+        printf("%s%.17g", i > 0 ? ", " : "", x[i]);
+    }
+    printf("},\n");
+}
+
+static void print_exacts(const char *name, int n, const long double *x) {
+    printf("        .%s = {", name);
+    for (int i = 0; i < n; i++) {
+        printf("%s%.21LgL", i > 0 ? ", " : "", x[i]);
+    }
+    printf("},\n");
+}
+
+static void print_complexes(int n, const double complex *x) {
+    printf("{");
+    for (int i = 0; i < n; i++) {
+        printf("%sCMPLX(%.17g, %.17g)", i > 0 ? ", " : "", creal(x[i]), cimag(x[i]));
+    }
+    printf("}");
+}
+
+static void print_exact_complexes(int n, const long double complex *x) {
+    printf("{");
+    for (int i = 0; i < n; i++) {
+        printf("%sCMPLXL(%.21LgL, %.21LgL)", i > 0 ? ", " : "", creall(x[i]), cimagl(x[i]));
+    }
+    printf("}");
+}
+
+static void print_method(const struct dalcs_collocation *c) {
+    int s = c->s;
+    int pairs = DALCS_MAX_CONJUGATES;
+    printf("    {\n        .s = %d,\n        .n_pairs = %d,\n", s, c->n_pairs);
+    print_reals("node", s + 1, c->node);
+    printf("        .lambda = %.17g,\n        .mu = ", c->lambda);
+    print_complexes(pairs, c->mu);
+    printf(",\n");
+    print_reals("to", s, c->to);
+    print_reals("from", s, c->from);
+    printf("        .to_pair = {");
+    for (int i = 0; i < s; i++) {
+        printf("%s", i > 0 ? ", " : "");
+        print_complexes(pairs, c->to_pair[i]);
+    }
+    printf("},\n        .from_pair = {");
+    for (int p = 0; p < pairs; p++) {
+        printf("%s", p > 0 ? ", " : "");
+        print_complexes(s, c->from_pair[p]);
+    }
+    printf("},\n        .exact_lambda = %.21LgL,\n        .exact_mu = ", c->exact_lambda);
+    print_exact_complexes(pairs, c->exact_mu);
+    printf(",\n");
+    print_exacts("exact_back", s, c->exact_back);
+    print_exacts("exact_to", s, c->exact_to);
+    print_exacts("exact_from", s, c->exact_from);
+    printf("        .exact_to_pair = {");
+    for (int i = 0; i < s; i++) {
+        printf("%s", i > 0 ? ", " : "");
+        print_exact_complexes(pairs, c->exact_to_pair[i]);
+    }
+    printf("},\n        .exact_from_pair = {");
+    for (int p = 0; p < pairs; p++) {
+        printf("%s", p > 0 ? ", " : "");
+        print_exact_complexes(s, c->exact_from_pair[p]);
+    }
+    printf("},\n");
+    print_reals("barycentric", s + 1, c->barycentric);
+    print_reals("back", s, c->back);
+    print_reals("test", s + 1, c->test);
+    printf("        .test_node = %.17g,\n        .test_factor = %.17g,\n", c->test_node,
+           c->test_factor);
+    printf("        .bernstein_spread = %.17g,\n        .to_bernstein = {\n", c->bernstein_spread);
+    for (int i = 0; i <= s; i++) {
+        printf("            {");
+        for (int k = 0; k <= s; k++) {
+            printf("%s%.17g", k > 0 ? ", " : "", c->to_bernstein[i][k]);
+        }
+        printf("},\n");
+    }
+    printf("        },\n    },\n");
+}
+
+int main(void) {
+    printf("/* made by make_collocation.c */\n");
+    for (int s = 1; s <= DALCS_MAX_STAGES; s += 2) {
+        struct dalcs_collocation c;
+        compute(&c, s);
+        print_method(&c);
+    }
+    return 0;
+}

@@ -1,0 +1,145 @@
+/* step_error.c - the error estimate against each signal's own scale.
+ *
+ * Two things are looked at. The drift of the states is how far they miss, at the start of the step, a
+ * polynomial one degree lower, filtered through one step of implicit Euler (Hairer and Wanner, Solving
+ * ODEs II, sec. IV.8): of order s + 1 like the dense output. The ripple is what curved sources do
+ * between the nodes, carried to every voltage and current; it alone sees variables of index 2, such as
+ * the current of a source across a capacitor. */
+#include "step_error.h"
+
+#include <math.h>
+
+/* Signals smaller than this part of the largest of their unit are held to that one's scale; the
+ * current of a pair likewise. */
+static const double smallest_scale = 1e-5;
+static const double smallest_pair = 1e-2;
+
+/* No column is known better than this part of what would balance the largest of the others. */
+static const double rounding_part = 2e-14;
+
+/* Sources that disagree by more than this part of the largest signal. */
+static const double clash_part = 1e-9;
+
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+static bool is_on(const struct dalcs_radau_part *part, int pair) {
+    return dalcs_osnsp_is_on(&part->component->osnsp, pair);
+}
+
+static void raise_units(const struct dalcs_radau_part *part, const double *y, double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int c = 0; c < n_equations; c++) {
+        int of = s->column_is_current[c];
+        unit[of] = larger(unit[of], fabs(y[c]));
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        int of = is_on(part, d);
+        unit[of] = larger(unit[of], fabs(y[n_equations + d]));
+    }
+}
+
+/* Each unit vouches a little for the other. */
+static void cross_units(const struct dalcs_radau_part *part, double *unit) {
+    double volt = unit[0];
+    unit[0] = larger(unit[0], part->cross[0] * unit[1]);
+    unit[1] = larger(unit[1], part->cross[1] * volt);
+}
+
+/* The last node that belongs to the segment. */
+static int last_node(const struct dalcs_radau_part *part, double end) {
+    const struct dalcs_collocation *m = part->stages.method;
+    int last = m->s;
+    while (last > 0 && m->node[last] > end) {
+        last--;
+    }
+    return last;
+}
+
+void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                      const struct dalcs_stage_entry *entry, double end,
+                      struct dalcs_step_quality *q) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    int n_equations = dalcs_system_n_equations(s);
+    const double *first = part->out;
+    const double *final = part->out + part->stages.method->s * l->stride;
+    const double *known = part->out + last_node(part, end) * l->stride;
+    *q = (struct dalcs_step_quality){.unit = {part->unit_scale[0], part->unit_scale[1]}};
+    raise_units(part, first, q->unit);
+    if (known != first) {
+        raise_units(part, known, q->unit);
+    }
+    cross_units(part, q->unit);
+    q->reach[0] = q->unit[0];
+    q->reach[1] = q->unit[1];
+    if (known != final) {
+        raise_units(part, final, q->reach);
+        cross_units(part, q->reach);
+    }
+    const double *natural = dalcs_stage_natural_units(entry);
+    double balanced = 0.0;
+    for (int c = 0; c < n_equations; c++) {
+        balanced = larger(balanced, fabs(final[c]) / natural[c]);
+    }
+    double rounding = rounding_part * balanced;
+    double besides[2] = {0.1 * r->options.vntol, 0.1 * r->options.abstol};
+    double tolerance = r->inner_tolerance;
+    bool curved = part->excitation.is_curved;
+    int n_judged = curved ? n_equations + s->n_pairs : s->n_x;
+    for (int c = 0; c < n_judged; c++) {
+        bool is_pair = c >= n_equations;
+        if (is_pair && !is_on(part, c - n_equations)) {
+            continue; /* its voltage is one of the columns */
+        }
+        double error = c < s->n_x ? fabs(part->out[l->drift + c]) : 0.0;
+        error = curved ? larger(error, fabs(part->out[l->ripple + c])) : error;
+        if (error == 0.0) {
+            continue;
+        }
+        int of = is_pair || s->column_is_current[c] ? 1 : 0;
+        double scale = larger(is_pair ? 0.0 : part->scale[c], fabs(known[c]));
+        scale = larger(larger(scale, fabs(first[c])),
+                       (is_pair ? smallest_pair : smallest_scale) * q->unit[of]);
+        double floor = is_pair ? rounding_part * q->unit[1] : rounding * natural[c];
+        double ratio = error / (tolerance * scale + floor + besides[of]);
+        if (!(ratio <= q->ratio)) {
+            q->ratio = ratio;
+        }
+        if (!(ratio <= 1.0)) {
+            q->of_unit = larger(q->of_unit, error / q->unit[of]);
+        }
+        if (ratio != ratio) {
+            return;
+        }
+    }
+}
+
+void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double *unit) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    int n_equations = dalcs_system_n_equations(part->component->system);
+    int node[2] = {0, last_node(part, end)};
+    for (int k = 0; k < 2; k++) {
+        const double *y = part->out + node[k] * l->stride;
+        for (int c = 0; c < n_equations; c++) {
+            part->scale[c] = larger(part->scale[c], fabs(y[c]));
+        }
+    }
+    part->unit_scale[0] = unit[0];
+    part->unit_scale[1] = unit[1];
+}
+
+bool dalcs_step_clashes(const struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry,
+                        double end, const double *unit) {
+    int n = dalcs_stage_n_clashes(entry);
+    int s = part->stages.method->s;
+    double limit = clash_part * larger(unit[0], unit[1]);
+    bool found = false;
+    for (int k = 0; k < n && !found; k++) {
+        bool counts = k % s == 0 || part->stages.method->node[k % s + 1] <= end;
+        found = counts && fabs(part->out[part->stages.layout.n_fixed + k]) > limit;
+    }
+    return found;
+}

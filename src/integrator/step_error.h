@@ -1,0 +1,27 @@
+/* step_error.h - how large signals are, and how far a step may be off. */
+#ifndef DALCS_STEP_ERROR_H
+#define DALCS_STEP_ERROR_H
+
+#include "radau.h"
+
+/* What is known of a step that has been solved. */
+struct dalcs_step_quality {
+    double ratio;    /* estimated error over what is allowed; NaN when the step means nothing */
+    double of_unit;  /* the errors that are not allowed, over the largest of their unit */
+    double unit[2];  /* V, A: the largest of each, up to the end of the segment */
+    double reach[2]; /* the same up to the end of the step, which may lie behind that */
+};
+
+/* The segment ends at `end` (in steps). */
+void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                      const struct dalcs_stage_entry *entry, double end,
+                      struct dalcs_step_quality *quality);
+
+/* Remembers the largest magnitudes of an accepted segment. */
+void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double *unit);
+
+/* Do sources disagree in a singular mode? Then it cannot be this one. */
+bool dalcs_step_clashes(const struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry,
+                        double end, const double *unit);
+
+#endif
