@@ -5,10 +5,14 @@
 #include <stdlib.h>
 
 /* Does input k enter an equation or a threshold, or command a switch along a curve? */
-static bool acts(const struct dalcs_system *s, int k, const struct dalcs_stimulus *stimulus) {
+static bool acts(const struct dalcs_excitation *excitation, int k,
+                 const struct dalcs_stimulus *stimulus) {
+    const struct dalcs_system *s = excitation->system;
     bool found = false;
-    for (int i = 0; i < s->E.p[s->E.n_rows] && !found; i++) {
-        found = s->E.j[i] == k;
+    for (int r = 0; r < s->E.n_rows && !found; r++) {
+        for (int i = s->E.p[r]; i < s->E.p[r + 1] && !excitation->bystanders.row[r]; i++) {
+            found = found || s->E.j[i] == k;
+        }
     }
     for (int i = 0; i < s->F.p[s->F.n_rows] && !found; i++) {
         found = s->F.j[i] == k;
@@ -66,12 +70,17 @@ enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
         dalcs_excitation_finish(excitation);
         return DALCS_E_NOMEM;
     }
+    enum dalcs_status status = dalcs_bystanders_find(&excitation->bystanders, system);
+    if (status != DALCS_OK) {
+        dalcs_excitation_finish(excitation);
+        return status;
+    }
     excitation->constant[0] = 1.0;
     for (int k = 1; k < system->n_inputs; k++) {
         const struct dalcs_stimulus *stimulus = &circuit->stimulus[system->stimulus[k]];
         if (stimulus->kind == DALCS_STIMULUS_DC) {
             excitation->constant[k] = stimulus->dc;
-        } else if (acts(system, k, stimulus)) {
+        } else if (acts(excitation, k, stimulus)) {
             add_wave(excitation, k, stimulus);
         }
     }
@@ -83,6 +92,7 @@ void dalcs_excitation_finish(struct dalcs_excitation *excitation) {
     free(excitation->wave);
     free(excitation->function);
     free(excitation->constant);
+    dalcs_bystanders_finish(&excitation->bystanders);
     *excitation = (struct dalcs_excitation){0};
 }
 

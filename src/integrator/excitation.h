@@ -6,8 +6,8 @@
 #ifndef DALCS_EXCITATION_H
 #define DALCS_EXCITATION_H
 
+#include "bystanders.h"
 #include "circuit.h"
-#include "system.h"
 
 /* One function of theta that multiplies one input. */
 struct dalcs_excitation_function {
@@ -35,6 +35,7 @@ struct dalcs_excitation_wave {
 
 struct dalcs_excitation {
     const struct dalcs_system *system;
+    struct dalcs_bystanders bystanders;
     int n_waves;
     struct dalcs_excitation_wave *wave; /* sources that vary and act on the system */
     int n_functions;
@@ -45,8 +46,8 @@ struct dalcs_excitation {
     double next_edge;       /* s, of the waves */
 };
 
-/* Inputs that only command switches, and do so along straight lines, are left out: commands have
- * their own schedule. */
+/* Inputs that only command switches, and do so along straight lines, are left out, for commands have
+ * their own schedule; and those that only bystanders see. */
 enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
                                          const struct dalcs_circuit *circuit,
                                          const struct dalcs_system *system) DALCS_MUST_CHECK;

@@ -237,6 +237,7 @@ static void choose_test_node(struct dalcs_collocation *c, const real *node) {
         real size = fabsl(product_of_differences(n, node, x));
         if (size > worst) {
             worst = size;
+            c->test_size = (double)size;
             c->test_node = (double)x;
         }
     }
@@ -383,6 +384,7 @@ static void print_method(const struct dalcs_collocation *c) {
     print_reals("barycentric", s + 1, c->barycentric);
     print_reals("back", s, c->back);
     print_reals("test", s + 1, c->test);
+    printf("        .test_size = %.17g,\n", c->test_size);
     printf("        .test_node = %.17g,\n        .test_factor = %.17g,\n", c->test_node,
            c->test_factor);
     printf("        .bernstein_spread = %.17g,\n        .to_bernstein = {\n", c->bernstein_spread);

@@ -134,6 +134,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     find_cross_scales(c->system, r->options.stop, part->cross);
     part->longest = dalcs_segment_longest(r, part);
     double first = fmin(part->longest, r->options.stop / FIRST_STEPS);
+    first = fmin(first, dalcs_segment_promising(r, part));
     part->level = -ilogb(first);
     part->patience = 32;
     return DALCS_OK;
@@ -249,8 +250,13 @@ static void count_crowd(const struct dalcs_radau *r, struct dalcs_radau_part *pa
 static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
     part->jumped = false;
-    dalcs_segment_values(part, part->end, part->last);
-    memcpy(part->x, part->last, state_bytes);
+    if (part->end == 1.0) {
+        dalcs_segment_values(part, 1.0, part->last);
+        memcpy(part->x, part->last, state_bytes);
+    } else {
+        dalcs_segment_states(part, part->end, part->x);
+        part->fresh = true; /* the next step starts inside this one */
+    }
     part->t = part->t_end;
     if (part->n_crossed > 0) {
         dalcs_guards_flip(part);
@@ -280,6 +286,24 @@ enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) {
     return DALCS_OK;
 }
 
+static void ask_bystanders(const struct dalcs_radau_part *part, double t, enum dalcs_side side) {
+    const struct dalcs_component *c = part->component;
+    const struct dalcs_system *s = c->system;
+    const struct dalcs_bystanders *b = &part->excitation.bystanders;
+    for (int i = 0; i < b->n; i++) {
+        double sum = 0.0;
+        for (int k = 0; k < s->n_inputs; k++) {
+            double gain = b->gain[i * s->n_inputs + k];
+            if (gain != 0.0) {
+                const struct dalcs_stimulus *stimulus =
+                    k > 0 ? &c->circuit->stimulus[s->stimulus[k]] : NULL;
+                sum += gain * (k > 0 ? dalcs_stimulus_value(stimulus, t, side) : 1.0);
+            }
+        }
+        c->y[b->column[i]] = sum;
+    }
+}
+
 static enum dalcs_status evaluate(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                                   double t, enum dalcs_side side) {
     struct dalcs_component *c = part->component;
@@ -301,6 +325,7 @@ static enum dalcs_status evaluate(const struct dalcs_radau *r, struct dalcs_rada
     for (int d = 0; d < s->n_pairs; d++) {
         c->y[n_equations + d] *= dalcs_osnsp_is_on(&c->osnsp, d) ? 1.0 : 0.0;
     }
+    ask_bystanders(part, t, side);
     for (int i = 0; i < part->n_used_inputs; i++) {
         int k = part->used_input[i];
         c->u[s->n_x + k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);

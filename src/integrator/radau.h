@@ -54,7 +54,7 @@ struct dalcs_radau_part {
     double longest;       /* s, step worth trying */
     int tries;            /* falls back to implicit Euler in a row */
     bool fresh;           /* something just happened at t: nothing is known of how pairs start */
-    bool flipped;   /* and it is that pairs changed sides */
+    bool flipped;         /* and it is that pairs changed sides */
     double *x;            /* [n_x] at t */
     double *in, *out;
     double *last; /* [stride] out at the end of the step before, if that is where this one starts */

@@ -12,6 +12,12 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r,
 /* The longest step worth trying. */
 double dalcs_segment_longest(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
 
+/* The step at which the error of following the fastest source is about what is allowed. */
+double dalcs_segment_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
+
+/* x[n_x] at theta of the present step. */
+void dalcs_segment_states(const struct dalcs_radau_part *part, double theta, double *x);
+
 /* value[n_columns + n_watched] at theta of the present step. */
 void dalcs_segment_values(const struct dalcs_radau_part *part, double theta, double *value);
 

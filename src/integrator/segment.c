@@ -52,6 +52,33 @@ double dalcs_segment_longest(const struct dalcs_radau *r, const struct dalcs_rad
     return fmin(longest, most_periods(part->stages.method->s) * part->excitation.shortest_period);
 }
 
+double dalcs_segment_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    const struct dalcs_collocation *m = part->stages.method;
+    if (isinf(part->excitation.shortest_period)) {
+        return INFINITY;
+    }
+    double factorial = 1.0;
+    for (int k = 2; k <= m->s + 1; k++) {
+        factorial *= k;
+    }
+    double size = m->test_size * m->test_factor * m->lambda / factorial;
+    double angle = pow(r->inner_tolerance / size, 1.0 / (m->s + 1));
+    return angle * part->excitation.shortest_period / 6.283185307179586;
+}
+
+void dalcs_segment_states(const struct dalcs_radau_part *part, double theta, double *x) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    double weight[DALCS_MAX_NODES];
+    dalcs_collocation_weights(part->stages.method, theta, weight);
+    for (int i = 0; i < part->component->system->n_x; i++) {
+        double sum = 0.0;
+        for (int k = 0; k < l->n_nodes; k++) {
+            sum += weight[k] * part->out[k * l->stride + i];
+        }
+        x[i] = sum;
+    }
+}
+
 void dalcs_segment_values(const struct dalcs_radau_part *part, double theta, double *value) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     if (theta == 0.0 || theta == 1.0) {
@@ -250,7 +277,9 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
     part->t_end = fmin(t_end, search->limit);
     part->tries = 0;
     dalcs_step_remember(part, theta, quality->unit);
-    dalcs_guards_arm(r, part, theta, quality->reach);
+    if (theta == 1.0) {
+        dalcs_guards_arm(r, part, theta, quality->reach);
+    }
     r->steps++;
     if (part->fresh) {
         dalcs_transition_learn(part, search->restarts > 0 && !part->jumped);
@@ -282,6 +311,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         means_something =
             quality.ratio == quality.ratio && !dalcs_step_clashes(part, entry, end, quality.unit);
     }
+#ifdef DALCS_TRACE
     if (getenv("DALCS_D")) {
         fprintf(stderr,
                 "p%d t=%.14g h=%g lim=%.14g mode=%lx fresh=%d guess=%d rs=%d fl=%d ratio=%g x=",
@@ -292,6 +322,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
             fprintf(stderr, " %.9g", part->x[q]);
         fprintf(stderr, "\n");
     }
+#endif
     bool controlled = !search->fixed || (part->fresh && search->restarts == 0);
     if (!means_something || (controlled && !(quality.ratio <= search->tolerated))) {
         quality.ratio = means_something ? quality.ratio : INFINITY;
@@ -302,6 +333,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     }
     bool at_once;
     double theta = dalcs_guards_first_fall(r, part, end, quality.reach, &at_once);
+#ifdef DALCS_TRACE
     if (getenv("DALCS_D") && part->n_crossed) {
         fprintf(stderr, "  cross theta=%g at_once=%d armed=%d end=%g:", theta, at_once,
                 part->armed[part->crossed[0]], end);
@@ -309,6 +341,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
             fprintf(stderr, " %d", part->crossed[q]);
         fprintf(stderr, "\n");
     }
+#endif
     if (at_once && part->fresh) {
         return change_mode(r, part, search, done);
     }

@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The latest entries are looked at one by one before all are asked. */
+enum { RECENT = 3 };
+
 enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,
                                      const struct dalcs_excitation *excitation, int s,
                                      int dense_limit, double rcond_min, size_t most_bytes) {
@@ -128,7 +131,11 @@ static enum dalcs_status entry_create(struct dalcs_stages *stages, double h,
 
 static bool is_key(const struct dalcs_stage_entry *e, const uint64_t *mode, size_t words,
                    double h) {
-    return e->h == h && memcmp(e->mode, mode, words * sizeof(*mode)) == 0;
+    uint64_t different = e->h != h;
+    for (size_t i = 0; i < words; i++) {
+        different |= e->mode[i] ^ mode[i];
+    }
+    return different == 0;
 }
 
 static struct dalcs_stage_entry *find(struct dalcs_stages *stages, const uint64_t *mode, double h) {
@@ -148,16 +155,18 @@ enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *
                                    struct dalcs_stage_entry **entry) {
     size_t words = (size_t)stages->n_words;
     struct dalcs_stage_entry *e = stages->newest;
-    if (e != NULL && is_key(e, mode, words, h)) {
-        stages->cache_hits++;
-        *entry = e;
-        return DALCS_OK;
+    for (int k = 0; k < RECENT && e != NULL && !is_key(e, mode, words, h); k++) {
+        e = e->older;
     }
-    e = find(stages, mode, h);
+    if (e == NULL || !is_key(e, mode, words, h)) {
+        e = find(stages, mode, h);
+    }
     if (e != NULL) {
         stages->cache_hits++;
-        unlink_entry(stages, e);
-        link_newest(stages, e);
+        if (e != stages->newest) {
+            unlink_entry(stages, e);
+            link_newest(stages, e);
+        }
         *entry = e;
         return DALCS_OK;
     }

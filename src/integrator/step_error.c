@@ -68,7 +68,9 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
     const double *final = part->out + part->stages.method->s * l->stride;
     const double *known = part->out + last_node(part, end) * l->stride;
     *q = (struct dalcs_step_quality){.unit = {part->unit_scale[0], part->unit_scale[1]}};
-    raise_units(part, first, q->unit);
+    if (part->fresh) {
+        raise_units(part, first, q->unit);
+    }
     if (known != first) {
         raise_units(part, known, q->unit);
     }
