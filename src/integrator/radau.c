@@ -180,9 +180,7 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->w1);
     free(part->after);
     free(part->used_input);
-    free(part->transitions);
-    free(part->transition_known);
-    free(part->mode_before);
+    dalcs_transition_finish(part);
 }
 
 void dalcs_radau_finish(struct dalcs_radau *r) {

@@ -67,8 +67,14 @@ struct dalcs_radau_part {
     bool jumped;  /* at t, when the segment began */
     double *u, *y1, *y2, *w1, *after; /* work */
     int n_used_inputs, *used_input;   /* that probes read */
-    uint64_t *transitions;            /* see transition.h */
-    bool *transition_known;
+
+    struct dalcs_transition { /* see transition.h */
+        bool is_known;
+        int level;
+    } * transition;
+
+    uint64_t *transition_modes;
+    int level_before;
     uint64_t *mode_before;
     long crowd; /* events since `crowd_since` */
     double crowd_since;

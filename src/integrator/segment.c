@@ -202,15 +202,20 @@ static void lengthen(struct dalcs_radau_part *part, double ratio) {
     part->grew = !promising;
 }
 
+static enum dalcs_status refuse(struct dalcs_radau_part *part, struct search *search) {
+    dalcs_transition_refuse(part);
+    search->first_level = part->level;
+    search->guessed = false;
+    return DALCS_OK;
+}
+
 /* After a step that is not accurate: changes the mode, the state or the length. *done: the segment is
  * one of implicit Euler. */
 static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                  struct search *search, const struct dalcs_step_quality *quality,
                                  bool *done) {
     if (search->guessed) {
-        dalcs_transition_refuse(part);
-        search->guessed = false;
-        return DALCS_OK;
+        return refuse(part, search);
     }
     if (part->fresh && search->restarts == 0) {
         return restart(r, part, search);
@@ -245,9 +250,7 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
 static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                      struct search *search, bool *done) {
     if (search->guessed) {
-        dalcs_transition_refuse(part);
-        search->guessed = false;
-        return DALCS_OK;
+        return refuse(part, search);
     }
     if (search->restarts < MOST_RESTARTS && search->flips == 0) {
         return restart(r, part, search);
@@ -282,7 +285,9 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
     }
     r->steps++;
     if (part->fresh) {
-        dalcs_transition_learn(part, search->restarts > 0 && !part->jumped);
+        if (part->flipped) {
+            dalcs_transition_learn(part);
+        }
         part->fresh = false;
         part->flipped = false;
     }
@@ -364,8 +369,9 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
         part->fresh = true;
         return fall_back(r, part, &search, (int)(part->crowd / CROWD));
     }
-    if (part->fresh) {
-        search.guessed = dalcs_transition_guess(part, part->flipped);
+    if (part->fresh && part->flipped) {
+        search.guessed = dalcs_transition_guess(part);
+        search.first_level = part->level;
     }
     bool done = false;
     while (!done) {

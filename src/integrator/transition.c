@@ -1,4 +1,4 @@
-/* transition.c - a small table of modes, the place of an entry being its hash. */
+/* transition.c - a small table, the place of an entry being the hash of the mode before. */
 #include "transition.h"
 
 #include <stdlib.h>
@@ -8,12 +8,18 @@ enum { SLOTS = 64 };
 
 enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
     size_t words = (size_t)part->component->osnsp.n_words;
-    part->transitions = dalcs_alloc(SLOTS * 2 * words, sizeof(uint64_t));
-    part->transition_known = dalcs_alloc(SLOTS, sizeof(bool));
+    part->transition = dalcs_alloc(SLOTS, sizeof(*part->transition));
+    part->transition_modes = dalcs_alloc(SLOTS * 2 * words, sizeof(uint64_t));
     part->mode_before = dalcs_alloc(words, sizeof(uint64_t));
     bool complete =
-        part->transitions != NULL && part->transition_known != NULL && part->mode_before != NULL;
+        part->transition != NULL && part->transition_modes != NULL && part->mode_before != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+void dalcs_transition_finish(struct dalcs_radau_part *part) {
+    free(part->transition);
+    free(part->transition_modes);
+    free(part->mode_before);
 }
 
 static size_t slot_of(const struct dalcs_radau_part *part, const uint64_t *mode) {
@@ -25,33 +31,33 @@ static size_t slot_of(const struct dalcs_radau_part *part, const uint64_t *mode)
     return (size_t)(hash % SLOTS);
 }
 
-bool dalcs_transition_guess(struct dalcs_radau_part *part, bool flipped) {
+bool dalcs_transition_guess(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     size_t words = (size_t)p->n_words;
     memcpy(part->mode_before, p->mode, words * sizeof(uint64_t));
+    part->level_before = part->level;
     size_t slot = slot_of(part, p->mode);
-    const uint64_t *known = part->transitions + slot * 2 * words;
-    if (!flipped || !part->transition_known[slot] ||
-        memcmp(known, p->mode, words * sizeof(uint64_t)) != 0) {
+    const uint64_t *known = part->transition_modes + slot * 2 * words;
+    if (!part->transition[slot].is_known || memcmp(known, p->mode, words * sizeof(uint64_t)) != 0) {
         return false;
     }
     memcpy(p->mode, known + words, words * sizeof(uint64_t));
+    part->level = part->transition[slot].level;
     return true;
 }
 
 void dalcs_transition_refuse(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     memcpy(p->mode, part->mode_before, (size_t)p->n_words * sizeof(uint64_t));
+    part->level = part->level_before;
 }
 
-void dalcs_transition_learn(struct dalcs_radau_part *part, bool found_by_restart) {
+void dalcs_transition_learn(struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     size_t words = (size_t)p->n_words;
-    if (!found_by_restart || !part->flipped || words == 0) {
-        return;
-    }
     size_t slot = slot_of(part, part->mode_before);
-    memcpy(part->transitions + slot * 2 * words, part->mode_before, words * sizeof(uint64_t));
-    memcpy(part->transitions + (slot * 2 + 1) * words, p->mode, words * sizeof(uint64_t));
-    part->transition_known[slot] = true;
+    memcpy(part->transition_modes + slot * 2 * words, part->mode_before, words * sizeof(uint64_t));
+    memcpy(part->transition_modes + (slot * 2 + 1) * words, p->mode, words * sizeof(uint64_t));
+    part->transition[slot].is_known = true;
+    part->transition[slot].level = part->level;
 }
