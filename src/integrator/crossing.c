@@ -114,19 +114,19 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
     int n = c->s + 1;
     struct dalcs_crossing found = {.falls = false};
     double b[DALCS_MAX_NODES] = {0.0};
-    double least = INFINITY;
     double largest = 0.0;
     for (int k = 0; k < n; k++) {
-        largest = fmax(largest, fabs(value[k * stride]));
-    }
-    depth = fmax(depth, 4.0 * DBL_EPSILON * (1.0 + c->bernstein_spread) * largest);
-    for (int i = 0; i < n; i++) {
-        double sum = 0.0;
-        for (int k = 0; k < n; k++) {
-            sum += c->to_bernstein[i][k] * value[k * stride];
+        double v = value[k * stride];
+        largest = fabs(v) > largest ? fabs(v) : largest;
+        for (int i = 0; i < DALCS_MAX_NODES; i++) { /* all, for the sake of vectors */
+            b[i] += c->to_bernstein[k][i] * v;
         }
-        b[i] = sum;
-        least = fmin(least, sum);
+    }
+    double rounding = 4.0 * DBL_EPSILON * (1.0 + c->bernstein_spread) * largest;
+    depth = depth > rounding ? depth : rounding;
+    double least = b[0];
+    for (int i = 1; i < n; i++) {
+        least = b[i] < least ? b[i] : least;
     }
     if (least >= -depth) {
         return found;

@@ -273,13 +273,13 @@ static void bernstein_matrix(struct dalcs_collocation *c, const real *node) {
         }
         solve_small(n, a, b);
         for (int j = 0; j < n; j++) {
-            c->to_bernstein[j][k] = (double)creall(b[j]);
+            c->to_bernstein[k][j] = (double)creall(b[j]);
         }
     }
     for (int j = 0; j < n; j++) {
         real sum = 0.0L;
         for (int k = 0; k < n; k++) {
-            sum += fabs(c->to_bernstein[j][k]);
+            sum += fabs(c->to_bernstein[k][j]);
         }
         spread = fmaxl(spread, 0.5L * (sum - 1.0L));
     }

@@ -7,24 +7,24 @@
 #include <string.h>
 
 /* Errors are kept this much smaller than asked for: they add up over a run. */
-static const double inner_part = 0.04;
+static const double inner_part = 0.12;
 static const double largest_inner = 3e-7;
 static const double smallest_inner = 1e-12;
 
-/* Where the number of stages changes: measured, doc/methods.md. */
-static const double loose = 3e-4, tight = 3e-8;
+/* Where the number of stages of a large component changes: measured, doc/methods.md. */
+static const double loose = 1e-4;
 
 enum { FIRST_STEPS = 64 };
 
-static int choose_stages(const struct dalcs_radau_options *o) {
-    if (o->stages > 0) {
-        return o->stages;
-    }
-    return o->tolerance >= loose ? 3 : o->tolerance >= tight ? 5 : 7;
-}
-
-static const char *reason_for(int stages) {
-    return stages == 3 ? "loose tolerance" : stages == 5 ? "middling tolerance" : "tight tolerance";
+/* Small components have their steps as dense maps, where more stages cost little and save steps and
+ * maps; large ones pay for each stage with a factorisation in every new mode. */
+static int choose_stages(const struct dalcs_radau_options *o, const struct dalcs_system *system,
+                         int dense_limit, const char **because) {
+    bool small = dalcs_system_n_columns(system) <= dense_limit;
+    *because = small                   ? "small enough for dense maps"
+               : o->tolerance >= loose ? "large, loose tolerance"
+                                       : "large";
+    return small ? 7 : o->tolerance >= loose ? 3 : 5;
 }
 
 static bool has_memory_or_sides(const struct dalcs_system *s) {
@@ -110,14 +110,15 @@ static void find_cross_scales(const struct dalcs_system *s, double stop, double 
 }
 
 static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                    const struct dalcs_osnsp_options *osnsp, int stages) {
+                                    const struct dalcs_osnsp_options *osnsp) {
     struct dalcs_component *c = part->component;
     bool steps = has_memory_or_sides(c->system);
     part->kind = steps ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
-    part->because = !steps                      ? "no state, no diode and no switch"
-                    : r->options.stages > 0     ? NULL
-                    : r->options.fixed_step > 0 ? "fixed step"
-                                                : reason_for(stages);
+    int stages = r->options.stages;
+    if (stages == 0) {
+        stages = choose_stages(&r->options, c->system, osnsp->dense_limit, &part->because);
+    }
+    part->because = steps ? part->because : "no state, no diode and no switch";
     DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system));
     DALCS_TRY(dalcs_commands_setup(&part->commands, c->circuit, c->system));
     DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, stages,
@@ -153,7 +154,7 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
     for (int k = 0; k < r->n_parts && status == DALCS_OK; k++) {
         r->part[k].component = &base->component[k];
         r->part[k].index = k;
-        status = part_setup(r, &r->part[k], osnsp, choose_stages(options));
+        status = part_setup(r, &r->part[k], osnsp);
     }
     if (status != DALCS_OK) {
         dalcs_radau_finish(r);

@@ -20,6 +20,9 @@ static const double safety = 0.8;
 /* Defects of a state, over what is allowed, that interpolation may leave; more is a jump. */
 static const double most_projected = 1e4;
 
+/* Smaller ones are allowed, but currents across capacitors are their derivatives. */
+static const double worth_projecting = 1e-2;
+
 /* Errors over their unit that no smaller step mends are rounding's up to this. */
 static const double most_tolerated = 2e-13;
 
@@ -332,6 +335,12 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (!means_something || (controlled && !(quality.ratio <= search->tolerated))) {
         quality.ratio = means_something ? quality.ratio : INFINITY;
         return recover(r, part, search, &quality, done);
+    }
+    if (part->fresh && !search->projected && !search->fixed && quality.drift > worth_projecting) {
+        bool moved;
+        search->projected = true;
+        DALCS_TRY(project(part, search->limit, &moved));
+        return DALCS_OK;
     }
     if (part->fresh) {
         dalcs_guards_arm(r, part, 0.0, quality.reach);

@@ -104,7 +104,8 @@ static enum dalcs_status entry_create(struct dalcs_stages *stages, double h,
     e->h = h;
     e->key = dalcs_alloc((size_t)stages->n_words + 1, sizeof(*e->key));
     e->on = dalcs_alloc((size_t)n_pairs, sizeof(*e->on));
-    e->natural = dalcs_alloc((size_t)dalcs_system_n_equations(stages->system), sizeof(*e->natural));
+    e->natural =
+        dalcs_alloc(2 * (size_t)dalcs_system_n_equations(stages->system), sizeof(*e->natural));
     enum dalcs_status status = DALCS_E_NOMEM;
     if (e->key != NULL && e->on != NULL && e->natural != NULL) {
         memcpy(e->key, stages->key, ((size_t)stages->n_words + 1) * sizeof(*e->key));
@@ -118,6 +119,9 @@ static enum dalcs_status entry_create(struct dalcs_stages *stages, double h,
         stages->factorizations++;
         status = e->n <= stages->dense_limit ? dalcs_stage_map_build(stages, e)
                                              : dalcs_stage_factors_build(stages, e);
+        for (int c = 0, n = dalcs_system_n_equations(stages->system); c < n; c++) {
+            e->natural[n + c] = 1.0 / e->natural[c];
+        }
     }
     if (status != DALCS_OK) {
         entry_destroy(e);

@@ -69,7 +69,7 @@ enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages,
 
 int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry);
 
-/* [n_equations] columns divided by these are in balance with each other. */
+/* [2 n_equations] units in which the columns are in balance with each other, then their inverses. */
 const double *dalcs_stage_natural_units(const struct dalcs_stage_entry *entry);
 
 /* Largest residual of the stage equations over the size of their terms. */

@@ -82,9 +82,10 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
         cross_units(part, q->reach);
     }
     const double *natural = dalcs_stage_natural_units(entry);
+    const double *inverse = natural + n_equations;
     double balanced = 0.0;
     for (int c = 0; c < n_equations; c++) {
-        balanced = larger(balanced, fabs(final[c]) / natural[c]);
+        balanced = larger(balanced, fabs(final[c]) * inverse[c]);
     }
     double rounding = rounding_part * balanced;
     double besides[2] = {0.1 * r->options.vntol, 0.1 * r->options.abstol};
@@ -96,7 +97,8 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
         if (is_pair && !is_on(part, c - n_equations)) {
             continue; /* its voltage is one of the columns */
         }
-        double error = c < s->n_x ? fabs(part->out[l->drift + c]) : 0.0;
+        double drift = c < s->n_x ? fabs(part->out[l->drift + c]) : 0.0;
+        double error = drift;
         error = curved ? larger(error, fabs(part->out[l->ripple + c])) : error;
         if (error == 0.0) {
             continue;
@@ -106,7 +108,9 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
         scale = larger(larger(scale, fabs(first[c])),
                        (is_pair ? smallest_pair : smallest_scale) * q->unit[of]);
         double floor = is_pair ? rounding_part * q->unit[1] : rounding * natural[c];
-        double ratio = error / (tolerance * scale + floor + besides[of]);
+        double allowed = tolerance * scale + floor + besides[of];
+        double ratio = error / allowed;
+        q->drift = larger(q->drift, drift / allowed);
         if (!(ratio <= q->ratio)) {
             q->ratio = ratio;
         }

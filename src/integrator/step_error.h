@@ -7,6 +7,7 @@
 /* What is known of a step that has been solved. */
 struct dalcs_step_quality {
     double ratio;    /* estimated error over what is allowed; NaN when the step means nothing */
+    double drift;    /* the part of it that comes from where the states start */
     double of_unit;  /* the errors that are not allowed, over the largest of their unit */
     double unit[2];  /* V, A: the largest of each, up to the end of the segment */
     double reach[2]; /* the same up to the end of the step, which may lie behind that */
