@@ -250,10 +250,10 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
     part->jumped = false;
     if (part->end == 1.0) {
-        dalcs_segment_values(part, 1.0, part->last);
+        dalcs_step_values(part, 1.0, part->last);
         memcpy(part->x, part->last, state_bytes);
     } else {
-        dalcs_segment_states(part, part->end, part->x);
+        dalcs_step_states(part, part->end, part->x);
         part->fresh = true; /* the next step starts inside this one */
     }
     part->t = part->t_end;
@@ -319,7 +319,7 @@ static enum dalcs_status evaluate(const struct dalcs_radau *r, struct dalcs_rada
         return dalcs_component_solve(c, 0.0, c->u, c->y);
     }
     int n_equations = dalcs_system_n_equations(s);
-    dalcs_segment_values(part, fmin(1.0, (t - part->t) / part->h), part->y1);
+    dalcs_step_values(part, fmin(1.0, (t - part->t) / part->h), part->y1);
     memcpy(c->y, part->y1, (size_t)dalcs_system_n_columns(s) * sizeof(double));
     for (int d = 0; d < s->n_pairs; d++) {
         c->y[n_equations + d] *= dalcs_osnsp_is_on(&c->osnsp, d) ? 1.0 : 0.0;

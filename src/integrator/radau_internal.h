@@ -15,12 +15,6 @@ double dalcs_segment_longest(const struct dalcs_radau *r, const struct dalcs_rad
 /* The step at which the error of following the fastest source is about what is allowed. */
 double dalcs_segment_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
 
-/* x[n_x] at theta of the present step. */
-void dalcs_segment_states(const struct dalcs_radau_part *part, double theta, double *x);
-
-/* value[n_columns + n_watched] at theta of the present step. */
-void dalcs_segment_values(const struct dalcs_radau_part *part, double theta, double *value);
-
 /* restart.c: two micro-steps from part->t decide mode and state; a jump is reported. `longer` makes
  * them 2^(5 longer) times as long. */
 enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_part *part,

@@ -69,39 +69,6 @@ double dalcs_segment_promising(const struct dalcs_radau *r, const struct dalcs_r
     return angle * part->excitation.shortest_period / 6.283185307179586;
 }
 
-void dalcs_segment_states(const struct dalcs_radau_part *part, double theta, double *x) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    double weight[DALCS_MAX_NODES];
-    dalcs_collocation_weights(part->stages.method, theta, weight);
-    for (int i = 0; i < part->component->system->n_x; i++) {
-        double sum = 0.0;
-        for (int k = 0; k < l->n_nodes; k++) {
-            sum += weight[k] * part->out[k * l->stride + i];
-        }
-        x[i] = sum;
-    }
-}
-
-void dalcs_segment_values(const struct dalcs_radau_part *part, double theta, double *value) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    if (theta == 0.0 || theta == 1.0) {
-        int node = theta == 0.0 ? 0 : l->n_nodes - 1;
-        memcpy(value, part->out + node * l->stride, (size_t)l->stride * sizeof(*value));
-        return;
-    }
-    double weight[DALCS_MAX_NODES];
-    dalcs_collocation_weights(part->stages.method, theta, weight);
-    for (int c = 0; c < l->stride; c++) {
-        value[c] = 0.0;
-    }
-    for (int k = 0; k < l->n_nodes; k++) {
-        const double *y = part->out + k * l->stride;
-        for (int c = 0; c < l->stride; c++) {
-            value[c] += weight[k] * y[c];
-        }
-    }
-}
-
 static enum dalcs_status solve_step(struct dalcs_radau_part *part,
                                     struct dalcs_stage_entry **entry) {
     const struct dalcs_system *s = part->component->system;

@@ -8,6 +8,7 @@
 #include "step_error.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Signals smaller than this part of the largest of their unit are held to that one's scale; the
  * current of a pair likewise. */
@@ -58,6 +59,39 @@ static int last_node(const struct dalcs_radau_part *part, double end) {
     return last;
 }
 
+void dalcs_step_states(const struct dalcs_radau_part *part, double theta, double *x) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    double weight[DALCS_MAX_NODES];
+    dalcs_collocation_weights(part->stages.method, theta, weight);
+    for (int i = 0; i < part->component->system->n_x; i++) {
+        double sum = 0.0;
+        for (int k = 0; k < l->n_nodes; k++) {
+            sum += weight[k] * part->out[k * l->stride + i];
+        }
+        x[i] = sum;
+    }
+}
+
+void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double *value) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    if (theta == 0.0 || theta == 1.0) {
+        int node = theta == 0.0 ? 0 : l->n_nodes - 1;
+        memcpy(value, part->out + node * l->stride, (size_t)l->stride * sizeof(*value));
+        return;
+    }
+    double weight[DALCS_MAX_NODES];
+    dalcs_collocation_weights(part->stages.method, theta, weight);
+    for (int c = 0; c < l->stride; c++) {
+        value[c] = 0.0;
+    }
+    for (int k = 0; k < l->n_nodes; k++) {
+        const double *y = part->out + k * l->stride;
+        for (int c = 0; c < l->stride; c++) {
+            value[c] += weight[k] * y[c];
+        }
+    }
+}
+
 void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                       const struct dalcs_stage_entry *entry, double end,
                       struct dalcs_step_quality *q) {
@@ -77,8 +111,9 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
     cross_units(part, q->unit);
     q->reach[0] = q->unit[0];
     q->reach[1] = q->unit[1];
-    if (known != final) {
-        raise_units(part, final, q->reach);
+    if (end < 1.0) {
+        dalcs_step_values(part, end, part->y2);
+        raise_units(part, part->y2, q->reach);
         cross_units(part, q->reach);
     }
     const double *natural = dalcs_stage_natural_units(entry);

@@ -10,8 +10,12 @@ struct dalcs_step_quality {
     double drift;    /* the part of it that comes from where the states start */
     double of_unit;  /* the errors that are not allowed, over the largest of their unit */
     double unit[2];  /* V, A: the largest of each, up to the end of the segment */
-    double reach[2]; /* the same up to the end of the step, which may lie behind that */
+    double reach[2]; /* the same with the end itself */
 };
+
+/* x[n_x], or value[n_columns + n_watched], at theta of the present step. */
+void dalcs_step_states(const struct dalcs_radau_part *part, double theta, double *x);
+void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double *value);
 
 /* The segment ends at `end` (in steps). */
 void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
