@@ -236,7 +236,10 @@ struct dalcs_report {
     struct {
         double worst;      /* largest scaled residual of any accepted step */
         double time;       /* s */
-        const char *where; /* "KCL at out", "branch v1", "complementarity of d1" */
+        const char *where; /* "KCL at out", "branch v1", "complementarity of d1", "stages" */
+        double wrong_sign; /* of radau: most negative current or reverse voltage of a diode, over the
+                              largest current or voltage; where one has just changed sides it may
+                              be as large as the tolerance */
     } certificate;
 
     size_t n_states;

@@ -208,8 +208,7 @@ static double series_part(double r, double roff) {
     return r / (1.0 - r / roff);
 }
 
-/* Roff lies across all the rest, so that the lines are those of LTspice's idealised diode: they
- * meet at v = Vfwd and i = Vfwd/Roff and have the slopes 1/Roff and 1/Ron. */
+/* Roff lies across two branches, one of Vfwd and Ron and one of Vrev and Rrev. */
 static enum dalcs_status stamp_diode(struct stamps *b, int device) {
     const struct dalcs_circuit *c = b->layout->circuit;
     const struct dalcs_device *d = &c->device[device];

@@ -135,6 +135,28 @@ bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *r
     return tied;
 }
 
+double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end,
+                               const double *reach) {
+    const struct dalcs_system *s = part->component->system;
+    double worst = 0.0;
+    for (int d = 0; d < s->n_pairs; d++) {
+        double work[DALCS_MAX_NODES];
+        int stride;
+        const double *value = values_of(part, d, work, &stride);
+        double least = 0.0;
+        for (int k = 0; value != NULL && k < part->stages.layout.n_nodes &&
+                        part->stages.method->node[k] <= end;
+             k++) {
+            double v = value[k * stride];
+            least = v < least ? v : least;
+        }
+        if (least < 0.0) {
+            worst = fmax(worst, -least / scale_of(part, d, reach));
+        }
+    }
+    return worst;
+}
+
 void dalcs_guards_flip(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     for (int k = 0; k < part->n_crossed; k++) {

@@ -21,6 +21,10 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
  * knows which is of least norm. */
 bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *reach);
 
+/* The most negative lambda or w at the nodes up to `end`, over the largest of its unit; 0 when none. */
+double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end,
+                               const double *reach);
+
 /* What crossed changes sides. */
 void dalcs_guards_flip(struct dalcs_radau_part *part);
 

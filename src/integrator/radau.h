@@ -88,6 +88,9 @@ struct dalcs_radau {
     double resolution; /* s: times nearer than this are the same */
     double inner_tolerance;
     long steps, rejected, restarts, euler_steps;
+    double worst_residual; /* of the stage equations, over their terms */
+    double worst_time;     /* s */
+    double wrong_sign; /* largest negative lambda or w of an accepted step, over its unit's scale */
 };
 
 enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *base,

@@ -79,17 +79,32 @@ static enum dalcs_status solve_step(struct dalcs_radau_part *part,
     return dalcs_stages_apply(&part->stages, *entry, part->in, part->out);
 }
 
+/* The search for a segment from one point. */
+struct search {
+    double limit;    /* s: edge, command or stop */
+    int first_level; /* where the ladder stood */
+    bool fixed;      /* the step is given: no error control */
+    int restarts, flips;
+    bool guessed; /* the mode is one remembered from the last time */
+    bool projected;
+    int stuck;
+    double ratio_before;
+    double tolerated; /* the ratio that is let pass */
+};
+
 /* Puts a state that is a little off, as interpolation leaves it at an event, on what its mode allows:
  * that is where the stages of a step in the mode are, here so short a step that only such a defect
  * moves the state, and where their polynomial starts. */
-static enum dalcs_status project(struct dalcs_radau_part *part, double limit, bool *moved) {
+static enum dalcs_status project(struct dalcs_radau_part *part, const struct search *search,
+                                 bool *moved) {
     const struct dalcs_collocation *m = part->stages.method;
     int n_x = part->component->system->n_x;
     int stride = part->stages.layout.stride;
     struct dalcs_stage_entry *entry;
     *moved = false;
-    part->h = dalcs_radau_ladder((part->level & ~7) + PROJECTION);
-    if (n_x == 0 || part->h > limit - part->t) {
+    part->h = search->fixed ? ldexp(part->h, -PROJECTION)
+                            : dalcs_radau_ladder((part->level & ~7) + PROJECTION);
+    if (n_x == 0 || part->h > search->limit - part->t) {
         return DALCS_OK;
     }
     enum dalcs_status status = solve_step(part, &entry);
@@ -110,19 +125,6 @@ static enum dalcs_status project(struct dalcs_radau_part *part, double limit, bo
     }
     return DALCS_OK;
 }
-
-/* The search for a segment from one point. */
-struct search {
-    double limit;    /* s: edge, command or stop */
-    int first_level; /* where the ladder stood */
-    bool fixed;      /* the step is given: no error control */
-    int restarts, flips;
-    bool guessed; /* the mode is one remembered from the last time */
-    bool projected;
-    int stuck;
-    double ratio_before;
-    double tolerated; /* the ratio that is let pass */
-};
 
 static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                  struct search *search) {
@@ -193,7 +195,7 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     if (quality->ratio < most_projected && !search->fixed && !search->projected) {
         bool moved;
         search->projected = true;
-        DALCS_TRY(project(part, search->limit, &moved));
+        DALCS_TRY(project(part, search, &moved));
         if (moved) {
             return DALCS_OK;
         }
@@ -235,7 +237,7 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
 
 static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
                    const struct search *search, double theta,
-                   const struct dalcs_step_quality *quality) {
+                   const struct dalcs_step_quality *quality, double residual) {
     part->end = theta;
     double t_end = part->t + theta * part->h;
     part->why = part->n_crossed > 0 ? DALCS_END_AT_EVENT : DALCS_END_OF_STEP;
@@ -254,6 +256,11 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         dalcs_guards_arm(r, part, theta, quality->reach);
     }
     r->steps++;
+    r->wrong_sign = fmax(r->wrong_sign, dalcs_guards_wrong_sign(part, theta, quality->reach));
+    if (residual > r->worst_residual) {
+        r->worst_residual = residual;
+        r->worst_time = part->t;
+    }
     if (part->fresh) {
         if (part->flipped) {
             dalcs_transition_learn(part);
@@ -303,10 +310,11 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         quality.ratio = means_something ? quality.ratio : INFINITY;
         return recover(r, part, search, &quality, done);
     }
-    if (part->fresh && !search->projected && !search->fixed && quality.drift > worth_projecting) {
+    if (part->fresh && !search->projected &&
+        quality.drift > (search->fixed ? 0.0 : worth_projecting)) {
         bool moved;
         search->projected = true;
-        DALCS_TRY(project(part, search->limit, &moved));
+        DALCS_TRY(project(part, search, &moved));
         return DALCS_OK;
     }
     if (part->fresh) {
@@ -330,7 +338,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         dalcs_guards_stay_tied(part, quality.reach)) {
         return restart(r, part, search);
     }
-    accept(r, part, search, fmin(theta, end), &quality);
+    accept(r, part, search, fmin(theta, end), &quality, dalcs_stage_residual(entry));
     *done = true;
     return DALCS_OK;
 }

@@ -587,6 +587,24 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
     }
 }
 
+/* How well the rounded answer at the last stage satisfies the equations without derivatives, over the
+ * size of their terms. */
+static void check_column(struct builder *b, int column, int rhs_column, double share) {
+    const double *y = b->node + b->stages->method->s * b->n;
+    for (int r = b->n_x; r < b->n; r++) {
+        double residual = -b->rhs[rhs_column * b->n + r] * (column < b->n_x ? 1.0 : share);
+        double size = fabs(residual);
+        for (int c = 0; c < b->n; c++) {
+            double increment = y[c] - (c == column && c < b->n_x ? 1.0 : 0.0);
+            double term = b->base[c * b->n + r] * increment / b->column_scale[c];
+            residual += term;
+            size += fabs(term);
+        }
+        double ratio = size > 0.0 ? fabs(residual) / size : 0.0;
+        b->entry->residual = fmax(b->entry->residual, ratio);
+    }
+}
+
 static void fill_map(struct builder *b) {
     const struct dalcs_excitation *e = b->stages->excitation;
     const struct dalcs_collocation *m = b->stages->method;
@@ -594,19 +612,23 @@ static void fill_map(struct builder *b) {
     double *out = b->entry->map;
     for (int x = 0; x < b->n_x; x++, out += b->entry->rows) {
         fill_column(b, x, x, share, 0.0, out);
+        check_column(b, x, x, 0.0);
     }
     for (int k = 0; k <= m->s; k++) {
         share[k] = 1.0;
     }
     fill_column(b, b->n_x, b->n_x, share, 1.0, out);
+    check_column(b, b->n_x, b->n_x, 1.0);
     out += b->entry->rows;
     for (int f = 0; f < e->n_functions; f++, out += b->entry->rows) {
         const struct dalcs_excitation_function *function = &e->function[f];
         for (int k = 0; k <= m->s; k++) {
             share[k] = dalcs_excitation_function_at(function, b->entry->h, m->node[k]);
         }
-        fill_column(b, b->n_x + 1 + f, column_of_input(b, function->input), share,
+        int rhs_column = column_of_input(b, function->input);
+        fill_column(b, b->n_x + 1 + f, rhs_column, share,
                     dalcs_excitation_function_at(function, b->entry->h, m->test_node), out);
+        check_column(b, b->n_x + 1 + f, rhs_column, share[m->s]);
     }
 }
 

@@ -22,9 +22,9 @@ typedef double vector4 __attribute__((vector_size(32), aligned(32)));
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 __attribute__((target_clones("avx2", "default")))
 #endif
-void
-dalcs_dense_map_apply(int rows, int columns, const double *restrict map, const double *restrict x,
-                      double *restrict y) {
+static void
+multiply(int rows, int columns, const double *restrict map, const double *restrict x,
+         double *restrict y) {
     for (int i = 0; i < rows; i += 8) {
         vector4 a = {0.0};
         vector4 b = {0.0};
@@ -38,4 +38,8 @@ dalcs_dense_map_apply(int rows, int columns, const double *restrict map, const d
         memcpy(y + i, &a, sizeof(a));
         memcpy(y + i + 4, &b, sizeof(b));
     }
+}
+
+void dalcs_dense_map_apply(int rows, int columns, const double *map, const double *x, double *y) {
+    multiply(rows, columns, map, x, y);
 }

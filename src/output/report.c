@@ -51,6 +51,7 @@ static void write_certificate(struct dalcs_json *json, const struct dalcs_report
     dalcs_json_number(json, "worst", report->certificate.worst);
     dalcs_json_number(json, "time", report->certificate.time);
     dalcs_json_string(json, "where", report->certificate.where);
+    dalcs_json_number(json, "wrong_sign", report->certificate.wrong_sign);
     dalcs_json_close(json, '}');
 }
 

@@ -253,6 +253,12 @@ static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau)
         report->work.factorizations += radau->part[k].stages.factorizations;
         report->work.cache_hits += radau->part[k].stages.cache_hits;
     }
+    report->certificate.wrong_sign = radau->wrong_sign;
+    if (radau->worst_residual > report->certificate.worst) {
+        report->certificate.worst = radau->worst_residual;
+        report->certificate.time = radau->worst_time;
+        report->certificate.where = "stages";
+    }
     if (radau->euler_steps > 0) {
         dalcs_diag_add(&r->s->diag, DALCS_NOTE, NULL, NULL,
                        "where events crowded, radau fell back to implicit Euler for %ld step%s",
