@@ -63,7 +63,6 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->x = dalcs_alloc((size_t)s->n_x, sizeof(double));
     part->in = dalcs_alloc((size_t)part->stages.n_in, sizeof(double));
     part->out = dalcs_alloc(n_out, sizeof(double));
-    part->last = dalcs_alloc((size_t)l->stride, sizeof(double));
     part->scale = dalcs_alloc(n_columns, sizeof(double));
     part->armed = dalcs_alloc(n_guards, sizeof(bool));
     part->crossed = dalcs_alloc(n_guards, sizeof(int));
@@ -74,10 +73,9 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->after = dalcs_alloc((size_t)s->n_x, sizeof(double));
     part->used_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
-                    part->last != NULL && part->scale != NULL && part->armed != NULL &&
-                    part->crossed != NULL && part->u != NULL && part->y1 != NULL &&
-                    part->y2 != NULL && part->w1 != NULL && part->after != NULL &&
-                    part->used_input != NULL;
+                    part->scale != NULL && part->armed != NULL && part->crossed != NULL &&
+                    part->u != NULL && part->y1 != NULL && part->y2 != NULL && part->w1 != NULL &&
+                    part->after != NULL && part->used_input != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -171,7 +169,6 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->x);
     free(part->in);
     free(part->out);
-    free(part->last);
     free(part->scale);
     free(part->armed);
     free(part->crossed);
@@ -250,8 +247,8 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
     part->jumped = false;
     if (part->end == 1.0) {
-        dalcs_step_values(part, 1.0, part->last);
-        memcpy(part->x, part->last, state_bytes);
+        const double *end = part->out + part->stages.method->s * part->stages.layout.stride;
+        memcpy(part->x, end, state_bytes);
     } else {
         dalcs_step_states(part, part->end, part->x);
         part->fresh = true; /* the next step starts inside this one */

@@ -57,7 +57,6 @@ struct dalcs_radau_part {
     bool flipped;         /* and it is that pairs changed sides */
     double *x;            /* [n_x] at t */
     double *in, *out;
-    double *last; /* [stride] out at the end of the step before, if that is where this one starts */
     double *scale;        /* [n_columns] largest magnitudes so far */
     double unit_scale[2]; /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */

@@ -286,9 +286,6 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     double end = fmin(1.0, (search->limit - part->t) / part->h);
     bool means_something = status == DALCS_OK;
     if (means_something) {
-        if (!part->fresh) { /* where the last step ended is known better than where this one starts */
-            memcpy(part->out, part->last, (size_t)part->stages.layout.stride * sizeof(double));
-        }
         dalcs_step_judge(r, part, entry, end, &quality);
         means_something =
             quality.ratio == quality.ratio && !dalcs_step_clashes(part, entry, end, quality.unit);
