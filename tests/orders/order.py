@@ -24,7 +24,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from dalcs_program import Checker, run  # noqa: E402
 
 STAGES = (1, 3, 5, 7)
-BELOW, ABOVE = 0.5, 0.7
+BELOW, ABOVE = 0.7, 0.7
 SMALLEST, LARGEST = 1e-13, 3e-2
 NEIGHBOURS = 4  # runs for a rung of a circuit with events: its error depends on where they fall
 SAMPLED = 400  # steps, of a run that has many
