@@ -259,10 +259,10 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
     }
     dalcs_step_remember(part, theta, quality->unit);
     if (theta == 1.0) {
-        dalcs_guards_arm(r, part, theta, quality->reach);
+        dalcs_guards_arm(r, part, theta, quality->unit);
     }
     r->steps++;
-    r->wrong_sign = fmax(r->wrong_sign, dalcs_guards_wrong_sign(part, theta, quality->reach));
+    r->wrong_sign = fmax(r->wrong_sign, dalcs_guards_wrong_sign(part, theta, quality->unit));
     if (residual > r->worst_residual) {
         r->worst_residual = residual;
         r->worst_time = part->t;
@@ -321,10 +321,14 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return DALCS_OK;
     }
     if (part->fresh) {
-        dalcs_guards_arm(r, part, 0.0, quality.reach);
+        dalcs_guards_arm(r, part, 0.0, quality.unit);
     }
     bool at_once;
-    double theta = dalcs_guards_first_fall(r, part, end, quality.reach, &at_once);
+    double theta = dalcs_guards_first_fall(r, part, end, quality.unit, &at_once);
+    if (at_once && end < 1.0) { /* wrong, or only small beside what the segment ends with? */
+        dalcs_step_reach(part, end, quality.unit);
+        theta = dalcs_guards_first_fall(r, part, end, quality.unit, &at_once);
+    }
 #ifdef DALCS_TRACE
     if (getenv("DALCS_D") && part->n_crossed) {
         fprintf(stderr, "  cross theta=%g at_once=%d armed=%d end=%g:", theta, at_once,
@@ -338,7 +342,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return change_mode(r, part, search, done);
     }
     if (part->fresh && search->restarts == 0 && !search->guessed &&
-        dalcs_guards_stay_tied(part, quality.reach)) {
+        dalcs_guards_stay_tied(part, quality.unit)) {
         return restart(r, part, search);
     }
     accept(r, part, search, fmin(theta, end), &quality, dalcs_stage_residual(entry));
