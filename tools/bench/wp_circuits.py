@@ -23,7 +23,7 @@ class Circuit:
 
     @property
     def gated(self):
-        return "pulse" in self.text().lower()
+        return "pulse(" in self.text().lower()
 
     def text(self):
         if self.large:

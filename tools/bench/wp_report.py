@@ -43,10 +43,18 @@ def digits(value):
     return f"{value:.{places}f}"
 
 
+def nearest(rows):
+    """How far dalcs confirms the reference."""
+    errors = [(row["error"], f"{row['method']}, {row['setting']}") for row in rows
+              if family(row) in ("euler", "radau", "auto")]
+    return f"The nearest run of dalcs ({min(errors)[1]}) differs by {min(errors)[0]:.0e}."
+
+
 def table(circuit, result):
     rows = result["rows"]
     lines = [f"### {circuit.title}", "",
-             f"`{circuit.name}`. Reference: {result['reference']}.", ""]
+             f"`{circuit.name}`. Reference: {result['reference']}. {nearest(rows)}",
+             ""]
     if result.get("ngspice"):
         lines += [result["ngspice"], ""]
     if result.get("siconos"):
