@@ -252,7 +252,8 @@ static void print(const struct configuration *c) {
 
 int main(int argc, char **argv) {
     struct reference reference;
-    if (argc < 5 || !read_reference(&reference, argv[2])) {
+    if (argc < 5 || /* REPEATS may be 0: the errors only */
+        !read_reference(&reference, argv[2])) {
         fprintf(stderr, "usage: bench_radau NETLIST REFERENCE.csv REPEATS method=NAME,step=H,"
                         "tol=TOL,stages=S ...\n");
         return 2;

@@ -17,7 +17,7 @@ EMISSIONS = (1e-2, 1e-3, 1e-4, 1e-5)
 RELTOLS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 STEPS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000)  # in a period
 LONGEST = 3.0  # s; a setting that takes longer has no place in a table of milliseconds
-LONGEST_OF_LARGE = 10.0
+LONGEST_OF_LARGE = 5.0
 RESCUE = "gmin=1e-9"  # what gets ngspice through where it gives up
 SHORT = 0.05  # s; the time of a run as short as this is taken from many
 
@@ -35,6 +35,7 @@ class Search:
         self.longest = LONGEST_OF_LARGE if large else LONGEST
         self.reltols = RELTOLS[::2] if large else RELTOLS
         self.emissions = EMISSIONS[::2] if large else EMISSIONS
+        self.rounds, self.candidates = (1, 1) if large else (2, 2)  # of the variations
         self.tried = {}
 
     def edge(self, emission):
@@ -102,9 +103,9 @@ class Search:
                 for reltol in self.reltols:
                     self.descend(method, reltol, emission)
         for target in TARGETS:
-            for _ in range(2):
+            for _ in range(self.rounds):
                 self.time_again(target)
-                for setting in self.fastest(target, 2):
+                for setting in self.fastest(target, self.candidates):
                     for variation in self.vary(setting):
                         self.attempt(variation)
             self.time_again(target)

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import statistics
 import subprocess
 
@@ -10,6 +11,7 @@ import ngspice_search
 DEBIAN_PYTHON = "/usr/bin/python3"  # the one that python3-siconos belongs to
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 FINEST = {1: 1e-4, 3: 1e-8, 5: 1e-10, 7: 1e-10}  # by stages: below, the order is too low
+LONGEST = 10.0  # s on the wall, of one run
 
 
 class Row:
@@ -50,21 +52,38 @@ def dalcs_rows(circuit, methods):
     return rows
 
 
-def run_dalcs(program, netlist, circuit, repeats, rows):
-    if not rows:
-        return []
-    done = subprocess.run([program, netlist, circuit.values(), str(repeats), *rows],
-                          capture_output=True, text=True, check=True)
-    for line in done.stdout.splitlines():
+def read_answers(text, rows):
+    for line in text.splitlines():
         answer = json.loads(line)
-        if "error" not in answer:
-            del rows[answer["configuration"]]  # not again in the next round
-            continue
-        row = rows[answer["configuration"]]
-        row.error, row.worst = answer["error"], answer["worst"]
-        row.steps, row.factors = answer["steps"], answer["factorizations"]
-        row.cpu += answer["cpu_s"]
-    return sorted(set(done.stderr.splitlines()))
+        if "error" in answer:
+            row = rows[answer["configuration"]]
+            row.error, row.worst = answer["error"], answer["worst"]
+            row.steps, row.factors = answer["steps"], answer["factorizations"]
+            row.cpu += answer["cpu_s"]
+
+
+def weed(program, netlist, circuit, rows):
+    """Drops what fails or takes too long; returns why, a line each."""
+    complaints = []
+    for text in list(rows):
+        try:
+            done = subprocess.run([program, netlist, circuit.values(), "0", text], timeout=LONGEST,
+                                  capture_output=True, text=True, check=True)
+            read_answers(done.stdout, rows)
+            complaint = done.stderr.strip()
+        except subprocess.TimeoutExpired:
+            complaint = f"{text}: no end within {LONGEST:g} s"
+        if rows[text].steps is None:
+            complaints.append(complaint)
+            del rows[text]
+    return complaints
+
+
+def run_dalcs(program, netlist, circuit, repeats, rows):
+    if rows:
+        done = subprocess.run([program, netlist, circuit.values(), str(repeats), *rows],
+                              capture_output=True, text=True, check=True)
+        read_answers(done.stdout, rows)
 
 
 def search_ngspice(circuit, reference, cache, reuse, say):
@@ -125,7 +144,8 @@ def run_siconos(circuit, here, rows):
     for (theta, step), row in rows.items():
         done = subprocess.run([DEBIAN_PYTHON, here / "siconos_bridges.py", circuit.name,
                                circuit.values(), "1", str(theta), repr(step)],
-                              capture_output=True, text=True, check=False)
+                              capture_output=True, text=True, check=False,
+                              env=os.environ | {"OPENBLAS_NUM_THREADS": "1"})
         lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
         if lines:
             answer = json.loads(lines[0])

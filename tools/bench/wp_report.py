@@ -93,6 +93,13 @@ def quoted(text):
     return text.replace("'", "''")
 
 
+def style(method):
+    """Siconos' two thetas are no curve."""
+    shape = {"Siconos": "points pt 9 ps 1.1",
+             "ngspice": "linespoints lw 1.6 pt 13 ps 0.9"}.get(method, "linespoints lw 1.6 pt 7 ps 0.7")
+    return f"with {shape} lc '{COLOURS[method]}'"
+
+
 def script(circuits, results, picture):
     """One panel for each circuit, one for the key."""
     methods = [m for m in COLOURS
@@ -111,14 +118,12 @@ def script(circuits, results, picture):
         rows = results[circuit.name]["rows"]
         plots = []
         for method in methods:
-            points = sorted((row["error"], 1e3 * row["cpu_s"]) for row in rows
-                            if row["method"] == method and 0 < row["error"] < 1)
+            points = [(row["error"], 1e3 * row["cpu_s"]) for row in rows  # coarse to fine
+                      if row["method"] == method and 0 < row["error"] < 1]
             if points:
                 lines.append(f"$data{len(plots)} << EOD")
                 lines += [f"{error!r} {cpu!r}" for error, cpu in points] + ["EOD"]
-                plots.append(f"$data{len(plots)} with linespoints lw 1.6 ps 0.7 "
-                             f"pt {13 if method == 'ngspice' else 9 if method == 'Siconos' else 7} "
-                             f"lc '{COLOURS[method]}'")
+                plots.append(f"$data{len(plots)} {style(method)}")
         lines += [f"set title '{quoted(circuit.title)}' offset 0,-0.6",
                   "set xlabel 'error' offset 0,0.6" if number >= len(circuits) - columns
                   else "unset xlabel",
@@ -127,9 +132,7 @@ def script(circuits, results, picture):
     lines += ["unset logscale", "unset border", "unset tics", "unset xlabel", "unset ylabel",
               "unset grid", "unset title", "set key center center samplen 3 spacing 1.4",
               "set xrange [0:1] noreverse", "set yrange [0:1]",
-              "plot " + ", ".join(f"-1 with linespoints lw 1.6 pt "
-                                  f"{13 if m == 'ngspice' else 9 if m == 'Siconos' else 7} "
-                                  f"lc '{COLOURS[m]}' title '{m}'" for m in methods),
+              "plot " + ", ".join(f"-1 {style(method)} title '{method}'" for method in methods),
               "unset multiplot"]
     return "\n".join(lines + [""])
 
