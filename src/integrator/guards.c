@@ -12,6 +12,9 @@ static const double band_over_tolerance = 10.0;
 /* What rounding leaves of a zero, over the unit's scale. */
 static const double noise = 2e-13;
 
+/* A fall this early in a step is one from the start. */
+static const double soon_after = 1e-6;
+
 static double band_of(const struct dalcs_radau *r) {
     double band = band_over_tolerance * r->inner_tolerance;
     return band > 4.0 * noise ? band : 4.0 * noise;
@@ -113,7 +116,8 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
             *at_once = false;
         }
         first = fmin(first, c.theta);
-        *at_once = *at_once || (!part->armed[g] && c.peak <= band * scale);
+        bool soon = c.at_once || (c.theta <= soon_after && c.peak <= band * scale);
+        *at_once = *at_once || (!part->armed[g] && soon);
         part->crossed[part->n_crossed++] = g;
     }
     return first;

@@ -150,6 +150,10 @@ static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_par
     part->tries++;
     part->fell_back = fmin(h, search->limit - part->t);
     r->euler_steps++;
+#ifdef DALCS_TRACE
+    if (getenv("DALCS_D"))
+        fprintf(stderr, "FALLBACK h=%g\n", part->fell_back);
+#endif
     return dalcs_radau_euler_step(r, part, part->fell_back);
 }
 
@@ -214,7 +218,8 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
         part->level = search->first_level;
         return DALCS_OK;
     }
-    if (search->fixed || dalcs_radau_ladder(part->level) < 64.0 * r->resolution) {
+    bool wrong_flip = search->flips > 0 && !(quality->ratio < most_projected);
+    if (search->fixed || wrong_flip || dalcs_radau_ladder(part->level) < 64.0 * r->resolution) {
         *done = true;
         return fall_back(r, part, search);
     }
