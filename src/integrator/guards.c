@@ -123,20 +123,36 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
     return first;
 }
 
-bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit) {
-    const struct dalcs_system *s = part->component->system;
-    bool tied = false;
-    for (int d = 0; d < s->n_pairs && !tied; d++) {
-        double work[DALCS_MAX_NODES];
-        int stride;
-        const double *value = values_of(part, d, work, &stride);
-        double limit = noise * scale_of(part, d, unit);
-        tied = value != NULL;
-        for (int k = 0; k < part->stages.layout.n_nodes && tied; k++) {
-            tied = fabs(value[k * stride]) <= limit;
-        }
+static bool stays_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    double work[DALCS_MAX_NODES];
+    int stride;
+    const double *value = values_of(part, pair, work, &stride);
+    double limit = noise * scale_of(part, pair, unit);
+    bool tied = value != NULL;
+    for (int k = 0; k < part->stages.layout.n_nodes && tied; k++) {
+        tied = fabs(value[k * stride]) <= limit;
     }
     return tied;
+}
+
+bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit) {
+    bool tied = false;
+    for (int d = 0; d < part->component->system->n_pairs && !tied; d++) {
+        tied = stays_tied(part, d, unit);
+    }
+    return tied;
+}
+
+bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    bool found = false;
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        if (dalcs_osnsp_is_on(p, d) && stays_tied(part, d, unit)) {
+            dalcs_osnsp_command(p, d, false);
+            found = true;
+        }
+    }
+    return found;
 }
 
 double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end,

@@ -21,6 +21,9 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
  * knows which is of least norm. */
 bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit);
 
+/* Opens the closed diodes among them. False: there is none. */
+bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit);
+
 /* The most negative lambda or w at the nodes up to `end`, over the largest of its unit; 0 when none. */
 double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end, const double *unit);
 

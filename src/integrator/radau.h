@@ -75,7 +75,7 @@ struct dalcs_radau_part {
 
     uint64_t *transition_modes;
     int level_before;
-    uint64_t *mode_before;
+    uint64_t *mode_before, *mode_tied;
     long crowd; /* events since `crowd_since` */
     double crowd_since;
 };

@@ -587,22 +587,25 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
     }
 }
 
-/* How well the rounded answer at the last stage satisfies the equations without derivatives, over the
- * size of their terms. */
+/* How well the rounded answer at the last stage satisfies the equations without derivatives, in
+ * balanced units. In a singular mode sources may disagree, which is for the clashes to tell. */
 static void check_column(struct builder *b, int column, int rhs_column, double share) {
     const double *y = b->node + b->stages->method->s * b->n;
-    for (int r = b->n_x; r < b->n; r++) {
-        double residual = -b->rhs[rhs_column * b->n + r] * (column < b->n_x ? 1.0 : share);
-        double size = fabs(residual);
+    bool is_state = column < b->n_x;
+    double largest = 0.0;
+    double worst = 0.0;
+    for (int r = b->n_x; r < b->n && (b->nullity == 0 || is_state); r++) {
+        double residual = -b->rhs[rhs_column * b->n + r] * (is_state ? 1.0 : share);
+        largest = fmax(largest, fabs(residual));
         for (int c = 0; c < b->n; c++) {
-            double increment = y[c] - (c == column && c < b->n_x ? 1.0 : 0.0);
+            double increment = y[c] - (is_state && c == column ? 1.0 : 0.0);
             double term = b->base[c * b->n + r] * increment / b->column_scale[c];
             residual += term;
-            size += fabs(term);
+            largest = fmax(largest, fabs(term));
         }
-        double ratio = size > 0.0 ? fabs(residual) / size : 0.0;
-        b->entry->residual = fmax(b->entry->residual, ratio);
+        worst = fmax(worst, fabs(residual));
     }
+    b->entry->residual = fmax(b->entry->residual, largest > 0.0 ? worst / largest : 0.0);
 }
 
 static void fill_map(struct builder *b) {
