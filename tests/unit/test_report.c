@@ -36,7 +36,7 @@ START_TEST(test_everything) {
         .stop = 0.5,
         .size = {1, 2, 3, 4, 5, 2},
         .work = {11, 12, 13, 14, 15, 16, 17, 18, 19, 0.5, 0.75},
-        .certificate = {1e-15, 0.125, "KCL at out"},
+        .certificate = {1e-15, 0.125, "KCL at out", 0.0},
         .n_states = 2,
         .state_name = state_name,
         .start = start,
