@@ -48,17 +48,17 @@ static const double *values_of(const struct dalcs_radau_part *part, int guard, d
     return work;
 }
 
-static double scale_of(const struct dalcs_radau_part *part, int guard, const double *reach) {
+static double scale_of(const struct dalcs_radau_part *part, int guard, const double *unit) {
     const struct dalcs_system *s = part->component->system;
     int d = pair_of(part, guard);
     if (guard < s->n_pairs) {
-        return reach[dalcs_osnsp_is_on(&part->component->osnsp, d) ? 1 : 0];
+        return unit[dalcs_osnsp_is_on(&part->component->osnsp, d) ? 1 : 0];
     }
-    return fmax(reach[0], fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off)));
+    return fmax(unit[0], fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off)));
 }
 
 void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
-                      const double *reach) {
+                      const double *unit) {
     int n_nodes = part->stages.layout.n_nodes;
     double band = band_of(r);
     double weight[DALCS_MAX_NODES];
@@ -81,12 +81,12 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
         for (int k = 0; k < n_nodes && !at_node; k++) {
             now += weight[k] * value[k * stride];
         }
-        part->armed[g] = now > band * scale_of(part, g, reach);
+        part->armed[g] = now > band * scale_of(part, g, unit);
     }
 }
 
 double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                               double end, const double *reach, bool *at_once) {
+                               double end, const double *unit, bool *at_once) {
     double first = INFINITY;
     double together = fmax(1e-13, 2.0 * r->resolution / part->h);
     double band = band_of(r);
@@ -101,7 +101,7 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
         if (value == NULL) {
             continue;
         }
-        double scale = scale_of(part, g, reach);
+        double scale = scale_of(part, g, unit);
         double depth = (part->armed[g] && !stops ? noise : band) * scale;
         struct dalcs_crossing c =
             dalcs_crossing_find(part->stages.method, value, stride, end, depth);
@@ -119,14 +119,14 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
     return first;
 }
 
-bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *reach) {
+bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit) {
     const struct dalcs_system *s = part->component->system;
     bool tied = false;
     for (int d = 0; d < s->n_pairs && !tied; d++) {
         double work[DALCS_MAX_NODES];
         int stride;
         const double *value = values_of(part, d, work, &stride);
-        double limit = noise * scale_of(part, d, reach);
+        double limit = noise * scale_of(part, d, unit);
         tied = value != NULL;
         for (int k = 0; k < part->stages.layout.n_nodes && tied; k++) {
             tied = fabs(value[k * stride]) <= limit;
@@ -136,7 +136,7 @@ bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *r
 }
 
 double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end,
-                               const double *reach) {
+                               const double *unit) {
     const struct dalcs_system *s = part->component->system;
     double worst = 0.0;
     for (int d = 0; d < s->n_pairs; d++) {
@@ -151,7 +151,7 @@ double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end,
             least = v < least ? v : least;
         }
         if (least < 0.0) {
-            worst = fmax(worst, -least / scale_of(part, d, reach));
+            worst = fmax(worst, -least / scale_of(part, d, unit));
         }
     }
     return worst;

@@ -9,21 +9,20 @@
 /* Guards that are clear of 0 at theta are armed: from then on every fall below 0 counts. Those that
  * start within the error of 0, because they have just crossed it, count when they leave it downwards. */
 void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
-                      const double *reach);
+                      const double *unit);
 
 /* The first to fall up to `end`, listed in part->crossed; INFINITY when none does. *at_once: one that
  * is not armed was never positive, so the mode is wrong from the start. */
 double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                               double end, const double *reach, bool *at_once);
+                               double end, const double *unit, bool *at_once);
 
 /* Is there a diode with neither current nor voltage during the whole step? It may change sides without
  * anything else, and where that leaves a choice (sources in parallel, floating nodes) only the OSNSP
  * knows which is of least norm. */
-bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *reach);
+bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit);
 
 /* The most negative lambda or w at the nodes up to `end`, over the largest of its unit; 0 when none. */
-double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end,
-                               const double *reach);
+double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end, const double *unit);
 
 /* What crossed changes sides. */
 void dalcs_guards_flip(struct dalcs_radau_part *part);

@@ -53,6 +53,7 @@ struct dalcs_radau_part {
     bool grew;            /* the present length is such a try */
     double longest;       /* s, step worth trying */
     int tries;            /* falls back to implicit Euler in a row */
+    double fell_back;     /* s, length of the last */
     bool fresh;           /* something just happened at t: nothing is known of how pairs start */
     bool flipped;         /* and it is that pairs changed sides */
     double *x;            /* [n_x] at t */

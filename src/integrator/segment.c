@@ -34,6 +34,7 @@ enum {
     MOST_FLIPS = 12,
     LEAST_PATIENCE = 32,
     MOST_PATIENCE = 4096,
+    FALL_BACK_LEAST = 5,
     FALL_BACK = 14, /* steps of implicit Euler start this many rungs below */
     CROWD = 40
 };
@@ -137,16 +138,19 @@ static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part 
     return DALCS_OK;
 }
 
-/* Implicit Euler instead. It is certified and takes every event and jump that the step covers. */
+/* Implicit Euler instead. It is certified and takes every event and jump that the step covers. In a
+ * row its steps double, up to a part of the ladder's: sliding and accumulating events pass in few. */
 static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                   struct search *search, int tries) {
+                                   struct search *search) {
     part->level = search->first_level;
-    double h =
-        search->fixed ? ldexp(part->h, -FALL_BACK) : dalcs_radau_ladder(part->level + FALL_BACK);
-    h = fmin(ldexp(h, tries), search->fixed ? part->h : dalcs_radau_ladder(part->level));
+    double whole = search->fixed ? r->options.fixed_step : dalcs_radau_ladder(part->level);
+    double h = ldexp(whole, part->tries - FALL_BACK);
+    h = fmin(h, ldexp(whole, -FALL_BACK_LEAST));
     h = fmax(h, 64.0 * r->resolution);
+    part->tries++;
+    part->fell_back = fmin(h, search->limit - part->t);
     r->euler_steps++;
-    return dalcs_radau_euler_step(r, part, fmin(h, search->limit - part->t));
+    return dalcs_radau_euler_step(r, part, part->fell_back);
 }
 
 static void shorten(struct dalcs_radau_part *part, double ratio) {
@@ -212,7 +216,7 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     }
     if (search->fixed || dalcs_radau_ladder(part->level) < 64.0 * r->resolution) {
         *done = true;
-        return fall_back(r, part, search, part->tries++);
+        return fall_back(r, part, search);
     }
     shorten(part, quality->ratio);
     return DALCS_OK;
@@ -232,7 +236,7 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
         return DALCS_OK;
     }
     *done = true;
-    return fall_back(r, part, search, part->tries++);
+    return fall_back(r, part, search);
 }
 
 static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -250,13 +254,15 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         t_end = fabs(t_end - whole) <= 4.0 * r->resolution ? whole : t_end;
     }
     part->t_end = fmin(t_end, search->limit);
-    part->tries = 0;
+    if (theta * part->h > 4.0 * part->fell_back) {
+        part->tries = 0;
+    }
     dalcs_step_remember(part, theta, quality->unit);
     if (theta == 1.0) {
-        dalcs_guards_arm(r, part, theta, quality->reach);
+        dalcs_guards_arm(r, part, theta, quality->unit);
     }
     r->steps++;
-    r->wrong_sign = fmax(r->wrong_sign, dalcs_guards_wrong_sign(part, theta, quality->reach));
+    r->wrong_sign = fmax(r->wrong_sign, dalcs_guards_wrong_sign(part, theta, quality->unit));
     if (residual > r->worst_residual) {
         r->worst_residual = residual;
         r->worst_time = part->t;
@@ -315,10 +321,14 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return DALCS_OK;
     }
     if (part->fresh) {
-        dalcs_guards_arm(r, part, 0.0, quality.reach);
+        dalcs_guards_arm(r, part, 0.0, quality.unit);
     }
     bool at_once;
-    double theta = dalcs_guards_first_fall(r, part, end, quality.reach, &at_once);
+    double theta = dalcs_guards_first_fall(r, part, end, quality.unit, &at_once);
+    if (at_once && end < 1.0) { /* wrong, or only small beside what the segment ends with? */
+        dalcs_step_reach(part, end, quality.unit);
+        theta = dalcs_guards_first_fall(r, part, end, quality.unit, &at_once);
+    }
 #ifdef DALCS_TRACE
     if (getenv("DALCS_D") && part->n_crossed) {
         fprintf(stderr, "  cross theta=%g at_once=%d armed=%d end=%g:", theta, at_once,
@@ -332,7 +342,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return change_mode(r, part, search, done);
     }
     if (part->fresh && search->restarts == 0 && !search->guessed &&
-        dalcs_guards_stay_tied(part, quality.reach)) {
+        dalcs_guards_stay_tied(part, quality.unit)) {
         return restart(r, part, search);
     }
     accept(r, part, search, fmin(theta, end), &quality, dalcs_stage_residual(entry));
@@ -348,7 +358,7 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
                             .tolerated = 1.0};
     if (part->crowd > CROWD + 4 * part->component->system->n_pairs) {
         part->fresh = true;
-        return fall_back(r, part, &search, (int)(part->crowd / CROWD));
+        return fall_back(r, part, &search);
     }
     if (part->fresh && part->flipped) {
         search.guessed = dalcs_transition_guess(part);

@@ -29,14 +29,31 @@ static bool is_on(const struct dalcs_radau_part *part, int pair) {
     return dalcs_osnsp_is_on(&part->component->osnsp, pair);
 }
 
-static void raise_units(const struct dalcs_radau_part *part, const double *y, double *unit) {
-    const struct dalcs_system *s = part->component->system;
-    int n_equations = dalcs_system_n_equations(s);
-    for (int c = 0; c < n_equations; c++) {
-        int of = s->column_is_current[c];
-        unit[of] = larger(unit[of], fabs(y[c]));
+/* The largest |y[begin..end-1]|: two running maxima, one alone would wait for itself. */
+static double largest_of(const double *y, int begin, int end, double largest) {
+    double other = 0.0;
+    int c = begin;
+    for (; c + 2 <= end; c += 2) {
+        double a = fabs(y[c]);
+        double b = fabs(y[c + 1]);
+        largest = a > largest ? a : largest;
+        other = b > other ? b : other;
     }
-    for (int d = 0; d < s->n_pairs; d++) {
+    if (c < end) {
+        largest = larger(largest, fabs(y[c]));
+    }
+    return larger(largest, other);
+}
+
+static void raise_units(const struct dalcs_radau_part *part, const double *y, double *unit) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    int n_equations = dalcs_system_n_equations(p->system);
+    for (int k = 0; k < p->n_runs && p->run[k].begin < n_equations; k++) {
+        int end = p->run[k].end < n_equations ? p->run[k].end : n_equations;
+        int of = p->run[k].is_current;
+        unit[of] = largest_of(y, p->run[k].begin, end, unit[of]);
+    }
+    for (int d = 0; d < p->system->n_pairs; d++) {
         int of = is_on(part, d);
         unit[of] = larger(unit[of], fabs(y[n_equations + d]));
     }
@@ -109,13 +126,6 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
         raise_units(part, known, q->unit);
     }
     cross_units(part, q->unit);
-    q->reach[0] = q->unit[0];
-    q->reach[1] = q->unit[1];
-    if (end < 1.0) {
-        dalcs_step_values(part, end, part->y2);
-        raise_units(part, part->y2, q->reach);
-        cross_units(part, q->reach);
-    }
     const double *natural = dalcs_stage_natural_units(entry);
     const double *inverse = natural + n_equations;
     double balanced = 0.0;
@@ -158,15 +168,22 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
     }
 }
 
+void dalcs_step_reach(struct dalcs_radau_part *part, double end, double *unit) {
+    dalcs_step_values(part, end, part->y2);
+    raise_units(part, part->y2, unit);
+    cross_units(part, unit);
+}
+
 void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double *unit) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     int n_equations = dalcs_system_n_equations(part->component->system);
-    int node[2] = {0, last_node(part, end)};
-    for (int k = 0; k < 2; k++) {
-        const double *y = part->out + node[k] * l->stride;
-        for (int c = 0; c < n_equations; c++) {
-            part->scale[c] = larger(part->scale[c], fabs(y[c]));
-        }
+    const double *first = part->out;
+    const double *last = part->out + last_node(part, end) * l->stride;
+    for (int c = 0; c < n_equations; c++) {
+        double a = fabs(first[c]);
+        double b = fabs(last[c]);
+        double largest = part->scale[c] > a ? part->scale[c] : a;
+        part->scale[c] = b > largest ? b : largest;
     }
     part->unit_scale[0] = unit[0];
     part->unit_scale[1] = unit[1];

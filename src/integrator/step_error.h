@@ -6,11 +6,10 @@
 
 /* What is known of a step that has been solved. */
 struct dalcs_step_quality {
-    double ratio;    /* estimated error over what is allowed; NaN when the step means nothing */
-    double drift;    /* the part of it that comes from where the states start */
-    double of_unit;  /* the errors that are not allowed, over the largest of their unit */
-    double unit[2];  /* V, A: the largest of each, up to the end of the segment */
-    double reach[2]; /* the same with the end itself */
+    double ratio;   /* estimated error over what is allowed; NaN when the step means nothing */
+    double drift;   /* the part of it that comes from where the states start */
+    double of_unit; /* the errors that are not allowed, over the largest of their unit */
+    double unit[2]; /* V, A: the largest of each, up to the end of the segment */
 };
 
 /* x[n_x], or value[n_columns + n_watched], at theta of the present step. */
@@ -21,6 +20,9 @@ void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double
 void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                       const struct dalcs_stage_entry *entry, double end,
                       struct dalcs_step_quality *quality);
+
+/* Raises unit[2] to the values at the end of the segment, which may lie between the nodes. */
+void dalcs_step_reach(struct dalcs_radau_part *part, double end, double *unit);
 
 /* Remembers the largest magnitudes of an accepted segment. */
 void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double *unit);
