@@ -95,7 +95,7 @@ static void find_cross_scales(const struct dalcs_system *s, double stop, double 
                 most = fmax(most, g);
             }
         }
-        for (int k = s->P.p[r]; r < s->n_x && k < s->P.p[r + 1]; k++) {
+        for (int k = r < s->n_x ? s->P.p[r] : 0; r < s->n_x && k < s->P.p[r + 1]; k++) {
             if (s->column_is_current[s->P.j[k]] != is_current && s->P.x[k] != 0.0) {
                 double g = is_current ? fabs(s->P.x[k]) / stop : stop / fabs(s->P.x[k]);
                 least = fmin(least, g);
