@@ -1,4 +1,5 @@
 /* stages.c - entries by (mode, h), least recently used out first. */
+#include "stage_plan.h"
 #include "stages_internal.h"
 
 #include <stdlib.h>
@@ -85,6 +86,7 @@ void dalcs_stages_finish(struct dalcs_stages *stages) {
     while (stages->oldest != NULL) {
         remove_entry(stages, stages->oldest);
     }
+    dalcs_stage_plan_destroy(stages->plan, &stages->klu);
     free(stages->watched);
     free(stages->key);
     *stages = (struct dalcs_stages){0};

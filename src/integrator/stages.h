@@ -18,6 +18,7 @@
 #include <suitesparse/klu.h>
 
 struct dalcs_stage_entry;
+struct dalcs_stage_plan;
 
 /* Where things are in an answer. Node k of the step starts at k * stride: the columns, then the
  * watched voltages. In the place of lambda_d an open pair has its w_d. */
@@ -45,6 +46,7 @@ struct dalcs_stages {
     uint64_t *key; /* [n_words + 1] */
     long factorizations, cache_hits;
     klu_common klu, klu_complex;
+    struct dalcs_stage_plan *plan; /* what sparse factors share; NULL until there are any */
 };
 
 enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,

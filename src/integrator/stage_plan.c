@@ -1,0 +1,247 @@
+/* stage_plan.c - the parts of all matrices of a system, and analyses by mode. */
+#include "stage_plan.h"
+
+#include "lu.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Analyses of so many unknowns altogether are kept, and never fewer than a few. */
+enum { MOST_ANALYZED = 2000000, FEWEST_ANALYSES = 4, MOST_ANALYSES = 256 };
+
+struct dalcs_stage_analysis {
+    uint64_t *mode; /* NULL: all pairs present */
+    klu_symbolic *symbolic;
+};
+
+/* Columns of [-A; C] as rows. */
+static enum dalcs_status fill_base(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+    struct dalcs_triplets t = {0};
+    enum dalcs_status status = DALCS_OK;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int r = 0; r < plan->n_rows; r++) {
+        const struct dalcs_csr *a = r < n_equations ? &s->A : &s->C;
+        int from = r < n_equations ? r : r - n_equations;
+        for (int k = a->p[from]; k < a->p[from + 1] && status == DALCS_OK; k++) {
+            status = dalcs_triplets_add(&t, a->j[k], r, r < n_equations ? -a->x[k] : a->x[k]);
+        }
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_csr_compress(&plan->base, plan->n_rows, plan->n_rows, &t);
+    }
+    dalcs_triplets_finish(&t);
+    return status;
+}
+
+static enum dalcs_status fill_P(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+    struct dalcs_triplets t = {0};
+    enum dalcs_status status = DALCS_OK;
+    for (int r = 0; r < s->n_x; r++) {
+        for (int k = s->P.p[r]; k < s->P.p[r + 1] && status == DALCS_OK; k++) {
+            status = dalcs_triplets_add(&t, s->P.j[k], r, s->P.x[k]);
+        }
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_csr_compress(&plan->P, plan->n_rows, plan->n_rows, &t);
+    }
+    dalcs_triplets_finish(&t);
+    return status;
+}
+
+static enum dalcs_status fill_drive(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+    struct dalcs_triplets t = {0};
+    enum dalcs_status status = DALCS_OK;
+    for (int c = 0; c < s->n_x; c++) {
+        for (int k = plan->base.p[c]; k < plan->base.p[c + 1] && status == DALCS_OK; k++) {
+            status = dalcs_triplets_add(&t, plan->base.j[k], c, -plan->base.x[k]);
+        }
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_csr_compress(&plan->drive, plan->n_rows, s->n_x, &t);
+    }
+    dalcs_triplets_finish(&t);
+    return status;
+}
+
+/* Sources by rows: [E; -F], the constant ones summed. */
+static void fill_sources(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+    const struct dalcs_excitation *e = plan->stages->excitation;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int i = 0; i < s->n_inputs; i++) {
+        plan->wave_of_input[i] = -1;
+    }
+    for (int w = 0; w < e->n_waves; w++) {
+        plan->wave_of_input[e->wave[w].input] = w;
+    }
+    for (int r = 0; r < plan->n_rows; r++) {
+        const struct dalcs_csr *a = r < n_equations ? &s->E : &s->F;
+        int from = r < n_equations ? r : r - n_equations;
+        double sign = r < n_equations ? 1.0 : -1.0;
+        for (int k = a->p[from]; k < a->p[from + 1]; k++) {
+            int wave = plan->wave_of_input[a->j[k]];
+            if (wave < 0) {
+                plan->constant[r] += sign * a->x[k] * e->constant[a->j[k]];
+                continue;
+            }
+            plan->wave_row[plan->n_waves] = r;
+            plan->wave_of[plan->n_waves] = wave;
+            plan->wave_x[plan->n_waves++] = sign * a->x[k];
+        }
+        plan->wave_begin[r + 1] = plan->n_waves;
+    }
+}
+
+/* Stages from parts, and the value at 0 of the polynomial through them. */
+static void fill_combination(struct dalcs_stage_plan *plan) {
+    const struct dalcs_collocation *m = &plan->stages->method;
+    long double at_0[DALCS_STAGE_PARTS] = {0.0L};
+    plan->n_parts = 1 + 2 * m->n_pairs;
+    for (int i = 0; i < m->s; i++) {
+        long double part[DALCS_STAGE_PARTS];
+        part[0] = m->exact_to[i];
+        for (int p = 0; p < m->n_pairs; p++) { /* 2 Re(to W) */
+            part[1 + 2 * p] = 2.0L * creall(m->exact_to_pair[i][p]);
+            part[2 + 2 * p] = -2.0L * cimagl(m->exact_to_pair[i][p]);
+        }
+        for (int q = 0; q < plan->n_parts; q++) {
+            plan->to[i + 1][q] = (double)part[q];
+            at_0[q] += m->exact_back[i] * part[q];
+        }
+    }
+    for (int q = 0; q < plan->n_parts; q++) {
+        plan->to[0][q] = (double)at_0[q];
+    }
+}
+
+static bool allocate(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+    size_t n = (size_t)plan->n_rows;
+    size_t n_entries = (size_t)(s->E.p[s->E.n_rows] + s->F.p[s->F.n_rows]);
+    plan->constant = dalcs_alloc(n, sizeof(double));
+    plan->wave_row = dalcs_alloc(n_entries, sizeof(int));
+    plan->wave_of = dalcs_alloc(n_entries, sizeof(int));
+    plan->wave_x = dalcs_alloc(n_entries, sizeof(double));
+    plan->wave_begin = dalcs_alloc(n + 1, sizeof(int));
+    plan->wave_of_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
+    plan->analysis = dalcs_alloc((size_t)plan->most_analyses, sizeof(*plan->analysis));
+    plan->rhs = dalcs_alloc(n, sizeof(double));
+    plan->share =
+        dalcs_alloc((size_t)plan->stages->excitation->n_waves, DALCS_N_SHARES * sizeof(double));
+    plan->missed = dalcs_alloc((size_t)s->n_x, sizeof(double));
+    plan->guard = dalcs_alloc((size_t)(s->n_pairs + plan->stages->n_watched), sizeof(double));
+    plan->right = dalcs_alloc(n, 2 * sizeof(double));
+    plan->solution = dalcs_alloc(n, 2 * sizeof(double));
+    plan->product = dalcs_alloc(n, 2 * sizeof(double));
+    plan->left = dalcs_alloc(n, DALCS_STAGE_PARTS * sizeof(double));
+    return plan->constant != NULL && plan->wave_row != NULL && plan->wave_of != NULL &&
+           plan->wave_x != NULL && plan->wave_begin != NULL && plan->wave_of_input != NULL &&
+           plan->analysis != NULL && plan->rhs != NULL && plan->share != NULL &&
+           plan->missed != NULL && plan->guard != NULL && plan->right != NULL &&
+           plan->solution != NULL && plan->product != NULL && plan->left != NULL;
+}
+
+static enum dalcs_status setup(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+    plan->n_rows = dalcs_system_n_columns(s);
+    int affordable = MOST_ANALYZED / (plan->n_rows + 1);
+    plan->most_analyses = affordable < FEWEST_ANALYSES ? FEWEST_ANALYSES
+                          : affordable > MOST_ANALYSES ? MOST_ANALYSES
+                                                       : affordable;
+    if (!allocate(plan, s)) {
+        return DALCS_E_NOMEM;
+    }
+    fill_sources(plan, s);
+    fill_combination(plan);
+    DALCS_TRY(fill_base(plan, s));
+    DALCS_TRY(fill_P(plan, s));
+    return fill_drive(plan, s);
+}
+
+enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) {
+    if (stages->plan != NULL) {
+        return DALCS_OK;
+    }
+    struct dalcs_stage_plan *plan = dalcs_alloc(1, sizeof(*plan));
+    if (plan == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    plan->stages = stages;
+    enum dalcs_status status = setup(plan, stages->system);
+    if (status != DALCS_OK) {
+        dalcs_stage_plan_destroy(plan, &stages->klu);
+        return status;
+    }
+    stages->plan = plan;
+    return DALCS_OK;
+}
+
+static void forget(struct dalcs_stage_analysis *a, klu_common *common) {
+    klu_free_symbolic(&a->symbolic, common);
+    free(a->mode);
+    *a = (struct dalcs_stage_analysis){0};
+}
+
+void dalcs_stage_plan_destroy(struct dalcs_stage_plan *plan, klu_common *common) {
+    if (plan == NULL) {
+        return;
+    }
+    for (int k = 0; k < plan->n_analyses; k++) {
+        forget(&plan->analysis[k], common);
+    }
+    dalcs_csr_finish(&plan->base);
+    dalcs_csr_finish(&plan->P);
+    dalcs_csr_finish(&plan->drive);
+    free(plan->constant);
+    free(plan->wave_row);
+    free(plan->wave_of);
+    free(plan->wave_x);
+    free(plan->wave_begin);
+    free(plan->wave_of_input);
+    free(plan->analysis);
+    free(plan->rhs);
+    free(plan->share);
+    free(plan->missed);
+    free(plan->guard);
+    free(plan->right);
+    free(plan->solution);
+    free(plan->product);
+    free(plan->left);
+    free(plan);
+}
+
+enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stage_plan *plan, klu_common *common,
+                                           const uint64_t *mode, int n, int *p, int *i,
+                                           klu_symbolic **symbolic) {
+    size_t bytes = (size_t)plan->stages->n_words * sizeof(*mode);
+    int at = 0;
+    while (at < plan->n_analyses) {
+        const uint64_t *of = plan->analysis[at].mode;
+        bool same = mode == NULL || of == NULL ? mode == of : memcmp(of, mode, bytes) == 0;
+        if (same) {
+            break;
+        }
+        at++;
+    }
+    struct dalcs_stage_analysis found = {0};
+    if (at < plan->n_analyses) {
+        found = plan->analysis[at];
+    } else {
+        DALCS_TRY(dalcs_lu_analyze(&found.symbolic, common, n, p, i));
+        found.mode =
+            mode != NULL ? dalcs_alloc((size_t)plan->stages->n_words, sizeof(*mode)) : NULL;
+        if (mode != NULL && found.mode == NULL) {
+            forget(&found, common);
+            return DALCS_E_NOMEM;
+        }
+        if (mode != NULL) {
+            memcpy(found.mode, mode, bytes);
+        }
+        if (at == plan->most_analyses) {
+            forget(&plan->analysis[--at], common);
+        } else {
+            plan->n_analyses++;
+        }
+    }
+    memmove(plan->analysis + 1, plan->analysis, (size_t)at * sizeof(found));
+    plan->analysis[0] = found;
+    *symbolic = found.symbolic;
+    return DALCS_OK;
+}
