@@ -371,6 +371,15 @@ static enum dalcs_status factor_regular(struct dalcs_stages *stages,
     return DALCS_OK;
 }
 
+static void remember_pivots(struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f) {
+    const int *row_of = f->order[0].row_of;
+    int n_equations = f->n - f->n_pairs;
+    for (int i = 0; i < f->n; i++) {
+        int u = f->lu[0].to[i];
+        plan->match[u < n_equations ? u : n_equations + f->pair[u - n_equations]] = row_of[i];
+    }
+}
+
 static void drop_systems(struct dalcs_stage_factors *f) {
     for (int q = 0; q < DALCS_STAGE_SYSTEMS; q++) {
         struct dalcs_stage_order *o = &f->order[q];
@@ -458,6 +467,7 @@ static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_e
     memcpy(entry->natural, m->column_scale, (size_t)dalcs_system_n_equations(s) * sizeof(double));
     enum dalcs_status status = factor_regular(stages, entry, f, m);
     if (status == DALCS_OK) {
+        remember_pivots(stages->plan, f);
         DALCS_TRY(find_residual(stages, entry, m));
     } else if (status == DALCS_SINGULAR && s->n_pairs > 0) {
         drop_systems(f);

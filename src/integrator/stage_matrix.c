@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { BALANCING_ROUNDS = 3 };
 
@@ -18,32 +19,53 @@ static void place_rows(const struct dalcs_stage_matrix *m, const struct dalcs_st
     }
 }
 
-/* Merges a column of the base and of P. */
+/* Merges a column of the base and of P, its match first. */
 static int put_column(struct dalcs_stage_matrix *m, const struct dalcs_stage_plan *plan, int c,
                       const int *place, int out) {
     const struct dalcs_csr *b = &plan->base;
     const struct dalcs_csr *P = &plan->P;
     int k = b->p[c];
     int l = P->p[c];
+    int first = out;
     while (k < b->p[c + 1] || l < P->p[c + 1]) {
         int of_base = k < b->p[c + 1] ? b->j[k] : plan->n_rows;
         int of_P = l < P->p[c + 1] ? P->j[l] : plan->n_rows;
         int row = of_base < of_P ? of_base : of_P;
         double value = of_base == row ? b->x[k++] : 0.0;
         double rate = of_P == row ? P->x[l++] : 0.0;
-        if (place[row] >= 0) {
-            m->i[out] = place[row];
-            m->base[out] = value;
-            m->P[out++] = rate;
+        if (place[row] < 0) {
+            continue;
         }
+        int at = out++;
+        if (row == plan->match[c] && at > first) {
+            m->i[at] = m->i[first];
+            m->base[at] = m->base[first];
+            m->P[at] = m->P[first];
+            at = first;
+        }
+        m->i[at] = place[row];
+        m->base[at] = value;
+        m->P[at] = rate;
     }
     return out;
 }
 
+/* 2^-e for a number in 2^e [1/2, 1): what ldexp and frexp make of it, by the bits, as this is done for
+ * all rows and columns of every new mode. */
 static double power_of_2(double largest) {
-    int exponent;
-    (void)frexp(largest, &exponent);
-    return largest > 0.0 && isfinite(largest) ? ldexp(1.0, -exponent) : 1.0;
+    uint64_t bits;
+    memcpy(&bits, &largest, sizeof(bits));
+    uint64_t exponent = bits >> 52;
+    if (exponent - 1 >= 2044) { /* zero, denormal, infinite or nearly so */
+        return 1.0;
+    }
+    bits = (2045 - exponent) << 52;
+    memcpy(&largest, &bits, sizeof(bits));
+    return largest;
+}
+
+static double larger(double a, double b) {
+    return a > b ? a : b;
 }
 
 static void balance(struct dalcs_stage_matrix *m, double sigma) {
@@ -60,7 +82,7 @@ static void balance(struct dalcs_stage_matrix *m, double sigma) {
         }
         for (int c = 0; c < m->n; c++) {
             for (int k = m->p[c]; k < m->p[c + 1]; k++) {
-                m->row_scale[m->i[k]] = fmax(m->row_scale[m->i[k]], size[k] * m->column_scale[c]);
+                m->row_scale[m->i[k]] = larger(m->row_scale[m->i[k]], size[k] * m->column_scale[c]);
             }
         }
         for (int r = 0; r < m->n; r++) {
@@ -69,7 +91,7 @@ static void balance(struct dalcs_stage_matrix *m, double sigma) {
         for (int c = 0; c < m->n; c++) {
             double largest = 0.0;
             for (int k = m->p[c]; k < m->p[c + 1]; k++) {
-                largest = fmax(largest, size[k] * m->row_scale[m->i[k]]);
+                largest = larger(largest, size[k] * m->row_scale[m->i[k]]);
             }
             m->column_scale[c] = power_of_2(largest);
         }

@@ -122,6 +122,7 @@ static bool allocate(struct dalcs_stage_plan *plan, const struct dalcs_system *s
     plan->wave_x = dalcs_alloc(n_entries, sizeof(double));
     plan->wave_begin = dalcs_alloc(n + 1, sizeof(int));
     plan->wave_of_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
+    plan->match = dalcs_alloc(n, sizeof(int));
     plan->analysis = dalcs_alloc((size_t)plan->most_analyses, sizeof(*plan->analysis));
     plan->rhs = dalcs_alloc(n, sizeof(double));
     plan->share =
@@ -134,9 +135,10 @@ static bool allocate(struct dalcs_stage_plan *plan, const struct dalcs_system *s
     plan->left = dalcs_alloc(n, DALCS_STAGE_PARTS * sizeof(double));
     return plan->constant != NULL && plan->wave_row != NULL && plan->wave_of != NULL &&
            plan->wave_x != NULL && plan->wave_begin != NULL && plan->wave_of_input != NULL &&
-           plan->analysis != NULL && plan->rhs != NULL && plan->share != NULL &&
-           plan->missed != NULL && plan->guard != NULL && plan->right != NULL &&
-           plan->solution != NULL && plan->product != NULL && plan->left != NULL;
+           plan->match != NULL && plan->analysis != NULL && plan->rhs != NULL &&
+           plan->share != NULL && plan->missed != NULL && plan->guard != NULL &&
+           plan->right != NULL && plan->solution != NULL && plan->product != NULL &&
+           plan->left != NULL;
 }
 
 static enum dalcs_status setup(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
@@ -147,6 +149,9 @@ static enum dalcs_status setup(struct dalcs_stage_plan *plan, const struct dalcs
                                                        : affordable;
     if (!allocate(plan, s)) {
         return DALCS_E_NOMEM;
+    }
+    for (int c = 0; c < plan->n_rows; c++) {
+        plan->match[c] = -1;
     }
     fill_sources(plan, s);
     fill_combination(plan);
@@ -195,6 +200,7 @@ void dalcs_stage_plan_destroy(struct dalcs_stage_plan *plan, klu_common *common)
     free(plan->wave_x);
     free(plan->wave_begin);
     free(plan->wave_of_input);
+    free(plan->match);
     free(plan->analysis);
     free(plan->rhs);
     free(plan->share);

@@ -42,6 +42,11 @@ struct dalcs_stage_plan {
     double to[DALCS_MAX_NODES][DALCS_STAGE_PARTS];
     int n_parts;
 
+    /* The row that each column had its pivot in when a mode was last factored, -1: none. KLU looks for
+     * a transversal and takes the first free row of each column: with this one first it hardly has to
+     * search, which takes quadratic time in a long multiplier. */
+    int *match; /* [n_rows] */
+
     int n_analyses, most_analyses;
     struct dalcs_stage_analysis *analysis; /* newest first */
 
