@@ -355,17 +355,17 @@ static enum dalcs_status factor_regular(struct dalcs_stages *stages,
                                         struct dalcs_stage_entry *entry,
                                         struct dalcs_stage_factors *f,
                                         struct dalcs_stage_matrix *m) {
-    klu_symbolic *symbolic;
-    DALCS_TRY(dalcs_stage_plan_analyze(stages->plan, &stages->klu, entry->mode, m->n, m->p, m->i,
-                                       &symbolic));
+    struct dalcs_stage_analysis *a;
+    DALCS_TRY(
+        dalcs_stage_plan_analyze(stages, entry->mode, m->n, m->n_pairs, m->pair, m->p, m->i, &a));
     for (int q = 0; q < f->n_systems; q++) {
         double re;
         double im;
         dalcs_stage_factors_eigenvalue(stages, entry->h, q, &re, &im);
         dalcs_stage_matrix_at(m, re, im, q > 0);
         DALCS_TRY(dalcs_lu_factor_analyzed(&f->lu[q], q > 0 ? &stages->klu_complex : &stages->klu,
-                                           symbolic, q > 0, m->p, m->i, m->values,
-                                           stages->rcond_min));
+                                           a->symbolic, &a->numeric[q], q > 0, m->p, m->i,
+                                           m->values, stages->rcond_min));
         DALCS_TRY(dalcs_stage_factors_order(stages->plan, m, f, q));
     }
     return DALCS_OK;

@@ -5,8 +5,6 @@
 #include "stage_matrix.h"
 #include "stages_internal.h"
 
-enum { DALCS_STAGE_SYSTEMS = 1 + DALCS_MAX_CONJUGATES };
-
 /* Where a system's LU, which has its own order, takes what it solves from and leaves it. */
 struct dalcs_stage_order {
     int *row_of;   /* [n] row of M at position i */

@@ -19,14 +19,13 @@ static void place_rows(const struct dalcs_stage_matrix *m, const struct dalcs_st
     }
 }
 
-/* Merges a column of the base and of P, its match first. */
+/* Merges a column of the base and of P. */
 static int put_column(struct dalcs_stage_matrix *m, const struct dalcs_stage_plan *plan, int c,
                       const int *place, int out) {
     const struct dalcs_csr *b = &plan->base;
     const struct dalcs_csr *P = &plan->P;
     int k = b->p[c];
     int l = P->p[c];
-    int first = out;
     while (k < b->p[c + 1] || l < P->p[c + 1]) {
         int of_base = k < b->p[c + 1] ? b->j[k] : plan->n_rows;
         int of_P = l < P->p[c + 1] ? P->j[l] : plan->n_rows;
@@ -36,16 +35,9 @@ static int put_column(struct dalcs_stage_matrix *m, const struct dalcs_stage_pla
         if (place[row] < 0) {
             continue;
         }
-        int at = out++;
-        if (row == plan->match[c] && at > first) {
-            m->i[at] = m->i[first];
-            m->base[at] = m->base[first];
-            m->P[at] = m->P[first];
-            at = first;
-        }
-        m->i[at] = place[row];
-        m->base[at] = value;
-        m->P[at] = rate;
+        m->i[out] = place[row];
+        m->base[out] = value;
+        m->P[out++] = rate;
     }
     return out;
 }

@@ -6,13 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Analyses of so many unknowns altogether are kept, and never fewer than a few. */
-enum { MOST_ANALYZED = 2000000, FEWEST_ANALYSES = 4, MOST_ANALYSES = 256 };
-
-struct dalcs_stage_analysis {
-    uint64_t *mode; /* NULL: all pairs present */
-    klu_symbolic *symbolic;
-};
+/* Analyses and factors of so many unknowns altogether are kept, and never fewer than a few. */
+enum { MOST_ANALYZED = 2000000, MOST_FACTORED = 100000, FEWEST = 4, MOST = 256 };
 
 /* Columns of [-A; C] as rows. */
 static enum dalcs_status fill_base(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
@@ -141,12 +136,15 @@ static bool allocate(struct dalcs_stage_plan *plan, const struct dalcs_system *s
            plan->left != NULL;
 }
 
+static int how_many(int unknowns, int n) {
+    int affordable = unknowns / (n + 1);
+    return affordable < FEWEST ? FEWEST : affordable > MOST ? MOST : affordable;
+}
+
 static enum dalcs_status setup(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
     plan->n_rows = dalcs_system_n_columns(s);
-    int affordable = MOST_ANALYZED / (plan->n_rows + 1);
-    plan->most_analyses = affordable < FEWEST_ANALYSES ? FEWEST_ANALYSES
-                          : affordable > MOST_ANALYSES ? MOST_ANALYSES
-                                                       : affordable;
+    plan->most_analyses = how_many(MOST_ANALYZED, plan->n_rows);
+    plan->most_kept = how_many(MOST_FACTORED, plan->n_rows);
     if (!allocate(plan, s)) {
         return DALCS_E_NOMEM;
     }
@@ -164,32 +162,39 @@ enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) {
     if (stages->plan != NULL) {
         return DALCS_OK;
     }
-    struct dalcs_stage_plan *plan = dalcs_alloc(1, sizeof(*plan));
-    if (plan == NULL) {
+    stages->plan = dalcs_alloc(1, sizeof(*stages->plan));
+    if (stages->plan == NULL) {
         return DALCS_E_NOMEM;
     }
-    plan->stages = stages;
-    enum dalcs_status status = setup(plan, stages->system);
+    stages->plan->stages = stages;
+    enum dalcs_status status = setup(stages->plan, stages->system);
     if (status != DALCS_OK) {
-        dalcs_stage_plan_destroy(plan, &stages->klu);
-        return status;
+        dalcs_stage_plan_destroy(stages);
     }
-    stages->plan = plan;
-    return DALCS_OK;
+    return status;
 }
 
-static void forget(struct dalcs_stage_analysis *a, klu_common *common) {
-    klu_free_symbolic(&a->symbolic, common);
+static void drop_factors(struct dalcs_stages *stages, struct dalcs_stage_analysis *a) {
+    for (int q = 0; q < DALCS_STAGE_SYSTEMS; q++) {
+        dalcs_lu_drop(&a->numeric[q], q > 0, q > 0 ? &stages->klu_complex : &stages->klu);
+    }
+}
+
+static void forget(struct dalcs_stages *stages, struct dalcs_stage_analysis *a) {
+    drop_factors(stages, a);
+    klu_free_symbolic(&a->symbolic, &stages->klu);
     free(a->mode);
     *a = (struct dalcs_stage_analysis){0};
 }
 
-void dalcs_stage_plan_destroy(struct dalcs_stage_plan *plan, klu_common *common) {
+void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
+    struct dalcs_stage_plan *plan = stages->plan;
+    stages->plan = NULL;
     if (plan == NULL) {
         return;
     }
     for (int k = 0; k < plan->n_analyses; k++) {
-        forget(&plan->analysis[k], common);
+        forget(stages, &plan->analysis[k]);
     }
     dalcs_csr_finish(&plan->base);
     dalcs_csr_finish(&plan->P);
@@ -213,41 +218,75 @@ void dalcs_stage_plan_destroy(struct dalcs_stage_plan *plan, klu_common *common)
     free(plan);
 }
 
-enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stage_plan *plan, klu_common *common,
-                                           const uint64_t *mode, int n, int *p, int *i,
-                                           klu_symbolic **symbolic) {
-    size_t bytes = (size_t)plan->stages->n_words * sizeof(*mode);
+/* A copy of i with each column's match first; NULL when out of memory. */
+static int *list_matches_first(const struct dalcs_stage_plan *plan, int n, int n_pairs,
+                               const int *pair, const int *p, const int *i) {
+    int n_equations = n - n_pairs;
+    int *first = dalcs_alloc((size_t)p[n], sizeof(int));
+    for (int c = 0; first != NULL && c < n; c++) {
+        int match = plan->match[c < n_equations ? c : n_equations + pair[c - n_equations]];
+        for (int k = p[c]; k < p[c + 1]; k++) {
+            int row = i[k] < n_equations ? i[k] : n_equations + pair[i[k] - n_equations];
+            first[k] = i[k];
+            if (row == match) {
+                first[k] = first[p[c]];
+                first[p[c]] = i[k];
+            }
+        }
+    }
+    return first;
+}
+
+static enum dalcs_status analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
+                                 int n_pairs, const int *pair, int *p, const int *i,
+                                 struct dalcs_stage_analysis *a) {
+    size_t words = (size_t)stages->n_words;
+    int *first = list_matches_first(stages->plan, n, n_pairs, pair, p, i);
+    *a = (struct dalcs_stage_analysis){.mode = mode != NULL ? dalcs_alloc(words + 1, sizeof(*mode))
+                                                            : NULL};
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (first != NULL && (mode == NULL || a->mode != NULL)) {
+        status = dalcs_lu_analyze(&a->symbolic, &stages->klu, n, p, first);
+    }
+    free(first);
+    if (status != DALCS_OK) {
+        free(a->mode);
+        return status;
+    }
+    if (mode != NULL) {
+        memcpy(a->mode, mode, words * sizeof(*mode));
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
+                                           int n_pairs, const int *pair, int *p, int *i,
+                                           struct dalcs_stage_analysis **analysis) {
+    struct dalcs_stage_plan *plan = stages->plan;
+    size_t bytes = (size_t)stages->n_words * sizeof(*mode);
     int at = 0;
-    while (at < plan->n_analyses) {
+    for (; at < plan->n_analyses; at++) {
         const uint64_t *of = plan->analysis[at].mode;
-        bool same = mode == NULL || of == NULL ? mode == of : memcmp(of, mode, bytes) == 0;
-        if (same) {
+        if (mode == NULL || of == NULL ? mode == of : memcmp(of, mode, bytes) == 0) {
             break;
         }
-        at++;
     }
-    struct dalcs_stage_analysis found = {0};
+    struct dalcs_stage_analysis found;
     if (at < plan->n_analyses) {
         found = plan->analysis[at];
     } else {
-        DALCS_TRY(dalcs_lu_analyze(&found.symbolic, common, n, p, i));
-        found.mode =
-            mode != NULL ? dalcs_alloc((size_t)plan->stages->n_words, sizeof(*mode)) : NULL;
-        if (mode != NULL && found.mode == NULL) {
-            forget(&found, common);
-            return DALCS_E_NOMEM;
-        }
-        if (mode != NULL) {
-            memcpy(found.mode, mode, bytes);
-        }
+        DALCS_TRY(analyze(stages, mode, n, n_pairs, pair, p, i, &found));
         if (at == plan->most_analyses) {
-            forget(&plan->analysis[--at], common);
+            forget(stages, &plan->analysis[--at]);
         } else {
             plan->n_analyses++;
         }
     }
     memmove(plan->analysis + 1, plan->analysis, (size_t)at * sizeof(found));
     plan->analysis[0] = found;
-    *symbolic = found.symbolic;
+    if (plan->n_analyses > plan->most_kept) {
+        drop_factors(stages, &plan->analysis[plan->most_kept]);
+    }
+    *analysis = &plan->analysis[0];
     return DALCS_OK;
 }

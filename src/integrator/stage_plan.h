@@ -11,7 +11,11 @@
 #include "stages.h"
 
 /* Unknowns are turned into stages in pieces of this many, which stay in the fastest cache. */
-enum { DALCS_STAGE_PIECE = 64, DALCS_STAGE_PARTS = 1 + 2 * DALCS_MAX_CONJUGATES };
+enum {
+    DALCS_STAGE_PIECE = 64,
+    DALCS_STAGE_SYSTEMS = 1 + DALCS_MAX_CONJUGATES,
+    DALCS_STAGE_PARTS = 1 + 2 * DALCS_MAX_CONJUGATES
+};
 
 /* Where the shares of a wave in a step are: its values at the nodes, then these. */
 enum {
@@ -23,7 +27,12 @@ enum {
     DALCS_N_SHARES
 };
 
-struct dalcs_stage_analysis;
+/* What KLU knows of a mode. */
+struct dalcs_stage_analysis {
+    uint64_t *mode; /* NULL: all pairs present */
+    klu_symbolic *symbolic;
+    klu_numeric *numeric[DALCS_STAGE_SYSTEMS]; /* of the last step length, or NULL */
+};
 
 struct dalcs_stage_plan {
     const struct dalcs_stages *stages;
@@ -47,7 +56,7 @@ struct dalcs_stage_plan {
      * search, which takes quadratic time in a long multiplier. */
     int *match; /* [n_rows] */
 
-    int n_analyses, most_analyses;
+    int n_analyses, most_analyses, most_kept;
     struct dalcs_stage_analysis *analysis; /* newest first */
 
     /* work */
@@ -64,12 +73,12 @@ struct dalcs_stage_plan {
 /* Allocates stages->plan if it is not there yet. */
 enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) DALCS_MUST_CHECK;
 
-void dalcs_stage_plan_destroy(struct dalcs_stage_plan *plan, klu_common *common);
+void dalcs_stage_plan_destroy(struct dalcs_stages *stages);
 
-/* KLU's analysis of a mode's pattern; mode NULL: of the matrix with all pairs. It belongs to the plan
- * and stays until the next call. */
-enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stage_plan *plan, klu_common *common,
-                                           const uint64_t *mode, int n, int *p, int *i,
-                                           klu_symbolic **symbolic) DALCS_MUST_CHECK;
+/* KLU's analysis of a mode's pattern (p, i), whose last rows and columns are those of pair[n_pairs];
+ * mode NULL: of the matrix with all pairs. It belongs to the plan and stays until the next call. */
+enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
+                                           int n_pairs, const int *pair, int *p, int *i,
+                                           struct dalcs_stage_analysis **analysis) DALCS_MUST_CHECK;
 
 #endif

@@ -119,17 +119,17 @@ static enum dalcs_status factor_all(struct dalcs_stages *stages, struct dalcs_st
                                     struct dalcs_stage_factors *f, const int *row_of,
                                     struct weighted *a) {
     struct dalcs_stage_singular *g = f->singular;
-    klu_symbolic *symbolic = NULL;
+    struct dalcs_stage_analysis *known = NULL;
     for (int q = 0; q < f->n_systems; q++) {
         dalcs_stage_factors_eigenvalue(stages, entry->h, q, &g->re[q], &g->im[q]);
         dalcs_stage_matrix_at(&g->matrix, g->re[q], g->im[q], q > 0);
         put_weights(stages->system, entry, g, row_of, q > 0 ? 2 : 1, a);
         if (q == 0) {
-            DALCS_TRY(dalcs_stage_plan_analyze(stages->plan, &stages->klu, NULL, g->matrix.n, a->p,
-                                               a->i, &symbolic));
+            DALCS_TRY(dalcs_stage_plan_analyze(stages, NULL, f->n, f->n_pairs, f->pair, a->p, a->i,
+                                               &known));
         }
         DALCS_TRY(dalcs_lu_factor_analyzed(&f->lu[q], q > 0 ? &stages->klu_complex : &stages->klu,
-                                           symbolic, q > 0, a->p, a->i, a->x, 0.0));
+                                           known->symbolic, NULL, q > 0, a->p, a->i, a->x, 0.0));
         DALCS_TRY(dalcs_stage_factors_order(stages->plan, &g->matrix, f, q));
     }
     return DALCS_OK;

@@ -86,7 +86,7 @@ void dalcs_stages_finish(struct dalcs_stages *stages) {
     while (stages->oldest != NULL) {
         remove_entry(stages, stages->oldest);
     }
-    dalcs_stage_plan_destroy(stages->plan, &stages->klu);
+    dalcs_stage_plan_destroy(stages);
     free(stages->watched);
     free(stages->key);
     *stages = (struct dalcs_stages){0};

@@ -3,6 +3,9 @@
 
 #include <stdlib.h>
 
+/* Elements that grow more than this over those of the matrix cost too many digits. */
+static const double least_reciprocal_growth = 1e-3;
+
 void dalcs_lu_common_init(klu_common *common) {
     klu_defaults(common);
     common->halt_if_singular = 1;
@@ -165,30 +168,72 @@ enum dalcs_status dalcs_lu_analyze(klu_symbolic **symbolic, klu_common *common, 
     return DALCS_OK;
 }
 
-static enum dalcs_status factor(klu_numeric **numeric, klu_common *common, klu_symbolic *symbolic,
-                                bool is_complex, int *p, int *i, double *x, double rcond_min) {
-    *numeric = is_complex ? klu_z_factor(p, i, x, symbolic, common)
-                          : klu_factor(p, i, x, symbolic, common);
-    if (common->status == KLU_OUT_OF_MEMORY || common->status == KLU_TOO_LARGE) {
+/* The matrix to factor. */
+struct values {
+    klu_common *common;
+    klu_symbolic *symbolic;
+    bool is_complex;
+    int *p, *i;
+    double *x;
+    double rcond_min;
+};
+
+static bool is_well_conditioned(const struct values *v, klu_numeric *numeric) {
+    if (v->is_complex) {
+        klu_z_rcond(v->symbolic, numeric, v->common);
+    } else {
+        klu_rcond(v->symbolic, numeric, v->common);
+    }
+    return v->common->rcond >= v->rcond_min;
+}
+
+static enum dalcs_status factor(const struct values *v, klu_numeric **numeric) {
+    *numeric = v->is_complex ? klu_z_factor(v->p, v->i, v->x, v->symbolic, v->common)
+                             : klu_factor(v->p, v->i, v->x, v->symbolic, v->common);
+    if (v->common->status == KLU_OUT_OF_MEMORY || v->common->status == KLU_TOO_LARGE) {
         return DALCS_E_NOMEM;
     }
-    if (*numeric == NULL || common->status == KLU_SINGULAR) {
-        return DALCS_SINGULAR;
+    bool is_regular =
+        *numeric != NULL && v->common->status != KLU_SINGULAR && is_well_conditioned(v, *numeric);
+    return is_regular ? DALCS_OK : DALCS_SINGULAR;
+}
+
+/* Do the pivots of other values serve these? */
+static bool refactor(const struct values *v, klu_numeric *numeric) {
+    klu_common *c = v->common;
+    int done = v->is_complex ? klu_z_refactor(v->p, v->i, v->x, v->symbolic, numeric, c)
+                             : klu_refactor(v->p, v->i, v->x, v->symbolic, numeric, c);
+    if (!done || c->status != KLU_OK || !is_well_conditioned(v, numeric)) {
+        return false;
     }
-    if (is_complex) {
-        klu_z_rcond(symbolic, *numeric, common);
+    if (v->is_complex) {
+        klu_z_rgrowth(v->p, v->i, v->x, v->symbolic, numeric, c);
     } else {
-        klu_rcond(symbolic, *numeric, common);
+        klu_rgrowth(v->p, v->i, v->x, v->symbolic, numeric, c);
     }
-    return common->rcond >= rcond_min ? DALCS_OK : DALCS_SINGULAR;
+    return c->rgrowth >= least_reciprocal_growth;
+}
+
+void dalcs_lu_drop(klu_numeric **kept, bool is_complex, klu_common *common) {
+    if (is_complex) {
+        klu_z_free_numeric(kept, common);
+    } else {
+        klu_free_numeric(kept, common);
+    }
 }
 
 enum dalcs_status dalcs_lu_factor_analyzed(struct dalcs_lu *lu, klu_common *common,
-                                           klu_symbolic *symbolic, bool is_complex, int *p, int *i,
-                                           double *x, double rcond_min) {
+                                           klu_symbolic *symbolic, klu_numeric **kept,
+                                           bool is_complex, int *p, int *i, double *x,
+                                           double rcond_min) {
     *lu = (struct dalcs_lu){.n = symbolic->n, .is_complex = is_complex};
-    klu_numeric *numeric = NULL;
-    enum dalcs_status status = factor(&numeric, common, symbolic, is_complex, p, i, x, rcond_min);
+    const struct values v = {common, symbolic, is_complex, p, i, x, rcond_min};
+    klu_numeric *numeric = kept != NULL ? *kept : NULL;
+    enum dalcs_status status = DALCS_OK;
+    if (numeric == NULL || !refactor(&v, numeric)) {
+        dalcs_lu_drop(&numeric, is_complex, common);
+        status = factor(&v, &numeric);
+    }
     if (status == DALCS_OK) {
         struct extracted e;
         status = extract(&e, lu, symbolic, numeric, common);
@@ -197,10 +242,11 @@ enum dalcs_status dalcs_lu_factor_analyzed(struct dalcs_lu *lu, klu_common *comm
         }
         extracted_finish(&e);
     }
-    if (is_complex) {
-        klu_z_free_numeric(&numeric, common);
-    } else {
-        klu_free_numeric(&numeric, common);
+    if (kept == NULL || status != DALCS_OK) {
+        dalcs_lu_drop(&numeric, is_complex, common);
+    }
+    if (kept != NULL) {
+        *kept = numeric;
     }
     if (status != DALCS_OK) {
         dalcs_lu_finish(lu);
@@ -220,7 +266,7 @@ enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n
         dalcs_lu_finish(lu);
         return status;
     }
-    status = dalcs_lu_factor_analyzed(lu, common, symbolic, false, p, i, x, rcond_min);
+    status = dalcs_lu_factor_analyzed(lu, common, symbolic, NULL, false, p, i, x, rcond_min);
     klu_free_symbolic(&symbolic, common);
     return status;
 }
