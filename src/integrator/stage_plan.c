@@ -127,13 +127,14 @@ static bool allocate(struct dalcs_stage_plan *plan, const struct dalcs_system *s
     plan->right = dalcs_alloc(n, 2 * sizeof(double));
     plan->solution = dalcs_alloc(n, 2 * sizeof(double));
     plan->product = dalcs_alloc(n, 2 * sizeof(double));
+    plan->centre = dalcs_alloc((size_t)s->n_pairs, 2 * sizeof(double));
     plan->left = dalcs_alloc(n, DALCS_STAGE_PARTS * sizeof(double));
     return plan->constant != NULL && plan->wave_row != NULL && plan->wave_of != NULL &&
            plan->wave_x != NULL && plan->wave_begin != NULL && plan->wave_of_input != NULL &&
            plan->match != NULL && plan->analysis != NULL && plan->rhs != NULL &&
            plan->share != NULL && plan->missed != NULL && plan->guard != NULL &&
            plan->right != NULL && plan->solution != NULL && plan->product != NULL &&
-           plan->left != NULL;
+           plan->centre != NULL && plan->left != NULL;
 }
 
 static int how_many(int unknowns, int n) {
@@ -214,6 +215,7 @@ void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
     free(plan->right);
     free(plan->solution);
     free(plan->product);
+    free(plan->centre);
     free(plan->left);
     free(plan);
 }

@@ -67,6 +67,7 @@ struct dalcs_stage_plan {
     double *right;    /* [2 n_rows] of a singular system */
     double *solution; /* [2 n_rows] */
     double *product;  /* [2 n_rows] */
+    double *centre;   /* [2 n_pairs] */
     double *left;     /* [parts][n_rows] what its equations disagree by */
 };
 

@@ -3,10 +3,11 @@
  * All pairs are present, with small weights (as in the OSNSP, proximal.c),
  *     closed:  w + (eps/G) lambda = 0,     open:  lambda + (eps G) w = 0,
  * so that the matrix is regular; far smaller ones on the unknowns help where no pair does. The
- * solution is then moved until the weights no longer matter: first those of unknowns and switches are
- * taken away, so that diodes alone decide what is open, then those of diodes, which leaves in place
- * what only they determined. That tends to the choice of least norm (Rockafellar 1976); what is left
- * of the residual says by how much the equations disagree. */
+ * solution is then moved until the weights no longer matter. Those of unknowns and switches are taken
+ * away first, so that diodes alone decide what is open; then the diodes are pulled towards where they
+ * are and no longer towards 0, which leaves in place what only they determined (the proximal-point
+ * iteration of Rockafellar 1976, from 0). What is left of the residual says by how much the equations
+ * disagree. */
 #include "stage_factors.h"
 
 #include <math.h>
@@ -24,10 +25,10 @@ static const double weight_spread = 1e3;
 /* A residual this small, relatively, is rounding. */
 static const double rounding = 1e-14;
 
-/* Which weights pull towards 0. */
-enum level { ALL, DIODES, NONE };
+/* Nor is it worth while to go on where the solution moves by less than this part. */
+static const double unmoved = 1e-12;
 
-enum { LESSER_ROUNDS = 2, FINAL_ROUNDS = 3 };
+enum { LESSER_ROUNDS = 5, FINAL_ROUNDS = 3 };
 
 static double weight_of_unknowns(void) {
     return pair_weight * lesser_weight;
@@ -202,40 +203,56 @@ static void multiply(const struct dalcs_stage_plan *plan, const struct dalcs_sta
     }
 }
 
-/* plan->product = what the equations, with the weights of this level, miss at plan->solution.
- * Returns the largest. */
+/* plan->product = what the equations, with the weights that are held, miss at plan->solution. Held
+ * diodes are pulled towards their centre, which `recentre` first moves to where they are: then they
+ * are not pulled at all. Returns the largest. */
 static double find_residual(const struct dalcs_stage_plan *plan,
                             const struct dalcs_stage_entry *entry,
-                            const struct dalcs_stage_singular *g, int system, enum level level) {
+                            const struct dalcs_stage_singular *g, int system, bool hold_all,
+                            bool recentre) {
     const struct dalcs_system *s = plan->stages->system;
     int n_equations = dalcs_system_n_equations(s);
     int stride = system > 0 ? 2 : 1;
     double largest = 0.0;
     multiply(plan, g, system);
-    for (int k = 0; k < g->matrix.n * stride; k++) {
-        int row = k / stride;
+    for (int k = 0; k < n_equations * stride; k++) {
+        int column = g->unknown_of[k / stride];
         double missed = plan->right[k] - plan->product[k];
-        if (row < n_equations) {
-            int column = g->unknown_of[row];
-            if (level == ALL && column >= 0) {
-                missed -= weight_of_unknowns() * plan->solution[column * stride + k % stride];
-            }
-        } else {
-            int d = row - n_equations;
-            double w = -missed;
-            double lambda = plan->solution[k];
-            bool held = level == ALL || (level == DIODES && s->pair[d].kind == DALCS_PAIR_DIODE);
-            double weight = held ? g->weight[d] : 0.0;
-            missed = dalcs_stage_is_on(entry, d) ? -w - weight * lambda : -lambda - weight * w;
+        if (hold_all && column >= 0) {
+            missed -= weight_of_unknowns() * plan->solution[column * stride + k % stride];
         }
+        plan->product[k] = missed;
+        largest = fmax(largest, fabs(missed));
+    }
+    for (int k = n_equations * stride; k < g->matrix.n * stride; k++) {
+        int d = k / stride - n_equations;
+        double *centre = plan->centre + k - n_equations * stride;
+        bool is_on = dalcs_stage_is_on(entry, d);
+        double w = plan->product[k] - plan->right[k];
+        double lambda = plan->solution[k];
+        double held = is_on ? lambda : w;
+        if (recentre) {
+            *centre = held;
+        }
+        double pull = hold_all || s->pair[d].kind == DALCS_PAIR_DIODE ? held - *centre : 0.0;
+        double missed = -(is_on ? w : lambda) - g->weight[d] * pull;
         plan->product[k] = missed;
         largest = fmax(largest, fabs(missed));
     }
     return largest;
 }
 
-static void add_correction(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
-                           int system) {
+static double largest_of(const double *v, int n) {
+    double largest = 0.0;
+    for (int k = 0; k < n; k++) {
+        largest = fmax(largest, fabs(v[k]));
+    }
+    return largest;
+}
+
+/* Solves for plan->product and adds that to the solution. Returns the largest change. */
+static double add_correction(const struct dalcs_stage_plan *plan,
+                             const struct dalcs_stage_factors *f, int system) {
     const struct dalcs_lu *lu = &f->lu[system];
     if (system == 0) {
         for (int i = 0; i < f->n; i++) {
@@ -245,7 +262,7 @@ static void add_correction(const struct dalcs_stage_plan *plan, const struct dal
         for (int i = 0; i < f->n; i++) {
             plan->solution[lu->to[i]] += lu->work[i];
         }
-        return;
+        return largest_of(lu->work, f->n);
     }
     for (int i = 0; i < f->n; i++) {
         lu->work[2 * i] = plan->product[2 * lu->from[i]];
@@ -256,14 +273,7 @@ static void add_correction(const struct dalcs_stage_plan *plan, const struct dal
         plan->solution[2 * lu->to[i]] += lu->work[2 * i];
         plan->solution[2 * lu->to[i] + 1] += lu->work[2 * i + 1];
     }
-}
-
-static double largest_of(const double *v, int n) {
-    double largest = 0.0;
-    for (int k = 0; k < n; k++) {
-        largest = fmax(largest, fabs(v[k]));
-    }
-    return largest;
+    return largest_of(lu->work, 2 * f->n);
 }
 
 void dalcs_stage_singular_solve(const struct dalcs_stage_plan *plan,
@@ -276,17 +286,21 @@ void dalcs_stage_singular_solve(const struct dalcs_stage_plan *plan,
         plan->right[lu->from[k / stride] * stride + k % stride] = lu->work[k];
     }
     memset(plan->solution, 0, (size_t)n * sizeof(double));
-    for (int round = 0; round <= LESSER_ROUNDS; round++) {
-        (void)find_residual(plan, entry, f->singular, system, round == 0 ? ALL : DIODES);
-        add_correction(plan, f, system);
-    }
+    memset(plan->centre, 0, (size_t)(f->n_pairs * stride) * sizeof(double));
+    (void)find_residual(plan, entry, f->singular, system, true, false);
     for (int round = 0;; round++) {
-        double residual = find_residual(plan, entry, f->singular, system, NONE);
+        for (int inner = 0; inner < LESSER_ROUNDS; inner++) {
+            double moved = add_correction(plan, f, system);
+            if (inner > 0 && moved <= unmoved * largest_of(plan->solution, n)) {
+                break;
+            }
+            (void)find_residual(plan, entry, f->singular, system, false, false);
+        }
+        double residual = find_residual(plan, entry, f->singular, system, false, true);
         double size = fmax(largest_of(plan->solution, n), largest_of(plan->right, n));
         if (residual <= rounding * size || round == FINAL_ROUNDS) {
             break;
         }
-        add_correction(plan, f, system);
     }
     int part = system > 0 ? 2 * system - 1 : 0;
     for (int k = 0; k < n; k++) {
@@ -305,9 +319,10 @@ double dalcs_stage_singular_residual(const struct dalcs_stage_plan *plan,
             plan->right[k] = cos(1.0 + k * (double)k);
         }
         memset(plan->solution, 0, (size_t)n * sizeof(double));
-        double before = find_residual(plan, entry, f->singular, q, ALL);
-        add_correction(plan, f, q);
-        double after = find_residual(plan, entry, f->singular, q, ALL);
+        memset(plan->centre, 0, (size_t)f->n_pairs * 2 * sizeof(double));
+        double before = find_residual(plan, entry, f->singular, q, true, false);
+        (void)add_correction(plan, f, q);
+        double after = find_residual(plan, entry, f->singular, q, true, false);
         double size = fmax(before, largest_of(plan->solution, n));
         worst = fmax(worst, after / size);
     }

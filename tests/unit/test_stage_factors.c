@@ -26,8 +26,38 @@ struct both {
     struct dalcs_stages dense, sparse;
 };
 
-static void setup(struct both *b, const char *netlist, int s) {
+/* Every row of F gets all inputs and C a few lambdas, which no netlist does. */
+static void generalise(struct dalcs_system *s) {
+    uint64_t random = 29;
+    struct dalcs_triplets f = {0};
+    struct dalcs_triplets c = {0};
+    for (int d = 0; d < s->n_pairs; d++) {
+        for (int k = 0; k < s->n_inputs; k++) {
+            ck_assert_int_eq(dalcs_triplets_add(&f, d, k, next_random(&random)), DALCS_OK);
+        }
+        for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
+            ck_assert_int_eq(dalcs_triplets_add(&c, d, s->C.j[k], s->C.x[k]), DALCS_OK);
+        }
+        for (int k = 0; k <= d; k++) {
+            int column = dalcs_system_n_equations(s) + k;
+            ck_assert_int_eq(dalcs_triplets_add(&c, d, column, 3.0 + next_random(&random)),
+                             DALCS_OK);
+        }
+    }
+    dalcs_csr_finish(&s->F);
+    dalcs_csr_finish(&s->C);
+    ck_assert_int_eq(dalcs_csr_compress(&s->F, s->n_pairs, s->n_inputs, &f), DALCS_OK);
+    ck_assert_int_eq(dalcs_csr_compress(&s->C, s->n_pairs, dalcs_system_n_columns(s), &c),
+                     DALCS_OK);
+    dalcs_triplets_finish(&f);
+    dalcs_triplets_finish(&c);
+}
+
+static void setup(struct both *b, const char *netlist, int s, bool general) {
     build_good_network(&b->text, netlist);
+    if (general) {
+        generalise(&b->text.network.system[0]);
+    }
     ck_assert_int_eq(b->text.network.n_systems, 1);
     b->system = &b->text.network.system[0];
     ck_assert_int_eq(dalcs_excitation_setup(&b->excitation, &b->text.circuit, b->system), DALCS_OK);
@@ -156,6 +186,11 @@ static void check_mode(struct both *b, const uint64_t *mode, double h, uint64_t 
         }
         ck_assert_int_eq(dalcs_stages_apply(&b->dense, dense, in, x), DALCS_OK);
         ck_assert_int_eq(dalcs_stages_apply(&b->sparse, sparse, in, y), DALCS_OK);
+        for (int d = 0; d < b->system->n_pairs; d++) {
+            if (b->system->pair[d].kind == DALCS_PAIR_SWITCH && !dalcs_stage_is_on(sparse, d)) {
+                ck_assert_double_eq(y[n_equations + d], 0.0);
+            }
+        }
         compare(b, dense, sparse, x, y, tally);
     }
     free(in);
@@ -164,11 +199,11 @@ static void check_mode(struct both *b, const uint64_t *mode, double h, uint64_t 
 }
 
 /* All modes of up to 6 pairs, many of more. */
-static struct tally check_netlist(const char *netlist, double h) {
+static struct tally check_system(const char *netlist, double h, bool general) {
     struct tally tally = {0};
     for (int s = 1; s <= 7; s += 2) {
         struct both b;
-        setup(&b, netlist, s);
+        setup(&b, netlist, s, general);
         int n_pairs = b.system->n_pairs;
         uint64_t random = 17;
         int n_modes = n_pairs <= 6 ? 1 << n_pairs : 64;
@@ -187,6 +222,10 @@ static struct tally check_netlist(const char *netlist, double h) {
         finish(&b);
     }
     return tally;
+}
+
+static struct tally check_netlist(const char *netlist, double h) {
+    return check_system(netlist, h, false);
 }
 
 START_TEST(test_ladder) {
@@ -217,7 +256,7 @@ START_TEST(test_multiplier) {
     (void)snprintf(text + at, sizeof(text) - (size_t)at,
                    "rl b35 0 10meg\n.model di d(ron=10)\n.tran 2u 4m uic\n.end\n");
     struct both b;
-    setup(&b, text, 5);
+    setup(&b, text, 5, false);
     struct tally tally = {0};
     uint64_t random = 3;
     for (int k = 0; k < 4; k++) {
@@ -256,6 +295,7 @@ START_TEST(test_controlled_sources) {
                                    "h1 m 0 v2 30\nrm m n 10\nl1 n 0 1m\n"
                                    "f1 0 n v1 0.5\nrn n 0 500\n"
                                    "s1 n c b 0 sw\ns2 k c a 0 sw off\n"
+                                   "v3 p 0 sin(0 2 5k)\nrp p c 1k\ns3 m c p a sw\n"
                                    ".model sw sw(vt=1 vh=0.2)\n"
                                    ".model di d(vfwd=0.6)\n.tran 1u 1m uic\n.end\n",
                                    1e-6);
@@ -312,6 +352,32 @@ START_TEST(test_shared_by_diodes) {
 
 END_TEST
 
+/* The same where surroundings differ by a thousand. */
+START_TEST(test_shared_unequally) {
+    struct tally t = check_netlist("loops and chains of diodes\n"
+                                   "v1 a 0 sin(0 10 50)\nr1 a b 10\nr2 a c 1k\nr3 c 0 10k\n"
+                                   "d1 b c di\nd2 c d di\nd3 b d di\nr4 d 0 300\n"
+                                   "d4 b e di\nd5 e c di\nd6 e d di\nc1 c 0 1u\n"
+                                   ".model di d\n.tran 1u 1m uic\n.end\n",
+                                   1e-5);
+    ck_assert_int_gt(t.n_singular, 0);
+}
+
+END_TEST
+
+START_TEST(test_general_system) {
+    struct tally t = check_system("sources in the sides of pairs\n"
+                                  "v1 a 0 sin(0 10 1k)\nv2 b 0 exp(0 5 0 1m 5m 1m)\nv3 f 0 2\n"
+                                  "r1 a c 10\nc1 c 0 1u\nd1 c d di\nr2 d b 20\nl1 d 0 1m\n"
+                                  "d2 d e di\nr3 e f 30\nc2 e 0 2u\nd3 c e di\n"
+                                  ".model di d\n.tran 1u 1m uic\n.end\n",
+                                  1e-5, true);
+    ck_assert_int_gt(t.n_regular, 0);
+    ck_assert_int_eq(t.n_singular, 0);
+}
+
+END_TEST
+
 /* Sources that closed diodes put in parallel, or open ones in series. */
 START_TEST(test_clashes) {
     struct tally t =
@@ -328,4 +394,4 @@ END_TEST
 
 RUN_TESTS("stage factors", test_ladder, test_multiplier, test_coupled_coils,
           test_controlled_sources, test_index_2, test_floating_bridge, test_shared_by_diodes,
-          test_clashes)
+          test_shared_unequally, test_general_system, test_clashes)
