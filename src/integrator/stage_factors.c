@@ -426,6 +426,9 @@ static enum dalcs_status find_residual(struct dalcs_stages *stages, struct dalcs
             double term = (d < 0 ? a->x[k] : -a->x[k]) * y[a->j[k]];
             missed += term;
             terms += fabs(term);
+            if (a->j[k] < s->n_x) { /* solved for as an increment over this */
+                terms += fabs(a->x[k] * in[a->j[k]]);
+            }
         }
         for (int k = plan->wave_begin[r]; k < plan->wave_begin[r + 1]; k++) {
             double term =

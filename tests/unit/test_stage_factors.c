@@ -378,6 +378,17 @@ START_TEST(test_general_system) {
 
 END_TEST
 
+/* A mode may force a state to 0: what is left of it then is nothing but rounding. */
+START_TEST(test_forced_to_zero) {
+    struct tally t = check_netlist("coil against a diode\n"
+                                   "l1 a 0 1m\nd1 a 0 di\n.model di d\n.tran 1u 1m uic\n.end\n",
+                                   1e-5);
+    ck_assert_int_gt(t.n_regular, 0);
+    ck_assert_int_eq(t.n_singular, 0);
+}
+
+END_TEST
+
 /* Sources that closed diodes put in parallel, or open ones in series. */
 START_TEST(test_clashes) {
     struct tally t =
@@ -394,4 +405,4 @@ END_TEST
 
 RUN_TESTS("stage factors", test_ladder, test_multiplier, test_coupled_coils,
           test_controlled_sources, test_index_2, test_floating_bridge, test_shared_by_diodes,
-          test_shared_unequally, test_general_system, test_clashes)
+          test_shared_unequally, test_general_system, test_forced_to_zero, test_clashes)
