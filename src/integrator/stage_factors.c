@@ -392,8 +392,8 @@ static void drop_systems(struct dalcs_stage_factors *f) {
     }
 }
 
-/* The largest miss of the rows without derivatives over the largest of their terms, balanced, at the
- * last stage of an arbitrary step. */
+/* The largest miss of the rows without derivatives over the largest of their terms, balanced, at
+ * the last stage of an arbitrary step. */
 static enum dalcs_status find_residual(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
                                        const struct dalcs_stage_matrix *m) {
     const struct dalcs_stage_plan *plan = stages->plan;

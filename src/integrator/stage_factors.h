@@ -38,8 +38,8 @@ enum dalcs_status dalcs_stage_singular_build(struct dalcs_stages *stages,
                                              struct dalcs_stage_entry *entry,
                                              struct dalcs_stage_factors *f) DALCS_MUST_CHECK;
 
-/* lu[system].work, which holds the right-hand side in its order, becomes the solution of least norm;
- * plan->left gets what the equations disagree by. */
+/* lu[system].work, which holds the right-hand side in its order, becomes the solution of least
+ * norm; plan->left gets what the equations disagree by. */
 void dalcs_stage_singular_solve(const struct dalcs_stage_plan *plan,
                                 const struct dalcs_stage_entry *entry,
                                 const struct dalcs_stage_factors *f, int system);

@@ -42,8 +42,8 @@ static int put_column(struct dalcs_stage_matrix *m, const struct dalcs_stage_pla
     return out;
 }
 
-/* 2^-e for a number in 2^e [1/2, 1): what ldexp and frexp make of it, by the bits, as this is done for
- * all rows and columns of every new mode. */
+/* 2^-e for a number in 2^e [1/2, 1): what ldexp and frexp make of it, by the bits, as this is
+ * done for all rows and columns of every new mode. */
 static double power_of_2(double largest) {
     uint64_t bits;
     memcpy(&bits, &largest, sizeof(bits));

@@ -51,9 +51,9 @@ struct dalcs_stage_plan {
     double to[DALCS_MAX_NODES][DALCS_STAGE_PARTS];
     int n_parts;
 
-    /* The row that each column had its pivot in when a mode was last factored, -1: none. KLU looks for
-     * a transversal and takes the first free row of each column: with this one first it hardly has to
-     * search, which takes quadratic time in a long multiplier. */
+    /* The row that each column had its pivot in when a mode was last factored, -1: none. KLU
+     * looks for a transversal and takes the first free row of each column: with this one first
+     * it hardly has to search, which takes quadratic time in a long multiplier. */
     int *match; /* [n_rows] */
 
     int n_analyses, most_analyses, most_kept;
@@ -76,8 +76,9 @@ enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) DALCS_MUST_C
 
 void dalcs_stage_plan_destroy(struct dalcs_stages *stages);
 
-/* KLU's analysis of a mode's pattern (p, i), whose last rows and columns are those of pair[n_pairs];
- * mode NULL: of the matrix with all pairs. It belongs to the plan and stays until the next call. */
+/* KLU's analysis of a mode's pattern (p, i), whose last rows and columns are those of
+ * pair[n_pairs]; mode NULL: of the matrix with all pairs. It belongs to the plan and stays until
+ * the next call. */
 enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
                                            int n_pairs, const int *pair, int *p, int *i,
                                            struct dalcs_stage_analysis **analysis) DALCS_MUST_CHECK;

@@ -3,19 +3,19 @@
  * All pairs are present, with small weights (as in the OSNSP, proximal.c),
  *     closed:  w + (eps/G) lambda = 0,     open:  lambda + (eps G) w = 0,
  * so that the matrix is regular; far smaller ones on the unknowns help where no pair does. The
- * solution is then moved until the weights no longer matter. Those of unknowns and switches are taken
- * away first, so that diodes alone decide what is open; then the diodes are pulled towards where they
- * are and no longer towards 0, which leaves in place what only they determined (the proximal-point
- * iteration of Rockafellar 1976, from 0). What is left of the residual says by how much the equations
- * disagree. */
+ * solution is then moved until the weights no longer matter. Those of unknowns and switches are
+ * taken away first, so that diodes alone decide what is open; then the diodes are pulled towards
+ * where they are and no longer towards 0, which leaves in place what only they determined (the
+ * proximal-point iteration of Rockafellar 1976, from 0). What is left of the residual says by
+ * how much the equations disagree. */
 #include "stage_factors.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a pair, in balanced units; that of unknowns and switches is smaller by the second number, which
- * is also how far each round takes them away. */
+/* Of a pair, in balanced units; that of unknowns and switches is smaller by the second number,
+ * which is also how far each round takes them away. */
 static const double pair_weight = 1e-6;
 static const double lesser_weight = 1e-4;
 
@@ -34,7 +34,8 @@ static double weight_of_unknowns(void) {
     return pair_weight * lesser_weight;
 }
 
-/* Equal diodes are weighted equally in amperes and volts, as far as the conductances around allow. */
+/* Equal diodes are weighted equally in amperes and volts, as far as the conductances around
+ * allow. */
 static void choose_weights(const struct dalcs_system *s, const struct dalcs_stage_entry *entry,
                            struct dalcs_stage_singular *g) {
     int n_equations = dalcs_system_n_equations(s);

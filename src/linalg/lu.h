@@ -1,10 +1,10 @@
 /* lu.h - sparse LU of one square matrix: the seam to KLU.
  *
- * KLU (Davis and Palamadai Natarajan 2010) permutes a circuit matrix to block triangular form and
- * factors each block. Its factors are copied into two plain triangles by rows, which a solve runs
- * through in half the time of klu_solve; KLU's own objects are freed. Pivots are never reused for
- * other values unchecked, because one that was safe in one mode may vanish in the next. Complex numbers are
- * pairs (re, im) one behind the other. */
+ * KLU (Davis and Palamadai Natarajan 2010) permutes a circuit matrix to block triangular form
+ * and factors each block. Its factors are copied into two plain triangles by rows, which a solve
+ * runs through in half the time of klu_solve; KLU's own objects are freed. Pivots are never
+ * reused for other values unchecked, because one that was safe in one mode may vanish in the
+ * next. Complex numbers are pairs (re, im) one behind the other. */
 #ifndef DALCS_LU_H
 #define DALCS_LU_H
 
@@ -42,10 +42,11 @@ enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n
 enum dalcs_status dalcs_lu_analyze(klu_symbolic **symbolic, klu_common *common, int n, int *p,
                                    int *i) DALCS_MUST_CHECK;
 
-/* dalcs_lu_factor with the analysis at hand. `common` must not serve both real and complex ones. kept
- * may be NULL. Otherwise, and if *kept has KLU's factors of other values of the same pattern (with
- * columns listed in the same order), their pivots are tried first, which costs a quarter, and given up
- * if the elements grow; *kept gets the factors for a next time, to be freed by dalcs_lu_drop. */
+/* dalcs_lu_factor with the analysis at hand. `common` must not serve both real and complex ones.
+ * kept may be NULL. Otherwise, and if *kept has KLU's factors of other values of the same
+ * pattern (with columns listed in the same order), their pivots are tried first, which costs a
+ * quarter, and given up if the elements grow; *kept gets the factors for a next time, to be
+ * freed by dalcs_lu_drop. */
 enum dalcs_status dalcs_lu_factor_analyzed(struct dalcs_lu *lu, klu_common *common,
                                            klu_symbolic *symbolic, klu_numeric **kept,
                                            bool is_complex, int *p, int *i, double *x,
@@ -56,7 +57,8 @@ void dalcs_lu_drop(klu_numeric **kept, bool is_complex, klu_common *common);
 /* Overwrites b[n] with the solution; real factors only. */
 void dalcs_lu_solve(const struct dalcs_lu *lu, double *b);
 
-/* The same without its permutations: on entry work[i] holds b[from[i]], afterwards unknown to[i]. */
+/* The same without its permutations: on entry work[i] holds b[from[i]], afterwards unknown
+ * to[i]. */
 void dalcs_lu_solve_ordered(const struct dalcs_lu *lu);
 
 /* The same for complex factors. */

@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Errors are measured against the largest quantity of their unit, and the largest term of an equation
- * in it: where nothing flows because of two large currents, their rounding remains. */
+/* Errors are measured against the largest quantity of their unit, and the largest term of an
+ * equation in it: where nothing flows because of two large currents, their rounding remains. */
 static const double regular_tolerance = 1e-12;
 static const double singular_tolerance = 1e-9;
 
@@ -140,8 +140,8 @@ static void compare(const struct both *b, const struct dalcs_stage_entry *dense,
     }
     double tolerance = dense->n_clashes > 0 ? singular_tolerance : regular_tolerance;
     tolerance *= lost_digits(stages);
-    /* What a singular mode leaves open is chosen at the start by where the polynomial and the filter
-     * go, which differ by the drift. */
+    /* What a singular mode leaves open is chosen at the start by where the polynomial and the
+     * filter go, which differ by the drift. */
     double drift = 0.0;
     for (int k = 0; k < s->n_x && dense->n_clashes > 0; k++) {
         drift = fmax(drift, fabs(x[l->drift + k]));
@@ -321,7 +321,8 @@ START_TEST(test_index_2) {
 
 END_TEST
 
-/* With all diodes open the direct-current side floats; with two closed in a loop a current is open. */
+/* With all diodes open the direct-current side floats; with two closed in a loop a current is
+ * open. */
 START_TEST(test_floating_bridge) {
     struct tally t = check_netlist("bridge\n"
                                    "v1 a 0 sin(0 10 50)\n"

@@ -1,9 +1,9 @@
-/* stages.c - the cost of a Radau step on sparse factors over that of the bare KLU solves of the same
- * matrices, and of a new mode over that of KLU's own parts of it; one process, medians of interleaved
- * repeats.
+/* stages.c - the cost of a Radau step on sparse factors over that of the bare KLU solves of the
+ * same matrices, and of a new mode over that of KLU's own parts of it; one process, medians of
+ * interleaved repeats.
  *
- * The bare solves of a step: one klu_solve and (s-1)/2 klu_z_solve for the stages, one klu_solve for
- * the drift and, with curved sources, one more for the ripple. */
+ * The bare solves of a step: one klu_solve and (s-1)/2 klu_z_solve for the stages, one klu_solve
+ * for the drift and, with curved sources, one more for the ripple. */
 #include "bench.h"
 #include "circuits.h"
 #include "stage_factors.h"
