@@ -151,7 +151,7 @@ struct piece {
     double y[DALCS_STAGE_PIECE];
 };
 
-/* Unknowns first.. of all systems, unscaled. */
+/* count unknowns of all systems, from `first` on, unscaled. */
 static void unload(const struct dalcs_stage_factors *f, int first, int count, struct piece *piece) {
     const double *scale = f->column_scale + first;
     const int *position = f->order[0].position + first;
