@@ -76,6 +76,7 @@ static enum dalcs_status solve_step(struct dalcs_radau_part *part,
     memcpy(part->in, part->x, (size_t)s->n_x * sizeof(double));
     part->in[s->n_x] = 1.0;
     dalcs_excitation_coefficients(&part->excitation, part->t, part->h, part->in + s->n_x + 1);
+    part->rounding = dalcs_stage_rounding(*entry);
     return dalcs_stages_apply(&part->stages, *entry, part->in, part->out);
 }
 
@@ -221,7 +222,8 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
      * not mend it. */
     search->stuck = quality->ratio > 0.3 * search->ratio_before ? search->stuck + 1 : 0;
     search->ratio_before = quality->ratio;
-    if (search->stuck >= STUCK && quality->of_unit < most_tolerated && search->tolerated == 1.0) {
+    if (search->stuck >= STUCK && quality->of_unit < most_tolerated * part->rounding &&
+        search->tolerated == 1.0) {
         search->tolerated = 4.0 * quality->ratio;
         part->level = search->first_level;
         return DALCS_OK;

@@ -20,9 +20,6 @@
 static const double doubtful_pivot = 1e-9;
 static const double rank_tolerance = 1e-12;
 
-/* How much more a source may be off between the nodes than where it is tested. */
-static const double same_unit_factor = 6.0;
-
 enum { BALANCING_ROUNDS = 3 };
 
 struct builder {
@@ -463,18 +460,6 @@ static double watched_voltage(const struct builder *b, int d, const double *colu
     return v;
 }
 
-static bool input_is_current(const struct builder *b, int rhs_column) {
-    const struct dalcs_system *s = b->system;
-    for (int r = 0; r < s->E.n_rows; r++) {
-        for (int k = s->E.p[r]; k < s->E.p[r + 1]; k++) {
-            if (column_of_input(b, s->E.j[k]) == rhs_column) {
-                return s->row_is_current[r];
-            }
-        }
-    }
-    return false;
-}
-
 /* One column of the map: the answer to in[column] = 1. share[s + 1] and test_share are the values of
  * the source there; for a state they are 0. */
 static void fill_column(struct builder *b, int column, int rhs_column, const double *share,
@@ -566,12 +551,8 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
         for (int k = 0; k <= m->s; k++) {
             missed -= m->test[k] * share[k];
         }
-        bool is_current = input_is_current(b, rhs_column);
         for (int r = 0; r < n; r++) {
-            /* a current that follows the derivative of a voltage, or the other way round */
-            bool other = (r >= n_equations || s->column_is_current[r]) != is_current;
-            b->drift[r] = (double)real[r] * b->column_scale[r] * missed *
-                          (other ? m->test_factor : same_unit_factor);
+            b->drift[r] = (double)real[r] * b->column_scale[r] * missed * m->test_factor;
         }
         find_guards(b, b->drift, rhs_column, missed);
         put_columns(b, b->drift, out + l->ripple);

@@ -1,8 +1,16 @@
 /* stages.c - entries by (mode, h), least recently used out first. */
+#include "stage_plan.h"
 #include "stages_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+/* Stages in double precision cancel, and so do states against sources in currents of capacitors. */
+static const double FACTORS_ROUNDING = 50.0;
+
+/* Up to this many times the limit of the OSNSP's maps a step is a map: it costs more to make than
+ * factors, but is as exact as doubles can be, and simultaneous events stay simultaneous. */
+static const double MAPS_OVER_LIMIT = 1.5;
 
 /* The latest entries are looked at one by one before all are asked. */
 enum { RECENT = 3 };
@@ -88,6 +96,7 @@ void dalcs_stages_finish(struct dalcs_stages *stages) {
     while (stages->oldest != NULL) {
         remove_entry(stages, stages->oldest);
     }
+    dalcs_stage_plan_destroy(stages);
     free(stages->watched);
     free(stages->key);
     *stages = (struct dalcs_stages){0};
@@ -117,8 +126,9 @@ static enum dalcs_status entry_create(struct dalcs_stages *stages, double h,
         }
         e->n = dalcs_system_n_equations(stages->system) + e->n_on;
         stages->factorizations++;
-        status = e->n <= stages->dense_limit ? dalcs_stage_map_build(stages, e)
-                                             : dalcs_stage_factors_build(stages, e);
+        status = e->n <= MAPS_OVER_LIMIT * stages->dense_limit
+                     ? dalcs_stage_map_build(stages, e)
+                     : dalcs_stage_factors_build(stages, e);
         for (int c = 0, n = dalcs_system_n_equations(stages->system); c < n; c++) {
             e->natural[n + c] = 1.0 / e->natural[c];
         }
@@ -209,4 +219,8 @@ double dalcs_stage_residual(const struct dalcs_stage_entry *entry) {
 
 const double *dalcs_stage_natural_units(const struct dalcs_stage_entry *entry) {
     return entry->natural;
+}
+
+double dalcs_stage_rounding(const struct dalcs_stage_entry *entry) {
+    return entry->map != NULL ? 1.0 : FACTORS_ROUNDING;
 }
