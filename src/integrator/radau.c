@@ -211,7 +211,7 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
         obey_commands(part);
         part->fresh = true;
         if (initial != NULL) {
-            DALCS_TRY(dalcs_radau_restart(r, part, 0));
+            DALCS_TRY(dalcs_radau_restart(r, part, 0, false));
         }
         DALCS_TRY(dalcs_segment_begin(r, part));
     }

@@ -130,8 +130,8 @@ static enum dalcs_status project(struct dalcs_radau_part *part, const struct sea
 }
 
 static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                 struct search *search) {
-    DALCS_TRY(dalcs_radau_restart(r, part, search->restarts++));
+                                 struct search *search, bool mode_only) {
+    DALCS_TRY(dalcs_radau_restart(r, part, search->restarts++, mode_only));
     if (!search->fixed) {
         part->level = search->first_level;
     }
@@ -207,7 +207,7 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
         return tie_again(part, search);
     }
     if (part->fresh && search->restarts == 0) {
-        return restart(r, part, search);
+        return restart(r, part, search, false);
     }
     if (quality->ratio < most_projected && !search->fixed && !search->projected) {
         bool moved;
@@ -247,7 +247,7 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
         return tie_again(part, search);
     }
     if (search->restarts < MOST_RESTARTS && search->flips == 0) {
-        return restart(r, part, search);
+        return restart(r, part, search, false);
     }
     if (search->flips++ < MOST_FLIPS) {
         dalcs_guards_flip(part);
@@ -262,7 +262,7 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
 static enum dalcs_status untie(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                struct search *search, const struct dalcs_step_quality *quality) {
     if (search->restarts < TIED_RESTARTS) {
-        return restart(r, part, search);
+        return restart(r, part, search, search->restarts > 0);
     }
     search->untied = true;
     memcpy(part->mode_tied, part->component->osnsp.mode,
