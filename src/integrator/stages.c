@@ -8,10 +8,6 @@
 /* Stages in double precision cancel, and so do states against sources in currents of capacitors. */
 static const double FACTORS_ROUNDING = 50.0;
 
-/* Up to this many times the limit of the OSNSP's maps a step is a map: it costs more to make than
- * factors, but is as exact as doubles can be, and simultaneous events stay simultaneous. */
-static const double MAPS_OVER_LIMIT = 1.5;
-
 /* The latest entries are looked at one by one before all are asked. */
 enum { RECENT = 3 };
 
@@ -126,9 +122,8 @@ static enum dalcs_status entry_create(struct dalcs_stages *stages, double h,
         }
         e->n = dalcs_system_n_equations(stages->system) + e->n_on;
         stages->factorizations++;
-        status = e->n <= MAPS_OVER_LIMIT * stages->dense_limit
-                     ? dalcs_stage_map_build(stages, e)
-                     : dalcs_stage_factors_build(stages, e);
+        status = e->n <= stages->dense_limit ? dalcs_stage_map_build(stages, e)
+                                             : dalcs_stage_factors_build(stages, e);
         for (int c = 0, n = dalcs_system_n_equations(stages->system); c < n; c++) {
             e->natural[n + c] = 1.0 / e->natural[c];
         }
