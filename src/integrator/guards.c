@@ -129,6 +129,9 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
     return first;
 }
 
+/* Components with more pairs than this are large. */
+enum { MANY_PAIRS = 64 };
+
 static bool stays_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
     double work[DALCS_MAX_NODES];
     int stride;
@@ -142,8 +145,9 @@ static bool stays_tied(const struct dalcs_radau_part *part, int pair, const doub
 }
 
 bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit) {
+    int n_pairs = part->component->system->n_pairs;
     bool tied = false;
-    for (int d = 0; d < part->component->system->n_pairs && !tied; d++) {
+    for (int d = 0; d < n_pairs && !tied && !(n_pairs > MANY_PAIRS && part->flipped); d++) {
         tied = stays_tied(part, d, unit);
     }
     return tied;

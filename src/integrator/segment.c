@@ -206,10 +206,14 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     if (search->opened) {
         return tie_again(part, search);
     }
-    if (part->fresh && search->restarts == 0) {
+    /* On factors micro-steps in a new mode cost more than a shorter step, which is tried first. */
+    bool is_cheap = part->rounding == 1.0 || search->fixed;
+    bool ask = is_cheap || !(quality->ratio < most_projected) || search->stuck > 0;
+    if (part->fresh && search->restarts == 0 && ask) {
         return restart(r, part, search, false);
     }
-    if (quality->ratio < most_projected && !search->fixed && !search->projected) {
+    bool asked = search->restarts > 0 || !part->fresh;
+    if (quality->ratio < most_projected && !search->fixed && !search->projected && asked) {
         bool moved;
         search->projected = true;
         DALCS_TRY(project(part, search, &moved));
