@@ -588,21 +588,42 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
 }
 
 /* How well the rounded answer at the last stage satisfies the equations without derivatives, over the
- * size of their terms. */
+ * largest of their terms and of the unknowns, all balanced: a row by itself may hold nothing but
+ * roundings. What sources disagree by in a singular mode is the clash, which is looked at when their values
+ * are known. */
 static void check_column(struct builder *b, int column, int rhs_column, double share) {
     const double *y = b->node + b->stages->method->s * b->n;
+    double *residual = b->drift;
+    double worst = 0.0;
+    double largest = 0.0;
     for (int r = b->n_x; r < b->n; r++) {
-        double residual = -b->rhs[rhs_column * b->n + r] * (column < b->n_x ? 1.0 : share);
-        double size = fabs(residual);
+        residual[r] = -b->rhs[rhs_column * b->n + r] * (column < b->n_x ? 1.0 : share);
+        double size = fabs(residual[r]);
         for (int c = 0; c < b->n; c++) {
             double increment = y[c] - (c == column && c < b->n_x ? 1.0 : 0.0);
             double term = b->base[c * b->n + r] * increment / b->column_scale[c];
-            residual += term;
+            residual[r] += term;
             size += fabs(term);
         }
-        double ratio = size > 0.0 ? fabs(residual) / size : 0.0;
-        b->entry->residual = fmax(b->entry->residual, ratio);
+        largest = fmax(largest, size);
     }
+    for (int k = 0; k < b->nullity; k++) {
+        const double *left = b->left + k * b->n;
+        double clash = 0.0;
+        for (int r = b->n_x; r < b->n; r++) {
+            clash += left[r] * residual[r];
+        }
+        for (int r = b->n_x; r < b->n; r++) {
+            residual[r] -= clash * left[r];
+        }
+    }
+    for (int r = b->n_x; r < b->n; r++) {
+        worst = fmax(worst, fabs(residual[r]));
+    }
+    for (int c = 0; c < b->n; c++) {
+        largest = fmax(largest, fabs(y[c] / b->column_scale[c]));
+    }
+    b->entry->residual = fmax(b->entry->residual, largest > 0.0 ? worst / largest : 0.0);
 }
 
 static void fill_map(struct builder *b) {
