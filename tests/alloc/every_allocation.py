@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes every allocation of a run fail, one after the other, and then all from there on.
 
-usage: every_allocation.py PROGRAM LIBRARY CASE
+usage: every_allocation.py PROGRAM LIBRARY CASE METHOD
 
 Whatever fails, the program ends by itself with a status of 1 to 4 and a message, or with the right
 output if it could do without that memory; the output's final name never holds half a result.
@@ -59,6 +59,29 @@ R2 out 0 10
 .tran 1u 20u uic
 .end
 """, 0),
+    "modes": ("""Switches that sources and a voltage move, jumps, singular modes
+V1 a b SIN(0 10 1k)
+R0 b 0 1
+D1 a p
+D2 b p
+D3 m a
+D4 m b
+C1 p m 10u
+R1 p m 1k
+S1 p q g m sg
+C2 q m 10u ic=1
+S2 q m p m sv
+R2 q m 100
+Vg g m PULSE(0 1 0.2m 0 0 0.3m 1m)
+Vh h 0 SIN(0 1 2k)
+S3 b 0 h 0 sg
+.model sg SW(Vt=0.5)
+.model sv SW(Vt=6 Vh=1 Ron=10)
+.options compress=1m
+.tran 20u 1m uic
+.save v(p,m) v(q,m) i(d1)
+.end
+""", 0),
     "refused": ("""A diode across a source
 V1 1 0 PWL(0 -1 1m 1)
 D1 1 0
@@ -78,14 +101,14 @@ OLD = b"from an earlier run\n"
 
 
 class Case:
-    def __init__(self, program, library, name, folder):
+    def __init__(self, program, library, name, method, folder):
         self.library, self.folder = library, pathlib.Path(folder)
         netlist, self.status = CASES[name]
         (self.folder / "circuit.cir").write_text(netlist)
         self.output = self.folder / "out.csv"
-        self.command = [program, "run", "circuit.cir", "--method", "euler", "-o", "out.csv",
+        self.command = [program, "run", "circuit.cir", "--method", method, "-o", "out.csv",
                         "--report", "report.json"]
-        self.checker = Checker(name)
+        self.checker = Checker(f"{name} with {method}")
 
     def run(self, **variables):
         self.output.write_bytes(OLD)
@@ -126,9 +149,9 @@ class Case:
 
 
 def main():
-    program, library, name = sys.argv[1:]
+    program, library, name, method = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
-        case = Case(program, library, name, folder)
+        case = Case(program, library, name, method, folder)
         for variable in ("DALCS_FAIL_AT", "DALCS_FAIL_FROM"):
             case.every(variable)
         return case.checker.finish()

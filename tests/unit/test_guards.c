@@ -1,1 +1,174 @@
-int main(void) { return 0; }
+/* test_guards.c - which guard falls first on steps that are written down here. */
+#include "guards.h"
+
+#include "build_network.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { MOST = 400 };
+
+static struct text_network t;
+static struct dalcs_osnsp osnsp;
+static struct dalcs_component component;
+static struct dalcs_excitation x;
+static struct dalcs_radau r;
+static struct dalcs_radau_part part;
+static double out[MOST];
+static bool armed[8];
+static int crossed[8];
+static const double unit[2] = {1.0, 1.0};
+
+/* Two diodes and a switch that closes above 0.75 V and opens below 0.25 V of a voltage of its own. */
+static void start(void) {
+    const struct dalcs_osnsp_options options = usual_osnsp_options();
+    build_good_network(&t, "guards\nV1 a 0 1\nR1 a b 1\nD1 b c\nD2 b d\nR2 d 0 1\nC1 c 0 1\n"
+                           "S1 c 0 b 0 sm\n.model sm SW(Vt=0.5 Vh=0.25)\n.tran 1 100\n");
+    const struct dalcs_system *s = &t.network.system[0];
+    ck_assert_int_eq(dalcs_osnsp_setup(&osnsp, s, &options), DALCS_OK);
+    component = (struct dalcs_component){.system = s, .circuit = &t.circuit};
+    component.osnsp = osnsp;
+    r = (struct dalcs_radau){.options = {.stop = 100.0}, .resolution = 1e-13};
+    r.inner_tolerance = 3e-8;
+    part = (struct dalcs_radau_part){.component = &component,
+                                     .h = 1.0,
+                                     .rounding = 1.0,
+                                     .out = out,
+                                     .armed = armed,
+                                     .crossed = crossed};
+    ck_assert_int_eq(dalcs_excitation_setup(&x, &t.circuit, s), DALCS_OK);
+    ck_assert_int_eq(dalcs_stages_setup(&part.stages, s, &x, 5, 64, 1e-14, 1 << 20), DALCS_OK);
+    ck_assert_int_eq(part.stages.n_watched, 1);
+    for (int k = 0; k < 8; k++) {
+        armed[k] = false;
+    }
+}
+
+static void finish(void) {
+    dalcs_stages_finish(&part.stages);
+    dalcs_excitation_finish(&x);
+    dalcs_osnsp_finish(&osnsp);
+    text_network_finish(&t);
+}
+
+/* The straight line from `first` to `last` in the place of a pair, or of the watched voltage. */
+static void draw(const char *name, double first, double last) {
+    const struct dalcs_system *s = component.system;
+    const struct dalcs_stage_layout *l = &part.stages.layout;
+    int at =
+        name != NULL ? dalcs_system_n_equations(s) + find_pair(s, name) : dalcs_system_n_columns(s);
+    for (int k = 0; k < l->n_nodes; k++) {
+        out[k * l->stride + at] = first + (last - first) * part.stages.method->node[k];
+    }
+}
+
+static double first_fall(double end) {
+    bool at_once;
+    double theta = dalcs_guards_first_fall(&r, &part, end, unit, &at_once);
+    ck_assert(!at_once);
+    return theta;
+}
+
+static void arm(void) {
+    dalcs_guards_arm(&r, &part, 0.0, unit);
+}
+
+START_TEST(test_pairs) {
+    start();
+    draw("d1", 0.3, -0.7);
+    draw("d2", 0.4, -0.6);
+    draw(NULL, 0.5, 0.5);
+    arm();
+    ck_assert_double_eq_tol(first_fall(1.0), 0.3, 1e-14);
+    ck_assert_int_eq(part.n_crossed, 1);
+    ck_assert_int_eq(crossed[0], find_pair(component.system, "d1"));
+    ck_assert(isinf(first_fall(0.25)) && part.n_crossed == 0);
+    draw("d2", 0.3, -0.7); /* at the same time */
+    ck_assert_double_eq_tol(first_fall(1.0), 0.3, 1e-14);
+    ck_assert_int_eq(part.n_crossed, 2);
+    draw("d1", 0.3, 0.1);
+    draw("d2", 0.1, 0.2);
+    ck_assert(isinf(first_fall(1.0)));
+    finish();
+}
+
+END_TEST
+
+/* The switch itself has no sign to keep; its control moves it either way. */
+START_TEST(test_watched) {
+    start();
+    const int s1 = find_pair(component.system, "s1");
+    const uint64_t before = component.osnsp.mode[0];
+    draw("d1", 1.0, 1.0);
+    draw("d2", 1.0, 1.0);
+    draw("s1", 1.0, -1.0);
+    draw(NULL, 0.5, 1.0);
+    arm();
+    ck_assert(!dalcs_osnsp_is_on(&component.osnsp, s1));
+    ck_assert_double_eq_tol(first_fall(1.0), 0.5, 1e-14);
+    ck_assert_int_eq(part.n_crossed, 1);
+    dalcs_guards_flip(&part);
+    ck_assert(dalcs_osnsp_is_on(&component.osnsp, s1));
+    ck_assert_uint_eq(component.osnsp.mode[0] ^ before, UINT64_C(1) << s1);
+    draw(NULL, 0.75, 1.0); /* hysteresis: closed, it is clear of its threshold */
+    arm();
+    ck_assert(isinf(first_fall(1.0)));
+    draw(NULL, 0.75, 0.0);
+    ck_assert_double_eq_tol(first_fall(1.0), 2.0 / 3.0, 1e-14);
+    finish();
+}
+
+END_TEST
+
+/* A guard that has just crossed starts within the error of 0: it may go up, and a fall after that counts;
+ * one that goes down from there was wrong from the start. */
+START_TEST(test_arming) {
+    bool at_once;
+    start();
+    draw("d1", 1e-9, -0.5);
+    draw("d2", 1.0, 1.0);
+    draw(NULL, 0.5, 0.5);
+    arm();
+    ck_assert(!armed[find_pair(component.system, "d1")]);
+    ck_assert(armed[find_pair(component.system, "d2")]);
+    ck_assert(!armed[find_pair(component.system, "s1")]);
+    ck_assert(dalcs_guards_first_fall(&r, &part, 1.0, unit, &at_once) < 1e-8);
+    ck_assert(at_once);
+    draw("d1", -1e-9, 0.5);
+    arm();
+    ck_assert(isinf(first_fall(1.0)));
+    dalcs_guards_arm(&r, &part, 1.0, unit); /* later on it is clear */
+    ck_assert(armed[find_pair(component.system, "d1")]);
+    draw("d1", 0.0, -1e-9); /* an armed one falls */
+    ck_assert_double_eq_tol(first_fall(1.0), 0.0, 1e-14);
+    armed[find_pair(component.system, "d1")] = false;
+    ck_assert(isinf(first_fall(1.0))); /* within the error */
+    finish();
+}
+
+END_TEST
+
+START_TEST(test_signs_and_ties) {
+    start();
+    draw("d1", 0.5, -0.5);
+    draw("d2", 1.0, 1.0);
+    ck_assert_double_eq_tol(dalcs_guards_wrong_sign(&part, 1.0, unit), 0.5, 1e-15);
+    double last = 0.0; /* the last node before the end */
+    for (int k = 0; k <= 5; k++) {
+        last = part.stages.method->node[k] <= 0.8 ? part.stages.method->node[k] : last;
+    }
+    ck_assert_double_eq_tol(dalcs_guards_wrong_sign(&part, 0.8, unit), last - 0.5, 1e-15);
+    ck_assert_double_eq(dalcs_guards_wrong_sign(&part, 0.3, unit), 0.0);
+    draw("s1", -1.0, -1.0);
+    ck_assert_double_eq(dalcs_guards_wrong_sign(&part, 0.3, unit), 0.0);
+    ck_assert(!dalcs_guards_stay_tied(&part, unit));
+    draw("d1", 0.0, 1e-14);
+    ck_assert(dalcs_guards_stay_tied(&part, unit));
+    draw("d1", 0.0, 1e-9);
+    ck_assert(!dalcs_guards_stay_tied(&part, unit));
+    finish();
+}
+
+END_TEST
+
+RUN_TESTS("guards", test_pairs, test_watched, test_arming, test_signs_and_ties)

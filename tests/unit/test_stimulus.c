@@ -9,6 +9,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 static const double PI = 3.14159265358979323846;
@@ -362,6 +363,85 @@ START_TEST(test_contract) {
 
 END_TEST
 
+/* ---- Pieces --------------------------------------------------------------------------------- */
+
+static double piece_value(const struct dalcs_stimulus_piece *piece, double tau) {
+    double value = piece->level + (tau > 0 ? piece->slope * tau : 0);
+    for (int k = 0; k < piece->n_terms; k++) {
+        const struct dalcs_stimulus_term *term = &piece->term[k];
+        value += exp(-term->decay * tau) *
+                 (term->cosine * cos(term->omega * tau) + term->sine * sin(term->omega * tau));
+    }
+    return value;
+}
+
+/* From t to the next edge, its limits included. */
+static void check_piece(const struct dalcs_stimulus *s, double t,
+                        const struct dalcs_stimulus_piece *first) {
+    struct dalcs_stimulus_piece piece;
+    dalcs_stimulus_piece_at(s, t, &piece);
+    ck_assert_double_eq(piece.to, dalcs_stimulus_next_edge(s, t));
+    ck_assert_int_eq(piece.n_terms, first->n_terms);
+    for (int k = 0; k < piece.n_terms; k++) {
+        ck_assert_double_eq(piece.term[k].decay, first->term[k].decay);
+        ck_assert_double_eq(piece.term[k].omega, first->term[k].omega);
+    }
+    const double length = isinf(piece.to) ? 1 : piece.to - t;
+    for (int k = 0; k <= 16; k++) {
+        const double tau = k * length / 16;
+        const bool is_end = k == 16 && !isinf(piece.to);
+        const double expected =
+            dalcs_stimulus_value(s, is_end ? piece.to : t + tau, k == 0 ? DALCS_RIGHT : DALCS_LEFT);
+        ck_assert_msg(fabs(piece_value(&piece, tau) - expected) <= 1e-9 * (1 + fabs(expected)),
+                      "kind %d from %.17g, after %.17g: %.17g, not %.17g", (int)s->kind, t, tau,
+                      piece_value(&piece, tau), expected);
+    }
+}
+
+START_TEST(test_pieces) {
+    for (int trial = 0; trial < 1200; trial++) {
+        const struct dalcs_stimulus s = random_stimulus(trial % 4);
+        struct dalcs_stimulus_piece first;
+        dalcs_stimulus_piece_at(&s, 0, &first);
+        double t = 0;
+        for (int k = 0; k < 20 && isfinite(t); k++) {
+            const double next = dalcs_stimulus_next_edge(&s, t);
+            const double end = isinf(next) ? t + 1 : next;
+            check_piece(&s, t, &first);
+            check_piece(&s, t + uniform(0.1, 0.9) * (end - t), &first);
+            t = next;
+        }
+    }
+    const struct dalcs_stimulus dc = {.kind = DALCS_STIMULUS_DC, .dc = 3};
+    struct dalcs_stimulus_piece piece;
+    dalcs_stimulus_piece_at(&dc, 2, &piece);
+    ck_assert(piece.level == 3 && piece.slope == 0 && piece.n_terms == 0 && isinf(piece.to));
+}
+
+END_TEST
+
+/* The pieces themselves: a ramp, a jump at its end, a sine before and after its delay. */
+START_TEST(test_known_pieces) {
+    struct dalcs_stimulus s = make_pulse(1, 3, 0.5, 0.25, 0, 1, 4);
+    struct dalcs_stimulus_piece piece;
+    dalcs_stimulus_piece_at(&s, 0.5, &piece);
+    ck_assert(piece.level == 1 && piece.slope == 8 && piece.to == 0.75);
+    dalcs_stimulus_piece_at(&s, 0.75, &piece);
+    ck_assert(piece.level == 3 && piece.slope == 0 && piece.to == 1.75);
+    dalcs_stimulus_piece_at(&s, 1.75, &piece);
+    ck_assert(piece.level == 1 && piece.slope == 0 && piece.to == 4.5);
+    s = make_sine(1, 2, 0.25, 3, 0.5, 90);
+    dalcs_stimulus_piece_at(&s, 1, &piece);
+    ck_assert(piece.level == 3 && piece.term[0].cosine == 0 && piece.term[0].sine == 0);
+    ck_assert(piece.to == 3 && piece.term[0].decay == 0.5);
+    dalcs_stimulus_piece_at(&s, 3, &piece);
+    ck_assert(piece.level == 1 && piece.term[0].cosine == 2 && isinf(piece.to));
+    ck_assert_double_eq_tol(piece.term[0].omega, PI / 2, 1e-15);
+}
+
+END_TEST
+
 RUN_TESTS("stimulus", test_pulse_jumps, test_pulse_edges, test_pulse_once_and_for_ever,
           test_pulse_triangle, test_pulse_cut_short, test_pulse_narrow_edges, test_sine,
-          test_sine_late, test_exponential, test_pwl, test_operating_value, test_contract)
+          test_sine_late, test_exponential, test_pwl, test_operating_value, test_contract,
+          test_pieces, test_known_pieces)

@@ -1,1 +1,76 @@
-int main(void) { return 0; }
+/* test_transition.c - what is remembered, what is not, and that other modes are never mistaken. */
+#include "transition.h"
+
+#include "run_tests.h"
+
+enum { N_WORDS = 2 };
+
+static uint64_t mode[N_WORDS];
+static struct dalcs_component component;
+static struct dalcs_radau_part part;
+
+static void start(void) {
+    component = (struct dalcs_component){.osnsp = {.n_words = N_WORDS, .mode = mode}};
+    part = (struct dalcs_radau_part){.component = &component, .level = 10};
+    mode[0] = 0;
+    mode[1] = 0;
+    ck_assert_int_eq(dalcs_transition_setup(&part), DALCS_OK);
+}
+
+static bool guess(uint64_t first, uint64_t second) {
+    mode[0] = first;
+    mode[1] = second;
+    return dalcs_transition_guess(&part);
+}
+
+static void learn(uint64_t first, uint64_t second, int level) {
+    mode[0] = first;
+    mode[1] = second;
+    part.level = level;
+    dalcs_transition_learn(&part);
+}
+
+START_TEST(test_learns) {
+    start();
+    ck_assert(!guess(1, 2));
+    ck_assert(mode[0] == 1 && mode[1] == 2 && part.level == 10);
+    learn(5, 6, 17);
+    part.level = 3;
+    ck_assert(guess(1, 2));
+    ck_assert(mode[0] == 5 && mode[1] == 6 && part.level == 17);
+    dalcs_transition_refuse(&part);
+    ck_assert(mode[0] == 1 && mode[1] == 2 && part.level == 3);
+    learn(7, 8, 4); /* something else this time */
+    ck_assert(guess(1, 2));
+    ck_assert(mode[0] == 7 && mode[1] == 8 && part.level == 4);
+    ck_assert(!guess(1, 3));
+    ck_assert(!guess(0, 2));
+    dalcs_transition_finish(&part);
+}
+
+END_TEST
+
+/* More modes than places: the older ones go, none is taken for another. */
+START_TEST(test_many) {
+    enum { MANY = 1000 };
+
+    int n_known = 0;
+    start();
+    for (uint64_t k = 0; k < MANY; k++) {
+        (void)guess(k, k % 7);
+        learn(3 * k, k, (int)k);
+        ck_assert(guess(k, k % 7));
+    }
+    for (uint64_t k = 0; k < MANY; k++) {
+        if (guess(k, k % 7)) {
+            ck_assert(mode[0] == 3 * k && mode[1] == k && part.level == (int)k);
+            n_known++;
+        }
+    }
+    ck_assert_int_ge(n_known, 30);
+    dalcs_transition_finish(&part);
+}
+
+END_TEST
+
+RUN_TESTS("transition", test_learns, test_many)
