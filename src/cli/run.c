@@ -32,7 +32,7 @@ static const char help[] =
     "                      default: the netlist's, else auto, which chooses for each part\n"
     "      --tol X         how far a waveform may be wrong, over its largest value; 1e-13 to 0.1\n"
     "                      (default: .options reltol, else 1e-6)\n"
-    "      --stages N      of radau: 1, 3, 5 or 7 (default: chosen from the tolerance)\n"
+    "      --stages N      of radau: 1, 3, 5 or 7 (default: by size and tolerance)\n"
     "      --step H        time step in s, SPICE suffixes allowed: 1u. The largest one with auto,\n"
     "                      fixed with radau and euler (default: from .tran)\n"
     "      --compress X    leave out rows that straight lines between others give, up to X times\n"

@@ -25,14 +25,12 @@ static int map_limit(const struct dalcs_radau_options *o, int dense_limit) {
     return (int)((o->tolerance < tight ? maps_when_tight : maps_when_not) * dense_limit);
 }
 
-/* Small components have their steps as dense maps, where more stages cost little and save steps and
+/* Small components pay little for more stages, mostly as dense maps, and save steps and
  * maps; large ones pay for each stage with a factorisation in every new mode. */
 static int choose_stages(const struct dalcs_radau_options *o, const struct dalcs_system *system,
                          int dense_limit, const char **because) {
     bool small = dalcs_system_n_columns(system) <= dense_limit;
-    *because = small                   ? "small enough for dense maps"
-               : o->tolerance >= loose ? "large, loose tolerance"
-                                       : "large";
+    *because = small ? "small" : o->tolerance >= loose ? "large, loose tolerance" : "large";
     return small ? 7 : o->tolerance >= loose ? 3 : 5;
 }
 

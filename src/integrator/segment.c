@@ -25,8 +25,9 @@ static const double worth_projecting = 1e-2;
 static const double most_tolerated = 2e-13;
 
 enum {
-    MOST_RUNGS = 6,  /* of the ladder, down at once */
-    STUCK = 3,       /* smaller steps without a smaller error */
+    MOST_RUNGS = 6, /* of the ladder, down at once */
+    STUCK = 3,      /* smaller steps without a smaller error */
+    VERY_STUCK = 8,
     PROJECTION = 30, /* a projecting step is this many rungs below */
     MOST_RESTARTS = 4,
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
@@ -223,11 +224,12 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     }
     r->rejected++;
     /* An error that does not shrink with the step is what the state is off by: a smaller step would
-     * not mend it. */
+     * not mend it, and rounding is all it is, or small beside the largest signal of its unit. */
     search->stuck = quality->ratio > 0.3 * search->ratio_before ? search->stuck + 1 : 0;
     search->ratio_before = quality->ratio;
-    if (search->stuck >= STUCK && quality->of_unit < most_tolerated * part->rounding &&
-        search->tolerated == 1.0) {
+    bool is_rounding = search->stuck >= STUCK && quality->of_unit < most_tolerated * part->rounding;
+    bool is_small = search->stuck >= VERY_STUCK && quality->of_unit < r->inner_tolerance;
+    if ((is_rounding || is_small) && search->tolerated == 1.0) {
         search->tolerated = 4.0 * quality->ratio;
         part->level = search->first_level;
         return DALCS_OK;

@@ -58,10 +58,13 @@ def main():
     checker = Checker(path.stem)
     promises = re.findall(r"^\* expect: (.*) = (.*) \+- (.*)$", path.read_text(), re.M)
     checker.check(promises, "the header promises nothing")
-    result = run(program, path)
+    result = run(program, path, method=None)
     if checker.check(result.status == 0, f"exit {result.status}: {result.stderr}"):
-        worst = result.report["certificate"]["worst"]
-        checker.check(worst <= 2e-13, f"certificate {worst:.2e}")
+        certificate = result.report["certificate"]
+        worst, where = certificate["worst"], certificate["where"]
+        # Steps on sparse factors are as good as the factors of a complex matrix.
+        checker.check(worst <= (2e-12 if where == "stages" else 2e-13),
+                      f"certificate {worst:.2e} ({where})")
         names = {"__builtins__": {}, **vars(math)}
         for what, value, tolerance in promises:
             checker.close(measured(result, what), float(eval(value, names)), float(tolerance), what)
