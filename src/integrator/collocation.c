@@ -3,6 +3,12 @@
 
 #include <string.h>
 
+/* Of C11, but glibc has them for gcc alone. */
+#ifndef CMPLX
+#define CMPLX(re, im)  __builtin_complex((double)(re), (double)(im))
+#define CMPLXL(re, im) __builtin_complex((long double)(re), (long double)(im))
+#endif
+
 static const struct dalcs_collocation METHODS[] = {
 #include "collocation_table.h"
 };

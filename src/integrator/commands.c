@@ -73,7 +73,8 @@ static void search(const struct dalcs_commands *c, struct dalcs_command *m) {
     m->next = t;
 }
 
-/* A PULSE of a regular shape, all else constant, that crosses both thresholds on its ramps. */
+/* A PULSE of a regular shape, all else constant, that crosses both thresholds on its ramps. One that
+ * began before t = 0, or whose rise and fall coincide, is none. */
 static void recognise_pulse(const struct dalcs_commands *c, struct dalcs_command *m) {
     const struct dalcs_csr *a = &c->system->direct_control;
     const struct dalcs_pair *pair = &c->system->pair[m->pair];
@@ -91,7 +92,7 @@ static void recognise_pulse(const struct dalcs_commands *c, struct dalcs_command
             return;
         }
     }
-    if (pulse == NULL || isinf(pulse->u.pulse.period) ||
+    if (pulse == NULL || pulse->u.pulse.delay < 0.0 || isinf(pulse->u.pulse.period) ||
         pulse->u.pulse.rise + pulse->u.pulse.width + pulse->u.pulse.fall >=
             pulse->u.pulse.period * (1 - 8 * DBL_EPSILON)) {
         return;
@@ -108,7 +109,7 @@ static void recognise_pulse(const struct dalcs_commands *c, struct dalcs_command
     } else {
         return;
     }
-    m->pulse = pulse;
+    m->pulse = m->offset[0] != m->offset[1] ? pulse : NULL;
 }
 
 static void next_of_pulse(struct dalcs_command *m) {

@@ -50,7 +50,13 @@ static double only_root(int n, const double *coefficient) {
     double at_a = coefficient[0];
     double at_b = coefficient[n - 1];
     if (at_a == 0.0) {
-        return 0.0;
+        int next = 1; /* which way does it leave? */
+        while (next < n - 1 && coefficient[next] == 0.0) {
+            next++;
+        }
+        if (coefficient[next] <= 0.0) {
+            return 0.0;
+        }
     }
     int side = 0;
     for (int round = 0; round < ROOT_ROUNDS && at_b != 0.0 && b - a > DBL_EPSILON * b; round++) {

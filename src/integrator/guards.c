@@ -12,9 +12,17 @@ static const double band_over_tolerance = 10.0;
 /* What rounding leaves of a zero, over the unit's scale. */
 static const double noise = 2e-13;
 
-static double band_of(const struct dalcs_radau *r) {
+/* Falls this near to each other, in steps, are one event. */
+static const double same_on_maps = 1e-13;
+static const double same_on_factors = 1e-9;
+
+/* A fall this early in a step is one from the start. */
+static const double soon_after = 1e-6;
+
+static double band_of(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
     double band = band_over_tolerance * r->inner_tolerance;
-    return band > 4.0 * noise ? band : 4.0 * noise;
+    double least = 4.0 * noise * part->rounding;
+    return band > least ? band : least;
 }
 
 static int n_guards(const struct dalcs_radau_part *part) {
@@ -60,7 +68,7 @@ static double scale_of(const struct dalcs_radau_part *part, int guard, const dou
 void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
                       const double *unit) {
     int n_nodes = part->stages.layout.n_nodes;
-    double band = band_of(r);
+    double band = band_of(r, part);
     double weight[DALCS_MAX_NODES];
     bool at_node = theta == 0.0 || theta == 1.0;
     int node = theta == 0.0 ? 0 : n_nodes - 1;
@@ -88,8 +96,9 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
 double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                                double end, const double *unit, bool *at_once) {
     double first = INFINITY;
-    double together = fmax(1e-13, 2.0 * r->resolution / part->h);
-    double band = band_of(r);
+    double same = part->rounding > 1.0 ? same_on_factors : same_on_maps;
+    double together = fmax(same, 2.0 * r->resolution / part->h);
+    double band = band_of(r, part);
     /* What crosses at the stop time, up to the error, is left to a longer run. */
     bool stops = end <= 1.0 && part->t + end * part->h >= r->options.stop - r->resolution;
     part->n_crossed = 0;
@@ -102,7 +111,7 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
             continue;
         }
         double scale = scale_of(part, g, unit);
-        double depth = (part->armed[g] && !stops ? noise : band) * scale;
+        double depth = (part->armed[g] && !stops ? noise * part->rounding : band) * scale;
         struct dalcs_crossing c =
             dalcs_crossing_find(part->stages.method, value, stride, end, depth);
         if (!c.falls || c.theta > first + together) {
@@ -113,26 +122,47 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
             *at_once = false;
         }
         first = fmin(first, c.theta);
-        *at_once = *at_once || (!part->armed[g] && c.peak <= band * scale);
+        bool soon = c.at_once || (c.theta <= soon_after && c.peak <= band * scale);
+        *at_once = *at_once || (!part->armed[g] && soon);
         part->crossed[part->n_crossed++] = g;
     }
     return first;
 }
 
-bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit) {
-    const struct dalcs_system *s = part->component->system;
-    bool tied = false;
-    for (int d = 0; d < s->n_pairs && !tied; d++) {
-        double work[DALCS_MAX_NODES];
-        int stride;
-        const double *value = values_of(part, d, work, &stride);
-        double limit = noise * scale_of(part, d, unit);
-        tied = value != NULL;
-        for (int k = 0; k < part->stages.layout.n_nodes && tied; k++) {
-            tied = fabs(value[k * stride]) <= limit;
-        }
+/* Components with more pairs than this are large. */
+enum { MANY_PAIRS = 64 };
+
+static bool stays_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    double work[DALCS_MAX_NODES];
+    int stride;
+    const double *value = values_of(part, pair, work, &stride);
+    double limit = noise * part->rounding * scale_of(part, pair, unit);
+    bool tied = value != NULL;
+    for (int k = 0; k < part->stages.layout.n_nodes && tied; k++) {
+        tied = fabs(value[k * stride]) <= limit;
     }
     return tied;
+}
+
+bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit) {
+    int n_pairs = part->component->system->n_pairs;
+    bool tied = false;
+    for (int d = 0; d < n_pairs && !tied && !(n_pairs > MANY_PAIRS && part->flipped); d++) {
+        tied = stays_tied(part, d, unit);
+    }
+    return tied;
+}
+
+bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    bool found = false;
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        if (dalcs_osnsp_is_on(p, d) && stays_tied(part, d, unit)) {
+            dalcs_osnsp_command(p, d, false);
+            found = true;
+        }
+    }
+    return found;
 }
 
 double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end,

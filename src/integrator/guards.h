@@ -18,8 +18,12 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
 
 /* Is there a diode with neither current nor voltage during the whole step? It may change sides without
  * anything else, and where that leaves a choice (sources in parallel, floating nodes) only the OSNSP
- * knows which is of least norm. */
+ * knows which is of least norm. Large components, where that is dear, are asked only at their start and at
+ * edges, not after every event. */
 bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit);
+
+/* Opens the closed diodes among them. False: there is none. */
+bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit);
 
 /* The most negative lambda or w at the nodes up to `end`, over the largest of its unit; 0 when none. */
 double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end, const double *unit);

@@ -16,6 +16,15 @@ static const double loose = 1e-4;
 
 enum { FIRST_STEPS = 64 };
 
+/* Unknowns up to which a step is a dense map, over the limit of the OSNSP's maps: factors are cheaper
+ * from about two dozen on, but a map is as exact as doubles can be, which tight tolerances need. */
+static const double maps_when_tight = 1.5, maps_when_not = 0.375;
+static const double tight = 1e-7;
+
+static int map_limit(const struct dalcs_radau_options *o, int dense_limit) {
+    return (int)((o->tolerance < tight ? maps_when_tight : maps_when_not) * dense_limit);
+}
+
 /* Small components have their steps as dense maps, where more stages cost little and save steps and
  * maps; large ones pay for each stage with a factorisation in every new mode. */
 static int choose_stages(const struct dalcs_radau_options *o, const struct dalcs_system *system,
@@ -95,7 +104,7 @@ static void find_cross_scales(const struct dalcs_system *s, double stop, double 
                 most = fmax(most, g);
             }
         }
-        for (int k = s->P.p[r]; r < s->n_x && k < s->P.p[r + 1]; k++) {
+        for (int k = r < s->n_x ? s->P.p[r] : 0; r < s->n_x && k < s->P.p[r + 1]; k++) {
             if (s->column_is_current[s->P.j[k]] != is_current && s->P.x[k] != 0.0) {
                 double g = is_current ? fabs(s->P.x[k]) / stop : stop / fabs(s->P.x[k]);
                 least = fmin(least, g);
@@ -120,7 +129,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system));
     DALCS_TRY(dalcs_commands_setup(&part->commands, c->circuit, c->system));
     DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, stages,
-                                 osnsp->dense_limit, osnsp->rcond_min,
+                                 map_limit(&r->options, osnsp->dense_limit), osnsp->rcond_min,
                                  osnsp->cache_bytes / (size_t)r->n_parts));
     DALCS_TRY(allocate(part));
     DALCS_TRY(dalcs_transition_setup(part));
@@ -211,7 +220,7 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
         obey_commands(part);
         part->fresh = true;
         if (initial != NULL) {
-            DALCS_TRY(dalcs_radau_restart(r, part, 0));
+            DALCS_TRY(dalcs_radau_restart(r, part, 0, false));
         }
         DALCS_TRY(dalcs_segment_begin(r, part));
     }

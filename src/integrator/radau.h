@@ -58,6 +58,7 @@ struct dalcs_radau_part {
     bool flipped;         /* and it is that pairs changed sides */
     double *x;            /* [n_x] at t */
     double *in, *out;
+    double rounding;      /* of out, over that of a dense map */
     double *scale;        /* [n_columns] largest magnitudes so far */
     double unit_scale[2]; /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
@@ -75,7 +76,7 @@ struct dalcs_radau_part {
 
     uint64_t *transition_modes;
     int level_before;
-    uint64_t *mode_before;
+    uint64_t *mode_before, *mode_tied;
     long crowd; /* events since `crowd_since` */
     double crowd_since;
 };

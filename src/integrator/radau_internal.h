@@ -16,9 +16,9 @@ double dalcs_segment_longest(const struct dalcs_radau *r, const struct dalcs_rad
 double dalcs_segment_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
 
 /* restart.c: two micro-steps from part->t decide mode and state; a jump is reported. `longer` makes
- * them 2^(5 longer) times as long. */
+ * them 2^(5 longer) times as long; mode_only leaves the state as it is. */
 enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                      int longer) DALCS_MUST_CHECK;
+                                      int longer, bool mode_only) DALCS_MUST_CHECK;
 
 /* One step of implicit Euler of length h as the present segment. */
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,

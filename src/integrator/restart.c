@@ -144,7 +144,7 @@ static double micro_length(const struct dalcs_radau *r, const struct dalcs_radau
 }
 
 enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                      int longer) {
+                                      int longer, bool mode_only) {
     struct dalcs_component *c = part->component;
     const struct dalcs_system *s = c->system;
     enum dalcs_status status = DALCS_NOT_CONVERGED;
@@ -159,7 +159,7 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
         }
     }
     DALCS_TRY(status);
-    if (s->n_x == 0) {
+    if (s->n_x == 0 || mode_only) {
         return DALCS_OK;
     }
     bool noticeable;

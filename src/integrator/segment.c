@@ -10,8 +10,6 @@
 #include "radau_internal.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The error estimate may be this much smaller than what is allowed before the step is doubled. */
@@ -31,6 +29,7 @@ enum {
     STUCK = 3,       /* smaller steps without a smaller error */
     PROJECTION = 30, /* a projecting step is this many rungs below */
     MOST_RESTARTS = 4,
+    TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
     MOST_FLIPS = 12,
     LEAST_PATIENCE = 32,
     MOST_PATIENCE = 4096,
@@ -77,6 +76,7 @@ static enum dalcs_status solve_step(struct dalcs_radau_part *part,
     memcpy(part->in, part->x, (size_t)s->n_x * sizeof(double));
     part->in[s->n_x] = 1.0;
     dalcs_excitation_coefficients(&part->excitation, part->t, part->h, part->in + s->n_x + 1);
+    part->rounding = dalcs_stage_rounding(*entry);
     return dalcs_stages_apply(&part->stages, *entry, part->in, part->out);
 }
 
@@ -87,6 +87,8 @@ struct search {
     bool fixed;      /* the step is given: no error control */
     int restarts, flips;
     bool guessed; /* the mode is one remembered from the last time */
+    bool untied;  /* tied diodes have been looked at */
+    bool opened;  /* and are open now, to try */
     bool projected;
     int stuck;
     double ratio_before;
@@ -128,8 +130,8 @@ static enum dalcs_status project(struct dalcs_radau_part *part, const struct sea
 }
 
 static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                 struct search *search) {
-    DALCS_TRY(dalcs_radau_restart(r, part, search->restarts++));
+                                 struct search *search, bool mode_only) {
+    DALCS_TRY(dalcs_radau_restart(r, part, search->restarts++, mode_only));
     if (!search->fixed) {
         part->level = search->first_level;
     }
@@ -178,6 +180,14 @@ static void lengthen(struct dalcs_radau_part *part, double ratio) {
     part->grew = !promising;
 }
 
+/* A tied diode that was opened to try cannot open. */
+static enum dalcs_status tie_again(struct dalcs_radau_part *part, struct search *search) {
+    search->opened = false;
+    memcpy(part->component->osnsp.mode, part->mode_tied,
+           (size_t)part->component->osnsp.n_words * sizeof(uint64_t));
+    return DALCS_OK;
+}
+
 static enum dalcs_status refuse(struct dalcs_radau_part *part, struct search *search) {
     dalcs_transition_refuse(part);
     search->first_level = part->level;
@@ -193,10 +203,17 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     if (search->guessed) {
         return refuse(part, search);
     }
-    if (part->fresh && search->restarts == 0) {
-        return restart(r, part, search);
+    if (search->opened) {
+        return tie_again(part, search);
     }
-    if (quality->ratio < most_projected && !search->fixed && !search->projected) {
+    /* On factors micro-steps in a new mode cost more than a shorter step, which is tried first. */
+    bool is_cheap = part->rounding == 1.0 || search->fixed;
+    bool ask = is_cheap || !(quality->ratio < most_projected) || search->stuck > 0;
+    if (part->fresh && search->restarts == 0 && ask) {
+        return restart(r, part, search, false);
+    }
+    bool asked = search->restarts > 0 || !part->fresh;
+    if (quality->ratio < most_projected && !search->fixed && !search->projected && asked) {
         bool moved;
         search->projected = true;
         DALCS_TRY(project(part, search, &moved));
@@ -209,12 +226,14 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
      * not mend it. */
     search->stuck = quality->ratio > 0.3 * search->ratio_before ? search->stuck + 1 : 0;
     search->ratio_before = quality->ratio;
-    if (search->stuck >= STUCK && quality->of_unit < most_tolerated && search->tolerated == 1.0) {
+    if (search->stuck >= STUCK && quality->of_unit < most_tolerated * part->rounding &&
+        search->tolerated == 1.0) {
         search->tolerated = 4.0 * quality->ratio;
         part->level = search->first_level;
         return DALCS_OK;
     }
-    if (search->fixed || dalcs_radau_ladder(part->level) < 64.0 * r->resolution) {
+    bool wrong_flip = search->flips > 0 && !(quality->ratio < most_projected);
+    if (search->fixed || wrong_flip || dalcs_radau_ladder(part->level) < 64.0 * r->resolution) {
         *done = true;
         return fall_back(r, part, search);
     }
@@ -228,8 +247,11 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
     if (search->guessed) {
         return refuse(part, search);
     }
+    if (search->opened) {
+        return tie_again(part, search);
+    }
     if (search->restarts < MOST_RESTARTS && search->flips == 0) {
-        return restart(r, part, search);
+        return restart(r, part, search, false);
     }
     if (search->flips++ < MOST_FLIPS) {
         dalcs_guards_flip(part);
@@ -237,6 +259,20 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
     }
     *done = true;
     return fall_back(r, part, search);
+}
+
+/* A diode without current and voltage: the circuit is asked which of its sides is of least norm, and
+ * where it does not know yet, as at the event itself, whether it can open. */
+static enum dalcs_status untie(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                               struct search *search, const struct dalcs_step_quality *quality) {
+    if (search->restarts < TIED_RESTARTS) {
+        return restart(r, part, search, search->restarts > 0);
+    }
+    search->untied = true;
+    memcpy(part->mode_tied, part->component->osnsp.mode,
+           (size_t)part->component->osnsp.n_words * sizeof(uint64_t));
+    search->opened = dalcs_guards_open_tied(part, quality->unit);
+    return DALCS_OK;
 }
 
 static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -296,18 +332,6 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         means_something =
             quality.ratio == quality.ratio && !dalcs_step_clashes(part, entry, end, quality.unit);
     }
-#ifdef DALCS_TRACE
-    if (getenv("DALCS_D")) {
-        fprintf(stderr,
-                "p%d t=%.14g h=%g lim=%.14g mode=%lx fresh=%d guess=%d rs=%d fl=%d ratio=%g x=",
-                part->index, part->t, part->h, search->limit,
-                part->component->osnsp.n_words ? (long)part->component->osnsp.mode[0] : 0,
-                part->fresh, search->guessed, search->restarts, search->flips, quality.ratio);
-        for (int q = 0; q < part->component->system->n_x; q++)
-            fprintf(stderr, " %.9g", part->x[q]);
-        fprintf(stderr, "\n");
-    }
-#endif
     bool controlled = !search->fixed || (part->fresh && search->restarts == 0);
     if (!means_something || (controlled && !(quality.ratio <= search->tolerated))) {
         quality.ratio = means_something ? quality.ratio : INFINITY;
@@ -329,21 +353,12 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         dalcs_step_reach(part, end, quality.unit);
         theta = dalcs_guards_first_fall(r, part, end, quality.unit, &at_once);
     }
-#ifdef DALCS_TRACE
-    if (getenv("DALCS_D") && part->n_crossed) {
-        fprintf(stderr, "  cross theta=%g at_once=%d armed=%d end=%g:", theta, at_once,
-                part->armed[part->crossed[0]], end);
-        for (int q = 0; q < part->n_crossed; q++)
-            fprintf(stderr, " %d", part->crossed[q]);
-        fprintf(stderr, "\n");
-    }
-#endif
     if (at_once && part->fresh) {
         return change_mode(r, part, search, done);
     }
-    if (part->fresh && search->restarts == 0 && !search->guessed &&
+    if (part->fresh && !search->guessed && !search->untied &&
         dalcs_guards_stay_tied(part, quality.unit)) {
-        return restart(r, part, search);
+        return untie(r, part, search, &quality);
     }
     accept(r, part, search, fmin(theta, end), &quality, dalcs_stage_residual(entry));
     *done = true;

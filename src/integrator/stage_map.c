@@ -20,9 +20,6 @@
 static const double doubtful_pivot = 1e-9;
 static const double rank_tolerance = 1e-12;
 
-/* How much more a source may be off between the nodes than where it is tested. */
-static const double same_unit_factor = 6.0;
-
 enum { BALANCING_ROUNDS = 3 };
 
 struct builder {
@@ -463,18 +460,6 @@ static double watched_voltage(const struct builder *b, int d, const double *colu
     return v;
 }
 
-static bool input_is_current(const struct builder *b, int rhs_column) {
-    const struct dalcs_system *s = b->system;
-    for (int r = 0; r < s->E.n_rows; r++) {
-        for (int k = s->E.p[r]; k < s->E.p[r + 1]; k++) {
-            if (column_of_input(b, s->E.j[k]) == rhs_column) {
-                return s->row_is_current[r];
-            }
-        }
-    }
-    return false;
-}
-
 /* One column of the map: the answer to in[column] = 1. share[s + 1] and test_share are the values of
  * the source there; for a state they are 0. */
 static void fill_column(struct builder *b, int column, int rhs_column, const double *share,
@@ -566,12 +551,8 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
         for (int k = 0; k <= m->s; k++) {
             missed -= m->test[k] * share[k];
         }
-        bool is_current = input_is_current(b, rhs_column);
         for (int r = 0; r < n; r++) {
-            /* a current that follows the derivative of a voltage, or the other way round */
-            bool other = (r >= n_equations || s->column_is_current[r]) != is_current;
-            b->drift[r] = (double)real[r] * b->column_scale[r] * missed *
-                          (other ? m->test_factor : same_unit_factor);
+            b->drift[r] = (double)real[r] * b->column_scale[r] * missed * m->test_factor;
         }
         find_guards(b, b->drift, rhs_column, missed);
         put_columns(b, b->drift, out + l->ripple);
@@ -587,22 +568,25 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
     }
 }
 
-/* How well the rounded answer at the last stage satisfies the equations without derivatives, over the
- * size of their terms. */
+/* How well the rounded answer at the last stage satisfies the equations without derivatives, in
+ * balanced units. In a singular mode sources may disagree, which is for the clashes to tell. */
 static void check_column(struct builder *b, int column, int rhs_column, double share) {
     const double *y = b->node + b->stages->method->s * b->n;
-    for (int r = b->n_x; r < b->n; r++) {
-        double residual = -b->rhs[rhs_column * b->n + r] * (column < b->n_x ? 1.0 : share);
-        double size = fabs(residual);
+    bool is_state = column < b->n_x;
+    double largest = 0.0;
+    double worst = 0.0;
+    for (int r = b->n_x; r < b->n && (b->nullity == 0 || is_state); r++) {
+        double residual = -b->rhs[rhs_column * b->n + r] * (is_state ? 1.0 : share);
+        largest = fmax(largest, fabs(residual));
         for (int c = 0; c < b->n; c++) {
-            double increment = y[c] - (c == column && c < b->n_x ? 1.0 : 0.0);
+            double increment = y[c] - (is_state && c == column ? 1.0 : 0.0);
             double term = b->base[c * b->n + r] * increment / b->column_scale[c];
             residual += term;
-            size += fabs(term);
+            largest = fmax(largest, fabs(term));
         }
-        double ratio = size > 0.0 ? fabs(residual) / size : 0.0;
-        b->entry->residual = fmax(b->entry->residual, ratio);
+        worst = fmax(worst, fabs(residual));
     }
+    b->entry->residual = fmax(b->entry->residual, largest > 0.0 ? worst / largest : 0.0);
 }
 
 static void fill_map(struct builder *b) {

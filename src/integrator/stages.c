@@ -1,8 +1,12 @@
 /* stages.c - entries by (mode, h), least recently used out first. */
+#include "stage_plan.h"
 #include "stages_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+/* Stages in double precision cancel, and so do states against sources in currents of capacitors. */
+static const double FACTORS_ROUNDING = 50.0;
 
 /* The latest entries are looked at one by one before all are asked. */
 enum { RECENT = 3 };
@@ -88,6 +92,7 @@ void dalcs_stages_finish(struct dalcs_stages *stages) {
     while (stages->oldest != NULL) {
         remove_entry(stages, stages->oldest);
     }
+    dalcs_stage_plan_destroy(stages);
     free(stages->watched);
     free(stages->key);
     *stages = (struct dalcs_stages){0};
@@ -209,4 +214,8 @@ double dalcs_stage_residual(const struct dalcs_stage_entry *entry) {
 
 const double *dalcs_stage_natural_units(const struct dalcs_stage_entry *entry) {
     return entry->natural;
+}
+
+double dalcs_stage_rounding(const struct dalcs_stage_entry *entry) {
+    return entry->map != NULL ? 1.0 : FACTORS_ROUNDING;
 }

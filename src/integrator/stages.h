@@ -18,6 +18,7 @@
 #include <suitesparse/klu.h>
 
 struct dalcs_stage_entry;
+struct dalcs_stage_plan;
 
 /* Where things are in an answer. Node k of the step starts at k * stride: the columns, then the
  * watched voltages. In the place of lambda_d an open pair has its w_d. */
@@ -45,6 +46,7 @@ struct dalcs_stages {
     uint64_t *key; /* [n_words + 1] */
     long factorizations, cache_hits;
     klu_common klu, klu_complex;
+    struct dalcs_stage_plan *plan; /* what sparse factors share; NULL until there are any */
 };
 
 enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,
@@ -68,6 +70,9 @@ enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages,
                                      double *out) DALCS_MUST_CHECK;
 
 int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry);
+
+/* How much more of the answer is rounding than in one from a dense map: 1 for those. */
+double dalcs_stage_rounding(const struct dalcs_stage_entry *entry);
 
 /* [2 n_equations] units in which the columns are in balance with each other, then their inverses. */
 const double *dalcs_stage_natural_units(const struct dalcs_stage_entry *entry);

@@ -132,7 +132,7 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
     for (int c = 0; c < n_equations; c++) {
         balanced = larger(balanced, fabs(final[c]) * inverse[c]);
     }
-    double rounding = rounding_part * balanced;
+    double rounding = rounding_part * part->rounding * balanced;
     double besides[2] = {0.1 * r->options.vntol, 0.1 * r->options.abstol};
     double tolerance = r->inner_tolerance;
     bool curved = part->excitation.is_curved;
@@ -152,7 +152,8 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
         double scale = larger(is_pair ? 0.0 : part->scale[c], fabs(known[c]));
         scale = larger(larger(scale, fabs(first[c])),
                        (is_pair ? smallest_pair : smallest_scale) * q->unit[of]);
-        double floor = is_pair ? rounding_part * q->unit[1] : rounding * natural[c];
+        double floor =
+            is_pair ? rounding_part * part->rounding * q->unit[1] : rounding * natural[c];
         double allowed = tolerance * scale + floor + besides[of];
         double ratio = error / allowed;
         q->drift = larger(q->drift, drift / allowed);

@@ -11,8 +11,9 @@ enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
     part->transition = dalcs_alloc(SLOTS, sizeof(*part->transition));
     part->transition_modes = dalcs_alloc(SLOTS * 2 * words, sizeof(uint64_t));
     part->mode_before = dalcs_alloc(words, sizeof(uint64_t));
-    bool complete =
-        part->transition != NULL && part->transition_modes != NULL && part->mode_before != NULL;
+    part->mode_tied = dalcs_alloc(words, sizeof(uint64_t));
+    bool complete = part->transition != NULL && part->transition_modes != NULL &&
+                    part->mode_before != NULL && part->mode_tied != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -20,6 +21,7 @@ void dalcs_transition_finish(struct dalcs_radau_part *part) {
     free(part->transition);
     free(part->transition_modes);
     free(part->mode_before);
+    free(part->mode_tied);
 }
 
 static size_t slot_of(const struct dalcs_radau_part *part, const uint64_t *mode) {

@@ -3,13 +3,17 @@
 
 #include <stdlib.h>
 
+/* Elements that grow more than this over those of the matrix cost too many digits. */
+static const double least_reciprocal_growth = 1e-3;
+
 void dalcs_lu_common_init(klu_common *common) {
     klu_defaults(common);
     common->halt_if_singular = 1;
     common->scale = 0; /* the caller balances: no division by row scales in every solve */
 }
 
-/* What klu_extract fills: L and U by columns with their diagonals, F by columns. */
+/* What klu_extract fills: L and U by columns with their diagonals, F by columns. Imaginary parts
+ * follow behind all real ones. */
 struct extracted {
     int *Lp, *Li, *Up, *Ui, *Fp, *Fi;
     double *Lx, *Ux, *Fx;
@@ -33,16 +37,17 @@ static enum dalcs_status extract(struct extracted *e, struct dalcs_lu *lu, klu_s
     size_t lnz = (size_t)numeric->lnz;
     size_t unz = (size_t)numeric->unz;
     size_t nzoff = (size_t)numeric->nzoff;
+    size_t number = (lu->is_complex ? 2 : 1) * sizeof(double);
     *e = (struct extracted){
         .Lp = dalcs_alloc(n + 1, sizeof(int)),
         .Li = dalcs_alloc(lnz, sizeof(int)),
-        .Lx = dalcs_alloc(lnz, sizeof(double)),
+        .Lx = dalcs_alloc(lnz, number),
         .Up = dalcs_alloc(n + 1, sizeof(int)),
         .Ui = dalcs_alloc(unz, sizeof(int)),
-        .Ux = dalcs_alloc(unz, sizeof(double)),
+        .Ux = dalcs_alloc(unz, number),
         .Fp = dalcs_alloc(n + 1, sizeof(int)),
         .Fi = dalcs_alloc(nzoff, sizeof(int)),
-        .Fx = dalcs_alloc(nzoff, sizeof(double)),
+        .Fx = dalcs_alloc(nzoff, number),
     };
     lu->n_blocks = symbolic->nblocks;
     lu->block = dalcs_alloc((size_t)lu->n_blocks + 1, sizeof(int));
@@ -50,12 +55,12 @@ static enum dalcs_status extract(struct extracted *e, struct dalcs_lu *lu, klu_s
     lu->to = dalcs_alloc(n, sizeof(int));
     lu->lower_p = dalcs_alloc(n + 1, sizeof(int));
     lu->lower_j = dalcs_alloc(lnz - n + nzoff, sizeof(int));
-    lu->lower_x = dalcs_alloc(lnz - n + nzoff, sizeof(double));
+    lu->lower_x = dalcs_alloc(lnz - n + nzoff, number);
     lu->upper_p = dalcs_alloc(n + 1, sizeof(int));
     lu->upper_j = dalcs_alloc(unz - n, sizeof(int));
-    lu->upper_x = dalcs_alloc(unz - n, sizeof(double));
-    lu->pivot_inverse = dalcs_alloc(n, sizeof(double));
-    lu->work = dalcs_alloc(n, sizeof(double));
+    lu->upper_x = dalcs_alloc(unz - n, number);
+    lu->pivot_inverse = dalcs_alloc(n, number);
+    lu->work = dalcs_alloc(n, number);
     if (e->Lp == NULL || e->Li == NULL || e->Lx == NULL || e->Up == NULL || e->Ui == NULL ||
         e->Ux == NULL || e->Fp == NULL || e->Fi == NULL || e->Fx == NULL || lu->block == NULL ||
         lu->from == NULL || lu->to == NULL || lu->lower_p == NULL || lu->lower_j == NULL ||
@@ -63,21 +68,32 @@ static enum dalcs_status extract(struct extracted *e, struct dalcs_lu *lu, klu_s
         lu->pivot_inverse == NULL || lu->work == NULL) {
         return DALCS_E_NOMEM;
     }
-    if (!klu_extract(numeric, symbolic, e->Lp, e->Li, e->Lx, e->Up, e->Ui, e->Ux, e->Fp, e->Fi,
-                     e->Fx, lu->from, lu->to, NULL, lu->block, common)) {
-        return DALCS_E_NOMEM;
-    }
-    return DALCS_OK;
+    int done = lu->is_complex
+                   ? klu_z_extract(numeric, symbolic, e->Lp, e->Li, e->Lx, e->Lx + lnz, e->Up,
+                                   e->Ui, e->Ux, e->Ux + unz, e->Fp, e->Fi, e->Fx, e->Fx + nzoff,
+                                   lu->from, lu->to, NULL, lu->block, common)
+                   : klu_extract(numeric, symbolic, e->Lp, e->Li, e->Lx, e->Up, e->Ui, e->Ux, e->Fp,
+                                 e->Fi, e->Fx, lu->from, lu->to, NULL, lu->block, common);
+    return done ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-/* Columns (p, i, x) into rows, the diagonal apart. `row_p` counts already, shifted by one. */
-static void scatter_rows(int n, const int *p, const int *i, const double *x, int *next, int *row_j,
-                         double *row_x) {
+/* Columns (p, i, x) into rows, the diagonal apart. `next` counts already, shifted by one. */
+static void scatter_rows(const struct dalcs_lu *lu, const int *p, const int *i, const double *x,
+                         int *next, int *row_j, double *row_x) {
+    int n = lu->n;
+    const double *imaginary = x + p[n];
     for (int c = 0; c < n; c++) {
         for (int k = p[c]; k < p[c + 1]; k++) {
-            if (i[k] != c) {
-                row_j[next[i[k]]] = c;
-                row_x[next[i[k]]++] = x[k];
+            if (i[k] == c) {
+                continue;
+            }
+            int to = next[i[k]]++;
+            row_j[to] = c;
+            if (lu->is_complex) {
+                row_x[2 * to] = x[k];
+                row_x[2 * to + 1] = imaginary[k];
+            } else {
+                row_x[to] = x[k];
             }
         }
     }
@@ -106,50 +122,117 @@ static void restore(int n, int *row_p) {
     row_p[0] = 0;
 }
 
-static void arrange(struct dalcs_lu *lu, const struct extracted *e) {
-    int n = lu->n;
-    count_rows(n, e->Fp, e->Fi, lu->lower_p);
-    count_rows(n, e->Lp, e->Li, lu->lower_p);
-    accumulate(n, lu->lower_p);
-    scatter_rows(n, e->Fp, e->Fi, e->Fx, lu->lower_p, lu->lower_j, lu->lower_x);
-    scatter_rows(n, e->Lp, e->Li, e->Lx, lu->lower_p, lu->lower_j, lu->lower_x);
-    restore(n, lu->lower_p);
-    count_rows(n, e->Up, e->Ui, lu->upper_p);
-    accumulate(n, lu->upper_p);
-    scatter_rows(n, e->Up, e->Ui, e->Ux, lu->upper_p, lu->upper_j, lu->upper_x);
-    restore(n, lu->upper_p);
-    for (int c = 0; c < n; c++) {
+static void invert_pivots(struct dalcs_lu *lu, const struct extracted *e) {
+    const double *imaginary = e->Ux + e->Up[lu->n];
+    for (int c = 0; c < lu->n; c++) {
         for (int k = e->Up[c]; k < e->Up[c + 1]; k++) {
-            if (e->Ui[k] == c) {
+            if (e->Ui[k] != c) {
+                continue;
+            }
+            if (lu->is_complex) {
+                double size = e->Ux[k] * e->Ux[k] + imaginary[k] * imaginary[k];
+                lu->pivot_inverse[2 * c] = e->Ux[k] / size;
+                lu->pivot_inverse[2 * c + 1] = -imaginary[k] / size;
+            } else {
                 lu->pivot_inverse[c] = 1.0 / e->Ux[k];
             }
         }
     }
 }
 
-enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n, int *p, int *i,
-                                  double *x, double rcond_min) {
-    *lu = (struct dalcs_lu){.n = n};
-    if (n == 0) {
-        return DALCS_OK;
+static void arrange(struct dalcs_lu *lu, const struct extracted *e) {
+    int n = lu->n;
+    count_rows(n, e->Fp, e->Fi, lu->lower_p);
+    count_rows(n, e->Lp, e->Li, lu->lower_p);
+    accumulate(n, lu->lower_p);
+    scatter_rows(lu, e->Fp, e->Fi, e->Fx, lu->lower_p, lu->lower_j, lu->lower_x);
+    scatter_rows(lu, e->Lp, e->Li, e->Lx, lu->lower_p, lu->lower_j, lu->lower_x);
+    restore(n, lu->lower_p);
+    count_rows(n, e->Up, e->Ui, lu->upper_p);
+    accumulate(n, lu->upper_p);
+    scatter_rows(lu, e->Up, e->Ui, e->Ux, lu->upper_p, lu->upper_j, lu->upper_x);
+    restore(n, lu->upper_p);
+    invert_pivots(lu, e);
+}
+
+enum dalcs_status dalcs_lu_analyze(klu_symbolic **symbolic, klu_common *common, int n, int *p,
+                                   int *i) {
+    *symbolic = klu_analyze(n, p, i, common);
+    if (*symbolic == NULL) {
+        return common->status == KLU_SINGULAR ? DALCS_SINGULAR : DALCS_E_NOMEM;
     }
-    enum dalcs_status status = DALCS_OK;
-    klu_numeric *numeric = NULL;
-    klu_symbolic *symbolic = klu_analyze(n, p, i, common);
-    if (symbolic == NULL) {
-        status = common->status == KLU_SINGULAR ? DALCS_SINGULAR : DALCS_E_NOMEM;
-    } else if (symbolic->structural_rank >= 0 && symbolic->structural_rank < n) {
-        status = DALCS_SINGULAR;
+    if ((*symbolic)->structural_rank >= 0 && (*symbolic)->structural_rank < n) {
+        klu_free_symbolic(symbolic, common);
+        return DALCS_SINGULAR;
+    }
+    return DALCS_OK;
+}
+
+/* The matrix to factor. */
+struct values {
+    klu_common *common;
+    klu_symbolic *symbolic;
+    bool is_complex;
+    int *p, *i;
+    double *x;
+    double rcond_min;
+};
+
+static bool is_well_conditioned(const struct values *v, klu_numeric *numeric) {
+    if (v->is_complex) {
+        klu_z_rcond(v->symbolic, numeric, v->common);
     } else {
-        numeric = klu_factor(p, i, x, symbolic, common);
-        if (common->status == KLU_OUT_OF_MEMORY || common->status == KLU_TOO_LARGE) {
-            status = DALCS_E_NOMEM;
-        } else if (numeric == NULL || common->status == KLU_SINGULAR) {
-            status = DALCS_SINGULAR;
-        } else {
-            klu_rcond(symbolic, numeric, common);
-            status = common->rcond >= rcond_min ? DALCS_OK : DALCS_SINGULAR;
-        }
+        klu_rcond(v->symbolic, numeric, v->common);
+    }
+    return v->common->rcond >= v->rcond_min;
+}
+
+static enum dalcs_status factor(const struct values *v, klu_numeric **numeric) {
+    *numeric = v->is_complex ? klu_z_factor(v->p, v->i, v->x, v->symbolic, v->common)
+                             : klu_factor(v->p, v->i, v->x, v->symbolic, v->common);
+    if (v->common->status == KLU_OUT_OF_MEMORY || v->common->status == KLU_TOO_LARGE) {
+        return DALCS_E_NOMEM;
+    }
+    bool is_regular =
+        *numeric != NULL && v->common->status != KLU_SINGULAR && is_well_conditioned(v, *numeric);
+    return is_regular ? DALCS_OK : DALCS_SINGULAR;
+}
+
+/* Do the pivots of other values serve these? */
+static bool refactor(const struct values *v, klu_numeric *numeric) {
+    klu_common *c = v->common;
+    int done = v->is_complex ? klu_z_refactor(v->p, v->i, v->x, v->symbolic, numeric, c)
+                             : klu_refactor(v->p, v->i, v->x, v->symbolic, numeric, c);
+    if (!done || c->status != KLU_OK || !is_well_conditioned(v, numeric)) {
+        return false;
+    }
+    if (v->is_complex) {
+        klu_z_rgrowth(v->p, v->i, v->x, v->symbolic, numeric, c);
+    } else {
+        klu_rgrowth(v->p, v->i, v->x, v->symbolic, numeric, c);
+    }
+    return c->rgrowth >= least_reciprocal_growth;
+}
+
+void dalcs_lu_drop(klu_numeric **kept, bool is_complex, klu_common *common) {
+    if (is_complex) {
+        klu_z_free_numeric(kept, common);
+    } else {
+        klu_free_numeric(kept, common);
+    }
+}
+
+enum dalcs_status dalcs_lu_factor_analyzed(struct dalcs_lu *lu, klu_common *common,
+                                           klu_symbolic *symbolic, klu_numeric **kept,
+                                           bool is_complex, int *p, int *i, double *x,
+                                           double rcond_min) {
+    *lu = (struct dalcs_lu){.n = symbolic->n, .is_complex = is_complex};
+    const struct values v = {common, symbolic, is_complex, p, i, x, rcond_min};
+    klu_numeric *numeric = kept != NULL ? *kept : NULL;
+    enum dalcs_status status = DALCS_OK;
+    if (numeric == NULL || !refactor(&v, numeric)) {
+        dalcs_lu_drop(&numeric, is_complex, common);
+        status = factor(&v, &numeric);
     }
     if (status == DALCS_OK) {
         struct extracted e;
@@ -159,11 +242,32 @@ enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n
         }
         extracted_finish(&e);
     }
-    klu_free_symbolic(&symbolic, common);
-    klu_free_numeric(&numeric, common);
+    if (kept == NULL || status != DALCS_OK) {
+        dalcs_lu_drop(&numeric, is_complex, common);
+    }
+    if (kept != NULL) {
+        *kept = numeric;
+    }
     if (status != DALCS_OK) {
         dalcs_lu_finish(lu);
     }
+    return status;
+}
+
+enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n, int *p, int *i,
+                                  double *x, double rcond_min) {
+    *lu = (struct dalcs_lu){.n = n};
+    if (n == 0) {
+        return DALCS_OK;
+    }
+    klu_symbolic *symbolic;
+    enum dalcs_status status = dalcs_lu_analyze(&symbolic, common, n, p, i);
+    if (status != DALCS_OK) {
+        dalcs_lu_finish(lu);
+        return status;
+    }
+    status = dalcs_lu_factor_analyzed(lu, common, symbolic, NULL, false, p, i, x, rcond_min);
+    klu_free_symbolic(&symbolic, common);
     return status;
 }
 
@@ -196,6 +300,45 @@ void dalcs_lu_solve_ordered(const struct dalcs_lu *lu) {
     }
 }
 
+void dalcs_lu_solve_ordered_complex(const struct dalcs_lu *lu) {
+    double *restrict x = lu->work;
+    const int *restrict lower_p = lu->lower_p;
+    const int *restrict lower_j = lu->lower_j;
+    const double *restrict lower_x = lu->lower_x;
+    const int *restrict upper_p = lu->upper_p;
+    const int *restrict upper_j = lu->upper_j;
+    const double *restrict upper_x = lu->upper_x;
+    const double *restrict inverse = lu->pivot_inverse;
+    for (int block = lu->n_blocks - 1; block >= 0; block--) {
+        int begin = lu->block[block];
+        int end = lu->block[block + 1];
+        for (int i = begin; i < end; i++) {
+            double re = x[2 * i];
+            double im = x[2 * i + 1];
+            for (int k = lower_p[i]; k < lower_p[i + 1]; k++) {
+                const double *a = lower_x + 2 * k;
+                const double *b = x + 2 * lower_j[k];
+                re -= a[0] * b[0] - a[1] * b[1];
+                im -= a[0] * b[1] + a[1] * b[0];
+            }
+            x[2 * i] = re;
+            x[2 * i + 1] = im;
+        }
+        for (int i = end - 1; i >= begin; i--) {
+            double re = x[2 * i];
+            double im = x[2 * i + 1];
+            for (int k = upper_p[i]; k < upper_p[i + 1]; k++) {
+                const double *a = upper_x + 2 * k;
+                const double *b = x + 2 * upper_j[k];
+                re -= a[0] * b[0] - a[1] * b[1];
+                im -= a[0] * b[1] + a[1] * b[0];
+            }
+            x[2 * i] = re * inverse[2 * i] - im * inverse[2 * i + 1];
+            x[2 * i + 1] = re * inverse[2 * i + 1] + im * inverse[2 * i];
+        }
+    }
+}
+
 void dalcs_lu_solve(const struct dalcs_lu *lu, double *b) {
     for (int i = 0; i < lu->n; i++) {
         lu->work[i] = b[lu->from[i]];
@@ -212,7 +355,8 @@ size_t dalcs_lu_bytes(const struct dalcs_lu *lu) {
     }
     size_t n = (size_t)lu->n;
     size_t entries = (size_t)lu->lower_p[lu->n] + (size_t)lu->upper_p[lu->n];
-    return entries * (sizeof(double) + sizeof(int)) + n * (4 * sizeof(int) + 2 * sizeof(double)) +
+    size_t number = (lu->is_complex ? 2 : 1) * sizeof(double);
+    return entries * (number + sizeof(int)) + n * (4 * sizeof(int) + 2 * number) +
            (size_t)lu->n_blocks * sizeof(int);
 }
 

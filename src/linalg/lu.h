@@ -1,9 +1,10 @@
 /* lu.h - sparse LU of one square matrix: the seam to KLU.
  *
- * KLU (Davis and Palamadai Natarajan 2010) permutes a circuit matrix to block triangular form and
- * factors each block. Its factors are copied into two plain triangles by rows, which a solve runs
- * through in half the time of klu_solve; KLU's own objects are freed. A factor is never reused for
- * other values, because a pivot that was safe in one mode may vanish in the next. */
+ * KLU (Davis and Palamadai Natarajan 2010) permutes a circuit matrix to block triangular form
+ * and factors each block. Its factors are copied into two plain triangles by rows, which a solve
+ * runs through in half the time of klu_solve; KLU's own objects are freed. Pivots are never
+ * reused for other values unchecked, because one that was safe in one mode may vanish in the
+ * next. Complex numbers are pairs (re, im) one behind the other. */
 #ifndef DALCS_LU_H
 #define DALCS_LU_H
 
@@ -14,6 +15,7 @@
 /* P A Q = L U + F: F couples a diagonal block to the later ones, which are solved first. */
 struct dalcs_lu {
     int n;
+    bool is_complex; /* then the reals below are pairs */
     int n_blocks;
     int *block;             /* [n_blocks + 1] first row of each block */
     int *from, *to;         /* [n] row i takes b[from[i]]; unknown i goes to b[to[i]] */
@@ -35,11 +37,32 @@ void dalcs_lu_common_init(klu_common *common);
 enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n, int *p, int *i,
                                   double *x, double rcond_min) DALCS_MUST_CHECK;
 
-/* Overwrites b[n] with the solution. */
+/* What depends on the pattern alone: good for all values, real or complex. DALCS_SINGULAR when no
+ * values can make the matrix regular. Free it with klu_free_symbolic. */
+enum dalcs_status dalcs_lu_analyze(klu_symbolic **symbolic, klu_common *common, int n, int *p,
+                                   int *i) DALCS_MUST_CHECK;
+
+/* dalcs_lu_factor with the analysis at hand. `common` must not serve both real and complex ones.
+ * kept may be NULL. Otherwise, and if *kept has KLU's factors of other values of the same
+ * pattern (with columns listed in the same order), their pivots are tried first, which costs a
+ * quarter, and given up if the elements grow; *kept gets the factors for a next time, to be
+ * freed by dalcs_lu_drop. */
+enum dalcs_status dalcs_lu_factor_analyzed(struct dalcs_lu *lu, klu_common *common,
+                                           klu_symbolic *symbolic, klu_numeric **kept,
+                                           bool is_complex, int *p, int *i, double *x,
+                                           double rcond_min) DALCS_MUST_CHECK;
+
+void dalcs_lu_drop(klu_numeric **kept, bool is_complex, klu_common *common);
+
+/* Overwrites b[n] with the solution; real factors only. */
 void dalcs_lu_solve(const struct dalcs_lu *lu, double *b);
 
-/* The same without its permutations: on entry work[i] holds b[from[i]], afterwards unknown to[i]. */
+/* The same without its permutations: on entry work[i] holds b[from[i]], afterwards unknown
+ * to[i]. */
 void dalcs_lu_solve_ordered(const struct dalcs_lu *lu);
+
+/* The same for complex factors. */
+void dalcs_lu_solve_ordered_complex(const struct dalcs_lu *lu);
 
 /* Bytes held, roughly; for the bound on a cache. */
 size_t dalcs_lu_bytes(const struct dalcs_lu *lu);

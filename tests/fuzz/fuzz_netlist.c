@@ -7,6 +7,7 @@
 #include "euler.h"
 #include "netlist.h"
 #include "network.h"
+#include "radau.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -119,14 +120,85 @@ static void check_system(const struct dalcs_system *s) {
 }
 
 /* Every outcome of a step is fine, but none may take long: pivots are few. */
+static const struct dalcs_osnsp_options options = {.certificate_tolerance = 2e-13,
+                                                   .proximal_weight = {1e-8, 1e-7, 1e-6},
+                                                   .rcond_min = 1e-14,
+                                                   .max_outer = 5,
+                                                   .max_pivots = 5,
+                                                   .cache_bytes = (size_t)1 << 16,
+                                                   .dense_limit = 24};
+
+static void check_values(const struct dalcs_euler *e) {
+    for (int k = 0; k < e->n_components; k++) {
+        for (int c = 0; c < dalcs_system_n_columns(e->component[k].system); c++) {
+            require(isfinite(e->component[k].y[c]));
+        }
+    }
+}
+
+/* A few segments of the default method: times ascend, values in between are numbers. */
+static void follow(struct dalcs_radau *r) {
+    enum { MOST_SEGMENTS = 40 };
+
+    double t = 0.0;
+    enum dalcs_status status = DALCS_OK;
+    for (int k = 0; k < MOST_SEGMENTS && status == DALCS_OK; k++) {
+        bool happens;
+        double next = fmin(dalcs_radau_next_stop(r, &happens), r->options.stop);
+        require(next >= t);
+        status = dalcs_radau_evaluate(r, t + 0.5 * (next - t), DALCS_LEFT);
+        if (status == DALCS_OK) {
+            status = dalcs_radau_evaluate(r, next, DALCS_LEFT);
+        }
+        if (status == DALCS_OK) {
+            check_values(r->base);
+        }
+        if (status != DALCS_OK || next >= r->options.stop) {
+            break;
+        }
+        r->base->t = next;
+        t = next;
+        status = dalcs_radau_pass(r, t);
+    }
+}
+
+static void run_the_default(const struct dalcs_circuit *circuit,
+                            const struct dalcs_network *network) {
+    double stop = circuit->transient.present ? circuit->transient.stop : 1.0;
+    const struct dalcs_radau_options accuracy = {.tolerance = 1e-6,
+                                                 .abstol = circuit->options.abstol,
+                                                 .vntol = circuit->options.vntol,
+                                                 .stages = circuit->options.stages,
+                                                 .fixed_step = circuit->options.step,
+                                                 .max_step = circuit->transient.max_step,
+                                                 .stop = stop};
+    struct dalcs_euler e;
+    struct dalcs_radau r;
+    if (accuracy.max_step > 0.0 && stop / accuracy.max_step > 1e13) {
+        return; /* refused before it comes to this */
+    }
+    if (accuracy.fixed_step > 0.0 &&
+        (accuracy.fixed_step > stop || stop / accuracy.fixed_step > 1e13)) {
+        return;
+    }
+    if (dalcs_euler_setup(&e, circuit, network, &options, stop / 7.0, stop) != DALCS_OK) {
+        return;
+    }
+    if (dalcs_radau_setup(&r, &e, &accuracy, &options) == DALCS_OK) {
+        bool from_initial = circuit->transient.use_initial_conditions;
+        enum dalcs_status status = from_initial ? DALCS_OK : dalcs_euler_operating_point(&e, true);
+        if (status == DALCS_OK) {
+            status = dalcs_radau_start(&r, from_initial ? network->initial : NULL);
+        }
+        if (status == DALCS_OK) {
+            follow(&r);
+        }
+        dalcs_radau_finish(&r);
+    }
+    dalcs_euler_finish(&e);
+}
+
 static void run_a_little(const struct dalcs_circuit *circuit, const struct dalcs_network *network) {
-    static const struct dalcs_osnsp_options options = {.certificate_tolerance = 2e-13,
-                                                       .proximal_weight = {1e-8, 1e-7, 1e-6},
-                                                       .rcond_min = 1e-14,
-                                                       .max_outer = 5,
-                                                       .max_pivots = 5,
-                                                       .cache_bytes = (size_t)1 << 16,
-                                                       .dense_limit = 24};
     double stop = circuit->transient.present ? circuit->transient.stop : 1.0;
     struct dalcs_euler e;
     if (dalcs_euler_setup(&e, circuit, network, &options, stop / 7.0, stop) != DALCS_OK) {
@@ -159,6 +231,7 @@ static void check_network(const struct dalcs_circuit *circuit, struct dalcs_diag
         check_system(&network.system[k]);
     }
     run_a_little(circuit, &network);
+    run_the_default(circuit, &network);
     dalcs_network_finish(&network);
 }
 

@@ -36,7 +36,7 @@ START_TEST(test_everything) {
         .stop = 0.5,
         .size = {1, 2, 3, 4, 5, 2},
         .work = {11, 12, 13, 14, 15, 16, 17, 18, 19, 0.5, 0.75},
-        .certificate = {1e-15, 0.125, "KCL at out"},
+        .certificate = {1e-15, 0.125, "KCL at out", 0.0625},
         .n_states = 2,
         .state_name = state_name,
         .start = start,
@@ -76,7 +76,7 @@ START_TEST(test_everything) {
                  "    \"wall_s\": 0.75\n"
                  "  },\n"
                  "  \"certificate\": {\"worst\": 1.0000000000000001e-15, \"time\": 0.125, "
-                 "\"where\": \"KCL at out\"},\n"
+                 "\"where\": \"KCL at out\", \"wrong_sign\": 0.0625},\n"
                  "  \"start\": {\n"
                  "    \"c1\": 4,\n"
                  "    \"l1\": -0.10000000000000001\n"
@@ -155,7 +155,8 @@ START_TEST(test_nothing) {
                  "    \"cpu_s\": 0,\n"
                  "    \"wall_s\": 0\n"
                  "  },\n"
-                 "  \"certificate\": {\"worst\": 0, \"time\": 0, \"where\": null},\n"
+                 "  \"certificate\": {\"worst\": 0, \"time\": 0, \"where\": null, "
+                 "\"wrong_sign\": 0},\n"
                  "  \"start\": {},\n"
                  "  \"final\": {},\n"
                  "  \"events\": [],\n"

@@ -76,3 +76,16 @@ char *bench_ladder(int n) {
     fprintf(f, ".save v(n%d)\n.tran 1u 2m uic\n", n);
     return end(&t);
 }
+
+char *bench_peak_detectors(int n) {
+    struct text t;
+    FILE *f = begin(&t, "peak detectors");
+    fprintf(f, "v1 n0 0 sin(0 10 1k)\n");
+    for (int k = 1; k <= n; k++) {
+        fprintf(f, "r%d n%d n%d 1\ncn%d n%d 0 %.17g\n", k, k - 1, k, k, k, 1e-6 / n);
+        fprintf(f, "d%d n%d p%d di\nc%d p%d 0 %.17g\nrl%d p%d 0 %.17g\n", k, k, k, k, k, 1e-5 / n,
+                k, k, 1e4 * n);
+    }
+    fprintf(f, ".save v(p%d) v(p%d)\n.tran 10u 10m uic\n", n / 2, n);
+    return end(&t);
+}

@@ -14,4 +14,7 @@ char *bench_six_pulse(void);
 /* Ladder of n cells: series diode + 1 ohm, 1 uF and 10 kohm to ground; 10 V 1 kHz through 10 ohm. */
 char *bench_ladder(int n);
 
+/* Line of n resistors from 10 V 1 kHz; each node has a diode to a capacitor with a load. */
+char *bench_peak_detectors(int n);
+
 #endif

@@ -4,42 +4,16 @@
  * "Same matrix": the plain mode matrix (equations, closed pairs) that was last factored; for a
  * component in a singular mode, its proximal matrix. A step includes sampling the sources, the
  * solve, pivoting and factoring where modes change, and the certificate. */
+#include "bench.h"
 #include "circuit.h"
 #include "circuits.h"
 #include "euler.h"
 #include "netlist.h"
 #include "osnsp_internal.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { REPEATS = 9 };
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a;
-    double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double *v, int n) {
-    qsort(v, (size_t)n, sizeof(*v), compare);
-    return v[n / 2];
-}
-
-static void must(enum dalcs_status status, const char *what) {
-    if (status != DALCS_OK) {
-        fprintf(stderr, "bench: %s: %s\n", what, dalcs_status_text(status));
-        exit(1);
-    }
-}
 
 /* Seconds of one klu_solve, KLU's own settings, of the first component's newest plain mode. */
 static double time_klu_solve(struct dalcs_euler *e, int *order) {
@@ -52,7 +26,7 @@ static double time_klu_solve(struct dalcs_euler *e, int *order) {
         return 0.0;
     }
     struct dalcs_columns a;
-    must(dalcs_modes_matrix(p, entry, &a), "matrix");
+    bench_must(dalcs_modes_matrix(p, entry, &a), "matrix");
     klu_common common;
     klu_defaults(&common);
     klu_symbolic *symbolic = klu_analyze(a.n, a.p, a.i, &common);
@@ -63,21 +37,21 @@ static double time_klu_solve(struct dalcs_euler *e, int *order) {
         abort();
     }
     int rounds = 1 + 2000000 / (a.n * 10 + 100);
-    double begin = now();
+    double begin = bench_now();
     for (int k = 0; k < rounds; k++) {
         for (int i = 0; i < a.n; i++) {
             b[i] = 1.0 / (i + 1.0);
         }
         klu_solve(symbolic, numeric, a.n, 1, b, &common);
     }
-    double filled = now();
+    double filled = bench_now();
     for (int k = 0; k < rounds; k++) { /* what filling b costs is not the solve's */
         for (int i = 0; i < a.n; i++) {
             b[i] = 1.0 / (i + 1.0);
         }
         __asm__ volatile("" : : "r"(b) : "memory");
     }
-    double seconds = (2.0 * filled - begin - now()) / rounds;
+    double seconds = (2.0 * filled - begin - bench_now()) / rounds;
     free(b);
     klu_free_numeric(&numeric, &common);
     klu_free_symbolic(&symbolic, &common);
@@ -89,14 +63,14 @@ static double time_klu_solve(struct dalcs_euler *e, int *order) {
  * mode again and again, nothing but the solve and its certificate. */
 static double time_osnsp(struct dalcs_euler *e, int rounds) {
     double sigma = 1.0 / e->grid.h;
-    double begin = now();
+    double begin = bench_now();
     for (int r = 0; r < rounds; r++) {
         for (int k = 0; k < e->n_components; k++) {
             struct dalcs_component *c = &e->component[k];
-            must(dalcs_osnsp_solve(&c->osnsp, sigma, c->u, c->scratch), "osnsp");
+            bench_must(dalcs_osnsp_solve(&c->osnsp, sigma, c->u, c->scratch), "osnsp");
         }
     }
-    return (now() - begin) / rounds;
+    return (bench_now() - begin) / rounds;
 }
 
 static void bench(const char *name, char *text, double h, int warm_up, int n_steps, double target,
@@ -105,17 +79,18 @@ static void bench(const char *name, char *text, double h, int warm_up, int n_ste
     struct dalcs_netlist netlist = {0};
     struct dalcs_circuit circuit;
     struct dalcs_network network;
-    must(dalcs_netlist_read_text(&netlist, name, text, strlen(text), &diag), name);
-    must(dalcs_circuit_build(&circuit, &netlist, &diag), name);
+    bench_must(dalcs_netlist_read_text(&netlist, name, text, strlen(text), &diag), name);
+    bench_must(dalcs_circuit_build(&circuit, &netlist, &diag), name);
     dalcs_netlist_finish(&netlist);
-    must(dalcs_network_build(&network, &circuit, &(struct dalcs_network_options){0}, &diag), name);
+    bench_must(dalcs_network_build(&network, &circuit, &(struct dalcs_network_options){0}, &diag),
+               name);
     struct dalcs_run_options o = dalcs_run_options_default();
     struct dalcs_osnsp_options options = dalcs_osnsp_options_of(&o);
     struct dalcs_euler e;
-    must(dalcs_euler_setup(&e, &circuit, &network, &options, h, 1e9 * h), name);
-    must(dalcs_euler_start(&e, network.initial), name);
+    bench_must(dalcs_euler_setup(&e, &circuit, &network, &options, h, 1e9 * h), name);
+    bench_must(dalcs_euler_start(&e, network.initial), name);
     for (int k = 0; k < warm_up; k++) {
-        must(dalcs_euler_step(&e), name);
+        bench_must(dalcs_euler_step(&e), name);
     }
     double step[REPEATS];
     double solve[REPEATS];
@@ -127,11 +102,11 @@ static void bench(const char *name, char *text, double h, int warm_up, int n_ste
         before.pivots += e.component[k].osnsp.counters.pivots;
     }
     for (int r = 0; r < REPEATS; r++) {
-        double begin = now();
+        double begin = bench_now();
         for (int k = 0; k < n_steps; k++) {
-            must(dalcs_euler_step(&e), name);
+            bench_must(dalcs_euler_step(&e), name);
         }
-        step[r] = (now() - begin) / n_steps;
+        step[r] = (bench_now() - begin) / n_steps;
         osnsp[r] = time_osnsp(&e, n_steps);
         solve[r] = time_klu_solve(&e, &order);
     }
@@ -142,10 +117,10 @@ static void bench(const char *name, char *text, double h, int warm_up, int n_ste
         pivots += e.component[k].osnsp.counters.pivots;
     }
     int parts = per_component ? e.n_components : 1;
-    double us = 1e6 * median(step, REPEATS) / parts;
-    double us_solve = 1e6 * median(solve, REPEATS);
+    double us = 1e6 * bench_median(step, REPEATS) / parts;
+    double us_solve = 1e6 * bench_median(solve, REPEATS);
     double steps = (double)REPEATS * n_steps * parts;
-    double us_osnsp = 1e6 * median(osnsp, REPEATS) / parts;
+    double us_osnsp = 1e6 * bench_median(osnsp, REPEATS) / parts;
     printf("%-22s n %5d  klu_solve %7.3f us  osnsp %8.3f us = %5.2f  step %8.3f us = %5.2f  "
            "(pivots %.3f, factors %.4f a step)  worst %.0e  target %g %s\n",
            name, order, us_solve, us_osnsp, us_osnsp / us_solve, us, us / us_solve,

@@ -1,0 +1,294 @@
+/* stage_plan.c - the parts of all matrices of a system, and analyses by mode. */
+#include "stage_plan.h"
+
+#include "lu.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Analyses and factors of so many unknowns altogether are kept, and never fewer than a few. */
+enum { MOST_ANALYZED = 2000000, MOST_FACTORED = 100000, FEWEST = 4, MOST = 256 };
+
+/* Columns of [-A; C] as rows. */
+static enum dalcs_status fill_base(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+    struct dalcs_triplets t = {0};
+    enum dalcs_status status = DALCS_OK;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int r = 0; r < plan->n_rows; r++) {
+        const struct dalcs_csr *a = r < n_equations ? &s->A : &s->C;
+        int from = r < n_equations ? r : r - n_equations;
+        for (int k = a->p[from]; k < a->p[from + 1] && status == DALCS_OK; k++) {
+            status = dalcs_triplets_add(&t, a->j[k], r, r < n_equations ? -a->x[k] : a->x[k]);
+        }
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_csr_compress(&plan->base, plan->n_rows, plan->n_rows, &t);
+    }
+    dalcs_triplets_finish(&t);
+    return status;
+}
+
+static enum dalcs_status fill_P(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+    struct dalcs_triplets t = {0};
+    enum dalcs_status status = DALCS_OK;
+    for (int r = 0; r < s->n_x; r++) {
+        for (int k = s->P.p[r]; k < s->P.p[r + 1] && status == DALCS_OK; k++) {
+            status = dalcs_triplets_add(&t, s->P.j[k], r, s->P.x[k]);
+        }
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_csr_compress(&plan->P, plan->n_rows, plan->n_rows, &t);
+    }
+    dalcs_triplets_finish(&t);
+    return status;
+}
+
+static enum dalcs_status fill_drive(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+    struct dalcs_triplets t = {0};
+    enum dalcs_status status = DALCS_OK;
+    for (int c = 0; c < s->n_x; c++) {
+        for (int k = plan->base.p[c]; k < plan->base.p[c + 1] && status == DALCS_OK; k++) {
+            status = dalcs_triplets_add(&t, plan->base.j[k], c, -plan->base.x[k]);
+        }
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_csr_compress(&plan->drive, plan->n_rows, s->n_x, &t);
+    }
+    dalcs_triplets_finish(&t);
+    return status;
+}
+
+/* Sources by rows: [E; -F], the constant ones summed. */
+static void fill_sources(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+    const struct dalcs_excitation *e = plan->stages->excitation;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int i = 0; i < s->n_inputs; i++) {
+        plan->wave_of_input[i] = -1;
+    }
+    for (int w = 0; w < e->n_waves; w++) {
+        plan->wave_of_input[e->wave[w].input] = w;
+    }
+    for (int r = 0; r < plan->n_rows; r++) {
+        const struct dalcs_csr *a = r < n_equations ? &s->E : &s->F;
+        int from = r < n_equations ? r : r - n_equations;
+        double sign = r < n_equations ? 1.0 : -1.0;
+        for (int k = a->p[from]; k < a->p[from + 1]; k++) {
+            int wave = plan->wave_of_input[a->j[k]];
+            if (wave < 0) {
+                plan->constant[r] += sign * a->x[k] * e->constant[a->j[k]];
+                continue;
+            }
+            plan->wave_row[plan->n_waves] = r;
+            plan->wave_of[plan->n_waves] = wave;
+            plan->wave_x[plan->n_waves++] = sign * a->x[k];
+        }
+        plan->wave_begin[r + 1] = plan->n_waves;
+    }
+}
+
+/* Stages from parts, and the value at 0 of the polynomial through them. */
+static void fill_combination(struct dalcs_stage_plan *plan) {
+    const struct dalcs_collocation *m = plan->stages->method;
+    long double at_0[DALCS_STAGE_PARTS] = {0.0L};
+    plan->n_parts = 1 + 2 * m->n_pairs;
+    for (int i = 0; i < m->s; i++) {
+        long double part[DALCS_STAGE_PARTS];
+        part[0] = m->exact_to[i];
+        for (int p = 0; p < m->n_pairs; p++) { /* 2 Re(to W) */
+            part[1 + 2 * p] = 2.0L * creall(m->exact_to_pair[i][p]);
+            part[2 + 2 * p] = -2.0L * cimagl(m->exact_to_pair[i][p]);
+        }
+        for (int q = 0; q < plan->n_parts; q++) {
+            plan->to[i + 1][q] = (double)part[q];
+            at_0[q] += m->exact_back[i] * part[q];
+        }
+    }
+    for (int q = 0; q < plan->n_parts; q++) {
+        plan->to[0][q] = (double)at_0[q];
+    }
+}
+
+static bool allocate(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+    size_t n = (size_t)plan->n_rows;
+    size_t n_entries = (size_t)(s->E.p[s->E.n_rows] + s->F.p[s->F.n_rows]);
+    plan->constant = dalcs_alloc(n, sizeof(double));
+    plan->wave_row = dalcs_alloc(n_entries, sizeof(int));
+    plan->wave_of = dalcs_alloc(n_entries, sizeof(int));
+    plan->wave_x = dalcs_alloc(n_entries, sizeof(double));
+    plan->wave_begin = dalcs_alloc(n + 1, sizeof(int));
+    plan->wave_of_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
+    plan->match = dalcs_alloc(n, sizeof(int));
+    plan->analysis = dalcs_alloc((size_t)plan->most_analyses, sizeof(*plan->analysis));
+    plan->rhs = dalcs_alloc(n, sizeof(double));
+    plan->share =
+        dalcs_alloc((size_t)plan->stages->excitation->n_waves, DALCS_N_SHARES * sizeof(double));
+    plan->missed = dalcs_alloc((size_t)s->n_x, sizeof(double));
+    plan->guard = dalcs_alloc((size_t)(s->n_pairs + plan->stages->n_watched), sizeof(double));
+    plan->right = dalcs_alloc(n, 2 * sizeof(double));
+    plan->solution = dalcs_alloc(n, 2 * sizeof(double));
+    plan->product = dalcs_alloc(n, 2 * sizeof(double));
+    plan->centre = dalcs_alloc((size_t)s->n_pairs, 2 * sizeof(double));
+    plan->left = dalcs_alloc(n, DALCS_STAGE_PARTS * sizeof(double));
+    return plan->constant != NULL && plan->wave_row != NULL && plan->wave_of != NULL &&
+           plan->wave_x != NULL && plan->wave_begin != NULL && plan->wave_of_input != NULL &&
+           plan->match != NULL && plan->analysis != NULL && plan->rhs != NULL &&
+           plan->share != NULL && plan->missed != NULL && plan->guard != NULL &&
+           plan->right != NULL && plan->solution != NULL && plan->product != NULL &&
+           plan->centre != NULL && plan->left != NULL;
+}
+
+static int how_many(int unknowns, int n) {
+    int affordable = unknowns / (n + 1);
+    return affordable < FEWEST ? FEWEST : affordable > MOST ? MOST : affordable;
+}
+
+static enum dalcs_status setup(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+    plan->n_rows = dalcs_system_n_columns(s);
+    plan->most_analyses = how_many(MOST_ANALYZED, plan->n_rows);
+    plan->most_kept = how_many(MOST_FACTORED, plan->n_rows);
+    if (!allocate(plan, s)) {
+        return DALCS_E_NOMEM;
+    }
+    for (int c = 0; c < plan->n_rows; c++) {
+        plan->match[c] = -1;
+    }
+    fill_sources(plan, s);
+    fill_combination(plan);
+    DALCS_TRY(fill_base(plan, s));
+    DALCS_TRY(fill_P(plan, s));
+    return fill_drive(plan, s);
+}
+
+enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) {
+    if (stages->plan != NULL) {
+        return DALCS_OK;
+    }
+    stages->plan = dalcs_alloc(1, sizeof(*stages->plan));
+    if (stages->plan == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    stages->plan->stages = stages;
+    enum dalcs_status status = setup(stages->plan, stages->system);
+    if (status != DALCS_OK) {
+        dalcs_stage_plan_destroy(stages);
+    }
+    return status;
+}
+
+static void drop_factors(struct dalcs_stages *stages, struct dalcs_stage_analysis *a) {
+    for (int q = 0; q < DALCS_STAGE_SYSTEMS; q++) {
+        dalcs_lu_drop(&a->numeric[q], q > 0, q > 0 ? &stages->klu_complex : &stages->klu);
+    }
+}
+
+static void forget(struct dalcs_stages *stages, struct dalcs_stage_analysis *a) {
+    drop_factors(stages, a);
+    klu_free_symbolic(&a->symbolic, &stages->klu);
+    free(a->mode);
+    *a = (struct dalcs_stage_analysis){0};
+}
+
+void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
+    struct dalcs_stage_plan *plan = stages->plan;
+    stages->plan = NULL;
+    if (plan == NULL) {
+        return;
+    }
+    for (int k = 0; k < plan->n_analyses; k++) {
+        forget(stages, &plan->analysis[k]);
+    }
+    dalcs_csr_finish(&plan->base);
+    dalcs_csr_finish(&plan->P);
+    dalcs_csr_finish(&plan->drive);
+    free(plan->constant);
+    free(plan->wave_row);
+    free(plan->wave_of);
+    free(plan->wave_x);
+    free(plan->wave_begin);
+    free(plan->wave_of_input);
+    free(plan->match);
+    free(plan->analysis);
+    free(plan->rhs);
+    free(plan->share);
+    free(plan->missed);
+    free(plan->guard);
+    free(plan->right);
+    free(plan->solution);
+    free(plan->product);
+    free(plan->centre);
+    free(plan->left);
+    free(plan);
+}
+
+/* A copy of i with each column's match first; NULL when out of memory. */
+static int *list_matches_first(const struct dalcs_stage_plan *plan, int n, int n_pairs,
+                               const int *pair, const int *p, const int *i) {
+    int n_equations = n - n_pairs;
+    int *first = dalcs_alloc((size_t)p[n], sizeof(int));
+    for (int c = 0; first != NULL && c < n; c++) {
+        int match = plan->match[c < n_equations ? c : n_equations + pair[c - n_equations]];
+        for (int k = p[c]; k < p[c + 1]; k++) {
+            int row = i[k] < n_equations ? i[k] : n_equations + pair[i[k] - n_equations];
+            first[k] = i[k];
+            if (row == match) {
+                first[k] = first[p[c]];
+                first[p[c]] = i[k];
+            }
+        }
+    }
+    return first;
+}
+
+static enum dalcs_status analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
+                                 int n_pairs, const int *pair, int *p, const int *i,
+                                 struct dalcs_stage_analysis *a) {
+    size_t words = (size_t)stages->n_words;
+    int *first = list_matches_first(stages->plan, n, n_pairs, pair, p, i);
+    *a = (struct dalcs_stage_analysis){.mode = mode != NULL ? dalcs_alloc(words + 1, sizeof(*mode))
+                                                            : NULL};
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (first != NULL && (mode == NULL || a->mode != NULL)) {
+        status = dalcs_lu_analyze(&a->symbolic, &stages->klu, n, p, first);
+    }
+    free(first);
+    if (status != DALCS_OK) {
+        free(a->mode);
+        return status;
+    }
+    if (mode != NULL) {
+        memcpy(a->mode, mode, words * sizeof(*mode));
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
+                                           int n_pairs, const int *pair, int *p, int *i,
+                                           struct dalcs_stage_analysis **analysis) {
+    struct dalcs_stage_plan *plan = stages->plan;
+    size_t bytes = (size_t)stages->n_words * sizeof(*mode);
+    int at = 0;
+    for (; at < plan->n_analyses; at++) {
+        const uint64_t *of = plan->analysis[at].mode;
+        if (mode == NULL || of == NULL ? mode == of : memcmp(of, mode, bytes) == 0) {
+            break;
+        }
+    }
+    struct dalcs_stage_analysis found;
+    if (at < plan->n_analyses) {
+        found = plan->analysis[at];
+    } else {
+        DALCS_TRY(analyze(stages, mode, n, n_pairs, pair, p, i, &found));
+        if (at == plan->most_analyses) {
+            forget(stages, &plan->analysis[--at]);
+        } else {
+            plan->n_analyses++;
+        }
+    }
+    memmove(plan->analysis + 1, plan->analysis, (size_t)at * sizeof(found));
+    plan->analysis[0] = found;
+    if (plan->n_analyses > plan->most_kept) {
+        drop_factors(stages, &plan->analysis[plan->most_kept]);
+    }
+    *analysis = &plan->analysis[0];
+    return DALCS_OK;
+}

@@ -1,0 +1,87 @@
+/* stage_plan.h - what the sparse factors of all modes of one system have in common.
+ *
+ * With every pair present the matrix of an eigenvalue is
+ *     M = [sigma P - A; C],     right-hand side  drive x_0 + constant + wave s~,
+ * where drive = [A; -C] on the states and the sources are split into what is constant and what
+ * varies. The matrix of a mode is M without the rows and columns of open pairs, so its pattern, and
+ * with it KLU's analysis, depends on the mode alone: the analyses of the last modes are kept. */
+#ifndef DALCS_STAGE_PLAN_H
+#define DALCS_STAGE_PLAN_H
+
+#include "stages.h"
+
+/* Unknowns are turned into stages in pieces of this many, which stay in the fastest cache. */
+enum {
+    DALCS_STAGE_PIECE = 64,
+    DALCS_STAGE_SYSTEMS = 1 + DALCS_MAX_CONJUGATES,
+    DALCS_STAGE_PARTS = 1 + 2 * DALCS_MAX_CONJUGATES
+};
+
+/* Where the shares of a wave in a step are: its values at the nodes, then these. */
+enum {
+    DALCS_SHARE_REAL = DALCS_MAX_NODES, /* seen by the real eigenvalue */
+    DALCS_SHARE_PAIR,                   /* by the complex ones: re, im, re, ... */
+    DALCS_SHARE_DRIFT = DALCS_SHARE_PAIR + 2 * DALCS_MAX_CONJUGATES,
+    DALCS_SHARE_NONE,        /* 0 */
+    DALCS_SHARE_RIPPLE,      /* missed between the nodes */
+    DALCS_SHARE_RIPPLE_RATE, /* the same, as the error estimate sees it */
+    DALCS_N_SHARES
+};
+
+/* What KLU knows of a mode. */
+struct dalcs_stage_analysis {
+    uint64_t *mode; /* NULL: all pairs present */
+    klu_symbolic *symbolic;
+    klu_numeric *numeric[DALCS_STAGE_SYSTEMS]; /* of the last step length, or NULL */
+};
+
+struct dalcs_stage_plan {
+    const struct dalcs_stages *stages;
+    int n_rows;              /* n_equations + n_pairs: rows and columns of M */
+    struct dalcs_csr base;   /* columns of M without P: row c lists column c */
+    struct dalcs_csr P;      /* columns of P */
+    struct dalcs_csr drive;  /* [n_rows][n_x] */
+    double *constant;        /* [n_rows] */
+    int n_waves;             /* entries of wave, by rows */
+    int *wave_row, *wave_of; /* [n_waves] */
+    double *wave_x;          /* [n_waves] */
+    int *wave_begin;         /* [n_rows + 1] */
+    int *wave_of_input;      /* [n_inputs] -1: constant */
+    /* Y_i = x_0 + sum over the parts (real, re, im, re, ...) of to[i] * part; to[0]: the value at 0
+     * of the polynomial through the stages */
+    double to[DALCS_MAX_NODES][DALCS_STAGE_PARTS];
+    int n_parts;
+
+    /* The row that each column had its pivot in when a mode was last factored, -1: none. KLU
+     * looks for a transversal and takes the first free row of each column: with this one first
+     * it hardly has to search, which takes quadratic time in a long multiplier. */
+    int *match; /* [n_rows] */
+
+    int n_analyses, most_analyses, most_kept;
+    struct dalcs_stage_analysis *analysis; /* newest first */
+
+    /* work */
+    double *rhs;      /* [n_rows] */
+    double *share;    /* [waves][DALCS_N_SHARES] */
+    double *missed;   /* [n_x] */
+    double *guard;    /* [n_pairs + watched] */
+    double *right;    /* [2 n_rows] of a singular system */
+    double *solution; /* [2 n_rows] */
+    double *product;  /* [2 n_rows] */
+    double *centre;   /* [2 n_pairs] */
+    double *left;     /* [parts][n_rows] what its equations disagree by */
+};
+
+/* Allocates stages->plan if it is not there yet. */
+enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) DALCS_MUST_CHECK;
+
+void dalcs_stage_plan_destroy(struct dalcs_stages *stages);
+
+/* KLU's analysis of a mode's pattern (p, i), whose last rows and columns are those of
+ * pair[n_pairs]; mode NULL: of the matrix with all pairs. It belongs to the plan and stays until
+ * the next call. */
+enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
+                                           int n_pairs, const int *pair, int *p, int *i,
+                                           struct dalcs_stage_analysis **analysis) DALCS_MUST_CHECK;
+
+#endif

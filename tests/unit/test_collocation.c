@@ -1,0 +1,238 @@
+/* test_collocation.c - the tables of the methods against closed forms and the conditions that define
+ * them. */
+#include "collocation.h"
+
+#include "run_tests.h"
+
+#include <float.h>
+#include <math.h>
+
+static const int STAGES[] = {1, 3, 5, 7};
+
+#define FOR_ALL_METHODS(c)                                                                         \
+    for (const struct dalcs_collocation *c = dalcs_collocation_of(1), *last_method = NULL;         \
+         c != last_method;                                                                         \
+         last_method = c->s == 7 ? c : NULL, c = c->s < 7 ? dalcs_collocation_of(c->s + 2) : c)
+
+static void check_near(long double a, long double b, double tolerance) {
+    ck_assert_msg(fabsl(a - b) <= tolerance, "%.21Lg is not %.21Lg to %g", a, b, tolerance);
+}
+
+/* Power series with coefficients of both signs. */
+static long double polynomial(int degree, int seed, long double x) {
+    long double sum = 0.0L;
+    for (int k = degree; k >= 0; k--) {
+        sum = sum * x + ((k * 7 + seed * 3) % 11 - 5) * 0.25L;
+    }
+    return sum;
+}
+
+START_TEST(test_closed_forms) {
+    for (int k = 0; k < 4; k++) {
+        const struct dalcs_collocation *c = dalcs_collocation_of(STAGES[k]);
+        ck_assert_int_eq(c->s, STAGES[k]);
+        ck_assert_int_eq(c->n_pairs, (STAGES[k] - 1) / 2);
+        ck_assert_double_eq(c->node[0], 0.0);
+        ck_assert_double_eq(c->node[c->s], 1.0);
+        for (int i = 0; i < c->s; i++) {
+            ck_assert(c->node[i] < c->node[i + 1]);
+        }
+    }
+    const struct dalcs_collocation *euler = dalcs_collocation_of(1);
+    ck_assert_double_eq(euler->lambda, 1.0);
+    ck_assert_double_eq(euler->to[0], 1.0);
+    ck_assert_double_eq(euler->from[0], 1.0);
+    /* Hairer and Wanner, Solving ODEs II, sec. IV.8 */
+    const struct dalcs_collocation *three = dalcs_collocation_of(3);
+    double a = cbrt(81.0);
+    double b = cbrt(9.0);
+    double re = (12.0 - a + b) / 60.0;
+    double im = (a + b) * sqrt(3.0) / 60.0;
+    double square = re * re + im * im;
+    check_near(three->node[1], (4.0L - sqrtl(6.0L)) / 10.0L, DBL_EPSILON);
+    check_near(three->node[2], (4.0L + sqrtl(6.0L)) / 10.0L, DBL_EPSILON);
+    check_near(three->lambda, 30.0 / (6.0 + a - b), 4 * DBL_EPSILON);
+    check_near(creal(three->mu[0]), re / square, 8 * DBL_EPSILON);
+    check_near(fabs(cimag(three->mu[0])), im / square, 8 * DBL_EPSILON);
+}
+
+END_TEST
+
+/* Node i as the table has it to the last digit: A 1 = c. */
+static long double butcher(const struct dalcs_collocation *c, int i, int j) {
+    long double sum = c->exact_to[i] * c->exact_from[j] / c->exact_lambda;
+    for (int p = 0; p < c->n_pairs; p++) {
+        sum += 2.0L * creall(c->exact_to_pair[i][p] * c->exact_from_pair[p][j] / c->exact_mu[p]);
+    }
+    return sum;
+}
+
+/* The matrix that the eigenvalues and vectors make satisfies A c^(k-1) = c^k / k for k up to s, which
+ * is collocation, and its last row integrates up to order 2s - 1. */
+START_TEST(test_order_conditions) {
+    FOR_ALL_METHODS(c) {
+        long double node[DALCS_MAX_STAGES] = {0.0L};
+        for (int i = 0; i < c->s; i++) {
+            for (int j = 0; j < c->s; j++) {
+                node[i] += butcher(c, i, j);
+            }
+            check_near(node[i], c->node[i + 1], 2 * DBL_EPSILON);
+        }
+        for (int k = 1; k <= 2 * c->s; k++) {
+            for (int i = k <= c->s ? 0 : c->s - 1; i < c->s; i++) {
+                long double sum = 0.0L;
+                for (int j = 0; j < c->s; j++) {
+                    sum += butcher(c, i, j) * powl(node[j], k - 1);
+                }
+                if (k < 2 * c->s) {
+                    check_near(sum, powl(node[i], k) / k, 1e-15);
+                } else {
+                    ck_assert(fabsl(sum - 1.0L / k) > 1e-9L);
+                }
+            }
+        }
+    }
+}
+
+END_TEST
+
+START_TEST(test_coordinates) {
+    FOR_ALL_METHODS(c) {
+        for (int i = 0; i < c->s; i++) {
+            for (int j = 0; j < c->s; j++) {
+                long double exact = c->exact_to[i] * c->exact_from[j];
+                double sum = c->to[i] * c->from[j];
+                for (int p = 0; p < c->n_pairs; p++) {
+                    exact += 2.0L * creall(c->exact_to_pair[i][p] * c->exact_from_pair[p][j]);
+                    sum += 2.0 * creal(c->to_pair[i][p] * c->from_pair[p][j]);
+                }
+                check_near(exact, i == j ? 1.0L : 0.0L, 1e-15);
+                check_near(sum, i == j ? 1.0L : 0.0L, 1e-12);
+            }
+        }
+        long double one = 0.0L;
+        for (int i = 0; i < c->s; i++) {
+            one += c->exact_from[i];
+            check_near(c->exact_to[i], c->to[i], DBL_EPSILON * fabs(c->to[i]));
+            check_near(c->exact_from[i], c->from[i], DBL_EPSILON * fabs(c->from[i]));
+        }
+        check_near(one, 1.0L, 1e-17);
+        check_near(c->exact_lambda, c->lambda, DBL_EPSILON * c->lambda);
+        for (int p = 0; p < c->n_pairs; p++) {
+            long double complex sum = 0.0L;
+            for (int i = 0; i < c->s; i++) {
+                sum += c->exact_from_pair[p][i];
+            }
+            check_near(cabsl(sum - 1.0L), 0.0L, 1e-17);
+            check_near(cabsl(c->exact_mu[p] - c->mu[p]), 0.0L, DBL_EPSILON * cabs(c->mu[p]));
+        }
+    }
+}
+
+END_TEST
+
+START_TEST(test_weights) {
+    FOR_ALL_METHODS(c) {
+        double weight[DALCS_MAX_NODES];
+        for (int node = 0; node <= c->s; node++) {
+            dalcs_collocation_weights(c, c->node[node], weight);
+            for (int k = 0; k <= c->s; k++) {
+                ck_assert_double_eq(weight[k], k == node ? 1.0 : 0.0);
+            }
+        }
+        for (int at = -3; at <= 23; at++) {
+            double theta = at / 20.0;
+            for (int seed = 0; seed < 4; seed++) {
+                long double sum = 0.0L;
+                dalcs_collocation_weights(c, theta, weight);
+                for (int k = 0; k <= c->s; k++) {
+                    sum += weight[k] * polynomial(c->s, seed, c->node[k]);
+                }
+                check_near(sum, polynomial(c->s, seed, theta), 1e-12);
+            }
+        }
+    }
+}
+
+END_TEST
+
+/* Through the stages alone, one degree less, back to the start; and where the nodes see least. */
+START_TEST(test_extrapolation) {
+    FOR_ALL_METHODS(c) {
+        for (int seed = 0; seed < 4; seed++) {
+            long double start = 0.0L;
+            long double exact = 0.0L;
+            long double between = c->test[0] * polynomial(c->s, seed, 0.0L);
+            for (int k = 1; k <= c->s; k++) {
+                exact += c->exact_back[k - 1] * polynomial(c->s - 1, seed, c->node[k]);
+                start += c->back[k - 1] * polynomial(c->s - 1, seed, c->node[k]);
+                between += c->test[k] * polynomial(c->s, seed, c->node[k]);
+            }
+            check_near(exact, polynomial(c->s - 1, seed, 0.0L), 1e-13); /* nodes are rounded */
+            check_near(start, polynomial(c->s - 1, seed, 0.0L), 1e-13);
+            check_near(between, polynomial(c->s, seed, c->test_node), 1e-14);
+        }
+        for (int at = 0; at <= 1000; at++) {
+            double product = 1.0;
+            for (int k = 0; k <= c->s; k++) {
+                product *= fabs(at / 1000.0 - c->node[k]);
+            }
+            ck_assert(product <= c->test_size * (1.0 + 1e-12));
+        }
+        double product = 1.0;
+        for (int k = 0; k <= c->s; k++) {
+            product *= fabs(c->test_node - c->node[k]);
+        }
+        check_near(product, c->test_size, 1e-14 * c->test_size);
+        ck_assert(c->test_factor >= 1.0);
+    }
+}
+
+END_TEST
+
+START_TEST(test_bernstein) {
+    FOR_ALL_METHODS(c) {
+        for (int seed = 0; seed < 4; seed++) {
+            double coefficient[DALCS_MAX_NODES] = {0.0};
+            double least = INFINITY;
+            double most = -INFINITY;
+            for (int k = 0; k <= c->s; k++) {
+                double value = (double)polynomial(c->s, seed, c->node[k]);
+                least = fmin(least, value);
+                most = fmax(most, value);
+                for (int i = 0; i <= c->s; i++) {
+                    coefficient[i] += c->to_bernstein[k][i] * value;
+                }
+            }
+            for (int i = 0; i <= c->s; i++) {
+                double room = c->bernstein_spread * (most - least) + 1e-13;
+                ck_assert(coefficient[i] >= least - room && coefficient[i] <= most + room);
+            }
+            for (int at = 0; at <= 20; at++) {
+                double theta = at / 20.0;
+                double sum = 0.0;
+                double binomial = 1.0;
+                for (int i = 0; i <= c->s; i++) {
+                    sum += binomial * pow(theta, i) * pow(1.0 - theta, c->s - i) * coefficient[i];
+                    binomial = binomial * (c->s - i) / (i + 1);
+                }
+                check_near(sum, polynomial(c->s, seed, theta), 1e-13);
+            }
+        }
+        /* The spread is attained by values that alternate with a row of the conversion. */
+        double worst = 0.0;
+        for (int i = 0; i <= c->s; i++) {
+            double sum = 0.0;
+            for (int k = 0; k <= c->s; k++) {
+                sum += fabs(c->to_bernstein[k][i]);
+            }
+            worst = fmax(worst, sum);
+        }
+        check_near(1.0 + 2.0 * c->bernstein_spread, worst, 1e-12 * worst);
+    }
+}
+
+END_TEST
+
+RUN_TESTS("collocation", test_closed_forms, test_order_conditions, test_coordinates, test_weights,
+          test_extrapolation, test_bernstein)
