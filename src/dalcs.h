@@ -135,7 +135,7 @@ struct dalcs_run_options {
                            netlist's or the default */
     double tolerance; /* of radau and auto: largest error of a waveform over its scale; 0: .options
                            reltol, else 1e-6 */
-    int stages;       /* of radau and auto: 1, 3, 5 or 7; 0: .options stages, else chosen */
+    int stages;       /* of radau, auto: 1, 3, 5 or 7; 0: .options stages, else chosen */
     double step;      /* s; the fixed step of euler and radau, the largest of auto; 0: .options
                            step; without either euler takes the tmax of .tran, else its tstep, and
                            radau controls its error with steps of at most tmax */
@@ -238,8 +238,8 @@ struct dalcs_report {
         double worst;      /* largest scaled residual of any accepted step */
         double time;       /* s */
         const char *where; /* "KCL at out", "branch v1", "complementarity of d1", "stages" */
-        double wrong_sign; /* of radau: most negative current or reverse voltage of a diode, over the
-                              largest current or voltage; where one has just changed sides it may
+        double wrong_sign; /* of radau: most negative current or reverse voltage of a diode, over
+                              the largest current or voltage; where one has just changed sides it may
                               be as large as the tolerance */
     } certificate;
 
