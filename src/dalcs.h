@@ -135,10 +135,10 @@ struct dalcs_run_options {
                            netlist's or the default */
     double tolerance; /* of radau and auto: largest error of a waveform over its scale; 0: .options
                            reltol, else 1e-6 */
-    int stages;       /* of radau: 1, 3, 5 or 7; 0: .options stages, else chosen */
-    double step;      /* s; the fixed step of euler and radau; 0: .options step; without either
-                           euler takes the tmax of .tran, else its tstep, and radau controls its
-                           error with steps of at most tmax */
+    int stages;       /* of radau, auto: 1, 3, 5 or 7; 0: .options stages, else chosen */
+    double step;      /* s; the fixed step of euler and radau, the largest of auto; 0: .options
+                           step; without either euler takes the tmax of .tran, else its tstep, and
+                           radau controls its error with steps of at most tmax */
     double compress;  /* leave rows out as long as straight lines through the others stay this near,
                            over each signal's scale; 0: .options compress, else keep all rows */
     const double *at; /* [n_at] ascending output times in s, none after the stop time,
@@ -155,8 +155,9 @@ struct dalcs_run_options {
     int max_outer;         /* proximal iterations per rung, 40 */
     int max_pivots;        /* per solve, on top of twice the number of pairs, 200 */
     size_t cache_bytes;    /* bound on factorisations kept over all components, 256 MiB */
-    int dense_limit;       /* components up to this many unknowns use dense step maps, 64; this
-                              and the bound may change the last bits of results */
+    int dense_limit;       /* components up to this many unknowns use dense step maps, 64 (radau:
+                              see doc/methods.md); this and the bound may change the last bits of
+                              results */
     size_t max_events;     /* events and jumps kept when recording, 1e6 */
     const char *dump_path; /* where to write an OSNSP that failed; NULL: nowhere */
 };
@@ -174,7 +175,7 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
 
 /* A diode or switch changed sides. */
 struct dalcs_event {
-    double time;         /* s, the end of the step that found it */
+    double time;         /* s; of euler the end of the step that found it */
     const char *element; /* "d1", "s1" */
     bool on;             /* now conducts, or is closed */
 };
@@ -223,7 +224,7 @@ struct dalcs_report {
     struct {
         long steps;          /* accepted time steps, over all components */
         long rejected;       /* steps repeated with a smaller one */
-        long restarts;       /* micro-steps of implicit Euler that decided a mode or a jump */
+        long restarts;       /* pairs of micro-steps that decided a mode or a jump */
         long euler_steps;    /* steps where radau fell back to implicit Euler */
         long osnsp;          /* one-step problems solved, over all components */
         long pivots;         /* mode changes tried */
@@ -237,8 +238,8 @@ struct dalcs_report {
         double worst;      /* largest scaled residual of any accepted step */
         double time;       /* s */
         const char *where; /* "KCL at out", "branch v1", "complementarity of d1", "stages" */
-        double wrong_sign; /* of radau: most negative current or reverse voltage of a diode, over the
-                              largest current or voltage; where one has just changed sides it may
+        double wrong_sign; /* of radau: most negative current or reverse voltage of a diode, over
+                              the largest current or voltage; where one has just changed sides it may
                               be as large as the tolerance */
     } certificate;
 
