@@ -112,21 +112,30 @@ class Search:
             for setting in self.fastest(target, 1):
                 say(f"  {target:g}: {setting}: {self.tried[setting].error:.2e} in "
                     f"{1e3 * self.tried[setting].seconds:.2f} ms")
-        say(f"  {len(self.tried)} settings tried, {self.failures()} failed; smallest error "
-            f"{self.smallest_error():.2e}")
 
-    def failures(self):
-        return sum(bool(result.reason) for result in self.tried.values())
+    def winners(self):
+        """For each target the two fastest settings; what they are timed for again decides."""
+        return list(dict.fromkeys(setting for target in TARGETS
+                                  for setting in self.fastest(target, 2)))
 
-    def smallest_error(self):
-        return min((result.error for result in self.tried.values()), default=math.inf)
+    def summary(self):
+        """What is kept of a search, in the form of the settings file."""
+        return {"tried": len(self.tried),
+                "given_up": sum(bool(result.reason) for result in self.tried.values()),
+                "smallest_error": min((result.error for result in self.tried.values()),
+                                      default=math.inf),
+                "settings": [dataclasses.asdict(setting) for setting in self.winners()]}
 
 
-def save(search, path):
-    path.write_text(json.dumps([[dataclasses.asdict(setting), dataclasses.asdict(result)]
-                                for setting, result in search.tried.items()], indent=0))
+def save(path, name, summary):
+    known = json.loads(path.read_text()) if path.exists() else {}
+    known[name] = summary
+    path.write_text(json.dumps(known, indent=1) + "\n")
 
 
-def load(search, path):
-    for setting, result in json.loads(path.read_text()):
-        search.tried[Setting(**setting)] = ngspice_deck.Run(**result)
+def load(search, path, name):
+    """Tries the settings that an earlier search found; its summary, None where there was none."""
+    summary = json.loads(path.read_text()).get(name) if path.exists() else None
+    for setting in summary["settings"] if summary else []:
+        search.attempt(Setting(**setting))
+    return summary

@@ -86,27 +86,22 @@ def run_dalcs(program, netlist, circuit, repeats, rows):
         read_answers(done.stdout, rows)
 
 
-def search_ngspice(circuit, reference, cache, reuse, say):
+def search_ngspice(circuit, reference, settings, again, say):
+    """The search, made now or recalled from the settings file, and its summary."""
     search = ngspice_search.Search(circuit.text(), reference, circuit.period, circuit.gated,
                                    circuit.large)
-    if reuse and cache.exists():
-        ngspice_search.load(search, cache)
-    else:
+    summary = None if again else ngspice_search.load(search, settings, circuit.name)
+    if summary is None:
         search.run(say)
-        ngspice_search.save(search, cache)
-    return search
+        summary = search.summary()
+        ngspice_search.save(settings, circuit.name, summary)
+    return search, summary
 
 
 def ngspice_rows(search):
-    """For each target the two fastest settings; the timing decides between them."""
-    rows = {}
-    for target in ngspice_search.TARGETS:
-        for setting in search.fastest(target, 2):
-            if setting not in rows:
-                result = search.tried[setting]
-                rows[setting] = Row("ngspice", str(setting), result.error, result.worst,
-                                    result.points)
-    return rows
+    return {setting: Row("ngspice", str(setting), search.tried[setting].error,
+                         search.tried[setting].worst, search.tried[setting].points)
+            for setting in search.winners()}
 
 
 def run_ngspice(search, rows):
