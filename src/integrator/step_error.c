@@ -18,6 +18,11 @@ static const double smallest_pair = 1e-2;
 /* No column is known better than this part of what would balance the largest of the others. */
 static const double rounding_part = 2e-14;
 
+/* A voltage that is 0 is no better than what rounding of this step's currents drives through the
+ * largest conductance of the circuit, nor a current than rounding of the voltages through the least:
+ * the same part, over what find_cross_scales counts as nothing. */
+static const double crossed = 2e-8;
+
 /* Sources that disagree by more than this part of the largest signal. */
 static const double clash_part = 1e-9;
 
@@ -118,13 +123,13 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
     const double *first = part->out;
     const double *final = part->out + part->stages.method->s * l->stride;
     const double *known = part->out + last_node(part, end) * l->stride;
-    *q = (struct dalcs_step_quality){.unit = {part->unit_scale[0], part->unit_scale[1]}};
-    if (part->fresh) {
-        raise_units(part, first, q->unit);
+    double here[2] = {0.0, 0.0};
+    raise_units(part, known, here);
+    if (part->fresh && known != first) {
+        raise_units(part, first, here);
     }
-    if (known != first) {
-        raise_units(part, known, q->unit);
-    }
+    *q = (struct dalcs_step_quality){
+        .unit = {larger(here[0], part->unit_scale[0]), larger(here[1], part->unit_scale[1])}};
     cross_units(part, q->unit);
     const double *natural = dalcs_stage_natural_units(entry);
     const double *inverse = natural + n_equations;
@@ -133,7 +138,8 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
         balanced = larger(balanced, fabs(final[c]) * inverse[c]);
     }
     double rounding = rounding_part * part->rounding * balanced;
-    double besides[2] = {0.1 * r->options.vntol, 0.1 * r->options.abstol};
+    double besides[2] = {0.1 * r->options.vntol + crossed * part->cross[0] * here[1],
+                         0.1 * r->options.abstol + crossed * part->cross[1] * here[0]};
     double tolerance = r->inner_tolerance;
     bool curved = part->excitation.is_curved;
     int n_judged = curved ? n_equations + s->n_pairs : s->n_x;
