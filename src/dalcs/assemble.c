@@ -218,8 +218,7 @@ static enum dalcs_status stamp_diode(struct stamps *b, int device) {
     DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], m->vfwd, m->ron, pair));
     if (isfinite(m->vrev)) {
         pair.is_breakdown = true;
-        DALCS_TRY(
-            stamp_pair(b, d->node[1], d->node[0], m->vrev, m->rrev, pair));
+        DALCS_TRY(stamp_pair(b, d->node[1], d->node[0], m->vrev, m->rrev, pair));
     }
     return isfinite(m->roff) ? dalcs_stamp_conductance(b, d, 1.0 / m->roff) : DALCS_OK;
 }

@@ -151,13 +151,13 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
     }
     found.falls = true;
     double root = -1.0;
-    double before[DALCS_MAX_NODES];
     if (below > 0.0) {
+        double before[DALCS_MAX_NODES];
         subdivide(n, b, below, before, rest);
         root = find_root(n, before, 0.0, below, false, MAX_DEPTH);
-    }
-    for (int i = 0; i < n && below > 0.0; i++) {
-        found.peak = fmax(found.peak, before[i]);
+        for (int i = 0; i < n; i++) {
+            found.peak = fmax(found.peak, before[i]);
+        }
     }
     found.at_once = root < 0.0;
     found.theta = found.at_once ? 0.0 : root * end;

@@ -108,8 +108,8 @@ static double largest_state(const struct dalcs_system *s, const double *y, bool 
     return largest;
 }
 
-/* 1/2 d' storage d for d = after - before: what a jump dissipates. */
-static double jump_energy(const struct dalcs_system *s, const double *before, const double *after) {
+double dalcs_euler_jump_energy(const struct dalcs_system *s, const double *before,
+                               const double *after) {
     double energy = 0.0;
     for (int i = 0; i < s->n_x; i++) {
         for (int k = s->storage.p[i]; k < s->storage.p[i + 1]; k++) {
@@ -188,7 +188,7 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
                                         .after = e->after,
                                         .charge = e->charge,
                                         .flux = e->flux,
-                                        .energy_lost = jump_energy(s, before, e->after),
+                                        .energy_lost = dalcs_euler_jump_energy(s, before, e->after),
                                     });
 }
 

@@ -63,4 +63,8 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) DALCS_MUST_CHECK;
 /* At a jump of the sources: y becomes the values just after e->t; the state stays. */
 enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) DALCS_MUST_CHECK;
 
+/* 1/2 d' storage d for d = after - before, states [n_x]: what a jump dissipates, J. */
+double dalcs_euler_jump_energy(const struct dalcs_system *s, const double *before,
+                               const double *after);
+
 #endif

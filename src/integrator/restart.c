@@ -68,17 +68,6 @@ static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *p
     return DALCS_OK;
 }
 
-static double jump_energy(const struct dalcs_system *s, const double *before, const double *after) {
-    double energy = 0.0;
-    for (int i = 0; i < s->n_x; i++) {
-        for (int k = s->storage.p[i]; k < s->storage.p[i + 1]; k++) {
-            int j = s->storage.j[k];
-            energy += 0.5 * s->storage.x[k] * (after[i] - before[i]) * (after[j] - before[j]);
-        }
-    }
-    return energy;
-}
-
 /* The states just after part->t from the micro-steps y1 and y2. Does any jump, and by more than the
  * error that the state of an event has? A fast transient moves in both micro-steps and is left to be
  * stepped through. */
@@ -127,7 +116,7 @@ static enum dalcs_status report_jump(struct dalcs_radau *r, struct dalcs_radau_p
                                         .after = after,
                                         .charge = e->charge,
                                         .flux = e->flux,
-                                        .energy_lost = jump_energy(s, part->x, after),
+                                        .energy_lost = dalcs_euler_jump_energy(s, part->x, after),
                                     });
 }
 

@@ -218,8 +218,8 @@ bool dalcs_recorder_wants_sides(const struct dalcs_recorder *r, double t) {
     return r->schedule.kind != DALCS_AT_TIMES && t >= r->schedule.start;
 }
 
-enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_euler *e, double t,
-                                     bool is_due) {
+enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_euler *e,
+                                     double t, bool is_due) {
     r->schedule.next += is_due ? 1 : 0;
     dalcs_recorder_evaluate(r->network, e, r->now);
     return emit(r, t, r->now);

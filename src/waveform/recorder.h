@@ -66,8 +66,8 @@ double dalcs_recorder_due(const struct dalcs_recorder *r);
 bool dalcs_recorder_wants_sides(const struct dalcs_recorder *r, double t);
 
 /* A row of e's values, evaluated at time t; is_due: the one that was due. */
-enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_euler *e, double t,
-                                     bool is_due) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_euler *e,
+                                     double t, bool is_due) DALCS_MUST_CHECK;
 
 /* Modes that changed at e->t become events. */
 enum dalcs_status dalcs_recorder_events(struct dalcs_recorder *r,
