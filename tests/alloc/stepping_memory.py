@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Nothing allocates between steps, and a long run needs no more memory than a short one.
+"""Nothing allocates between steps of implicit Euler, and whatever the method a long run needs no more
+memory than a short one.
 
 usage: stepping_memory.py PROGRAM LIBRARY
 
@@ -45,10 +46,27 @@ R1 out 0 2
 .end
 """,
 }
+# Events without a step given: four in a period.
+SWITCHING = """Buck converter, 100 kHz
+Vin in 0 12
+Vg g 0 PULSE(0 1 0 0 0 4u 10u)
+S1 in sw g 0 sm
+D1 0 sw
+L1 sw out 47u
+C1 out 0 10u
+R1 out 0 4
+.model sm SW(Vt=0.5)
+.tran 10u {stop} uic
+.save v(out) i(l1)
+.end
+"""
+PERIOD = 10e-6
+EVENTS_A_PERIOD = 4
 STEP = 100e-6
 EXTRA_CALLS = 2        # nothing is known to need them
 EXTRA_RSS = 1024       # kB
 EXTRA_HEAP = 4096      # bytes
+MORE = 0.1             # steps and modes kept by the default method, which come and go
 
 
 def measure(program, library, netlist, steps):
@@ -59,6 +77,21 @@ def measure(program, library, netlist, steps):
         if done.returncode != 0:
             raise AssertionError(f"status {done.returncode}: {done.stderr.decode()}")
         print(f"{steps:>9} steps: {tally.calls} allocations, peak {tally.peak} bytes, "
+              f"{tally.peak_rss} kB resident, {tally.live} bytes never freed")
+        return tally
+
+
+def measure_events(program, library, events):
+    stop = events / EVENTS_A_PERIOD * PERIOD
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        (folder / "circuit.cir").write_text(SWITCHING.format(stop=stop))
+        (folder / "times").write_text(f"{stop / 3}\n{stop}\n")
+        done, tally = run_preloaded(library, [program, "run", "circuit.cir", "-o", "out.csv",
+                                              "--at", "times", "--quiet"], folder)
+        if done.returncode != 0:
+            raise AssertionError(f"status {done.returncode}: {done.stderr.decode()}")
+        print(f"{events:>9} events: {tally.calls} allocations, peak {tally.peak} bytes, "
               f"{tally.peak_rss} kB resident, {tally.live} bytes never freed")
         return tally
 
@@ -80,6 +113,13 @@ def main():
                     ("kB resident", tally.peak_rss - first.peak_rss, EXTRA_RSS)):
                 checker.check(more <= allowed, f"{name}: {more} more {what} for {steps} steps")
             checker.check(tally.peak_rss > 0 and tally.calls > 0, f"{name}: nothing was counted")
+    print("events of the default method")
+    tallies = [measure_events(program, library, events) for events in ladder[:3]]
+    for events, tally in zip(ladder[1:], tallies[1:]):
+        for what, now, before in (("bytes at the peak", tally.peak, tallies[0].peak),
+                                  ("kB resident", tally.peak_rss, tallies[0].peak_rss)):
+            checker.check(now <= (1 + MORE) * before,
+                          f"{now} {what} for {events} events, {before} for {ladder[0]}")
     return checker.finish()
 
 

@@ -15,16 +15,22 @@ CASES = ["hard/hc06", "hard/hc16", "hard/hc17", "hard/hc24", "hard/hc25",
          "multipliers/greinacher", "converters/buck_dcm"]
 
 
+def check(checker, case, method):
+    netlist = NETLISTS / f"{case}.cir"
+    first = run(sys.argv[1], netlist, method=method)
+    # Long names move everything on the stack and on the heap.
+    second = run(sys.argv[1], netlist, method=method,
+                 environment={"DALCS_TEST_PADDING": "x" * 5000})
+    checker.check(first.status == 0 and first.output,
+                  f"{case} with {method}: exit {first.status}: {first.stderr}")
+    checker.check(first.output == second.output, f"{case} with {method}: two runs differ")
+
+
 def main():
     checker = Checker("repeatable")
     for case in CASES:
-        netlist = NETLISTS / f"{case}.cir"
-        first = run(sys.argv[1], netlist)
-        # Long names move everything on the stack and on the heap.
-        second = run(sys.argv[1], netlist, environment={"DALCS_TEST_PADDING": "x" * 5000})
-        checker.check(first.status == 0 and first.output,
-                      f"{case}: exit {first.status}: {first.stderr}")
-        checker.check(first.output == second.output, f"{case}: two runs differ")
+        for method in ("euler", "auto"):
+            check(checker, case, method)
     return checker.finish()
 
 

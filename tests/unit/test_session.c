@@ -40,12 +40,17 @@ static struct dalcs_session *read_good(const char *text) {
     return session;
 }
 
-static enum dalcs_status run(struct dalcs_session *session, struct rows *rows) {
+static enum dalcs_status run_with(struct dalcs_session *session, const char *method,
+                                  struct rows *rows) {
     struct dalcs_run_options options = dalcs_run_options_default();
-    options.method = "euler";
+    options.method = method;
     const struct dalcs_sink sink = {.user = rows, .begin = take_plot, .row = take_row};
     rows->n_values = 0;
     return dalcs_session_run(session, &options, &sink);
+}
+
+static enum dalcs_status run(struct dalcs_session *session, struct rows *rows) {
+    return run_with(session, "euler", rows);
 }
 
 static struct rows rows;
@@ -234,6 +239,28 @@ START_TEST(test_memory_of_jumps) {
 
 END_TEST
 
+/* Events of the default method: no more than asked for, the others counted. */
+START_TEST(test_bounded_events) {
+    struct dalcs_session *session =
+        read_good("chopper\nV1 a 0 1\nVg g 0 PULSE(0 1 0.5u 0 0 0.5u 1u)\nS1 a b g 0 sm\n"
+                  ".model sm SW(Vt=0.5)\nR1 b c 1\nC1 c 0 1u\n.tran 1u 100u\n");
+    struct dalcs_run_options options = dalcs_run_options_default();
+    options.record = true;
+    options.max_events = 10;
+    const struct dalcs_sink sink = {0};
+    ck_assert_int_eq(dalcs_session_run(session, &options, &sink), DALCS_OK);
+    const struct dalcs_report *report = dalcs_session_report(session);
+    ck_assert_uint_eq(report->n_events, 10);
+    ck_assert_uint_eq(report->n_events_dropped, 189);
+    for (size_t k = 0; k < report->n_events; k++) {
+        ck_assert_double_eq_tol(report->event[k].time, 0.5e-6 * (double)(k + 1), 1e-18);
+        ck_assert(report->event[k].on == (k % 2 == 0));
+    }
+    dalcs_session_destroy(session);
+}
+
+END_TEST
+
 /* ---- Initial conditions -------------------------------------------------------------------- */
 
 /* .ic v(a,b) between two parts of a circuit that share only ground. */
@@ -328,16 +355,16 @@ static const char *const circuit[] = {
     ".tran 1u 400u\n"};
 
 struct task {
-    const char *text;
+    const char *text, *method;
     struct rows rows;
 };
 
-static struct task task[6];
+static struct task task[8];
 
 static void *work(void *user) {
     struct task *t = user;
     struct dalcs_session *session = read_good(t->text);
-    enum dalcs_status status = run(session, &t->rows);
+    enum dalcs_status status = run_with(session, t->method, &t->rows);
     dalcs_session_destroy(session);
     return status == DALCS_OK ? t : NULL;
 }
@@ -349,6 +376,7 @@ START_TEST(test_threads) {
     pthread_t thread[N_TASKS];
     for (int k = 0; k < N_TASKS; k++) {
         task[k].text = circuit[k % 2];
+        task[k].method = k % 4 < 2 ? "auto" : "euler";
         ck_assert_int_eq(pthread_create(&thread[k], NULL, work, &task[k]), 0);
     }
     for (int k = 0; k < N_TASKS; k++) {
@@ -358,7 +386,7 @@ START_TEST(test_threads) {
     }
     for (int k = 0; k < N_TASKS; k++) {
         struct dalcs_session *alone = read_good(circuit[k % 2]);
-        ck_assert_int_eq(run(alone, &rows), DALCS_OK);
+        ck_assert_int_eq(run_with(alone, task[k].method, &rows), DALCS_OK);
         dalcs_session_destroy(alone);
         ck_assert_uint_gt(rows.n_values, 1000);
         ck_assert_uint_eq(task[k].rows.n_values, rows.n_values);
@@ -369,6 +397,6 @@ START_TEST(test_threads) {
 END_TEST
 
 RUN_TESTS("session", test_wrong_options, test_method_and_tolerance, test_step_without_states,
-          test_cancel, test_memory_of_jumps, test_initial_across_parts, test_initial_beside_short,
-          test_initial_of_floating_part, test_certificate_of_held_point, test_shorts_in_a_loop,
-          test_threads)
+          test_cancel, test_memory_of_jumps, test_bounded_events, test_initial_across_parts,
+          test_initial_beside_short, test_initial_of_floating_part, test_certificate_of_held_point,
+          test_shorts_in_a_loop, test_threads)

@@ -47,8 +47,8 @@ static int step(uint64_t mode, double at, double h, const double *state) {
     const struct dalcs_stage_entry *entry = get(mode, h);
     int n_clashes = dalcs_stage_n_clashes(entry);
     ck_assert_int_le(stages.layout.n_fixed + n_clashes + 8, MOST_OUT);
-    if (s->n_x > 0) { /* NULL of no states is not for memcpy */
-        memcpy(in, state, (size_t)s->n_x * sizeof(double));
+    for (int k = 0; k < s->n_x; k++) {
+        in[k] = state[k];
     }
     in[s->n_x] = 1.0;
     dalcs_excitation_enter(&x, at);
