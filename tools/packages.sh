@@ -7,7 +7,7 @@
 packages_of() {
     case $1 in
         build) echo gcc libc6-dev meson ninja-build pkg-config libsuitesparse-dev liblapacke-dev \
-            uthash-dev ;;
+            libgfortran-12-dev uthash-dev ;;
         test) echo check g++ libglpk-dev python3 ;;
         plot) echo gnuplot-nox ;;
         crosscheck) echo ngspice python3 ;;
