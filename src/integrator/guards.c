@@ -9,6 +9,10 @@
  * event. */
 static const double band_over_tolerance = 10.0;
 
+/* The part of it that counts in later steps where such a pair goes on falling: a diode that waits for
+ * the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. */
+static const double falling_part = 1e-3;
+
 /* What rounding leaves of a zero, over the unit's scale. */
 static const double noise = 2e-13;
 
@@ -101,6 +105,7 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
     double band = band_of(r, part);
     /* What crosses at the stop time, up to the error, is left to a longer run. */
     bool stops = end <= 1.0 && part->t + end * part->h >= r->options.stop - r->resolution;
+    int last = part->stages.layout.n_nodes - 1;
     part->n_crossed = 0;
     *at_once = false;
     for (int g = 0; g < n_guards(part); g++) {
@@ -112,6 +117,9 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
         }
         double scale = scale_of(part, g, unit);
         double depth = (part->armed[g] && !stops ? noise * part->rounding : band) * scale;
+        if (!part->armed[g] && !part->fresh && !stops && value[last * stride] < value[0]) {
+            depth *= falling_part;
+        }
         struct dalcs_crossing c =
             dalcs_crossing_find(part->stages.method, value, stride, end, depth);
         if (!c.falls || c.theta > first + together) {
@@ -156,7 +164,7 @@ bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *u
 bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     bool found = false;
-    for (int d = 0; d < p->system->n_pairs; d++) {
+    for (int d = 0; d < p->system->n_pairs && p->system->n_pairs <= MANY_PAIRS; d++) {
         if (dalcs_osnsp_is_on(p, d) && stays_tied(part, d, unit)) {
             dalcs_osnsp_command(p, d, false);
             found = true;

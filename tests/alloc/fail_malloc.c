@@ -4,8 +4,11 @@
  * DALCS_FAIL_FROM=N that one and all later ones return NULL
  * DALCS_TALLY=FILE  a file that receives struct tally, up to date at every moment
  *
- * Allocations are counted from the first call after this library's constructor. Not for threads.
+ * Allocations are counted from the first call in main: what the constructors of other libraries do
+ * without memory, such as Fortran's, is not the program's to answer for. Not for threads.
  */
+#define _GNU_SOURCE
+#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <malloc.h>
@@ -58,7 +61,25 @@ __attribute__((constructor)) static void start(void) {
             close(file);
         }
     }
+}
+
+typedef int main_function(int, char **, char **);
+typedef int start_function(main_function *, int, char **, void (*)(void), void (*)(void),
+                           void (*)(void), void *);
+
+static main_function *program;
+
+static int counted_main(int argc, char **argv, char **environment) {
     counting = 1;
+    return program(argc, argv, environment);
+}
+
+/* glibc's own, with counted_main between. */
+int __libc_start_main(main_function *main, int argc, char **argv, void (*init)(void),
+                      void (*finish)(void), void (*unload)(void), void *stack) {
+    start_function *next = (start_function *)(uintptr_t)dlsym(RTLD_NEXT, "__libc_start_main");
+    program = main;
+    return next(counted_main, argc, argv, init, finish, unload, stack);
 }
 
 __attribute__((destructor)) static void stop(void) {

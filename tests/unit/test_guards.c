@@ -142,7 +142,13 @@ START_TEST(test_arming) {
     draw("d1", 0.0, -1e-9); /* an armed one falls */
     ck_assert_double_eq_tol(first_fall(1.0), 0.0, 1e-14);
     armed[find_pair(component.system, "d1")] = false;
+    part.fresh = true;
     ck_assert(isinf(first_fall(1.0))); /* within the error */
+    part.fresh = false;
+    draw("d1", -1e-9, -1e-10); /* later steps let it come back from there, but not go on */
+    ck_assert(isinf(first_fall(1.0)));
+    draw("d1", -1e-10, -1e-9);
+    ck_assert_double_eq(dalcs_guards_first_fall(&r, &part, 1.0, unit, &at_once), 0.0);
     finish();
 }
 
