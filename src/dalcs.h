@@ -199,6 +199,17 @@ struct dalcs_jump {
     } * impulse;
 
     double energy_lost; /* J, 1/2 |dx|^2 in the storage metric */
+    double source_work; /* J, what the sources delivered in the jump */
+};
+
+/* A signal that the circuit does not determine: any value between the bounds belongs to an exact
+ * solution. */
+struct dalcs_nonunique {
+    const char *signal;  /* "i(d1)" */
+    double time;         /* s, when it was found first */
+    double lower, upper; /* V or A; may be infinite */
+    double value;        /* the least-norm choice, which the results have */
+    const char *because; /* "d1 parallel to d2" */
 };
 
 /* What a run did. Strings and arrays are borrowed from the session and live until its next run. */
@@ -251,6 +262,19 @@ struct dalcs_report {
     const struct dalcs_event *event;
     size_t n_jumps, n_jumps_dropped;
     const struct dalcs_jump *jump;
+    size_t n_nonunique; /* each signal once */
+    const struct dalcs_nonunique *nonunique;
+
+    struct { /* J, over the whole .tran: sources = resistors + diodes + jumps + stored_change + method */
+        bool present;
+        double sources;       /* delivered by V and I, and by controlled sources */
+        double resistors;     /* dissipated, in Ron and Roff of switches and Roff of diodes as well */
+        double diodes;        /* in Vfwd, Ron and breakdown */
+        double jumps;         /* lost when states jumped */
+        double stored_change; /* in capacitors and inductors, end minus start */
+        double method;        /* dissipated by the method: no circuit does */
+        double balance;       /* left side minus right side: rounding */
+    } energy;
 
     struct {
         bool present;

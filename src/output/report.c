@@ -5,6 +5,8 @@
 #include "json.h"
 #include "method_text.h"
 
+#include <math.h>
+
 /* For each component; what was asked for where there was no .tran. */
 static void write_method(struct dalcs_json *json, const struct dalcs_report *report) {
     dalcs_json_open(json, "method", '{', false);
@@ -100,6 +102,7 @@ static void write_jump(struct dalcs_json *json, const struct dalcs_jump *jump) {
     }
     dalcs_json_close(json, '}');
     dalcs_json_number(json, "energy_lost", jump->energy_lost);
+    dalcs_json_number(json, "source_work", jump->source_work);
     dalcs_json_close(json, '}');
 }
 
@@ -112,6 +115,46 @@ static void write_jumps(struct dalcs_json *json, const struct dalcs_report *repo
     if (report->n_jumps_dropped > 0) {
         dalcs_json_integer(json, "jumps_dropped", (long)report->n_jumps_dropped);
     }
+}
+
+/* JSON has no infinity: "inf" and "-inf" stand for it. */
+static void write_bound(struct dalcs_json *json, const char *key, double value) {
+    if (isinf(value)) {
+        dalcs_json_string(json, key, value > 0.0 ? "inf" : "-inf");
+    } else {
+        dalcs_json_number(json, key, value);
+    }
+}
+
+static void write_nonunique(struct dalcs_json *json, const struct dalcs_report *report) {
+    dalcs_json_open(json, "nonunique", '[', false);
+    for (size_t i = 0; i < report->n_nonunique; i++) {
+        const struct dalcs_nonunique *n = &report->nonunique[i];
+        dalcs_json_open(json, NULL, '{', false);
+        dalcs_json_string(json, "signal", n->signal);
+        write_bound(json, "lower", n->lower);
+        write_bound(json, "upper", n->upper);
+        dalcs_json_number(json, "value", n->value);
+        dalcs_json_number(json, "time", n->time);
+        dalcs_json_string(json, "because", n->because);
+        dalcs_json_close(json, '}');
+    }
+    dalcs_json_close(json, ']');
+}
+
+static void write_energy(struct dalcs_json *json, const struct dalcs_report *report) {
+    if (!report->energy.present) {
+        return;
+    }
+    dalcs_json_open(json, "energy", '{', false);
+    dalcs_json_number(json, "sources", report->energy.sources);
+    dalcs_json_number(json, "resistors", report->energy.resistors);
+    dalcs_json_number(json, "diodes", report->energy.diodes);
+    dalcs_json_number(json, "jumps", report->energy.jumps);
+    dalcs_json_number(json, "stored_change", report->energy.stored_change);
+    dalcs_json_number(json, "method", report->energy.method);
+    dalcs_json_number(json, "balance", report->energy.balance);
+    dalcs_json_close(json, '}');
 }
 
 static void write_infeasible(struct dalcs_json *json, const struct dalcs_report *report) {
@@ -147,6 +190,8 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     write_states(&json, "final", report, report->final);
     write_events(&json, report);
     write_jumps(&json, report);
+    write_nonunique(&json, report);
+    write_energy(&json, report);
     write_infeasible(&json, report);
     dalcs_json_close(&json, '}');
 }

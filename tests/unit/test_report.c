@@ -10,7 +10,9 @@ static const double start[] = {4.0, -0.1}, final[] = {NAN, -INFINITY};
 static const struct dalcs_event event[] = {{0.005, "d1", true}, {0.25, "s1", false}};
 static const struct dalcs_jump_state jump_state[] = {{"c1", 10.0, 4.0}};
 static const struct dalcs_impulse impulse[] = {{"d1", false, 6e-6}, {"d2", true, 0.001}};
-static const struct dalcs_jump jump[] = {{0.0, 1, jump_state, 2, impulse, 24e-6}};
+static const struct dalcs_jump jump[] = {{0.0, 1, jump_state, 2, impulse, 24e-6, 0.25}};
+static const struct dalcs_nonunique nonunique[] = {
+    {"i(d1)", 0.25, 0.0, INFINITY, 0.5, "d1 parallel to d2"}};
 static const char *const element[] = {"v1", "d1"};
 static const struct dalcs_component_method component[] = {{"radau", 5, "tolerance 1e-06"},
                                                           {"algebraic", 1, "no state"}};
@@ -46,6 +48,9 @@ START_TEST(test_everything) {
         .n_events_dropped = 7,
         .n_jumps = 1,
         .jump = jump,
+        .n_nonunique = 1,
+        .nonunique = nonunique,
+        .energy = {true, 4.0, 2.0, 1.0, 0.25, 0.5, 0.125, 0.125},
         .infeasible = {true, 0.5, "loop", 2, element},
     };
     check_report(&report, DALCS_INFEASIBLE,
@@ -100,9 +105,29 @@ START_TEST(test_everything) {
                  "        \"d1\": {\"charge\": 6.0000000000000002e-06},\n"
                  "        \"d2\": {\"flux\": 0.001}\n"
                  "      },\n"
-                 "      \"energy_lost\": 2.4000000000000001e-05\n"
+                 "      \"energy_lost\": 2.4000000000000001e-05,\n"
+                 "      \"source_work\": 0.25\n"
                  "    }\n"
                  "  ],\n"
+                 "  \"nonunique\": [\n"
+                 "    {\n"
+                 "      \"signal\": \"i(d1)\",\n"
+                 "      \"lower\": 0,\n"
+                 "      \"upper\": \"inf\",\n"
+                 "      \"value\": 0.5,\n"
+                 "      \"time\": 0.25,\n"
+                 "      \"because\": \"d1 parallel to d2\"\n"
+                 "    }\n"
+                 "  ],\n"
+                 "  \"energy\": {\n"
+                 "    \"sources\": 4,\n"
+                 "    \"resistors\": 2,\n"
+                 "    \"diodes\": 1,\n"
+                 "    \"jumps\": 0.25,\n"
+                 "    \"stored_change\": 0.5,\n"
+                 "    \"method\": 0.125,\n"
+                 "    \"balance\": 0.125\n"
+                 "  },\n"
                  "  \"infeasible\": {\n"
                  "    \"time\": 0.5,\n"
                  "    \"elements\": [\"v1\", \"d1\"],\n"
@@ -160,7 +185,8 @@ START_TEST(test_nothing) {
                  "  \"start\": {},\n"
                  "  \"final\": {},\n"
                  "  \"events\": [],\n"
-                 "  \"jumps\": []\n"
+                 "  \"jumps\": [],\n"
+                 "  \"nonunique\": []\n"
                  "}\n");
 }
 
