@@ -265,10 +265,11 @@ struct dalcs_report {
     size_t n_nonunique; /* each signal once */
     const struct dalcs_nonunique *nonunique;
 
-    struct { /* J, over the whole .tran: sources = resistors + diodes + jumps + stored_change + method */
+    /* J, over .tran: sources = resistors + diodes + jumps + stored_change + method + balance */
+    struct {
         bool present;
         double sources;       /* delivered by V and I, and by controlled sources */
-        double resistors;     /* dissipated, in Ron and Roff of switches and Roff of diodes as well */
+        double resistors;     /* dissipated; in switches and in Roff of diodes as well */
         double diodes;        /* in Vfwd, Ron and breakdown */
         double jumps;         /* lost when states jumped */
         double stored_change; /* in capacitors and inductors, end minus start */
