@@ -194,7 +194,7 @@ struct dalcs_jump {
 
     const struct dalcs_impulse {
         const char *element; /* diode or switch */
-        bool is_flux;        /* Wb across it; else C through it */
+        bool is_flux;        /* Wb across it, of a diode in reverse; else C through it */
         double value;
     } * impulse;
 

@@ -446,7 +446,7 @@ enum dalcs_status dalcs_network_build(struct dalcs_network *network,
         status = dalcs_topology_build(&layout.topology, circuit, wants_current);
     }
     if (status == DALCS_OK) {
-        if (!options->clamp_initial_conditions) {
+        if (!options->clamp_initial_conditions && !options->silent) {
             note_references(&layout, diag);
         }
         status = check_initial_conditions(&layout, diag);

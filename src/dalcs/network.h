@@ -47,6 +47,7 @@ struct dalcs_network {
 /* Options that choose what the network is for. */
 struct dalcs_network_options {
     bool clamp_initial_conditions; /* hold .ic voltages: the operating point of a .tran */
+    bool silent;                   /* nothing that a person has not been told before */
 };
 
 /* Builds *network; the circuit must outlive it (names are borrowed). User errors (inductance that is

@@ -16,6 +16,10 @@ static const double micro_part[] = {1e-6, 1e-3, 1.0};
 static const double jump_part = 0.5;
 static const double jump_floor = 1e-9;
 
+/* Where vanishing steps have a limit, half a micro-step moves the state as far as a whole one, or half
+ * as far; with the derivative of an impulse it moves it twice as far. */
+static const double runaway = 1.5;
+
 enum dalcs_status dalcs_euler_setup(struct dalcs_euler *e, const struct dalcs_circuit *circuit,
                                     const struct dalcs_network *network,
                                     const struct dalcs_osnsp_options *options, double h,
@@ -46,7 +50,12 @@ enum dalcs_status dalcs_euler_setup(struct dalcs_euler *e, const struct dalcs_ci
     e->after = dalcs_alloc(columns, sizeof(double));
     e->charge = dalcs_alloc(pairs, sizeof(double));
     e->flux = dalcs_alloc(pairs, sizeof(double));
-    if (status == DALCS_OK && (e->after == NULL || e->charge == NULL || e->flux == NULL)) {
+    e->jump.after = dalcs_alloc(columns, sizeof(double));
+    e->jump.charge = dalcs_alloc(pairs, sizeof(double));
+    e->jump.flux = dalcs_alloc(pairs, sizeof(double));
+    bool complete = e->after != NULL && e->charge != NULL && e->flux != NULL &&
+                    e->jump.after != NULL && e->jump.charge != NULL && e->jump.flux != NULL;
+    if (status == DALCS_OK && !complete) {
         status = DALCS_E_NOMEM;
     }
     if (status != DALCS_OK) {
@@ -65,6 +74,10 @@ void dalcs_euler_finish(struct dalcs_euler *e) {
     free(e->after);
     free(e->charge);
     free(e->flux);
+    free(e->jump.after);
+    free(e->jump.charge);
+    free(e->jump.flux);
+    dalcs_jumps_finish(&e->jumps);
     *e = (struct dalcs_euler){0};
 }
 
@@ -120,6 +133,109 @@ double dalcs_euler_jump_energy(const struct dalcs_system *s, const double *befor
     return energy;
 }
 
+/* 1/2 after' storage after - 1/2 before' storage before, J. */
+static double stored_change(const struct dalcs_system *s, const double *before,
+                            const double *after) {
+    double energy = 0.0;
+    for (int i = 0; i < s->n_x; i++) {
+        for (int k = s->storage.p[i]; k < s->storage.p[i + 1]; k++) {
+            int j = s->storage.j[k];
+            energy += 0.5 * s->storage.x[k] * (after[i] * after[j] - before[i] * before[j]);
+        }
+    }
+    return energy;
+}
+
+enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k, const double *u) {
+    const struct dalcs_osnsp *p = &e->component[k].osnsp;
+    const struct dalcs_system *s = p->system;
+    DALCS_TRY(dalcs_jumps_solve(&e->jumps, e->circuit, e->network, &p->options, k, p->mode, u,
+                                u + s->n_x, &e->jump));
+    if (!e->jump.is_known) {
+        memcpy(e->jump.after, e->after, (size_t)s->n_x * sizeof(double));
+        memcpy(e->jump.charge, e->charge, (size_t)s->n_pairs * sizeof(double));
+        memcpy(e->jump.flux, e->flux, (size_t)s->n_pairs * sizeof(double));
+        e->jump.source_work =
+            stored_change(s, u, e->jump.after) + dalcs_euler_jump_energy(s, u, e->jump.after);
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_euler_refuse_derivative(struct dalcs_euler *e, int k, const double *x,
+                                                const double *y1, const double *y2) {
+    dalcs_osnsp_blame_states(&e->component[k].osnsp, x, y1, y2);
+    e->component[k].failed_sigma = 1.0 / e->h;
+    e->component[k].failed_u = e->component[k].u;
+    e->failed_system = k;
+    e->failed_time = e->t;
+    e->failed_h = e->h;
+    return DALCS_INFEASIBLE;
+}
+
+enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double time,
+                                          const double *before) {
+    const struct dalcs_system *s = e->component[k].system;
+    if (e->on_jump == NULL) {
+        return DALCS_OK;
+    }
+    return e->on_jump(e->jump_user,
+                      &(struct dalcs_euler_jump){
+                          .time = time,
+                          .system = k,
+                          .before = before,
+                          .after = e->jump.after,
+                          .charge = e->jump.charge,
+                          .flux = e->jump.flux,
+                          .energy_lost = dalcs_euler_jump_energy(s, before, e->jump.after),
+                          .source_work = e->jump.source_work,
+                      });
+}
+
+/* What two micro-steps, y of length h and the component's scratch of half of it, say of a jump. */
+static bool extrapolate(struct dalcs_euler *e, int k, const double *u, const double *y,
+                        const double *limit) {
+    const struct dalcs_component *c = &e->component[k];
+    const struct dalcs_system *s = c->system;
+    bool jumps = false;
+    for (int x = 0; x < s->n_x; x++) {
+        double whole = y[x] - u[x];
+        double limit_of_0 = 2.0 * (c->scratch[x] - u[x]) - whole;
+        jumps = jumps || (fabs(limit_of_0) > jump_part * fabs(whole) &&
+                          fabs(limit_of_0) > limit[s->column_is_current[x]]);
+    }
+    for (int x = 0; x < s->n_x && jumps; x++) {
+        e->after[x] = 2.0 * c->scratch[x] - y[x];
+    }
+    return jumps;
+}
+
+/* The impulses that the two micro-steps saw; those of y are there already. */
+static void extrapolate_impulses(struct dalcs_euler *e, int k, double h) {
+    const struct dalcs_component *c = &e->component[k];
+    const double *lambda = c->scratch + dalcs_system_n_equations(c->system);
+    for (int d = 0; d < c->system->n_pairs; d++) {
+        double *impulse[2] = {&e->charge[d], &e->flux[d]};
+        double half[2] = {0.5 * h * lambda[d], 0.5 * h * c->osnsp.w[d]};
+        for (int i = 0; i < 2; i++) {
+            double limit_of_0 = 2.0 * half[i] - *impulse[i];
+            bool impulsive = fabs(limit_of_0) > jump_part * fabs(*impulse[i]);
+            *impulse[i] = impulsive ? limit_of_0 : 0.0;
+        }
+    }
+}
+
+/* A state that moves twice as far in half the time has no limit. */
+static bool runs_away(const struct dalcs_component *c, const double *u, const double *y,
+                      const double *limit) {
+    bool away = false;
+    for (int x = 0; x < c->system->n_x && !away; x++) {
+        double whole = fabs(y[x] - u[x]);
+        away = whole > limit[c->system->column_is_current[x]] &&
+               fabs(c->scratch[x] - u[x]) > runaway * whole;
+    }
+    return away;
+}
+
 /* Solves micro-steps from u (whose x is x-) into y, and so learns the state just after a
  * discontinuity, left in e->after: x- where it is continuous. Where it jumps, the jump is reported
  * and y holds impulsive currents. *length is that of the micro-step of y. */
@@ -156,40 +272,21 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
     if (c->commanded) {
         return DALCS_OK; /* a switch moved in between: the two tell nothing together */
     }
-    bool jumps = false;
-    for (int x = 0; x < s->n_x; x++) {
-        double whole = y[x] - u[x];
-        double limit_of_0 = 2.0 * (c->scratch[x] - u[x]) - whole;
-        jumps = jumps || (fabs(limit_of_0) > jump_part * fabs(whole) &&
-                          fabs(limit_of_0) > limit[s->column_is_current[x]]);
+    if (!s->monotone && runs_away(c, u, y, limit)) {
+        return dalcs_euler_refuse_derivative(e, k, u, y, c->scratch);
     }
-    if (!jumps) {
+    if (!extrapolate(e, k, u, y, limit)) {
         return DALCS_OK;
     }
-    for (int x = 0; x < s->n_x; x++) {
-        e->after[x] = 2.0 * c->scratch[x] - y[x];
-    }
-    for (int d = 0; d < s->n_pairs; d++) {
-        double *impulse[2] = {&e->charge[d], &e->flux[d]};
-        double half[2] = {0.5 * h * c->scratch[n_equations + d], 0.5 * h * c->osnsp.w[d]};
-        for (int i = 0; i < 2; i++) {
-            double limit_of_0 = 2.0 * half[i] - *impulse[i];
-            bool impulsive = fabs(limit_of_0) > jump_part * fabs(*impulse[i]);
-            *impulse[i] = impulsive ? limit_of_0 : 0.0;
+    extrapolate_impulses(e, k, h);
+    DALCS_TRY(dalcs_euler_find_jump(e, k, u));
+    if (e->jump.is_known) {
+        if (!dalcs_jumps_agree(s, u, e->after, e->jump.after)) {
+            return DALCS_OK; /* a transient faster than a micro-step, which is not a jump */
         }
+        memcpy(e->after, e->jump.after, (size_t)s->n_x * sizeof(double));
     }
-    if (e->on_jump == NULL) {
-        return DALCS_OK;
-    }
-    return e->on_jump(e->jump_user, &(struct dalcs_euler_jump){
-                                        .time = e->t,
-                                        .system = k,
-                                        .before = before,
-                                        .after = e->after,
-                                        .charge = e->charge,
-                                        .flux = e->flux,
-                                        .energy_lost = dalcs_euler_jump_energy(s, before, e->after),
-                                    });
+    return dalcs_euler_report_jump(e, k, e->t, before);
 }
 
 /* y becomes all values just after a discontinuity, with the state after it. A micro-step from that

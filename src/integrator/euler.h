@@ -1,14 +1,15 @@
 /* euler.h - implicit Euler with a fixed step, the scheme of Brogliato 2022, eq. (3.1).
  *
  * Sources are sampled at the end of a step, and edges are landed on exactly. State jumps need no
- * special case: the step computes them. What a jump was, and the values just after a discontinuity,
- * are found by solving two steps of a millionth of h from the same state and extrapolating to 0;
- * they are reported, the trajectory itself stays the scheme's. */
+ * special case: the step computes them. That there is one, and the values just after a discontinuity,
+ * are found by solving two steps of a millionth of h from the same state and extrapolating to 0; what
+ * it is, exactly, tells jumps.h. They are reported, the trajectory itself stays the scheme's. */
 #ifndef DALCS_EULER_H
 #define DALCS_EULER_H
 
 #include "component.h"
 #include "grid.h"
+#include "jumps.h"
 
 /* Called when a component's state jumps: x before and after, impulses of lambda (C) and w (Wb). */
 struct dalcs_euler_jump {
@@ -17,6 +18,7 @@ struct dalcs_euler_jump {
     const double *before, *after; /* [n_columns], x and z and lambda just before and after */
     const double *charge, *flux;  /* [n_pairs] */
     double energy_lost;           /* J */
+    double source_work;           /* J, delivered by the sources in the jump */
 };
 
 struct dalcs_euler {
@@ -38,7 +40,9 @@ struct dalcs_euler {
     bool detect_jumps;       /* also where a circuit's own voltage moves a switch */
     void *jump_user;
     enum dalcs_status (*on_jump)(void *user, const struct dalcs_euler_jump *jump); /* may be NULL */
-    double *after, *charge, *flux; /* work, the largest component */
+    double *after, *charge, *flux; /* what micro-steps see, the largest component */
+    struct dalcs_jumps jumps;
+    struct dalcs_jump_answer jump; /* the last one */
 };
 
 /* Sets up for a transient with step h (s). network and circuit must outlive it. */
@@ -62,6 +66,21 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) DALCS_MUST_CHECK;
 
 /* At a jump of the sources: y becomes the values just after e->t; the state stays. */
 enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) DALCS_MUST_CHECK;
+
+/* Hands a jump of component k, from `before` to e->jump.after, to on_jump. */
+enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double time,
+                                          const double *before) DALCS_MUST_CHECK;
+
+/* The jump of component k from u = (x, s), with the mode after it, into e->jump: exactly where it is
+ * covered, else from e->after, e->charge and e->flux. */
+enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k,
+                                        const double *u) DALCS_MUST_CHECK;
+
+/* The step from x of component k is one of impulses of higher order than implicit Euler can follow:
+ * y1 and y2 are answers of steps one of which is shorter. DALCS_INFEASIBLE, the states named. */
+enum dalcs_status dalcs_euler_refuse_derivative(struct dalcs_euler *e, int k, const double *x,
+                                                const double *y1,
+                                                const double *y2) DALCS_MUST_CHECK;
 
 /* 1/2 d' storage d for d = after - before, states [n_x]: what a jump dissipates, J. */
 double dalcs_euler_jump_energy(const struct dalcs_system *s, const double *before,

@@ -2,8 +2,12 @@
 #include "guards.h"
 
 #include "crossing.h"
+#include "union_find.h"
 
+#include <float.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* Errors up to this many times the inner tolerance in a pair that has just changed sides are no
  * event. */
@@ -15,6 +19,10 @@ static const double falling_part = 1e-3;
 
 /* What rounding leaves of a zero, over the unit's scale. */
 static const double noise = 2e-13;
+
+/* Digits of a voltage over what the capacitors at a diode make of them in a step: a current that only
+ * rounds their voltages is none, however small the others are. So for coils and their currents. */
+static const double rounded = 16.0 * DBL_EPSILON;
 
 /* Falls this near to each other, in steps, are one event. */
 static const double same_on_maps = 1e-13;
@@ -69,11 +77,127 @@ static double scale_of(const struct dalcs_radau_part *part, int guard, const dou
     return fmax(unit[0], fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off)));
 }
 
+/* What rounding may make of a guard that is 0, in V or A. */
+static double rounding_of(const struct dalcs_radau_part *part, int guard, const double *unit) {
+    if (guard >= part->component->system->n_pairs) {
+        return 0.0;
+    }
+    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
+    double held = is_on ? part->held_charge[guard] * unit[0] : part->held_flux[guard] * unit[1];
+    return rounded * held / part->h;
+}
+
+/* F at a node, H of a coil; 0 of an algebraic row. */
+static double storage_of(const struct dalcs_system *s, int row) {
+    double sum = 0.0;
+    for (int k = row < s->n_x ? s->P.p[row] : 0; row < s->n_x && k < s->P.p[row + 1]; k++) {
+        sum += fabs(s->P.x[k]);
+    }
+    return sum;
+}
+
+/* The KCL rows that a pair's current enters, and the capacitance there. */
+static void find_charges(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int d = 0; d < s->n_pairs; d++) {
+        part->pair_row[2 * d] = part->pair_row[2 * d + 1] = -1;
+    }
+    for (int r = 0; r < n_equations; r++) {
+        for (int k = s->A.p[r]; s->row_is_current[r] && k < s->A.p[r + 1]; k++) {
+            int d = s->A.j[k] - n_equations;
+            if (d >= 0) {
+                int *row = &part->pair_row[2 * d];
+                row[row[0] < 0 ? 0 : 1] = r;
+                part->held_charge[d] = fmax(part->held_charge[d], storage_of(s, r));
+            }
+        }
+    }
+}
+
+/* The inductance of coils on the nodes of a pair. */
+static void find_fluxes(struct dalcs_radau_part *part, double *at_node /* [n_equations], 0 */) {
+    const struct dalcs_system *s = part->component->system;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int r = 0; r < s->n_x; r++) {
+        for (int k = s->A.p[r]; !s->row_is_current[r] && k < s->A.p[r + 1]; k++) {
+            int c = s->A.j[k];
+            if (c < n_equations && !s->column_is_current[c]) {
+                at_node[c] = fmax(at_node[c], storage_of(s, r));
+            }
+        }
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
+            int c = s->C.j[k];
+            part->held_flux[d] = fmax(part->held_flux[d], c < n_equations ? at_node[c] : 0.0);
+        }
+    }
+}
+
+enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    size_t n_equations = (size_t)dalcs_system_n_equations(s);
+    part->held_charge = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
+    part->held_flux = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
+    part->pair_row = dalcs_alloc(2 * (size_t)s->n_pairs, sizeof(int));
+    part->cluster = dalcs_alloc(n_equations, sizeof(int));
+    part->cluster_charge = dalcs_alloc(n_equations, sizeof(double));
+    if (part->held_charge == NULL || part->held_flux == NULL || part->pair_row == NULL ||
+        part->cluster == NULL || part->cluster_charge == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    find_charges(part);
+    find_fluxes(part, part->cluster_charge);
+    return DALCS_OK;
+}
+
+void dalcs_guards_finish(struct dalcs_radau_part *part) {
+    free(part->held_charge);
+    free(part->held_flux);
+    free(part->pair_row);
+    free(part->cluster);
+    free(part->cluster_charge);
+}
+
+/* Components with more pairs than this are large. */
+enum { MANY_PAIRS = 64 };
+
+/* Along a chain of closed pairs the current of one rounds what all the capacitors on the chain take:
+ * in a large component that may be far more than its own two nodes hold. */
+static void gather_charges(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    int n_equations = dalcs_system_n_equations(s);
+    dalcs_union_reset(part->cluster, n_equations);
+    for (int d = 0; d < s->n_pairs; d++) {
+        const int *row = &part->pair_row[2 * d];
+        if (dalcs_osnsp_is_on(p, d) && row[0] >= 0 && row[1] >= 0) {
+            dalcs_union_join(part->cluster, row[0], row[1]);
+        }
+    }
+    memset(part->cluster_charge, 0, (size_t)n_equations * sizeof(double));
+    for (int r = 0; r < s->n_x; r++) {
+        part->cluster_charge[dalcs_union_find(part->cluster, r)] += storage_of(s, r);
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        const int *row = &part->pair_row[2 * d];
+        part->held_charge[d] = 0.0;
+        for (int e = 0; e < 2 && row[e] >= 0; e++) {
+            double charge = part->cluster_charge[dalcs_union_find(part->cluster, row[e])];
+            part->held_charge[d] = fmax(part->held_charge[d], charge);
+        }
+    }
+}
+
 void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
                       const double *unit) {
     int n_nodes = part->stages.layout.n_nodes;
     double band = band_of(r, part);
     double weight[DALCS_MAX_NODES];
+    if (theta == 0.0 && part->component->system->n_pairs > MANY_PAIRS) {
+        gather_charges(part);
+    }
     bool at_node = theta == 0.0 || theta == 1.0;
     int node = theta == 0.0 ? 0 : n_nodes - 1;
     if (!at_node) {
@@ -120,6 +244,7 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
         if (!part->armed[g] && !part->fresh && !stops && value[last * stride] < value[0]) {
             depth *= falling_part;
         }
+        depth += rounding_of(part, g, unit);
         struct dalcs_crossing c =
             dalcs_crossing_find(part->stages.method, value, stride, end, depth);
         if (!c.falls || c.theta > first + together) {
@@ -137,14 +262,12 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
     return first;
 }
 
-/* Components with more pairs than this are large. */
-enum { MANY_PAIRS = 64 };
-
 static bool stays_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
     double work[DALCS_MAX_NODES];
     int stride;
     const double *value = values_of(part, pair, work, &stride);
     double limit = noise * part->rounding * scale_of(part, pair, unit);
+    limit += rounding_of(part, pair, unit);
     bool tied = value != NULL;
     for (int k = 0; k < part->stages.layout.n_nodes && tied; k++) {
         tied = fabs(value[k * stride]) <= limit;

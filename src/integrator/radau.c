@@ -131,6 +131,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
                                  osnsp->cache_bytes / (size_t)r->n_parts));
     DALCS_TRY(allocate(part));
     DALCS_TRY(dalcs_transition_setup(part));
+    DALCS_TRY(dalcs_guards_setup(part));
     bool *used = dalcs_alloc((size_t)c->system->n_inputs, sizeof(bool));
     if (used == NULL) {
         return DALCS_E_NOMEM;
@@ -186,6 +187,7 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->after);
     free(part->used_input);
     dalcs_transition_finish(part);
+    dalcs_guards_finish(part);
 }
 
 void dalcs_radau_finish(struct dalcs_radau *r) {

@@ -65,7 +65,11 @@ struct dalcs_radau_part {
     bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
     int n_crossed;
     int *crossed; /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
-    bool jumped;  /* at t, when the segment began */
+    double *held_charge, *held_flux; /* [n_pairs] F, H: storage next to a pair; guards.c */
+    int *pair_row;                   /* [n_pairs][2] KCL rows that its current enters, -1: ground */
+    int *cluster;                    /* [n_equations] work of guards.c */
+    double *cluster_charge;          /* [n_equations] work of guards.c */
+    bool jumped;                     /* at t, when the segment began */
     double *u, *y1, *y2, *w1, *after; /* work */
     int n_used_inputs, *used_input;   /* that probes read */
 

@@ -15,6 +15,10 @@ enum { MICRO = 20, COMMAND_ROUNDS = 20, LONGER_TRIES = 4 };
 /* States that move in the first micro-step by more than this many times the second have jumped. */
 static const double jump_ratio = 4.0;
 
+/* A micro-step over a longer one that it confirms, how much farther it may go, and what part of a
+ * state has to move for that to mean something. */
+static const double shorter = 1.0 / 1024.0, runaway = 4.0, few_digits = 1e-6;
+
 static enum dalcs_status fail(struct dalcs_radau *r, struct dalcs_radau_part *part, double sigma,
                               const double *u, enum dalcs_status status) {
     struct dalcs_euler *e = r->base;
@@ -93,31 +97,20 @@ static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_pa
     return jumps;
 }
 
-static enum dalcs_status report_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                                     const double *w1, const double *after) {
+/* The impulses of the micro-steps y1 and y2 of length h. */
+static void extrapolate_impulses(struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                                 double h) {
     struct dalcs_euler *e = r->base;
     const struct dalcs_system *s = part->component->system;
     int n_equations = dalcs_system_n_equations(s);
-    if (e->on_jump == NULL) {
-        return DALCS_OK;
-    }
     for (int d = 0; d < s->n_pairs; d++) {
         double charge = h * (part->y1[n_equations + d] - part->y2[n_equations + d]);
-        double flux = h * (w1[d] - part->component->osnsp.w[d]);
+        double flux = h * (part->w1[d] - part->component->osnsp.w[d]);
         /* a regular current changes little in a micro-step, an impulse goes */
         e->charge[d] = charge > 0.5 * h * part->y1[n_equations + d] ? charge : 0.0;
-        e->flux[d] = flux > 0.5 * h * w1[d] ? flux : 0.0;
+        e->flux[d] = flux > 0.5 * h * part->w1[d] ? flux : 0.0;
     }
-    e->t = part->t;
-    return e->on_jump(e->jump_user, &(struct dalcs_euler_jump){
-                                        .time = part->t,
-                                        .system = part->index,
-                                        .before = part->x,
-                                        .after = after,
-                                        .charge = e->charge,
-                                        .flux = e->flux,
-                                        .energy_lost = dalcs_euler_jump_energy(s, part->x, after),
-                                    });
+    memcpy(e->after, part->after, (size_t)s->n_x * sizeof(double));
 }
 
 static double micro_length(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
@@ -132,20 +125,80 @@ static double micro_length(const struct dalcs_radau *r, const struct dalcs_radau
     return h;
 }
 
+/* y1 and y2 by two micro-steps of length h. */
+static enum dalcs_status micro_steps(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                     double h) {
+    struct dalcs_component *c = part->component;
+    r->restarts++;
+    DALCS_TRY(solve(r, part, h, h, part->x, part->y1));
+    memcpy(part->w1, c->osnsp.w, (size_t)c->system->n_pairs * sizeof(double));
+    return solve(r, part, h, 2.0 * h, part->y1, part->y2);
+}
+
+/* Of a component that is not passive: what the jump is, shorter micro-steps have to confirm. */
+static enum dalcs_status confirm(struct dalcs_radau *r, struct dalcs_radau_part *part, double h) {
+    const struct dalcs_system *s = part->component->system;
+    memcpy(r->base->after, part->y1, (size_t)s->n_x * sizeof(double));
+    DALCS_TRY(micro_steps(r, part, shorter * h));
+    for (int x = 0; x < s->n_x; x++) {
+        double before = fabs(r->base->after[x] - part->x[x]);
+        double moved = fabs(part->y1[x] - part->x[x]);
+        if (moved > runaway * before && moved > few_digits * fabs(part->y1[x])) {
+            r->base->t = part->t;
+            return dalcs_euler_refuse_derivative(r->base, part->index, part->x, r->base->after,
+                                                 part->y1);
+        }
+    }
+    return DALCS_OK;
+}
+
+/* The micro-steps of length h have seen the state move: part->after becomes the state after the jump,
+ * exactly where that is known, and the jump is reported. A transient that is faster than a micro-step
+ * is none: then micro-steps have to be shorter, as far as time can be told apart. */
+static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                     double h) {
+    struct dalcs_euler *e = r->base;
+    const struct dalcs_system *s = part->component->system;
+    bool noticeable = true;
+    bool jumps = true;
+    if (!s->monotone) {
+        DALCS_TRY(confirm(r, part, h));
+        h *= shorter;
+        jumps = extrapolate(r, part, part->after, &noticeable);
+    }
+    while (jumps && noticeable) {
+        extrapolate_impulses(r, part, h);
+        memcpy(part->u, part->x, (size_t)s->n_x * sizeof(double));
+        dalcs_excitation_inputs(&part->excitation, part->t, 0.0, part->u + s->n_x);
+        DALCS_TRY(dalcs_euler_find_jump(e, part->index, part->u));
+        if (dalcs_jumps_agree(s, part->x, part->after, e->jump.after)) {
+            memcpy(part->after, e->jump.after, (size_t)s->n_x * sizeof(double));
+            part->jumped = true;
+            e->t = part->t;
+            DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->t, part->x));
+            break;
+        }
+        if (shorter * h < 64.0 * r->resolution) {
+            break;
+        }
+        h *= shorter;
+        DALCS_TRY(micro_steps(r, part, h));
+        jumps = extrapolate(r, part, part->after, &noticeable);
+    }
+    if (jumps) {
+        memcpy(part->x, part->after, (size_t)s->n_x * sizeof(double));
+    }
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                       int longer, bool mode_only) {
-    struct dalcs_component *c = part->component;
-    const struct dalcs_system *s = c->system;
+    const struct dalcs_system *s = part->component->system;
     enum dalcs_status status = DALCS_NOT_CONVERGED;
     double h = 0.0;
     for (int k = 0; k < LONGER_TRIES && status > DALCS_OK; k++) {
         h = micro_length(r, part, longer + k);
-        r->restarts++;
-        status = solve(r, part, h, h, part->x, part->y1);
-        if (status == DALCS_OK) {
-            memcpy(part->w1, c->osnsp.w, (size_t)s->n_pairs * sizeof(double));
-            status = solve(r, part, h, 2.0 * h, part->y1, part->y2);
-        }
+        status = micro_steps(r, part, h);
     }
     DALCS_TRY(status);
     if (s->n_x == 0 || mode_only) {
@@ -154,8 +207,7 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     bool noticeable;
     if (extrapolate(r, part, part->after, &noticeable)) {
         if (noticeable) {
-            DALCS_TRY(report_jump(r, part, h, part->w1, part->after));
-            part->jumped = true;
+            return settle_jump(r, part, h);
         }
         memcpy(part->x, part->after, (size_t)s->n_x * sizeof(double));
     }

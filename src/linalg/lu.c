@@ -1,6 +1,7 @@
 /* lu.c - the seam to KLU: analyse and factor there, solve here. */
 #include "lu.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* Elements that grow more than this over those of the matrix cost too many digits. */
@@ -11,6 +12,10 @@ void dalcs_lu_common_init(klu_common *common) {
     common->halt_if_singular = 1;
     common->scale = 0; /* the caller balances: no division by row scales in every solve */
 }
+
+/* The estimate compares pivots of different columns, which parts of a circuit with conductances far
+ * apart make differ; a pivot that is this many times rcond_min of its own column is no rounding. */
+static const double clear_of_rounding = 100.0;
 
 /* What klu_extract fills: L and U by columns with their diagonals, F by columns. Imaginary parts
  * follow behind all real ones. */
@@ -193,9 +198,34 @@ static enum dalcs_status factor(const struct values *v, klu_numeric **numeric) {
     if (v->common->status == KLU_OUT_OF_MEMORY || v->common->status == KLU_TOO_LARGE) {
         return DALCS_E_NOMEM;
     }
-    bool is_regular =
-        *numeric != NULL && v->common->status != KLU_SINGULAR && is_well_conditioned(v, *numeric);
+    bool is_regular = *numeric != NULL && v->common->status != KLU_SINGULAR;
     return is_regular ? DALCS_OK : DALCS_SINGULAR;
+}
+
+static double magnitude(const struct values *v, const double *real, const double *imaginary,
+                        int k) {
+    return v->is_complex ? hypot(real[k], imaginary[k]) : fabs(real[k]);
+}
+
+/* The least pivot over the largest element of its column, in the matrix and in U. */
+static double least_relative_pivot(const struct values *v, const struct dalcs_lu *lu,
+                                   const struct extracted *e) {
+    double least = INFINITY;
+    for (int c = 0; c < lu->n; c++) {
+        double largest = 0.0;
+        double pivot = 0.0;
+        for (int k = e->Up[c]; k < e->Up[c + 1]; k++) {
+            double a = magnitude(v, e->Ux, e->Ux + e->Up[lu->n], k);
+            largest = fmax(largest, a);
+            pivot = e->Ui[k] == c ? a : pivot;
+        }
+        for (int k = v->p[lu->to[c]]; k < v->p[lu->to[c] + 1]; k++) {
+            largest =
+                fmax(largest, v->is_complex ? hypot(v->x[2 * k], v->x[2 * k + 1]) : fabs(v->x[k]));
+        }
+        least = fmin(least, pivot / largest);
+    }
+    return least;
 }
 
 /* Do the pivots of other values serve these? */
@@ -230,13 +260,19 @@ enum dalcs_status dalcs_lu_factor_analyzed(struct dalcs_lu *lu, klu_common *comm
     const struct values v = {common, symbolic, is_complex, p, i, x, rcond_min};
     klu_numeric *numeric = kept != NULL ? *kept : NULL;
     enum dalcs_status status = DALCS_OK;
+    bool is_doubtful = false;
     if (numeric == NULL || !refactor(&v, numeric)) {
         dalcs_lu_drop(&numeric, is_complex, common);
         status = factor(&v, &numeric);
+        is_doubtful = status == DALCS_OK && !is_well_conditioned(&v, numeric);
     }
     if (status == DALCS_OK) {
         struct extracted e;
         status = extract(&e, lu, symbolic, numeric, common);
+        if (status == DALCS_OK && is_doubtful &&
+            least_relative_pivot(&v, lu, &e) < clear_of_rounding * rcond_min) {
+            status = DALCS_SINGULAR;
+        }
         if (status == DALCS_OK) {
             arrange(lu, &e);
         }

@@ -31,9 +31,9 @@ struct dalcs_lu {
 void dalcs_lu_common_init(klu_common *common);
 
 /* Factors the matrix of order n whose columns are (p[n+1], i[], x[]). DALCS_SINGULAR when KLU meets
- * a zero pivot or when its cheap estimate of the reciprocal condition is below rcond_min: the
- * caller balances rows and columns, so that the estimate means something. On any failure *lu is
- * zeroed: nothing to free. */
+ * a zero pivot, or when its cheap estimate of the reciprocal condition is below rcond_min and a pivot
+ * may be what rounding left of its column: the caller balances rows and columns, so that this means
+ * something. On any failure *lu is zeroed: nothing to free. */
 enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n, int *p, int *i,
                                   double *x, double rcond_min) DALCS_MUST_CHECK;
 

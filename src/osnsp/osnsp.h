@@ -46,9 +46,10 @@ struct dalcs_certificate {
  * elements (Farkas' alternative; Heemels, Schumacher and Weiland 1999, sec. 6). */
 struct dalcs_witness {
     enum dalcs_witness_kind {
-        DALCS_WITNESS_LOOP,   /* currents around voltage sources, diodes, closed switches */
-        DALCS_WITNESS_CUTSET, /* voltages across current sources, diodes, open switches */
-        DALCS_WITNESS_MODE    /* no mode of a system that is not passive fits */
+        DALCS_WITNESS_LOOP,      /* currents around voltage sources, diodes, closed switches */
+        DALCS_WITNESS_CUTSET,    /* voltages across current sources, diodes, open switches */
+        DALCS_WITNESS_MODE,      /* no mode of a system that is not passive fits */
+        DALCS_WITNESS_DERIVATIVE /* the states would need more than an impulse to jump */
     } kind;
 
     int n_elements, capacity;
@@ -135,6 +136,11 @@ static inline void dalcs_osnsp_command(struct dalcs_osnsp *p, int pair, bool on)
     uint64_t bit = (uint64_t)1 << (pair % 64);
     p->mode[pair / 64] = on ? p->mode[pair / 64] | bit : p->mode[pair / 64] & ~bit;
 }
+
+/* p->witness becomes the states that run away the farther the shorter a step from x[n_x] is, as y1 and
+ * y2[n_columns] show, and the pairs that are closed then. */
+void dalcs_osnsp_blame_states(struct dalcs_osnsp *p, const double *x, const double *y1,
+                              const double *y2);
 
 void dalcs_osnsp_finish(struct dalcs_osnsp *p);
 

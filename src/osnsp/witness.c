@@ -142,6 +142,27 @@ void dalcs_witness_complete(struct dalcs_osnsp *p) {
     }
 }
 
+void dalcs_osnsp_blame_states(struct dalcs_osnsp *p, const double *x, const double *y1,
+                              const double *y2) {
+    const struct dalcs_system *s = p->system;
+    double largest = 0.0;
+    for (int i = 0; i < s->n_x; i++) {
+        largest = fmax(largest, fabs(y2[i] - y1[i]));
+    }
+    p->witness.n_elements = 0;
+    p->witness.kind = DALCS_WITNESS_DERIVATIVE;
+    for (int i = 0; i < s->n_x; i++) {
+        if (fmax(fabs(y1[i] - x[i]), fabs(y2[i] - x[i])) >= 0.5 * largest) {
+            add_element(p, s->column[i].element);
+        }
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        if (dalcs_osnsp_is_on(p, d)) {
+            add_element(p, s->pair[d].element);
+        }
+    }
+}
+
 void dalcs_witness_from_modes(struct dalcs_osnsp *p) {
     p->witness.n_elements = 0;
     p->witness.kind = DALCS_WITNESS_MODE;

@@ -106,14 +106,19 @@ static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e,
     const struct dalcs_witness *w = &e->component[e->failed_system].osnsp.witness;
     static const char *const kind[] = {[DALCS_WITNESS_LOOP] = "loop",
                                        [DALCS_WITNESS_CUTSET] = "cutset",
-                                       [DALCS_WITNESS_MODE] = "mode"};
+                                       [DALCS_WITNESS_MODE] = "mode",
+                                       [DALCS_WITNESS_DERIVATIVE] = "derivative"};
     static const char *const why[] = {
         [DALCS_WITNESS_LOOP] = "the sources drive current around it with nothing to limit the "
                                "current",
         [DALCS_WITNESS_CUTSET] = "the sources force a current that nothing in it lets pass",
         [DALCS_WITNESS_MODE] = "no combination of conducting and blocking satisfies the circuit, "
                                "which its controlled sources or negative resistors keep from being "
-                               "passive"};
+                               "passive",
+        [DALCS_WITNESS_DERIVATIVE] = "to go on, these would have to jump by the derivative of an "
+                                     "impulse (charge moved to and "
+                                     "fro in no time), which no vanishing step approaches; start "
+                                     "from values that need none"};
     size_t n_elements;
     const char **element = whole_witness(s, w, &n_elements);
     const struct dalcs_location *where =

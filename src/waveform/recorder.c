@@ -263,7 +263,9 @@ static size_t list_impulses(const struct dalcs_recorder *r, const struct dalcs_e
     }
     size_t n = 0;
     for (int d = 0; d < s->n_pairs; d++) {
-        const double value[2] = {j->charge[d], j->flux[d]};
+        /* w is the reverse voltage of a diode; a person reads a switch forward */
+        bool is_switch = s->pair[d].kind == DALCS_PAIR_SWITCH;
+        const double value[2] = {j->charge[d], is_switch ? -j->flux[d] : j->flux[d]};
         for (int i = 0; i < 2; i++) {
             if (value[i] != 0.0 && is_noticeable(value[i], largest[i])) {
                 r->impulse[n++] = (struct dalcs_impulse){
@@ -298,6 +300,7 @@ enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump 
                                                 .state = state,
                                                 .n_impulses = n_impulses,
                                                 .impulse = impulse,
-                                                .energy_lost = j->energy_lost};
+                                                .energy_lost = j->energy_lost,
+                                                .source_work = j->source_work};
     return DALCS_OK;
 }

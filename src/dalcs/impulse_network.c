@@ -1,0 +1,214 @@
+/* impulse_network.c - the circuit of capacitors and the circuit of coils that a jump takes place in. */
+#include "impulse_network.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct reduction {
+    const struct dalcs_circuit *from;
+    struct dalcs_circuit *to;
+    enum dalcs_impulse_kind kind;
+    int *device_of; /* [from->n_devices] where it went, -1 if nowhere */
+};
+
+const char *dalcs_breakdown_name(struct dalcs_arena *arena, const char *diode) {
+    return dalcs_arena_printf(arena, "%s breakdown", diode);
+}
+
+static struct dalcs_device *add(struct reduction *r, const struct dalcs_device *d) {
+    struct dalcs_device *copy = &r->to->device[r->to->n_devices++];
+    *copy = *d;
+    return copy;
+}
+
+static void add_short(struct reduction *r, const struct dalcs_device *d) {
+    struct dalcs_device *copy = add(r, d);
+    copy->kind = DALCS_RESISTOR;
+    copy->value = 0.0;
+}
+
+/* An exactly ideal diode with a threshold, from the first to the second node of d. */
+static void add_diode(struct reduction *r, const struct dalcs_device *d, const char *name,
+                      double threshold) {
+    struct dalcs_device *copy = add(r, d);
+    copy->name = name;
+    copy->model = r->to->n_diode_models;
+    r->to->diode_model[r->to->n_diode_models++] = (struct dalcs_diode_model){
+        .name = name, .roff = INFINITY, .vfwd = threshold, .vrev = INFINITY};
+}
+
+/* Charge passes a branch without resistance alone. */
+static enum dalcs_status reduce_to_charge(struct reduction *r, const struct dalcs_device *d) {
+    switch (d->kind) {
+    case DALCS_CAPACITOR:
+    case DALCS_VSOURCE:
+        add(r, d);
+        break;
+    case DALCS_RESISTOR:
+        if (d->value == 0.0) {
+            add(r, d);
+        }
+        break;
+    case DALCS_SWITCH:
+        if (r->from->switch_model[d->model].ron == 0.0) {
+            add(r, d);
+        }
+        break;
+    case DALCS_DIODE: {
+        const struct dalcs_diode_model *m = &r->from->diode_model[d->model];
+        if (m->ron == 0.0) {
+            add_diode(r, d, d->name, m->vfwd);
+        }
+        if (isfinite(m->vrev) && m->rrev == 0.0) {
+            const char *name = dalcs_breakdown_name(&r->to->arena, d->name);
+            if (name == NULL) {
+                return DALCS_E_NOMEM;
+            }
+            struct dalcs_device reverse = *d;
+            reverse.node[0] = d->node[1];
+            reverse.node[1] = d->node[0];
+            add_diode(r, &reverse, name, m->vrev);
+        }
+        break;
+    }
+    default:
+        break;
+    }
+    return DALCS_OK;
+}
+
+/* Flux builds up across what can block every current. */
+static void reduce_to_flux(struct reduction *r, const struct dalcs_device *d) {
+    switch (d->kind) {
+    case DALCS_INDUCTOR:
+    case DALCS_ISOURCE:
+        add(r, d);
+        break;
+    case DALCS_RESISTOR:
+    case DALCS_CAPACITOR:
+    case DALCS_VSOURCE:
+        add_short(r, d);
+        break;
+    case DALCS_SWITCH:
+        if (isfinite(r->from->switch_model[d->model].roff)) {
+            add_short(r, d);
+        } else {
+            add(r, d);
+        }
+        break;
+    case DALCS_DIODE: {
+        const struct dalcs_diode_model *m = &r->from->diode_model[d->model];
+        if (isfinite(m->roff) || isfinite(m->vrev)) {
+            add_short(r, d);
+        } else {
+            add_diode(r, d, d->name, 0.0);
+        }
+        break;
+    }
+    default:
+        break;
+    }
+}
+
+/* Switches are commanded; what controls them is elsewhere. */
+static void let_go_of_controls(struct dalcs_circuit *to) {
+    for (int i = 0; i < to->n_devices; i++) {
+        if (to->device[i].kind == DALCS_SWITCH) {
+            to->device[i].node[2] = to->device[i].node[3] = 0;
+        }
+    }
+    for (int k = 0; k < to->n_switch_models; k++) {
+        to->switch_model[k].ron = 0.0;
+        to->switch_model[k].roff = INFINITY;
+    }
+}
+
+static void add_signals(struct dalcs_circuit *to, enum dalcs_impulse_kind kind) {
+    for (int i = 0; i < to->n_devices; i++) {
+        const struct dalcs_device *d = &to->device[i];
+        if (kind == DALCS_IMPULSE_CHARGE && d->kind == DALCS_VSOURCE) {
+            to->signal[to->n_signals++] =
+                (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .name = d->name, .device = i};
+        } else if (kind == DALCS_IMPULSE_FLUX && d->kind == DALCS_ISOURCE) {
+            to->signal[to->n_signals++] = (struct dalcs_signal){.kind = DALCS_SIGNAL_VOLTAGE,
+                                                                .name = d->name,
+                                                                .node = {d->node[0], d->node[1]},
+                                                                .device = -1};
+        }
+    }
+}
+
+static void add_couplings(struct reduction *r) {
+    for (int k = 0; k < r->from->n_couplings; k++) {
+        struct dalcs_coupling m = r->from->coupling[k];
+        m.inductor[0] = r->device_of[m.inductor[0]];
+        m.inductor[1] = r->device_of[m.inductor[1]];
+        if (m.inductor[0] >= 0) {
+            r->to->coupling[r->to->n_couplings++] = m;
+        }
+    }
+}
+
+static enum dalcs_status reduce(struct reduction *r) {
+    const struct dalcs_circuit *from = r->from;
+    struct dalcs_circuit *to = r->to;
+    size_t n = (size_t)from->n_devices;
+    *to = (struct dalcs_circuit){.title = from->title,
+                                 .n_nodes = from->n_nodes,
+                                 .node_name = from->node_name,
+                                 .n_stimuli = from->n_stimuli,
+                                 .stimulus = from->stimulus,
+                                 .n_switch_models = from->n_switch_models};
+    to->device = dalcs_arena_alloc(&to->arena, 2 * n, sizeof(*to->device));
+    to->diode_model = dalcs_arena_alloc(&to->arena, 2 * n, sizeof(*to->diode_model));
+    to->switch_model =
+        dalcs_arena_alloc(&to->arena, (size_t)from->n_switch_models, sizeof(*to->switch_model));
+    to->coupling = dalcs_arena_alloc(&to->arena, (size_t)from->n_couplings, sizeof(*to->coupling));
+    to->signal = dalcs_arena_alloc(&to->arena, n, sizeof(*to->signal));
+    if (to->device == NULL || to->diode_model == NULL || to->switch_model == NULL ||
+        to->coupling == NULL || to->signal == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < from->n_devices; i++) {
+        int place = to->n_devices;
+        if (r->kind == DALCS_IMPULSE_CHARGE) {
+            DALCS_TRY(reduce_to_charge(r, &from->device[i]));
+        } else {
+            reduce_to_flux(r, &from->device[i]);
+        }
+        r->device_of[i] = to->n_devices > place ? place : -1;
+    }
+    add_couplings(r);
+    let_go_of_controls(to);
+    add_signals(to, r->kind);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_impulse_network_build(struct dalcs_impulse_network *impulse,
+                                              const struct dalcs_circuit *circuit,
+                                              enum dalcs_impulse_kind kind) {
+    *impulse = (struct dalcs_impulse_network){0};
+    struct reduction r = {.from = circuit,
+                          .to = &impulse->circuit,
+                          .kind = kind,
+                          .device_of = dalcs_alloc((size_t)circuit->n_devices, sizeof(int))};
+    struct dalcs_diag nobody = {0};
+    enum dalcs_status status = r.device_of == NULL ? DALCS_E_NOMEM : reduce(&r);
+    if (status == DALCS_OK) {
+        status = dalcs_network_build(&impulse->network, &impulse->circuit,
+                                     &(struct dalcs_network_options){.silent = true}, &nobody);
+    }
+    dalcs_diag_finish(&nobody);
+    free(r.device_of);
+    if (status != DALCS_OK) {
+        dalcs_circuit_finish(&impulse->circuit);
+        *impulse = (struct dalcs_impulse_network){0};
+    }
+    return status;
+}
+
+void dalcs_impulse_network_finish(struct dalcs_impulse_network *impulse) {
+    dalcs_network_finish(&impulse->network);
+    dalcs_circuit_finish(&impulse->circuit);
+    *impulse = (struct dalcs_impulse_network){0};
+}

@@ -1,0 +1,351 @@
+/* jumps.c - the two networks of a jump, and the way between their unknowns and the circuit's. */
+#include "jumps.h"
+
+#include "names.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* States that change by less than this part of the largest have not jumped; less than it is 0. */
+static const double rounding = 1e-14;
+
+/* A micro-step's limit and the jump are the same when they differ by less than this part of it: else
+ * the micro-step has also seen a transient that is faster than itself. */
+static const double agreement = 1e-3;
+
+/* One system of one of the two networks. */
+struct dalcs_jump_part {
+    enum dalcs_impulse_kind kind;
+    int owner; /* system of the circuit */
+    int next;  /* part of the same owner, -1: last */
+    struct dalcs_osnsp osnsp;
+    double *u, *y; /* [n_x + n_inputs], [n_columns] */
+    int *state;    /* [n_x] the owner's column */
+    int *pair;     /* [n_pairs] the owner's pair */
+    int *input;    /* [n_inputs] the owner's; 0 for the constant 1 */
+    int n_sources;
+
+    struct source {
+        const struct dalcs_output *impulse;
+        int input; /* the owner's */
+    } * source;    /* [n_inputs] those that may do work */
+};
+
+/* ---- Where the circuit keeps things ------------------------------------------------------- */
+
+/* Names of states, pairs and inputs; each belongs to one device. */
+struct places {
+    struct dalcs_names names;
+    struct dalcs_arena arena; /* of names made up here */
+    int *system, *index;      /* by the value of a name */
+    size_t n;
+};
+
+static enum dalcs_status add_place(struct places *p, const char *name, int system, int index) {
+    if (dalcs_names_find(&p->names, name) >= 0) {
+        return DALCS_OK; /* the first pair of a diode */
+    }
+    DALCS_TRY(dalcs_names_add(&p->names, name, (int)p->n));
+    p->system[p->n] = system;
+    p->index[p->n++] = index;
+    return DALCS_OK;
+}
+
+static enum dalcs_status find_places(struct places *p, const struct dalcs_network *network) {
+    size_t n = 0;
+    for (int k = 0; k < network->n_systems; k++) {
+        const struct dalcs_system *s = &network->system[k];
+        n += (size_t)(s->n_x + s->n_pairs + s->n_inputs);
+    }
+    p->system = dalcs_alloc(n, sizeof(*p->system));
+    p->index = dalcs_alloc(n, sizeof(*p->index));
+    if (p->system == NULL || p->index == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < network->n_systems; k++) {
+        const struct dalcs_system *s = &network->system[k];
+        for (int x = 0; x < s->n_x; x++) {
+            DALCS_TRY(add_place(p, s->column[x].element, k, x));
+        }
+        for (int d = 0; d < s->n_pairs; d++) {
+            const char *name = s->pair[d].element;
+            if (s->pair[d].is_breakdown) {
+                name = dalcs_breakdown_name(&p->arena, name);
+            }
+            DALCS_TRY(name == NULL ? DALCS_E_NOMEM : add_place(p, name, k, d));
+        }
+        for (int i = 1; i < s->n_inputs; i++) {
+            DALCS_TRY(add_place(p, s->input_element[i], k, i));
+        }
+    }
+    return DALCS_OK;
+}
+
+static void places_finish(struct places *p) {
+    dalcs_names_finish(&p->names);
+    dalcs_arena_finish(&p->arena);
+    free(p->system);
+    free(p->index);
+}
+
+/* ---- Building ------------------------------------------------------------------------------ */
+
+static int look_up(const struct places *p, const char *name, int *owner) {
+    int place = dalcs_names_find(&p->names, name);
+    *owner = place < 0 ? *owner : p->system[place];
+    return place < 0 ? -1 : p->index[place];
+}
+
+static enum dalcs_status part_setup(struct dalcs_jump_part *part,
+                                    const struct dalcs_impulse_network *impulse, int k,
+                                    const struct places *places,
+                                    const struct dalcs_osnsp_options *options) {
+    const struct dalcs_system *s = &impulse->network.system[k];
+    DALCS_TRY(dalcs_osnsp_setup(&part->osnsp, s, options));
+    part->u = dalcs_alloc((size_t)(s->n_x + s->n_inputs), sizeof(double));
+    part->y = dalcs_alloc((size_t)dalcs_system_n_columns(s), sizeof(double));
+    part->state = dalcs_alloc((size_t)s->n_x, sizeof(int));
+    part->pair = dalcs_alloc((size_t)s->n_pairs, sizeof(int));
+    part->input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
+    part->source = dalcs_alloc((size_t)s->n_inputs, sizeof(*part->source));
+    if (part->u == NULL || part->y == NULL || part->state == NULL || part->pair == NULL ||
+        part->input == NULL || part->source == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int x = 0; x < s->n_x; x++) {
+        part->state[x] = look_up(places, s->column[x].element, &part->owner);
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        part->pair[d] = look_up(places, s->pair[d].element, &part->owner);
+    }
+    for (int i = 1; i < s->n_inputs; i++) {
+        part->input[i] = look_up(places, s->input_element[i], &part->owner);
+    }
+    return DALCS_OK;
+}
+
+/* Perfectly coupled coils are an ideal transformer, through which charge passes too: the charge
+ * network does not have it. Of such coils some are no states. */
+static void leave_out_transformers(struct dalcs_jumps *j, const struct dalcs_circuit *circuit,
+                                   const struct places *places) {
+    for (int k = 0; k < circuit->n_couplings; k++) {
+        const int *coil = circuit->coupling[k].inductor;
+        int owner[2] = {-1, -1};
+        bool is_state[2];
+        for (int e = 0; e < 2; e++) {
+            is_state[e] = look_up(places, circuit->device[coil[e]].name, &owner[e]) >= 0;
+        }
+        if (is_state[0] != is_state[1]) {
+            j->is_covered[owner[is_state[0] ? 0 : 1]] = false;
+        }
+    }
+}
+
+/* The systems with states of one of the two networks. */
+static enum dalcs_status add_parts(struct dalcs_jumps *j, enum dalcs_impulse_kind kind,
+                                   const struct places *places,
+                                   const struct dalcs_osnsp_options *options) {
+    const struct dalcs_impulse_network *impulse = &j->impulse[kind];
+    const struct dalcs_network *network = &impulse->network;
+    int *part_of = dalcs_alloc((size_t)network->n_systems, sizeof(*part_of));
+    enum dalcs_status status = part_of == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    for (int k = 0; status == DALCS_OK && k < network->n_systems; k++) {
+        part_of[k] = -1;
+        if (network->system[k].n_x > 0) {
+            struct dalcs_jump_part *part = &j->part[j->n_parts];
+            part_of[k] = j->n_parts++;
+            part->kind = kind;
+            status = part_setup(part, impulse, k, places, options);
+            part->next = j->first_part[part->owner];
+            j->first_part[part->owner] = part_of[k];
+        }
+    }
+    for (int i = 0; status == DALCS_OK && i < network->n_outputs; i++) {
+        const struct dalcs_output *out = &network->output[i];
+        int k = out->plus.system >= 0 ? out->plus.system : out->minus.system;
+        if (k >= 0 && part_of[k] >= 0) {
+            struct dalcs_jump_part *part = &j->part[part_of[k]];
+            int owner;
+            part->source[part->n_sources++] =
+                (struct source){out, look_up(places, out->name, &owner)};
+        }
+    }
+    free(part_of);
+    return status;
+}
+
+static enum dalcs_status find_parts(struct dalcs_jumps *j, const struct dalcs_circuit *circuit,
+                                    const struct dalcs_network *network,
+                                    const struct dalcs_osnsp_options *options) {
+    struct places places = {0};
+    size_t n = 0;
+    for (int kind = 0; kind < DALCS_N_IMPULSES; kind++) {
+        n += (size_t)j->impulse[kind].network.n_systems;
+    }
+    j->n_systems = network->n_systems;
+    j->part = dalcs_alloc(n, sizeof(*j->part));
+    j->first_part = dalcs_alloc((size_t)j->n_systems, sizeof(int));
+    j->is_covered = dalcs_alloc((size_t)j->n_systems, sizeof(bool));
+    if (j->part == NULL || j->first_part == NULL || j->is_covered == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    enum dalcs_status status = find_places(&places, network);
+    if (status == DALCS_OK) {
+        for (int k = 0; k < j->n_systems; k++) {
+            j->first_part[k] = -1;
+            j->is_covered[k] = network->system[k].monotone;
+        }
+        leave_out_transformers(j, circuit, &places);
+    }
+    for (int kind = 0; status == DALCS_OK && kind < DALCS_N_IMPULSES; kind++) {
+        status = add_parts(j, (enum dalcs_impulse_kind)kind, &places, options);
+    }
+    places_finish(&places);
+    return status;
+}
+
+static enum dalcs_status build_all(struct dalcs_jumps *j, const struct dalcs_circuit *circuit,
+                                   const struct dalcs_network *network,
+                                   const struct dalcs_osnsp_options *options) {
+    enum dalcs_status status = DALCS_OK;
+    for (int kind = 0; kind < DALCS_N_IMPULSES && status == DALCS_OK; kind++) {
+        status =
+            dalcs_impulse_network_build(&j->impulse[kind], circuit, (enum dalcs_impulse_kind)kind);
+    }
+    if (status == DALCS_OK) {
+        status = find_parts(j, circuit, network, options);
+    }
+    j->is_built = status == DALCS_OK;
+    if (status != DALCS_OK) {
+        dalcs_jumps_finish(j);
+    }
+    return status;
+}
+
+/* ---- Solving ------------------------------------------------------------------------------- */
+
+static bool bit(const uint64_t *mode, int pair) {
+    return (mode[pair / 64] >> (pair % 64) & 1) != 0;
+}
+
+static void command(struct dalcs_jump_part *part, const uint64_t *mode) {
+    for (int d = 0; d < part->osnsp.system->n_pairs; d++) {
+        dalcs_osnsp_command(&part->osnsp, d, bit(mode, part->pair[d]));
+    }
+}
+
+/* Work of the sources against their impulses: a V source delivers -v i, an I source as well. */
+static double source_work(const struct dalcs_jump_part *part, const double *inputs) {
+    double work = 0.0;
+    for (int i = 0; i < part->n_sources; i++) {
+        const struct dalcs_output *out = part->source[i].impulse;
+        const double *in = part->u + part->osnsp.system->n_x;
+        double plus = out->plus.system < 0 ? 0.0 : dalcs_probe_value(&out->plus, part->y, in);
+        double minus = out->minus.system < 0 ? 0.0 : dalcs_probe_value(&out->minus, part->y, in);
+        work -= inputs[part->source[i].input] * (plus - minus);
+    }
+    return work;
+}
+
+static void read_answer(const struct dalcs_jump_part *part, const double *inputs,
+                        struct dalcs_jump_answer *answer) {
+    const struct dalcs_system *s = part->osnsp.system;
+    const double *lambda = part->y + dalcs_system_n_equations(s);
+    double largest = 0.0;
+    for (int x = 0; x < s->n_x; x++) {
+        largest = fmax(largest, fmax(fabs(part->u[x]), fabs(part->y[x])));
+    }
+    for (int x = 0; x < s->n_x; x++) {
+        if (fabs(part->y[x] - part->u[x]) > rounding * largest) {
+            answer->after[part->state[x]] =
+                fabs(part->y[x]) > rounding * largest ? part->y[x] : 0.0;
+            answer->moves = true;
+        }
+    }
+    double *impulse = part->kind == DALCS_IMPULSE_CHARGE ? answer->charge : answer->flux;
+    for (int d = 0; d < s->n_pairs; d++) {
+        impulse[part->pair[d]] = part->kind == DALCS_IMPULSE_CHARGE ? lambda[d] : part->osnsp.w[d];
+    }
+    answer->source_work += source_work(part, inputs);
+}
+
+enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *j, const struct dalcs_circuit *circuit,
+                                    const struct dalcs_network *network,
+                                    const struct dalcs_osnsp_options *options, int k,
+                                    const uint64_t *mode, const double *x, const double *inputs,
+                                    struct dalcs_jump_answer *answer) {
+    if (!j->is_built) {
+        DALCS_TRY(build_all(j, circuit, network, options));
+    }
+    const struct dalcs_system *s = &network->system[k];
+    answer->is_known = j->is_covered[k];
+    answer->moves = false;
+    answer->source_work = 0.0;
+    if (!answer->is_known) {
+        return DALCS_OK;
+    }
+    memcpy(answer->after, x, (size_t)s->n_x * sizeof(double));
+    memset(answer->charge, 0, (size_t)s->n_pairs * sizeof(double));
+    memset(answer->flux, 0, (size_t)s->n_pairs * sizeof(double));
+    for (int p = j->first_part[k]; p >= 0; p = j->part[p].next) {
+        struct dalcs_jump_part *part = &j->part[p];
+        const struct dalcs_system *of = part->osnsp.system;
+        for (int i = 0; i < of->n_x; i++) {
+            part->u[i] = x[part->state[i]];
+        }
+        for (int i = 0; i < of->n_inputs; i++) {
+            part->u[of->n_x + i] = inputs[part->input[i]];
+        }
+        command(part, mode);
+        enum dalcs_status status = dalcs_osnsp_solve(&part->osnsp, 1.0, part->u, part->y);
+        if (status < DALCS_OK) {
+            return status;
+        }
+        if (status > DALCS_OK) {
+            answer->is_known = false;
+            return DALCS_OK;
+        }
+        read_answer(part, inputs, answer);
+    }
+    return DALCS_OK;
+}
+
+bool dalcs_jumps_agree(const struct dalcs_system *s, const double *x, const double *limit,
+                       const double *after) {
+    double largest[2] = {0.0, 0.0};
+    for (int i = 0; i < s->n_x; i++) {
+        double *most = &largest[s->column_is_current[i]];
+        *most = fmax(*most, fmax(fabs(limit[i] - x[i]), fabs(after[i] - x[i])));
+    }
+    bool agree = true;
+    for (int i = 0; i < s->n_x && agree; i++) {
+        agree = fabs(after[i] - limit[i]) <= agreement * largest[s->column_is_current[i]];
+    }
+    return agree;
+}
+
+static void part_finish(struct dalcs_jump_part *part) {
+    if (part->osnsp.system != NULL) {
+        dalcs_osnsp_finish(&part->osnsp);
+    }
+    free(part->u);
+    free(part->y);
+    free(part->state);
+    free(part->pair);
+    free(part->input);
+    free(part->source);
+}
+
+void dalcs_jumps_finish(struct dalcs_jumps *j) {
+    for (int p = 0; p < j->n_parts; p++) {
+        part_finish(&j->part[p]);
+    }
+    free(j->part);
+    free(j->first_part);
+    free(j->is_covered);
+    for (int kind = 0; kind < DALCS_N_IMPULSES; kind++) {
+        dalcs_impulse_network_finish(&j->impulse[kind]);
+    }
+    *j = (struct dalcs_jumps){0};
+}

@@ -1,0 +1,47 @@
+/* jumps.h - states just after a discontinuity, exactly: no step is taken for it.
+ *
+ * Of a passive component the state after a jump is the nearest to the one before, in the metric of the
+ * stored energy, from which some mode can go on (Brogliato 2022, sec. 4; Heemels, Schumacher and
+ * Weiland 1999, thm 6.14): the two problems of impulse_network.h, solved once for any number of
+ * simultaneous jumps. Built when the first jump is met: most circuits never need it. */
+#ifndef DALCS_JUMPS_H
+#define DALCS_JUMPS_H
+
+#include "impulse_network.h"
+#include "osnsp.h"
+
+struct dalcs_jumps {
+    bool is_built;
+    struct dalcs_impulse_network impulse[DALCS_N_IMPULSES];
+    int n_parts;
+    struct dalcs_jump_part *part; /* systems of the two networks that hold states */
+    int n_systems;
+    int *first_part;  /* [n_systems] of the circuit's network: its first part, -1 without */
+    bool *is_covered; /* [n_systems] passive, and not tied together by perfect couplings */
+};
+
+/* All owned by the caller. */
+struct dalcs_jump_answer {
+    double *after;      /* [n_x] V, A */
+    double *charge;     /* [n_pairs] C through the pair */
+    double *flux;       /* [n_pairs] Wb across it */
+    double source_work; /* J, delivered by the sources */
+    bool is_known;      /* false: this component's jumps are not covered, nothing else is filled */
+    bool moves;         /* some state jumps by more than rounding */
+};
+
+/* The jump of system k of `network` from x[n_x] with inputs[n_inputs] just after it; mode[(n_pairs +
+ * 63) / 64] commands the switches and is a first guess for the diodes. */
+enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *jumps, const struct dalcs_circuit *circuit,
+                                    const struct dalcs_network *network,
+                                    const struct dalcs_osnsp_options *options, int k,
+                                    const uint64_t *mode, const double *x, const double *inputs,
+                                    struct dalcs_jump_answer *answer) DALCS_MUST_CHECK;
+
+/* Is the jump from x[n_x] to `limit`, as vanishing steps see it, the one to `after`? */
+bool dalcs_jumps_agree(const struct dalcs_system *system, const double *x, const double *limit,
+                       const double *after);
+
+void dalcs_jumps_finish(struct dalcs_jumps *jumps);
+
+#endif
