@@ -281,7 +281,7 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
     extrapolate_impulses(e, k, h);
     DALCS_TRY(dalcs_euler_find_jump(e, k, u));
     if (e->jump.is_known) {
-        if (!dalcs_jumps_agree(s, u, e->after, e->jump.after)) {
+        if (!dalcs_jumps_agree(s, u, e->after, c->scratch, e->jump.after)) {
             return DALCS_OK; /* a transient faster than a micro-step, which is not a jump */
         }
         memcpy(e->after, e->jump.after, (size_t)s->n_x * sizeof(double));

@@ -312,7 +312,7 @@ enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *j, const struct dalcs_ci
 }
 
 bool dalcs_jumps_agree(const struct dalcs_system *s, const double *x, const double *limit,
-                       const double *after) {
+                       const double *last, const double *after) {
     double largest[2] = {0.0, 0.0};
     for (int i = 0; i < s->n_x; i++) {
         double *most = &largest[s->column_is_current[i]];
@@ -320,7 +320,8 @@ bool dalcs_jumps_agree(const struct dalcs_system *s, const double *x, const doub
     }
     bool agree = true;
     for (int i = 0; i < s->n_x && agree; i++) {
-        agree = fabs(after[i] - limit[i]) <= agreement * largest[s->column_is_current[i]];
+        agree = fabs(after[i] - limit[i]) <=
+                agreement * largest[s->column_is_current[i]] + fabs(limit[i] - last[i]);
     }
     return agree;
 }

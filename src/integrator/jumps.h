@@ -38,9 +38,10 @@ enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *jumps, const struct dalc
                                     const uint64_t *mode, const double *x, const double *inputs,
                                     struct dalcs_jump_answer *answer) DALCS_MUST_CHECK;
 
-/* Is the jump from x[n_x] to `limit`, as vanishing steps see it, the one to `after`? */
+/* Is the jump from x[n_x] to `limit`, as vanishing steps see it, the one to `after`? The limit is known
+ * as well as the last of these steps, which led to `last`, is near to it. */
 bool dalcs_jumps_agree(const struct dalcs_system *system, const double *x, const double *limit,
-                       const double *after);
+                       const double *last, const double *after);
 
 void dalcs_jumps_finish(struct dalcs_jumps *jumps);
 

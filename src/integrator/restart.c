@@ -15,9 +15,12 @@ enum { MICRO = 20, COMMAND_ROUNDS = 20, LONGER_TRIES = 4 };
 /* States that move in the first micro-step by more than this many times the second have jumped. */
 static const double jump_ratio = 4.0;
 
-/* A micro-step over a longer one that it confirms, how much farther it may go, and what part of a
- * state has to move for that to mean something. */
-static const double shorter = 1.0 / 1024.0, runaway = 4.0, few_digits = 1e-6;
+/* A micro-step over a longer one that it is compared with, and how much farther a state goes in it that
+ * has no limit. */
+static const double shorter = 1.0 / 1024.0, runaway = 4.0;
+
+/* States that move by less, over the largest of their unit, have not jumped. */
+static const double smallest_jump = 1e-9;
 
 static enum dalcs_status fail(struct dalcs_radau *r, struct dalcs_radau_part *part, double sigma,
                               const double *u, enum dalcs_status status) {
@@ -83,7 +86,7 @@ static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_pa
         int of = s->column_is_current[x];
         largest[of] = fmax(largest[of], fmax(fabs(part->x[x]), fabs(part->y1[x])));
     }
-    double smallest = fmax(1e3 * r->inner_tolerance, 1e-9);
+    double smallest = fmax(1e3 * r->inner_tolerance, smallest_jump);
     bool jumps = false;
     *noticeable = false;
     for (int x = 0; x < s->n_x; x++) {
@@ -135,21 +138,31 @@ static enum dalcs_status micro_steps(struct dalcs_radau *r, struct dalcs_radau_p
     return solve(r, part, h, 2.0 * h, part->y1, part->y2);
 }
 
-/* Of a component that is not passive: what the jump is, shorter micro-steps have to confirm. */
-static enum dalcs_status confirm(struct dalcs_radau *r, struct dalcs_radau_part *part, double h) {
+/* Where a component is not passive, a state may jump although another one runs away, the farther the
+ * shorter the micro-step: the derivative of an impulse. */
+static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                     double h) {
     const struct dalcs_system *s = part->component->system;
-    memcpy(r->base->after, part->y1, (size_t)s->n_x * sizeof(double));
+    double *longer = r->base->after;
+    bool jumps = false;
+    bool runs_away = false;
+    memcpy(longer, part->y1, (size_t)s->n_x * sizeof(double));
     DALCS_TRY(micro_steps(r, part, shorter * h));
     for (int x = 0; x < s->n_x; x++) {
-        double before = fabs(r->base->after[x] - part->x[x]);
-        double moved = fabs(part->y1[x] - part->x[x]);
-        if (moved > runaway * before && moved > few_digits * fabs(part->y1[x])) {
-            r->base->t = part->t;
-            return dalcs_euler_refuse_derivative(r->base, part->index, part->x, r->base->after,
-                                                 part->y1);
-        }
+        double scale = fmax(part->unit_scale[s->column_is_current[x]],
+                            fmax(fabs(part->x[x]), fabs(longer[x])));
+        double before = fabs(longer[x] - part->x[x]);
+        double now = fabs(part->y1[x] - part->x[x]);
+        bool stays = fabs(part->y1[x] - longer[x]) < 0.5 * now;
+        bool moves = now > smallest_jump * scale;
+        jumps = jumps || (moves && stays);
+        runs_away = runs_away || (moves && now > runaway * before);
     }
-    return DALCS_OK;
+    if (jumps && runs_away) {
+        r->base->t = part->t;
+        return dalcs_euler_refuse_derivative(r->base, part->index, part->x, longer, part->y1);
+    }
+    return micro_steps(r, part, h);
 }
 
 /* The micro-steps of length h have seen the state move: part->after becomes the state after the jump,
@@ -162,16 +175,14 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
     bool noticeable = true;
     bool jumps = true;
     if (!s->monotone) {
-        DALCS_TRY(confirm(r, part, h));
-        h *= shorter;
-        jumps = extrapolate(r, part, part->after, &noticeable);
+        DALCS_TRY(check_limit(r, part, h));
     }
     while (jumps && noticeable) {
         extrapolate_impulses(r, part, h);
         memcpy(part->u, part->x, (size_t)s->n_x * sizeof(double));
         dalcs_excitation_inputs(&part->excitation, part->t, 0.0, part->u + s->n_x);
         DALCS_TRY(dalcs_euler_find_jump(e, part->index, part->u));
-        if (dalcs_jumps_agree(s, part->x, part->after, e->jump.after)) {
+        if (dalcs_jumps_agree(s, part->x, part->after, part->y1, e->jump.after)) {
             memcpy(part->after, e->jump.after, (size_t)s->n_x * sizeof(double));
             part->jumped = true;
             e->t = part->t;

@@ -217,6 +217,7 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
     if (status == DALCS_OK && session->circuit.transient.present) {
         status = r.compress > 0.0 ? run_thinned(&r) : dalcs_transient_run(&r);
     }
+    dalcs_names_finish(&r.interrupting);
     struct dalcs_report *report = &session->report;
     report->n_events = session->recorder.n_events;
     report->n_events_dropped = session->recorder.n_events_dropped;

@@ -2,6 +2,7 @@
 #ifndef DALCS_SESSION_INTERNAL_H
 #define DALCS_SESSION_INTERNAL_H
 
+#include "names.h"
 #include "recorder.h"
 
 struct dalcs_session {
@@ -39,6 +40,7 @@ struct dalcs_run {
 
     const char **name;
     enum dalcs_unit *unit;
+    struct dalcs_names interrupting; /* switches that a warning has named */
 };
 
 /* Settles what the options of the run and of the netlist leave open; checks them. */
@@ -49,6 +51,10 @@ void dalcs_session_forget_run(struct dalcs_session *session);
 
 /* Runs .tran into r->sink. */
 enum dalcs_status dalcs_transient_run(struct dalcs_run *r) DALCS_MUST_CHECK;
+
+/* Hands a jump to the recorder, and warns once of each switch that interrupts a coil; user is the run.
+ */
+enum dalcs_status dalcs_note_jump(void *user, const struct dalcs_euler_jump *jump) DALCS_MUST_CHECK;
 
 /* Announces a plot to the sink. */
 enum dalcs_status dalcs_run_begin_plot(struct dalcs_run *r,

@@ -277,8 +277,8 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
                                    r->options->record, r->options->max_events));
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, r->h, stop));
     e.detect_jumps = r->options->record;
-    e.jump_user = &s->recorder;
-    e.on_jump = dalcs_recorder_jump;
+    e.jump_user = r;
+    e.on_jump = dalcs_note_jump;
     s->report.step = is_euler ? r->h : r->fixed_step;
     s->report.stop = stop;
     enum dalcs_status status = DALCS_OK;

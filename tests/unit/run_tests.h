@@ -4,9 +4,13 @@
 
 #include <check.h>
 
+/* s; a busy machine may take this long for what takes a second. */
+enum { MOST_SECONDS = 60 };
+
 static inline int run_tests(const char *name, const TTest *const *test, size_t n) {
     Suite *suite = suite_create(name);
     TCase *tests = tcase_create(name);
+    tcase_set_timeout(tests, MOST_SECONDS);
     for (size_t k = 0; k < n; k++) {
         tcase_add_test(tests, test[k]);
     }

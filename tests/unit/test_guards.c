@@ -39,12 +39,14 @@ static void start(void) {
     ck_assert_int_eq(dalcs_excitation_setup(&x, &t.circuit, s), DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&part.stages, s, &x, 5, 64, 1e-14, 1 << 20), DALCS_OK);
     ck_assert_int_eq(part.stages.n_watched, 1);
+    ck_assert_int_eq(dalcs_guards_setup(&part), DALCS_OK);
     for (int k = 0; k < 8; k++) {
         armed[k] = false;
     }
 }
 
 static void finish(void) {
+    dalcs_guards_finish(&part);
     dalcs_stages_finish(&part.stages);
     dalcs_excitation_finish(&x);
     dalcs_osnsp_finish(&osnsp);
@@ -177,4 +179,23 @@ START_TEST(test_signs_and_ties) {
 
 END_TEST
 
-RUN_TESTS("guards", test_pairs, test_watched, test_arming, test_signs_and_ties)
+/* In a short step a capacitor makes a current of the last digits of its voltage: d1 leads to 1 F. The
+ * longer the step, the less of it is rounding. */
+START_TEST(test_rounding) {
+    start();
+    dalcs_osnsp_command(&component.osnsp, find_pair(component.system, "d1"), true);
+    draw("d1", 1.0, -1e-9);
+    draw("d2", 1.0, 1.0);
+    draw(NULL, 0.5, 0.5);
+    arm();
+    ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-8);
+    part.h = 1e-6; /* 16 roundings of 1 V on 1 F in 1 us: 3.6 nA */
+    ck_assert(isinf(first_fall(1.0)));
+    draw("d1", 1.0, -1e-8);
+    ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-7);
+    finish();
+}
+
+END_TEST
+
+RUN_TESTS("guards", test_rounding, test_pairs, test_watched, test_arming, test_signs_and_ties)

@@ -133,11 +133,15 @@ START_TEST(test_singular) {
     const double equal_rows[] = {1.0, 2.0, 2.0, 4.0};
     ck_assert_int_eq(factor(&lu, 2, equal_rows, 1e-14), DALCS_SINGULAR);
     ck_assert_ptr_null(lu.work);
-    /* No pivot vanishes, but one is a rounding of the other. */
-    const double nearly[] = {1.0, 0.0, 0.0, 1e-15};
+    /* No pivot vanishes, but one is a rounding of its column. */
+    const double nearly[] = {1.0, 1.0, 1.0, 1.0 + 0x1p-50};
     ck_assert_int_eq(factor(&lu, 2, nearly, 1e-14), DALCS_SINGULAR);
     ck_assert_ptr_null(lu.work);
     ck_assert_int_eq(factor(&lu, 2, nearly, 0.0), DALCS_OK);
+    dalcs_lu_finish(&lu);
+    /* Columns that have little to do with each other may be far apart. */
+    const double apart[] = {1.0, 0.0, 0.0, 1e-15};
+    ck_assert_int_eq(factor(&lu, 2, apart, 1e-14), DALCS_OK);
     dalcs_lu_finish(&lu);
 }
 
