@@ -8,8 +8,32 @@ struct reduction {
     const struct dalcs_circuit *from;
     struct dalcs_circuit *to;
     enum dalcs_impulse_kind kind;
-    int *device_of; /* [from->n_devices] where it went, -1 if nowhere */
+    int *device_of;       /* [from->n_devices] where it went, -1 if nowhere */
+    bool *is_transformer; /* [from->n_devices] */
 };
+
+/* What is left of a transformer when its magnetising current has no time to change: inductances this
+ * many times as large take no part. */
+static const double magnetised = 0x1p100;
+
+void dalcs_mark_transformers(const struct dalcs_circuit *c, bool *is_transformer) {
+    for (int k = 0; k < c->n_couplings; k++) {
+        const int *coil = c->coupling[k].inductor;
+        bool is_perfect = fabs(c->coupling[k].k) == 1.0;
+        is_transformer[coil[0]] = is_transformer[coil[0]] || is_perfect;
+        is_transformer[coil[1]] = is_transformer[coil[1]] || is_perfect;
+    }
+    for (bool more = true; more;) {
+        more = false;
+        for (int k = 0; k < c->n_couplings; k++) {
+            const int *coil = c->coupling[k].inductor;
+            if (is_transformer[coil[0]] != is_transformer[coil[1]]) {
+                is_transformer[coil[0]] = is_transformer[coil[1]] = true;
+                more = true;
+            }
+        }
+    }
+}
 
 const char *dalcs_breakdown_name(struct dalcs_arena *arena, const char *diode) {
     return dalcs_arena_printf(arena, "%s breakdown", diode);
@@ -40,6 +64,11 @@ static void add_diode(struct reduction *r, const struct dalcs_device *d, const c
 /* Charge passes a branch without resistance alone. */
 static enum dalcs_status reduce_to_charge(struct reduction *r, const struct dalcs_device *d) {
     switch (d->kind) {
+    case DALCS_INDUCTOR:
+        if (r->is_transformer[d - r->from->device]) {
+            add(r, d)->value *= magnetised;
+        }
+        break;
     case DALCS_CAPACITOR:
     case DALCS_VSOURCE:
         add(r, d);
@@ -191,15 +220,21 @@ enum dalcs_status dalcs_impulse_network_build(struct dalcs_impulse_network *impu
     struct reduction r = {.from = circuit,
                           .to = &impulse->circuit,
                           .kind = kind,
-                          .device_of = dalcs_alloc((size_t)circuit->n_devices, sizeof(int))};
+                          .device_of = dalcs_alloc((size_t)circuit->n_devices, sizeof(int)),
+                          .is_transformer = dalcs_alloc((size_t)circuit->n_devices, sizeof(bool))};
     struct dalcs_diag nobody = {0};
-    enum dalcs_status status = r.device_of == NULL ? DALCS_E_NOMEM : reduce(&r);
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (r.device_of != NULL && r.is_transformer != NULL) {
+        dalcs_mark_transformers(circuit, r.is_transformer);
+        status = reduce(&r);
+    }
     if (status == DALCS_OK) {
         status = dalcs_network_build(&impulse->network, &impulse->circuit,
                                      &(struct dalcs_network_options){.silent = true}, &nobody);
     }
     dalcs_diag_finish(&nobody);
     free(r.device_of);
+    free(r.is_transformer);
     if (status != DALCS_OK) {
         dalcs_circuit_finish(&impulse->circuit);
         *impulse = (struct dalcs_impulse_network){0};

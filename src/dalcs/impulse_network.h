@@ -5,8 +5,8 @@
  * with an impulse of either kind would dissipate without bound, so that in a passive circuit the two
  * are separate problems, each without time:
  *
- *   charge   capacitors, V sources, ideal diodes and closed ideal switches; the rest lets no charge
- *            pass in no time. The voltages after the jump are the nearest, in the energy of the
+ *   charge   capacitors, V sources, ideal diodes, closed ideal switches and ideal transformers; the
+ *            rest lets no charge pass in no time. The voltages after the jump are the nearest, in the energy of the
  *            capacitors, that some mode allows; lambda is the charge through a diode.
  *   flux     coils, I sources, diodes without a leak and open ideal switches; the rest joins its
  *            nodes, for no flux builds up across it. The currents after the jump are the nearest
@@ -34,6 +34,10 @@ enum dalcs_status dalcs_impulse_network_build(struct dalcs_impulse_network *impu
                                               enum dalcs_impulse_kind kind) DALCS_MUST_CHECK;
 
 void dalcs_impulse_network_finish(struct dalcs_impulse_network *impulse);
+
+/* is_transformer[n_devices], zeroed by the caller: coils that perfect couplings, |k| = 1, join with
+ * others, directly or through their partners. */
+void dalcs_mark_transformers(const struct dalcs_circuit *circuit, bool *is_transformer);
 
 /* "d1 breakdown", in the arena; NULL without memory. */
 const char *dalcs_breakdown_name(struct dalcs_arena *arena, const char *diode);

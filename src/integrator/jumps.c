@@ -125,10 +125,16 @@ static enum dalcs_status part_setup(struct dalcs_jump_part *part,
     return DALCS_OK;
 }
 
-/* Perfectly coupled coils are an ideal transformer, through which charge passes too: the charge
- * network does not have it. Of such coils some are no states. */
-static void leave_out_transformers(struct dalcs_jumps *j, const struct dalcs_circuit *circuit,
-                                   const struct places *places) {
+/* Of coils that are dependent without any |k| = 1 (three of them may be) the charge network does not
+ * have the ideal transformer that they are. */
+static enum dalcs_status leave_out_dependent_coils(struct dalcs_jumps *j,
+                                                   const struct dalcs_circuit *circuit,
+                                                   const struct places *places) {
+    bool *is_transformer = dalcs_alloc((size_t)circuit->n_devices, sizeof(*is_transformer));
+    if (is_transformer == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    dalcs_mark_transformers(circuit, is_transformer);
     for (int k = 0; k < circuit->n_couplings; k++) {
         const int *coil = circuit->coupling[k].inductor;
         int owner[2] = {-1, -1};
@@ -136,10 +142,12 @@ static void leave_out_transformers(struct dalcs_jumps *j, const struct dalcs_cir
         for (int e = 0; e < 2; e++) {
             is_state[e] = look_up(places, circuit->device[coil[e]].name, &owner[e]) >= 0;
         }
-        if (is_state[0] != is_state[1]) {
+        if (is_state[0] != is_state[1] && !is_transformer[coil[0]]) {
             j->is_covered[owner[is_state[0] ? 0 : 1]] = false;
         }
     }
+    free(is_transformer);
+    return DALCS_OK;
 }
 
 /* The systems with states of one of the two networks. */
@@ -196,7 +204,7 @@ static enum dalcs_status find_parts(struct dalcs_jumps *j, const struct dalcs_ci
             j->first_part[k] = -1;
             j->is_covered[k] = network->system[k].monotone;
         }
-        leave_out_transformers(j, circuit, &places);
+        status = leave_out_dependent_coils(j, circuit, &places);
     }
     for (int kind = 0; status == DALCS_OK && kind < DALCS_N_IMPULSES; kind++) {
         status = add_parts(j, (enum dalcs_impulse_kind)kind, &places, options);
@@ -235,6 +243,11 @@ static void command(struct dalcs_jump_part *part, const uint64_t *mode) {
     }
 }
 
+/* Or a magnetising current of a transformer, which takes no part in moving charge? */
+static bool is_its_own(const struct dalcs_jump_part *part, int x) {
+    return part->osnsp.system->column_is_current[x] == (part->kind == DALCS_IMPULSE_FLUX);
+}
+
 /* Work of the sources against their impulses: a V source delivers -v i, an I source as well. */
 static double source_work(const struct dalcs_jump_part *part, const double *inputs) {
     double work = 0.0;
@@ -254,10 +267,12 @@ static void read_answer(const struct dalcs_jump_part *part, const double *inputs
     const double *lambda = part->y + dalcs_system_n_equations(s);
     double largest = 0.0;
     for (int x = 0; x < s->n_x; x++) {
-        largest = fmax(largest, fmax(fabs(part->u[x]), fabs(part->y[x])));
+        if (is_its_own(part, x)) {
+            largest = fmax(largest, fmax(fabs(part->u[x]), fabs(part->y[x])));
+        }
     }
     for (int x = 0; x < s->n_x; x++) {
-        if (fabs(part->y[x] - part->u[x]) > rounding * largest) {
+        if (is_its_own(part, x) && fabs(part->y[x] - part->u[x]) > rounding * largest) {
             answer->after[part->state[x]] =
                 fabs(part->y[x]) > rounding * largest ? part->y[x] : 0.0;
             answer->moves = true;
@@ -292,7 +307,7 @@ enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *j, const struct dalcs_ci
         struct dalcs_jump_part *part = &j->part[p];
         const struct dalcs_system *of = part->osnsp.system;
         for (int i = 0; i < of->n_x; i++) {
-            part->u[i] = x[part->state[i]];
+            part->u[i] = is_its_own(part, i) ? x[part->state[i]] : 0.0;
         }
         for (int i = 0; i < of->n_inputs; i++) {
             part->u[of->n_x + i] = inputs[part->input[i]];

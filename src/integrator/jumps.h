@@ -17,7 +17,7 @@ struct dalcs_jumps {
     struct dalcs_jump_part *part; /* systems of the two networks that hold states */
     int n_systems;
     int *first_part;  /* [n_systems] of the circuit's network: its first part, -1 without */
-    bool *is_covered; /* [n_systems] passive, and not tied together by perfect couplings */
+    bool *is_covered; /* [n_systems] passive, and with no dependent coils but transformers */
 };
 
 /* All owned by the caller. */

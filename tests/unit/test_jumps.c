@@ -154,14 +154,41 @@ START_TEST(test_coupling) {
 
 END_TEST
 
-/* What is not passive, or an ideal transformer, is said not to be known. */
+/* 1 : 2, perfect: 8 V on 1 uF asks for 16 V at the other side, where 1 uF has 4 V. q there is 2 q here:
+ * 2 (8 V - 2 q / 1 uF) = 4 V + q / 1 uF, q = 2.4 uC. The magnetising current stays. */
+START_TEST(test_transformer) {
+    jump("t\nC1 1 0 1u IC=8\nL1 1 0 1m IC=0.5\nL2 2 0 4m\nK1 L1 L2 1\nD1 2 3 DI\nC2 3 0 1u IC=4\n"
+         "R3 3 0 1k\n.model DI D(Ron=0)\n.tran 1u 1m uic\n");
+    ck_assert(answer.is_known && answer.moves);
+    ck_assert_double_eq_tol(charge[pair("d1")], 2.4e-6, 1e-20);
+    ck_assert_double_eq_tol(state("c1"), 3.2, 1e-14);
+    ck_assert_double_eq_tol(state("c2"), 6.4, 1e-14);
+    ck_assert_double_eq(state("l1"), 0.5);
+    finish();
+    /* Its current goes on at the other side, unless a diode is in the way there, too. */
+    jump("t\nL1 1 0 1m IC=3\nL2 2 0 4m\nK1 L1 L2 1\nD1 1 0 DI\nD2 0 2 DI\n.model DI D(Ron=0)\n"
+         ".tran 1u 1m uic\n");
+    ck_assert(answer.is_known && !answer.moves);
+    finish();
+    jump("t\nL1 1 0 1m IC=3\nL2 2 0 4m\nK1 L1 L2 1\nD1 1 0 DI\nD2 2 0 DI\n.model DI D(Ron=0)\n"
+         ".tran 1u 1m uic\n");
+    ck_assert(answer.is_known && answer.moves);
+    ck_assert_double_eq_tol(state("l1"), 0.0, 1e-14);
+    ck_assert_double_eq_tol(flux[pair("d1")], 3e-3, 1e-17);
+    ck_assert_double_eq_tol(flux[pair("d2")], 6e-3, 1e-17);
+    finish();
+}
+
+END_TEST
+
+/* What is not passive is said not to be known, and so are three coils that are two. */
 START_TEST(test_not_covered) {
     jump("t\nC1 1 0 1u IC=10\nD1 1 2 DI\nC2 2 0 3u IC=2\nE1 3 0 2 0 2\nR1 3 0 1\n"
          ".model DI D(Ron=0)\n.tran 1u 1m uic\n");
     ck_assert(!answer.is_known);
     finish();
-    jump("t\nL1 1 0 1m IC=1\nL2 2 0 1m\nK1 L1 L2 1\nD1 1 0 DI\nR2 2 0 1\n.model DI D(Ron=0)\n"
-         ".tran 1u 1m uic\n");
+    jump("t\nL1 1 0 1m IC=1\nL2 2 0 1m\nL3 3 0 1m\nK12 L1 L2 0.5\nK13 L1 L3 0.5\nK23 L2 L3 -0.5\n"
+         "D1 1 0 DI\nR2 2 0 1\nR3 3 0 1\n.model DI D(Ron=0)\n.tran 1u 1m uic\n");
     ck_assert(!answer.is_known);
     finish();
 }
@@ -169,4 +196,4 @@ START_TEST(test_not_covered) {
 END_TEST
 
 RUN_TESTS("jumps", test_charge, test_resistance, test_source, test_breakdown, test_flux,
-          test_switch, test_coupling, test_not_covered)
+          test_switch, test_coupling, test_transformer, test_not_covered)
