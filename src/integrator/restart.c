@@ -165,38 +165,68 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
     return micro_steps(r, part, h);
 }
 
-/* The micro-steps of length h have seen the state move: part->after becomes the state after the jump,
- * exactly where that is known, and the jump is reported. A transient that is faster than a micro-step
- * is none: then micro-steps have to be shorter, as far as time can be told apart. */
+/* Does the exact jump move a state by more than the error that the state of an event has? */
+static bool is_noticeable(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    const double *after = r->base->jump.after;
+    double smallest = fmax(1e3 * r->inner_tolerance, smallest_jump);
+    bool noticeable = false;
+    for (int x = 0; x < s->n_x && !noticeable; x++) {
+        double scale =
+            fmax(part->unit_scale[s->column_is_current[x]], fmax(fabs(part->x[x]), fabs(after[x])));
+        noticeable = fabs(after[x] - part->x[x]) > smallest * scale;
+    }
+    return noticeable;
+}
+
+static enum dalcs_status find_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h) {
+    const struct dalcs_system *s = part->component->system;
+    extrapolate_impulses(r, part, h);
+    memcpy(part->u, part->x, (size_t)s->n_x * sizeof(double));
+    dalcs_excitation_inputs(&part->excitation, part->t, 0.0, part->u + s->n_x);
+    return dalcs_euler_find_jump(r->base, part->index, part->u);
+}
+
+static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    struct dalcs_euler *e = r->base;
+    e->t = part->t;
+    DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->t, part->x));
+    memcpy(part->x, e->jump.after, (size_t)part->component->system->n_x * sizeof(double));
+    part->jumped = true;
+    return DALCS_OK;
+}
+
+/* The micro-steps of length h have seen the state move: part->x becomes the state after the jump,
+ * exactly where that is known, and the jump is reported. What else they have seen is a transient
+ * faster than they are: they get shorter, until they tell the mode before it, or, where time cannot be
+ * told apart any more, it is over. */
 static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                      double h) {
-    struct dalcs_euler *e = r->base;
+    const struct dalcs_euler *e = r->base;
     const struct dalcs_system *s = part->component->system;
     bool noticeable = true;
-    bool jumps = true;
+    bool moves = true;
     if (!s->monotone) {
         DALCS_TRY(check_limit(r, part, h));
     }
-    while (jumps && noticeable) {
-        extrapolate_impulses(r, part, h);
-        memcpy(part->u, part->x, (size_t)s->n_x * sizeof(double));
-        dalcs_excitation_inputs(&part->excitation, part->t, 0.0, part->u + s->n_x);
-        DALCS_TRY(dalcs_euler_find_jump(e, part->index, part->u));
-        if (dalcs_jumps_agree(s, part->x, part->after, part->y1, e->jump.after)) {
-            memcpy(part->after, e->jump.after, (size_t)s->n_x * sizeof(double));
-            part->jumped = true;
-            e->t = part->t;
-            DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->t, part->x));
-            break;
+    while (moves && noticeable) {
+        DALCS_TRY(find_jump(r, part, h));
+        bool is_whole = !e->jump.is_known ||
+                        dalcs_jumps_agree(s, part->x, part->after, part->y1, e->jump.after);
+        if (is_whole || is_noticeable(r, part)) {
+            DALCS_TRY(take_jump(r, part));
+        }
+        if (is_whole) {
+            return DALCS_OK;
         }
         if (shorter * h < 64.0 * r->resolution) {
             break;
         }
         h *= shorter;
         DALCS_TRY(micro_steps(r, part, h));
-        jumps = extrapolate(r, part, part->after, &noticeable);
+        moves = extrapolate(r, part, part->after, &noticeable);
     }
-    if (jumps) {
+    if (moves) {
         memcpy(part->x, part->after, (size_t)s->n_x * sizeof(double));
     }
     return DALCS_OK;

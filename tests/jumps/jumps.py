@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+"""Jumps against closed forms, with either method: states, impulses, work, loss; and what is none.
+
+usage: jumps.py PROGRAM auto|euler
+"""
+
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "support"))
+from dalcs_program import Checker, run  # noqa: E402
+
+EXACT = 1e-12  # relative
+MODEL = ".model DI D(Ron=0 Vfwd=0)\n"
+
+DIVIDER = """a step of 12 V over 1 uF and 3 uF in series: 9 uC
+V1 in 0 PULSE(0 12 1m 0 0 1m 5m)
+C1 in a 1u
+C2 a 0 3u
+R1 a 0 1k
+.tran 10u 2m uic
+"""
+
+# 12 mA in 2 mH when the switch opens: 24 uWb, 144 nJ.
+INTERRUPTED = """a coil cut off
+I1 0 a 12m
+L1 a b 2m ic=12m
+S1 b 0 c 0 sw
+Vc c 0 PULSE(5 0 1m 0 0 2m 5m)
+S2 a 0 c2 0 sw
+Vc2 c2 0 5
+.model sw sw(vt=2.5)
+.tran 10u 1.5m uic
+"""
+
+# 1 fs is far below anything that a run of 2 ms can tell apart from a jump by looking at a step.
+FAST = """a transient of 1 fs, which is no jump
+V1 in 0 PULSE(0 10 1m 0 0 1m 5m)
+R1 in a 1m
+C1 a 0 1p
+.tran 10u 2m uic
+"""
+
+# The same beside a jump: 1 uF at 8 V joins 1 uF at 0 through a diode, 1 pF with 1 mohm follows.
+BESIDE = """a jump and a fast transient at once
+C1 a 0 1u ic=8
+D1 a b DI
+C2 b 0 1u
+R1 b c 1m
+C3 c 0 1p
+""" + MODEL + ".tran 1u 1m uic\n"
+
+# Ten cells that all jump at one time, each by itself and the last through the first.
+CELLS = "ten at once\n" + "".join(
+    f"Ca{k} a{k} 0 {k}u ic={10 * k}\nD{k} a{k} b{k} DI\nCb{k} b{k} 0 1u\nRb{k} b{k} 0 1g\n"
+    for k in range(1, 11)) + MODEL + ".tran 1u 1u uic\n"
+
+# The doubler with vertical edges: 10 (1 - 2^-n) V after n rising edges, by 10 uC 2^-n each.
+DOUBLER = """Greinacher's doubler, vertical edges
+V1 in 0 PULSE(-5 5 1m 0 0 1m 2m)
+C1 in a 1u ic=-5
+D1 0 a DI
+D2 a out DI
+C2 out 0 1u
+""" + MODEL + ".tran 10u 10.5m uic\n"
+
+# x1' = x2, x2' = lambda, 0 <= lambda _|_ x1 >= 0 from below the floor: it would take a derivative of
+# an impulse to get to x = 0.
+BALL = """a ball below the floor
+C1 1 0 1 ic=-1
+G1 0 1 2 0 1
+C2 2 0 1 ic=0
+E1 3 0 1 0 1
+Vs 4 3 0
+D1 0 4 DI
+F1 0 2 Vs 1
+""" + MODEL + ".tran 1m 2 uic\n"
+
+
+class Jumps:
+    def __init__(self, program, method):
+        self.program = program
+        self.method = method
+        self.check = Checker(f"jumps {method}")
+
+    def run(self, netlist):
+        result = run(self.program, netlist + ".end\n", method=self.method)
+        self.check.check(result.status == 0, f"exit {result.status}: {result.stderr}")
+        return result
+
+    def close(self, found, wanted, what):
+        self.check.close(found, wanted, EXACT * abs(wanted) if wanted else 1e-18, what)
+
+    def one(self, result):
+        jumps = result.report["jumps"]
+        self.check.check(len(jumps) == 1, f"{len(jumps)} jumps, not 1")
+        return jumps[0]
+
+    def source(self):
+        jump = self.one(self.run(DIVIDER))
+        self.close(jump["time"], 1e-3, "time")
+        self.close(jump["states"]["c1"]["after"], 9.0, "c1")
+        self.close(jump["states"]["c2"]["after"], 3.0, "c2")
+        self.close(jump["source_work"], 108e-6, "work of the source")
+        self.close(jump["energy_lost"], 54e-6, "loss")
+
+    def interruption(self):
+        result = self.run(INTERRUPTED)
+        jump = self.one(result)
+        after = jump["states"]["l1"]["after"]
+        self.check.check(after == 0.0, f"{after} A behind the switch")
+        self.close(abs(jump["impulses"]["s1"]["flux"]), 24e-6, "flux")
+        self.close(jump["energy_lost"], 144e-9, "loss")
+        self.check.check("'s1' interrupts the current of 'l1'" in result.stderr and
+                         result.stderr.count("warning") == 1, f"warned: {result.stderr}")
+        if self.method != "euler":  # where the first row behind a jump shows flux/h
+            top = max(abs(v) for v in result.column("v(b)"))
+            self.check.check(top < 1e-6, f"v(b) reaches {top} V")
+
+    def no_jump(self):
+        result = self.run(FAST)
+        self.check.check(result.report["jumps"] == [], f"{result.report['jumps']}")
+
+    def beside(self):
+        result = self.run(BESIDE)
+        jump = self.one(result)
+        self.close(jump["impulses"]["d1"]["charge"], 4e-6, "charge")
+        self.close(jump["states"]["c1"]["after"], 4.0, "c1")
+        self.check.check("c3" not in jump["states"], "c3 jumps")
+
+    def many(self):
+        jumps = self.run(CELLS).report["jumps"]
+        self.check.check(len(jumps) == 10, f"{len(jumps)} jumps, not 10")
+        for jump in jumps:
+            (name, impulse), = jump["impulses"].items()
+            k = int(name[1:])
+            self.close(impulse["charge"], 10e-6 * k * k / (k + 1), f"charge of {name}")
+            self.close(jump["states"][f"cb{k}"]["after"], 10 * k * k / (k + 1), f"cb{k}")
+
+    def doubler(self):
+        jumps = [j for j in self.run(DOUBLER).report["jumps"] if "d2" in j["impulses"]]
+        self.check.check(len(jumps) == 5, f"{len(jumps)} rising edges, not 5")
+        for n, jump in enumerate(jumps, 1):
+            self.close(jump["time"], (2 * n - 1) * 1e-3, f"edge {n}")
+            self.close(jump["states"]["c2"]["after"], 10 * (1 - 0.5 ** n), f"v(out) after {n}")
+            self.close(jump["impulses"]["d2"]["charge"], 10e-6 * 0.5 ** n, f"charge of edge {n}")
+
+    def derivative(self):
+        result = run(self.program, BALL + ".end\n", method=self.method)
+        self.check.check(result.status == 1, f"exit {result.status}, not refused")
+        self.check.check("derivative of an impulse" in result.stderr, result.stderr)
+        self.check.check("c2" in result.report["infeasible"]["elements"],
+                         f"{result.report['infeasible']}")
+
+    def all(self):
+        for case in (self.source, self.interruption, self.no_jump, self.beside, self.many,
+                     self.doubler, self.derivative):
+            case()
+        return self.check.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(Jumps(*sys.argv[1:]).all())
