@@ -1,6 +1,8 @@
 /* network.c - the whole circuit: coil groups, components, and the probes that read the results. */
 #include "network.h"
 
+#include "capacitive_parts.h"
+#include "source_conflicts.h"
 #include "stamp.h"
 #include "union_find.h"
 
@@ -442,6 +444,12 @@ enum dalcs_status dalcs_network_build(struct dalcs_network *network,
     }
     dalcs_circuit_mark_wanted_currents(circuit, wants_current);
     status = layout_allocate(&layout);
+    if (status == DALCS_OK && !options->clamp_initial_conditions) {
+        status = dalcs_source_conflicts(circuit, diag);
+    }
+    if (status == DALCS_OK && !options->clamp_initial_conditions) {
+        status = dalcs_capacitive_parts_note(circuit, diag);
+    }
     if (status == DALCS_OK) {
         status = dalcs_topology_build(&layout.topology, circuit, wants_current);
     }
