@@ -444,14 +444,14 @@ enum dalcs_status dalcs_network_build(struct dalcs_network *network,
     }
     dalcs_circuit_mark_wanted_currents(circuit, wants_current);
     status = layout_allocate(&layout);
-    if (status == DALCS_OK && !options->clamp_initial_conditions) {
-        status = dalcs_source_conflicts(circuit, diag);
+    if (status == DALCS_OK) {
+        status = dalcs_topology_build(&layout.topology, circuit, wants_current);
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_source_mark_idle(circuit, wants_current, layout.topology.is_idle);
     }
     if (status == DALCS_OK && !options->clamp_initial_conditions) {
         status = dalcs_capacitive_parts_note(circuit, diag);
-    }
-    if (status == DALCS_OK) {
-        status = dalcs_topology_build(&layout.topology, circuit, wants_current);
     }
     if (status == DALCS_OK) {
         if (!options->clamp_initial_conditions) {

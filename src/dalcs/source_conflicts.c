@@ -1,4 +1,4 @@
-/* source_conflicts.c - sources that contradict each other by themselves.
+/* source_conflicts.c - sources that contradict each other by themselves, or leave a current open.
  *
  * V sources and shorts form a forest, and every further V source closes one loop with it. Everything
  * but current sources merges nodes, and what is then not ground is a part that only they reach. Both are
@@ -133,13 +133,17 @@ static int other_end(const struct dalcs_device *d, int node) {
     return d->node[0] == node ? d->node[1] : d->node[0];
 }
 
-/* Shorts first: a loop of sources then passes through them where it can. */
-static void grow(struct forest *f, const struct dalcs_circuit *c) {
+/* Shorts without a current of their own, the other shorts, sources: the later ones close loops. */
+static int rank_of(const struct dalcs_device *d, bool wants_current) {
+    return dalcs_device_is_short(d) ? (wants_current ? 1 : 0) : d->kind == DALCS_VSOURCE ? 2 : -1;
+}
+
+static void grow(struct forest *f, const struct dalcs_circuit *c, const bool *wants_current) {
     dalcs_union_reset(f->queue, c->n_nodes);
-    for (int pass = 0; pass < 2; pass++) {
+    for (int pass = 0; pass < 3; pass++) {
         for (int i = 0; i < c->n_devices; i++) {
             const struct dalcs_device *d = &c->device[i];
-            if (pass == 0 ? dalcs_device_is_short(d) : d->kind == DALCS_VSOURCE) {
+            if (rank_of(d, wants_current[i]) == pass) {
                 f->is_tree[i] = dalcs_union_join(f->queue, d->node[0], d->node[1]);
             }
         }
@@ -185,19 +189,27 @@ static void root(struct forest *f, const struct dalcs_circuit *c) {
     }
 }
 
+static bool closes_loop(const struct forest *f, const struct dalcs_circuit *c,
+                        const bool *wants_current, int device) {
+    return rank_of(&c->device[device], wants_current[device]) > 0 && !f->is_tree[device];
+}
+
 struct loop {
     struct sum sum;   /* of its sources' voltages */
     const char *rest; /* its elements but the source that closes it, in order */
 };
 
-/* The loop that a source closes: up the tree from both of its ends until they meet. */
+/* The loop that a source closes: up the tree from both of its ends until they meet. Without an arena
+ * its sum only. */
 static struct loop walk_loop(const struct forest *f, const struct dalcs_circuit *c, int closing,
                              struct dalcs_arena *arena) {
     const struct dalcs_device *d = &c->device[closing];
     int node[2] = {d->node[0], d->node[1]};
     const char *way[2] = {"", ""};
     struct loop loop = {.rest = ""};
-    add_term(&loop.sum, closing, 1.0);
+    if (d->kind == DALCS_VSOURCE) {
+        add_term(&loop.sum, closing, 1.0);
+    }
     for (int n = 0; node[0] != node[1]; n++) {
         int side = f->depth[node[0]] >= f->depth[node[1]] ? 0 : 1;
         int up = f->up[node[side]];
@@ -205,13 +217,13 @@ static struct loop walk_loop(const struct forest *f, const struct dalcs_circuit 
         if (e->kind == DALCS_VSOURCE) {
             add_term(&loop.sum, up, (e->node[0] == node[side]) == (side == 0) ? -1.0 : 1.0);
         }
-        if (n < MOST_TERMS) {
+        if (n < MOST_TERMS && arena != NULL) {
             const char *text = element_text(arena, c, up);
             way[side] = side == 0 ? listed(arena, text, way[0]) : listed(arena, way[1], text);
         }
         node[side] = other_end(e, node[side]);
     }
-    loop.rest = listed(arena, way[1], way[0]);
+    loop.rest = arena != NULL ? listed(arena, way[1], way[0]) : "";
     return loop;
 }
 
@@ -237,13 +249,23 @@ static void report_loop(const struct dalcs_circuit *c, int closing, const struct
     }
 }
 
-static enum dalcs_status judge_loops(const struct forest *f, const struct dalcs_circuit *c,
-                                     struct dalcs_arena *arena, struct dalcs_diag *diag) {
+static void say_idle(const struct dalcs_circuit *c, int closing, const struct loop *loop,
+                     struct dalcs_arena *arena, struct dalcs_diag *diag) {
+    const struct dalcs_device *d = &c->device[closing];
+    dalcs_diag_add(
+        diag, DALCS_WARNING, &d->where, NULL,
+        "nothing limits the current around the loop %s, %s: the voltages agree, but that "
+        "current is not determined; by convention %s carries none",
+        element_text(arena, c, closing), loop->rest, d->name);
+}
+
+static enum dalcs_status report_loops(const struct forest *f, const struct dalcs_circuit *c,
+                                      const bool *wants_current, struct dalcs_arena *arena,
+                                      struct dalcs_diag *diag) {
     enum dalcs_status status = DALCS_OK;
     int n_messages = 0;
     for (int i = 0; i < c->n_devices && n_messages < MOST_MESSAGES; i++) {
-        const struct dalcs_device *d = &c->device[i];
-        if (d->kind != DALCS_VSOURCE || f->is_tree[i]) {
+        if (!closes_loop(f, c, wants_current, i)) {
             continue;
         }
         struct loop loop = walk_loop(f, c, i, arena);
@@ -252,42 +274,77 @@ static enum dalcs_status judge_loops(const struct forest *f, const struct dalcs_
         if (verdict == CONTRADICT) {
             report_loop(c, i, &loop, left, arena, diag);
             status = DALCS_E_NETLIST;
-            n_messages++;
-        } else if (verdict == AGREE && d->node[0] != d->node[1]) {
-            dalcs_diag_add(diag, DALCS_WARNING, &d->where, NULL,
-                           "nothing limits the current around the loop %s, %s: the voltages agree, "
-                           "but that current is not determined, and the results have the one of "
-                           "least norm",
-                           element_text(arena, c, i), loop.rest);
-            n_messages++;
+        } else if (verdict == AGREE && c->device[i].node[0] != c->device[i].node[1]) {
+            say_idle(c, i, &loop, arena, diag);
         }
+        n_messages += verdict == UNKNOWN ? 0 : 1;
     }
     return status;
 }
 
-static enum dalcs_status check_loops(const struct dalcs_circuit *c, struct dalcs_arena *arena,
-                                     struct dalcs_diag *diag) {
+static void mark_idle(const struct forest *f, const struct dalcs_circuit *c,
+                      const bool *wants_current, bool *idle) {
+    for (int i = 0; i < c->n_devices; i++) {
+        if (closes_loop(f, c, wants_current, i)) {
+            struct loop loop = walk_loop(f, c, i, NULL);
+            double left;
+            idle[i] = judge(c, &loop.sum, &left) == AGREE;
+        }
+    }
+}
+
+static void forest_finish(struct forest *f) {
+    free(f->is_tree);
+    free(f->start);
+    free(f->arc);
+    free(f->up);
+    free(f->depth);
+    free(f->queue);
+}
+
+static enum dalcs_status forest_setup(struct forest *f, const struct dalcs_circuit *c,
+                                      const bool *wants_current) {
     size_t n_nodes = (size_t)c->n_nodes;
     size_t n_devices = (size_t)c->n_devices;
-    struct forest f = {.is_tree = dalcs_alloc(n_devices, sizeof(bool)),
-                       .start = dalcs_alloc(n_nodes + 1, sizeof(int)),
-                       .arc = dalcs_alloc(2 * n_devices, sizeof(int)),
-                       .up = dalcs_alloc(n_nodes, sizeof(int)),
-                       .depth = dalcs_alloc(n_nodes, sizeof(int)),
-                       .queue = dalcs_alloc(n_nodes, sizeof(int))};
-    enum dalcs_status status = DALCS_E_NOMEM;
-    if (f.is_tree != NULL && f.start != NULL && f.arc != NULL && f.up != NULL && f.depth != NULL &&
-        f.queue != NULL) {
-        grow(&f, c);
-        root(&f, c);
-        status = judge_loops(&f, c, arena, diag);
+    *f = (struct forest){.is_tree = dalcs_alloc(n_devices, sizeof(bool)),
+                         .start = dalcs_alloc(n_nodes + 1, sizeof(int)),
+                         .arc = dalcs_alloc(2 * n_devices, sizeof(int)),
+                         .up = dalcs_alloc(n_nodes, sizeof(int)),
+                         .depth = dalcs_alloc(n_nodes, sizeof(int)),
+                         .queue = dalcs_alloc(n_nodes, sizeof(int))};
+    if (f->is_tree == NULL || f->start == NULL || f->arc == NULL || f->up == NULL ||
+        f->depth == NULL || f->queue == NULL) {
+        forest_finish(f);
+        return DALCS_E_NOMEM;
     }
-    free(f.is_tree);
-    free(f.start);
-    free(f.arc);
-    free(f.up);
-    free(f.depth);
-    free(f.queue);
+    grow(f, c, wants_current);
+    root(f, c);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_source_mark_idle(const struct dalcs_circuit *circuit,
+                                         const bool *wants_current, bool *idle) {
+    struct forest f;
+    DALCS_TRY(forest_setup(&f, circuit, wants_current));
+    mark_idle(&f, circuit, wants_current, idle);
+    forest_finish(&f);
+    return DALCS_OK;
+}
+
+static enum dalcs_status check_loops(const struct dalcs_circuit *c, struct dalcs_arena *arena,
+                                     struct dalcs_diag *diag) {
+    struct forest f;
+    bool *wants_current = dalcs_alloc((size_t)c->n_devices, sizeof(*wants_current));
+    if (wants_current == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    dalcs_circuit_mark_wanted_currents(c, wants_current);
+    enum dalcs_status status = forest_setup(&f, c, wants_current);
+    if (status == DALCS_OK) {
+        status = report_loops(&f, c, wants_current, arena, diag);
+        forest_finish(&f);
+    }
+    free(wants_current);
     return status;
 }
 
@@ -392,8 +449,11 @@ static enum dalcs_status check_parts(const struct dalcs_circuit *c, struct dalcs
 enum dalcs_status dalcs_source_conflicts(const struct dalcs_circuit *circuit,
                                          struct dalcs_diag *diag) {
     struct dalcs_arena arena = {0};
-    enum dalcs_status loops = check_loops(circuit, &arena, diag);
-    enum dalcs_status parts = loops == DALCS_E_NOMEM ? loops : check_parts(circuit, &arena, diag);
+    enum dalcs_status status = check_loops(circuit, &arena, diag);
+    if (status != DALCS_E_NOMEM) {
+        enum dalcs_status parts = check_parts(circuit, &arena, diag);
+        status = parts != DALCS_OK ? parts : status;
+    }
     dalcs_arena_finish(&arena);
-    return loops != DALCS_OK ? loops : parts;
+    return status;
 }

@@ -5,9 +5,14 @@
 #include "circuit.h"
 
 /* Loops of V sources and shorts, and parts that only I sources reach. Where the sources contradict each
- * other at all times: DALCS_E_NETLIST and an error for each. Where they agree at all times, what is not
- * determined is said in a warning. All else, as where a sine meets a battery, is left to the run. */
+ * other at all times: DALCS_E_NETLIST and an error for each. Where they agree at all times, a warning
+ * names the one that is idle. All else, as where a sine meets a battery, is left to the run. */
 enum dalcs_status dalcs_source_conflicts(const struct dalcs_circuit *circuit,
                                          struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
+/* idle[n_devices], zeroed by the caller: V sources, and shorts whose current wants_current[n_devices],
+ * that close a loop of such elements whose voltages agree at all times. */
+enum dalcs_status dalcs_source_mark_idle(const struct dalcs_circuit *circuit,
+                                         const bool *wants_current, bool *idle) DALCS_MUST_CHECK;
 
 #endif

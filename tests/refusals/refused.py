@@ -9,7 +9,8 @@ that the run refuses says in a comment what the report must hold,
 
     * refused: KIND ELEMENTS... from TIME        or        ... at the operating point
 
-in this order. An output file of an earlier run stays as it is, and nothing is left that the messages do
+in this order. One that is not refused says what its last row must hold, "* gives: v(1) = 0 i(v2) = 0".
+An output file of an earlier run stays as it is, and nothing is left that the messages do
 not name. Where it fails in .tran, implicit Euler must refuse it too, within a step and for the same
 reason. With --update, NAME.err is written instead: read it before you keep it.
 """
@@ -38,7 +39,7 @@ def run(program, netlist, folder, *options):
     shutil.copy(netlist, folder)
     (folder / "out.csv").write_text(OLD)
     done = subprocess.run([program, "run", netlist.name, "-o", "out.csv", "--report", "r.json",
-                           "--quiet", *options], cwd=folder, stdin=subprocess.DEVNULL,
+                           *options], cwd=folder, stdin=subprocess.DEVNULL,
                           capture_output=True, text=True, check=False, timeout=60)
     report = folder / "r.json"
     return done.returncode, done.stderr, json.loads(report.read_text()) if report.exists() else {}
@@ -89,6 +90,16 @@ def check_partial(checker, name, folder, time):
         checker.check(last <= time * (1 + 1e-8), f"{name}: has a row at {last}")
 
 
+def check_values(checker, netlist, folder):
+    """What is not determined has its conventional value, and all else is right."""
+    names, *rows = (line.split(",") for line in (folder / "out.csv").read_text().splitlines())
+    last = dict(zip(names, map(float, rows[-1])))
+    found = re.search(r"^\* gives: (.*)$", netlist.read_text(), re.MULTILINE)
+    for signal, value in re.findall(r"(\S+) = (\S+)", found.group(1) if found else ""):
+        checker.close(last[signal], float(value), 1e-7 * max(abs(float(value)), 1.0),
+                      f"{netlist.stem}: {signal}")
+
+
 def check_with_euler(checker, program, netlist, folder, refusal):
     kind, elements, time = refusal
     step = 1e-6
@@ -113,6 +124,8 @@ def check(checker, program, netlist, folder):
     checker.check(status == expected_status(wanted), f"{name}: exit {status}")
     checker.check((refusal is not None) == (status == FAILED), f"{name}: exit {status}, {refusal}")
     check_files(checker, name, folder, status, said)
+    if status == OK:
+        check_values(checker, netlist, folder)
     if refusal is None:
         return
     check_report(checker, name, report, refusal, said)
