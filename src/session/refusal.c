@@ -3,8 +3,10 @@
 #include "refusal.h"
 
 #include "quantity.h"
+#include "union_find.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Elements of a kind that a sentence lists, and nodes. */
@@ -340,26 +342,70 @@ static bool has_modes(const struct dalcs_refusal *r) {
     return has;
 }
 
-static bool is_device(const struct dalcs_circuit *c, const char *name) {
-    bool is = false;
-    for (int i = 0; i < c->n_devices && !is; i++) {
-        is = strcmp(c->device[i].name, name) == 0;
+/* The device of this name, -1 where it is a node's. */
+static int device_of(const struct dalcs_circuit *c, const char *name) {
+    int device = -1;
+    for (int i = 0; i < c->n_devices && device < 0; i++) {
+        device = strcmp(c->device[i].name, name) == 0 ? i : -1;
     }
-    return is;
+    return device;
+}
+
+/* part[n_nodes + n_devices]: what hangs together through anything but ground, as a union-find. */
+static void find_parts(const struct dalcs_circuit *c, int *part) {
+    dalcs_union_reset(part, c->n_nodes + c->n_devices);
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        bool has_controls =
+            d->kind == DALCS_VCVS || d->kind == DALCS_VCCS || d->kind == DALCS_SWITCH;
+        for (int k = 0; k < (has_controls ? 4 : 2); k++) {
+            if (d->node[k] != 0) {
+                dalcs_union_join(part, d->node[k], c->n_nodes + i);
+            }
+        }
+        if (d->control >= 0) {
+            dalcs_union_join(part, c->n_nodes + i, c->n_nodes + d->control);
+        }
+    }
+    for (int k = 0; k < c->n_couplings; k++) {
+        const int *coil = c->coupling[k].inductor;
+        dalcs_union_join(part, c->n_nodes + coil[0], c->n_nodes + coil[1]);
+    }
+}
+
+/* What keeps the part of a named element, or node, from being passive. */
+static void list_active(const struct dalcs_refusal *r, struct list *active) {
+    const struct dalcs_circuit *c = r->circuit;
+    int *part = dalcs_alloc((size_t)c->n_nodes + (size_t)c->n_devices, sizeof(*part));
+    if (part == NULL) {
+        return;
+    }
+    find_parts(c, part);
+    int named = r->n_elements > 0 ? device_of(c, r->element[0]) : -1;
+    int at = named >= 0 ? c->n_nodes + named : 0;
+    for (int k = 1; k < c->n_nodes && at == 0 && r->n_elements > 0; k++) {
+        at = strcmp(c->node_name[k], r->element[0]) == 0 ? k : 0;
+    }
+    for (int i = 0; i < c->n_devices; i++) {
+        bool is_there = dalcs_union_find(part, c->n_nodes + i) == dalcs_union_find(part, at);
+        if (is_there && is_active(&c->device[i])) {
+            put(active, c->device[i].name);
+        }
+    }
+    free(part);
 }
 
 static const char *explain_modes(const struct dalcs_refusal *r) {
     struct list named = {.s = r->s};
     struct list active = {.s = r->s};
     for (size_t k = 0; k < r->n_elements; k++) {
-        put(&named, is_device(r->circuit, r->element[k])
+        put(&named, device_of(r->circuit, r->element[k]) >= 0
                         ? r->element[k]
                         : dalcs_arena_printf(&r->s->arena, "node %s", r->element[k]));
     }
-    for (int i = 0; i < r->circuit->n_devices; i++) {
-        if (is_active(&r->circuit->device[i])) {
-            put(&active, r->circuit->device[i].name);
-        }
+    list_active(r, &active);
+    if (active.n == 0) {
+        put(&active, "something"); /* without memory, or where .ic alone is named */
     }
     const char *format =
         !has_modes(r)  ? "the equations contradict each other, most at %s; %s %s the circuit from "
