@@ -283,7 +283,8 @@ struct dalcs_report {
         const char
             *kind; /* "loop", "cutset", or "mode": no mode of a circuit that is not passive */
         size_t n_elements;
-        const char *const *element;
+        const char *const *element; /* a loop's in its order, from the source that drives on */
+        const char *because;        /* the sentence of the message */
     } infeasible;
 };
 

@@ -168,12 +168,27 @@ int dalcs_layout_coil_current(const struct dalcs_layout *l, int device, int *col
     return n;
 }
 
+/* An element that carries no current by convention: 0 = i. */
+static enum dalcs_status stamp_idle_branch(struct stamps *b, int device) {
+    int column;
+    int row;
+    dalcs_stamp_new_branch(b, device, &column, &row);
+    b->s->row_is_current[row] = true;
+    if (b->layout->circuit->device[device].kind == DALCS_VSOURCE) {
+        (void)dalcs_stamp_new_input(b, device); /* switches may look at its voltage */
+    }
+    return dalcs_stamp_add(&b->A, row, column, -1.0);
+}
+
 /* V, E, H and shorts whose current is asked for: 0 = v(a) - v(b) - (what drives it). */
 static enum dalcs_status stamp_voltage_branch(struct stamps *b, int device) {
     struct dalcs_layout *l = b->layout;
     const struct dalcs_device *d = &l->circuit->device[device];
     int column;
     int row;
+    if (l->topology.is_idle[device]) {
+        return stamp_idle_branch(b, device);
+    }
     dalcs_stamp_new_branch(b, device, &column, &row);
     DALCS_TRY(dalcs_stamp_branch_current(b, d, column, 1.0));
     DALCS_TRY(dalcs_stamp_add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0));

@@ -1,6 +1,8 @@
 /* network.c - the whole circuit: coil groups, components, and the probes that read the results. */
 #include "network.h"
 
+#include "capacitive_parts.h"
+#include "source_conflicts.h"
 #include "stamp.h"
 #include "union_find.h"
 
@@ -444,6 +446,12 @@ enum dalcs_status dalcs_network_build(struct dalcs_network *network,
     status = layout_allocate(&layout);
     if (status == DALCS_OK) {
         status = dalcs_topology_build(&layout.topology, circuit, wants_current);
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_source_mark_idle(circuit, wants_current, layout.topology.is_idle);
+    }
+    if (status == DALCS_OK && !options->clamp_initial_conditions && !options->silent) {
+        status = dalcs_capacitive_parts_note(circuit, diag);
     }
     if (status == DALCS_OK) {
         if (!options->clamp_initial_conditions && !options->silent) {

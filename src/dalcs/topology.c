@@ -157,6 +157,7 @@ enum dalcs_status dalcs_topology_build(struct dalcs_topology *t,
         .reference_of = dalcs_alloc(n_nodes, sizeof(int)),
         .in_forest = dalcs_alloc(n_devices, sizeof(bool)),
         .has_current = dalcs_alloc(n_devices, sizeof(bool)),
+        .is_idle = dalcs_alloc(n_devices, sizeof(bool)),
         .potential_source = dalcs_alloc(n_nodes, sizeof(int)),
         .forest_root = dalcs_alloc(n_nodes, sizeof(int)),
     };
@@ -166,7 +167,7 @@ enum dalcs_status dalcs_topology_build(struct dalcs_topology *t,
     if (known == NULL || t->potential_source == NULL || t->node_of == NULL ||
         t->node_component == NULL || t->device_component == NULL || t->is_reference == NULL ||
         t->reference_of == NULL || t->in_forest == NULL || t->has_current == NULL ||
-        t->forest_root == NULL || parent == NULL || number == NULL) {
+        t->is_idle == NULL || t->forest_root == NULL || parent == NULL || number == NULL) {
         free(parent);
         free(number);
         free(known);
@@ -195,6 +196,7 @@ void dalcs_topology_finish(struct dalcs_topology *t) {
     free(t->reference_of);
     free(t->in_forest);
     free(t->has_current);
+    free(t->is_idle);
     free(t->potential_source);
     free(t->forest_root);
     *t = (struct dalcs_topology){0};

@@ -15,6 +15,8 @@ struct dalcs_topology {
     int *reference_of;     /* [n_nodes] that node, for representatives; ground where tied to it */
     bool *in_forest;       /* [n_devices] capacitors whose current is eliminated */
     bool *has_current;     /* [n_devices] shorts and capacitors whose current is an unknown */
+    bool *is_idle; /* [n_devices] V sources and shorts that close a loop of such elements whose
+                              voltages agree: they carry no current by convention */
     int *potential_source; /* [n_nodes] V device between a node and one nearer to ground, when V
                               sources alone fix the node's voltage; else -1 */
     int *forest_root; /* [n_nodes] root of the capacitor tree that a node is in; itself if none */

@@ -27,6 +27,11 @@ static void find_blocks(const struct dalcs_system *s, int *parent) {
     for (int r = 0; r < n_equations; r++) {
         join_row(parent, &s->A, r, n_columns + r);
     }
+    for (int c = 0; c < n_equations; c++) {
+        if (s->column[c].kind == DALCS_LABEL_REFERENCE) {
+            dalcs_union_join(parent, c, involved); /* that it vanishes is a condition on sources */
+        }
+    }
     for (int d = 0; d < s->n_pairs; d++) {
         dalcs_union_join(parent, n_equations + d, involved);
         join_row(parent, &s->C, d, involved);

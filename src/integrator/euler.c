@@ -328,6 +328,7 @@ static enum dalcs_status settle_after(struct dalcs_euler *e, int k, const double
 }
 
 enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initial) {
+    e->looks_behind = true;
     for (int k = 0; k < e->n_components; k++) {
         struct dalcs_component *c = &e->component[k];
         size_t n_x = (size_t)c->system->n_x;
@@ -339,6 +340,7 @@ enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initia
             DALCS_TRY(settle_after(e, k, c->y_before, c->u, c->y));
         }
     }
+    e->looks_behind = false;
     return DALCS_OK;
 }
 
@@ -376,6 +378,7 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
 }
 
 enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) {
+    e->looks_behind = true;
     for (int k = 0; k < e->n_components; k++) {
         struct dalcs_component *c = &e->component[k];
         dalcs_component_sample(c, e->t, DALCS_RIGHT, c->probe_u);
@@ -390,5 +393,6 @@ enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) {
             DALCS_TRY(settle_after(e, k, c->probe_y, c->u, c->y));
         }
     }
+    e->looks_behind = false;
     return DALCS_OK;
 }

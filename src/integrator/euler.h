@@ -37,6 +37,7 @@ struct dalcs_euler {
     int failed_system; /* after a failure: which component, at which time */
     double failed_time, failed_h;
     bool at_operating_point; /* the failure was there */
+    bool looks_behind;       /* or just behind failed_time, not in a step that ends there */
     bool detect_jumps;       /* also where a circuit's own voltage moves a switch */
     void *jump_user;
     enum dalcs_status (*on_jump)(void *user, const struct dalcs_euler_jump *jump); /* may be NULL */

@@ -309,6 +309,27 @@ static void ask_bystanders(const struct dalcs_radau_part *part, double t, enum d
     }
 }
 
+/* A part without memory has no solution at t: then it has had none, but for single times, since its
+ * sources had an edge, for in between they are analytic. */
+static void note_failure(const struct dalcs_radau *r, struct dalcs_radau_part *part, double t,
+                         enum dalcs_side side) {
+    struct dalcs_component *c = part->component;
+    double since = 0.0;
+    for (double next = 0.0; next < t || (next == t && side == DALCS_RIGHT);) {
+        since = next;
+        next = INFINITY;
+        for (int i = 0; i < c->n_varying; i++) {
+            const struct dalcs_stimulus *s =
+                &c->circuit->stimulus[c->system->stimulus[c->varying[i]]];
+            next = fmin(next, dalcs_stimulus_next_edge(s, since));
+        }
+    }
+    c->failed_sigma = 0.0;
+    c->failed_u = c->u;
+    r->base->failed_system = part->index;
+    r->base->failed_time = since;
+}
+
 static enum dalcs_status evaluate(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                                   double t, enum dalcs_side side) {
     struct dalcs_component *c = part->component;
@@ -322,7 +343,11 @@ static enum dalcs_status evaluate(const struct dalcs_radau *r, struct dalcs_rada
             c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
         }
         r->base->t = t;
-        return dalcs_component_solve(c, 0.0, c->u, c->y);
+        enum dalcs_status status = dalcs_component_solve(c, 0.0, c->u, c->y);
+        if (status > DALCS_OK) {
+            note_failure(r, part, t, side);
+        }
+        return status;
     }
     int n_equations = dalcs_system_n_equations(s);
     dalcs_step_values(part, fmin(1.0, (t - part->t) / part->h), part->y1);

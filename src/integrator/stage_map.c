@@ -20,6 +20,10 @@
 static const double doubtful_pivot = 1e-9;
 static const double rank_tolerance = 1e-12;
 
+/* What a null vector does to a diode, beside its largest entry, is rounding up to this: currents around a
+ * loop of sources are nothing to diodes. */
+static const double null_rounding = 1e-10;
+
 enum { BALANCING_ROUNDS = 3 };
 
 struct builder {
@@ -394,7 +398,9 @@ static enum dalcs_status prepare_choice(struct builder *b) {
             b->right[k * b->n + i] /= largest;
         }
         find_guards(b, b->right + k * b->n, -1, 0.0);
-        memcpy(guards + k * n_pairs, b->guard, (size_t)n_pairs * sizeof(double));
+        for (int d = 0; d < n_pairs; d++) {
+            guards[k * n_pairs + d] = fabs(b->guard[d]) > null_rounding ? b->guard[d] : 0.0;
+        }
     }
     for (int d = 0; d < n_pairs; d++) {
         identity[d * rows + d] = 1.0;

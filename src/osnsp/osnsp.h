@@ -138,7 +138,7 @@ static inline void dalcs_osnsp_command(struct dalcs_osnsp *p, int pair, bool on)
 }
 
 /* p->witness becomes the states that run away the farther the shorter a step from x[n_x] is, as y1 and
- * y2[n_columns] show, and the pairs that are closed then. */
+ * y2[n_columns] show. */
 void dalcs_osnsp_blame_states(struct dalcs_osnsp *p, const double *x, const double *y1,
                               const double *y2);
 

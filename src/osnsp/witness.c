@@ -156,11 +156,6 @@ void dalcs_osnsp_blame_states(struct dalcs_osnsp *p, const double *x, const doub
             add_element(p, s->column[i].element);
         }
     }
-    for (int d = 0; d < s->n_pairs; d++) {
-        if (dalcs_osnsp_is_on(p, d)) {
-            add_element(p, s->pair[d].element);
-        }
-    }
 }
 
 void dalcs_witness_from_modes(struct dalcs_osnsp *p) {

@@ -169,6 +169,7 @@ static void write_infeasible(struct dalcs_json *json, const struct dalcs_report 
     }
     dalcs_json_close(json, ']');
     dalcs_json_string(json, "kind", report->infeasible.kind);
+    dalcs_json_string(json, "because", report->infeasible.because);
     dalcs_json_close(json, '}');
 }
 

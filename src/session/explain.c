@@ -1,5 +1,5 @@
 /* explain.c - numerical failures in words: the time, the elements, what to look at. */
-#include "session_internal.h"
+#include "refusal.h"
 
 #include "system_file.h"
 
@@ -20,18 +20,6 @@ const char *dalcs_explain_row(struct dalcs_session *s, const struct dalcs_euler 
     }
     return dalcs_arena_printf(&s->arena, "%s %s", dalcs_label_equation(d->row[where].kind),
                               d->row[where].element);
-}
-
-/* A list "v1, d1" of names, in the session's arena. */
-static const char *join_names(struct dalcs_session *s, int n, const char *const *name) {
-    const char *list = "";
-    for (int k = 0; k < n && list != NULL; k++) {
-        list = k == 0    ? name[0]
-               : k == 12 ? dalcs_arena_printf(&s->arena, "%s and %d more", list, n - k)
-               : k > 12  ? list
-                         : dalcs_arena_printf(&s->arena, "%s, %s", list, name[k]);
-    }
-    return list == NULL ? "" : list;
 }
 
 static const struct dalcs_location *place_of(const struct dalcs_circuit *c, const char *element) {
@@ -100,38 +88,58 @@ static const char **whole_witness(struct dalcs_session *s, const struct dalcs_wi
     return element;
 }
 
-static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e, const char *when,
-                               const char *hint) {
+/* The values of the sources in the problem that failed. */
+static void list_values(struct dalcs_refusal *x, const struct dalcs_component *c) {
+    const struct dalcs_system *d = c->system;
+    for (int k = 1; k < d->n_inputs; k++) {
+        x->value[d->stimulus[k]] = c->failed_u[d->n_x + k];
+    }
+}
+
+static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e, bool is_from,
+                               const char *when, const char *hint) {
     struct dalcs_session *s = r->s;
-    const struct dalcs_witness *w = &e->component[e->failed_system].osnsp.witness;
+    const struct dalcs_component *c = &e->component[e->failed_system];
+    const struct dalcs_witness *w = &c->osnsp.witness;
     static const char *const kind[] = {[DALCS_WITNESS_LOOP] = "loop",
                                        [DALCS_WITNESS_CUTSET] = "cutset",
                                        [DALCS_WITNESS_MODE] = "mode",
                                        [DALCS_WITNESS_DERIVATIVE] = "derivative"};
-    static const char *const why[] = {
-        [DALCS_WITNESS_LOOP] = "the sources drive current around it with nothing to limit the "
-                               "current",
-        [DALCS_WITNESS_CUTSET] = "the sources force a current that nothing in it lets pass",
-        [DALCS_WITNESS_MODE] = "no combination of conducting and blocking satisfies the circuit, "
-                               "which its controlled sources or negative resistors keep from being "
-                               "passive",
-        [DALCS_WITNESS_DERIVATIVE] = "to go on, these would have to jump by the derivative of an "
-                                     "impulse (charge moved to and "
-                                     "fro in no time), which no vanishing step approaches; start "
-                                     "from values that need none"};
-    size_t n_elements;
-    const char **element = whole_witness(s, w, &n_elements);
-    const struct dalcs_location *where =
-        element != NULL && n_elements > 0 ? place_of(&s->circuit, element[0]) : NULL;
-    dalcs_diag_add(&s->diag, DALCS_ERROR, where, hint, "%s no solution exists: %s %s: %s", when,
-                   kind[w->kind], join_names(s, (int)n_elements, element), why[w->kind]);
-    if (element != NULL) {
-        s->report.infeasible.present = true;
-        s->report.infeasible.time = e->failed_time;
-        s->report.infeasible.kind = kind[w->kind];
-        s->report.infeasible.n_elements = n_elements;
-        s->report.infeasible.element = element;
+    size_t n_devices = (size_t)s->circuit.n_devices;
+    size_t n_stimuli = (size_t)s->circuit.n_stimuli;
+    struct dalcs_refusal x = {
+        .s = s,
+        .circuit = &s->circuit,
+        .kind = w->kind,
+        .time = e->failed_time,
+        .is_static = c->failed_sigma == 0.0,
+        .is_from = is_from,
+        .is_named = dalcs_arena_alloc(&s->arena, n_devices, sizeof(*x.is_named)),
+        .value = dalcs_arena_alloc(&s->arena, n_stimuli, sizeof(*x.value)),
+        .shown = dalcs_arena_alloc(&s->arena, n_stimuli, sizeof(*x.shown)),
+    };
+    x.element = whole_witness(s, w, &x.n_elements);
+    if (x.element == NULL || x.is_named == NULL || x.value == NULL || x.shown == NULL) {
+        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, hint, "%s no solution exists", when);
+        return;
     }
+    for (size_t i = 0; i < n_devices; i++) {
+        x.is_named[i] = contains(x.element, x.n_elements, s->circuit.device[i].name);
+    }
+    list_values(&x, c);
+    dalcs_refusal_explain(&x);
+    const struct dalcs_location *where = NULL;
+    for (size_t k = 0; k < x.n_elements && where == NULL; k++) {
+        where = place_of(&s->circuit, x.element[k]);
+    }
+    dalcs_diag_add(&s->diag, DALCS_ERROR, where, hint, "%s no solution exists: %s", when,
+                   x.because);
+    s->report.infeasible.present = true;
+    s->report.infeasible.time = e->failed_time;
+    s->report.infeasible.kind = kind[w->kind];
+    s->report.infeasible.n_elements = x.n_elements;
+    s->report.infeasible.element = x.element;
+    s->report.infeasible.because = x.because;
 }
 
 /* Writes the problem if that is wanted. Returns the hint that says where it is, or NULL. */
@@ -163,15 +171,18 @@ void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
     if (status <= DALCS_OK || e->failed_system < 0) {
         return;
     }
-    const char *when = e->at_operating_point ? "at the operating point"
-                       : e->failed_time == 0.0
-                           ? "just after t = 0 s"
+    /* Radau sees what comes right behind a time; a step of Euler sees its end. */
+    bool is_from = !e->at_operating_point && (e->looks_behind || r->method != DALCS_METHOD_EULER);
+    const char *when = e->at_operating_point              ? "at the operating point"
+                       : is_from && e->failed_time == 0.0 ? "from t = 0 on"
+                       : is_from
+                           ? dalcs_arena_printf(&s->arena, "from t = %.9g s on", e->failed_time)
                            : dalcs_arena_printf(&s->arena, "at t = %.9g s (step %ld, h = %.6g s)",
                                                 e->failed_time, e->steps + 1, e->failed_h);
     when = when == NULL ? "" : when;
     const char *hint = dump_problem(r, e, when);
     if (status == DALCS_INFEASIBLE) {
-        explain_infeasible(r, e, when, hint);
+        explain_infeasible(r, e, is_from, when, hint);
     } else {
         const struct dalcs_certificate *c = &e->component[e->failed_system].osnsp.certificate;
         const char *row = dalcs_explain_row(s, e, e->failed_system, c->where);

@@ -3,6 +3,7 @@
 
 #include "netlist.h"
 #include "number.h"
+#include "source_conflicts.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -60,6 +61,9 @@ static enum dalcs_status read_netlist(struct dalcs_session *s, const char *path,
         s->has_circuit = status == DALCS_OK;
     }
     dalcs_netlist_finish(&netlist);
+    if (status == DALCS_OK) {
+        status = dalcs_source_conflicts(&s->circuit, &s->diag);
+    }
     if (status == DALCS_OK) {
         status = dalcs_network_build(&s->network, &s->circuit, &(struct dalcs_network_options){0},
                                      &s->diag);

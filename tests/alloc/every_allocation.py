@@ -88,6 +88,28 @@ D1 1 0
 .tran 100u 1m
 .end
 """, 1),
+    "blocked": ("""Current sources against a diode and an open switch, at the operating point
+I1 0 a 3
+I2 a 0 1
+R1 a b 1k
+C1 b 0 1u
+D1 0 a
+S1 b 0 c 0 SW
+Vc c 0 0
+Vd c 0 0
+.model SW SW(Ron=0 Vt=0.5)
+.op
+.end
+""", 1),
+    "sources": ("""Sources that contradict each other
+V1 1 0 5
+V2 2 0 3
+R1 1 2 0
+I1 0 3 1
+I2 3 0 2
+.op
+.end
+""", 3),
     "mistaken": ("""Several mistakes
 R1 1 0 1kk2
 C1 1 0

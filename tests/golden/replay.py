@@ -56,7 +56,7 @@ class Replay(unittest.TestCase):
             self.refuse(name, "--dump", "it.dalcs")
             done = self.replay("it.dalcs", FAILED)
             self.assertIn(verdict, done.stdout)
-            self.assertRegex(done.stdout, rf"{name}\.cir (at|just after) ")
+            self.assertRegex(done.stdout, rf"{name}\.cir (at|from) ")
             self.assertEqual(self.files(), ["it.dalcs"])
 
     def test_names_and_residuals(self):

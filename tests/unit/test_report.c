@@ -51,7 +51,7 @@ START_TEST(test_everything) {
         .n_nonunique = 1,
         .nonunique = nonunique,
         .energy = {true, 4.0, 2.0, 1.0, 0.25, 0.5, 0.125, 0.125},
-        .infeasible = {true, 0.5, "loop", 2, element},
+        .infeasible = {true, 0.5, "loop", 2, element, "v1 drives d1"},
     };
     check_report(&report, DALCS_INFEASIBLE,
                  "{\n"
@@ -131,7 +131,8 @@ START_TEST(test_everything) {
                  "  \"infeasible\": {\n"
                  "    \"time\": 0.5,\n"
                  "    \"elements\": [\"v1\", \"d1\"],\n"
-                 "    \"kind\": \"loop\"\n"
+                 "    \"kind\": \"loop\",\n"
+                 "    \"because\": \"v1 drives d1\"\n"
                  "  }\n"
                  "}\n");
 }

@@ -332,15 +332,15 @@ static void check_loop(const char *text, const char *expected) {
 
 /* Shorts have no equation, and close the loop all the same. */
 START_TEST(test_shorts_in_a_loop) {
-    check_loop("across a source\nV1 a 0 1\nR1 a 0 0\n.op\n", " v1 r1");
-    check_loop("two sources\nV1 a 0 1\nV2 b 0 2\nL1 a b 0\nR1 a 0 1\n.save v(a)\n.op\n",
-               " v1 v2 l1");
+    check_loop("across a source\nV1 a 0 1\nD1 a b\nR1 b 0 0\n.save v(a)\n.op\n", " v1 d1 r1");
+    check_loop("two sources\nV1 a 0 1\nV2 b 0 2\nL1 b c 0\nD1 c a\nR1 a 0 1\n.save v(a)\n.op\n",
+               " v2 l1 d1 v1");
     /* Those beside the loop, dead ends and a second way round are not named. */
     check_loop("beside\nV1 a 0 1\nR1 a b 0\nR2 b c 0\nR3 b x 0\nR4 x y 0\nD1 c d\nL1 d e 0\n"
                "V2 e g 0\nR5 g 0 0\nR6 y 0 1\nR7 a c 0\n.save v(a)\n.op\n",
-               " v1 v2 d1 r1 r2 l1 r5");
+               " v1 r1 r2 d1 l1 v2 r5");
     /* A short whose current is asked for is named as the source beside it is. */
-    check_loop("asked for\nV1 a 0 1\nR1 a 0 0\n.save i(r1)\n.op\n", " v1 r1");
+    check_loop("asked for\nV1 a 0 1\nD1 a b\nR1 b 0 0\n.save i(r1)\n.op\n", " v1 d1 r1");
 }
 
 END_TEST
