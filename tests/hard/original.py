@@ -10,16 +10,19 @@ cases. Its kinds, and how well they must hold:
   tran        the value at time t, tol off with implicit Euler and step h; the default method gives
               it to its tolerance of 1e-6
   diff        a signed sum at time t, implicit Euler with step h, to 1e-12
-  range       of the operating point: an interval that the value is in
+  range       of the operating point: the interval of the report, to 1e-9, which the value is in; a
+              signal that the report does not list has its value for an interval
   infeasible  exit status 1, and the report's time is at most t
-  multi       the value at the end is one of those listed
+  multi       the value at the end is one of those listed, and a warning says it is not unique
   hmax        implicit Euler below and above the largest step that leaves its problems one solution
 Relative to the value, or where it is 0 to the largest of its kind (at least 1 mV or mA). A kind
 without a method here, or an entry that nothing was checked of, is a failure.
 """
 
 import json
+import math
 import pathlib
+import re
 import sys
 
 from hard_case import CERTIFIED, EXACT, NETLISTS, HardCase
@@ -27,6 +30,7 @@ from dalcs_program import run
 
 STATE = 1e-12      # relative, just after t = 0
 IMPULSE = 1e-9
+INTERVAL = 1e-9
 DEFAULT = 1e-6     # the default tolerance
 SLACK = 1e-12      # s
 NOTHING = 1e-3     # V, A: the least scale of a value that is 0
@@ -90,6 +94,16 @@ class Original(HardCase):
         low, high = (float(bound) for bound in entry["val"])
         for result in self.both():
             value = result.column(entry["q"])[-1]
+            listed = [n for n in result.report["nonunique"] if n["signal"] == entry["q"]]
+            self.checker.check(len(listed) <= 1, f"{entry['q']} is listed {len(listed)} times")
+            found = listed[0] if listed else {"lower": value, "upper": value}
+            for bound, wanted in (("lower", low), ("upper", high)):
+                size = abs(wanted) if 0.0 < abs(wanted) < math.inf else result.scale(entry["q"])
+                self.checker.check(
+                    float(found[bound]) == wanted or
+                    abs(float(found[bound]) - wanted) <= INTERVAL * size,
+                    f"{bound} bound of {entry['q']} = {found[bound]}, not {wanted}, "
+                    f"{self.method or 'the default method'}")
             slack = EXACT * result.scale(entry["q"])
             self.checker.check(low - slack <= value <= high + slack,
                                f"{entry['q']} = {value!r} is outside [{low}, {high}]")
@@ -109,6 +123,8 @@ class Original(HardCase):
             value = result.column(entry["q"])[-1]
             error = min(abs(value - wanted) for wanted in entry["val"])
             self.checker.check(error <= EXACT, f"{entry['q']} = {value!r}, not in {entry['val']}")
+            self.checker.check(re.search(r"warning:.*not (unique|determined)", result.stderr),
+                               f"no warning says that the solution is not unique: {result.stderr}")
 
     def first_step(self, step, initial):
         """One step of implicit Euler from another initial value of hc36."""
