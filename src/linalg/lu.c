@@ -178,13 +178,20 @@ struct values {
     double rcond_min;
 };
 
+/* The ratio of pivots costs nothing, but it is small as well where values far apart were eliminated
+ * in an unlucky order; a condition number (Higham, ACM TOMS 14, 1988) then says what it is. */
 static bool is_well_conditioned(const struct values *v, klu_numeric *numeric) {
     if (v->is_complex) {
         klu_z_rcond(v->symbolic, numeric, v->common);
     } else {
         klu_rcond(v->symbolic, numeric, v->common);
     }
-    return v->common->rcond >= v->rcond_min;
+    if (v->common->rcond >= v->rcond_min || v->common->rcond == 0.0) {
+        return v->common->rcond >= v->rcond_min;
+    }
+    int done = v->is_complex ? klu_z_condest(v->p, v->x, v->symbolic, numeric, v->common)
+                             : klu_condest(v->p, v->x, v->symbolic, numeric, v->common);
+    return done && v->common->condest * v->rcond_min <= 1.0;
 }
 
 static enum dalcs_status factor(const struct values *v, klu_numeric **numeric) {
