@@ -282,10 +282,12 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
     double tolerance = p->options.certificate_tolerance;
     p->least_norm = e->singular;
-    if (e->map == NULL && !e->singular && e->n_uses++ > 2 && dalcs_step_map_pays(p)) {
+    bool by_factors = p->refines && !e->singular;
+    if (e->map == NULL && !e->singular && !by_factors && e->n_uses++ > 2 &&
+        dalcs_step_map_pays(p)) {
         DALCS_TRY(dalcs_step_map_build(p, e, DALCS_PLAIN));
     }
-    if (e->map != NULL) {
+    if (e->map != NULL && !by_factors) {
         dalcs_step_map_apply(p, e, u, y);
         dalcs_certificate_evaluate(p, u, y, sources_clash);
         if (p->n_violating > 0 || p->certificate.worst <= tolerance) {
@@ -297,11 +299,12 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     }
     solve_to_answer(p, e, u, y);
     dalcs_certificate_evaluate(p, u, y, sources_clash);
-    if (p->certificate.worst > tolerance) {
+    int wanted = p->refines && p->n_violating == 0 ? 1 : 0;
+    if (p->certificate.worst > tolerance || wanted > 0) {
         dalcs_osnsp_scale(p, y);
         dalcs_csr_multiply(&p->form[0]->R, u, p->right);
     }
-    for (int k = 0; k < MAX_REFINEMENTS && p->certificate.worst > tolerance; k++) {
+    for (int k = 0; k < MAX_REFINEMENTS && (p->certificate.worst > tolerance || k < wanted); k++) {
         refine(p, e);
         dalcs_osnsp_unscale(p, y);
         dalcs_certificate_evaluate(p, u, y, sources_clash);

@@ -69,6 +69,8 @@ struct dalcs_osnsp {
     struct dalcs_osnsp_counters counters;
     struct dalcs_witness witness;
     bool least_norm; /* the last answer is the least-norm one of several */
+    bool refines;    /* set by the caller: each answer of a regular mode is refined once, for small
+                        currents next to large ones, which the certificate lets be off */
 
     struct dalcs_step_form **form; /* most recently used first */
     int n_forms;

@@ -89,12 +89,25 @@ void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e
 enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, int rung,
                                        bool *mode_changed) DALCS_MUST_CHECK;
 
+/* The weights of a rung: eps/G of a closed pair and eps G of an open one, and of an unknown, in
+ * balanced units. */
+void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, int rung, double *on,
+                            double *off);
+double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p, int rung);
+
 /* w of a pair in balanced units, from p->scaled and p->right. */
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair);
 
 /* The proximal iteration in p->mode alone. DALCS_NOT_CONVERGED: no certified answer in this mode. */
 enum dalcs_status dalcs_proximal_in_mode(struct dalcs_osnsp *p, const double *u,
                                          double *y) DALCS_MUST_CHECK;
+
+/* ---- interior.c ---------------------------------------------------------------------------- */
+
+/* p->mode becomes that of the regularised problem around (centre, centre_w), or one near it: all
+ * diodes are decided at once, from no mode in particular. For monotone systems. DALCS_SINGULAR: a
+ * factorisation failed, the mode is as it was. */
+enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p, int rung) DALCS_MUST_CHECK;
 
 /* ---- enumerate.c --------------------------------------------------------------------------- */
 

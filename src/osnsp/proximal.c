@@ -27,6 +27,9 @@ static const double weight_spread = 1e3;
 static const double ray_tolerance = 1e-3;
 static const double ray_part = 1e-2;
 
+/* Rounds without fewer wrong signs before block pivoting has stalled. */
+enum { PATIENCE = 10 };
+
 /* Rounds that free the unknowns from their own weights: each gains three digits. */
 enum { UNKNOWN_ROUNDS = 3 };
 
@@ -55,6 +58,16 @@ static double on_weight(const struct dalcs_osnsp *p, int pair, int rung) {
 
 static double off_weight(const struct dalcs_osnsp *p, int pair, int rung) {
     return eps_of(p, rung) / ratio_of(p, pair, rung);
+}
+
+void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, int rung, double *on,
+                            double *off) {
+    *on = on_weight(p, pair, rung);
+    *off = off_weight(p, pair, rung);
+}
+
+double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p, int rung) {
+    return node_weight * eps_of(p, rung);
 }
 
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair) {
@@ -147,13 +160,14 @@ static void find_violations(struct dalcs_osnsp *p, int rung) {
     }
 }
 
-/* One regularised problem around the centre, from p->mode, by block pivoting. Its matrix is a
- * P-matrix when the system is monotone: the least-index fallback ends it. */
-enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, int rung, bool *mode_changed) {
+/* Block pivoting of one regularised problem from p->mode; single pivots where that gets nowhere, if
+ * it may. *stalled: it got nowhere, and may not. */
+static enum dalcs_status pivot(struct dalcs_osnsp *p, int rung, bool singly, bool *mode_changed,
+                               bool *stalled) {
     int fewest = p->system->n_pairs + 1;
-    int patience = 10;
-    *mode_changed = false;
+    int patience = PATIENCE;
     int limit = p->options.max_pivots + 2 * p->system->n_pairs;
+    *stalled = false;
     for (int round = 0; round <= limit; round++) {
         struct dalcs_mode_entry *e;
         DALCS_TRY(dalcs_modes_get(p, 1 + rung, &e));
@@ -169,9 +183,13 @@ enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, int rung, bool *mo
         p->counters.pivots++;
         if (p->n_violating < fewest) {
             fewest = p->n_violating;
-            patience = 10;
+            patience = PATIENCE;
         } else {
             patience--;
+        }
+        if (patience <= 0 && !singly) {
+            *stalled = true;
+            return DALCS_OK;
         }
         int first = patience > 0 ? 0 : p->n_violating - 1;
         for (int k = first; k < p->n_violating; k++) {
@@ -180,6 +198,20 @@ enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, int rung, bool *mo
         }
     }
     return DALCS_NOT_CONVERGED;
+}
+
+/* One regularised problem around the centre, from p->mode. Its matrix is a P-matrix when the system is
+ * monotone: it has one solution, and the least-index fallback ends it. Before that, where block
+ * pivoting stalls, an interior-point method finds its mode. */
+enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, int rung, bool *mode_changed) {
+    bool stalled;
+    *mode_changed = false;
+    DALCS_TRY(pivot(p, rung, !p->system->monotone, mode_changed, &stalled));
+    if (!stalled) {
+        return DALCS_OK;
+    }
+    enum dalcs_status status = dalcs_interior_mode(p, rung);
+    return status < DALCS_OK ? status : pivot(p, rung, true, mode_changed, &stalled);
 }
 
 /* Moves the centre to the answer; returns the size of the displacement, how much it differs from the
