@@ -19,6 +19,20 @@ struct dalcs_euler_jump {
     double energy_lost;           /* J */
 };
 
+/* Called where an answer may be one of several: with component[system]'s y and u the present ones, and
+ * the sides of its pairs. *vanishes: some signal is open, but has only one value just now. */
+struct dalcs_euler;
+
+struct dalcs_open_instant {
+    double time; /* s */
+    const struct dalcs_euler *engine;
+    int system;
+    bool at_operating_point;
+    const uint64_t *mode;
+    const double *w;  /* [n_pairs] V, of open pairs */
+    const bool *tied; /* [n_pairs] diodes with neither current nor voltage */
+};
+
 struct dalcs_euler {
     const struct dalcs_circuit *circuit;
     const struct dalcs_network *network;
@@ -38,7 +52,10 @@ struct dalcs_euler {
     bool detect_jumps;       /* also where a circuit's own voltage moves a switch */
     void *jump_user;
     enum dalcs_status (*on_jump)(void *user, const struct dalcs_euler_jump *jump); /* may be NULL */
-    double *after, *charge, *flux; /* work, the largest component */
+    void *open_user;
+    enum dalcs_status (*on_open)(void *user, const struct dalcs_open_instant *instant,
+                                 bool *vanishes); /* may be NULL */
+    double *after, *charge, *flux;                /* work, the largest component */
 };
 
 /* Sets up for a transient with step h (s). network and circuit must outlive it. */
@@ -62,6 +79,9 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) DALCS_MUST_CHECK;
 
 /* At a jump of the sources: y becomes the values just after e->t; the state stays. */
 enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) DALCS_MUST_CHECK;
+
+/* Calls on_open if the last answer of component k, now in its y, may be one of several. */
+enum dalcs_status dalcs_euler_tell_open(struct dalcs_euler *e, int k) DALCS_MUST_CHECK;
 
 /* 1/2 d' storage d for d = after - before, states [n_x]: what a jump dissipates, J. */
 double dalcs_euler_jump_energy(const struct dalcs_system *s, const double *before,

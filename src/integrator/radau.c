@@ -73,6 +73,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->scale = dalcs_alloc(n_columns, sizeof(double));
     part->armed = dalcs_alloc(n_guards, sizeof(bool));
     part->crossed = dalcs_alloc(n_guards, sizeof(int));
+    part->tied = dalcs_alloc((size_t)s->n_pairs, sizeof(bool));
     part->u = dalcs_alloc((size_t)(s->n_x + s->n_inputs), sizeof(double));
     part->y1 = dalcs_alloc((size_t)l->stride, sizeof(double));
     part->y2 = dalcs_alloc((size_t)l->stride, sizeof(double));
@@ -81,7 +82,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->used_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
                     part->scale != NULL && part->armed != NULL && part->crossed != NULL &&
-                    part->u != NULL && part->y1 != NULL && part->y2 != NULL && part->w1 != NULL &&
+                    part->tied != NULL && part->u != NULL && part->y1 != NULL && part->y2 != NULL && part->w1 != NULL &&
                     part->after != NULL && part->used_input != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
@@ -179,6 +180,7 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->scale);
     free(part->armed);
     free(part->crossed);
+    free(part->tied);
     free(part->u);
     free(part->y1);
     free(part->y2);
@@ -222,7 +224,7 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
         }
         DALCS_TRY(dalcs_segment_begin(r, part));
     }
-    return DALCS_OK;
+    return dalcs_radau_tell_open(r);
 }
 
 double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens) {
@@ -281,12 +283,14 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
 }
 
 enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) {
+    bool opens = false;
     for (int k = 0; k < r->n_parts; k++) {
         if (r->part[k].t_end <= t && r->part[k].t < r->options.stop) {
             DALCS_TRY(pass(r, &r->part[k]));
+            opens = opens || r->part[k].open;
         }
     }
-    return DALCS_OK;
+    return opens ? dalcs_radau_tell_open(r) : DALCS_OK;
 }
 
 static void ask_bystanders(const struct dalcs_radau_part *part, double t, enum dalcs_side side) {
@@ -320,7 +324,8 @@ static enum dalcs_status evaluate(const struct dalcs_radau *r, struct dalcs_rada
             c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
         }
         r->base->t = t;
-        return dalcs_component_solve(c, 0.0, c->u, c->y);
+        DALCS_TRY(dalcs_component_solve(c, 0.0, c->u, c->y));
+        return dalcs_euler_tell_open(r->base, part->index);
     }
     int n_equations = dalcs_system_n_equations(s);
     dalcs_step_values(part, fmin(1.0, (t - part->t) / part->h), part->y1);

@@ -66,6 +66,8 @@ struct dalcs_radau_part {
     int n_crossed;
     int *crossed; /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
     bool jumped;  /* at t, when the segment began */
+    bool open;    /* its mode leaves something open, and nobody was told */
+    bool *tied;   /* [n_pairs] work */
     double *u, *y1, *y2, *w1, *after; /* work */
     int n_used_inputs, *used_input;   /* that probes read */
 

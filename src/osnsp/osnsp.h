@@ -127,6 +127,11 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
 enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
                                     double *y) DALCS_MUST_CHECK;
 
+/* May the last answer be one of several? Costs nothing where it is not. */
+static inline bool dalcs_osnsp_is_open(const struct dalcs_osnsp *p) {
+    return p->least_norm || (p->n_tied > 0 && p->form[0]->answers != DALCS_UNIQUE);
+}
+
 static inline bool dalcs_osnsp_is_on(const struct dalcs_osnsp *p, int pair) {
     return (p->mode[pair / 64] >> (pair % 64) & 1) != 0;
 }

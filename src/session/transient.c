@@ -55,6 +55,9 @@ static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_eul
         dalcs_network_finish(&clamped);
         return status;
     }
+    r->undetermined.clamped = &clamped;
+    held.open_user = &r->undetermined;
+    held.on_open = dalcs_undetermined_at;
     double **initial = dalcs_alloc((size_t)held.n_components, sizeof(*initial));
     status = initial == NULL ? DALCS_E_NOMEM : dalcs_euler_operating_point(&held, true);
     dalcs_explain_failure(r, &held, status);
@@ -279,6 +282,8 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     e.detect_jumps = r->options->record;
     e.jump_user = &s->recorder;
     e.on_jump = dalcs_recorder_jump;
+    e.open_user = &r->undetermined;
+    e.on_open = dalcs_undetermined_at;
     s->report.step = is_euler ? r->h : r->fixed_step;
     s->report.stop = stop;
     enum dalcs_status status = DALCS_OK;

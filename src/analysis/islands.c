@@ -1,0 +1,219 @@
+/* islands.c - voltages between parts that nothing conducts between.
+ *
+ * What holds a voltage makes islands of nodes. Between them a diode allows v(anode) <= v(cathode) plus
+ * what it blocks now and has to spare, so the highest that one island may stand over another is the
+ * shortest way from it along diodes, anode to cathode. Islands that diodes without current and voltage
+ * connect in a circle stay together. */
+#include "branch_graph.h"
+#include "freedom.h"
+
+#include "union_find.h"
+
+#include <math.h>
+
+struct islands {
+    struct dalcs_view *view;
+    int *island_of; /* [n_vertices] a vertex of the island */
+    int *parent;    /* [n_vertices] of islands that float together */
+    int n;          /* diodes between islands */
+    struct dalcs_branch *branch;
+    double *slack; /* [n] */
+    struct dalcs_branch_graph graph;
+    double *above, *below; /* [n_vertices] how far ground's island may be under and over others */
+    double *other;         /* [n_vertices] work */
+};
+
+static void hold(struct islands *s) {
+    const struct dalcs_view *view = s->view;
+    const struct dalcs_topology *t = &view->u->topology;
+    dalcs_union_reset(s->island_of, view->n_vertices);
+    for (int i = 0; i < view->n; i++) {
+        const struct dalcs_freedom *f = &view->freedom[i];
+        if (f->voltage == DALCS_VOLTAGE_FIXED) {
+            dalcs_union_join(s->island_of, view->u->vertex_of[f->node[0]],
+                             view->u->vertex_of[f->node[1]]);
+        }
+    }
+    for (int v = 0; v < view->n_vertices; v++) { /* a voltage by convention, 0 */
+        if (t->is_reference[t->node_of[view->node[v]]]) {
+            dalcs_union_join(s->island_of, 0, v);
+        }
+    }
+}
+
+static void flatten(struct islands *s) {
+    for (int v = 0; v < s->view->n_vertices; v++) {
+        s->island_of[v] = dalcs_union_find(s->island_of, v);
+    }
+}
+
+/* Diodes between islands: at first only those that are tied, to join what they connect in circles. */
+static enum dalcs_status list_diodes(struct islands *s, int *part) {
+    const struct dalcs_view *view = s->view;
+    s->branch = dalcs_arena_alloc(view->work, (size_t)view->n, sizeof(*s->branch));
+    s->slack = dalcs_arena_alloc(view->work, (size_t)view->n, sizeof(*s->slack));
+    if (s->branch == NULL || s->slack == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < view->n; i++) {
+        const struct dalcs_freedom *f = &view->freedom[i];
+        int tail = s->island_of[view->u->vertex_of[f->node[0]]];
+        int head = s->island_of[view->u->vertex_of[f->node[1]]];
+        if (f->voltage == DALCS_VOLTAGE_BELOW && tail != head) {
+            s->slack[s->n] = f->slack;
+            s->branch[s->n++] = (struct dalcs_branch){tail, head, f->is_tied ? 1.0 : 0.0, 0.0};
+        }
+    }
+    DALCS_TRY(
+        dalcs_branch_graph_setup(&s->graph, view->work, view->n_vertices, s->n, s->branch));
+    dalcs_branch_graph_circuits(&s->graph, part);
+    for (int e = 0; e < s->n; e++) {
+        if (part[s->branch[e].tail] == part[s->branch[e].head]) {
+            dalcs_union_join(s->island_of, s->branch[e].tail, s->branch[e].head);
+        }
+        s->branch[e].ahead = 1.0;
+    }
+    flatten(s);
+    for (int e = 0; e < s->n; e++) {
+        s->branch[e].tail = s->island_of[s->branch[e].tail];
+        s->branch[e].head = s->island_of[s->branch[e].head];
+    }
+    return dalcs_branch_graph_setup(&s->graph, view->work, view->n_vertices, s->n, s->branch);
+}
+
+/* Islands other than ground's that open elements connect are one cause. */
+static void join_causes(struct islands *s) {
+    const struct dalcs_view *view = s->view;
+    dalcs_union_reset(s->parent, view->n_vertices);
+    for (int i = 0; i < view->n; i++) {
+        int a = s->island_of[view->u->vertex_of[view->freedom[i].node[0]]];
+        int b = s->island_of[view->u->vertex_of[view->freedom[i].node[1]]];
+        if (a != 0 && b != 0) {
+            dalcs_union_join(s->parent, a, b);
+        }
+    }
+}
+
+static enum dalcs_status allocate(struct islands *s, int **part) {
+    size_t n = (size_t)s->view->n_vertices;
+    struct dalcs_arena *work = s->view->work;
+    s->island_of = dalcs_arena_alloc(work, n, sizeof(int));
+    s->parent = dalcs_arena_alloc(work, n, sizeof(int));
+    *part = dalcs_arena_alloc(work, n, sizeof(int));
+    s->above = dalcs_arena_alloc(work, n, sizeof(double));
+    s->below = dalcs_arena_alloc(work, n, sizeof(double));
+    s->other = dalcs_arena_alloc(work, n, sizeof(double));
+    bool complete = s->island_of != NULL && s->parent != NULL && *part != NULL &&
+                    s->above != NULL && s->below != NULL && s->other != NULL;
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* The island of a node in this component, or ground's. */
+static int island(const struct islands *s, int node) {
+    int v = s->view->u->vertex_of[node];
+    return v < 0 ? 0 : s->island_of[v];
+}
+
+static void find_interval(const struct islands *s, int a, int b, struct dalcs_open_signal *signal) {
+    double rise = s->above[a];
+    double fall = s->below[a];
+    if (b != 0) {
+        dalcs_branch_graph_distances(&s->graph, a, s->slack, false, s->other);
+        rise = s->other[b];
+        dalcs_branch_graph_distances(&s->graph, a, s->slack, true, s->other);
+        fall = s->other[b];
+    }
+    signal->lower = signal->value - fall;
+    signal->upper = signal->value + rise;
+}
+
+static bool concerns(const struct islands *s, int output) {
+    const struct dalcs_output *out = &s->view->network->output[output];
+    bool is_here = out->plus.system == s->view->at->system ||
+                   out->minus.system == s->view->at->system;
+    return is_here && !out->is_current && !s->view->u->is_reported[output];
+}
+
+/* The signals whose voltages leave or enter the islands of this cause. */
+static enum dalcs_status list_signals(struct islands *s, int cause, struct dalcs_finding *finding) {
+    struct dalcs_view *view = s->view;
+    size_t n_outputs = (size_t)view->network->n_outputs;
+    finding->signal = dalcs_arena_alloc(view->work, n_outputs, sizeof(*finding->signal));
+    if (finding->signal == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < view->network->n_outputs; i++) {
+        if (!concerns(s, i)) {
+            continue;
+        }
+        const int *node = view->u->circuit->signal[i].node;
+        int a = island(s, node[0]);
+        int b = island(s, node[1]);
+        int of = a != 0 ? a : b;
+        if (a == b || dalcs_union_find(s->parent, of) != cause) {
+            continue;
+        }
+        struct dalcs_open_signal *signal = &finding->signal[finding->n_signals];
+        *signal = (struct dalcs_open_signal){.output = i, .value = dalcs_view_value(view, i)};
+        find_interval(s, a, b, signal);
+        bool open = dalcs_view_is_open(view, false, signal->lower, signal->upper);
+        finding->n_signals += open ? 1 : 0;
+    }
+    return DALCS_OK;
+}
+
+/* What borders on the islands of a cause, for words. */
+static enum dalcs_status describe(struct islands *s, int cause, struct dalcs_finding *finding) {
+    const struct dalcs_view *view = s->view;
+    int *border = dalcs_arena_alloc(view->work, (size_t)view->n, sizeof(*border));
+    int *node = dalcs_arena_alloc(view->work, (size_t)view->n_vertices, sizeof(*node));
+    if (border == NULL || node == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    int n = 0;
+    for (int i = 0; i < view->n; i++) {
+        const struct dalcs_freedom *f = &view->freedom[i];
+        int a = s->island_of[view->u->vertex_of[f->node[0]]];
+        int b = s->island_of[view->u->vertex_of[f->node[1]]];
+        int of = a != 0 ? a : b;
+        if (a != b && dalcs_union_find(s->parent, of) == cause) {
+            border[n++] = i;
+            finding->has_diodes = finding->has_diodes || f->is_diode;
+            finding->device = finding->device < 0 ? f->device : finding->device;
+        }
+    }
+    int n_nodes = 0;
+    for (int v = 1; v < view->n_vertices; v++) {
+        int of = s->island_of[v];
+        if (of != 0 && dalcs_union_find(s->parent, of) == cause) {
+            node[n_nodes++] = view->node[v];
+        }
+    }
+    finding->because = dalcs_words_for_island(view, s->island_of, n_nodes, node, n, border);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_islands_find(struct dalcs_view *view) {
+    struct islands s = {.view = view};
+    int *part;
+    DALCS_TRY(allocate(&s, &part));
+    hold(&s);
+    flatten(&s);
+    DALCS_TRY(list_diodes(&s, part));
+    join_causes(&s);
+    dalcs_branch_graph_distances(&s.graph, 0, s.slack, true, s.above);
+    dalcs_branch_graph_distances(&s.graph, 0, s.slack, false, s.below);
+    for (int v = 1; v < view->n_vertices; v++) {
+        bool is_cause = s.island_of[v] == v && dalcs_union_find(s.parent, v) == v;
+        if (!is_cause) {
+            continue;
+        }
+        struct dalcs_finding finding = {.device = -1, .has_intervals = true};
+        DALCS_TRY(list_signals(&s, v, &finding));
+        if (finding.n_signals > 0) {
+            DALCS_TRY(describe(&s, v, &finding));
+        }
+        DALCS_TRY(dalcs_view_tell(view, &finding));
+    }
+    return DALCS_OK;
+}
