@@ -15,8 +15,8 @@ struct dalcs_branch {
 struct dalcs_branch_graph {
     int n_vertices, n_branches;
     const struct dalcs_branch *branch; /* [n_branches] borrowed; capacities may change */
-    int *first; /* [n_vertices + 1] */
-    int *end;   /* [2 n_branches] by vertex: 2 branch + 1 where the vertex is its head */
+    int *first;                        /* [n_vertices + 1] */
+    int *end;     /* [2 n_branches] by vertex: 2 branch + 1 where the vertex is its head */
     int *work[5]; /* [n_vertices + 2 n_branches] */
     double *room; /* [2 n_branches] */
 };

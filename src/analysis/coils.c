@@ -17,7 +17,7 @@ struct program {
     int n_part;
     const int *part;
     int n_ties;
-    int *tie;  /* columns of the system: free currents of coils */
+    int *tie;    /* columns of the system: free currents of coils */
     int *row_of; /* [n_vertices] KCL, from 1 */
     int n_rows;
     int *place; /* [view->n] of an element in part, else -1 */

@@ -105,8 +105,7 @@ static void add_device(struct dalcs_view *view, int device) {
         const struct dalcs_switch_model *m = &c->switch_model[d->model];
         bool closed = side_of(view, pair) == CONDUCTS;
         bool holds = closed || isfinite(m->roff);
-        add(view, device, holds ? DALCS_VOLTAGE_FIXED : DALCS_VOLTAGE_ANY,
-            closed && m->ron == 0.0);
+        add(view, device, holds ? DALCS_VOLTAGE_FIXED : DALCS_VOLTAGE_ANY, closed && m->ron == 0.0);
         break;
     }
     default: /* current sources; controlled ones are not in a passive circuit */

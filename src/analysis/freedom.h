@@ -29,14 +29,15 @@ struct dalcs_view {
     const struct dalcs_open_instant *at;
     const struct dalcs_network *network;
     const struct dalcs_system *system;
-    const double *y; /* [n_columns] the answer */
+    const double *y;   /* [n_columns] the answer */
     double largest[2]; /* V, A; of the answer */
     int n;
     struct dalcs_freedom *freedom; /* [n] */
     int n_vertices;
     int *node;                /* [n_vertices] of the circuit; ground first */
     struct dalcs_arena *work; /* until the analysis is done */
-    bool has_told, has_narrow; /* a signal that may go somewhere; one that could, but not just now */
+    bool has_told,
+        has_narrow; /* a signal that may go somewhere; one that could, but not just now */
 };
 
 enum dalcs_status dalcs_view_setup(struct dalcs_view *view, struct dalcs_undetermined *u,
@@ -71,8 +72,8 @@ const char *dalcs_words_for_loop(const struct dalcs_view *view, int n, const int
 
 /* "stack d1-d2 blocks" where the elements border[n] are all that is between the nodes node[n_nodes] and
  * the rest; vertices of one island have the same number island_of, those of ground's 0. */
-const char *dalcs_words_for_island(const struct dalcs_view *view, const int *island_of,
-                                   int n_nodes, const int *node, int n, const int *border);
+const char *dalcs_words_for_island(const struct dalcs_view *view, const int *island_of, int n_nodes,
+                                   const int *node, int n, const int *border);
 
 /* ---- coils.c --------------------------------------------------------------------------------- */
 

@@ -64,8 +64,7 @@ static enum dalcs_status list_diodes(struct islands *s, int *part) {
             s->branch[s->n++] = (struct dalcs_branch){tail, head, f->is_tied ? 1.0 : 0.0, 0.0};
         }
     }
-    DALCS_TRY(
-        dalcs_branch_graph_setup(&s->graph, view->work, view->n_vertices, s->n, s->branch));
+    DALCS_TRY(dalcs_branch_graph_setup(&s->graph, view->work, view->n_vertices, s->n, s->branch));
     dalcs_branch_graph_circuits(&s->graph, part);
     for (int e = 0; e < s->n; e++) {
         if (part[s->branch[e].tail] == part[s->branch[e].head]) {
@@ -129,8 +128,8 @@ static void find_interval(const struct islands *s, int a, int b, struct dalcs_op
 
 static bool concerns(const struct islands *s, int output) {
     const struct dalcs_output *out = &s->view->network->output[output];
-    bool is_here = out->plus.system == s->view->at->system ||
-                   out->minus.system == s->view->at->system;
+    bool is_here =
+        out->plus.system == s->view->at->system || out->minus.system == s->view->at->system;
     return is_here && !out->is_current && !s->view->u->is_reported[output];
 }
 

@@ -61,7 +61,10 @@ static void sort_devices(struct dalcs_undetermined *u) {
     }
 }
 
-static enum dalcs_status prepare(struct dalcs_undetermined *u) {
+enum dalcs_status dalcs_undetermined_prepare(struct dalcs_undetermined *u) {
+    if (u->is_ready) {
+        return DALCS_OK;
+    }
     const struct dalcs_circuit *c = u->circuit;
     size_t n_devices = (size_t)c->n_devices;
     size_t n_nodes = (size_t)c->n_nodes;
@@ -126,9 +129,7 @@ enum dalcs_status dalcs_undetermined_at(void *user, const struct dalcs_open_inst
     if (!is_news(seen, name)) {
         return DALCS_OK;
     }
-    if (!u->is_ready) {
-        DALCS_TRY(prepare(u));
-    }
+    DALCS_TRY(dalcs_undetermined_prepare(u));
     struct dalcs_arena work = {0};
     struct dalcs_view view;
     enum dalcs_status status = dalcs_view_setup(&view, u, at, &work);

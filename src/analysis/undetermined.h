@@ -23,6 +23,7 @@ struct dalcs_finding {
     int device;          /* one of them, for its place in the netlist; -1: none */
     bool has_diodes;     /* the least-norm choice is taken; else any */
     bool has_intervals;  /* false: built without GLPK, or GLPK gave none */
+    int n_answers;       /* of a circuit that is not passive: that many and none between; else 0 */
     int n_signals;
 
     struct dalcs_open_signal {
@@ -40,14 +41,15 @@ struct dalcs_undetermined {
     enum dalcs_status (*on_finding)(void *user, const struct dalcs_finding *finding);
 
     const struct dalcs_network *clamped; /* the one whose .ic are held; NULL: none yet */
-    bool is_ready; /* what follows is made when first needed */
+    bool is_ready;                       /* what follows is made when first needed */
     struct dalcs_topology topology;
-    int *device_start, *device; /* of component k: device[device_start[k]..device_start[k + 1] - 1] */
-    int n_shorts, *shorts;      /* those that no signal asks for */
-    int *first_pair;            /* [n_devices] */
-    int *vertex_of;             /* [n_nodes] work, -1 */
-    int *branch_of;             /* [2 n_devices] work, -1 */
-    bool *is_reported;          /* [n_signals] */
+    int *device_start,
+        *device;           /* of component k: device[device_start[k]..device_start[k + 1] - 1] */
+    int n_shorts, *shorts; /* those that no signal asks for */
+    int *first_pair;       /* [n_devices] */
+    int *vertex_of;        /* [n_nodes] work, -1 */
+    int *branch_of;        /* [2 n_devices] work, -1 */
+    bool *is_reported;     /* [n_signals] */
 
     struct dalcs_seen {
         uint64_t name; /* 0: free */
@@ -62,6 +64,14 @@ void dalcs_undetermined_init(struct dalcs_undetermined *u, const struct dalcs_ci
                                                              const struct dalcs_finding *finding));
 
 void dalcs_undetermined_finish(struct dalcs_undetermined *u);
+
+/* Where components of e are not passive and have few diodes: have they several solutions? Asked of the
+ * operating point when stop is 0, else of the start of a transient that ends at `stop`. */
+enum dalcs_status dalcs_undetermined_several(struct dalcs_undetermined *u, struct dalcs_euler *e,
+                                             double stop) DALCS_MUST_CHECK;
+
+/* Makes the tables, if they are not there yet. */
+enum dalcs_status dalcs_undetermined_prepare(struct dalcs_undetermined *u) DALCS_MUST_CHECK;
 
 /* dalcs_euler's on_open: finds what is open at this instant, and reports each signal once. Nothing is
  * known of a component that is not passive. *vanishes: something is open, but no signal may go

@@ -140,8 +140,8 @@ static const char *list_nodes(const struct dalcs_view *view, int n, const int *n
     return list;
 }
 
-const char *dalcs_words_for_island(const struct dalcs_view *view, const int *island_of,
-                                   int n_nodes, const int *node, int n, const int *border) {
+const char *dalcs_words_for_island(const struct dalcs_view *view, const int *island_of, int n_nodes,
+                                   const int *node, int n, const int *border) {
     const char *stack = follow_stack(view, island_of, n, border);
     if (stack != NULL && stack[0] != '\0') {
         return dalcs_arena_printf(view->work, "stack %s blocks", stack);

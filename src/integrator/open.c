@@ -3,8 +3,8 @@
 #include "radau_internal.h"
 
 /* Calls on_open for the instant t of the part's segment. */
-static enum dalcs_status tell_open_at(struct dalcs_radau *r, struct dalcs_radau_part *part, double t,
-                                      enum dalcs_side side, bool *vanishes) {
+static enum dalcs_status tell_open_at(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                      double t, enum dalcs_side side, bool *vanishes) {
     struct dalcs_euler *e = r->base;
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_osnsp *p = &part->component->osnsp;
@@ -14,12 +14,13 @@ static enum dalcs_status tell_open_at(struct dalcs_radau *r, struct dalcs_radau_
         part->w1[d] = dalcs_osnsp_is_on(p, d) ? 0.0 : other;
         part->tied[d] = dalcs_guards_is_tied(part, d, part->unit_scale);
     }
-    return e->on_open(e->open_user, &(struct dalcs_open_instant){.time = t,
-                                                                .engine = e,
-                                                                .system = part->index,
-                                                                .mode = p->mode,
-                                                                .w = part->w1,
-                                                                .tied = part->tied},
+    return e->on_open(e->open_user,
+                      &(struct dalcs_open_instant){.time = t,
+                                                   .engine = e,
+                                                   .system = part->index,
+                                                   .mode = p->mode,
+                                                   .w = part->w1,
+                                                   .tied = part->tied},
                       vanishes);
 }
 

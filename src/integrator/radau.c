@@ -82,8 +82,8 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->used_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
                     part->scale != NULL && part->armed != NULL && part->crossed != NULL &&
-                    part->tied != NULL && part->u != NULL && part->y1 != NULL && part->y2 != NULL && part->w1 != NULL &&
-                    part->after != NULL && part->used_input != NULL;
+                    part->tied != NULL && part->u != NULL && part->y1 != NULL && part->y2 != NULL &&
+                    part->w1 != NULL && part->after != NULL && part->used_input != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 

@@ -127,6 +127,12 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
 enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
                                     double *y) DALCS_MUST_CHECK;
 
+/* Lists different answers at sigma, one for each regular mode that has one, without what regular modes
+ * share: answer[most][n_columns], *n of them. Switches stay as commanded. For few diodes: every mode is
+ * factored. p->mode stays; p->w and the certificate are those of the last mode tried. */
+enum dalcs_status dalcs_osnsp_list_answers(struct dalcs_osnsp *p, double sigma, const double *u,
+                                           int most, double *answer, int *n) DALCS_MUST_CHECK;
+
 /* May the last answer be one of several? Costs nothing where it is not. */
 static inline bool dalcs_osnsp_is_open(const struct dalcs_osnsp *p) {
     return p->least_norm || (p->n_tied > 0 && p->form[0]->answers != DALCS_UNIQUE);

@@ -12,30 +12,30 @@ static const char *unit_of(const struct dalcs_run *r, int output) {
 }
 
 /* "i(d1) may be anything from 0 A to 0.005 A, and 0.0025 A is taken" */
-static const char *say_interval(struct dalcs_run *r, const struct dalcs_open_signal *s) {
+static const char *say_interval(struct dalcs_run *r, const struct dalcs_open_signal *s,
+                                bool anything) {
     struct dalcs_arena *arena = &r->s->arena;
     const char *name = r->name[s->output];
     const char *unit = unit_of(r, s->output);
     if (isinf(s->lower) && isinf(s->upper)) {
-        return dalcs_arena_printf(arena, "%s may be anything, and %.6g %s is taken", name,
-                                  s->value, unit);
+        return dalcs_arena_printf(arena, "%s may be anything, and %.6g %s is taken", name, s->value,
+                                  unit);
     }
     if (isinf(s->lower) || isinf(s->upper)) {
         return dalcs_arena_printf(arena, "%s may be %.6g %s or %s, and %.6g %s is taken", name,
                                   isinf(s->lower) ? s->upper : s->lower, unit,
                                   isinf(s->lower) ? "less" : "more", s->value, unit);
     }
-    return dalcs_arena_printf(arena, "%s may be anything from %.6g %s to %.6g %s, and %.6g %s is "
-                                     "taken",
-                              name, s->lower, unit, s->upper, unit, s->value, unit);
+    return dalcs_arena_printf(arena, "%s may be %s %.6g %s %s %.6g %s, and %.6g %s is taken", name,
+                              anything ? "anything from" : "between", s->lower, unit,
+                              anything ? "to" : "and", s->upper, unit, s->value, unit);
 }
 
 static const char *say_intervals(struct dalcs_run *r, const struct dalcs_finding *f) {
     const char *text = "";
     for (int k = 0; k < f->n_signals && k < MOST_TOLD && text != NULL; k++) {
-        const char *one = say_interval(r, &f->signal[k]);
-        text = one == NULL ? NULL
-                           : dalcs_arena_printf(&r->s->arena, "%s; %s", text, one);
+        const char *one = say_interval(r, &f->signal[k], f->n_answers == 0);
+        text = one == NULL ? NULL : dalcs_arena_printf(&r->s->arena, "%s; %s", text, one);
     }
     return text;
 }
@@ -59,19 +59,18 @@ static const char *list_signals(struct dalcs_run *r, const struct dalcs_finding 
 static enum dalcs_status warn(struct dalcs_run *r, const struct dalcs_finding *f,
                               const char *because) {
     struct dalcs_session *s = r->s;
-    const char *when = f->at_operating_point ? "at the operating point"
-                                             : dalcs_arena_printf(&s->arena, "from t = %.9g s on",
-                                                                  f->time);
+    const char *when = f->at_operating_point
+                           ? "at the operating point"
+                           : dalcs_arena_printf(&s->arena, "from t = %.9g s on", f->time);
     const char *signals = list_signals(r, f);
     const char *intervals = f->has_intervals ? say_intervals(r, f) : "";
     if (when == NULL || signals == NULL || intervals == NULL) {
         return DALCS_E_NOMEM;
     }
-    dalcs_diag_add(&s->diag, DALCS_WARNING,
-                   f->device >= 0 ? &s->circuit.device[f->device].where : NULL, f->hint,
-                   "%s %s %s not determined: %s%s%s", when, signals,
-                   f->n_signals == 1 ? "is" : "are", because, intervals,
-                   f->has_intervals && f->has_diodes ? " (least norm)" : "");
+    dalcs_diag_add(
+        &s->diag, DALCS_WARNING, f->device >= 0 ? &s->circuit.device[f->device].where : NULL,
+        f->hint, "%s %s %s not determined: %s%s%s", when, signals, f->n_signals == 1 ? "is" : "are",
+        because, intervals, f->has_intervals && f->has_diodes ? " (least norm)" : "");
     return DALCS_OK;
 }
 

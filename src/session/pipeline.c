@@ -84,6 +84,11 @@ static enum dalcs_status run_operating_point(struct dalcs_run *r) {
     if (status == DALCS_OK) {
         status = dalcs_run_begin_plot(r, DALCS_OPERATING_POINT);
     }
+    if (status == DALCS_OK) {
+        e.at_operating_point = true;
+        status = dalcs_undetermined_several(&r->undetermined, &e, 0.0);
+        e.at_operating_point = false;
+    }
     double *row = dalcs_alloc((size_t)s->network.n_outputs, sizeof(*row));
     if (status == DALCS_OK && row == NULL) {
         status = DALCS_E_NOMEM;

@@ -234,6 +234,7 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e,
     if (radau != NULL) {
         DALCS_TRY(dalcs_radau_evaluate(radau, 0.0, DALCS_RIGHT));
     }
+    DALCS_TRY(dalcs_undetermined_several(&r->undetermined, e, s->circuit.transient.stop));
     dalcs_recorder_states(&s->network, e, s->start);
     DALCS_TRY(dalcs_run_begin_plot(r, DALCS_TRANSIENT));
     DALCS_TRY(dalcs_recorder_start(&s->recorder, e));
