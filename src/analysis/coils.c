@@ -180,9 +180,10 @@ static enum dalcs_status solve_all(struct program *p, int n, struct dalcs_open_s
     *is_solved = true;
     for (int i = 0; i < n; i++) {
         int device = p->view->u->circuit->signal[signal[i].output].device;
-        signal[i].upper = signal[i].value + furthest(p, device, 1.0);
-        signal[i].lower = signal[i].value - furthest(p, device, -1.0);
-        *is_solved = *is_solved && !isnan(signal[i].lower) && !isnan(signal[i].upper);
+        double rise = furthest(p, device, 1.0);
+        double fall = furthest(p, device, -1.0);
+        dalcs_view_bound(p->view, true, fall, rise, &signal[i]);
+        *is_solved = *is_solved && !isnan(fall) && !isnan(rise);
     }
     glp_delete_prob(p->lp);
     glp_error_hook(NULL, NULL);

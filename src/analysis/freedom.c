@@ -10,6 +10,9 @@
 /* Intervals narrower than this part of the largest voltage or current are rounding. */
 static const double narrow = 1e-9;
 
+/* Bounds below this part of it are 0. */
+static const double rounding = 1e-13;
+
 enum side { BLOCKS, CONDUCTS, TIED };
 
 static enum side side_of(const struct dalcs_view *view, int pair) {
@@ -220,6 +223,15 @@ static double probe_value(const struct dalcs_view *view, const struct dalcs_prob
 double dalcs_view_value(const struct dalcs_view *view, int output) {
     const struct dalcs_output *out = &view->network->output[output];
     return probe_value(view, &out->plus) - probe_value(view, &out->minus);
+}
+
+void dalcs_view_bound(const struct dalcs_view *view, bool is_current, double fall, double rise,
+                      struct dalcs_open_signal *signal) {
+    double nothing = rounding * view->largest[is_current ? 1 : 0];
+    signal->lower = signal->value - fall;
+    signal->upper = signal->value + rise;
+    signal->lower = fabs(signal->lower) <= nothing ? 0.0 : signal->lower;
+    signal->upper = fabs(signal->upper) <= nothing ? 0.0 : signal->upper;
 }
 
 bool dalcs_view_is_open(struct dalcs_view *view, bool is_current, double lower, double upper) {

@@ -53,6 +53,11 @@ int dalcs_view_current_of(const struct dalcs_view *view, int output);
 /* The present value of an output. */
 double dalcs_view_value(const struct dalcs_view *view, int output);
 
+/* Fills the bounds from how far a signal may fall and rise; a bound that only rounding tells from 0 is
+ * 0. */
+void dalcs_view_bound(const struct dalcs_view *view, bool is_current, double fall, double rise,
+                      struct dalcs_open_signal *signal);
+
 /* Is that interval more than rounding? */
 bool dalcs_view_is_open(struct dalcs_view *view, bool is_current, double lower, double upper);
 

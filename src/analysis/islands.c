@@ -122,8 +122,7 @@ static void find_interval(const struct islands *s, int a, int b, struct dalcs_op
         dalcs_branch_graph_distances(&s->graph, a, s->slack, true, s->other);
         fall = s->other[b];
     }
-    signal->lower = signal->value - fall;
-    signal->upper = signal->value + rise;
+    dalcs_view_bound(s->view, false, fall, rise, signal);
 }
 
 static bool concerns(const struct islands *s, int output) {

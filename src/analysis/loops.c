@@ -121,8 +121,7 @@ static void find_interval(const struct loops *l, int device, struct dalcs_open_s
     if (fall > 0.0) {
         fall = fmin(fall, dalcs_branch_graph_flow(&l->graph, tail, head, own));
     }
-    signal->lower = signal->value - fall;
-    signal->upper = signal->value + rise;
+    dalcs_view_bound(l->view, true, fall, rise, signal);
 }
 
 /* The signals that are currents of block k. */

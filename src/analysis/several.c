@@ -85,16 +85,17 @@ static enum dalcs_status tell(struct dalcs_undetermined *u, const struct dalcs_e
                                     .device = -1,
                                     .n_answers = n,
                                     .has_intervals = true};
-    finding.because = dalcs_arena_printf(&work, "%d solutions of a circuit that is not passive", n);
+    for (size_t k = 0; k < (size_t)n * n_columns; k++) {
+        double *largest = &view.largest[s->column_is_current[k % n_columns] ? 1 : 0];
+        *largest = fmax(*largest, fabs(answer[k]));
+    }
+    finding.because = dalcs_arena_printf(&work, "%d solutions of a circuit that is not passive",
+                                         count(&view, s, answer, n));
     finding.signal =
         dalcs_arena_alloc(&work, (size_t)e->network->n_outputs, sizeof(*finding.signal));
     if (finding.because == NULL || finding.signal == NULL) {
         dalcs_arena_finish(&work);
         return DALCS_E_NOMEM;
-    }
-    for (size_t k = 0; k < (size_t)n * n_columns; k++) {
-        double *largest = &view.largest[s->column_is_current[k % n_columns] ? 1 : 0];
-        *largest = fmax(*largest, fabs(answer[k]));
     }
     for (int i = 0; i < e->network->n_outputs; i++) {
         const struct dalcs_output *out = &e->network->output[i];

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Signals with their intervals in one message; signals in the report. */
-enum { MOST_TOLD = 3, MOST_REPORTED = 1000 };
+/* Signals in one message, those of them with intervals; signals in the report. */
+enum { MOST_NAMED = 12, MOST_TOLD = 3, MOST_REPORTED = 1000 };
 
 static const char *unit_of(const struct dalcs_run *r, int output) {
     return r->unit[output] == DALCS_AMPERE ? "A" : "V";
@@ -42,7 +42,7 @@ static const char *say_intervals(struct dalcs_run *r, const struct dalcs_finding
 
 static const char *list_signals(struct dalcs_run *r, const struct dalcs_finding *f) {
     const char *list = "";
-    for (int k = 0; k < f->n_signals && k < MOST_TOLD && list != NULL; k++) {
+    for (int k = 0; k < f->n_signals && k < MOST_NAMED && list != NULL; k++) {
         bool is_last = k + 1 == f->n_signals;
         list = dalcs_arena_printf(&r->s->arena, "%s%s%s", list,
                                   k == 0    ? ""
@@ -50,7 +50,7 @@ static const char *list_signals(struct dalcs_run *r, const struct dalcs_finding 
                                             : ", ",
                                   r->name[f->signal[k].output]);
     }
-    int more = f->n_signals - MOST_TOLD;
+    int more = f->n_signals - MOST_NAMED;
     return more <= 0 || list == NULL
                ? list
                : dalcs_arena_printf(&r->s->arena, "%s and %d more", list, more);
