@@ -209,7 +209,7 @@ void dalcs_view_finish(struct dalcs_view *view) {
 int dalcs_view_current_of(const struct dalcs_view *view, int output) {
     const struct dalcs_output *out = &view->network->output[output];
     bool is_here = out->is_current && out->plus.system == view->at->system;
-    return is_here && !view->u->is_reported[output] ? view->u->circuit->signal[output].device : -1;
+    return is_here && !view->u->told[output].is_told ? view->u->circuit->signal[output].device : -1;
 }
 
 static double probe_value(const struct dalcs_view *view, const struct dalcs_probe *probe) {
@@ -251,7 +251,12 @@ enum dalcs_status dalcs_view_tell(struct dalcs_view *view, struct dalcs_finding 
     finding->time = view->at->time;
     finding->at_operating_point = view->at->at_operating_point;
     for (int k = 0; k < finding->n_signals; k++) {
-        view->u->is_reported[finding->signal[k].output] = true;
+        const struct dalcs_open_signal *s = &finding->signal[k];
+        view->u->told[s->output] = (struct dalcs_told){.is_told = true,
+                                                       .system = view->at->system,
+                                                       .time = finding->time,
+                                                       .fall = s->value - s->lower,
+                                                       .rise = s->upper - s->value};
     }
     return view->u->on_finding(view->u->user, finding);
 }

@@ -114,6 +114,7 @@ static int island(const struct islands *s, int node) {
 }
 
 static void find_interval(const struct islands *s, int a, int b, struct dalcs_open_signal *signal) {
+    const struct dalcs_told *other = &s->view->u->told[signal->output];
     double rise = s->above[a];
     double fall = s->below[a];
     if (b != 0) {
@@ -122,14 +123,18 @@ static void find_interval(const struct islands *s, int a, int b, struct dalcs_op
         dalcs_branch_graph_distances(&s->graph, a, s->slack, true, s->other);
         fall = s->other[b];
     }
-    dalcs_view_bound(s->view, false, fall, rise, signal);
+    dalcs_view_bound(s->view, false, fall + other->fall, rise + other->rise, signal);
 }
 
+/* A voltage of this component that was not told of, or, between it and another one, only for what the
+ * other one leaves open at the same time. */
 static bool concerns(const struct islands *s, int output) {
     const struct dalcs_output *out = &s->view->network->output[output];
-    bool is_here =
-        out->plus.system == s->view->at->system || out->minus.system == s->view->at->system;
-    return is_here && !out->is_current && !s->view->u->is_reported[output];
+    const struct dalcs_told *told = &s->view->u->told[output];
+    int here = s->view->at->system;
+    bool is_here = out->plus.system == here || out->minus.system == here;
+    bool is_news = !told->is_told || (told->system != here && told->time == s->view->at->time);
+    return is_here && !out->is_current && is_news;
 }
 
 /* The signals whose voltages leave or enter the islands of this cause. */

@@ -99,7 +99,7 @@ static enum dalcs_status tell(struct dalcs_undetermined *u, const struct dalcs_e
     }
     for (int i = 0; i < e->network->n_outputs; i++) {
         const struct dalcs_output *out = &e->network->output[i];
-        if (u->is_reported[i] || (out->plus.system != system && out->minus.system != system)) {
+        if (u->told[i].is_told || (out->plus.system != system && out->minus.system != system)) {
             continue;
         }
         struct dalcs_open_signal *signal = &finding.signal[finding.n_signals];
@@ -111,7 +111,7 @@ static enum dalcs_status tell(struct dalcs_undetermined *u, const struct dalcs_e
             signal->upper = fmax(signal->upper, value);
         }
         bool open = dalcs_view_is_open(&view, out->is_current, signal->lower, signal->upper);
-        u->is_reported[i] = u->is_reported[i] || open;
+        u->told[i] = (struct dalcs_told){.is_told = open, .system = system, .time = -1.0};
         finding.n_signals += open ? 1 : 0;
     }
     enum dalcs_status status = finding.n_signals > 0 ? u->on_finding(u->user, &finding) : DALCS_OK;

@@ -20,7 +20,7 @@ void dalcs_undetermined_finish(struct dalcs_undetermined *u) {
     free(u->first_pair);
     free(u->vertex_of);
     free(u->branch_of);
-    free(u->is_reported);
+    free(u->told);
     *u = (struct dalcs_undetermined){0};
 }
 
@@ -82,10 +82,9 @@ enum dalcs_status dalcs_undetermined_prepare(struct dalcs_undetermined *u) {
     u->first_pair = dalcs_alloc(n_devices, sizeof(int));
     u->vertex_of = dalcs_alloc(n_nodes, sizeof(int));
     u->branch_of = dalcs_alloc(2 * n_devices, sizeof(int));
-    u->is_reported = dalcs_alloc((size_t)c->n_signals, sizeof(bool));
+    u->told = dalcs_alloc((size_t)c->n_signals, sizeof(*u->told));
     if (u->device_start == NULL || u->device == NULL || u->shorts == NULL ||
-        u->first_pair == NULL || u->vertex_of == NULL || u->branch_of == NULL ||
-        u->is_reported == NULL) {
+        u->first_pair == NULL || u->vertex_of == NULL || u->branch_of == NULL || u->told == NULL) {
         return DALCS_E_NOMEM;
     }
     fill(u->vertex_of, n_nodes);

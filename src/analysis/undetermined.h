@@ -49,7 +49,13 @@ struct dalcs_undetermined {
     int *first_pair;       /* [n_devices] */
     int *vertex_of;        /* [n_nodes] work, -1 */
     int *branch_of;        /* [2 n_devices] work, -1 */
-    bool *is_reported;     /* [n_signals] */
+
+    struct dalcs_told { /* a voltage between two components may be open on either side */
+        bool is_told;
+        int system;        /* that opened it */
+        double time;       /* s */
+        double fall, rise; /* V, A */
+    } * told;              /* [n_signals] */
 
     struct dalcs_seen {
         uint64_t name; /* 0: free */

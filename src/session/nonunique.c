@@ -74,23 +74,41 @@ static enum dalcs_status warn(struct dalcs_run *r, const struct dalcs_finding *f
     return DALCS_OK;
 }
 
+/* The entry of a signal: a voltage between two parts may be told of twice. NULL: the report is full. */
+static enum dalcs_status entry_of(struct dalcs_session *s, const char *name,
+                                  struct dalcs_nonunique **entry) {
+    *entry = NULL;
+    for (size_t k = 0; k < s->n_nonunique; k++) {
+        if (s->nonunique[k].signal == name) {
+            *entry = &s->nonunique[k];
+            return DALCS_OK;
+        }
+    }
+    if (s->n_nonunique < MOST_REPORTED) {
+        DALCS_TRY(dalcs_grow(&s->nonunique, &s->nonunique_capacity, s->n_nonunique + 1,
+                             sizeof(*s->nonunique)));
+        *entry = &s->nonunique[s->n_nonunique++];
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status keep(struct dalcs_run *r, const struct dalcs_finding *f,
                               const char *because) {
     struct dalcs_session *s = r->s;
     for (int k = 0; k < f->n_signals && f->has_intervals; k++) {
         const struct dalcs_open_signal *signal = &f->signal[k];
-        if (s->n_nonunique == MOST_REPORTED) {
+        struct dalcs_nonunique *entry;
+        DALCS_TRY(entry_of(s, r->name[signal->output], &entry));
+        if (entry == NULL) {
             r->n_unreported++;
             continue;
         }
-        DALCS_TRY(dalcs_grow(&s->nonunique, &s->nonunique_capacity, s->n_nonunique + 1,
-                             sizeof(*s->nonunique)));
-        s->nonunique[s->n_nonunique++] = (struct dalcs_nonunique){.signal = r->name[signal->output],
-                                                                  .time = f->time,
-                                                                  .lower = signal->lower,
-                                                                  .upper = signal->upper,
-                                                                  .value = signal->value,
-                                                                  .because = because};
+        *entry = (struct dalcs_nonunique){.signal = r->name[signal->output],
+                                          .time = f->time,
+                                          .lower = signal->lower,
+                                          .upper = signal->upper,
+                                          .value = signal->value,
+                                          .because = because};
     }
     return DALCS_OK;
 }
