@@ -113,6 +113,7 @@ static void add_device(struct dalcs_view *view, int device) {
     }
     default: /* current sources; controlled ones are not in a passive circuit */
         add(view, device, DALCS_VOLTAGE_ANY, false);
+        view->freedom[view->n - 1].is_source = true;
         break;
     }
 }
@@ -167,6 +168,8 @@ enum dalcs_status dalcs_view_setup(struct dalcs_view *view, struct dalcs_undeter
                                 .system = s,
                                 .y = at->engine->component[at->system].y,
                                 .work = work};
+    view->largest[0] = at->scale[0];
+    view->largest[1] = at->scale[1];
     for (int c = 0; c < dalcs_system_n_columns(s); c++) {
         double *largest = &view->largest[s->column_is_current[c] ? 1 : 0];
         *largest = fmax(*largest, fabs(view->y[c]));
@@ -223,6 +226,13 @@ static double probe_value(const struct dalcs_view *view, const struct dalcs_prob
 double dalcs_view_value(const struct dalcs_view *view, int output) {
     const struct dalcs_output *out = &view->network->output[output];
     return probe_value(view, &out->plus) - probe_value(view, &out->minus);
+}
+
+void dalcs_view_place(const struct dalcs_freedom *f, struct dalcs_finding *finding) {
+    if (finding->device < 0 || (f->is_diode && !finding->has_diodes)) {
+        finding->device = f->device;
+    }
+    finding->has_diodes = finding->has_diodes || f->is_diode;
 }
 
 void dalcs_view_bound(const struct dalcs_view *view, bool is_current, double fall, double rise,

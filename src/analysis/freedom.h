@@ -10,6 +10,7 @@ struct dalcs_freedom {
     int device; /* -1: a voltage that .ic holds */
     int node[2];
     bool is_diode, is_coil;
+    bool is_source; /* of current: it neither conducts nor blocks */
 
     enum dalcs_voltage_freedom {
         DALCS_VOLTAGE_FIXED, /* in all answers the same */
@@ -30,7 +31,7 @@ struct dalcs_view {
     const struct dalcs_network *network;
     const struct dalcs_system *system;
     const double *y;   /* [n_columns] the answer */
-    double largest[2]; /* V, A; of the answer */
+    double largest[2]; /* V, A; of the answer, and so far */
     int n;
     struct dalcs_freedom *freedom; /* [n] */
     int n_vertices;
@@ -52,6 +53,9 @@ int dalcs_view_current_of(const struct dalcs_view *view, int output);
 
 /* The present value of an output. */
 double dalcs_view_value(const struct dalcs_view *view, int output);
+
+/* Counts an element as part of what is found: the first diode, or else the first, is its place. */
+void dalcs_view_place(const struct dalcs_freedom *freedom, struct dalcs_finding *finding);
 
 /* Fills the bounds from how far a signal may fall and rise; a bound that only rounding tells from 0 is
  * 0. */

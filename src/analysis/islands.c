@@ -179,10 +179,9 @@ static enum dalcs_status describe(struct islands *s, int cause, struct dalcs_fin
         int a = s->island_of[view->u->vertex_of[f->node[0]]];
         int b = s->island_of[view->u->vertex_of[f->node[1]]];
         int of = a != 0 ? a : b;
-        if (a != b && dalcs_union_find(s->parent, of) == cause) {
+        if (a != b && !f->is_source && dalcs_union_find(s->parent, of) == cause) {
             border[n++] = i;
-            finding->has_diodes = finding->has_diodes || f->is_diode;
-            finding->device = finding->device < 0 ? f->device : finding->device;
+            dalcs_view_place(f, finding);
         }
     }
     int n_nodes = 0;

@@ -162,8 +162,7 @@ static enum dalcs_status tell_block(struct loops *l, int k) {
     for (int e = 0; e < n; e++) { /* of the graph's branches to the view's */
         part[e] = l->freedom[part[e]];
         const struct dalcs_freedom *f = &view->freedom[part[e]];
-        finding.has_diodes = finding.has_diodes || f->is_diode;
-        finding.device = finding.device < 0 ? f->device : finding.device;
+        dalcs_view_place(f, &finding);
     }
     if (l->has_coils[k] && finding.n_signals > 0) {
         DALCS_TRY(dalcs_coils_intervals(view, n, part, finding.n_signals, finding.signal,

@@ -261,12 +261,16 @@ enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initia
         }
     }
     for (int k = 0; initial != NULL && k < e->n_components; k++) {
-        DALCS_TRY(dalcs_euler_tell_open(e, k));
+        struct dalcs_component *c = &e->component[k];
+        c->was_open = dalcs_osnsp_is_open(&c->osnsp);
+        if (c->is_static) {
+            DALCS_TRY(dalcs_euler_tell_open(e, k));
+        }
     }
     return DALCS_OK;
 }
 
-/* What is open at the end of one step only, as where diodes commutate, is left out. */
+/* What is open at one instant only, as where diodes commutate, is left out. */
 static enum dalcs_status tell_what_stays_open(struct dalcs_euler *e) {
     for (int k = 0; k < e->n_components; k++) {
         struct dalcs_component *c = &e->component[k];

@@ -19,10 +19,9 @@ struct dalcs_euler_jump {
     double energy_lost;           /* J */
 };
 
-/* Called where an answer may be one of several: with component[system]'s y and u the present ones, and
- * the sides of its pairs. *vanishes: some signal is open, but has only one value just now. */
 struct dalcs_euler;
 
+/* Where an answer may be one of several: component[system]'s y and u are the present ones. */
 struct dalcs_open_instant {
     double time; /* s */
     const struct dalcs_euler *engine;
@@ -31,6 +30,7 @@ struct dalcs_open_instant {
     const uint64_t *mode;
     const double *w;  /* [n_pairs] V, of open pairs */
     const bool *tied; /* [n_pairs] diodes with neither current nor voltage */
+    double scale[2];  /* V, A: the largest so far, or 0; smaller than their rounding is nothing */
 };
 
 struct dalcs_euler {
@@ -52,6 +52,8 @@ struct dalcs_euler {
     bool detect_jumps;       /* also where a circuit's own voltage moves a switch */
     void *jump_user;
     enum dalcs_status (*on_jump)(void *user, const struct dalcs_euler_jump *jump); /* may be NULL */
+
+    /* *vanishes: some signal is open, but has only one value just now */
     void *open_user;
     enum dalcs_status (*on_open)(void *user, const struct dalcs_open_instant *instant,
                                  bool *vanishes); /* may be NULL */

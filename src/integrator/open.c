@@ -14,14 +14,16 @@ static enum dalcs_status tell_open_at(struct dalcs_radau *r, struct dalcs_radau_
         part->w1[d] = dalcs_osnsp_is_on(p, d) ? 0.0 : other;
         part->tied[d] = dalcs_guards_is_tied(part, d, part->unit_scale);
     }
-    return e->on_open(e->open_user,
-                      &(struct dalcs_open_instant){.time = t,
-                                                   .engine = e,
-                                                   .system = part->index,
-                                                   .mode = p->mode,
-                                                   .w = part->w1,
-                                                   .tied = part->tied},
-                      vanishes);
+    return e->on_open(
+        e->open_user,
+        &(struct dalcs_open_instant){.time = t,
+                                     .engine = e,
+                                     .system = part->index,
+                                     .mode = p->mode,
+                                     .w = part->w1,
+                                     .tied = part->tied,
+                                     .scale = {part->unit_scale[0], part->unit_scale[1]}},
+        vanishes);
 }
 
 /* At the start of such a segment or, where there is nothing to share yet, at its end. */

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Signals in one message, those of them with intervals; signals in the report. */
-enum { MOST_NAMED = 12, MOST_TOLD = 3, MOST_REPORTED = 1000 };
+/* Messages; signals in one, those of them with intervals; signals in the report. */
+enum { MOST_WARNINGS = 50, MOST_NAMED = 12, MOST_TOLD = 3, MOST_REPORTED = 1000 };
 
 static const char *unit_of(const struct dalcs_run *r, int output) {
     return r->unit[output] == DALCS_AMPERE ? "A" : "V";
@@ -119,14 +119,20 @@ enum dalcs_status dalcs_nonunique_found(void *run, const struct dalcs_finding *f
     if (because == NULL) {
         return DALCS_E_NOMEM;
     }
-    DALCS_TRY(warn(r, finding, because));
+    if (r->n_warnings < MOST_WARNINGS) {
+        r->n_warnings++;
+        DALCS_TRY(warn(r, finding, because));
+    } else {
+        r->n_untold += finding->n_signals;
+    }
     return keep(r, finding, because);
 }
 
 void dalcs_nonunique_count_rest(struct dalcs_run *r) {
-    if (r->n_unreported > 0) {
+    if (r->n_untold > 0) {
         dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, NULL,
-                       "%ld more signal%s not determined; the report has the first %d",
-                       r->n_unreported, r->n_unreported == 1 ? " is" : "s are", MOST_REPORTED);
+                       "%ld more signal%s not determined; the report lists %s%d", r->n_untold,
+                       r->n_untold == 1 ? " is" : "s are", r->n_unreported > 0 ? "the first " : "",
+                       (int)r->s->n_nonunique);
     }
 }

@@ -43,7 +43,8 @@ struct dalcs_run {
     const char **name;
     enum dalcs_unit *unit;
     struct dalcs_undetermined undetermined;
-    long n_unreported; /* signals that are not determined and did not fit into the report */
+    int n_warnings;              /* of what is not determined */
+    long n_untold, n_unreported; /* signals of which there is no warning, no entry in the report */
 };
 
 /* Settles what the options of the run and of the netlist leave open; checks them. */
