@@ -89,11 +89,14 @@ static enum dalcs_status solve(struct dalcs_euler *e, int k, double sigma, const
 }
 
 enum dalcs_status dalcs_euler_tell_open(struct dalcs_euler *e, int k) {
-    const struct dalcs_osnsp *p = &e->component[k].osnsp;
+    struct dalcs_component *c = &e->component[k];
+    struct dalcs_osnsp *p = &c->osnsp;
     if (e->on_open == NULL || !dalcs_osnsp_is_open(p)) {
         return DALCS_OK;
     }
+    double scale[2];
     bool vanishes;
+    dalcs_osnsp_find_ties(p, c->u, c->y, scale);
     return e->on_open(e->open_user,
                       &(struct dalcs_open_instant){.time = e->t,
                                                    .engine = e,
@@ -101,7 +104,8 @@ enum dalcs_status dalcs_euler_tell_open(struct dalcs_euler *e, int k) {
                                                    .at_operating_point = e->at_operating_point,
                                                    .mode = p->mode,
                                                    .w = p->w,
-                                                   .tied = p->tied},
+                                                   .tied = p->tied,
+                                                   .scale = {scale[0], scale[1]}},
                       &vanishes);
 }
 

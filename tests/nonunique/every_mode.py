@@ -127,9 +127,11 @@ class Network:
             polyhedron = Polyhedron(len(basis), zero, positive)
             if not polyhedron.is_empty():
                 polyhedron.widen(values, bounds)
-                norm, point = polyhedron.least([p[0] for p in pairs] + [p[1] for p in pairs])
-                if best is None or norm < best[0]:
-                    best = norm, [at(p[0], point) for p in pairs], [at(p[1], point) for p in pairs]
+                found = polyhedron.least([p[0] for p in pairs] + [p[1] for p in pairs],
+                                         INFINITY if best is None else best[0])
+                if found is not None:
+                    best = (found[0], [at(p[0], found[1]) for p in pairs],
+                            [at(p[1], found[1]) for p in pairs])
         return None if best is None else (bounds, best[1], best[2])
 
 
@@ -195,8 +197,9 @@ class Polyhedron:
             bound[0] = -INFINITY if any(slope < 0 for slope in slopes) else bound[0]
             bound[1] = INFINITY if any(slope > 0 for slope in slopes) else bound[1]
 
-    def least(self, functions):
-        """The least sum of squares, and a point that has it: on each set of walls in turn."""
+    def least(self, functions, below):
+        """The least sum of squares and a point that has it: on each set of walls in turn. None when it
+        is not below `below`."""
         k = len(self.space[1])
         functions = [self.inside(f) for f in functions]
         best = None
@@ -205,19 +208,23 @@ class Polyhedron:
                 held = solve([row + [-constant] for row, constant in chosen], k)
                 if held is None:
                     continue
-                point, directions = held
-                normal = []
-                for d in directions:
-                    row = [sum((dot(f[0], d) * dot(f[0], e) for f in functions), Fraction(0))
-                           for e in directions]
-                    row.append(-sum((dot(f[0], d) * at(f, point) for f in functions),
-                                    Fraction(0)))
-                    normal.append(row)
-                steps = solve(normal, len(directions))[0]
-                candidate = [p + sum(s * d[j] for s, d in zip(steps, directions))
-                             for j, p in enumerate(point)]
-                if all(at(w, candidate) >= 0 for w in self.walls):
-                    norm = sum((at(f, candidate) ** 2 for f in functions), Fraction(0))
-                    if best is None or norm < best[0]:
-                        best = norm, self.outside(candidate)
+                norm, candidate = least_squares(functions, held)
+                if norm < below and all(at(w, candidate) >= 0 for w in self.walls):
+                    best, below = (norm, self.outside(candidate)), norm
+                if size == 0 and (best is not None or norm >= below):
+                    return best  # walls only make it larger
         return best
+
+
+def least_squares(functions, held):
+    """The least sum of squares on the plane (point, directions)."""
+    point, directions = held
+    slopes = [[dot(f[0], d) for f in functions] for d in directions]
+    values = [at(f, point) for f in functions]
+    normal = [[dot(a, b) for b in slopes] + [-dot(a, values)] for a in slopes]
+    steps = solve(normal, len(directions))[0]
+    for step, slope in zip(steps, slopes):
+        values = [v + step * s for v, s in zip(values, slope)]
+    candidate = [p + sum(s * d[j] for s, d in zip(steps, directions))
+                 for j, p in enumerate(point)]
+    return dot(values, values), candidate
