@@ -3,7 +3,7 @@
  * Perfectly coupled coils carry, besides their common magnetising current, currents in the ratio of
  * their turns: a circulation in one winding is one in the others too. So flows do not tell how far a
  * current may go, but a linear program in the differences of answers does: KCL, the ratios, and the
- * signs of diodes. GLPK's simplex method finds a vertex, its exact one makes it free of rounding. */
+ * signs of diodes. GLPK solves it. */
 #include "freedom.h"
 
 #ifdef DALCS_WITH_GLPK
@@ -11,6 +11,11 @@
 #include <glpk.h>
 #include <math.h>
 #include <setjmp.h>
+
+/* In units near the largest current. The corner that the method ends at is computed from its equations;
+ * this only says which corner will do. (GLPK's exact simplex method would, but GMP under it ends the
+ * program when memory does.) */
+static const double tolerance = 1e-11;
 
 struct program {
     const struct dalcs_view *view;
@@ -149,9 +154,9 @@ static double furthest(const struct program *p, int device, double direction) {
     glp_smcp parameters;
     glp_init_smcp(&parameters);
     parameters.msg_lev = GLP_MSG_OFF;
+    parameters.tol_bnd = parameters.tol_dj = tolerance;
     glp_std_basis(p->lp);
-    (void)glp_simplex(p->lp, &parameters); /* only a basis to start from */
-    if (glp_exact(p->lp, &parameters) != 0) {
+    if (glp_simplex(p->lp, &parameters) != 0) {
         return NAN;
     }
     int status = glp_get_status(p->lp);
