@@ -215,7 +215,15 @@ enum dalcs_status dalcs_coils_intervals(const struct dalcs_view *view, int n_par
     return status;
 }
 
+const char *dalcs_coils_hint(void) {
+    return "GLPK did not find how far they may go";
+}
+
 #else
+
+const char *dalcs_coils_hint(void) {
+    return "how far they may go is not computed: this program was built without GLPK";
+}
 
 enum dalcs_status dalcs_coils_intervals(const struct dalcs_view *view, int n_part, const int *part,
                                         int n, struct dalcs_open_signal *signal, bool *is_solved) {

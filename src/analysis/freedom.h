@@ -86,6 +86,9 @@ const char *dalcs_words_for_island(const struct dalcs_view *view, const int *isl
 
 /* ---- coils.c --------------------------------------------------------------------------------- */
 
+/* Why there may be no intervals, for a message. */
+const char *dalcs_coils_hint(void);
+
 /* The intervals of the currents of signal[n], through branches `part` of which some are coils that
  * perfect coupling ties: by linear programs over all of them. *is_solved: false without GLPK. */
 enum dalcs_status dalcs_coils_intervals(const struct dalcs_view *view, int n_part, const int *part,

@@ -168,6 +168,7 @@ static enum dalcs_status tell_block(struct loops *l, int k) {
         DALCS_TRY(dalcs_coils_intervals(view, n, part, finding.n_signals, finding.signal,
                                         &finding.has_intervals));
     }
+    finding.hint = finding.has_intervals ? NULL : dalcs_coils_hint();
     int n_open = 0;
     for (int i = 0; i < finding.n_signals; i++) {
         const struct dalcs_open_signal *s = &finding.signal[i];
