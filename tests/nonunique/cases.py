@@ -67,6 +67,24 @@ D3 g 0 DI
 D4 g 0 DI
 .op
 """, {f"i(d{k})": (0, 1, "loops of d1, d2, d3 and d4") for k in (1, 2, 3, 4)}),
+    "ring": ("""A ring of five diodes, written in no order
+R1 a 0 1
+D3 c d DI
+D1 a b DI
+D5 e a DI
+D2 b c DI
+D4 d e DI
+.op
+""", {f"i(d{k})": (0, INF, "loop d3-d4-d5-d1-d2") for k in (1, 2, 3, 4, 5)}),
+    "held in a circle": ("""Antiparallel diodes without current hold m, so that x alone floats
+V1 in 0 DC 5
+D1 m 0 DI
+D2 0 m DI
+D3 m x DI
+D4 x in DI
+.op
+""", {"v(x)": (0, 5, "stack d3-d4 blocks"), "i(d1)": (0, INF, "d1 antiparallel to d2"),
+      "i(d2)": (0, INF, "d1 antiparallel to d2")}),
     "stack": ("""Five diodes that block
 V1 in 0 DC -10
 D1 in m1 DI
