@@ -250,6 +250,35 @@ bool dalcs_view_is_open(struct dalcs_view *view, bool is_current, double lower, 
     return open;
 }
 
+enum dalcs_status dalcs_view_sort_signals(struct dalcs_view *view, int n_parts, const int *part,
+                                          int **start, struct dalcs_open_signal **signal) {
+    int n = 0;
+    *start = dalcs_arena_alloc(view->work, (size_t)n_parts + 2, sizeof(**start));
+    if (*start == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < view->network->n_outputs; i++) {
+        if (part[i] >= 0) {
+            (*start)[part[i] + 2]++;
+            n++;
+        }
+    }
+    for (int k = 0; k < n_parts; k++) {
+        (*start)[k + 2] += (*start)[k + 1];
+    }
+    *signal = dalcs_arena_alloc(view->work, (size_t)n, sizeof(**signal));
+    if (*signal == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < view->network->n_outputs; i++) {
+        if (part[i] >= 0) {
+            (*signal)[(*start)[part[i] + 1]++] =
+                (struct dalcs_open_signal){.output = i, .value = dalcs_view_value(view, i)};
+        }
+    }
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_view_tell(struct dalcs_view *view, struct dalcs_finding *finding) {
     if (finding->n_signals == 0) {
         return DALCS_OK;

@@ -65,6 +65,12 @@ void dalcs_view_bound(const struct dalcs_view *view, bool is_current, double fal
 /* Is that interval more than rounding? */
 bool dalcs_view_is_open(struct dalcs_view *view, bool is_current, double lower, double upper);
 
+/* Sorts outputs by part[n_outputs] (-1: of none): signal[start[k]..start[k + 1] - 1] are those of part k,
+ * with their present values. */
+enum dalcs_status dalcs_view_sort_signals(struct dalcs_view *view, int n_parts, const int *part,
+                                          int **start,
+                                          struct dalcs_open_signal **signal) DALCS_MUST_CHECK;
+
 /* Reports the finding, unless it has no signals. */
 enum dalcs_status dalcs_view_tell(struct dalcs_view *view,
                                   struct dalcs_finding *finding) DALCS_MUST_CHECK;

@@ -21,6 +21,8 @@ struct islands {
     struct dalcs_branch_graph graph;
     double *above, *below; /* [n_vertices] how far ground's island may be under and over others */
     double *other;         /* [n_vertices] work */
+    int *first_signal;     /* of cause k: signal[first_signal[k]..first_signal[k + 1] - 1] */
+    struct dalcs_open_signal *signal;
 };
 
 static void hold(struct islands *s) {
@@ -137,32 +139,42 @@ static bool concerns(const struct islands *s, int output) {
     return is_here && !out->is_current && is_news;
 }
 
-/* The signals whose voltages leave or enter the islands of this cause. */
-static enum dalcs_status list_signals(struct islands *s, int cause, struct dalcs_finding *finding) {
+/* Which cause opens a voltage; -1: none. */
+static int cause_of(struct islands *s, int output) {
+    if (!concerns(s, output)) {
+        return -1;
+    }
+    const int *node = s->view->u->circuit->signal[output].node;
+    int a = island(s, node[0]);
+    int b = island(s, node[1]);
+    return a == b ? -1 : dalcs_union_find(s->parent, a != 0 ? a : b);
+}
+
+static enum dalcs_status sort_signals(struct islands *s) {
     struct dalcs_view *view = s->view;
     size_t n_outputs = (size_t)view->network->n_outputs;
-    finding->signal = dalcs_arena_alloc(view->work, n_outputs, sizeof(*finding->signal));
-    if (finding->signal == NULL) {
+    int *part = dalcs_arena_alloc(view->work, n_outputs, sizeof(*part));
+    if (part == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int i = 0; i < view->network->n_outputs; i++) {
-        if (!concerns(s, i)) {
-            continue;
-        }
-        const int *node = view->u->circuit->signal[i].node;
-        int a = island(s, node[0]);
-        int b = island(s, node[1]);
-        int of = a != 0 ? a : b;
-        if (a == b || dalcs_union_find(s->parent, of) != cause) {
-            continue;
-        }
-        struct dalcs_open_signal *signal = &finding->signal[finding->n_signals];
-        *signal = (struct dalcs_open_signal){.output = i, .value = dalcs_view_value(view, i)};
-        find_interval(s, a, b, signal);
-        bool open = dalcs_view_is_open(view, false, signal->lower, signal->upper);
-        finding->n_signals += open ? 1 : 0;
+        part[i] = cause_of(s, i);
     }
-    return DALCS_OK;
+    return dalcs_view_sort_signals(view, view->n_vertices, part, &s->first_signal, &s->signal);
+}
+
+/* Keeps the signals of a cause that may go somewhere. */
+static void find_intervals(struct islands *s, struct dalcs_finding *finding) {
+    int n_open = 0;
+    for (int k = 0; k < finding->n_signals; k++) {
+        struct dalcs_open_signal *signal = &finding->signal[k];
+        const int *node = s->view->u->circuit->signal[signal->output].node;
+        find_interval(s, island(s, node[0]), island(s, node[1]), signal);
+        if (dalcs_view_is_open(s->view, false, signal->lower, signal->upper)) {
+            finding->signal[n_open++] = *signal;
+        }
+    }
+    finding->n_signals = n_open;
 }
 
 /* What borders on the islands of a cause, for words. */
@@ -203,15 +215,15 @@ enum dalcs_status dalcs_islands_find(struct dalcs_view *view) {
     flatten(&s);
     DALCS_TRY(list_diodes(&s, part));
     join_causes(&s);
+    DALCS_TRY(sort_signals(&s));
     dalcs_branch_graph_distances(&s.graph, 0, s.slack, true, s.above);
     dalcs_branch_graph_distances(&s.graph, 0, s.slack, false, s.below);
     for (int v = 1; v < view->n_vertices; v++) {
-        bool is_cause = s.island_of[v] == v && dalcs_union_find(s.parent, v) == v;
-        if (!is_cause) {
-            continue;
-        }
-        struct dalcs_finding finding = {.device = -1, .has_intervals = true};
-        DALCS_TRY(list_signals(&s, v, &finding));
+        struct dalcs_finding finding = {.device = -1,
+                                        .has_intervals = true,
+                                        .signal = s.signal + s.first_signal[v],
+                                        .n_signals = s.first_signal[v + 1] - s.first_signal[v]};
+        find_intervals(&s, &finding);
         if (finding.n_signals > 0) {
             DALCS_TRY(describe(&s, v, &finding));
         }

@@ -19,6 +19,8 @@ struct loops {
     int n_blocks;
     int *start, *member; /* of block k: member[start[k]..start[k + 1] - 1] */
     bool *has_coils;     /* [n_blocks] */
+    int *first_signal;   /* of block k: signal[first_signal[k]..first_signal[k + 1] - 1] */
+    struct dalcs_open_signal *signal;
 };
 
 static enum dalcs_status list_branches(struct loops *l) {
@@ -124,35 +126,40 @@ static void find_interval(const struct loops *l, int device, struct dalcs_open_s
     dalcs_view_bound(l->view, true, fall, rise, signal);
 }
 
-/* The signals that are currents of block k. */
-static enum dalcs_status list_signals(const struct loops *l, int k, struct dalcs_finding *finding) {
-    const struct dalcs_view *view = l->view;
-    size_t n_outputs = (size_t)view->network->n_outputs;
-    finding->signal = dalcs_arena_alloc(view->work, n_outputs, sizeof(*finding->signal));
-    if (finding->signal == NULL) {
+/* Which block the current of an output is in; -1: none. */
+static int block_of(const struct loops *l, int output) {
+    int device = dalcs_view_current_of(l->view, output);
+    const int *own = device >= 0 ? &l->view->u->branch_of[2 * device] : NULL;
+    int block = -1;
+    for (int b = 0; own != NULL && b < 2; b++) {
+        block = own[b] >= 0 && l->block[own[b]] >= 0 ? l->block[own[b]] : block;
+    }
+    return block;
+}
+
+static enum dalcs_status sort_signals(struct loops *l) {
+    size_t n_outputs = (size_t)l->view->network->n_outputs;
+    int *part = dalcs_arena_alloc(l->view->work, n_outputs, sizeof(*part));
+    if (part == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (int i = 0; i < view->network->n_outputs; i++) {
-        int device = dalcs_view_current_of(view, i);
-        const int *own = device >= 0 ? &view->u->branch_of[2 * device] : NULL;
-        bool is_in = false;
-        for (int b = 0; own != NULL && b < 2; b++) {
-            is_in = is_in || (own[b] >= 0 && l->block[own[b]] == k);
-        }
-        if (is_in) {
-            finding->signal[finding->n_signals++] =
-                (struct dalcs_open_signal){.output = i, .value = dalcs_view_value(view, i)};
-        }
+    for (int i = 0; i < l->view->network->n_outputs; i++) {
+        part[i] = block_of(l, i);
     }
-    return DALCS_OK;
+    return dalcs_view_sort_signals(l->view, l->n_blocks, part, &l->first_signal, &l->signal);
 }
 
 static enum dalcs_status tell_block(struct loops *l, int k) {
     struct dalcs_view *view = l->view;
     int n = l->start[k + 1] - l->start[k];
     int *part = l->member + l->start[k];
-    struct dalcs_finding finding = {.device = -1, .has_intervals = true};
-    DALCS_TRY(list_signals(l, k, &finding));
+    struct dalcs_finding finding = {.device = -1,
+                                    .has_intervals = true,
+                                    .signal = l->signal + l->first_signal[k],
+                                    .n_signals = l->first_signal[k + 1] - l->first_signal[k]};
+    if (finding.n_signals == 0) {
+        return DALCS_OK;
+    }
     if (!l->has_coils[k]) {
         for (int i = 0; i < finding.n_signals; i++) {
             struct dalcs_open_signal *s = &finding.signal[i];
@@ -164,7 +171,7 @@ static enum dalcs_status tell_block(struct loops *l, int k) {
         const struct dalcs_freedom *f = &view->freedom[part[e]];
         dalcs_view_place(f, &finding);
     }
-    if (l->has_coils[k] && finding.n_signals > 0) {
+    if (l->has_coils[k]) {
         DALCS_TRY(dalcs_coils_intervals(view, n, part, finding.n_signals, finding.signal,
                                         &finding.has_intervals));
     }
@@ -185,6 +192,7 @@ enum dalcs_status dalcs_loops_find(struct dalcs_view *view) {
     struct loops l = {.view = view};
     DALCS_TRY(list_branches(&l));
     DALCS_TRY(find_blocks(&l));
+    DALCS_TRY(sort_signals(&l));
     for (int k = 0; k < l.n_blocks; k++) {
         if (l.start[k + 1] > l.start[k]) {
             DALCS_TRY(tell_block(&l, k));
