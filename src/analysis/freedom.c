@@ -194,7 +194,9 @@ enum dalcs_status dalcs_view_setup(struct dalcs_view *view, struct dalcs_undeter
         number_node(view, view->freedom[i].node[0]);
         number_node(view, view->freedom[i].node[1]);
     }
-    return DALCS_OK;
+    view->link = dalcs_arena_alloc(work, (size_t)view->n_vertices, sizeof(*view->link));
+    view->degree = dalcs_arena_alloc(work, (size_t)view->n_vertices, sizeof(*view->degree));
+    return view->link != NULL && view->degree != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 void dalcs_view_finish(struct dalcs_view *view) {

@@ -36,6 +36,7 @@ struct dalcs_view {
     struct dalcs_freedom *freedom; /* [n] */
     int n_vertices;
     int *node;                /* [n_vertices] of the circuit; ground first */
+    int *link, *degree;       /* [n_vertices] work, 0 */
     struct dalcs_arena *work; /* until the analysis is done */
     bool has_told,
         has_narrow; /* a signal that may go somewhere; one that could, but not just now */

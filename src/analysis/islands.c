@@ -23,6 +23,8 @@ struct islands {
     double *other;         /* [n_vertices] work */
     int *first_signal;     /* of cause k: signal[first_signal[k]..first_signal[k + 1] - 1] */
     struct dalcs_open_signal *signal;
+    int *first_border, *border; /* the same of what borders on it */
+    int *first_vertex, *vertex; /* and of what it opens */
 };
 
 static void hold(struct islands *s) {
@@ -177,34 +179,66 @@ static void find_intervals(struct islands *s, struct dalcs_finding *finding) {
     finding->n_signals = n_open;
 }
 
-/* What borders on the islands of a cause, for words. */
-static enum dalcs_status describe(struct islands *s, int cause, struct dalcs_finding *finding) {
-    const struct dalcs_view *view = s->view;
-    int *border = dalcs_arena_alloc(view->work, (size_t)view->n, sizeof(*border));
-    int *node = dalcs_arena_alloc(view->work, (size_t)view->n_vertices, sizeof(*node));
-    if (border == NULL || node == NULL) {
+/* Lists items by cause[n_items] (-1: of none): those of cause k are item[start[k]..start[k + 1] - 1]. */
+static enum dalcs_status sort_items(const struct islands *s, int n_items, const int *cause,
+                                    int **start, int **item) {
+    int n_causes = s->view->n_vertices;
+    *start = dalcs_arena_alloc(s->view->work, (size_t)n_causes + 2, sizeof(**start));
+    *item = dalcs_arena_alloc(s->view->work, (size_t)n_items, sizeof(**item));
+    if (*start == NULL || *item == NULL) {
         return DALCS_E_NOMEM;
     }
-    int n = 0;
+    for (int i = 0; i < n_items; i++) {
+        (*start)[cause[i] >= 0 ? cause[i] + 2 : 0]++;
+    }
+    (*start)[0] = 0;
+    for (int k = 0; k < n_causes; k++) {
+        (*start)[k + 2] += (*start)[k + 1];
+    }
+    for (int i = 0; i < n_items; i++) {
+        if (cause[i] >= 0) {
+            (*item)[(*start)[cause[i] + 1]++] = i;
+        }
+    }
+    return DALCS_OK;
+}
+
+/* What borders on the islands of a cause, and their vertices, for words. */
+static enum dalcs_status sort_parts(struct islands *s) {
+    const struct dalcs_view *view = s->view;
+    int n = view->n > view->n_vertices ? view->n : view->n_vertices;
+    int *cause = dalcs_arena_alloc(view->work, (size_t)n, sizeof(*cause));
+    if (cause == NULL) {
+        return DALCS_E_NOMEM;
+    }
     for (int i = 0; i < view->n; i++) {
         const struct dalcs_freedom *f = &view->freedom[i];
         int a = s->island_of[view->u->vertex_of[f->node[0]]];
         int b = s->island_of[view->u->vertex_of[f->node[1]]];
-        int of = a != 0 ? a : b;
-        if (a != b && !f->is_source && dalcs_union_find(s->parent, of) == cause) {
-            border[n++] = i;
-            dalcs_view_place(f, finding);
-        }
+        bool is_border = a != b && !f->is_source;
+        cause[i] = is_border ? dalcs_union_find(s->parent, a != 0 ? a : b) : -1;
     }
-    int n_nodes = 0;
-    for (int v = 1; v < view->n_vertices; v++) {
+    DALCS_TRY(sort_items(s, view->n, cause, &s->first_border, &s->border));
+    for (int v = 0; v < view->n_vertices; v++) {
         int of = s->island_of[v];
-        if (of != 0 && dalcs_union_find(s->parent, of) == cause) {
-            node[n_nodes++] = view->node[v];
-        }
+        cause[v] = of != 0 ? dalcs_union_find(s->parent, of) : -1;
+    }
+    return sort_items(s, view->n_vertices, cause, &s->first_vertex, &s->vertex);
+}
+
+static void describe(struct islands *s, int cause, struct dalcs_finding *finding) {
+    const struct dalcs_view *view = s->view;
+    int *border = s->border + s->first_border[cause];
+    int *node = s->vertex + s->first_vertex[cause];
+    int n = s->first_border[cause + 1] - s->first_border[cause];
+    int n_nodes = s->first_vertex[cause + 1] - s->first_vertex[cause];
+    for (int k = 0; k < n; k++) {
+        dalcs_view_place(&view->freedom[border[k]], finding);
+    }
+    for (int k = 0; k < n_nodes; k++) { /* of the view's vertices to the circuit's nodes */
+        node[k] = view->node[node[k]];
     }
     finding->because = dalcs_words_for_island(view, s->island_of, n_nodes, node, n, border);
-    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_islands_find(struct dalcs_view *view) {
@@ -216,6 +250,7 @@ enum dalcs_status dalcs_islands_find(struct dalcs_view *view) {
     DALCS_TRY(list_diodes(&s, part));
     join_causes(&s);
     DALCS_TRY(sort_signals(&s));
+    DALCS_TRY(sort_parts(&s));
     dalcs_branch_graph_distances(&s.graph, 0, s.slack, true, s.above);
     dalcs_branch_graph_distances(&s.graph, 0, s.slack, false, s.below);
     for (int v = 1; v < view->n_vertices; v++) {
@@ -225,7 +260,7 @@ enum dalcs_status dalcs_islands_find(struct dalcs_view *view) {
                                         .n_signals = s.first_signal[v + 1] - s.first_signal[v]};
         find_intervals(&s, &finding);
         if (finding.n_signals > 0) {
-            DALCS_TRY(describe(&s, v, &finding));
+            describe(&s, v, &finding);
         }
         DALCS_TRY(dalcs_view_tell(view, &finding));
     }

@@ -48,27 +48,23 @@ static bool are_parallel(const struct dalcs_view *view, int n, const int *part) 
 
 /* The names along a loop; "" when the branches are more than one loop. */
 static const char *follow_loop(const struct dalcs_view *view, int n, const int *part) {
-    size_t n_vertices = (size_t)view->n_vertices;
-    int *degree = dalcs_arena_alloc(view->work, n_vertices, sizeof(*degree));
-    int *sum = dalcs_arena_alloc(view->work, n_vertices, sizeof(*sum));
-    if (degree == NULL || sum == NULL) {
-        return NULL;
-    }
     bool simple = true;
-    for (int k = 0; k < n; k++) {
-        for (int end = 0; end < 2; end++) {
-            int v = vertex(view, part[k], end);
-            sum[v] ^= part[k];
-            simple = simple && ++degree[v] <= 2;
-        }
+    for (int k = 0; k < 2 * n; k++) {
+        int v = vertex(view, part[k / 2], k % 2);
+        view->link[v] ^= part[k / 2];
+        simple = ++view->degree[v] <= 2 && simple;
     }
     const char *list = "";
     int at = part[0];
     int v = vertex(view, at, 1);
     for (int k = 0; simple && k < n; k++) {
         list = join(view, list, k, n, view->freedom[at].name, true);
-        at ^= sum[v]; /* the other of the two at this vertex */
+        at ^= view->link[v]; /* the other of the two at this vertex */
         v = vertex(view, at, vertex(view, at, 0) == v ? 1 : 0);
+    }
+    for (int k = 0; k < 2 * n; k++) {
+        v = vertex(view, part[k / 2], k % 2);
+        view->link[v] = view->degree[v] = 0;
     }
     return list;
 }
@@ -107,17 +103,12 @@ const char *dalcs_words_for_loop(const struct dalcs_view *view, int n, const int
 /* The names of a stack of diodes from anode to cathode; "" when it is none. */
 static const char *follow_stack(const struct dalcs_view *view, const int *island_of, int n,
                                 const int *border) {
-    size_t n_vertices = (size_t)view->n_vertices;
-    int *next = dalcs_arena_alloc(view->work, n_vertices, sizeof(*next)); /* + 1; 0: none */
-    int *n_next = dalcs_arena_alloc(view->work, n_vertices, sizeof(*n_next));
-    if (next == NULL || n_next == NULL) {
-        return NULL;
-    }
+    int *next = view->link; /* of an island, the diode away from it + 1; 0: none */
     bool stacked = n > 1;
     for (int k = 0; k < n; k++) {
         int from = island_of[vertex(view, border[k], 0)];
+        stacked = stacked && view->freedom[border[k]].is_diode && next[from] == 0;
         next[from] = border[k] + 1;
-        stacked = stacked && view->freedom[border[k]].is_diode && ++n_next[from] == 1;
     }
     const char *list = "";
     int island = 0;
@@ -128,6 +119,9 @@ static const char *follow_stack(const struct dalcs_view *view, const int *island
             list = join(view, list, k, n, view->freedom[at].name, true);
             island = island_of[vertex(view, at, 1)];
         }
+    }
+    for (int k = 0; k < n; k++) {
+        next[island_of[vertex(view, border[k], 0)]] = 0;
     }
     return list == NULL || (stacked && island == 0) ? list : "";
 }
