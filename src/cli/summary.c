@@ -129,6 +129,13 @@ static void write_certificate(FILE *out, const struct dalcs_report *report) {
     fputc('\n', out);
 }
 
+static void write_nonunique(FILE *out, const struct dalcs_report *report) {
+    if (report->n_nonunique > 0) {
+        fprintf(out, "  open      %zu signal%s not determined by the circuit: see the warnings\n",
+                report->n_nonunique, report->n_nonunique == 1 ? " is" : "s are");
+    }
+}
+
 void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report) {
     const char *title = report->title ? report->title : "";
     title += strspn(title, "* "); /* many a netlist's title is written as a comment */
@@ -137,6 +144,7 @@ void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report) {
     write_method(out, report);
     write_work(out, report);
     write_certificate(out, report);
+    write_nonunique(out, report);
 }
 
 static const char *unit_name(enum dalcs_unit unit) {

@@ -31,6 +31,7 @@ struct dalcs_component {
     const double *failed_u;
     bool is_static;        /* nothing depends on time or history */
     bool commanded;        /* the last solve changed a switch */
+    bool was_open;         /* the last step's answer may be one of several */
     long delayed_commands; /* switches whose control did not settle within a step */
 };
 

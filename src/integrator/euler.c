@@ -101,6 +101,27 @@ static enum dalcs_status solve(struct dalcs_euler *e, int k, double sigma, const
     return DALCS_OK;
 }
 
+enum dalcs_status dalcs_euler_tell_open(struct dalcs_euler *e, int k) {
+    struct dalcs_component *c = &e->component[k];
+    struct dalcs_osnsp *p = &c->osnsp;
+    if (e->on_open == NULL || !dalcs_osnsp_is_open(p)) {
+        return DALCS_OK;
+    }
+    double scale[2];
+    bool vanishes;
+    dalcs_osnsp_find_ties(p, c->u, c->y, scale);
+    return e->on_open(e->open_user,
+                      &(struct dalcs_open_instant){.time = e->t,
+                                                   .engine = e,
+                                                   .system = k,
+                                                   .at_operating_point = e->at_operating_point,
+                                                   .mode = p->mode,
+                                                   .w = p->w,
+                                                   .tied = p->tied,
+                                                   .scale = {scale[0], scale[1]}},
+                      &vanishes);
+}
+
 enum dalcs_status dalcs_euler_operating_point(struct dalcs_euler *e, bool transient_follows) {
     e->at_operating_point = true;
     for (int k = 0; k < e->n_components; k++) {
@@ -108,6 +129,9 @@ enum dalcs_status dalcs_euler_operating_point(struct dalcs_euler *e, bool transi
         dalcs_component_sample_operating(c, transient_follows, c->u);
         DALCS_TRY(solve(e, k, 0.0, c->u, c->y));
         memcpy(c->u, c->y, (size_t)c->system->n_x * sizeof(double));
+    }
+    for (int k = 0; k < e->n_components; k++) {
+        DALCS_TRY(dalcs_euler_tell_open(e, k));
     }
     e->at_operating_point = false;
     return DALCS_OK;
@@ -340,7 +364,27 @@ enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initia
             DALCS_TRY(settle_after(e, k, c->y_before, c->u, c->y));
         }
     }
+    for (int k = 0; initial != NULL && k < e->n_components; k++) {
+        struct dalcs_component *c = &e->component[k];
+        c->was_open = dalcs_osnsp_is_open(&c->osnsp);
+        if (c->is_static) {
+            DALCS_TRY(dalcs_euler_tell_open(e, k));
+        }
+    }
     e->looks_behind = false;
+    return DALCS_OK;
+}
+
+/* What is open at one instant only, as where diodes commutate, is left out. */
+static enum dalcs_status tell_what_stays_open(struct dalcs_euler *e) {
+    for (int k = 0; k < e->n_components; k++) {
+        struct dalcs_component *c = &e->component[k];
+        bool open = !c->is_static && dalcs_osnsp_is_open(&c->osnsp);
+        if (open && c->was_open) {
+            DALCS_TRY(dalcs_euler_tell_open(e, k));
+        }
+        c->was_open = open;
+    }
     return DALCS_OK;
 }
 
@@ -374,7 +418,7 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
         memcpy(c->u, c->y, n_x * sizeof(double));
     }
     e->steps++;
-    return DALCS_OK;
+    return e->on_open != NULL ? tell_what_stays_open(e) : DALCS_OK;
 }
 
 enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) {

@@ -21,6 +21,20 @@ struct dalcs_euler_jump {
     double source_work;           /* J, delivered by the sources in the jump */
 };
 
+struct dalcs_euler;
+
+/* Where an answer may be one of several: component[system]'s y and u are the present ones. */
+struct dalcs_open_instant {
+    double time; /* s */
+    const struct dalcs_euler *engine;
+    int system;
+    bool at_operating_point;
+    const uint64_t *mode;
+    const double *w;  /* [n_pairs] V, of open pairs */
+    const bool *tied; /* [n_pairs] diodes with neither current nor voltage */
+    double scale[2];  /* V, A: the largest so far, or 0; smaller than their rounding is nothing */
+};
+
 struct dalcs_euler {
     const struct dalcs_circuit *circuit;
     const struct dalcs_network *network;
@@ -41,7 +55,12 @@ struct dalcs_euler {
     bool detect_jumps;       /* also where a circuit's own voltage moves a switch */
     void *jump_user;
     enum dalcs_status (*on_jump)(void *user, const struct dalcs_euler_jump *jump); /* may be NULL */
-    double *after, *charge, *flux; /* what micro-steps see, the largest component */
+
+    /* *vanishes: some signal is open, but has only one value just now */
+    void *open_user;
+    enum dalcs_status (*on_open)(void *user, const struct dalcs_open_instant *instant,
+                                 bool *vanishes); /* may be NULL */
+    double *after, *charge, *flux;                /* what micro-steps see, the largest component */
     struct dalcs_jumps jumps;
     struct dalcs_jump_answer jump; /* the last one */
 };
@@ -82,6 +101,8 @@ enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k,
 enum dalcs_status dalcs_euler_refuse_derivative(struct dalcs_euler *e, int k, const double *x,
                                                 const double *y1,
                                                 const double *y2) DALCS_MUST_CHECK;
+/* Calls on_open if the last answer of component k, now in its y, may be one of several. */
+enum dalcs_status dalcs_euler_tell_open(struct dalcs_euler *e, int k) DALCS_MUST_CHECK;
 
 /* 1/2 d' storage d for d = after - before, states [n_x]: what a jump dissipates, J. */
 double dalcs_euler_jump_energy(const struct dalcs_system *s, const double *before,

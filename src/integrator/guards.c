@@ -262,7 +262,7 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
     return first;
 }
 
-static bool stays_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
+bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
     double work[DALCS_MAX_NODES];
     int stride;
     const double *value = values_of(part, pair, work, &stride);
@@ -279,7 +279,7 @@ bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *u
     int n_pairs = part->component->system->n_pairs;
     bool tied = false;
     for (int d = 0; d < n_pairs && !tied && !(n_pairs > MANY_PAIRS && part->flipped); d++) {
-        tied = stays_tied(part, d, unit);
+        tied = dalcs_guards_is_tied(part, d, unit);
     }
     return tied;
 }
@@ -288,7 +288,7 @@ bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     bool found = false;
     for (int d = 0; d < p->system->n_pairs && p->system->n_pairs <= MANY_PAIRS; d++) {
-        if (dalcs_osnsp_is_on(p, d) && stays_tied(part, d, unit)) {
+        if (dalcs_osnsp_is_on(p, d) && dalcs_guards_is_tied(part, d, unit)) {
             dalcs_osnsp_command(p, d, false);
             found = true;
         }

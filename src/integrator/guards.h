@@ -27,6 +27,9 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
  * edges, not after every event. */
 bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit);
 
+/* Is this pair such a diode? */
+bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit);
+
 /* Opens the closed diodes among them. False: there is none. */
 bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit);
 

@@ -73,6 +73,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->scale = dalcs_alloc(n_columns, sizeof(double));
     part->armed = dalcs_alloc(n_guards, sizeof(bool));
     part->crossed = dalcs_alloc(n_guards, sizeof(int));
+    part->tied = dalcs_alloc((size_t)s->n_pairs, sizeof(bool));
     part->u = dalcs_alloc((size_t)(s->n_x + s->n_inputs), sizeof(double));
     part->y1 = dalcs_alloc((size_t)l->stride, sizeof(double));
     part->y2 = dalcs_alloc((size_t)l->stride, sizeof(double));
@@ -81,8 +82,8 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->used_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
                     part->scale != NULL && part->armed != NULL && part->crossed != NULL &&
-                    part->u != NULL && part->y1 != NULL && part->y2 != NULL && part->w1 != NULL &&
-                    part->after != NULL && part->used_input != NULL;
+                    part->tied != NULL && part->u != NULL && part->y1 != NULL && part->y2 != NULL &&
+                    part->w1 != NULL && part->after != NULL && part->used_input != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -180,6 +181,7 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->scale);
     free(part->armed);
     free(part->crossed);
+    free(part->tied);
     free(part->u);
     free(part->y1);
     free(part->y2);
@@ -224,7 +226,7 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
         }
         DALCS_TRY(dalcs_segment_begin(r, part));
     }
-    return DALCS_OK;
+    return dalcs_radau_tell_open(r);
 }
 
 double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens) {
@@ -283,12 +285,14 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
 }
 
 enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) {
+    bool opens = false;
     for (int k = 0; k < r->n_parts; k++) {
         if (r->part[k].t_end <= t && r->part[k].t < r->options.stop) {
             DALCS_TRY(pass(r, &r->part[k]));
+            opens = opens || r->part[k].open;
         }
     }
-    return DALCS_OK;
+    return opens ? dalcs_radau_tell_open(r) : DALCS_OK;
 }
 
 static void ask_bystanders(const struct dalcs_radau_part *part, double t, enum dalcs_side side) {
@@ -347,7 +351,8 @@ static enum dalcs_status evaluate(const struct dalcs_radau *r, struct dalcs_rada
         if (status > DALCS_OK) {
             note_failure(r, part, t, side);
         }
-        return status;
+        DALCS_TRY(status);
+        return dalcs_euler_tell_open(r->base, part->index);
     }
     int n_equations = dalcs_system_n_equations(s);
     dalcs_step_values(part, fmin(1.0, (t - part->t) / part->h), part->y1);

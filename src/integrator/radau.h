@@ -70,6 +70,8 @@ struct dalcs_radau_part {
     int *cluster;                    /* [n_equations] work of guards.c */
     double *cluster_charge;          /* [n_equations] work of guards.c */
     bool jumped;                     /* at t, when the segment began */
+    bool open;                       /* its mode leaves something open, and nobody was told */
+    bool *tied;                      /* [n_pairs] work */
     double *u, *y1, *y2, *w1, *after; /* work */
     int n_used_inputs, *used_input;   /* that probes read */
 

@@ -24,6 +24,9 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double h) DALCS_MUST_CHECK;
 
+/* Calls on_open for the segments that have just begun in a mode that leaves something open. */
+enum dalcs_status dalcs_radau_tell_open(struct dalcs_radau *r) DALCS_MUST_CHECK;
+
 /* The next edge, command or the stop time. */
 double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
 

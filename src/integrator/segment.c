@@ -362,6 +362,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         dalcs_guards_stay_tied(part, quality.unit)) {
         return untie(r, part, search, &quality);
     }
+    part->open = part->fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);
     accept(r, part, search, fmin(theta, end), &quality, dalcs_stage_residual(entry));
     *done = true;
     return DALCS_OK;

@@ -257,3 +257,19 @@ void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *
     check_pairs(p, u, y, scale);
     check_references(p, y, scale, drive, sources_clash);
 }
+
+void dalcs_osnsp_find_ties(struct dalcs_osnsp *p, const double *u, const double *y,
+                           double scale[2]) {
+    const double *lambda = y + dalcs_system_n_equations(p->system);
+    double tolerance = p->options.certificate_tolerance;
+    struct scales s = physical_scales(p, driving_scales(p, u), y);
+    double typical_resistance = sqrt(p->form[0]->ampere_in_volts / p->form[0]->volt_in_amperes);
+    double volts = fmax(s.volt, typical_resistance * s.ampere);
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        bool small = dalcs_osnsp_is_on(p, d) ? lambda[d] <= tolerance * current_scale(p, d, s)
+                                             : p->w[d] <= tolerance * volts;
+        p->tied[d] = p->is_diode[d] && small;
+    }
+    scale[0] = s.volt;
+    scale[1] = s.ampere;
+}

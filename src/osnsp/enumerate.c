@@ -5,20 +5,32 @@
  * its singular modes; its regular ones are tried against widely spread values. */
 #include "osnsp_internal.h"
 
+#include <math.h>
+#include <string.h>
+
 /* Diodes up to which 2^n modes are tried. */
 enum { ENUMERATION_LIMIT = 12 };
+
+/* Lists the diodes; false when there are too many. */
+static bool list_diodes(const struct dalcs_osnsp *p, int *diode, int *n) {
+    *n = 0;
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        if (p->is_diode[d]) {
+            if (*n == ENUMERATION_LIMIT) {
+                return false;
+            }
+            diode[(*n)++] = d;
+        }
+    }
+    return true;
+}
 
 enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double *y) {
     const struct dalcs_system *s = p->system;
     int diode[ENUMERATION_LIMIT];
-    int n = 0;
-    for (int d = 0; d < s->n_pairs; d++) {
-        if (p->is_diode[d]) {
-            if (n == ENUMERATION_LIMIT) {
-                return DALCS_NOT_CONVERGED;
-            }
-            diode[n++] = d;
-        }
+    int n;
+    if (!list_diodes(p, diode, &n)) {
+        return DALCS_NOT_CONVERGED;
     }
     for (unsigned code = 1; code <= 1u << n; code++) {
         /* Gray code: one flip from mode to mode, and the last flip closes the cycle. */
@@ -44,4 +56,59 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double
         p->counters.pivots++;
     }
     return s->monotone ? DALCS_NOT_CONVERGED : DALCS_INFEASIBLE;
+}
+
+/* Answers nearer to each other than this part of the largest voltage or current are one. */
+static const double same_answer = 1e-9;
+
+static bool are_same(const struct dalcs_system *s, const double *a, const double *b) {
+    double apart[2] = {0.0, 0.0};
+    double largest[2] = {0.0, 0.0};
+    for (int c = 0; c < dalcs_system_n_columns(s); c++) {
+        int of = s->column_is_current[c] ? 1 : 0;
+        apart[of] = fmax(apart[of], fabs(a[c] - b[c]));
+        largest[of] = fmax(largest[of], fmax(fabs(a[c]), fabs(b[c])));
+    }
+    return apart[0] <= same_answer * largest[0] && apart[1] <= same_answer * largest[1];
+}
+
+static enum dalcs_status list_answers(struct dalcs_osnsp *p, const double *u, int most,
+                                      double *answer, int *n) {
+    size_t n_columns = (size_t)dalcs_system_n_columns(p->system);
+    int diode[ENUMERATION_LIMIT];
+    int n_diodes;
+    *n = 0;
+    if (!list_diodes(p, diode, &n_diodes)) {
+        return DALCS_OK;
+    }
+    for (unsigned code = 1; code <= 1u << n_diodes && *n < most; code++) {
+        int bit = code < 1u << n_diodes ? __builtin_ctz(code) : n_diodes - 1;
+        if (n_diodes > 0) {
+            dalcs_osnsp_flip(p, diode[bit]);
+        }
+        double *y = answer + (size_t)*n * n_columns;
+        bool sources_clash;
+        enum dalcs_status status = dalcs_osnsp_try_mode(p, u, y, &sources_clash);
+        if (status < DALCS_OK) {
+            return status;
+        }
+        bool is_new = status == DALCS_OK && dalcs_certificate_holds(p, sources_clash);
+        for (int k = 0; k < *n && is_new; k++) {
+            is_new = !are_same(p->system, answer + (size_t)k * n_columns, y);
+        }
+        *n += is_new ? 1 : 0;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_osnsp_list_answers(struct dalcs_osnsp *p, double sigma, const double *u,
+                                           int most, double *answer, int *n) {
+    size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
+    if (p->n_forms == 0 || p->form[0]->sigma != sigma) {
+        DALCS_TRY(dalcs_forms_get(p, sigma));
+    }
+    memcpy(p->tied_mode, p->mode, bytes);
+    enum dalcs_status status = list_answers(p, u, most, answer, n);
+    memcpy(p->mode, p->tied_mode, bytes);
+    return status;
 }

@@ -130,6 +130,23 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
 enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
                                     double *y) DALCS_MUST_CHECK;
 
+/* After an answer y to u that may be one of several: p->tied becomes all diodes whose current and
+ * voltage no more than rounding tells from 0, and scale the size of what rounding is measured by (V, A).
+ * The certificate is stricter: it asks by how much a pivot's sign may be wrong. */
+void dalcs_osnsp_find_ties(struct dalcs_osnsp *p, const double *u, const double *y,
+                           double scale[2]);
+
+/* Lists different answers at sigma, one for each regular mode that has one, without what regular modes
+ * share: answer[most][n_columns], *n of them. Switches stay as commanded. For few diodes: every mode is
+ * factored. p->mode stays; p->w and the certificate are those of the last mode tried. */
+enum dalcs_status dalcs_osnsp_list_answers(struct dalcs_osnsp *p, double sigma, const double *u,
+                                           int most, double *answer, int *n) DALCS_MUST_CHECK;
+
+/* May the last answer be one of several? Costs nothing where it is not. */
+static inline bool dalcs_osnsp_is_open(const struct dalcs_osnsp *p) {
+    return p->least_norm || (p->n_tied > 0 && p->form[0]->answers != DALCS_UNIQUE);
+}
+
 static inline bool dalcs_osnsp_is_on(const struct dalcs_osnsp *p, int pair) {
     return (p->mode[pair / 64] >> (pair % 64) & 1) != 0;
 }

@@ -78,9 +78,16 @@ static enum dalcs_status run_operating_point(struct dalcs_run *r) {
     struct dalcs_session *s = r->s;
     struct dalcs_euler e;
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, 1.0, 1.0));
+    e.open_user = &r->undetermined;
+    e.on_open = dalcs_undetermined_at;
     enum dalcs_status status = dalcs_euler_operating_point(&e, s->circuit.transient.present);
     if (status == DALCS_OK) {
         status = dalcs_run_begin_plot(r, DALCS_OPERATING_POINT);
+    }
+    if (status == DALCS_OK) {
+        e.at_operating_point = true;
+        status = dalcs_undetermined_several(&r->undetermined, &e, 0.0);
+        e.at_operating_point = false;
     }
     double *row = dalcs_alloc((size_t)s->network.n_outputs, sizeof(*row));
     if (status == DALCS_OK && row == NULL) {
@@ -207,6 +214,7 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
     double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     double wall = seconds(CLOCK_MONOTONIC);
     DALCS_TRY(prepare_report(&r));
+    dalcs_undetermined_init(&r.undetermined, &session->circuit, &r, dalcs_nonunique_found);
     enum dalcs_status status = dalcs_run_choose(&r);
     if (status == DALCS_OK) {
         status = name_signals(&r);
@@ -218,7 +226,11 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
         status = r.compress > 0.0 ? run_thinned(&r) : dalcs_transient_run(&r);
     }
     dalcs_names_finish(&r.interrupting);
+    dalcs_undetermined_finish(&r.undetermined);
+    dalcs_nonunique_count_rest(&r);
     struct dalcs_report *report = &session->report;
+    report->n_nonunique = session->n_nonunique;
+    report->nonunique = session->nonunique;
     report->n_events = session->recorder.n_events;
     report->n_events_dropped = session->recorder.n_events_dropped;
     report->event = session->recorder.event;

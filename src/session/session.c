@@ -19,8 +19,12 @@ void dalcs_session_forget_run(struct dalcs_session *s) {
     }
     free(s->start);
     free(s->final);
+    free(s->nonunique);
     s->start = NULL;
     s->final = NULL;
+    s->nonunique = NULL;
+    s->n_nonunique = 0;
+    s->nonunique_capacity = 0;
     s->report = (struct dalcs_report){0};
     s->has_report = false;
 }

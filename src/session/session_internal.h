@@ -4,6 +4,7 @@
 
 #include "names.h"
 #include "recorder.h"
+#include "undetermined.h"
 
 struct dalcs_session {
     char *name;
@@ -16,6 +17,8 @@ struct dalcs_session {
     struct dalcs_report report;
     bool has_report;
     double *start, *final;
+    struct dalcs_nonunique *nonunique; /* of the report */
+    size_t n_nonunique, nonunique_capacity;
     struct dalcs_arena arena; /* names of the report and of the plots */
 };
 
@@ -41,6 +44,9 @@ struct dalcs_run {
     const char **name;
     enum dalcs_unit *unit;
     struct dalcs_names interrupting; /* switches that a warning has named */
+    struct dalcs_undetermined undetermined;
+    int n_warnings;              /* of what is not determined */
+    long n_untold, n_unreported; /* signals of which there is no warning, no entry in the report */
 };
 
 /* Settles what the options of the run and of the netlist leave open; checks them. */
@@ -67,6 +73,13 @@ void dalcs_run_add_work(struct dalcs_run *r, const struct dalcs_euler *e);
  * pair behind them, of a system of e's network, which need not be the session's. */
 const char *dalcs_explain_row(struct dalcs_session *session, const struct dalcs_euler *e,
                               int system, int where);
+
+/* dalcs_undetermined's on_finding: a warning, and entries of the report; user is the run. */
+enum dalcs_status dalcs_nonunique_found(void *run,
+                                        const struct dalcs_finding *finding) DALCS_MUST_CHECK;
+
+/* At the end: how many there were besides. */
+void dalcs_nonunique_count_rest(struct dalcs_run *r);
 
 /* Which shorts close a loop with the devices that is_named[n_devices] marks: is_part[n_devices], zeroed
  * by the caller. */

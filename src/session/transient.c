@@ -55,6 +55,9 @@ static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_eul
         dalcs_network_finish(&clamped);
         return status;
     }
+    r->undetermined.clamped = &clamped;
+    held.open_user = &r->undetermined;
+    held.on_open = dalcs_undetermined_at;
     double **initial = dalcs_alloc((size_t)held.n_components, sizeof(*initial));
     status = initial == NULL ? DALCS_E_NOMEM : dalcs_euler_operating_point(&held, true);
     dalcs_explain_failure(r, &held, status);
@@ -231,6 +234,7 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e,
     if (radau != NULL) {
         DALCS_TRY(dalcs_radau_evaluate(radau, 0.0, DALCS_RIGHT));
     }
+    DALCS_TRY(dalcs_undetermined_several(&r->undetermined, e, s->circuit.transient.stop));
     dalcs_recorder_states(&s->network, e, s->start);
     DALCS_TRY(dalcs_run_begin_plot(r, DALCS_TRANSIENT));
     DALCS_TRY(dalcs_recorder_start(&s->recorder, e));
@@ -279,6 +283,8 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     e.detect_jumps = r->options->record;
     e.jump_user = r;
     e.on_jump = dalcs_note_jump;
+    e.open_user = &r->undetermined;
+    e.on_open = dalcs_undetermined_at;
     s->report.step = is_euler ? r->h : r->fixed_step;
     s->report.stop = stop;
     enum dalcs_status status = DALCS_OK;

@@ -82,6 +82,35 @@ S3 b 0 h 0 sg
 .save v(p,m) v(q,m) i(d1)
 .end
 """, 0),
+    "undetermined": ("""A ring, a stack, an ideal transformer at 0 V, and feedback with two answers
+I1 0 r 1
+D1 r s
+D2 s 0
+D3 0 r
+V1 in 0 -1
+D4 in m
+D5 m n
+D6 n 0
+V2 a 0 0
+L1 a 0 1m
+L2 t 0 1m
+L3 0 u 1m
+K12 L1 L2 1
+K13 L1 L3 1
+K23 L2 L3 1
+D7 t o
+D8 u o
+L4 o q 1m ic=4
+R1 q 0 1
+E1 e 0 f 0 3
+D9 e g
+R2 g f 1
+R3 f 0 1
+I2 f 0 1
+.op
+.tran 100u 200u uic
+.end
+""", 0),
     "refused": ("""A diode across a source
 V1 1 0 PWL(0 -1 1m 1)
 D1 1 0

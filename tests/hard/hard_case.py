@@ -10,7 +10,12 @@ Kinds of entries, for `--method euler`:
   tran        the value at time t with a first-order error: tol at h, tol/2 at h/2, tol/5 at h/5
   mean, sum   time average over the whole run; sum of h times the value over all steps
   range, op   an operating point, or the value at time t: inside an interval, and at the
-              least-norm value when one is given; exactly the value
+              least-norm value when one is given; exactly the value. The interval must be that of
+              the report, to 1e-9; a signal that the report does not list has one value. "frozen"
+              holds sources at what they have then: the report's intervals are those of an
+              operating point, for it keeps silent about single instants. "reported" is the
+              interval that the report has for the signal where that is not "val", as for a sum
+              of signals, or at its first time.
   rcp         just after t = 0: x_NAME state, q_NAME charge, f_NAME flux impulse, loss in J
   event       an element turns on or off at t, up to two steps; t null: it never does
   infeasible  the run is refused with exit status 1, naming the elements
@@ -41,6 +46,7 @@ EXACT = 1e-12        # relative, h-exact values
 CERTIFIED = 2e-13    # scaled residual of every step
 JUMP = 1e-9          # relative, states after jumps and impulses
 LEAST_NORM = 1e-6    # of the scale, least-norm values
+INTERVAL = 1e-9      # relative, bounds of what is not determined
 FRACTIONS = (1, 2, 5)
 DEFAULT = 1e-6       # the default tolerance
 FINE = 1e-9
@@ -153,6 +159,40 @@ class HardCase:
                 self.checker.close(value, entry["least_norm"], slack, f"least-norm {entry['q']}")
             self.checker.check(low - slack <= value <= high + slack,
                                f"{entry['q']} = {value!r} is outside [{low}, {high}]")
+        if "frozen" in entry:
+            results = [self.frozen(entry["frozen"])]
+        for result in results:
+            for signal, wanted in entry.get("reported", {entry["q"]: entry["val"]}).items():
+                self.interval(result, signal, wanted)
+
+    def frozen(self, sources):
+        """The operating point with some sources at constant values."""
+        def hold(card):
+            name = card.split()[0].lower() if card.split() else ""
+            if name in sources:
+                return " ".join(card.split()[:3] + [f"DC {sources[name]!r}"])
+            return ".op" if name == ".tran" else card
+        text = "\n".join(hold(card) for card in self.netlist.read_text().splitlines())
+        result = run(self.program, text + "\n", method=self.method)
+        self.checker.check(result.status == 0, f"exit {result.status}: {result.stderr}")
+        return result
+
+    def interval(self, result, signal, wanted):
+        """What the report says of a signal; nothing means that it is unique."""
+        listed = [n for n in result.report["nonunique"] if n["signal"] == signal]
+        self.checker.check(len(listed) <= 1, f"{signal} is reported {len(listed)} times")
+        value = result.column(signal)[-1]
+        found = listed[0] if listed else {"lower": value, "upper": value, "value": value}
+        scale = result.scale(signal)
+        for key, bound in zip(("lower", "upper"), map(float, wanted)):
+            reported = float(found[key])
+            if math.isinf(bound):
+                self.checker.check(reported == bound, f"{key} bound of {signal}: {reported!r}")
+            else:
+                self.checker.close(reported, bound, INTERVAL * (abs(bound) or scale),
+                                   f"{key} bound of {signal}")
+        self.checker.check(not listed or signal in result.stderr,
+                           f"no warning names {signal}: {result.stderr}")
 
     def op(self, entry):
         result = self.run()
@@ -201,6 +241,11 @@ class HardCase:
                            f"refused at {refused['time']}")
 
     def multi(self, entry):
+        listed = [n for n in self.run().report["nonunique"] if n["signal"] == entry["q"]]
+        solutions = f"{len(entry['val'])} solutions"
+        if self.checker.check(len(listed) == 1, f"{entry['q']} is reported {len(listed)} times"):
+            self.checker.check(solutions in listed[0]["because"], listed[0]["because"])
+            self.checker.check(listed[0]["lower"] < 0 < listed[0]["upper"], f"{listed[0]}")
         value = self.run().column(entry["q"])[-1]
         error = min(abs(value - wanted) for wanted in entry["val"])
         self.checker.check(error <= EXACT, f"{entry['q']} = {value!r}, not in {entry['val']}")

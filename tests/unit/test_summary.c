@@ -1,4 +1,4 @@
-/* test_summary.c - the line that says which method was taken, and why. */
+/* test_summary.c - the lines that say which method was taken, and why, and what is open. */
 #include "summary.h"
 
 #include "run_tests.h"
@@ -6,22 +6,39 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The line on the method in the summary of `report`, or "". */
-static void check_line(const struct dalcs_report *report, const char *expected) {
+/* The line of that kind in the summary of `report`, or "". */
+static void check_kind(const struct dalcs_report *report, const char *kind, const char *expected) {
     char *text = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&text, &size);
     ck_assert_ptr_nonnull(stream);
     dalcs_summary_write_run(stream, report);
     ck_assert_int_eq(fclose(stream), 0);
-    char *line = strstr(text, "  method    ");
+    char *line = strstr(text, kind);
     if (line != NULL) {
-        line += strlen("  method    ");
+        line += strlen(kind);
         *strchr(line, '\n') = '\0';
     }
     ck_assert_str_eq(line != NULL ? line : "", expected);
     free(text);
 }
+
+static void check_line(const struct dalcs_report *report, const char *expected) {
+    check_kind(report, "  method    ", expected);
+}
+
+START_TEST(test_open) {
+    struct dalcs_report report = {.n_nonunique = 0};
+    check_kind(&report, "  open      ", "");
+    report.n_nonunique = 1;
+    check_kind(&report, "  open      ",
+               "1 signal is not determined by the circuit: see the warnings");
+    report.n_nonunique = 4;
+    check_kind(&report, "  open      ",
+               "4 signals are not determined by the circuit: see the warnings");
+}
+
+END_TEST
 
 START_TEST(test_fixed_step) {
     const struct dalcs_component_method euler[] = {{"euler", 1, NULL}, {"euler", 1, NULL}};
@@ -90,4 +107,5 @@ START_TEST(test_no_transient) {
 
 END_TEST
 
-RUN_TESTS("summary", test_fixed_step, test_controlled_error, test_groups, test_no_transient)
+RUN_TESTS("summary", test_open, test_fixed_step, test_controlled_error, test_groups,
+          test_no_transient)

@@ -1,0 +1,43 @@
+/* open.c - segments in a mode that leaves something open: whom that concerns is told, once for each. */
+#include "guards.h"
+#include "radau_internal.h"
+
+/* Calls on_open for the instant t of the part's segment. */
+static enum dalcs_status tell_open_at(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                      double t, enum dalcs_side side, bool *vanishes) {
+    struct dalcs_euler *e = r->base;
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    DALCS_TRY(dalcs_radau_evaluate(r, t, side));
+    for (int d = 0; d < s->n_pairs; d++) {
+        double other = part->y1[dalcs_system_n_equations(s) + d];
+        part->w1[d] = dalcs_osnsp_is_on(p, d) ? 0.0 : other;
+        part->tied[d] = dalcs_guards_is_tied(part, d, part->unit_scale);
+    }
+    return e->on_open(
+        e->open_user,
+        &(struct dalcs_open_instant){.time = t,
+                                     .engine = e,
+                                     .system = part->index,
+                                     .mode = p->mode,
+                                     .w = part->w1,
+                                     .tied = part->tied,
+                                     .scale = {part->unit_scale[0], part->unit_scale[1]}},
+        vanishes);
+}
+
+/* At the start of such a segment or, where there is nothing to share yet, at its end. */
+enum dalcs_status dalcs_radau_tell_open(struct dalcs_radau *r) {
+    for (int k = 0; k < r->n_parts; k++) {
+        struct dalcs_radau_part *part = &r->part[k];
+        bool vanishes = false;
+        if (part->open && r->base->on_open != NULL) {
+            DALCS_TRY(tell_open_at(r, part, part->t, DALCS_RIGHT, &vanishes));
+        }
+        if (vanishes) {
+            DALCS_TRY(tell_open_at(r, part, part->t_end, DALCS_LEFT, &vanishes));
+        }
+        part->open = false;
+    }
+    return DALCS_OK;
+}

@@ -1,0 +1,138 @@
+/* nonunique.c - what is not determined, in words and in the report. */
+#include "session_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Messages; signals in one, those of them with intervals; signals in the report. */
+enum { MOST_WARNINGS = 50, MOST_NAMED = 12, MOST_TOLD = 3, MOST_REPORTED = 1000 };
+
+static const char *unit_of(const struct dalcs_run *r, int output) {
+    return r->unit[output] == DALCS_AMPERE ? "A" : "V";
+}
+
+/* "i(d1) may be anything from 0 A to 0.005 A, and 0.0025 A is taken" */
+static const char *say_interval(struct dalcs_run *r, const struct dalcs_open_signal *s,
+                                bool anything) {
+    struct dalcs_arena *arena = &r->s->arena;
+    const char *name = r->name[s->output];
+    const char *unit = unit_of(r, s->output);
+    if (isinf(s->lower) && isinf(s->upper)) {
+        return dalcs_arena_printf(arena, "%s may be anything, and %.6g %s is taken", name, s->value,
+                                  unit);
+    }
+    if (isinf(s->lower) || isinf(s->upper)) {
+        return dalcs_arena_printf(arena, "%s may be %.6g %s or %s, and %.6g %s is taken", name,
+                                  isinf(s->lower) ? s->upper : s->lower, unit,
+                                  isinf(s->lower) ? "less" : "more", s->value, unit);
+    }
+    return dalcs_arena_printf(arena, "%s may be %s %.6g %s %s %.6g %s, and %.6g %s is taken", name,
+                              anything ? "anything from" : "between", s->lower, unit,
+                              anything ? "to" : "and", s->upper, unit, s->value, unit);
+}
+
+static const char *say_intervals(struct dalcs_run *r, const struct dalcs_finding *f) {
+    const char *text = "";
+    for (int k = 0; k < f->n_signals && k < MOST_TOLD && text != NULL; k++) {
+        const char *one = say_interval(r, &f->signal[k], f->n_answers == 0);
+        text = one == NULL ? NULL : dalcs_arena_printf(&r->s->arena, "%s; %s", text, one);
+    }
+    return text;
+}
+
+static const char *list_signals(struct dalcs_run *r, const struct dalcs_finding *f) {
+    const char *list = "";
+    for (int k = 0; k < f->n_signals && k < MOST_NAMED && list != NULL; k++) {
+        bool is_last = k + 1 == f->n_signals;
+        list = dalcs_arena_printf(&r->s->arena, "%s%s%s", list,
+                                  k == 0    ? ""
+                                  : is_last ? " and "
+                                            : ", ",
+                                  r->name[f->signal[k].output]);
+    }
+    int more = f->n_signals - MOST_NAMED;
+    return more <= 0 || list == NULL
+               ? list
+               : dalcs_arena_printf(&r->s->arena, "%s and %d more", list, more);
+}
+
+static enum dalcs_status warn(struct dalcs_run *r, const struct dalcs_finding *f,
+                              const char *because) {
+    struct dalcs_session *s = r->s;
+    const char *when = f->at_operating_point
+                           ? "at the operating point"
+                           : dalcs_arena_printf(&s->arena, "from t = %.9g s on", f->time);
+    const char *signals = list_signals(r, f);
+    const char *intervals = f->has_intervals ? say_intervals(r, f) : "";
+    if (when == NULL || signals == NULL || intervals == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    dalcs_diag_add(
+        &s->diag, DALCS_WARNING, f->device >= 0 ? &s->circuit.device[f->device].where : NULL,
+        f->hint, "%s %s %s not determined: %s%s%s", when, signals, f->n_signals == 1 ? "is" : "are",
+        because, intervals, f->has_intervals && f->has_diodes ? " (least norm)" : "");
+    return DALCS_OK;
+}
+
+/* The entry of a signal: a voltage between two parts may be told of twice. NULL: the report is full. */
+static enum dalcs_status entry_of(struct dalcs_session *s, const char *name,
+                                  struct dalcs_nonunique **entry) {
+    *entry = NULL;
+    for (size_t k = 0; k < s->n_nonunique; k++) {
+        if (s->nonunique[k].signal == name) {
+            *entry = &s->nonunique[k];
+            return DALCS_OK;
+        }
+    }
+    if (s->n_nonunique < MOST_REPORTED) {
+        DALCS_TRY(dalcs_grow(&s->nonunique, &s->nonunique_capacity, s->n_nonunique + 1,
+                             sizeof(*s->nonunique)));
+        *entry = &s->nonunique[s->n_nonunique++];
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status keep(struct dalcs_run *r, const struct dalcs_finding *f,
+                              const char *because) {
+    struct dalcs_session *s = r->s;
+    for (int k = 0; k < f->n_signals && f->has_intervals; k++) {
+        const struct dalcs_open_signal *signal = &f->signal[k];
+        struct dalcs_nonunique *entry;
+        DALCS_TRY(entry_of(s, r->name[signal->output], &entry));
+        if (entry == NULL) {
+            r->n_unreported++;
+            continue;
+        }
+        *entry = (struct dalcs_nonunique){.signal = r->name[signal->output],
+                                          .time = f->time,
+                                          .lower = signal->lower,
+                                          .upper = signal->upper,
+                                          .value = signal->value,
+                                          .because = because};
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_nonunique_found(void *run, const struct dalcs_finding *finding) {
+    struct dalcs_run *r = run;
+    const char *because = dalcs_arena_printf(&r->s->arena, "%s", finding->because);
+    if (because == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    if (r->n_warnings < MOST_WARNINGS) {
+        r->n_warnings++;
+        DALCS_TRY(warn(r, finding, because));
+    } else {
+        r->n_untold += finding->n_signals;
+    }
+    return keep(r, finding, because);
+}
+
+void dalcs_nonunique_count_rest(struct dalcs_run *r) {
+    if (r->n_untold > 0) {
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, NULL,
+                       "%ld more signal%s not determined; the report lists %s%d", r->n_untold,
+                       r->n_untold == 1 ? " is" : "s are", r->n_unreported > 0 ? "the first " : "",
+                       (int)r->s->n_nonunique);
+    }
+}

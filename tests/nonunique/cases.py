@@ -1,0 +1,243 @@
+#!/usr/bin/env python3
+"""What is not determined, in words and numbers, where an engineer would ask.
+
+usage: cases.py PROGRAM glpk|no_glpk
+
+Each case lists every signal of the report's nonunique: (lower, upper, because); "time" where it matters.
+"""
+
+import math
+import pathlib
+import re
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "support"))
+from dalcs_program import NETLISTS, Checker, run  # noqa: E402
+
+INF = math.inf
+MODELS = ".model DI D(Ron=0 Vfwd=0)\n.model SW SW(Ron=0 Vt=0.5)\n.end\n"
+
+TRANSFORMER = """Full-wave rectifier with an ideal transformer, while its source is 0 V
+V1 a 0 DC 0
+L1 a 0 {n}m
+L2 s1 0 1m
+L3 0 s2 1m
+K12 L1 L2 1
+K13 L1 L3 1
+K23 L2 L3 1
+D1 s1 o DI
+D2 s2 o DI
+Lf o out 1m ic=4
+R out 0 1
+.tran 10u 100u uic
+"""
+COILS = "loops of v1, l1, l2, l3, d1 and d2, with perfectly coupled coils"
+
+CASES = {
+    "parallel to a short": ("""The current of a diode across a short
+I1 0 a DC 1m
+D1 a b DI
+R0 a b 0
+R1 b 0 1k
+.op
+""", {"i(d1)": (0, INF, "d1 parallel to r0")}),
+    "parallel to a switch": ("""A closed switch and a diode
+S1 c 0 ctl 0 SW ON
+V1 ctl 0 1
+D2 c 0 DI
+I2 0 c DC 2m
+.op
+""", {"i(s1)": (-INF, 2e-3, "s1 parallel to d2"), "i(d2)": (0, INF, "s1 parallel to d2")}),
+    "three in parallel": ("""Three diodes, of which one has Ron and takes no part
+I1 0 e DC 3m
+D1 e 0 DI
+D2 e 0 DI
+D3 0 e DI
+D4 e 0 DR
+.model DR D(Ron=1)
+.op
+""", {"i(d1)": (0, INF, "d1, d2 and d3 in parallel"), "i(d2)": (0, INF, "d1, d2 and d3 in parallel"),
+      "i(d3)": (0, INF, "d1, d2 and d3 in parallel")}),
+    "two loops": ("""One diode beside two in series, of which the second is double
+I1 0 f DC 1
+D1 f 0 DI
+D2 f g DI
+D3 g 0 DI
+D4 g 0 DI
+.op
+""", {f"i(d{k})": (0, 1, "loops of d1, d2, d3 and d4") for k in (1, 2, 3, 4)}),
+    "ring": ("""A ring of five diodes, written in no order
+R1 a 0 1
+D3 c d DI
+D1 a b DI
+D5 e a DI
+D2 b c DI
+D4 d e DI
+.op
+""", {f"i(d{k})": (0, INF, "loop d3-d4-d5-d1-d2") for k in (1, 2, 3, 4, 5)}),
+    "held in a circle": ("""Antiparallel diodes without current hold m, so that x alone floats
+V1 in 0 DC 5
+D1 m 0 DI
+D2 0 m DI
+D3 m x DI
+D4 x in DI
+.op
+""", {"v(x)": (0, 5, "stack d3-d4 blocks"), "i(d1)": (0, INF, "d1 antiparallel to d2"),
+      "i(d2)": (0, INF, "d1 antiparallel to d2")}),
+    "stack": ("""Five diodes that block
+V1 in 0 DC -10
+D1 in m1 DI
+D2 m1 m2 DI
+D3 m2 m3 DI
+D4 m3 m4 DI
+D5 m4 0 DI
+.op
+""", {f"v(m{k})": (-10, 0, "stack d1-d2-d3-d4-d5 blocks") for k in (1, 2, 3, 4)}),
+    "one way": ("""A diode that blocks towards a node that nothing else holds
+V1 in 0 DC 5
+D1 m in DI
+.op
+""", {"v(m)": (-INF, 5, "nothing conducts between m and the rest: d1 blocks")}),
+    "an open switch": ("""A node between an open switch and a diode
+V1 in 0 DC 5
+S1 in m 0 0 SW
+D1 m 0 DI
+.op
+""", {"v(m)": (-INF, 0, "nothing conducts between m and the rest: s1 and d1 block")}),
+    "capacitors": ("""The middle of two capacitors at an operating point; then they hold it
+V1 in 0 DC 5
+C1 in m 1u
+C2 m 0 1u
+.op
+.tran 1u 10u
+""", {"v(m)": (-INF, INF, "nothing conducts between m and the rest: c1 and c2 block")}),
+    "inductors": ("""Inductors in parallel at an operating point
+I1 0 a DC 1
+L1 a 0 1m
+L2 a 0 1m
+.op
+""", {"i(l1)": (-INF, INF, "l1 parallel to l2"), "i(l2)": (-INF, INF, "l1 parallel to l2")}),
+    "held by .ic": ("""The voltage that .ic holds leaves the current of a diode beside it open
+V1 a 0 DC 0
+D1 a b DI
+C1 b 0 1u
+R1 b 0 1k
+.ic v(b)=0
+.tran 1u 10u
+""", {"i(v1)": (-INF, 0, "loop v1-.ic-d1"), "i(d1)": (0, INF, "loop v1-.ic-d1")}),
+    "starts from nothing": ("""Two diodes share a current that starts at 0 A
+I1 0 a PWL(0 0 1m 1m)
+D1 a b DI
+D2 a b DI
+R1 b 0 1k
+L1 b 0 1
+.tran 1u 1m uic
+""", {"i(d1)": (0, "time", "d1 parallel to d2"), "i(d2)": (0, "time", "d1 parallel to d2")}),
+    "tied for a while": (NETLISTS / "hard" / "hc26.cir",
+                         {"i(d1)": (0, "twice", "loop v1-d2-d1"), "i(d2)": (0, "twice", "loop v1-d2-d1"),
+                          "i(v1)": ("twice", 0, "loop v1-d2-d1")}),
+    "ties at instants": (NETLISTS / "hard" / "hc25.cir", {}),
+    "ill-conditioned": (NETLISTS / "hard" / "hc10.cir", {}),
+    "all at rest": ("""A bridge without voltage: all diodes are tied, and nothing is open
+V1 a b DC 0
+D1 a p DI
+D2 b p DI
+D3 0 a DI
+D4 0 b DI
+R1 p 0 1
+.op
+""", {}),
+    "between two parts": ("""A voltage between two nodes that both float
+V1 in 0 DC -10
+D1 in a DI
+D2 a 0 DI
+V2 io 0 DC -4
+D3 io b DI
+D4 b 0 DI
+.op
+.save v(a,b) v(a)
+""", {"v(a,b)": (-10, 4, "stack d3-d4 blocks"), "v(a)": (-10, 0, "stack d1-d2 blocks")}),
+    "not passive": ("""Positive feedback through a diode, which blocks at -1 V or conducts at 1 V
+E1 e 0 a 0 3
+D1 e b DI
+R1 b a 1
+R2 a 0 1
+I1 0 a DC -1
+.op
+""", {signal: (lower, upper, "2 solutions of a circuit that is not passive")
+      for signal, lower, upper in (("v(e)", -3, 3), ("v(a)", -1, 1), ("v(b)", -1, 3),
+                                   ("i(e1)", -2, 0), ("i(d1)", 0, 2))}),
+}
+COILS_CASES = {
+    "transformer": (TRANSFORMER.format(n=1), {
+        "i(v1)": (-4, 4, COILS), "i(l1)": (-4, 4, COILS), "i(l2)": (-4, 0, COILS),
+        "i(l3)": (0, 4, COILS), "i(d1)": (0, 4, COILS), "i(d2)": (0, 4, COILS)}),
+    "transformer 2:1": (TRANSFORMER.format(n=4), {
+        "i(v1)": (-2, 2, COILS), "i(l1)": (-2, 2, COILS), "i(l2)": (-4, 0, COILS),
+        "i(l3)": (0, 4, COILS), "i(d1)": (0, 4, COILS), "i(d2)": (0, 4, COILS)}),
+}
+
+
+def bound(wanted, entry):
+    """A bound, in terms of the time or of the value where it is only known then. What decays through
+    1 ohm and 1 mH is a step of implicit Euler smaller when that method sees it."""
+    wanted = {"time": entry["time"], "twice": 2 * entry["value"]}.get(wanted, wanted)
+    return wanted / (1 + entry["time"] / 1e-3) if entry["because"] == COILS else wanted
+
+
+def compare(checker, name, netlist, wanted, program, method):
+    text = netlist if isinstance(netlist, pathlib.Path) else netlist + MODELS
+    result = run(program, text, method=method)
+    what = f"{name} with {method or 'the default'}"
+    if not checker.check(result.status == 0, f"{what}: exit {result.status}: {result.stderr}"):
+        return None
+    found = {entry["signal"]: entry for entry in result.report["nonunique"]}
+    if wanted is None:
+        return result
+    checker.check(set(found) == set(wanted), f"{what}: {sorted(found)}, not {sorted(wanted)}")
+    for signal in set(found) & set(wanted):
+        entry, (lower, upper, because) = found[signal], wanted[signal]
+        for key, value in (("lower", bound(lower, entry)), ("upper", bound(upper, entry))):
+            reported = float(entry[key])
+            checker.check(reported == value or abs(reported - value) <= 1e-9 * (abs(value) or 1),
+                          f"{what}: {key} of {signal} is {reported!r}, not {value!r}")
+        checker.check(entry["because"] == because, f"{what}: {entry['because']}, not {because}")
+        checker.check(float(entry["lower"]) <= entry["value"] <= float(entry["upper"])
+                      or abs(entry["value"]) < 1e-9, f"{what}: {entry}")
+        warnings = re.findall(r"warning: .*not determined: .*", result.stderr)
+        checker.check(any(signal in w and because in w for w in warnings),
+                      f"{what}: no warning names {signal} and says {because}: {result.stderr}")
+        checker.check(sum(f"{signal} may be" in w for w in warnings) <= 2, result.stderr)
+    return result
+
+
+def compare_many(checker, program):
+    """Only so many signals are listed, and a message says how many more there are."""
+    n = 600
+    text = "Many pairs\n" + "".join(f"I{k} 0 n{k} 1\nD{k}a n{k} 0 DI\nD{k}b n{k} 0 DI\n"
+                                    for k in range(n)) + ".op\n" + MODELS
+    result = run(program, text, method=None)
+    checker.check(len(result.report["nonunique"]) == 1000, f"{len(result.report['nonunique'])}")
+    checker.check("1100 more signals are not determined; the report lists the first 1000"
+                  in result.stderr, result.stderr[-500:])
+
+
+def main():
+    program, glpk = sys.argv[1:]
+    checker = Checker("cases")
+    for method in (None, "euler"):
+        for name, (netlist, wanted) in CASES.items():
+            compare(checker, name, netlist, wanted, program, method)
+        for name, (netlist, wanted) in COILS_CASES.items():
+            if glpk == "glpk":
+                compare(checker, name, netlist, wanted, program, method)
+            else:
+                result = compare(checker, name, netlist, None, program, method)
+                checker.check("without GLPK" in result.stderr, result.stderr)
+    compare_many(checker, program)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
