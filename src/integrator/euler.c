@@ -1,6 +1,6 @@
 /* euler.c - the time loop of implicit Euler over all components, and the micro-steps that tell what
  * happens at a discontinuity. */
-#include "euler.h"
+#include "energy.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -237,6 +237,11 @@ enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initia
             memcpy(c->u, initial[k], n_x * sizeof(double));
             memset(c->y_before, 0, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
             memcpy(c->y_before, c->u, n_x * sizeof(double));
+        }
+        if (e->energy != NULL) {
+            dalcs_energy_start(e->energy, k, c->u);
+        }
+        if (initial != NULL) {
             DALCS_TRY(settle_after(e, k, c->y_before, c->u, c->y));
         }
     }
@@ -269,6 +274,9 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
                 return status; /* without a micro-step there is no jump to report, no more */
             }
             memcpy(c->osnsp.mode, c->saved_mode, mode_bytes);
+        }
+        if (e->energy != NULL) {
+            dalcs_energy_step(e->energy, k, c->u, c->y, c->u + n_x, h);
         }
         memcpy(c->u, c->y, n_x * sizeof(double));
     }

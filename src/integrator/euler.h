@@ -19,6 +19,8 @@ struct dalcs_euler_jump {
     double energy_lost;           /* J */
 };
 
+struct dalcs_energy;
+
 struct dalcs_euler {
     const struct dalcs_circuit *circuit;
     const struct dalcs_network *network;
@@ -38,6 +40,7 @@ struct dalcs_euler {
     bool detect_jumps;       /* also where a circuit's own voltage moves a switch */
     void *jump_user;
     enum dalcs_status (*on_jump)(void *user, const struct dalcs_euler_jump *jump); /* may be NULL */
+    struct dalcs_energy *energy;   /* the ledger, borrowed; NULL: none is kept */
     double *after, *charge, *flux; /* work, the largest component */
 };
 

@@ -64,8 +64,9 @@ struct dalcs_radau_part {
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
     int n_crossed;
-    int *crossed; /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
-    bool jumped;  /* at t, when the segment began */
+    int *crossed;  /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
+    bool jumped;   /* at t, when the segment began */
+    bool by_euler; /* the segment is a step of implicit Euler */
     double *u, *y1, *y2, *w1, *after; /* work */
     int n_used_inputs, *used_input;   /* that probes read */
 

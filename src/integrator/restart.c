@@ -4,6 +4,7 @@
  * interpolation error of an event); from there a second one sees how the circuit goes on. The jump is
  * the limit of vanishing steps, which for passive circuits is the projection in the energy norm
  * (Heemels, Schumacher and Weiland 1999; Brogliato 2022, sec. 4). */
+#include "energy.h"
 #include "radau_internal.h"
 
 #include <math.h>
@@ -156,6 +157,8 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
         if (noticeable) {
             DALCS_TRY(report_jump(r, part, h, part->w1, part->after));
             part->jumped = true;
+        } else if (r->base->energy != NULL) {
+            dalcs_energy_move(r->base->energy, part, part->after);
         }
         memcpy(part->x, part->after, (size_t)s->n_x * sizeof(double));
     }
@@ -181,6 +184,10 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
             out[dalcs_system_n_columns(s) + i] = 0.0;
         }
     }
+    if (r->base->energy != NULL) {
+        dalcs_energy_step(r->base->energy, part->index, part->x, part->y1, part->u + s->n_x, h);
+    }
+    part->by_euler = true;
     double limit = dalcs_radau_limit(r, part);
     part->h = h;
     part->end = 1.0;
