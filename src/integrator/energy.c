@@ -38,10 +38,16 @@ static enum dalcs_status part_setup(struct dalcs_energy_part *part,
                                     const struct dalcs_radau_part *radau) {
     part->system = system;
     part->term = dalcs_alloc((size_t)power->n, sizeof(*part->term));
+    part->largest = dalcs_alloc((size_t)dalcs_system_n_columns(system), sizeof(double));
+    part->half = dalcs_alloc((size_t)system->n_x, sizeof(double));
     part->defect = dalcs_alloc((size_t)system->n_x, sizeof(double));
-    part->loaded = dalcs_alloc((size_t)system->n_x, sizeof(double));
-    if (part->term == NULL || part->defect == NULL || part->loaded == NULL) {
+    if (part->term == NULL || part->largest == NULL || part->half == NULL || part->defect == NULL) {
         return DALCS_E_NOMEM;
+    }
+    for (int x = 0; x < system->n_x; x++) {
+        for (int k = system->storage.p[x]; k < system->storage.p[x + 1]; k++) {
+            part->half[x] += system->storage.j[k] == x ? 0.5 * system->storage.x[k] : 0.0;
+        }
     }
     for (int decided = 0; decided < 2; decided++) {
         for (int i = 0; i < power->n; i++) {
@@ -72,8 +78,9 @@ enum dalcs_status dalcs_energy_setup(struct dalcs_energy *energy, const struct d
 void dalcs_energy_finish(struct dalcs_energy *energy) {
     for (int k = 0; energy->part != NULL && k < energy->n_parts; k++) {
         free(energy->part[k].term);
+        free(energy->part[k].largest);
+        free(energy->part[k].half);
         free(energy->part[k].defect);
-        free(energy->part[k].loaded);
     }
     free(energy->part);
     *energy = (struct dalcs_energy){0};
@@ -95,19 +102,23 @@ static double stored(const struct dalcs_system *s, const double *x) {
     return sum;
 }
 
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
 /* What goes back and forth in capacitors and coils, and how much rounding it may leave: a segment that
  * is cut is a small part of a step, whose other end may be far away. */
-static void enter_swing(struct dalcs_energy *energy, const struct dalcs_system *s, const double *x,
-                        const double *after, const double *far) {
-    for (int i = 0; i < s->n_x; i++) {
-        double half = 0.0;
-        for (int k = s->storage.p[i]; k < s->storage.p[i + 1]; k++) {
-            half = s->storage.j[k] == i ? 0.5 * s->storage.x[k] : half;
-        }
-        double near = fmax(fabs(x[i]), fabs(after[i]));
-        energy->turnover += half * fabs(after[i] * after[i] - x[i] * x[i]);
-        energy->rounding += residual_part * half * near * fmax(near, fabs(far[i]));
+static void enter_swing(struct dalcs_energy *energy, const struct dalcs_energy_part *part,
+                        const double *x, const double *after, const double *far) {
+    double turnover = 0.0;
+    double size = 0.0;
+    for (int i = 0; i < part->system->n_x; i++) {
+        double near = larger(fabs(x[i]), fabs(after[i]));
+        turnover += part->half[i] * fabs(after[i] * after[i] - x[i] * x[i]);
+        size += part->half[i] * near * larger(near, fabs(far[i]));
     }
+    energy->turnover += turnover;
+    energy->rounding += residual_part * size;
 }
 
 void dalcs_energy_start(struct dalcs_energy *energy, int k, const double *x) {
@@ -133,13 +144,6 @@ static double power_of(const struct dalcs_power_term *term, const double *y, con
     return 0.0;
 }
 
-static void raise_largest(struct dalcs_energy_part *part, const double *y) {
-    for (int c = 0; c < dalcs_system_n_columns(part->system); c++) {
-        int unit = part->system->column_is_current[c];
-        part->largest[unit] = fmax(part->largest[unit], fabs(y[c]));
-    }
-}
-
 void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, const double *y,
                        const double *inputs, double h) {
     struct dalcs_energy_part *part = &energy->part[k];
@@ -152,8 +156,10 @@ void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, cons
     energy->jumps += jumps;
     energy->method += loss - jumps;
     energy->turnover += loss;
-    enter_swing(energy, part->system, x, y, y);
-    raise_largest(part, y);
+    enter_swing(energy, part, x, y, y);
+    for (int c = 0; c < dalcs_system_n_columns(part->system); c++) {
+        part->largest[c] = larger(part->largest[c], fabs(y[c]));
+    }
 }
 
 void dalcs_energy_move(struct dalcs_energy *energy, const struct dalcs_radau_part *part,
@@ -182,7 +188,7 @@ void dalcs_energy_jump(struct dalcs_energy *energy, const struct dalcs_euler_jum
     enter(energy, DALCS_POWER_SOURCES, change + jump->energy_lost + in_thresholds);
     energy->jumps += jump->energy_lost;
     energy->turnover += jump->energy_lost;
-    enter_swing(energy, part->system, jump->before, jump->after, jump->after);
+    enter_swing(energy, part, jump->before, jump->after, jump->after);
 }
 
 /* ---- A segment ----------------------------------------------------------------------------- */
@@ -242,7 +248,7 @@ static double integral_of(const struct dalcs_radau_part *part, const struct dalc
 }
 
 static double loss_of(const struct dalcs_energy_part *ledger, const struct dalcs_radau_part *part,
-                      const struct dalcs_stage_rule *rule) {
+                      const struct dalcs_stage_rule *rule, const double *state) {
     const struct dalcs_collocation *m = part->stages.method;
     const struct dalcs_system *s = ledger->system;
     int stride = part->stages.layout.stride;
@@ -254,12 +260,12 @@ static double loss_of(const struct dalcs_energy_part *ledger, const struct dalcs
         for (int i = 0; i < m->s; i++) {
             start += m->back[i] * part->out[(i + 1) * stride + x];
         }
-        ledger->defect[x] = part->x[x] - start;
+        ledger->defect[x] = state[x] - start;
     }
     for (int x = 0; x < s->n_x; x++) {
         double loaded = dalcs_csr_row_dot(&s->storage, x, ledger->defect);
         square += loaded * ledger->defect[x];
-        along_start += loaded * (part->x[x] - ledger->defect[x]);
+        along_start += loaded * (state[x] - ledger->defect[x]);
         for (int i = 0; i < m->s && !rule->is_whole; i++) {
             along[i] += loaded * part->out[(i + 1) * stride + x];
         }
@@ -267,8 +273,9 @@ static double loss_of(const struct dalcs_energy_part *ledger, const struct dalcs
     return dalcs_stage_rule_loss(rule, square, along, along_start);
 }
 
-void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_part *part) {
-    struct dalcs_energy_part *ledger = &energy->part[part->index];
+void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_part *part,
+                          const double *start) {
+    const struct dalcs_energy_part *ledger = &energy->part[part->index];
     struct dalcs_stage_rule rule;
     if (part->by_euler) {
         return; /* entered when it was made */
@@ -280,14 +287,11 @@ void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_
             enter(energy, term->account, part->h * integral_of(part, &rule, term));
         }
     }
-    double loss = loss_of(ledger, part, &rule);
+    double loss = loss_of(ledger, part, &rule, start);
     energy->method += loss;
     energy->turnover += fabs(loss);
-    const double *far = part->out + part->stages.method->s * part->stages.layout.stride;
-    if (!rule.is_whole) {
-        dalcs_step_states(part, part->end, ledger->defect);
-    }
-    enter_swing(energy, ledger->system, part->x, rule.is_whole ? far : ledger->defect, far);
+    enter_swing(energy, ledger, start, part->x,
+                part->out + part->stages.method->s * part->stages.layout.stride);
 }
 
 /* ---- What needs no steps ------------------------------------------------------------------- */
@@ -500,39 +504,44 @@ static double power_of_rounding(const struct dalcs_system *s, double stop, const
 }
 
 static enum dalcs_status close_radau(struct dalcs_energy *energy, struct dalcs_radau_part *radau,
-                                     double stop) {
+                                     double stop, double *largest) {
     struct dalcs_energy_part *part = &energy->part[radau->index];
     if (radau->kind == DALCS_PART_STEPPED) {
-        dalcs_energy_segment(energy, radau);
-        dalcs_step_states(radau, radau->end, part->defect);
-        energy->stored_change += stored(part->system, part->defect) - part->stored_at_start;
-        part->largest[0] = radau->unit_scale[0];
-        part->largest[1] = radau->unit_scale[1];
+        memcpy(radau->after, radau->x, (size_t)part->system->n_x * sizeof(double));
+        dalcs_step_states(radau, radau->end, radau->x);
+        dalcs_energy_segment(energy, radau, radau->after);
+        energy->stored_change += stored(part->system, radau->x) - part->stored_at_start;
+        largest[0] = radau->unit_scale[0];
+        largest[1] = radau->unit_scale[1];
     }
     return enter_decided(energy, part, radau->component, &radau->excitation.bystanders, stop);
 }
 
 static void close_euler(struct dalcs_energy *energy, int k, const struct dalcs_component *c,
-                        double stop) {
-    struct dalcs_energy_part *part = &energy->part[k];
+                        double stop, double *largest) {
+    const struct dalcs_energy_part *part = &energy->part[k];
     if (c->is_static) { /* it took no steps */
         dalcs_energy_step(energy, k, c->y, c->y, c->u + c->system->n_x, stop);
     }
     energy->stored_change += stored(part->system, c->u) - part->stored_at_start;
+    for (int i = 0; i < dalcs_system_n_columns(part->system); i++) {
+        int unit = part->system->column_is_current[i];
+        largest[unit] = larger(largest[unit], part->largest[i]);
+    }
 }
 
 enum dalcs_status dalcs_energy_close(struct dalcs_energy *energy, struct dalcs_euler *e,
                                      struct dalcs_radau *radau) {
     double stop = radau != NULL ? radau->options.stop : e->grid.stop;
     for (int k = 0; k < energy->n_parts; k++) {
-        struct dalcs_energy_part *part = &energy->part[k];
+        const struct dalcs_energy_part *part = &energy->part[k];
+        double largest[2] = {0.0, 0.0}; /* V, A */
         if (radau != NULL) {
-            DALCS_TRY(close_radau(energy, &radau->part[k], stop));
+            DALCS_TRY(close_radau(energy, &radau->part[k], stop, largest));
         } else {
-            close_euler(energy, k, &e->component[k], stop);
+            close_euler(energy, k, &e->component[k], stop, largest);
         }
-        energy->rounding +=
-            residual_part * stop * power_of_rounding(part->system, stop, part->largest);
+        energy->rounding += residual_part * stop * power_of_rounding(part->system, stop, largest);
     }
     return DALCS_OK;
 }

@@ -21,8 +21,9 @@ struct dalcs_energy_part {
     struct dalcs_power_term *term; /* [n_terms] */
     double stored_at_start;        /* J */
     double lost;                   /* J, in the jumps that the next step of euler crosses */
-    double largest[2];             /* V, A */
-    double *defect, *loaded;       /* [n_x] work: how far states are off, storage times that */
+    double *largest;               /* [n_columns] magnitudes */
+    double *half;                  /* [n_x] of the diagonal of the storage */
+    double *defect;                /* [n_x] work: how far states are off */
 };
 
 struct dalcs_energy {
@@ -49,8 +50,9 @@ void dalcs_energy_start(struct dalcs_energy *energy, int k, const double *x);
 void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, const double *y,
                        const double *inputs, double h);
 
-/* The present segment of a part has been passed through; part->x is still the state at its start. */
-void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_part *part);
+/* A part's present segment has been passed through from the state start[n_x] to part->x. */
+void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_part *part,
+                          const double *start);
 
 /* States of a part change from part->x to after[n_x] without a jump. */
 void dalcs_energy_move(struct dalcs_energy *energy, const struct dalcs_radau_part *part,

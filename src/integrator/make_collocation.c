@@ -312,8 +312,10 @@ static void compute(struct dalcs_collocation *c, int s) {
     butcher_matrix(s, node + 1, gauss, gauss_weight, A);
     for (int i = 0; i < s; i++) {
         c->weight[i] = (double)A[s - 1][i];
-        c->gauss[i] = (double)gauss[i];
-        c->gauss_weight[i] = (double)gauss_weight[i];
+    }
+    for (int i = 0; i < MAX; i++) {
+        c->gauss[i] = i < s ? (double)gauss[i] : 1.0;
+        c->gauss_weight[i] = i < s ? (double)gauss_weight[i] : 0.0;
     }
     diagonalise(c, A);
     real value[MAX];
@@ -398,8 +400,8 @@ static void print_method(const struct dalcs_collocation *c) {
     print_reals("barycentric", s + 1, c->barycentric);
     print_reals("back", s, c->back);
     print_reals("weight", s, c->weight);
-    print_reals("gauss", s, c->gauss);
-    print_reals("gauss_weight", s, c->gauss_weight);
+    print_reals("gauss", MAX, c->gauss);
+    print_reals("gauss_weight", MAX, c->gauss_weight);
     print_reals("test", s + 1, c->test);
     printf("        .test_size = %.17g,\n", c->test_size);
     printf("        .test_node = %.17g,\n        .test_factor = %.17g,\n", c->test_node,

@@ -258,7 +258,7 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
     part->jumped = false;
     if (r->base->energy != NULL) {
-        dalcs_energy_segment(r->base->energy, part);
+        memcpy(part->after, part->x, state_bytes);
     }
     if (part->end == 1.0) {
         const double *end = part->out + part->stages.method->s * part->stages.layout.stride;
@@ -266,6 +266,9 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     } else {
         dalcs_step_states(part, part->end, part->x);
         part->fresh = true; /* the next step starts inside this one */
+    }
+    if (r->base->energy != NULL) {
+        dalcs_energy_segment(r->base->energy, part, part->after);
     }
     part->t = part->t_end;
     if (part->n_crossed > 0) {

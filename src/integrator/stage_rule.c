@@ -1,8 +1,13 @@
 /* stage_rule.c - Lagrange's polynomials on the stages at Gauss' points, without a division. */
 #include "stage_rule.h"
 
-/* Eight points at once, for the compiler to take two or four of them in one instruction. */
-enum { POINTS = DALCS_MAX_NODES };
+#include <string.h>
+
+/* Integral of what has these values at the points. */
+static inline double weigh(const struct dalcs_stage_rule *rule, const dalcs_points *value) {
+    dalcs_points a = rule->weight * *value;
+    return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
+}
 
 void dalcs_stage_rule_set(struct dalcs_stage_rule *rule, const struct dalcs_collocation *m,
                           double end) {
@@ -13,42 +18,33 @@ void dalcs_stage_rule_set(struct dalcs_stage_rule *rule, const struct dalcs_coll
     if (rule->is_whole) {
         return;
     }
-    double distance[DALCS_MAX_STAGES][POINTS];
-    double before[POINTS]; /* products of the distances from the stages before, from those behind */
-    double behind[POINTS];
+    dalcs_points point;
+    dalcs_points weight;
+    memcpy(&point, m->gauss, sizeof(point));
+    memcpy(&weight, m->gauss_weight, sizeof(weight));
+    point *= end;
+    weight *= end;
+    rule->weight = weight;
+    dalcs_points before = {1.0, 1.0, 1.0, 1.0, 1.0,
+                           1.0, 1.0, 1.0}; /* products of the distances from the stages before */
     double start = 1.0;
-    for (int q = 0; q < POINTS; q++) {
-        double point = q < s ? end * m->gauss[q] : end;
-        rule->weight[q] = q < s ? end * m->gauss_weight[q] : 0.0;
-        rule->slope[q] = 0.0;
-        before[q] = 1.0;
-        behind[q] = 1.0;
-        for (int j = 0; j < s; j++) {
-            distance[j][q] = point - m->node[j + 1];
-        }
-    }
     for (int j = 0; j < s; j++) {
+        rule->value[j] = before;
+        before *= point - m->node[j + 1];
         start *= -m->node[j + 1];
-        for (int q = 0; q < POINTS; q++) {
-            rule->value[j][q] = before[q];
-            before[q] *= distance[j][q];
-        }
     }
     rule->miss_at_end = before[s] / start;
+    dalcs_points behind = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+    dalcs_points slope = {0.0};
     for (int j = s - 1; j >= 0; j--) {
         double scale = m->barycentric[j + 1] * m->node[j + 1]; /* without the node at the start */
-        double sum = 0.0;
-        for (int q = 0; q < POINTS; q++) {
-            double others = rule->value[j][q] * behind[q];
-            rule->slope[q] += others / start;
-            rule->value[j][q] = scale * others;
-            behind[q] *= distance[j][q];
-        }
-        for (int q = 0; q < POINTS; q++) {
-            sum += rule->weight[q] * rule->value[j][q];
-        }
-        rule->own_integral[j] = sum;
+        dalcs_points others = rule->value[j] * behind;
+        behind *= point - m->node[j + 1];
+        slope += others;
+        rule->value[j] = scale * others;
+        rule->own_integral[j] = weigh(rule, &rule->value[j]);
     }
+    rule->slope = slope / start;
 }
 
 double dalcs_stage_rule_integral(const struct dalcs_stage_rule *rule, const double *a) {
@@ -60,36 +56,34 @@ double dalcs_stage_rule_integral(const struct dalcs_stage_rule *rule, const doub
 }
 
 /* a at the points. */
-static inline void spread(const struct dalcs_stage_rule *rule, const double *a, double *value) {
-    for (int q = 0; q < POINTS; q++) {
-        value[q] = 0.0;
+static inline void spread(const struct dalcs_stage_rule *rule, const double *a,
+                          dalcs_points *value) {
+    dalcs_points sum = a[0] * rule->value[0];
+    for (int j = 1; j < rule->s; j++) {
+        sum += a[j] * rule->value[j];
     }
-    for (int j = 0; j < rule->s; j++) {
-        for (int q = 0; q < POINTS; q++) {
-            value[q] += a[j] * rule->value[j][q];
-        }
-    }
+    *value = sum;
 }
 
 double dalcs_stage_rule_product(const struct dalcs_stage_rule *rule, const double *a,
                                 const double *b) {
-    double sum = 0.0;
     if (rule->is_whole) {
+        double sum = 0.0;
         for (int j = 0; j < rule->s; j++) {
             sum += rule->integral[j] * a[j] * b[j];
         }
         return sum;
     }
-    double at_points[2][POINTS];
-    spread(rule, a, at_points[0]);
-    if (a != b) {
-        spread(rule, b, at_points[1]);
+    dalcs_points at_points;
+    dalcs_points other;
+    spread(rule, a, &at_points);
+    if (a == b) {
+        other = at_points;
+    } else {
+        spread(rule, b, &other);
     }
-    const double *other = at_points[a != b ? 1 : 0];
-    for (int q = 0; q < POINTS; q++) {
-        sum += rule->weight[q] * at_points[0][q] * other[q];
-    }
-    return sum;
+    at_points *= other;
+    return weigh(rule, &at_points);
 }
 
 /* With x - x~ = miss(theta) defect, and by parts,
@@ -100,11 +94,10 @@ double dalcs_stage_rule_loss(const struct dalcs_stage_rule *rule, double square,
     if (rule->is_whole) { /* miss is orthogonal to all of a lower degree than s - 1, and 0 at the end */
         return 0.5 * square;
     }
-    double at_points[POINTS];
-    spread(rule, along, at_points);
+    dalcs_points at_points;
+    spread(rule, along, &at_points);
     double sum = rule->miss_at_end * at_points[rule->s] - along_start;
-    for (int q = 0; q < POINTS; q++) {
-        sum -= rule->weight[q] * rule->slope[q] * at_points[q];
-    }
+    at_points *= rule->slope;
+    sum -= weigh(rule, &at_points);
     return -(sum + 0.5 * square * (rule->miss_at_end * rule->miss_at_end - 1.0));
 }

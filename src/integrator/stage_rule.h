@@ -10,19 +10,22 @@
 
 #include <stdbool.h>
 
+/* Eight points at once, as many as instructions take. */
+typedef double dalcs_points __attribute__((vector_size(8 * DALCS_MAX_NODES), aligned(16)));
+
 struct dalcs_stage_rule {
     int s;
     bool is_whole;
     const double *integral; /* [s] of the stages' Lagrange polynomials, up to the end, in steps */
 
-    /* The rest only where the step is cut. Points 0..s-1 are those of the rule, point s is the end. */
+    /* The rest only where the step is cut. Points 0..s-1 are those of the rule, the others the end. */
     double own_integral[DALCS_MAX_STAGES];
-    double weight[DALCS_MAX_NODES];                  /* 0 from point s on */
-    double value[DALCS_MAX_STAGES][DALCS_MAX_NODES]; /* of the stages' polynomials at the points */
+    dalcs_points weight;                  /* 0 from point s on */
+    dalcs_points value[DALCS_MAX_STAGES]; /* of the stages' polynomials at the points */
 
     /* The polynomial with its zeros at the stages that is 1 at the start: what states miss the one
      * through the stages by, over what they miss it by at the start. At the points, its derivative. */
-    double slope[DALCS_MAX_NODES];
+    dalcs_points slope;
     double miss_at_end;
 };
 
