@@ -470,16 +470,15 @@ static enum dalcs_status enter_decided(struct dalcs_energy *energy,
 
 /* ---- The end ------------------------------------------------------------------------------- */
 
-/* The least and the most of the conductances between V and A in a block of the equations. */
-static void raise_conductances(const struct dalcs_system *s, const struct dalcs_csr *block,
-                               double seconds, double *range) {
+/* The largest conductance in the equations of a block that are currents, and the largest resistance in
+ * those that are voltages. */
+static void raise_entries(const struct dalcs_system *s, const struct dalcs_csr *block,
+                          double seconds, double *conductance, double *resistance) {
     for (int r = 0; r < block->n_rows; r++) {
+        double *most = s->row_is_current[r] ? conductance : resistance;
         for (int k = block->p[r]; k < block->p[r + 1]; k++) {
-            bool is_current = s->row_is_current[r];
-            if (s->column_is_current[block->j[k]] != is_current) {
-                double g = is_current ? fabs(block->x[k]) / seconds : seconds / fabs(block->x[k]);
-                range[0] = fmin(range[0], g);
-                range[1] = fmax(range[1], g);
+            if (s->column_is_current[block->j[k]] != s->row_is_current[r]) {
+                *most = larger(*most, fabs(block->x[k]) / seconds);
             }
         }
     }
@@ -489,17 +488,13 @@ static void raise_conductances(const struct dalcs_system *s, const struct dalcs_
  * largest conductance and resistance; where a circuit has hardly any voltage, by a part of what its
  * currents make at the largest conductance, and vice versa. Their powers over the run add up. */
 static double power_of_rounding(const struct dalcs_system *s, double stop, const double *largest) {
-    double rigid[2] = {INFINITY, 0.0};
-    raise_conductances(s, &s->A, 1.0, rigid);
-    double v = largest[0];
-    double i = largest[1];
-    double power = rigid[1] > 0.0 ? rigid[1] * v * v + i * i / rigid[0] : 0.0;
-    double range[2] = {rigid[0], rigid[1]};
-    raise_conductances(s, &s->P, stop, range);
-    if (range[1] > 0.0) {
-        v = fmax(v, i / range[1]);
-        i = fmax(i, v * range[0]);
-    }
+    double g = 0.0;
+    double r = 0.0;
+    raise_entries(s, &s->A, 1.0, &g, &r);
+    double power = g * largest[0] * largest[0] + r * largest[1] * largest[1];
+    raise_entries(s, &s->P, stop, &g, &r);
+    double v = g > 0.0 ? larger(largest[0], largest[1] / g) : largest[0];
+    double i = r > 0.0 ? larger(largest[1], largest[0] / r) : largest[1];
     return dalcs_system_n_columns(s) * (power + v * i);
 }
 

@@ -269,7 +269,7 @@ static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau)
 /* ---- The ledger of energies ---------------------------------------------------------------- */
 
 /* A balance off by more than this part of what was moved is no rounding. */
-static const double most_off = 1e-6;
+static const double most_off = 1e-7;
 
 /* Who is told of a jump. */
 struct jump_listeners {
