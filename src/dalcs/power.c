@@ -51,24 +51,35 @@ static void put_pair(struct terms *t, const struct dalcs_system *s, int pair,
     square->pair = pair;
 }
 
-/* What V and I deliver: the current flows through them from plus to minus. */
-static void put_source(const struct dalcs_layout *l, struct terms *t, int device) {
+/* What V delivers: the current flows through it from plus to minus. */
+static void put_voltage_source(const struct dalcs_layout *l, struct terms *t, int device) {
     const struct dalcs_device *d = &l->circuit->device[device];
     const struct dalcs_stimulus *stimulus = &l->circuit->stimulus[d->stimulus];
-    bool is_voltage = d->kind == DALCS_VSOURCE;
-    struct dalcs_power_term *term;
-    if (stimulus->kind == DALCS_STIMULUS_DC) {
-        term = put(t, DALCS_POWER_SOURCES, DALCS_POWER_CONSTANT, -stimulus->dc);
-    } else {
-        term =
-            put(t, DALCS_POWER_SOURCES, is_voltage ? DALCS_POWER_PRODUCT : DALCS_POWER_INPUT, -1.0);
-        term->input = l->input[device];
+    bool is_dc = stimulus->kind == DALCS_STIMULUS_DC;
+    struct dalcs_power_term *term =
+        put(t, DALCS_POWER_SOURCES, is_dc ? DALCS_POWER_CONSTANT : DALCS_POWER_PRODUCT,
+            is_dc ? -stimulus->dc : -1.0);
+    term->first[0] = l->current_column[device];
+    if (!is_dc) {
         set_voltage(l, term->second, d->node[0], d->node[1]);
     }
-    if (is_voltage) {
-        term->first[0] = l->current_column[device];
-    } else {
-        set_voltage(l, term->first, d->node[0], d->node[1]);
+}
+
+/* I delivers at each end by itself: no equation ties the voltages of the two. */
+static void put_current_source(const struct dalcs_layout *l, struct terms *t, int device) {
+    const struct dalcs_device *d = &l->circuit->device[device];
+    const struct dalcs_stimulus *stimulus = &l->circuit->stimulus[d->stimulus];
+    bool is_dc = stimulus->kind == DALCS_STIMULUS_DC;
+    for (int end = 0; end < 2; end++) {
+        double sign = end == 0 ? -1.0 : 1.0;
+        int column = dalcs_stamp_node_column(l, d->node[end]);
+        if (column >= 0) {
+            struct dalcs_power_term *term =
+                put(t, DALCS_POWER_SOURCES, is_dc ? DALCS_POWER_CONSTANT : DALCS_POWER_INPUT,
+                    is_dc ? sign * stimulus->dc : sign);
+            term->first[0] = column;
+            term->input = l->input[device];
+        }
     }
 }
 
@@ -85,8 +96,10 @@ static void put_device(const struct dalcs_layout *l, const struct dalcs_system *
     case DALCS_CAPACITOR:
         return;
     case DALCS_VSOURCE:
+        put_voltage_source(l, t, device);
+        return;
     case DALCS_ISOURCE:
-        put_source(l, t, device);
+        put_current_source(l, t, device);
         return;
     case DALCS_VCVS:
     case DALCS_CCVS:

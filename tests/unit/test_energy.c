@@ -13,7 +13,8 @@ static struct dalcs_radau r;
 static struct dalcs_energy energy;
 
 /* All families, with jumps, thresholds, breakdown, switches on and off, a gate with a load of its own,
- * coupled coils, and a part without memory. */
+ * coupled coils, a supply that sources alone decide and that current sources take from, and a part
+ * without memory. */
 static const char ALL[] = "all families\n"
                           "V1 in 0 SIN(1 10 1k)\n"
                           "R1 in a 10\n"
@@ -40,6 +41,10 @@ static const char ALL[] = "all families\n"
                           "F1 0 y V0 0.2\n"
                           "H1 w 0 V0 20\n"
                           "R5 w y 200\n"
+                          "V3 s 0 3\n"
+                          "R8 s 0 100\n"
+                          "I5 s b SIN(0 2m 900)\n"
+                          "I6 s b 0.5m\n"
                           "V2 p 0 SIN(0 2 300)\n"
                           "R6 p q 3\n"
                           "R7 q 0 4\n"
