@@ -288,6 +288,9 @@ static enum dalcs_status close_ledger(struct dalcs_run *r, struct dalcs_energy *
                                       struct dalcs_euler *e, struct dalcs_radau *radau) {
     DALCS_TRY(dalcs_energy_close(energy, e, radau));
     struct dalcs_report *report = &r->s->report;
+    if (!isfinite(energy->turnover)) { /* an unstable circuit, beyond what doubles hold */
+        return DALCS_OK;
+    }
     report->energy.present = true;
     report->energy.sources = energy->account[DALCS_POWER_SOURCES];
     report->energy.resistors = energy->account[DALCS_POWER_RESISTORS];

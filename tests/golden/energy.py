@@ -151,6 +151,10 @@ def check_texts(program, checker):
     checker.check("energy" not in printed(charged).stdout, "a ledger that nobody asked for")
     done = printed(charged.replace("V1 in 0 5", "V1 in 0 0"), "--energy")
     checker.check("\n  energy              0  J\n\n" in done.stdout, f"not 0: {done.stdout}")
+    unstable = charged.replace("1k", "-1").replace(".tran 1m 50m", ".tran 1u 500u")
+    done = printed(unstable, "--energy", "--method", "euler", "--step", "0.1u")
+    checker.check(done.returncode == 0 and "energy" not in done.stdout,
+                  f"energies beyond all numbers: {done.stdout} {done.stderr}")
     done = printed("V1 a 0 1\nV2 b 0 1\nR1 b 0 1\n.op\n.end\n", "--energy")
     checker.check("the netlist has no .tran: --energy has no effect" in done.stderr, done.stderr)
     checker.check("energy" not in done.stdout, f"an energy of an operating point: {done.stdout}")
