@@ -276,8 +276,9 @@ struct dalcs_report {
         double jumps;         /* lost when states jumped */
         double stored_change; /* in capacitors and inductors, end minus start */
         double method;        /* dissipated by the method: no circuit does */
-        double balance;       /* left side minus right side: rounding; if it is more than that, the
-                                 run ends with DALCS_E_INTERNAL */
+        double balance;       /* left side minus right side: rounding; if it is more than that, or
+                                 if the method of radau is more than its tolerance explains, the run
+                                 ends with DALCS_E_INTERNAL */
     } energy;
 
     struct {

@@ -12,6 +12,13 @@
 /* Residuals that answers may have, over the scales of the certificate. */
 static const double residual_part = 1e-12;
 
+/* A balance of more than this part of what was moved is no rounding; it is 1e-10 at most. */
+static const double most_off = 1e-7;
+
+/* What radau misses is some 0.01 of its inner tolerance, over what was moved: a waveform is wrong where
+ * it is so much. */
+static const double most_missed = 1e5;
+
 /* ---- Setting up ---------------------------------------------------------------------------- */
 
 static bool touches(const struct dalcs_power_term *term, int column) {
@@ -167,6 +174,7 @@ void dalcs_energy_move(struct dalcs_energy *energy, const struct dalcs_radau_par
     const struct dalcs_system *s = part->component->system;
     double change = stored(s, after) - stored(s, part->x);
     energy->method -= change;
+    energy->missed += fabs(change);
     energy->turnover += fabs(change);
 }
 
@@ -289,6 +297,7 @@ void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_
     }
     double loss = loss_of(ledger, part, &rule, start);
     energy->method += loss;
+    energy->missed += fabs(loss);
     energy->turnover += fabs(loss);
     enter_swing(energy, ledger, start, part->x,
                 part->out + part->stages.method->s * part->stages.layout.stride);
@@ -545,4 +554,17 @@ double dalcs_energy_balance(const struct dalcs_energy *energy) {
     return energy->account[DALCS_POWER_SOURCES] - energy->account[DALCS_POWER_RESISTORS] -
            energy->account[DALCS_POWER_DIODES] - energy->jumps - energy->stored_change -
            energy->method;
+}
+
+double dalcs_energy_unexplained(const struct dalcs_energy *energy,
+                                const struct dalcs_radau *radau) {
+    double balance = dalcs_energy_balance(energy);
+    if (fabs(balance) > most_off * energy->turnover + energy->rounding) {
+        return balance;
+    }
+    if (radau == NULL || radau->options.fixed_step > 0.0) { /* no error is controlled */
+        return 0.0;
+    }
+    double allowed = most_missed * radau->inner_tolerance * energy->turnover + energy->rounding;
+    return energy->missed > allowed ? energy->missed : 0.0;
 }

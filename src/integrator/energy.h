@@ -29,6 +29,7 @@ struct dalcs_energy_part {
 struct dalcs_energy {
     double account[DALCS_N_POWER_ACCOUNTS]; /* J */
     double jumps, stored_change, method;    /* J */
+    double missed;   /* J, of radau's polynomials and moves: the magnitudes that are in method */
     double turnover; /* J, the sum of all that was moved, whatever its sign */
     double rounding; /* J, what certificates leave open: a balance of this size means nothing */
     bool is_euler;
@@ -67,5 +68,9 @@ enum dalcs_status dalcs_energy_close(struct dalcs_energy *energy, struct dalcs_e
 
 /* J: what the sources gave less where it went. */
 double dalcs_energy_balance(const struct dalcs_energy *energy);
+
+/* J: a balance that is more than rounding, or else what radau missed where that is more than its
+ * tolerance explains; 0 when all is well. radau: NULL with implicit Euler. */
+double dalcs_energy_unexplained(const struct dalcs_energy *energy, const struct dalcs_radau *radau);
 
 #endif

@@ -268,9 +268,6 @@ static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau)
 
 /* ---- The ledger of energies ---------------------------------------------------------------- */
 
-/* A balance off by more than this part of what was moved is no rounding. */
-static const double most_off = 1e-7;
-
 /* Who is told of a jump. */
 struct jump_listeners {
     struct dalcs_recorder *recorder;
@@ -283,7 +280,8 @@ static enum dalcs_status enter_jump(void *user, const struct dalcs_euler_jump *j
     return dalcs_recorder_jump(listeners->recorder, jump);
 }
 
-/* The ledger into the report. Where it does not add up, an equation was not what its devices are. */
+/* The ledger into the report. Where it does not add up, an equation was not what its devices are, or a
+ * step went where it should not. */
 static enum dalcs_status close_ledger(struct dalcs_run *r, struct dalcs_energy *energy,
                                       struct dalcs_euler *e, struct dalcs_radau *radau) {
     DALCS_TRY(dalcs_energy_close(energy, e, radau));
@@ -299,13 +297,14 @@ static enum dalcs_status close_ledger(struct dalcs_run *r, struct dalcs_energy *
     report->energy.stored_change = energy->stored_change;
     report->energy.method = energy->method;
     report->energy.balance = dalcs_energy_balance(energy);
-    if (fabs(report->energy.balance) <= most_off * energy->turnover + energy->rounding) {
+    double unexplained = dalcs_energy_unexplained(energy, radau);
+    if (unexplained == 0.0) {
         return DALCS_OK;
     }
     dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, NULL,
                    "internal error: the energy balance is off by %.3g J of %.3g J; please report "
                    "this netlist",
-                   report->energy.balance, energy->turnover);
+                   unexplained, energy->turnover);
     return DALCS_E_INTERNAL;
 }
 
