@@ -31,7 +31,8 @@ extern "C" {
     ENTRY(DALCS_E_NETLIST, -3, "error in the netlist")                                             \
     ENTRY(DALCS_E_OPTION, -4, "invalid option")                                                    \
     ENTRY(DALCS_E_LIMIT, -5, "problem too large")                                                  \
-    ENTRY(DALCS_E_CANCELLED, -6, "cancelled")
+    ENTRY(DALCS_E_CANCELLED, -6, "cancelled")                                                      \
+    ENTRY(DALCS_E_INTERNAL, -7, "internal error")
 
 enum dalcs_status {
 
@@ -147,6 +148,7 @@ struct dalcs_run_options {
                            and both sides of every event */
     size_t n_at;
     bool record; /* keep events and jumps for the report */
+    bool energy; /* keep the ledger of energies for the report */
 
     /* Tolerances of the certificate and of the OSNSP; see doc/methods.md. All dimensionless. */
     double certificate_tolerance; /* residual over its physical scale, 2e-13 */
@@ -274,7 +276,9 @@ struct dalcs_report {
         double jumps;         /* lost when states jumped */
         double stored_change; /* in capacitors and inductors, end minus start */
         double method;        /* dissipated by the method: no circuit does */
-        double balance;       /* left side minus right side: rounding */
+        double balance;       /* left side minus right side: rounding; if it is more than that, or
+                                 if the method of radau is more than its tolerance explains, the run
+                                 ends with DALCS_E_INTERNAL */
     } energy;
 
     struct {

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { METHOD = 256, TOL, STAGES, STEP, COMPRESS, AT, REPORT, PLOT, DUMP, ALL_SIGNALS };
+enum { METHOD = 256, TOL, STAGES, STEP, COMPRESS, AT, REPORT, PLOT, DUMP, ALL_SIGNALS, ENERGY };
 
 static const struct option option[] = {
     {"output", required_argument, NULL, 'o'},
@@ -24,6 +24,7 @@ static const struct option option[] = {
     {"plot", required_argument, NULL, PLOT},
     {"dump", required_argument, NULL, DUMP},
     {"all-signals", no_argument, NULL, ALL_SIGNALS},
+    {"energy", no_argument, NULL, ENERGY},
     {"quiet", no_argument, NULL, 'q'},
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
@@ -169,6 +170,9 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return DALCS_OK;
     case ALL_SIGNALS:
         arguments->all_signals = true;
+        return DALCS_OK;
+    case ENERGY:
+        arguments->energy = true;
         return DALCS_OK;
     case 'q':
         arguments->quiet = true;

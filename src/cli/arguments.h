@@ -17,7 +17,7 @@ struct dalcs_arguments {
     const char *at, *report, *plot;
     const char *dump;
     char *default_output, *default_dump; /* NULL: not needed */
-    bool quiet, all_signals;
+    bool quiet, all_signals, energy;
     bool help; /* asked for: nothing else is set */
 };
 

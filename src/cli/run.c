@@ -43,6 +43,7 @@ static const char help[] =
     "      --dump FILE     where to leave a one-step problem that could not be solved (default:\n"
     "                      beside the output, out.failed.dalcs for out.csv)\n"
     "      --all-signals   print the measurements of all signals, not of the first 24\n"
+    "      --energy        print where the energy came from and where it went\n"
     "  -q, --quiet         print nothing but warnings and errors\n"
     "  -h, --help          this text\n"
     "\n"
@@ -110,7 +111,8 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
         bool given;
     } option[] = {{"--tol", arguments->tolerance > 0.0}, {"--stages", arguments->stages > 0},
                   {"--step", arguments->step > 0.0},     {"--compress", arguments->compress > 0.0},
-                  {"--at", arguments->at != NULL},       {"--plot", arguments->plot != NULL}};
+                  {"--at", arguments->at != NULL},       {"--plot", arguments->plot != NULL},
+                  {"--energy", arguments->energy}};
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
         if (option[i].given && !request->transient) {
@@ -139,6 +141,9 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
     dalcs_summary_write_signals(out, &run->outputs.measure[DALCS_TRANSIENT],
                                 arguments->all_signals);
     dalcs_summary_write_jumps(out, report);
+    if (arguments->energy) {
+        dalcs_summary_write_energy(out, report);
+    }
     fputc('\n', out);
 }
 
@@ -156,6 +161,7 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     options.n_at = times->n;
     options.dump_path = arguments->dump;
     options.record = arguments->report || arguments->plot || !arguments->quiet;
+    options.energy = arguments->report || arguments->energy;
     const struct dalcs_sink sink = {run, begin, row, end, progress};
     dalcs_progress_init(&run->progress, run->cli->err_is_terminal ? run->cli->err : NULL);
     enum dalcs_status status = dalcs_session_run(session, &options, &sink);

@@ -196,6 +196,40 @@ void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure,
     }
 }
 
+static void write_energy(FILE *out, const char *name, double joule, double largest) {
+    char text[DALCS_QUANTITY_SIZE];
+    if (fabs(joule) > INVISIBLE * largest) {
+        fprintf(out, "  %-18s %11s\n", name, dalcs_quantity_write_column(text, joule, "J", DIGITS));
+    }
+}
+
+void dalcs_summary_write_energy(FILE *out, const struct dalcs_report *report) {
+    if (!report->energy.present) {
+        return;
+    }
+
+    const struct {
+        const char *name;
+        double joule;
+    } entry[] = {{"from sources", report->energy.sources},
+                 {"in resistors", report->energy.resistors},
+                 {"in diodes", report->energy.diodes},
+                 {"lost in jumps", report->energy.jumps},
+                 {"change stored", report->energy.stored_change},
+                 {"lost by the method", report->energy.method},
+                 {"unexplained", report->energy.balance}};
+
+    const size_t n = sizeof entry / sizeof entry[0];
+    double largest = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        largest = fmax(largest, fabs(entry[i].joule));
+    }
+    fprintf(out, "\n  energy%s\n", largest > 0.0 ? "" : "              0  J");
+    for (size_t i = 0; i < n; i++) {
+        write_energy(out, entry[i].name, entry[i].joule, largest);
+    }
+}
+
 static void write_jump(FILE *out, const struct dalcs_jump *jump) {
     char a[DALCS_QUANTITY_SIZE], b[DALCS_QUANTITY_SIZE];
     fprintf(out, "  jump at t=%s:",

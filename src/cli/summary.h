@@ -15,4 +15,7 @@ void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure,
 /* The first few jumps, a sentence each. */
 void dalcs_summary_write_jumps(FILE *out, const struct dalcs_report *report);
 
+/* Where the energy came from and went, entries of 0 left out; nothing without a ledger. */
+void dalcs_summary_write_energy(FILE *out, const struct dalcs_report *report);
+
 #endif

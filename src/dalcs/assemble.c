@@ -217,12 +217,6 @@ static enum dalcs_status stamp_pair(struct stamps *b, int anode, int cathode, do
     return threshold == 0.0 ? DALCS_OK : dalcs_triplets_add(&b->F, k, 0, threshold);
 }
 
-/* What makes up r together with roff in parallel. A model's r is below its
- * roff; without one, roff is infinite and this is r. */
-static double series_part(double r, double roff) {
-    return r / (1.0 - r / roff);
-}
-
 /* Roff lies across two branches, one of Vfwd and Ron and one of Vrev and Rrev. */
 static enum dalcs_status stamp_diode(struct stamps *b, int device) {
     const struct dalcs_circuit *c = b->layout->circuit;
@@ -256,7 +250,8 @@ static enum dalcs_status stamp_switch(struct stamps *b, int device) {
     b->layout->pair[device] = b->next_pair;
     DALCS_TRY(dalcs_stamp_add_voltage(b, &b->control, b->next_pair, d->node[2], d->node[3], 1.0));
     pair.is_direct = is_direct(b->layout, d->node[2]) && is_direct(b->layout, d->node[3]);
-    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], 0.0, series_part(m->ron, m->roff), pair));
+    DALCS_TRY(
+        stamp_pair(b, d->node[0], d->node[1], 0.0, dalcs_stamp_series_part(m->ron, m->roff), pair));
     return isfinite(m->roff) ? dalcs_stamp_conductance(b, d, 1.0 / m->roff) : DALCS_OK;
 }
 

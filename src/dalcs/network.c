@@ -471,6 +471,9 @@ enum dalcs_status dalcs_network_build(struct dalcs_network *network,
     if (status == DALCS_OK) {
         status = build_states(network, &layout);
     }
+    if (status == DALCS_OK) {
+        status = dalcs_power_build(network, &layout);
+    }
 done:
     free(wants_current);
     layout_finish(&layout);

@@ -6,6 +6,7 @@
 #define DALCS_NETWORK_H
 
 #include "circuit.h"
+#include "power.h"
 #include "system.h"
 
 /* A linear function of one system's solution: sum of coefficient * column, plus inputs. */
@@ -39,8 +40,9 @@ struct dalcs_network {
         struct dalcs_probe probe;
     } * state;
 
-    double **initial; /* [n_systems][n_x] x(0-) for uic: IC=, else .ic, else 0 */
-    int n_nodes;      /* without ground */
+    struct dalcs_power *power; /* [n_systems] what its devices give and take */
+    double **initial;          /* [n_systems][n_x] x(0-) for uic: IC=, else .ic, else 0 */
+    int n_nodes;               /* without ground */
     struct dalcs_arena arena;
 };
 

@@ -55,6 +55,10 @@ enum dalcs_status dalcs_stamp_conductance(struct stamps *b, const struct dalcs_d
     return dalcs_stamp_transconductance(b, d->node[0], d->node[1], d->node[0], d->node[1], g);
 }
 
+double dalcs_stamp_series_part(double r, double roff) {
+    return r / (1.0 - r / roff);
+}
+
 int dalcs_stamp_new_input(struct stamps *b, int device) {
     struct dalcs_system *s = b->s;
     const struct dalcs_circuit *c = b->layout->circuit;

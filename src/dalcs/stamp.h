@@ -41,6 +41,10 @@ enum dalcs_status dalcs_stamp_transconductance(struct stamps *b, int first, int 
 enum dalcs_status dalcs_stamp_conductance(struct stamps *b, const struct dalcs_device *d,
                                           double g) DALCS_MUST_CHECK;
 
+/* What makes up r together with roff in parallel. A model's r is below its roff; without one, roff is
+ * infinite and this is r. */
+double dalcs_stamp_series_part(double r, double roff);
+
 int dalcs_stamp_new_input(struct stamps *b, int device);
 
 /* A z column for the current of `device` and the row of II that is its branch equation. */

@@ -38,9 +38,12 @@ struct dalcs_collocation {
     long double complex exact_from_pair[DALCS_MAX_CONJUGATES][DALCS_MAX_STAGES];
     double barycentric[DALCS_MAX_NODES]; /* weights of all s + 1 nodes */
     double back[DALCS_MAX_STAGES];       /* value at 0 of the polynomial through the stages alone */
-    double test_size;                    /* the product of the distances from all nodes there */
-    double test_node;                    /* where polynomials on all nodes are worst */
-    double test[DALCS_MAX_NODES];        /* their value there */
+    double weight[DALCS_MAX_STAGES];     /* of the stages, in an integral over the step */
+    double gauss[DALCS_MAX_NODES]; /* Gauss' rule with s nodes for integrals over (0, 1), then 1, */
+    double gauss_weight[DALCS_MAX_NODES]; /* with the weight 0 */
+    double test_size;                     /* the product of the distances from all nodes there */
+    double test_node;                     /* where polynomials on all nodes are worst */
+    double test[DALCS_MAX_NODES];         /* their value there */
     double test_factor; /* how much more their derivative may be off than the filter of the error
                            estimate lets through */
     double to_bernstein[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* [node][coefficient] */

@@ -1,6 +1,6 @@
 /* euler.c - the time loop of implicit Euler over all components, and the micro-steps that tell what
  * happens at a discontinuity. */
-#include "euler.h"
+#include "energy.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -170,6 +170,19 @@ static double stored_change(const struct dalcs_system *s, const double *before,
     return energy;
 }
 
+/* What a jump cost, J: stored, lost, and in the thresholds that charge has passed. */
+static double cost_of(const struct dalcs_system *s, const double *before,
+                      const struct dalcs_jump_answer *jump) {
+    double cost =
+        stored_change(s, before, jump->after) + dalcs_euler_jump_energy(s, before, jump->after);
+    for (int d = 0; d < s->n_pairs; d++) {
+        for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
+            cost += s->F.j[k] == 0 ? s->F.x[k] * jump->charge[d] : 0.0;
+        }
+    }
+    return cost;
+}
+
 enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k, const double *u) {
     const struct dalcs_osnsp *p = &e->component[k].osnsp;
     const struct dalcs_system *s = p->system;
@@ -179,8 +192,7 @@ enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k, const doub
         memcpy(e->jump.after, e->after, (size_t)s->n_x * sizeof(double));
         memcpy(e->jump.charge, e->charge, (size_t)s->n_pairs * sizeof(double));
         memcpy(e->jump.flux, e->flux, (size_t)s->n_pairs * sizeof(double));
-        e->jump.source_work =
-            stored_change(s, u, e->jump.after) + dalcs_euler_jump_energy(s, u, e->jump.after);
+        e->jump.source_work = cost_of(s, u, &e->jump);
     }
     return DALCS_OK;
 }
@@ -361,6 +373,11 @@ enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initia
             memcpy(c->u, initial[k], n_x * sizeof(double));
             memset(c->y_before, 0, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
             memcpy(c->y_before, c->u, n_x * sizeof(double));
+        }
+        if (e->energy != NULL) {
+            dalcs_energy_start(e->energy, k, c->u);
+        }
+        if (initial != NULL) {
             DALCS_TRY(settle_after(e, k, c->y_before, c->u, c->y));
         }
     }
@@ -414,6 +431,9 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
                 return status; /* without a micro-step there is no jump to report, no more */
             }
             memcpy(c->osnsp.mode, c->saved_mode, mode_bytes);
+        }
+        if (e->energy != NULL) {
+            dalcs_energy_step(e->energy, k, c->u, c->y, c->u + n_x, h);
         }
         memcpy(c->u, c->y, n_x * sizeof(double));
     }

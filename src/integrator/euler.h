@@ -35,6 +35,8 @@ struct dalcs_open_instant {
     double scale[2];  /* V, A: the largest so far, or 0; smaller than their rounding is nothing */
 };
 
+struct dalcs_energy;
+
 struct dalcs_euler {
     const struct dalcs_circuit *circuit;
     const struct dalcs_network *network;
@@ -60,6 +62,7 @@ struct dalcs_euler {
     void *open_user;
     enum dalcs_status (*on_open)(void *user, const struct dalcs_open_instant *instant,
                                  bool *vanishes); /* may be NULL */
+    struct dalcs_energy *energy;                  /* the ledger, borrowed; NULL: none is kept */
     double *after, *charge, *flux;                /* what micro-steps see, the largest component */
     struct dalcs_jumps jumps;
     struct dalcs_jump_answer jump; /* the last one */

@@ -67,25 +67,31 @@ static void lagrange(int n, const real *node, real x, real *value) {
     }
 }
 
+/* Gauss' rule for integrals over (0, 1). */
+static void gauss_rule(int n, real *node, real *weight) {
+    (void)roots_in_unit_interval(n, false, node);
+    for (int g = 0; g < n; g++) {
+        real p;
+        real before;
+        real t = 2 * node[g] - 1;
+        legendre(n, t, &p, &before);
+        real slope = (real)n * before / (1 - t * t); /* P_n(t) = 0 */
+        weight[g] = 1 / ((1 - t * t) * slope * slope);
+    }
+}
+
 /* A_ij = integral of the j-th Lagrange polynomial from 0 to c_i, by Gauss' rule, which is exact. */
-static void butcher_matrix(int s, const real *c, real A[MAX][MAX]) {
-    real gauss[MAX];
-    int n = roots_in_unit_interval(s, false, gauss);
+static void butcher_matrix(int s, const real *c, const real *gauss, const real *weight,
+                           real A[MAX][MAX]) {
     for (int i = 0; i < s; i++) {
         for (int j = 0; j < s; j++) {
             A[i][j] = 0.0L;
         }
-        for (int g = 0; g < n; g++) {
-            real p;
-            real before;
-            real t = 2 * gauss[g] - 1;
-            legendre(n, t, &p, &before);
-            real slope = (real)n * before / (1 - t * t); /* P_n(t) = 0 */
-            real weight = 1 / ((1 - t * t) * slope * slope);
+        for (int g = 0; g < s; g++) {
             real value[MAX];
             lagrange(s, c, c[i] * gauss[g], value);
             for (int j = 0; j < s; j++) {
-                A[i][j] += c[i] * weight * value[j];
+                A[i][j] += c[i] * weight[g] * value[j];
             }
         }
     }
@@ -300,7 +306,17 @@ static void compute(struct dalcs_collocation *c, int s) {
         c->barycentric[i] = (double)(1.0L / weight);
     }
     real A[MAX][MAX];
-    butcher_matrix(s, node + 1, A);
+    real gauss[MAX];
+    real gauss_weight[MAX];
+    gauss_rule(s, gauss, gauss_weight);
+    butcher_matrix(s, node + 1, gauss, gauss_weight, A);
+    for (int i = 0; i < s; i++) {
+        c->weight[i] = (double)A[s - 1][i];
+    }
+    for (int i = 0; i < MAX; i++) {
+        c->gauss[i] = i < s ? (double)gauss[i] : 1.0;
+        c->gauss_weight[i] = i < s ? (double)gauss_weight[i] : 0.0;
+    }
     diagonalise(c, A);
     real value[MAX];
     lagrange(s, node + 1, 0.0L, value);
@@ -383,6 +399,9 @@ static void print_method(const struct dalcs_collocation *c) {
     printf("},\n");
     print_reals("barycentric", s + 1, c->barycentric);
     print_reals("back", s, c->back);
+    print_reals("weight", s, c->weight);
+    print_reals("gauss", MAX, c->gauss);
+    print_reals("gauss_weight", MAX, c->gauss_weight);
     print_reals("test", s + 1, c->test);
     printf("        .test_size = %.17g,\n", c->test_size);
     printf("        .test_node = %.17g,\n        .test_factor = %.17g,\n", c->test_node,

@@ -1,4 +1,5 @@
 /* radau.c - the parts of a run: set up, started, passed from segment to segment, evaluated. */
+#include "energy.h"
 #include "guards.h"
 #include "radau_internal.h"
 
@@ -214,6 +215,9 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
         const double *x = initial != NULL ? initial[k] : c->y;
         memcpy(part->x, x, (size_t)c->system->n_x * sizeof(double));
         dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->u);
+        if (r->base->energy != NULL) {
+            dalcs_energy_start(r->base->energy, k, x);
+        }
         if (part->kind == DALCS_PART_ALGEBRAIC) {
             part->t_end = INFINITY;
             continue;
@@ -257,12 +261,18 @@ static void count_crowd(const struct dalcs_radau *r, struct dalcs_radau_part *pa
 static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
     part->jumped = false;
+    if (r->base->energy != NULL) {
+        memcpy(part->after, part->x, state_bytes);
+    }
     if (part->end == 1.0) {
         const double *end = part->out + part->stages.method->s * part->stages.layout.stride;
         memcpy(part->x, end, state_bytes);
     } else {
         dalcs_step_states(part, part->end, part->x);
         part->fresh = true; /* the next step starts inside this one */
+    }
+    if (r->base->energy != NULL) {
+        dalcs_energy_segment(r->base->energy, part, part->after);
     }
     part->t = part->t_end;
     if (part->n_crossed > 0) {

@@ -4,6 +4,7 @@
  * interpolation error of an event); from there a second one sees how the circuit goes on. The jump is
  * the limit of vanishing steps, which for passive circuits is the projection in the energy norm
  * (Heemels, Schumacher and Weiland 1999; Brogliato 2022, sec. 4). */
+#include "energy.h"
 #include "radau_internal.h"
 
 #include <math.h>
@@ -227,6 +228,9 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         moves = extrapolate(r, part, part->after, &noticeable);
     }
     if (moves) {
+        if (e->energy != NULL) {
+            dalcs_energy_move(e->energy, part, part->after);
+        }
         memcpy(part->x, part->after, (size_t)s->n_x * sizeof(double));
     }
     return DALCS_OK;
@@ -249,6 +253,9 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     if (extrapolate(r, part, part->after, &noticeable)) {
         if (noticeable) {
             return settle_jump(r, part, h);
+        }
+        if (r->base->energy != NULL) {
+            dalcs_energy_move(r->base->energy, part, part->after);
         }
         memcpy(part->x, part->after, (size_t)s->n_x * sizeof(double));
     }
@@ -274,6 +281,10 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
             out[dalcs_system_n_columns(s) + i] = 0.0;
         }
     }
+    if (r->base->energy != NULL) {
+        dalcs_energy_step(r->base->energy, part->index, part->x, part->y1, part->u + s->n_x, h);
+    }
+    part->by_euler = true;
     double limit = dalcs_radau_limit(r, part);
     part->h = h;
     part->end = 1.0;

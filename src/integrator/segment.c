@@ -6,6 +6,7 @@
  * and whether the state jumps, by a projection whether the state is only off by what interpolation left
  * of it, by shorter steps whether the error was the step's. Where all fail, as where events accumulate
  * in finite time, implicit Euler goes on by itself for a while, certified and a little at a time. */
+#include "energy.h"
 #include "guards.h"
 #include "radau_internal.h"
 
@@ -99,8 +100,8 @@ struct search {
 /* Puts a state that is a little off, as interpolation leaves it at an event, on what its mode allows:
  * that is where the stages of a step in the mode are, here so short a step that only such a defect
  * moves the state, and where their polynomial starts. */
-static enum dalcs_status project(struct dalcs_radau_part *part, const struct search *search,
-                                 bool *moved) {
+static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                 const struct search *search, bool *moved) {
     const struct dalcs_collocation *m = part->stages.method;
     int n_x = part->component->system->n_x;
     int stride = part->stages.layout.stride;
@@ -125,6 +126,9 @@ static enum dalcs_status project(struct dalcs_radau_part *part, const struct sea
         *moved = *moved || defect > 4.0 * regular;
     }
     if (*moved) {
+        if (r->base->energy != NULL) {
+            dalcs_energy_move(r->base->energy, part, part->after);
+        }
         memcpy(part->x, part->after, (size_t)n_x * sizeof(double));
     }
     return DALCS_OK;
@@ -217,7 +221,7 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     if (quality->ratio < most_projected && !search->fixed && !search->projected && asked) {
         bool moved;
         search->projected = true;
-        DALCS_TRY(project(part, search, &moved));
+        DALCS_TRY(project(r, part, search, &moved));
         if (moved) {
             return DALCS_OK;
         }
@@ -281,6 +285,7 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
                    const struct search *search, double theta,
                    const struct dalcs_step_quality *quality, double residual) {
     part->end = theta;
+    part->by_euler = false;
     double t_end = part->t + theta * part->h;
     part->why = part->n_crossed > 0 ? DALCS_END_AT_EVENT : DALCS_END_OF_STEP;
     if (part->n_crossed == 0 && t_end >= search->limit - r->resolution) {
@@ -343,7 +348,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         quality.drift > (search->fixed ? 0.0 : worth_projecting)) {
         bool moved;
         search->projected = true;
-        DALCS_TRY(project(part, search, &moved));
+        DALCS_TRY(project(r, part, search, &moved));
         return DALCS_OK;
     }
     if (part->fresh) {

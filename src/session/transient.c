@@ -4,7 +4,7 @@
  * rows are evaluated when they are due. dalcs_transient_run at the end is the table of contents. */
 #include "session_internal.h"
 
-#include "radau.h"
+#include "energy.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -270,17 +270,61 @@ static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau)
     }
 }
 
+/* ---- The ledger of energies ---------------------------------------------------------------- */
+
+/* Who is told of a jump. */
+struct jump_listeners {
+    struct dalcs_run *run;
+    struct dalcs_energy *energy;
+};
+
+static enum dalcs_status enter_jump(void *user, const struct dalcs_euler_jump *jump) {
+    const struct jump_listeners *listeners = user;
+    dalcs_energy_jump(listeners->energy, jump);
+    return dalcs_note_jump(listeners->run, jump);
+}
+
+/* The ledger into the report. Where it does not add up, an equation was not what its devices are, or a
+ * step went where it should not. */
+static enum dalcs_status close_ledger(struct dalcs_run *r, struct dalcs_energy *energy,
+                                      struct dalcs_euler *e, struct dalcs_radau *radau) {
+    DALCS_TRY(dalcs_energy_close(energy, e, radau));
+    struct dalcs_report *report = &r->s->report;
+    if (!isfinite(energy->turnover)) { /* an unstable circuit, beyond what doubles hold */
+        return DALCS_OK;
+    }
+    report->energy.present = true;
+    report->energy.sources = energy->account[DALCS_POWER_SOURCES];
+    report->energy.resistors = energy->account[DALCS_POWER_RESISTORS];
+    report->energy.diodes = energy->account[DALCS_POWER_DIODES];
+    report->energy.jumps = energy->jumps;
+    report->energy.stored_change = energy->stored_change;
+    report->energy.method = energy->method;
+    report->energy.balance = dalcs_energy_balance(energy);
+    double unexplained = dalcs_energy_unexplained(energy, radau);
+    if (unexplained == 0.0) {
+        return DALCS_OK;
+    }
+    dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, NULL,
+                   "internal error: the energy balance is off by %.3g J of %.3g J; please report "
+                   "this netlist",
+                   unexplained, energy->turnover);
+    return DALCS_E_INTERNAL;
+}
+
 enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     struct dalcs_session *s = r->s;
     const double stop = s->circuit.transient.stop;
     bool is_euler = r->method == DALCS_METHOD_EULER;
     struct dalcs_euler e;
     struct dalcs_radau radau = {0};
+    struct dalcs_energy energy = {0};
+    struct jump_listeners listeners = {r, &energy};
     struct dalcs_schedule schedule = choose_schedule(r);
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, r->h, stop));
-    e.detect_jumps = r->options->record;
+    e.detect_jumps = r->options->record || r->options->energy;
     e.jump_user = r;
     e.on_jump = dalcs_note_jump;
     e.open_user = &r->undetermined;
@@ -298,12 +342,22 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
                                                     .stop = stop};
         status = dalcs_radau_setup(&radau, &e, &options, &r->osnsp);
     }
+    if (status == DALCS_OK && r->options->energy) {
+        status = dalcs_energy_setup(&energy, &e, is_euler ? NULL : &radau);
+        e.energy = &energy;
+        e.jump_user = &listeners;
+        e.on_jump = enter_jump;
+    }
     if (status == DALCS_OK) {
         status = walk(r, &e, is_euler ? NULL : &radau);
+    }
+    if (status == DALCS_OK && r->options->energy) {
+        status = close_ledger(r, &energy, &e, is_euler ? NULL : &radau);
     }
     dalcs_explain_failure(r, &e, status);
     dalcs_run_add_work(r, &e);
     add_radau_work(r, &radau);
+    dalcs_energy_finish(&energy);
     dalcs_radau_finish(&radau);
     dalcs_euler_finish(&e);
     return status;

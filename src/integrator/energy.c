@@ -1,0 +1,569 @@
+/* energy.c - the powers of all devices over steps, segments and jumps. */
+#include "energy.h"
+
+#include "source_products.h"
+#include "stage_rule.h"
+#include "step_error.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Residuals that answers may have, over the scales of the certificate. */
+static const double residual_part = 1e-12;
+
+/* A balance of more than this part of what was moved is no rounding; it is 1e-10 at most. */
+static const double most_off = 1e-7;
+
+/* What radau misses is some 0.01 of its inner tolerance, over what was moved: a waveform is wrong where
+ * it is so much. */
+static const double most_missed = 1e5;
+
+/* ---- Setting up ---------------------------------------------------------------------------- */
+
+static bool touches(const struct dalcs_power_term *term, int column) {
+    return term->first[0] == column || term->first[1] == column || term->second[0] == column ||
+           term->second[1] == column;
+}
+
+/* Do sources alone decide the power? A term's columns are all bystanders or none is. */
+static bool is_decided(const struct dalcs_radau_part *radau, const struct dalcs_power_term *term) {
+    if (radau == NULL || radau->kind == DALCS_PART_ALGEBRAIC) {
+        return radau != NULL;
+    }
+    const struct dalcs_bystanders *b = &radau->excitation.bystanders;
+    bool found = false;
+    for (int i = 0; i < b->n && !found; i++) {
+        found = touches(term, b->column[i]);
+    }
+    return found;
+}
+
+static enum dalcs_status part_setup(struct dalcs_energy_part *part,
+                                    const struct dalcs_system *system,
+                                    const struct dalcs_power *power,
+                                    const struct dalcs_radau_part *radau) {
+    part->system = system;
+    part->term = dalcs_alloc((size_t)power->n, sizeof(*part->term));
+    part->largest = dalcs_alloc((size_t)dalcs_system_n_columns(system), sizeof(double));
+    part->half = dalcs_alloc((size_t)system->n_x, sizeof(double));
+    part->defect = dalcs_alloc((size_t)system->n_x, sizeof(double));
+    if (part->term == NULL || part->largest == NULL || part->half == NULL || part->defect == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int x = 0; x < system->n_x; x++) {
+        for (int k = system->storage.p[x]; k < system->storage.p[x + 1]; k++) {
+            part->half[x] += system->storage.j[k] == x ? 0.5 * system->storage.x[k] : 0.0;
+        }
+    }
+    for (int decided = 0; decided < 2; decided++) {
+        for (int i = 0; i < power->n; i++) {
+            if (is_decided(radau, &power->term[i]) == (decided == 1)) {
+                part->term[part->n_terms++] = power->term[i];
+            }
+        }
+        part->n_stepped = decided == 0 ? part->n_terms : part->n_stepped;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_energy_setup(struct dalcs_energy *energy, const struct dalcs_euler *e,
+                                     const struct dalcs_radau *radau) {
+    *energy = (struct dalcs_energy){.is_euler = radau == NULL, .n_parts = e->n_components};
+    energy->part = dalcs_alloc((size_t)e->n_components, sizeof(*energy->part));
+    enum dalcs_status status = energy->part == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    for (int k = 0; k < e->n_components && status == DALCS_OK; k++) {
+        status = part_setup(&energy->part[k], e->component[k].system, &e->network->power[k],
+                            radau != NULL ? &radau->part[k] : NULL);
+    }
+    if (status != DALCS_OK) {
+        dalcs_energy_finish(energy);
+    }
+    return status;
+}
+
+void dalcs_energy_finish(struct dalcs_energy *energy) {
+    for (int k = 0; energy->part != NULL && k < energy->n_parts; k++) {
+        free(energy->part[k].term);
+        free(energy->part[k].largest);
+        free(energy->part[k].half);
+        free(energy->part[k].defect);
+    }
+    free(energy->part);
+    *energy = (struct dalcs_energy){0};
+}
+
+/* ---- Entries ------------------------------------------------------------------------------- */
+
+static void enter(struct dalcs_energy *energy, enum dalcs_power_account account, double joule) {
+    energy->account[account] += joule;
+    energy->turnover += fabs(joule);
+}
+
+/* 1/2 x' storage x */
+static double stored(const struct dalcs_system *s, const double *x) {
+    double sum = 0.0;
+    for (int i = 0; i < s->n_x; i++) {
+        sum += 0.5 * x[i] * dalcs_csr_row_dot(&s->storage, i, x);
+    }
+    return sum;
+}
+
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+/* What goes back and forth in capacitors and coils, and how much rounding it may leave: a segment that
+ * is cut is a small part of a step, whose other end may be far away. */
+static void enter_swing(struct dalcs_energy *energy, const struct dalcs_energy_part *part,
+                        const double *x, const double *after, const double *far) {
+    double turnover = 0.0;
+    double size = 0.0;
+    for (int i = 0; i < part->system->n_x; i++) {
+        double near = larger(fabs(x[i]), fabs(after[i]));
+        turnover += part->half[i] * fabs(after[i] * after[i] - x[i] * x[i]);
+        size += part->half[i] * near * larger(near, fabs(far[i]));
+    }
+    energy->turnover += turnover;
+    energy->rounding += residual_part * size;
+}
+
+void dalcs_energy_start(struct dalcs_energy *energy, int k, const double *x) {
+    energy->part[k].stored_at_start = stored(energy->part[k].system, x);
+}
+
+static double difference(const double *y, const int *column) {
+    return (column[0] >= 0 ? y[column[0]] : 0.0) - (column[1] >= 0 ? y[column[1]] : 0.0);
+}
+
+static double power_of(const struct dalcs_power_term *term, const double *y, const double *inputs) {
+    double first = term->coefficient * difference(y, term->first);
+    switch (term->factor) {
+    case DALCS_POWER_CONSTANT:
+        return first;
+    case DALCS_POWER_SQUARE:
+        return first * difference(y, term->first);
+    case DALCS_POWER_PRODUCT:
+        return first * difference(y, term->second);
+    case DALCS_POWER_INPUT:
+        return first * inputs[term->input];
+    }
+    return 0.0;
+}
+
+void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, const double *y,
+                       const double *inputs, double h) {
+    struct dalcs_energy_part *part = &energy->part[k];
+    for (int i = 0; i < part->n_stepped; i++) {
+        enter(energy, part->term[i].account, h * power_of(&part->term[i], y, inputs));
+    }
+    double loss = dalcs_euler_jump_energy(part->system, x, y);
+    double jumps = fmin(part->lost, loss);
+    part->lost = 0.0;
+    energy->jumps += jumps;
+    energy->method += loss - jumps;
+    energy->turnover += loss;
+    enter_swing(energy, part, x, y, y);
+    for (int c = 0; c < dalcs_system_n_columns(part->system); c++) {
+        part->largest[c] = larger(part->largest[c], fabs(y[c]));
+    }
+}
+
+void dalcs_energy_move(struct dalcs_energy *energy, const struct dalcs_radau_part *part,
+                       const double *after) {
+    const struct dalcs_system *s = part->component->system;
+    double change = stored(s, after) - stored(s, part->x);
+    energy->method -= change;
+    energy->missed += fabs(change);
+    energy->turnover += fabs(change);
+}
+
+void dalcs_energy_jump(struct dalcs_energy *energy, const struct dalcs_euler_jump *jump) {
+    struct dalcs_energy_part *part = &energy->part[jump->system];
+    if (energy->is_euler) { /* the step that crosses the jump has the rest */
+        part->lost += jump->energy_lost;
+        return;
+    }
+    double in_thresholds = 0.0;
+    for (int i = 0; i < part->n_stepped; i++) {
+        const struct dalcs_power_term *term = &part->term[i];
+        if (term->pair >= 0 && term->factor == DALCS_POWER_CONSTANT) {
+            in_thresholds += term->coefficient * jump->charge[term->pair];
+        }
+    }
+    enter(energy, DALCS_POWER_DIODES, in_thresholds);
+    enter(energy, DALCS_POWER_SOURCES, jump->source_work);
+    energy->jumps += jump->energy_lost;
+    energy->turnover += jump->energy_lost;
+    enter_swing(energy, part, jump->before, jump->after, jump->after);
+}
+
+/* ---- A segment ----------------------------------------------------------------------------- */
+
+/* value[s] of a difference of columns at the stages. */
+static void fetch(const struct dalcs_radau_part *part, const int *column, double *value) {
+    int s = part->stages.method->s;
+    int stride = part->stages.layout.stride;
+    const double *y = part->out + stride;
+    if (column[0] >= 0 && column[1] >= 0) {
+        for (int i = 0; i < s; i++) {
+            value[i] = y[i * stride + column[0]] - y[i * stride + column[1]];
+        }
+        return;
+    }
+    int one = column[0] >= 0 ? column[0] : column[1];
+    double sign = column[0] >= 0 ? 1.0 : one >= 0 ? -1.0 : 0.0;
+    for (int i = 0; i < s; i++) {
+        value[i] = one >= 0 ? sign * y[i * stride + one] : 0.0;
+    }
+}
+
+/* value[s] of an input, from the coefficients that the step was made with. */
+static void fetch_input(const struct dalcs_radau_part *part, int input, double *value) {
+    const struct dalcs_excitation *e = &part->excitation;
+    const double *coefficient = part->in + part->component->system->n_x + 1;
+    for (int i = 0; i < part->stages.method->s; i++) {
+        value[i] = e->constant[input];
+        for (int f = 0; f < e->n_functions; f++) {
+            if (e->function[f].input == input) {
+                value[i] +=
+                    coefficient[f] * dalcs_excitation_function_at(&e->function[f], part->h,
+                                                                  part->stages.method->node[i + 1]);
+            }
+        }
+    }
+}
+
+static double integral_of(const struct dalcs_radau_part *part, const struct dalcs_stage_rule *rule,
+                          const struct dalcs_power_term *term) {
+    double first[DALCS_MAX_STAGES];
+    double second[DALCS_MAX_STAGES];
+    fetch(part, term->first, first);
+    switch (term->factor) {
+    case DALCS_POWER_CONSTANT:
+        return term->coefficient * dalcs_stage_rule_integral(rule, first);
+    case DALCS_POWER_SQUARE:
+        return term->coefficient * dalcs_stage_rule_product(rule, first, first);
+    case DALCS_POWER_PRODUCT:
+        fetch(part, term->second, second);
+        return term->coefficient * dalcs_stage_rule_product(rule, first, second);
+    case DALCS_POWER_INPUT:
+        fetch_input(part, term->input, second);
+        return term->coefficient * dalcs_stage_rule_product(rule, first, second);
+    }
+    return 0.0;
+}
+
+static double loss_of(const struct dalcs_energy_part *ledger, const struct dalcs_radau_part *part,
+                      const struct dalcs_stage_rule *rule, const double *state) {
+    const struct dalcs_collocation *m = part->stages.method;
+    const struct dalcs_system *s = ledger->system;
+    int stride = part->stages.layout.stride;
+    double square = 0.0;
+    double along_start = 0.0;
+    double along[DALCS_MAX_STAGES] = {0.0};
+    for (int x = 0; x < s->n_x; x++) {
+        double start = 0.0;
+        for (int i = 0; i < m->s; i++) {
+            start += m->back[i] * part->out[(i + 1) * stride + x];
+        }
+        ledger->defect[x] = state[x] - start;
+    }
+    for (int x = 0; x < s->n_x; x++) {
+        double loaded = dalcs_csr_row_dot(&s->storage, x, ledger->defect);
+        square += loaded * ledger->defect[x];
+        along_start += loaded * (state[x] - ledger->defect[x]);
+        for (int i = 0; i < m->s && !rule->is_whole; i++) {
+            along[i] += loaded * part->out[(i + 1) * stride + x];
+        }
+    }
+    return dalcs_stage_rule_loss(rule, square, along, along_start);
+}
+
+void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_part *part,
+                          const double *start) {
+    const struct dalcs_energy_part *ledger = &energy->part[part->index];
+    struct dalcs_stage_rule rule;
+    if (part->by_euler) {
+        return; /* entered when it was made */
+    }
+    dalcs_stage_rule_set(&rule, part->stages.method, part->end);
+    for (int i = 0; i < ledger->n_stepped; i++) {
+        const struct dalcs_power_term *term = &ledger->term[i];
+        if (term->pair < 0 || dalcs_osnsp_is_on(&part->component->osnsp, term->pair)) {
+            enter(energy, term->account, part->h * integral_of(part, &rule, term));
+        }
+    }
+    double loss = loss_of(ledger, part, &rule, start);
+    energy->method += loss;
+    energy->missed += fabs(loss);
+    energy->turnover += fabs(loss);
+    enter_swing(energy, ledger, start, part->x,
+                part->out + part->stages.method->s * part->stages.layout.stride);
+}
+
+/* ---- What needs no steps ------------------------------------------------------------------- */
+
+/* Columns as sums of the waves of sources: the constant 1, then each input that varies. */
+struct waves {
+    int n;
+    const struct dalcs_stimulus **stimulus; /* [n] */
+    int *of_input;                          /* [n_inputs] */
+    double *gain;                           /* [n_columns][n] */
+    double *first, *second;                 /* [n] work */
+    double *power;                          /* [n_accounts][n][n] */
+};
+
+static const struct dalcs_stimulus ONE = {.kind = DALCS_STIMULUS_DC, .dc = 1.0};
+
+static const struct dalcs_stimulus *stimulus_of(const struct dalcs_component *c, int input) {
+    return input > 0 ? &c->circuit->stimulus[c->system->stimulus[input]] : &ONE;
+}
+
+/* The inputs of one wave alone. */
+static void unit_inputs(const struct dalcs_component *c, const struct waves *w, int wave,
+                        double *inputs) {
+    for (int k = 0; k < c->system->n_inputs; k++) {
+        bool varies = w->of_input[k] > 0;
+        double constant = k > 0 ? stimulus_of(c, k)->dc : 1.0;
+        inputs[k] = w->of_input[k] == wave ? (varies ? 1.0 : constant) : 0.0;
+    }
+}
+
+/* Bystanders' gains are known; other columns are answers to each wave alone. */
+static enum dalcs_status find_gains(struct dalcs_component *c, const struct dalcs_bystanders *b,
+                                    struct waves *w) {
+    const struct dalcs_system *s = c->system;
+    bool all = s->n_x == 0 && s->n_pairs == 0 && b->n < dalcs_system_n_equations(s);
+    for (int k = 0; k < w->n; k++) {
+        double *inputs = c->probe_u + s->n_x;
+        unit_inputs(c, w, k, inputs);
+        if (all) {
+            DALCS_TRY(dalcs_component_solve(c, 0.0, c->probe_u, c->scratch));
+            for (int i = 0; i < dalcs_system_n_columns(s); i++) {
+                w->gain[i * w->n + k] = c->scratch[i];
+            }
+        }
+        for (int i = 0; i < b->n && !all; i++) {
+            double sum = 0.0;
+            for (int j = 0; j < s->n_inputs; j++) {
+                sum += b->gain[i * s->n_inputs + j] * inputs[j];
+            }
+            w->gain[b->column[i] * w->n + k] = sum;
+        }
+    }
+    return DALCS_OK;
+}
+
+static void gain_of(const struct waves *w, const int *column, double *gain) {
+    for (int k = 0; k < w->n; k++) {
+        gain[k] = (column[0] >= 0 ? w->gain[column[0] * w->n + k] : 0.0) -
+                  (column[1] >= 0 ? w->gain[column[1] * w->n + k] : 0.0);
+    }
+}
+
+static void add_power(struct waves *w, const struct dalcs_power_term *term) {
+    double *power = w->power + term->account * w->n * w->n;
+    gain_of(w, term->first, w->first);
+    switch (term->factor) {
+    case DALCS_POWER_CONSTANT:
+        memset(w->second, 0, (size_t)w->n * sizeof(double));
+        w->second[0] = 1.0;
+        break;
+    case DALCS_POWER_SQUARE:
+        memcpy(w->second, w->first, (size_t)w->n * sizeof(double));
+        break;
+    case DALCS_POWER_PRODUCT:
+        gain_of(w, term->second, w->second);
+        break;
+    case DALCS_POWER_INPUT:
+        memset(w->second, 0, (size_t)w->n * sizeof(double));
+        w->second[w->of_input[term->input]] = 1.0;
+        break;
+    }
+    for (int i = 0; i < w->n; i++) {
+        for (int j = 0; j < w->n; j++) {
+            power[i * w->n + j] += term->coefficient * w->first[i] * w->second[j];
+        }
+    }
+}
+
+/* Leaves out the waves whose sources give nothing, such as those of gates: their edges are many. */
+static void drop_idle(struct waves *w) {
+    int n = w->n;
+    int kept = 0;
+    for (int k = 0; k < n; k++) {
+        bool used = false;
+        for (int i = 0; i < DALCS_N_POWER_ACCOUNTS * n; i++) {
+            used =
+                used || w->power[i * n + k] != 0.0 || w->power[(i / n * n + k) * n + i % n] != 0.0;
+        }
+        if (used) {
+            w->stimulus[kept] = w->stimulus[k];
+            w->of_input[kept++] = k; /* of no more use for inputs */
+        }
+    }
+    for (int a = 0; a < DALCS_N_POWER_ACCOUNTS; a++) {
+        for (int i = 0; i < kept; i++) {
+            for (int j = 0; j < kept; j++) {
+                w->power[(a * kept + i) * kept + j] =
+                    w->power[(a * n + w->of_input[i]) * n + w->of_input[j]];
+            }
+        }
+    }
+    w->n = kept;
+}
+
+static enum dalcs_status integrate(struct dalcs_energy *energy, struct waves *w, double stop) {
+    size_t n = (size_t)w->n;
+    struct dalcs_stimulus_piece *piece = dalcs_alloc(n, sizeof(*piece));
+    double *integral = dalcs_alloc(n * n, sizeof(*integral));
+    enum dalcs_status status = piece == NULL || integral == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    if (status == DALCS_OK && n > 0) {
+        dalcs_source_products(w->n, w->stimulus, stop, piece, integral);
+        for (int a = 0; a < DALCS_N_POWER_ACCOUNTS; a++) {
+            double sum = 0.0;
+            for (size_t i = 0; i < n * n; i++) {
+                sum += w->power[(size_t)a * n * n + i] * integral[i];
+            }
+            enter(energy, (enum dalcs_power_account)a, sum);
+        }
+    }
+    free(piece);
+    free(integral);
+    return status;
+}
+
+static enum dalcs_status enter_decided(struct dalcs_energy *energy,
+                                       const struct dalcs_energy_part *part,
+                                       struct dalcs_component *c, const struct dalcs_bystanders *b,
+                                       double stop) {
+    const struct dalcs_system *s = c->system;
+    if (part->n_terms == part->n_stepped) {
+        return DALCS_OK;
+    }
+    struct waves w = {.n = c->n_varying + 1};
+    size_t n = (size_t)w.n;
+    w.stimulus = dalcs_alloc(n, sizeof(const struct dalcs_stimulus *));
+    w.of_input = dalcs_alloc((size_t)s->n_inputs, sizeof(*w.of_input));
+    w.gain = dalcs_alloc((size_t)dalcs_system_n_columns(s) * n, sizeof(*w.gain));
+    w.first = dalcs_alloc(n, sizeof(*w.first));
+    w.second = dalcs_alloc(n, sizeof(*w.second));
+    w.power = dalcs_alloc(DALCS_N_POWER_ACCOUNTS * n * n, sizeof(*w.power));
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (w.stimulus != NULL && w.of_input != NULL && w.gain != NULL && w.first != NULL &&
+        w.second != NULL && w.power != NULL) {
+        w.stimulus[0] = &ONE;
+        for (int i = 0; i < c->n_varying; i++) {
+            w.stimulus[i + 1] = stimulus_of(c, c->varying[i]);
+            w.of_input[c->varying[i]] = i + 1;
+        }
+        status = find_gains(c, b, &w);
+    }
+    if (status == DALCS_OK) {
+        for (int i = part->n_stepped; i < part->n_terms; i++) {
+            add_power(&w, &part->term[i]);
+        }
+        drop_idle(&w);
+        status = integrate(energy, &w, stop);
+    }
+    free(w.stimulus);
+    free(w.of_input);
+    free(w.gain);
+    free(w.first);
+    free(w.second);
+    free(w.power);
+    return status;
+}
+
+/* ---- The end ------------------------------------------------------------------------------- */
+
+/* The largest conductance in the equations of a block that are currents, and the largest resistance in
+ * those that are voltages. */
+static void raise_entries(const struct dalcs_system *s, const struct dalcs_csr *block,
+                          double seconds, double *conductance, double *resistance) {
+    for (int r = 0; r < block->n_rows; r++) {
+        double *most = s->row_is_current[r] ? conductance : resistance;
+        for (int k = block->p[r]; k < block->p[r + 1]; k++) {
+            if (s->column_is_current[block->j[k]] != s->row_is_current[r]) {
+                *most = larger(*most, fabs(block->x[k]) / seconds);
+            }
+        }
+    }
+}
+
+/* Currents and voltages of any answer may be off by a part of what the largest drive through the
+ * largest conductance and resistance; where a circuit has hardly any voltage, by a part of what its
+ * currents make at the largest conductance, and vice versa. Their powers over the run add up. */
+static double power_of_rounding(const struct dalcs_system *s, double stop, const double *largest) {
+    double g = 0.0;
+    double r = 0.0;
+    raise_entries(s, &s->A, 1.0, &g, &r);
+    double power = g * largest[0] * largest[0] + r * largest[1] * largest[1];
+    raise_entries(s, &s->P, stop, &g, &r);
+    double v = g > 0.0 ? larger(largest[0], largest[1] / g) : largest[0];
+    double i = r > 0.0 ? larger(largest[1], largest[0] / r) : largest[1];
+    return dalcs_system_n_columns(s) * (power + v * i);
+}
+
+static enum dalcs_status close_radau(struct dalcs_energy *energy, struct dalcs_radau_part *radau,
+                                     double stop, double *largest) {
+    struct dalcs_energy_part *part = &energy->part[radau->index];
+    if (radau->kind == DALCS_PART_STEPPED) {
+        memcpy(radau->after, radau->x, (size_t)part->system->n_x * sizeof(double));
+        dalcs_step_states(radau, radau->end, radau->x);
+        dalcs_energy_segment(energy, radau, radau->after);
+        energy->stored_change += stored(part->system, radau->x) - part->stored_at_start;
+        largest[0] = radau->unit_scale[0];
+        largest[1] = radau->unit_scale[1];
+    }
+    return enter_decided(energy, part, radau->component, &radau->excitation.bystanders, stop);
+}
+
+static void close_euler(struct dalcs_energy *energy, int k, const struct dalcs_component *c,
+                        double stop, double *largest) {
+    const struct dalcs_energy_part *part = &energy->part[k];
+    if (c->is_static) { /* it took no steps */
+        dalcs_energy_step(energy, k, c->y, c->y, c->u + c->system->n_x, stop);
+    }
+    energy->stored_change += stored(part->system, c->u) - part->stored_at_start;
+    for (int i = 0; i < dalcs_system_n_columns(part->system); i++) {
+        int unit = part->system->column_is_current[i];
+        largest[unit] = larger(largest[unit], part->largest[i]);
+    }
+}
+
+enum dalcs_status dalcs_energy_close(struct dalcs_energy *energy, struct dalcs_euler *e,
+                                     struct dalcs_radau *radau) {
+    double stop = radau != NULL ? radau->options.stop : e->grid.stop;
+    for (int k = 0; k < energy->n_parts; k++) {
+        const struct dalcs_energy_part *part = &energy->part[k];
+        double largest[2] = {0.0, 0.0}; /* V, A */
+        if (radau != NULL) {
+            DALCS_TRY(close_radau(energy, &radau->part[k], stop, largest));
+        } else {
+            close_euler(energy, k, &e->component[k], stop, largest);
+        }
+        energy->rounding += residual_part * stop * power_of_rounding(part->system, stop, largest);
+    }
+    return DALCS_OK;
+}
+
+double dalcs_energy_balance(const struct dalcs_energy *energy) {
+    return energy->account[DALCS_POWER_SOURCES] - energy->account[DALCS_POWER_RESISTORS] -
+           energy->account[DALCS_POWER_DIODES] - energy->jumps - energy->stored_change -
+           energy->method;
+}
+
+double dalcs_energy_unexplained(const struct dalcs_energy *energy,
+                                const struct dalcs_radau *radau) {
+    double balance = dalcs_energy_balance(energy);
+    if (fabs(balance) > most_off * energy->turnover + energy->rounding) {
+        return balance;
+    }
+    if (radau == NULL || radau->options.fixed_step > 0.0) { /* no error is controlled */
+        return 0.0;
+    }
+    double allowed = most_missed * radau->inner_tolerance * energy->turnover + energy->rounding;
+    return energy->missed > allowed ? energy->missed : 0.0;
+}
