@@ -123,7 +123,7 @@ static double micro_length(const struct dalcs_radau *r, const struct dalcs_radau
                                            : dalcs_radau_ladder((part->level & ~3) + MICRO);
     h = ldexp(h, 5 * longer);
     double room = dalcs_radau_limit(r, part) - part->t;
-    for (int k = 0; k < 8 && 4.0 * h > room; k++) {
+    for (int k = 0; k < 8 && h > shorter * room; k++) {
         h *= 0.0625;
     }
     return h;

@@ -233,7 +233,7 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     search->ratio_before = quality->ratio;
     bool is_rounding = search->stuck >= STUCK && quality->of_unit < most_tolerated * part->rounding;
     bool is_small = search->stuck >= VERY_STUCK && quality->of_unit < r->inner_tolerance;
-    if ((is_rounding || is_small) && search->tolerated == 1.0) {
+    if ((is_rounding || is_small) && isfinite(quality->ratio) && search->tolerated == 1.0) {
         search->tolerated = 4.0 * quality->ratio;
         part->level = search->first_level;
         return DALCS_OK;
