@@ -13,6 +13,10 @@ void dalcs_lu_common_init(klu_common *common) {
     common->scale = 0; /* the caller balances: no division by row scales in every solve */
 }
 
+void dalcs_lu_keep_diagonal(klu_common *common, bool keep) {
+    common->btf = keep ? 0 : 1;
+}
+
 /* The estimate compares pivots of different columns, which parts of a circuit with conductances far
  * apart make differ; a pivot that is this many times rcond_min of its own column is no rounding. */
 static const double clear_of_rounding = 100.0;

@@ -12,6 +12,8 @@
 
 #include <suitesparse/klu.h>
 
+#include <stdbool.h>
+
 /* P A Q = L U + F: F couples a diagonal block to the later ones, which are solved first. */
 struct dalcs_lu {
     int n;
@@ -29,6 +31,11 @@ struct dalcs_lu {
 
 /* KLU's settings and counters; one for each thread of work. */
 void dalcs_lu_common_init(klu_common *common);
+
+/* Are the next matrices to be analysed ones with a full diagonal? Then no block triangular form is
+ * sought, for it might match rows to other columns than theirs, which the ordering for little fill
+ * relies on. */
+void dalcs_lu_keep_diagonal(klu_common *common, bool keep);
 
 /* Factors the matrix of order n whose columns are (p[n+1], i[], x[]). DALCS_SINGULAR when KLU meets
  * a zero pivot, or when its cheap estimate of the reciprocal condition is below rcond_min and a pivot

@@ -99,8 +99,10 @@ static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p, int ru
         dalcs_proximal_weights(p, d, rung, &m->on[d], &m->off[d]);
     }
     fill_pattern(m);
+    dalcs_lu_keep_diagonal(&p->klu, true);
     enum dalcs_status status =
         dalcs_lu_analyze(&m->symbolic, &p->klu, (int)order, m->start, m->row);
+    dalcs_lu_keep_diagonal(&p->klu, false);
     if (status != DALCS_OK) {
         finish(m);
     }
