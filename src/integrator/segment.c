@@ -25,6 +25,10 @@ static const double worth_projecting = 1e-2;
 /* Errors over their unit that no smaller step mends are rounding's up to this. */
 static const double most_tolerated = 2e-13;
 
+/* Equations without derivatives hold to rounding, unless a mode is singular and the states contradict
+ * it, which takes a circuit that is not passive. */
+static const double largest_residual = 1e-9;
+
 enum {
     MOST_RUNGS = 6, /* of the ladder, down at once */
     STUCK = 3,      /* smaller steps without a smaller error */
@@ -333,7 +337,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return status;
     }
     double end = fmin(1.0, (search->limit - part->t) / part->h);
-    bool means_something = status == DALCS_OK;
+    bool means_something = status == DALCS_OK && dalcs_stage_residual(entry) <= largest_residual;
     if (means_something) {
         dalcs_step_judge(r, part, entry, end, &quality);
         means_something =
