@@ -26,6 +26,8 @@ static void find_blocks(const struct dalcs_system *s, int *parent) {
     }
     for (int r = 0; r < n_equations; r++) {
         join_row(parent, &s->A, r, n_columns + r);
+        /* what a source delivers is decided only if its voltage and its current both are */
+        dalcs_union_join(parent, s->dual[r], n_columns + r);
     }
     for (int c = 0; c < n_equations; c++) {
         if (s->column[c].kind == DALCS_LABEL_REFERENCE) {

@@ -26,7 +26,8 @@ static bool touches(const struct dalcs_power_term *term, int column) {
            term->second[1] == column;
 }
 
-/* Do sources alone decide the power? A term's columns are all bystanders or none is. */
+/* Do sources alone decide the power? A term's columns are all bystanders or none is, for bystanders are
+ * blocks with both the voltages and the currents of their sources. */
 static bool is_decided(const struct dalcs_radau_part *radau, const struct dalcs_power_term *term) {
     if (radau == NULL || radau->kind == DALCS_PART_ALGEBRAIC) {
         return radau != NULL;

@@ -122,8 +122,10 @@ static double micro_length(const struct dalcs_radau *r, const struct dalcs_radau
     double h = r->options.fixed_step > 0.0 ? ldexp(r->options.fixed_step, -MICRO)
                                            : dalcs_radau_ladder((part->level & ~3) + MICRO);
     h = ldexp(h, 5 * longer);
+    /* clear of the next edge: on the flank of a fast source more may happen than at t */
     double room = dalcs_radau_limit(r, part) - part->t;
-    for (int k = 0; k < 8 && h > shorter * room; k++) {
+    double most = fmin(0.25, ldexp(shorter, 5 * longer)) * room;
+    for (int k = 0; k < 8 && h > most; k++) {
         h *= 0.0625;
     }
     return h;
@@ -223,8 +225,14 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         if (shorter * h < 64.0 * r->resolution) {
             break;
         }
+        enum dalcs_status status = micro_steps(r, part, shorter * h);
+        if (status > DALCS_OK) { /* too short for a certificate: the last ones have to do */
+            DALCS_TRY(micro_steps(r, part, h));
+            moves = extrapolate(r, part, part->after, &noticeable);
+            break;
+        }
+        DALCS_TRY(status);
         h *= shorter;
-        DALCS_TRY(micro_steps(r, part, h));
         moves = extrapolate(r, part, part->after, &noticeable);
     }
     if (moves) {

@@ -25,9 +25,9 @@ static const double worth_projecting = 1e-2;
 /* Errors over their unit that no smaller step mends are rounding's up to this. */
 static const double most_tolerated = 2e-13;
 
-/* Equations without derivatives hold to rounding, unless a mode is singular and the states contradict
- * it, which takes a circuit that is not passive. */
-static const double largest_residual = 1e-9;
+/* Equations without derivatives hold to rounding, even if it is rounding of large conductances, unless
+ * a mode is singular and the states contradict it, which takes a circuit that is not passive. */
+static const double largest_residual = 1e-6;
 
 enum {
     MOST_RUNGS = 6, /* of the ladder, down at once */

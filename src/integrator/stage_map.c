@@ -579,7 +579,8 @@ static void fill_column(struct builder *b, int column, int rhs_column, const dou
 static void check_column(struct builder *b, int column, int rhs_column, double share) {
     const double *y = b->node + b->stages->method->s * b->n;
     bool is_state = column < b->n_x;
-    double largest = 0.0;
+    /* what a state of 1 is in balanced units: where it stays as it is all else is rounding of that */
+    double largest = is_state ? 1.0 / b->column_scale[column] : 0.0;
     double worst = 0.0;
     for (int r = b->n_x; r < b->n && (b->nullity == 0 || is_state); r++) {
         double residual = -b->rhs[rhs_column * b->n + r] * (is_state ? 1.0 : share);

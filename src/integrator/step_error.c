@@ -114,17 +114,6 @@ void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double
     }
 }
 
-/* What a unit has reached before the step: a step that is wrong is no measure of its own error. */
-static double known_unit(const struct dalcs_radau_part *part, const struct dalcs_step_quality *q,
-                         int of) {
-    const struct dalcs_system *s = part->component->system;
-    double unit = part->unit_scale[of];
-    for (int x = 0; x < s->n_x; x++) {
-        unit = s->column_is_current[x] == (of == 1) ? larger(unit, fabs(part->x[x])) : unit;
-    }
-    return unit > 0.0 ? unit : q->unit[of];
-}
-
 void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                       const struct dalcs_stage_entry *entry, double end,
                       struct dalcs_step_quality *q) {
@@ -178,7 +167,7 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
             q->ratio = ratio;
         }
         if (!(ratio <= 1.0)) {
-            q->of_unit = larger(q->of_unit, error / known_unit(part, q, of));
+            q->of_unit = larger(q->of_unit, error / q->unit[of]);
         }
         if (ratio != ratio) {
             return;
