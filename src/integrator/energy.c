@@ -500,8 +500,8 @@ static double power_of_rounding(const struct dalcs_system *s, double stop, const
     double g = 0.0;
     double r = 0.0;
     raise_entries(s, &s->A, 1.0, &g, &r);
-    double power = g * largest[0] * largest[0] + r * largest[1] * largest[1];
     raise_entries(s, &s->P, stop, &g, &r);
+    double power = g * largest[0] * largest[0] + r * largest[1] * largest[1];
     double v = g > 0.0 ? larger(largest[0], largest[1] / g) : largest[0];
     double i = r > 0.0 ? larger(largest[1], largest[0] / r) : largest[1];
     return dalcs_system_n_columns(s) * (power + v * i);

@@ -337,7 +337,14 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return status;
     }
     double end = fmin(1.0, (search->limit - part->t) / part->h);
-    bool means_something = status == DALCS_OK && dalcs_stage_residual(entry) <= largest_residual;
+    if (status == DALCS_OK && !(dalcs_stage_residual(entry) <= largest_residual)) {
+        if (part->fresh && search->restarts == 0) {
+            return restart(r, part, search, false);
+        }
+        *done = true; /* no length mends it */
+        return fall_back(r, part, search);
+    }
+    bool means_something = status == DALCS_OK;
     if (means_something) {
         dalcs_step_judge(r, part, entry, end, &quality);
         means_something =

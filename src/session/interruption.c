@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A flux below this part of the largest is rounding. */
+/* A flux below this part of the largest is rounding, and so is a change of a current. */
 static const double noticeable = 1e-9;
 
 /* The coil whose current changes most. */
@@ -24,7 +24,8 @@ static const struct dalcs_state *interrupted_coil(const struct dalcs_network *n,
         }
         double from = dalcs_probe_value(&x->probe, j->before, no_inputs);
         double to = dalcs_probe_value(&x->probe, j->after, no_inputs);
-        if (fabs(to - from) > most) {
+        bool jumps = fabs(to - from) > noticeable * fmax(fabs(from), fabs(to));
+        if (jumps && fabs(to - from) > most) {
             most = fabs(to - from);
             coil = x;
             *before = from;
