@@ -10,6 +10,7 @@
 enum dalcs_model_kind {
     DALCS_MODEL_DIODE,
     DALCS_MODEL_SWITCH,
+    DALCS_MODEL_CURRENT_SWITCH,
     DALCS_MODEL_OTHER, /* of a device that does not exist here */
     DALCS_MODEL_WRONG  /* had errors: a use of it is no second error */
 };
@@ -48,10 +49,10 @@ struct dalcs_builder {
     struct dalcs_names devices; /* name -> index, K cards follow from n_device_cards on */
     const struct dalcs_token **device_token; /* where they are, by the same index */
     const struct dalcs_token *
-        *control_token; /* [n_device_cards] the V source that an F or H names */
+        *control_token; /* [n_device_cards] the V source that an F, H or W names */
     int n_device_cards;
     int n_couplings_seen;     /* K cards so far, right or wrong */
-    struct dalcs_names pairs; /* "3 7": coils 3 and 7 are coupled */
+    struct dalcs_names pairs; /* "3 7": coils 3 and 7 are coupled, by the place of the card */
     int ideal_diode;          /* the model of diodes without one, -1 before the first */
 
     struct dalcs_names models; /* name -> index of model */
@@ -214,6 +215,8 @@ void dalcs_reader_unexpected(struct dalcs_reader *reader);
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind);
 void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* Coils that a K card names, at least 2. */
+int dalcs_coupling_count_coils(const struct dalcs_card *card);
 void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                         enum dalcs_device_kind kind);
 /* What needs .tran: a missing frequency, periods too short to resolve. */
@@ -225,12 +228,14 @@ bool dalcs_waveform_card_parse(struct dalcs_reader *reader, enum dalcs_quantity 
                                struct dalcs_stimulus *stimulus);
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                             enum dalcs_device_kind kind);
-/* Finds the V sources of all F and H, when all devices are known. */
+/* Finds the V sources of all F, H and W, when all devices are known. */
 void dalcs_controlled_resolve(struct dalcs_builder *builder);
 void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 bool dalcs_diode_parse_model(struct dalcs_reader *reader, struct dalcs_diode_model *model);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
-bool dalcs_switch_parse_model(struct dalcs_reader *reader, struct dalcs_switch_model *model);
+/* type: sw, csw, vswitch or iswitch */
+bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
+                              struct dalcs_switch_model *model);
 void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* Warnings about models that nothing here can use, when all elements are known. */
 void dalcs_model_check(struct dalcs_builder *builder);
@@ -248,7 +253,7 @@ struct dalcs_parameter {
  * `unknown`, which may report it; it is called until it has reported one. */
 bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_parameter *parameter,
                                  int n,
-                                 bool (*unknown)(struct dalcs_builder *builder,
+                                 bool (*unknown)(struct dalcs_reader *reader,
                                                  const struct dalcs_token *name));
 
 /* The index (in diode_model or switch_model) of a model of this kind; else an error, and -1. */

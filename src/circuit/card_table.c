@@ -108,8 +108,6 @@ static const char *refused_element(char letter) {
     case 'y':
     case 'p':
         return "transmission lines";
-    case 'w':
-        return "current controlled switches";
     case 'x':
         return "subcircuit calls";
     default:
@@ -128,8 +126,6 @@ static const char *hint_of_element(char letter) {
         return "a linear one is E, F, G or H";
     case 't':
         return "write sections of L and C";
-    case 'w':
-        return "write H to turn the current into a voltage, and a switch S";
     case 'x':
         return "write its elements in place";
     default:
@@ -183,13 +179,16 @@ static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
 }
 
 static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
-                                              const struct dalcs_token *name) {
+                                              const struct dalcs_card *card) {
     struct dalcs_builder *builder = table->builder;
+    const struct dalcs_token *name = card->token;
     const char letter = name->text[0];
     if (letter == 'k') {
+        const size_t n_coils = (size_t)dalcs_coupling_count_coils(card);
+        table->n_pairs += n_coils * (n_coils - 1) / 2;
         return DALCS_CARD_COUPLING;
     }
-    if (strchr("rlcviefghds", letter) != NULL) {
+    if (strchr("rlcviefghdsw", letter) != NULL) {
         table->n_stimuli += strchr("vic", letter) != NULL;
         return DALCS_CARD_ELEMENT;
     }
@@ -225,7 +224,7 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
         }
         return DALCS_CARD_NONE;
     }
-    return name->text[0] == '.' ? classify_dot(table, name) : classify_element(table, name);
+    return name->text[0] == '.' ? classify_dot(table, name) : classify_element(table, card);
 }
 
 /* Word number `index` of a line, as a NUL-terminated copy of at most `size` - 1 bytes. */

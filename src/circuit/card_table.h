@@ -24,6 +24,7 @@ struct dalcs_card_table {
     const char *block_begin;
     int block_depth;
     size_t n_stimuli; /* V and I, and C, which may turn into one */
+    size_t n_pairs;   /* of coupled coils */
 };
 
 /* Call once for each card in order. Reports cards that are not supported, once for a block. */

@@ -32,7 +32,7 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     builder->n_device_cards = (int)n_devices;
     circuit->device = dalcs_arena_alloc(arena, n_devices, sizeof *circuit->device);
     circuit->stimulus = dalcs_arena_alloc(arena, table.n_stimuli, sizeof *circuit->stimulus);
-    circuit->coupling = dalcs_arena_alloc(arena, n_couplings, sizeof *circuit->coupling);
+    circuit->coupling = dalcs_arena_alloc(arena, table.n_pairs, sizeof *circuit->coupling);
     circuit->diode_model = dalcs_arena_alloc(arena, n_models + 1, sizeof *circuit->diode_model);
     circuit->switch_model = dalcs_arena_alloc(arena, n_models, sizeof *circuit->switch_model);
     builder->model = dalcs_arena_alloc(&builder->scratch, n_models, sizeof *builder->model);

@@ -78,7 +78,7 @@ void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *c
 /* ---- Models -------------------------------------------------------------------------------- */
 
 /* Reports a parameter that a diode here does not have; false for one that means nothing. */
-static bool report_parameter(struct dalcs_builder *builder, const struct dalcs_token *name) {
+static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_token *name) {
     static const char *const ours[] = {"ron", "roff", "vfwd", "vrev", "rrev"};
     static const char *const berkeley[] = {
         "is",   "js",    "jsw",  "n",    "ns",  "rs",   "bv",   "ibv",  "nbv",  "ibvl",
@@ -90,6 +90,7 @@ static bool report_parameter(struct dalcs_builder *builder, const struct dalcs_t
     /* Data that libraries keep in a model, of no effect in any simulator. */
     static const char *const labels[] = {"mfg",  "type", "vpk",  "ipk",     "iave",
                                          "irms", "diss", "vceo", "icrating"};
+    struct dalcs_builder *builder = reader->builder;
     if (dalcs_builder_is_one_of(name->text, labels, sizeof labels / sizeof labels[0])) {
         return false;
     }

@@ -1,6 +1,6 @@
 /* signals.c - what is recorded: .save, .print, .plot and .probe, or the default.
  *
- * The default is every node voltage and the currents of V, L, D, S, E and H. Naming signals
+ * The default is every node voltage and the currents of V, L, D, S, W, E and H. Naming signals
  * replaces it, `all` adds it. Each signal is recorded once. */
 #include "builder.h"
 
@@ -53,7 +53,7 @@ void dalcs_signals_add_default(struct dalcs_builder *builder) {
     }
     /* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
     for (int k = 0; k < circuit->n_devices; k++) {
-        if (strchr("vldseh", circuit->device[k].name[0]) != NULL) {
+        if (strchr("vldsweh", circuit->device[k].name[0]) != NULL) {
             add_current(builder, k);
         }
     }

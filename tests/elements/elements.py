@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+"""What each element and source does, against closed forms.
+
+usage: elements.py PROGRAM
+"""
+
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker, run  # noqa: E402
+
+EXACT = 1e-9  # relative, at a tolerance of 1e-11
+
+
+class Case:
+    """Runs one netlist and compares its signals."""
+
+    def __init__(self, checker, program, netlist, at=None):
+        self.checker = checker
+        self.title = netlist.splitlines()[0]
+        self.result = run(program, netlist, method=None, tolerance=1e-11, at=at)
+        checker.check(self.result.status == 0,
+                      f"{self.title}: exit status {self.result.status}\n{self.result.stderr}")
+
+    def is_at(self, signal, time, wanted, tolerance=EXACT):
+        if self.result.rows:
+            self.checker.close(self.result.at(signal, time), wanted, tolerance,
+                               f"{self.title}: {signal} at {time:g}")
+
+    def says(self, text):
+        self.checker.check(text in self.result.stderr,
+                           f"{self.title}: '{text}' is not in\n{self.result.stderr}")
+
+
+# ---- Couplings ---------------------------------------------------------------------------------
+
+THREE_COILS = """K with three coils
+V1 a 0 SIN(0 10 1k)
+L1 a 0 1m
+L2 b 0 4m
+L3 c 0 9m
+K1 L1 L2 L3 {factor}
+R2 b 0 1g
+R3 c 0 1g
+.tran 10u 1m
+"""
+
+
+def couplings(checker, program):
+    """Without load the other coils see k sqrt(L / L1) of the first one's voltage."""
+    for factor in (1.0, 0.5):
+        case = Case(checker, program, THREE_COILS.format(factor=factor))
+        for node, ratio in (("b", 2.0), ("c", 3.0)):
+            case.is_at(f"v({node})", 0.25e-3, factor * 10 * ratio, 1e-4)
+
+
+# ---- Switches ----------------------------------------------------------------------------------
+
+# The current of Vm rises by 1 A/ms, and falls by as much after 3 ms.
+BY_CURRENT = """a switch by a current
+I1 0 a PWL(0 0 3m 3 6m 0)
+Vm a 0
+Vd d 0 1
+{switch}
+R1 b 0 1
+.model {model}
+.tran 10u 6m
+"""
+
+# Its own current decides: 10 V across 1 mH up to 0.5 A, then 10 ohm more, for good.
+OF_ITSELF = """a switch in a loop with what commands it
+V1 in 0 10
+L1 in a 1m ic=0
+Vm a b
+R1 b c 10
+W1 b c Vm m ON
+Rl c 0 10
+.model m {model}
+.tran 1u 100u uic
+"""
+
+BY_VOLTAGE = """a switch by a voltage
+V1 c 0 PWL(0 0 3m 3 6m 0)
+Vd d 0 1
+S1 d b c 0 m
+R1 b 0 1
+.model {model}
+.tran 10u 6m
+"""
+
+
+def switched_on(case, times, closes=1e-6):
+    """v(b) is 1 between times[0] and times[1], and 0 else."""
+    for edge, before, after in ((times[0], 0, 1), (times[1], 1, 0)):
+        case.is_at("v(b)", edge - closes, before)
+        case.is_at("v(b)", edge + closes, after)
+
+
+def around(*times):
+    return sorted(t + d for t in times for d in (-1e-6, 1e-6))
+
+
+def switches(checker, program):
+    for switch, model, on, off in (
+            ("W1 d b Vm m", "m CSW(It=1 Ih=0.25)", 1.25e-3, 5.25e-3),
+            ("W1 d b Vm m OFF", "m CSW(It=2)", 2e-3, 4e-3),
+            ("W1 d b Vm m", "m ISWITCH(Ion=2 Ioff=1)", 1.5e-3, 4.5e-3),
+            ("W1 d b Vm m", "m ISWITCH(It=1.5 Ih=1)", 2.5e-3, 5.5e-3)):
+        case = Case(checker, program, BY_CURRENT.format(switch=switch, model=model),
+                    around(on, off))
+        switched_on(case, (on, off))
+    for model, on, off in (("m SW(Vt=1 Vh=0.25)", 1.25e-3, 5.25e-3),
+                           ("m SW(Vt=1 Vh=-0.25)", 1e-3, 5e-3),
+                           ("m VSWITCH(Von=2 Voff=1)", 1.5e-3, 4.5e-3),
+                           ("m VSWITCH", 0.5e-3, 5.5e-3),
+                           ("m VSWITCH(Vt=1 Vh=0.25)", 1.25e-3, 5.25e-3)):
+        case = Case(checker, program, BY_VOLTAGE.format(model=model), around(on, off))
+        switched_on(case, (on, off))
+    # Inverted: on below the middle.
+    for netlist, model in ((BY_VOLTAGE, "m VSWITCH(Von=1 Voff=2)"),
+                           (BY_CURRENT, "m ISWITCH(Ion=1 Ioff=2)")):
+        netlist = netlist.format(model=model, switch="W1 d b Vm m")
+        case = Case(checker, program, netlist, around(1.5e-3, 4.5e-3))
+        for time, wanted in ((1.499e-3, 1), (1.501e-3, 0), (4.499e-3, 0), (4.501e-3, 1)):
+            case.is_at("v(b)", time, wanted)
+    # A closed loop: inverted, the switch opens where the current passes 0.5 A.
+    case = Case(checker, program, OF_ITSELF.format(model="ISWITCH(Ion=0 Ioff=1)"))
+    case.is_at("i(l1)", 50e-6, 1 - math.exp(-0.5))
+    case.is_at("i(l1)", 100e-6, 0.5)
+
+
+def main():
+    checker = Checker("elements")
+    for part in (couplings, switches):
+        part(checker, sys.argv[1])
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
