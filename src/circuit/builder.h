@@ -226,6 +226,14 @@ void dalcs_source_check(struct dalcs_builder *builder);
 bool dalcs_waveform_card_is_name(const char *word);
 bool dalcs_waveform_card_parse(struct dalcs_reader *reader, enum dalcs_quantity quantity,
                                struct dalcs_stimulus *stimulus);
+/* The same for what follows the word PWL. */
+bool dalcs_pwl_card_parse(struct dalcs_reader *reader, enum dalcs_quantity quantity,
+                          struct dalcs_stimulus *stimulus);
+/* AM and SFFM from the values of their cards, [5] and [7]; false when an error was reported. */
+bool dalcs_modulation_set_am(struct dalcs_builder *builder, const double *value,
+                             struct dalcs_stimulus *s);
+bool dalcs_modulation_set_fm(struct dalcs_builder *builder, const struct dalcs_token *place,
+                             const double *value, struct dalcs_stimulus *s);
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                             enum dalcs_device_kind kind);
 /* Finds the V sources of all F, H and W, when all devices are known. */

@@ -7,6 +7,7 @@ usage: elements.py PROGRAM
 import math
 import pathlib
 import sys
+import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from dalcs_program import Checker, run  # noqa: E402
@@ -131,9 +132,68 @@ def switches(checker, program):
     case.is_at("i(l1)", 100e-6, 0.5)
 
 
+# ---- Sources -----------------------------------------------------------------------------------
+
+SOURCE = """{source}
+V1 a 0 {source}
+R1 a b 1k
+C1 b 0 1n
+.tran 10u 10m
+"""
+TURN = 2 * math.pi
+
+
+def am(t):
+    return 1.5 * (2 + math.sin(TURN * 100 * (t - 1e-3))) * math.sin(TURN * 1000 * (t - 1e-3))
+
+
+def fm(index):
+    return lambda t: 0.5 + 2 * math.sin(TURN * 1000 * t + math.radians(20)
+                                        + index * math.sin(TURN * 100 * t + math.radians(40)))
+
+
+def sources(checker, program):
+    times = [0.2e-3, 0.7e-3, 1.25e-3, 2.25e-3, 2.31e-3, 2.8e-3, 7.77e-3, 9.9e-3]
+
+    def shape(*values):
+        return dict(zip(times, values))
+
+    points = "0 0 1m 1 2m 0.5"
+    cases = {
+        "AM(1.5 2 100 1k 1m)": {t: am(t) if t > 1e-3 else 0 for t in times},
+        "SFFM(0.5 2 1k 3 100 20 40)": {t: fm(3)(t) for t in times},
+        "SFFM(0.5 2 1k -40 100 20 40)": {t: fm(-40)(t) for t in times},
+        "PULSE(0 1 0.1m 0.1m 0.1m 0.3m 1m 2)": shape(1, 0, 1, 0, 0, 0, 0, 0),
+        "PULSE(0 1 0.1m 0 0 0.5m 1m 0)": shape(1, 0, 1, 1, 1, 0, 0, 0),
+        "SIN(1 2 100 0 0 0 0.125)": {t: 1 + 2 * math.sin(TURN * min(100 * t, 0.125))
+                                     for t in times},
+        f"PWL({points}) r=1m td=0.3m": shape(0, 0.4, 0.95, 0.525, 0.995, 0.75, 0.765, 0.7),
+        f"PWL REPEAT FOREVER ({points}) ENDREPEAT": shape(0.2, 0.7, 0.875, 0.25, 0.31, 0.8,
+                                                           0.615, 0.55),
+        f"PWL REPEAT FOR 2 ({points}) ENDREPEAT DC 0": shape(0.2, 0.7, 0.875, 0.25, 0.31, 0.8,
+                                                             0.5, 0.5),
+        "PWL(0 1 0.5m 1 REPEAT FOREVER 1m 2 +1m 1 ENDREPEAT)":
+            shape(1, 1.2, 1.75, 1.25, 1.19, 1.3, 1.73, 1.6),
+        "PWL TIME_SCALE_FACTOR=1m VALUE_SCALE_FACTOR=2 (0 0 10 5)": {t: 1e3 * t for t in times},
+        "PWL(0 0 +1m 1 +1m 0.5)": shape(0.2, 0.7, 0.875, 0.5, 0.5, 0.5, 0.5, 0.5),
+    }
+    for source, wanted in cases.items():
+        case = Case(checker, program, SOURCE.format(source=source), times)
+        for t, value in wanted.items():
+            case.is_at("v(a)", t, value, 1e-9)
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "Wave.txt"
+        for text in ("* time value\n0 0\n1m, 1\r\n; nothing\n2E-3\t500m", f"{points}\n"):
+            path.write_text(text)
+            for form in (f"PWL file={path}", f'PWL(FILE="{path}")', f'PWL FILE "{path}"'):
+                case = Case(checker, program, SOURCE.format(source=form), times)
+                case.is_at("v(a)", 1.25e-3, 0.875)
+                case.is_at("v(a)", 9.9e-3, 0.5)
+
+
 def main():
     checker = Checker("elements")
-    for part in (couplings, switches):
+    for part in (couplings, switches, sources):
         part(checker, sys.argv[1])
     return checker.finish()
 
