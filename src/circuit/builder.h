@@ -49,8 +49,10 @@ struct dalcs_builder {
     struct dalcs_names devices; /* name -> index, K cards follow from n_device_cards on */
     const struct dalcs_token **device_token; /* where they are, by the same index */
     const struct dalcs_token *
-        *control_token; /* [n_device_cards] the V source that an F, H or W names */
-    int n_device_cards;
+        *control_token;       /* [n_device_cards] the V source that an F, H or W names */
+    int n_device_cards;       /* and the devices that parts of cards become */
+    int *current_of;          /* [n_device_cards] the device whose current an element's is: mostly
+                                 its own */
     int n_couplings_seen;     /* K cards so far, right or wrong */
     struct dalcs_names pairs; /* "3 7": coils 3 and 7 are coupled, by the place of the card */
     int ideal_diode;          /* the model of diodes without one, -1 before the first */
@@ -130,6 +132,19 @@ int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_
 struct dalcs_device *dalcs_builder_add_device(struct dalcs_builder *builder,
                                               enum dalcs_device_kind kind,
                                               const struct dalcs_token *name);
+
+/* A device that is part of what a card means, such as "rser(c1)": no card can name it. NULL when out
+ * of memory. dalcs_card_table_classify counts the room for it. */
+struct dalcs_device *dalcs_builder_add_inner_device(struct dalcs_builder *builder,
+                                                    enum dalcs_device_kind kind, const char *what,
+                                                    const struct dalcs_token *element);
+
+/* A node that no card can name, such as "inside(c1)"; -1 when out of memory. */
+int dalcs_builder_inner_node(struct dalcs_builder *builder, const char *what,
+                             const struct dalcs_token *element);
+
+/* Was this name made by one of the two? */
+bool dalcs_builder_is_inner(const char *name);
 
 /* Registers an element's name under `value` or reports its first use. */
 void dalcs_builder_add_name(struct dalcs_builder *builder, const struct dalcs_token *name,
@@ -212,6 +227,21 @@ void dalcs_reader_unexpected(struct dalcs_reader *reader);
 
 /* ---- One file per family; each takes a whole card -------------------------------------------- */
 
+/* Rser, Lser, Rpar, Cpar, RLshunt of a card; zero-initialise. */
+struct dalcs_parasitics {
+    double value[5];
+    const struct dalcs_token *place[5];
+};
+
+bool dalcs_parasitic_is_name(const char *name);
+/* The value, after `name =`; false when an error was reported. */
+bool dalcs_parasitic_read(struct dalcs_reader *reader, const struct dalcs_token *name,
+                          struct dalcs_parasitics *parasitics);
+/* Those of m elements in parallel. */
+void dalcs_parasitic_multiply(struct dalcs_parasitics *parasitics, double m);
+/* Puts them around a device whose nodes are those of its card. */
+void dalcs_parasitic_expand(struct dalcs_builder *builder, const struct dalcs_token *element,
+                            struct dalcs_device *device, const struct dalcs_parasitics *parasitics);
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind);
 void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card *card);

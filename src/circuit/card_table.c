@@ -178,6 +178,15 @@ static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
     return DALCS_CARD_NONE;
 }
 
+/* Each becomes a device, and one more measures their current. */
+static size_t count_parasitics(const struct dalcs_card *card) {
+    size_t n = 0;
+    for (int k = 1; k < card->n; k++) {
+        n += dalcs_parasitic_is_name(card->token[k].text);
+    }
+    return n > 0 ? n + 1 : 0;
+}
+
 static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
                                               const struct dalcs_card *card) {
     struct dalcs_builder *builder = table->builder;
@@ -190,6 +199,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
     }
     if (strchr("rlcviefghdsw", letter) != NULL) {
         table->n_stimuli += strchr("vic", letter) != NULL;
+        table->n_inner += count_parasitics(card);
         return DALCS_CARD_ELEMENT;
     }
     const char *what = refused_element(letter);

@@ -25,6 +25,7 @@ struct dalcs_card_table {
     int block_depth;
     size_t n_stimuli; /* V and I, and C, which may turn into one */
     size_t n_pairs;   /* of coupled coils */
+    size_t n_inner;   /* devices that parts of cards may become */
 };
 
 /* Call once for each card in order. Reports cards that are not supported, once for a block. */

@@ -27,7 +27,7 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_arena *arena = &circuit->arena;
     const size_t n_couplings = count[DALCS_CARD_COUPLING];
-    const size_t n_devices = count[DALCS_CARD_ELEMENT];
+    const size_t n_devices = count[DALCS_CARD_ELEMENT] + table.n_inner;
     const size_t n_models = count[DALCS_CARD_MODEL];
     builder->n_device_cards = (int)n_devices;
     circuit->device = dalcs_arena_alloc(arena, n_devices, sizeof *circuit->device);
@@ -40,10 +40,13 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
                                               sizeof *builder->device_token);
     builder->control_token =
         dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->control_token);
+    builder->current_of =
+        dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->current_of);
     const bool ok = circuit->device != NULL && circuit->stimulus != NULL &&
                     circuit->coupling != NULL && circuit->diode_model != NULL &&
                     circuit->switch_model != NULL && builder->model != NULL &&
-                    builder->device_token != NULL && builder->control_token != NULL;
+                    builder->device_token != NULL && builder->control_token != NULL &&
+                    builder->current_of != NULL;
     return ok ? DALCS_OK : DALCS_E_NOMEM;
 }
 

@@ -54,14 +54,26 @@ static void report_word(struct dalcs_reader *reader, const struct dalcs_token *t
                         "'%s' is neither a value nor a source function", token->text);
 }
 
+/* Rser= or Cpar= of a V. */
+static bool takes_parasitic(struct dalcs_reader *reader, enum dalcs_quantity quantity) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    return quantity == DALCS_VOLTAGE &&
+           (strcmp(token->text, "rser") == 0 || strcmp(token->text, "cpar") == 0) &&
+           dalcs_reader_take_parameter(reader) != NULL;
+}
+
 static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantity,
-                        struct dalcs_stimulus *stimulus) {
+                        struct dalcs_stimulus *stimulus, struct dalcs_parasitics *parasitics) {
     bool has_function = false;
     const struct dalcs_token *token;
     while ((token = dalcs_reader_peek(reader, 0)) != NULL) {
         if (dalcs_reader_take_word(reader, "dc")) {
             dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
             if (!read_dc(reader, quantity, stimulus)) {
+                return;
+            }
+        } else if (takes_parasitic(reader, quantity)) {
+            if (!dalcs_parasitic_read(reader, token, parasitics)) {
                 return;
             }
         } else if (dalcs_reader_take_word(reader, "ac")) {
@@ -103,8 +115,10 @@ void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *
         return;
     }
     device->stimulus = circuit->n_stimuli++;
+    struct dalcs_parasitics parasitics = {.place = {NULL}};
     read_source(&reader, kind == DALCS_VSOURCE ? DALCS_VOLTAGE : DALCS_CURRENT,
-                &circuit->stimulus[device->stimulus]);
+                &circuit->stimulus[device->stimulus], &parasitics);
+    dalcs_parasitic_expand(builder, card->token, device, &parasitics);
 }
 
 /* Edges are told apart to 1e-15 of the time; leave room for a few points in between. */

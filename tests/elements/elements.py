@@ -132,6 +132,50 @@ def switches(checker, program):
     case.is_at("i(l1)", 100e-6, 0.5)
 
 
+# ---- Parasitics --------------------------------------------------------------------------------
+
+# What stands on one card, the same on several, and the element's current there.
+PARASITICS = (
+    ("C1 b 0 1u Rser=2 ic=1", "Rs b x 2\nC1 x 0 1u ic=1", "i(rs)"),
+    ("C1 b 0 1u Lser=1u", "Ls b x 1u\nC1 x 0 1u", "i(ls)"),
+    ("C1 b 0 1u Rpar=100 Cpar=10n", "Rt b t 0\nC1 t 0 1u\nRp t 0 100\nCp t 0 10n", "i(rt)"),
+    ("C1 b 0 1u Rser=2 Lser=1u RLshunt=5 Rpar=100 Cpar=10n m=2 ic=0.5",
+     "Rt b t 0\nRs t x 1\nLs x y 0.5u\nRl x y 2.5\nC1 y 0 2u ic=0.5\nRp t 0 50\nCp t 0 20n",
+     "i(rt)"),
+    ("C1 b 0 C=0 Rpar=100", "Rp b 0 100", "i(rp)"),
+    ("L1 b 0 1m Rser=2 ic=10m", "Rs b x 2\nL1 x 0 1m ic=10m", "i(l1)"),
+    ("L1 b 0 1m Rser=2 Rpar=200 Cpar=10n m=2 ic=10m",
+     "Rt b t 0\nRs t x 1\nL1 x 0 0.5m ic=20m\nRp t 0 100\nCp t 0 20n", "i(rt)"),
+    ("L1 b 0 1m Rser=0", "L1 b 0 1m", "i(l1)"),
+    ("R1 b 0 100 m=4", "R1 b 0 25", "i(r1)"),
+    ("Vx b 0 SIN(0 3 20k) Rser=2", "Rs b x 2\nVx x 0 SIN(0 3 20k)", "i(rs)"),
+    ("Vx b 0 1 Rser=2 Cpar=1u AC 1", "Rt b t 0\nRs t x 2\nVx x 0 1\nCp t 0 1u", "i(rt)"),
+)
+AROUND = """parasitics, {current}
+V1 a 0 PULSE(0 10 0 1u 1u 20u 50u)
+R9 a b 10
+{card}
+.save v(b) {current}
+.tran 1u 100u uic
+"""
+
+
+def parasitics(checker, program):
+    times = [k * 1e-6 for k in range(1, 100, 7)]
+    for card, parts, current in PARASITICS:
+        own = f"i({card.split()[0].lower()})"
+        one = Case(checker, program, AROUND.format(card=card, current=own), times)
+        several = Case(checker, program, AROUND.format(card=parts, current=current), times)
+        for wanted, found in (("v(b)", "v(b)"), (current, own)):
+            if one.result.rows and several.result.rows:
+                for t in times:
+                    one.is_at(found, t, several.result.at(wanted, t), 1e-8)
+    # Nothing is recorded that no card names, and nothing is paid for what nobody asks.
+    case = Case(checker, program, AROUND.format(card=PARASITICS[3][0], current="all"))
+    checker.check(case.result.names == ["time", "v(b)", "v(a)", "i(v1)"],
+                  f"recorded: {case.result.names}")
+
+
 # ---- Sources -----------------------------------------------------------------------------------
 
 SOURCE = """{source}
@@ -193,7 +237,7 @@ def sources(checker, program):
 
 def main():
     checker = Checker("elements")
-    for part in (couplings, switches, sources):
+    for part in (couplings, switches, sources, parasitics):
         part(checker, sys.argv[1])
     return checker.finish()
 
