@@ -15,12 +15,21 @@ enum dalcs_model_kind {
     DALCS_MODEL_WRONG  /* had errors: a use of it is no second error */
 };
 
+/* What a diode's model says besides its lines. */
+struct dalcs_diode_card {
+    double ilimit, revilimit;                /* A, INFINITY: none */
+    bool is_berkeley;                        /* an exponential diode: the rest is its own */
+    double saturation, emission, resistance; /* IS in A, N, RS in ohm */
+    double breakdown, breakdown_current, back_emission; /* BV in V, IBV in A, NBV */
+};
+
 struct dalcs_model {
     enum dalcs_model_kind kind;
     int index;        /* in diode_model or switch_model */
     bool was_refused; /* an element names it, where another kind is wanted */
     const struct dalcs_token *name;
     const struct dalcs_token *type;
+    struct dalcs_diode_card diode;
 };
 
 enum dalcs_hidden {
@@ -56,6 +65,7 @@ struct dalcs_builder {
     int n_couplings_seen;     /* K cards so far, right or wrong */
     struct dalcs_names pairs; /* "3 7": coils 3 and 7 are coupled, by the place of the card */
     int ideal_diode;          /* the model of diodes without one, -1 before the first */
+    double diode_current;     /* A, where an exponential diode and its tangent touch */
 
     struct dalcs_names models; /* name -> index of model */
     struct dalcs_model *model;
@@ -269,7 +279,14 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
 /* Finds the V sources of all F, H and W, when all devices are known. */
 void dalcs_controlled_resolve(struct dalcs_builder *builder);
 void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
-bool dalcs_diode_parse_model(struct dalcs_reader *reader, struct dalcs_diode_model *model);
+/* An A card: a diode when its model is a sidiode. */
+void dalcs_diode_parse_block(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* type: d or sidiode */
+bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
+                             struct dalcs_diode_card *card, struct dalcs_diode_model *model);
+/* The lines of an exponential diode: its tangent at a current, for `area` of them in parallel. */
+void dalcs_diode_model_map(const struct dalcs_diode_card *card, double current, double area,
+                           struct dalcs_diode_model *model);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* type: sw, csw, vswitch or iswitch */
 bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,

@@ -91,8 +91,6 @@ static const char *const NEVER[] = {
 /* Elements by letter that are not supported. */
 static const char *refused_element(char letter) {
     switch (letter) {
-    case 'a':
-        return "XSPICE and special function blocks";
     case 'b':
         return "behavioural sources";
     case 'j':
@@ -197,9 +195,11 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         table->n_pairs += n_coils * (n_coils - 1) / 2;
         return DALCS_CARD_COUPLING;
     }
-    if (strchr("rlcviefghdsw", letter) != NULL) {
+    if (strchr("rlcviefghdswa", letter) != NULL) {
         table->n_stimuli += strchr("vic", letter) != NULL;
         table->n_inner += count_parasitics(card);
+        table->n_diodes += letter == 'd' || letter == 'a';
+        table->n_scaled += (letter == 'd' || letter == 'a') && card->n > 4;
         return DALCS_CARD_ELEMENT;
     }
     const char *what = refused_element(letter);
@@ -213,6 +213,22 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
                             name->text);
     }
     return DALCS_CARD_NONE;
+}
+
+static bool has_limit(const struct dalcs_card *card) {
+    bool found = false;
+    for (int k = 1; k < card->n; k++) {
+        found = found || strcmp(card->token[k].text, "ilimit") == 0 ||
+                strcmp(card->token[k].text, "revilimit") == 0;
+    }
+    return found;
+}
+
+void dalcs_card_table_make_room(struct dalcs_card_table *table) {
+    if (table->has_limits) {
+        table->n_inner += 4 * table->n_diodes;
+        table->n_stimuli += 2 * table->n_diodes;
+    }
 }
 
 enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
@@ -234,6 +250,7 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
         }
         return DALCS_CARD_NONE;
     }
+    table->has_limits = table->has_limits || (strcmp(name->text, ".model") == 0 && has_limit(card));
     return name->text[0] == '.' ? classify_dot(table, name) : classify_element(table, card);
 }
 

@@ -37,7 +37,7 @@ struct dalcs_device {
     struct dalcs_location where; /* the element's card */
 };
 
-/* Forward branch: ideal + Vfwd + Ron; optional parallel Roff; optional reverse branch Vrev + Rrev.
+/* Slope 1/roff from -vrev to vfwd, 1/ron above and 1/rrev below.
  * Ron = 0 is complementarity, Roff = INFINITY exactly open, Vrev = INFINITY no breakdown. */
 struct dalcs_diode_model {
     const char *name;

@@ -22,7 +22,7 @@ static const struct type *find_type(const char *name) {
         {"csw", DALCS_MODEL_CURRENT_SWITCH, "current controlled switch"},
         {"iswitch", DALCS_MODEL_CURRENT_SWITCH, "current controlled switch"},
         {"aswitch", DALCS_MODEL_OTHER, "smooth switch"},
-        {"sidiode", DALCS_MODEL_OTHER, "XSPICE diode"},
+        {"sidiode", DALCS_MODEL_DIODE, "diode"},
         {"npn", DALCS_MODEL_OTHER, "transistor"},
         {"pnp", DALCS_MODEL_OTHER, "transistor"},
         {"lpnp", DALCS_MODEL_OTHER, "transistor"},
@@ -116,7 +116,8 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
     if (model->kind == DALCS_MODEL_DIODE) {
         model->index = circuit->n_diode_models++;
         circuit->diode_model[model->index].name = name;
-        ok = dalcs_diode_parse_model(reader, &circuit->diode_model[model->index]);
+        ok = dalcs_diode_parse_model(reader, model->type, &model->diode,
+                                     &circuit->diode_model[model->index]);
     } else {
         model->index = circuit->n_switch_models++;
         circuit->switch_model[model->index].name = name;

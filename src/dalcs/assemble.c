@@ -223,17 +223,19 @@ static double series_part(double r, double roff) {
     return r / (1.0 - r / roff);
 }
 
-/* Roff lies across two branches, one of Vfwd and Ron and one of Vrev and Rrev. */
+/* Roff lies across two branches, one of Vfwd and one of Vrev, whose resistances make up Ron and Rrev
+ * with it. */
 static enum dalcs_status stamp_diode(struct stamps *b, int device) {
     const struct dalcs_circuit *c = b->layout->circuit;
     const struct dalcs_device *d = &c->device[device];
     const struct dalcs_diode_model *m = &c->diode_model[d->model];
     b->layout->pair[device] = b->next_pair;
     struct dalcs_pair pair = {.kind = DALCS_PAIR_DIODE, .element = d->name};
-    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], m->vfwd, m->ron, pair));
+    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], m->vfwd, series_part(m->ron, m->roff), pair));
     if (isfinite(m->vrev)) {
         pair.is_breakdown = true;
-        DALCS_TRY(stamp_pair(b, d->node[1], d->node[0], m->vrev, m->rrev, pair));
+        DALCS_TRY(
+            stamp_pair(b, d->node[1], d->node[0], m->vrev, series_part(m->rrev, m->roff), pair));
     }
     return isfinite(m->roff) ? dalcs_stamp_conductance(b, d, 1.0 / m->roff) : DALCS_OK;
 }

@@ -235,9 +235,79 @@ def sources(checker, program):
                 case.is_at("v(a)", 9.9e-3, 0.5)
 
 
+# ---- Diodes ------------------------------------------------------------------------------------
+
+CURVE = """diode: {element}, {model}
+V1 a 0 PWL(0 -10 20m 10)
+{element}
+.model m {model}
+.tran 10u 20m
+"""
+VT = 300.15 * 1.380649e-23 / 1.602176634e-19
+
+
+def idealised(v, ron, roff=math.inf, vfwd=0.0, vrev=math.inf, rrev=None, m=1, n=1):
+    """LTspice's law."""
+    v /= n
+    if v > vfwd:
+        current = (v - vfwd) / ron + vfwd / roff
+    elif v < -vrev:
+        current = (v + vrev) / (ron if rrev is None else rrev) - vrev / roff
+    else:
+        current = v / roff
+    return m * current
+
+
+def tangent(v, saturation, emission, resistance, at):
+    """Of N Vt ln(1 + I / IS) + RS I at one current."""
+    slope = resistance + emission * VT / (at + saturation)
+    start = emission * VT * math.log1p(at / saturation) + resistance * at - slope * at
+    return max(0.0, v - start) / slope
+
+
+FULL = dict(ron=0.1, roff=1e3, vfwd=0.7, vrev=5, rrev=2)
+FULL_TEXT = "Ron=0.1 Roff=1k Vfwd=0.7 Vrev=5 Rrev=2"
+DIODES = (
+    ("D1 a 0 m", "D(Ron=0.1)", lambda v: idealised(v, 0.1)),
+    ("D1 a 0 m", f"D({FULL_TEXT})", lambda v: idealised(v, **FULL)),
+    ("D1 a 0 m m=3 n=2", f"D({FULL_TEXT})", lambda v: idealised(v, **FULL, m=3, n=2)),
+    ("D1 a 0 m 7", f"D({FULL_TEXT} RS=5 CJO=1p)", lambda v: idealised(v, **FULL)),
+    ("A1 %gd(a 0) m", f"sidiode({FULL_TEXT})", lambda v: idealised(v, **FULL)),
+    ("A1 a 0 m", "sidiode(Ron=0.1)", lambda v: idealised(v, 0.1)),
+    ("D1 a 0 m", "D(Ron=0.1 Vfwd=0.5 Epsilon=0.4)", lambda v: idealised(v, 0.1, vfwd=0.7)),
+    ("D1 a 0 m", "D(Ron=0.1 Vrev=4 Rrev=2 RevEpsilon=0.4)",
+     lambda v: idealised(v, 0.1, vrev=4.2, rrev=2)),
+    ("D1 a 0 m", f"D({FULL_TEXT} Ilimit=20)", lambda v: min(idealised(v, **FULL), 20)),
+    ("D1 a 0 m", f"D({FULL_TEXT} RevIlimit=1.5)", lambda v: max(idealised(v, **FULL), -1.5)),
+    ("D1 a 0 m m=2", f"D({FULL_TEXT} Ilimit=20 RevIlimit=1.5)",
+     lambda v: 2 * max(min(idealised(v, **FULL), 20), -1.5)),
+    ("D1 a 0 m", "D(IS=1n N=2 RS=0.1)", lambda v: tangent(v, 1e-9, 2, 0.1, 1)),
+    ("D1 a 0 m 3 m=2", "D(IS=1n N=2 RS=0.1)", lambda v: tangent(v, 6e-9, 2, 0.1 / 6, 1)),
+    ("D1 a 0 m", "D(CJO=1p RS=0.1)\n.options diodecurrent=0.2",
+     lambda v: tangent(v, 1e-14, 1, 0.1, 0.2)),
+    ("D1 a 0 m", "D(N=0.01 RS=0.1)", lambda v: max(0, v) / 0.1),
+    ("D1 a 0 m", "D(RS=0.1 BV=6 IBV=1)",
+     lambda v: tangent(v, 1e-14, 1, 0.1, 1) if v > 0
+     else min(0.0, v + 6 - VT) / (0.1 + VT)),
+)
+
+
+def diodes(checker, program):
+    times = [k * 0.4e-3 for k in range(51)]
+    for element, model, law in DIODES:
+        case = Case(checker, program, CURVE.format(element=element, model=model), times)
+        name = element.split()[0].lower()
+        for t in times:
+            wanted = law(-10 + 20 * t / 20e-3)
+            case.is_at(f"i({name})", t, wanted, 1e-9 * (1 + abs(wanted)))
+        if "limit" in model:
+            checker.check(case.result.names == ["time", "v(a)", "i(v1)", "i(d1)"],
+                          f"recorded: {case.result.names}")
+
+
 def main():
     checker = Checker("elements")
-    for part in (couplings, switches, sources, parasitics):
+    for part in (couplings, switches, sources, parasitics, diodes):
         part(checker, sys.argv[1])
     return checker.finish()
 
