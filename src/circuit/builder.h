@@ -276,6 +276,10 @@ bool dalcs_modulation_set_fm(struct dalcs_builder *builder, const struct dalcs_t
                              const double *value, struct dalcs_stimulus *s);
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                             enum dalcs_device_kind kind);
+/* After the word POLY, on a device that has its own nodes. */
+void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device);
+/* Room for the devices that a card's POLY becomes; one of them may be a source. */
+size_t dalcs_poly_count(const struct dalcs_card *card);
 /* Finds the V sources of all F, H and W, when all devices are known. */
 void dalcs_controlled_resolve(struct dalcs_builder *builder);
 void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *card);

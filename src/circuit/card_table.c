@@ -198,6 +198,11 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
     if (strchr("rlcviefghdswa", letter) != NULL) {
         table->n_stimuli += strchr("vic", letter) != NULL;
         table->n_inner += count_parasitics(card);
+        if (strchr("efgh", letter) != NULL) {
+            const size_t n = dalcs_poly_count(card);
+            table->n_inner += n;
+            table->n_stimuli += n > 0;
+        }
         table->n_diodes += letter == 'd' || letter == 'a';
         table->n_scaled += (letter == 'd' || letter == 'a') && card->n > 4;
         return DALCS_CARD_ELEMENT;

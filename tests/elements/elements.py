@@ -13,6 +13,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from dalcs_program import Checker, run  # noqa: E402
 
 EXACT = 1e-9  # relative, at a tolerance of 1e-11
+TURN = 2 * math.pi
 
 
 class Case:
@@ -176,6 +177,46 @@ def parasitics(checker, program):
                   f"recorded: {case.result.names}")
 
 
+# ---- Controlled sources ------------------------------------------------------------------------
+
+POLY = """{element}
+Va a 0 SIN(0 3 1k)
+Vb b 0 2
+Ra a x 10
+Vx x 0 0
+Rb b y 4
+Vy y 0 0
+{element}
+R1 o 0 2
+.save v(o) i({name})
+.tran 10u 1m
+"""
+# With v(a) = s, v(b) = 2, i(vx) = s/10, i(vy) = 0.5: what the sum is.
+SUMS = (
+    ("E1 o 0 POLY(1) a 0 5", lambda s: 5),
+    ("E1 o 0 POLY(1) (a,0) 1.5 5", lambda s: 1.5 + 5 * s),
+    ("E1 o 0 POLY(2) (a,0) (b,0) 0 2 -3", lambda s: 2 * s - 6),
+    ("E1 o 0 POLY(2) a 0 b 0 0.5 2 -3 0 0 0", lambda s: 0.5 + 2 * s - 6),
+    ("E1 o 0 POLY(3) a 0 b 0 a b 1 2 3 4", lambda s: 1 + 2 * s + 6 + 4 * (s - 2)),
+    ("G1 0 o POLY(2) a 0 b 0 0.5 2 -3", lambda s: 0.5 + 2 * s - 6),
+    ("G1 0 o POLY(1) a 0 0 0.5", lambda s: 0.5 * s),
+    ("F1 0 o POLY(2) Vx Vy 0.25 10 -3", lambda s: 0.25 + s - 1.5),
+    ("H1 o 0 POLY(2) Vx Vy 0.25 10 -3", lambda s: 0.25 + s - 1.5),
+)
+
+
+def polynomials(checker, program):
+    times = [k * 0.05e-3 for k in range(1, 20)]
+    for element, wanted in SUMS:
+        name = element.split()[0].lower()
+        case = Case(checker, program, POLY.format(element=element, name=name), times)
+        is_voltage = name[0] in "eh"
+        for t in times:
+            value = wanted(3 * math.sin(TURN * 1e3 * t))
+            case.is_at("v(o)", t, value if is_voltage else 2 * value)
+            case.is_at(f"i({name})", t, -value / 2 if is_voltage else value)
+
+
 # ---- Sources -----------------------------------------------------------------------------------
 
 SOURCE = """{source}
@@ -184,7 +225,6 @@ R1 a b 1k
 C1 b 0 1n
 .tran 10u 10m
 """
-TURN = 2 * math.pi
 
 
 def am(t):
@@ -307,7 +347,7 @@ def diodes(checker, program):
 
 def main():
     checker = Checker("elements")
-    for part in (couplings, switches, sources, parasitics, diodes):
+    for part in (couplings, switches, sources, parasitics, diodes, polynomials):
         part(checker, sys.argv[1])
     return checker.finish()
 
