@@ -86,6 +86,16 @@ struct edges {
     int n;
 };
 
+/* Puts the end of the last period in place of all edges from there on. */
+static void end_edges(const struct dalcs_stimulus *s, struct edges *edges) {
+    const double stop = s->u.pulse.delay + s->u.pulse.n_periods * s->u.pulse.period;
+    const double near = tolerance(stop, s->u.pulse.delay);
+    while (edges->n > 0 && edges->item[edges->n - 1].time >= stop - near) {
+        edges->n--;
+    }
+    edges->item[edges->n++] = (struct edge){stop, AFTER};
+}
+
 static void collect_edges(const struct dalcs_stimulus *s, double t, struct edges *edges) {
     const double rise_end = s->u.pulse.rise;
     double fall_start = rise_end + s->u.pulse.width;
@@ -93,8 +103,7 @@ static void collect_edges(const struct dalcs_stimulus *s, double t, struct edges
     /* An offset equal to the period but for rounding is the next period's start, not an edge of its
      * own a hair away from it. */
     double end = isinf(period) ? (double)INFINITY : period * (1 - 4 * DBL_EPSILON);
-    const double last = s->u.pulse.n_periods > 0 ? s->u.pulse.n_periods * period : (double)INFINITY;
-    if (rise_end == 0 && fall_start >= end && isinf(last)) {
+    if (rise_end == 0 && fall_start >= end && s->u.pulse.n_periods == 0) {
         /* High for ever: the restarts change nothing. */
         fall_start = period = end = (double)INFINITY;
     }
@@ -106,16 +115,13 @@ static void collect_edges(const struct dalcs_stimulus *s, double t, struct edges
     edges->n = 0;
     for (int k = 0; k < n_periods; k++) {
         const double n = first + k;
-        const double begin = n == 0 ? 0 : n * period;
-        const double start = s->u.pulse.delay + begin;
+        const double start = n == 0 ? s->u.pulse.delay : s->u.pulse.delay + n * period;
         for (int j = 0; j < 4 && offset[j] < end; j++) {
-            if (begin + offset[j] < last * (1 - 4 * DBL_EPSILON)) {
-                edges->item[edges->n++] = (struct edge){start + offset[j], (enum segment)j};
-            }
+            edges->item[edges->n++] = (struct edge){start + offset[j], (enum segment)j};
         }
     }
-    if (isfinite(last) && (first + n_periods) * period >= last) {
-        edges->item[edges->n++] = (struct edge){s->u.pulse.delay + last, AFTER};
+    if (s->u.pulse.n_periods > 0 && first + n_periods >= s->u.pulse.n_periods) {
+        end_edges(s, edges);
     }
 }
 
