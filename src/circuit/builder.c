@@ -124,6 +124,24 @@ static bool is_ground(const char *name) {
     return strcmp(name, "0") == 0 || strcmp(name, "gnd") == 0;
 }
 
+/* -1 when out of memory, which a name that is NULL is, too. */
+static int add_node(struct dalcs_builder *builder, const char *name,
+                    const struct dalcs_token *token) {
+    const int node = builder->circuit->n_nodes;
+    const size_t need = (size_t)node + 1;
+    if (!note_memory(builder, name != NULL &&
+                                  dalcs_grow(&builder->node_name, &builder->node_name_capacity,
+                                             need, sizeof *builder->node_name) == DALCS_OK &&
+                                  dalcs_grow(&builder->node_token, &builder->node_token_capacity,
+                                             need, sizeof *builder->node_token) == DALCS_OK)) {
+        return -1;
+    }
+    builder->node_name[node] = name;
+    builder->node_token[node] = token;
+    builder->circuit->n_nodes++;
+    return node;
+}
+
 int dalcs_builder_node(struct dalcs_builder *builder, const struct dalcs_token *token) {
     if (is_ground(token->text)) {
         return 0;
@@ -132,21 +150,24 @@ int dalcs_builder_node(struct dalcs_builder *builder, const struct dalcs_token *
     if (known >= 0) {
         return known;
     }
-    const int node = builder->circuit->n_nodes;
-    const size_t need = (size_t)node + 1;
     const char *name = dalcs_arena_copy(&builder->circuit->arena, token->text, strlen(token->text));
-    if (!note_memory(builder, name != NULL &&
-                                  dalcs_grow(&builder->node_name, &builder->node_name_capacity,
-                                             need, sizeof *builder->node_name) == DALCS_OK &&
-                                  dalcs_grow(&builder->node_token, &builder->node_token_capacity,
-                                             need, sizeof *builder->node_token) == DALCS_OK &&
-                                  dalcs_names_add(&builder->nodes, name, node) == DALCS_OK)) {
+    const int node = add_node(builder, name, token);
+    if (node < 0 ||
+        !note_memory(builder, dalcs_names_add(&builder->nodes, name, node) == DALCS_OK)) {
         return -1;
     }
-    builder->node_name[node] = name;
-    builder->node_token[node] = token;
-    builder->circuit->n_nodes++;
     return node;
+}
+
+int dalcs_builder_inner_node(struct dalcs_builder *builder, const char *what,
+                             const struct dalcs_token *element) {
+    return add_node(builder,
+                    dalcs_arena_printf(&builder->circuit->arena, "%s(%s)", what, element->text),
+                    element);
+}
+
+bool dalcs_builder_is_inner(const char *name) {
+    return strchr(name, '(') != NULL;
 }
 
 int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_token *token) {
@@ -198,24 +219,44 @@ void dalcs_builder_add_name(struct dalcs_builder *builder, const struct dalcs_to
                         dalcs_builder_place(builder, builder->device_token[first]));
 }
 
-struct dalcs_device *dalcs_builder_add_device(struct dalcs_builder *builder,
-                                              enum dalcs_device_kind kind,
-                                              const struct dalcs_token *name) {
+/* NULL when out of memory, which a name that is NULL is, too. */
+static struct dalcs_device *add_device(struct dalcs_builder *builder, enum dalcs_device_kind kind,
+                                       const char *name, const struct dalcs_token *token) {
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_device *device = &circuit->device[circuit->n_devices];
     device->kind = kind;
     device->stimulus = -1;
     device->control = -1;
     device->model = -1;
-    device->name = dalcs_arena_copy(&circuit->arena, name->text, strlen(name->text));
-    device->where = dalcs_builder_keep_location(builder, name);
+    device->name = name;
+    device->where = dalcs_builder_keep_location(builder, token);
     if (!note_memory(builder, device->name != NULL)) {
         return NULL;
     }
-    builder->device_token[circuit->n_devices] = name;
-    dalcs_builder_add_name(builder, name, circuit->n_devices);
+    builder->current_of[circuit->n_devices] = circuit->n_devices;
+    builder->device_token[circuit->n_devices] = token;
     circuit->n_devices++;
     return device;
+}
+
+struct dalcs_device *dalcs_builder_add_device(struct dalcs_builder *builder,
+                                              enum dalcs_device_kind kind,
+                                              const struct dalcs_token *name) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    struct dalcs_device *device = add_device(
+        builder, kind, dalcs_arena_copy(&circuit->arena, name->text, strlen(name->text)), name);
+    if (device != NULL) {
+        dalcs_builder_add_name(builder, name, circuit->n_devices - 1);
+    }
+    return device;
+}
+
+struct dalcs_device *dalcs_builder_add_inner_device(struct dalcs_builder *builder,
+                                                    enum dalcs_device_kind kind, const char *what,
+                                                    const struct dalcs_token *element) {
+    struct dalcs_arena *arena = &builder->circuit->arena;
+    return add_device(builder, kind, dalcs_arena_printf(arena, "%s(%s)", what, element->text),
+                      element);
 }
 
 const char *dalcs_builder_kind_text(enum dalcs_device_kind kind) {

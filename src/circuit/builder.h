@@ -10,8 +10,17 @@
 enum dalcs_model_kind {
     DALCS_MODEL_DIODE,
     DALCS_MODEL_SWITCH,
+    DALCS_MODEL_CURRENT_SWITCH,
     DALCS_MODEL_OTHER, /* of a device that does not exist here */
     DALCS_MODEL_WRONG  /* had errors: a use of it is no second error */
+};
+
+/* What a diode's model says besides its lines. */
+struct dalcs_diode_card {
+    double ilimit, revilimit;                /* A, INFINITY: none */
+    bool is_berkeley;                        /* an exponential diode: the rest is its own */
+    double saturation, emission, resistance; /* IS in A, N, RS in ohm */
+    double breakdown, breakdown_current, back_emission; /* BV in V, IBV in A, NBV */
 };
 
 struct dalcs_model {
@@ -20,6 +29,7 @@ struct dalcs_model {
     bool was_refused; /* an element names it, where another kind is wanted */
     const struct dalcs_token *name;
     const struct dalcs_token *type;
+    struct dalcs_diode_card diode;
 };
 
 enum dalcs_hidden {
@@ -48,11 +58,14 @@ struct dalcs_builder {
     struct dalcs_names devices; /* name -> index, K cards follow from n_device_cards on */
     const struct dalcs_token **device_token; /* where they are, by the same index */
     const struct dalcs_token *
-        *control_token; /* [n_device_cards] the V source that an F or H names */
-    int n_device_cards;
+        *control_token;       /* [n_device_cards] the V source that an F, H or W names */
+    int n_device_cards;       /* and the devices that parts of cards become */
+    int *current_of;          /* [n_device_cards] the device whose current an element's is: mostly
+                                 its own */
     int n_couplings_seen;     /* K cards so far, right or wrong */
-    struct dalcs_names pairs; /* "3 7": coils 3 and 7 are coupled */
+    struct dalcs_names pairs; /* "3 7": coils 3 and 7 are coupled, by the place of the card */
     int ideal_diode;          /* the model of diodes without one, -1 before the first */
+    double diode_current;     /* A, where an exponential diode and its tangent touch */
 
     struct dalcs_names models; /* name -> index of model */
     struct dalcs_model *model;
@@ -129,6 +142,19 @@ int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_
 struct dalcs_device *dalcs_builder_add_device(struct dalcs_builder *builder,
                                               enum dalcs_device_kind kind,
                                               const struct dalcs_token *name);
+
+/* A device that is part of what a card means, such as "rser(c1)": no card can name it. NULL when out
+ * of memory. dalcs_card_table_classify counts the room for it. */
+struct dalcs_device *dalcs_builder_add_inner_device(struct dalcs_builder *builder,
+                                                    enum dalcs_device_kind kind, const char *what,
+                                                    const struct dalcs_token *element);
+
+/* A node that no card can name, such as "inside(c1)"; -1 when out of memory. */
+int dalcs_builder_inner_node(struct dalcs_builder *builder, const char *what,
+                             const struct dalcs_token *element);
+
+/* Was this name made by one of the two? */
+bool dalcs_builder_is_inner(const char *name);
 
 /* Registers an element's name under `value` or reports its first use. */
 void dalcs_builder_add_name(struct dalcs_builder *builder, const struct dalcs_token *name,
@@ -211,9 +237,26 @@ void dalcs_reader_unexpected(struct dalcs_reader *reader);
 
 /* ---- One file per family; each takes a whole card -------------------------------------------- */
 
+/* Rser, Lser, Rpar, Cpar, RLshunt of a card; zero-initialise. */
+struct dalcs_parasitics {
+    double value[5];
+    const struct dalcs_token *place[5];
+};
+
+bool dalcs_parasitic_is_name(const char *name);
+/* The value, after `name =`; false when an error was reported. */
+bool dalcs_parasitic_read(struct dalcs_reader *reader, const struct dalcs_token *name,
+                          struct dalcs_parasitics *parasitics);
+/* Those of m elements in parallel. */
+void dalcs_parasitic_multiply(struct dalcs_parasitics *parasitics, double m);
+/* Puts them around a device whose nodes are those of its card. */
+void dalcs_parasitic_expand(struct dalcs_builder *builder, const struct dalcs_token *element,
+                            struct dalcs_device *device, const struct dalcs_parasitics *parasitics);
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind);
 void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* Coils that a K card names, at least 2. */
+int dalcs_coupling_count_coils(const struct dalcs_card *card);
 void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                         enum dalcs_device_kind kind);
 /* What needs .tran: a missing frequency, periods too short to resolve. */
@@ -223,14 +266,35 @@ void dalcs_source_check(struct dalcs_builder *builder);
 bool dalcs_waveform_card_is_name(const char *word);
 bool dalcs_waveform_card_parse(struct dalcs_reader *reader, enum dalcs_quantity quantity,
                                struct dalcs_stimulus *stimulus);
+/* The same for what follows the word PWL. */
+bool dalcs_pwl_card_parse(struct dalcs_reader *reader, enum dalcs_quantity quantity,
+                          struct dalcs_stimulus *stimulus);
+/* AM and SFFM from the values of their cards, [5] and [7]; false when an error was reported. */
+bool dalcs_modulation_set_am(struct dalcs_builder *builder, const double *value,
+                             struct dalcs_stimulus *s);
+bool dalcs_modulation_set_fm(struct dalcs_builder *builder, const struct dalcs_token *place,
+                             const double *value, struct dalcs_stimulus *s);
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                             enum dalcs_device_kind kind);
-/* Finds the V sources of all F and H, when all devices are known. */
+/* After the word POLY, on a device that has its own nodes. */
+void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device);
+/* Room for the devices that a card's POLY becomes; one of them may be a source. */
+size_t dalcs_poly_count(const struct dalcs_card *card);
+/* Finds the V sources of all F, H and W, when all devices are known. */
 void dalcs_controlled_resolve(struct dalcs_builder *builder);
 void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
-bool dalcs_diode_parse_model(struct dalcs_reader *reader, struct dalcs_diode_model *model);
+/* An A card: a diode when its model is a sidiode. */
+void dalcs_diode_parse_block(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* type: d or sidiode */
+bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
+                             struct dalcs_diode_card *card, struct dalcs_diode_model *model);
+/* The lines of an exponential diode: its tangent at a current, for `area` of them in parallel. */
+void dalcs_diode_model_map(const struct dalcs_diode_card *card, double current, double area,
+                           struct dalcs_diode_model *model);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
-bool dalcs_switch_parse_model(struct dalcs_reader *reader, struct dalcs_switch_model *model);
+/* type: sw, csw, vswitch or iswitch */
+bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
+                              struct dalcs_switch_model *model);
 void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* Warnings about models that nothing here can use, when all elements are known. */
 void dalcs_model_check(struct dalcs_builder *builder);
@@ -248,7 +312,7 @@ struct dalcs_parameter {
  * `unknown`, which may report it; it is called until it has reported one. */
 bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_parameter *parameter,
                                  int n,
-                                 bool (*unknown)(struct dalcs_builder *builder,
+                                 bool (*unknown)(struct dalcs_reader *reader,
                                                  const struct dalcs_token *name));
 
 /* The index (in diode_model or switch_model) of a model of this kind; else an error, and -1. */

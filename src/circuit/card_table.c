@@ -91,8 +91,6 @@ static const char *const NEVER[] = {
 /* Elements by letter that are not supported. */
 static const char *refused_element(char letter) {
     switch (letter) {
-    case 'a':
-        return "XSPICE and special function blocks";
     case 'b':
         return "behavioural sources";
     case 'j':
@@ -108,8 +106,6 @@ static const char *refused_element(char letter) {
     case 'y':
     case 'p':
         return "transmission lines";
-    case 'w':
-        return "current controlled switches";
     case 'x':
         return "subcircuit calls";
     default:
@@ -128,8 +124,6 @@ static const char *hint_of_element(char letter) {
         return "a linear one is E, F, G or H";
     case 't':
         return "write sections of L and C";
-    case 'w':
-        return "write H to turn the current into a voltage, and a switch S";
     case 'x':
         return "write its elements in place";
     default:
@@ -182,15 +176,35 @@ static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
     return DALCS_CARD_NONE;
 }
 
+/* Each becomes a device, and one more measures their current. */
+static size_t count_parasitics(const struct dalcs_card *card) {
+    size_t n = 0;
+    for (int k = 1; k < card->n; k++) {
+        n += dalcs_parasitic_is_name(card->token[k].text);
+    }
+    return n > 0 ? n + 1 : 0;
+}
+
 static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
-                                              const struct dalcs_token *name) {
+                                              const struct dalcs_card *card) {
     struct dalcs_builder *builder = table->builder;
+    const struct dalcs_token *name = card->token;
     const char letter = name->text[0];
     if (letter == 'k') {
+        const size_t n_coils = (size_t)dalcs_coupling_count_coils(card);
+        table->n_pairs += n_coils * (n_coils - 1) / 2;
         return DALCS_CARD_COUPLING;
     }
-    if (strchr("rlcviefghds", letter) != NULL) {
+    if (strchr("rlcviefghdswa", letter) != NULL) {
         table->n_stimuli += strchr("vic", letter) != NULL;
+        table->n_inner += count_parasitics(card);
+        if (strchr("efgh", letter) != NULL) {
+            const size_t n = dalcs_poly_count(card);
+            table->n_inner += n;
+            table->n_stimuli += n > 0;
+        }
+        table->n_diodes += letter == 'd' || letter == 'a';
+        table->n_scaled += (letter == 'd' || letter == 'a') && card->n > 4;
         return DALCS_CARD_ELEMENT;
     }
     const char *what = refused_element(letter);
@@ -204,6 +218,22 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
                             name->text);
     }
     return DALCS_CARD_NONE;
+}
+
+static bool has_limit(const struct dalcs_card *card) {
+    bool found = false;
+    for (int k = 1; k < card->n; k++) {
+        found = found || strcmp(card->token[k].text, "ilimit") == 0 ||
+                strcmp(card->token[k].text, "revilimit") == 0;
+    }
+    return found;
+}
+
+void dalcs_card_table_make_room(struct dalcs_card_table *table) {
+    if (table->has_limits) {
+        table->n_inner += 4 * table->n_diodes;
+        table->n_stimuli += 2 * table->n_diodes;
+    }
 }
 
 enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
@@ -225,7 +255,8 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
         }
         return DALCS_CARD_NONE;
     }
-    return name->text[0] == '.' ? classify_dot(table, name) : classify_element(table, name);
+    table->has_limits = table->has_limits || (strcmp(name->text, ".model") == 0 && has_limit(card));
+    return name->text[0] == '.' ? classify_dot(table, name) : classify_element(table, card);
 }
 
 /* Word number `index` of a line, as a NUL-terminated copy of at most `size` - 1 bytes. */

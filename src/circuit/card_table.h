@@ -24,11 +24,19 @@ struct dalcs_card_table {
     const char *block_begin;
     int block_depth;
     size_t n_stimuli; /* V and I, and C, which may turn into one */
+    size_t n_pairs;   /* of coupled coils */
+    size_t n_inner;   /* devices that parts of cards may become */
+    size_t n_diodes;
+    size_t n_scaled; /* diodes that may want a model of their own */
+    bool has_limits; /* a model limits the current */
 };
 
 /* Call once for each card in order. Reports cards that are not supported, once for a block. */
 enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
                                                 const struct dalcs_card *card);
+
+/* When all cards are classified: what diodes need whose models limit their current. */
+void dalcs_card_table_make_room(struct dalcs_card_table *table);
 
 /* Warns when the first line looks like a card: it is the title all the same. */
 void dalcs_card_table_check_title(struct dalcs_builder *builder);

@@ -1,7 +1,8 @@
 /* circuit.c - from cards to a circuit: which card is whose, and in which order they are read.
  *
  *     classify   every card once: whose it is, how much room it needs, is it supported at all
- *     models     .model, .tran, .op, .options: what elements refer to
+ *     options    .options: what models may ask for
+ *     models     .model, .tran, .op: what elements refer to
  *     elements   devices and nodes
  *     references K, F, H, .ic, .save: what refers to elements
  *     checks     of the whole
@@ -24,26 +25,31 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
         class_of[k] = (unsigned char)c;
         count[c]++;
     }
+    dalcs_card_table_make_room(&table);
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_arena *arena = &circuit->arena;
     const size_t n_couplings = count[DALCS_CARD_COUPLING];
-    const size_t n_devices = count[DALCS_CARD_ELEMENT];
+    const size_t n_devices = count[DALCS_CARD_ELEMENT] + table.n_inner;
     const size_t n_models = count[DALCS_CARD_MODEL];
     builder->n_device_cards = (int)n_devices;
     circuit->device = dalcs_arena_alloc(arena, n_devices, sizeof *circuit->device);
     circuit->stimulus = dalcs_arena_alloc(arena, table.n_stimuli, sizeof *circuit->stimulus);
-    circuit->coupling = dalcs_arena_alloc(arena, n_couplings, sizeof *circuit->coupling);
-    circuit->diode_model = dalcs_arena_alloc(arena, n_models + 1, sizeof *circuit->diode_model);
+    circuit->coupling = dalcs_arena_alloc(arena, table.n_pairs, sizeof *circuit->coupling);
+    circuit->diode_model =
+        dalcs_arena_alloc(arena, n_models + 1 + table.n_scaled, sizeof *circuit->diode_model);
     circuit->switch_model = dalcs_arena_alloc(arena, n_models, sizeof *circuit->switch_model);
     builder->model = dalcs_arena_alloc(&builder->scratch, n_models, sizeof *builder->model);
     builder->device_token = dalcs_arena_alloc(&builder->scratch, n_devices + n_couplings,
                                               sizeof *builder->device_token);
     builder->control_token =
         dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->control_token);
+    builder->current_of =
+        dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->current_of);
     const bool ok = circuit->device != NULL && circuit->stimulus != NULL &&
                     circuit->coupling != NULL && circuit->diode_model != NULL &&
                     circuit->switch_model != NULL && builder->model != NULL &&
-                    builder->device_token != NULL && builder->control_token != NULL;
+                    builder->device_token != NULL && builder->control_token != NULL &&
+                    builder->current_of != NULL;
     return ok ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -79,6 +85,9 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
     case 'd':
         dalcs_diode_parse(builder, card);
         return;
+    case 'a':
+        dalcs_diode_parse_block(builder, card);
+        return;
     default:
         dalcs_switch_parse(builder, card);
         return;
@@ -86,19 +95,21 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
 }
 
 /* What a card means in a pass; cards of other passes are left alone. */
-enum pass { MODELS, ELEMENTS, REFERENCES };
+enum pass { OPTIONS, MODELS, ELEMENTS, REFERENCES };
 
 static void read_card(struct dalcs_builder *builder, const struct dalcs_card *card,
                       enum dalcs_card_class c, enum pass pass) {
-    if (pass == MODELS) {
+    if (pass == OPTIONS) {
+        if (c == DALCS_CARD_OPTIONS) {
+            dalcs_options_parse(builder, card);
+        }
+    } else if (pass == MODELS) {
         if (c == DALCS_CARD_MODEL) {
             dalcs_model_parse(builder, card);
         } else if (c == DALCS_CARD_TRAN) {
             dalcs_analysis_parse_tran(builder, card);
         } else if (c == DALCS_CARD_OP) {
             dalcs_analysis_parse_op(builder, card);
-        } else if (c == DALCS_CARD_OPTIONS) {
-            dalcs_options_parse(builder, card);
         }
     } else if (pass == ELEMENTS) {
         if (c == DALCS_CARD_ELEMENT) {
@@ -114,7 +125,7 @@ static void read_card(struct dalcs_builder *builder, const struct dalcs_card *ca
 }
 
 static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigned char *class_of) {
-    for (enum pass pass = MODELS; pass <= REFERENCES; pass++) {
+    for (enum pass pass = OPTIONS; pass <= REFERENCES; pass++) {
         for (size_t k = 0; k < builder->netlist->n_cards; k++) {
             read_card(builder, &builder->netlist->card[k], (enum dalcs_card_class)class_of[k],
                       pass);
@@ -204,8 +215,11 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
 enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
                                       const struct dalcs_netlist *netlist,
                                       struct dalcs_diag *diag) {
-    struct dalcs_builder builder = {
-        .circuit = circuit, .netlist = netlist, .diag = diag, .ideal_diode = -1};
+    struct dalcs_builder builder = {.circuit = circuit,
+                                    .netlist = netlist,
+                                    .diag = diag,
+                                    .ideal_diode = -1,
+                                    .diode_current = 1};
     *circuit = (struct dalcs_circuit){.n_nodes = 1};
 
     enum dalcs_status status = build(&builder);

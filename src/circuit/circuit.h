@@ -19,7 +19,7 @@ enum dalcs_device_kind {
     DALCS_VCCS,      /* G a b ca cb gain */
     DALCS_CCVS,      /* H a b Vname gain */
     DALCS_DIODE,     /* D anode cathode model */
-    DALCS_SWITCH     /* S a b ca cb model [ON|OFF] */
+    DALCS_SWITCH     /* S a b ca cb model [ON|OFF]; W a b Vname model [ON|OFF] */
 };
 
 struct dalcs_device {
@@ -32,23 +32,24 @@ struct dalcs_device {
     bool initially_on;           /* S ... ON */
     bool has_initial_state;      /* S carries ON or OFF */
     int stimulus;                /* V, I: index into circuit->stimulus, else -1 */
-    int control;                 /* F, H: index of the controlling V device, else -1 */
+    int control;                 /* F, H, W: index of the controlling V device, else -1 */
     int model;                   /* D: index into diode_model; S: into switch_model; else -1 */
     struct dalcs_location where; /* the element's card */
 };
 
-/* Forward branch: ideal + Vfwd + Ron; optional parallel Roff; optional reverse branch Vrev + Rrev.
+/* Slope 1/roff from -vrev to vfwd, 1/ron above and 1/rrev below.
  * Ron = 0 is complementarity, Roff = INFINITY exactly open, Vrev = INFINITY no breakdown. */
 struct dalcs_diode_model {
     const char *name;
     double ron, roff, vfwd, vrev, rrev; /* ohm, ohm, V, V, ohm */
 };
 
-/* Closes when the control rises through vt + vh, opens when it falls through vt - vh. Ron = 0 is a
- * wire, Roff = INFINITY a cut. */
+/* Closes when the control (S: a voltage, W: a current) rises through vt + vh, opens when it falls
+ * through vt - vh; inverted, the control is minus that. Ron = 0 is a wire, Roff = INFINITY a cut. */
 struct dalcs_switch_model {
     const char *name;
-    double ron, roff, vt, vh; /* ohm, ohm, V, V */
+    double ron, roff, vt, vh; /* ohm, ohm, V or A, V or A */
+    bool is_inverted;
 };
 
 /* Mutual inductance k sqrt(L1 L2) between inductor devices, |k| <= 1. */
@@ -100,7 +101,7 @@ struct dalcs_circuit {
     struct dalcs_coupling *coupling;
     int n_initial_conditions;
     struct dalcs_initial_condition *initial_condition;
-    int n_signals; /* default: every node voltage, then currents of V, L, D, S, E, H */
+    int n_signals; /* default: every node voltage, then currents of V, L, D, S, W, E, H */
     struct dalcs_signal *signal;
     struct dalcs_transient transient;
     bool operating_point; /* .op */

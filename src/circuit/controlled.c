@@ -18,10 +18,10 @@ static const char *usage_of(enum dalcs_device_kind kind) {
     }
 }
 
-/* POLY, VALUE=, TABLE and their like stand where the control should be. */
+/* VALUE=, TABLE and their like stand where the control should be. */
 static bool is_nonlinear(struct dalcs_reader *reader) {
-    static const char *const forms[] = {"poly", "value", "table", "laplace",
-                                        "freq", "vol",   "cur",   "chebyshev"};
+    static const char *const forms[] = {"value", "table", "laplace",  "freq",
+                                        "vol",   "cur",   "chebyshev"};
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     if (token == NULL ||
         !dalcs_builder_is_one_of(token->text, forms, sizeof forms / sizeof forms[0])) {
@@ -37,6 +37,10 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
     struct dalcs_reader reader = dalcs_reader_start(builder, card, usage_of(kind));
     struct dalcs_device *device = dalcs_builder_add_device(builder, kind, card->token);
     if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node) || is_nonlinear(&reader)) {
+        return;
+    }
+    if (dalcs_reader_take_word(&reader, "poly")) {
+        dalcs_poly_parse(&reader, device);
         return;
     }
     if (is_voltage_controlled(kind)) {

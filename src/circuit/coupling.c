@@ -1,4 +1,4 @@
-/* coupling.c - K: mutual inductance k sqrt(L1 L2) of two coils.
+/* coupling.c - K: mutual inductance k sqrt(L1 L2) of two coils, or of every two of several.
  *
  * Whether three or more coils can be coupled like this is for the equations to say (inductance.c). */
 #include "builder.h"
@@ -6,7 +6,10 @@
 #include <math.h>
 #include <string.h>
 
-static const char USAGE[] = "a coupling is: Kname Lfirst Lsecond k, with k from -1 to 1";
+static const char USAGE[] = "a coupling is: Kname Lfirst Lsecond [Lthird ...] k, k from -1 to 1";
+
+/* On one card. The pairs grow as the square. */
+enum { MOST_COILS = 1000 };
 
 static int find_coil(struct dalcs_builder *builder, const struct dalcs_token *name) {
     const int device = dalcs_builder_find_device(builder, name);
@@ -48,57 +51,88 @@ static bool is_new_pair(struct dalcs_builder *builder, const struct dalcs_token 
     return true;
 }
 
-/* Reads the coils and k; true when the coupling is complete and right. */
-static bool read_coupling(struct dalcs_reader *reader, int place, struct dalcs_coupling *coupling) {
+/* The coils that a card names, in the builder's scratch, -1 where there is none; NULL when an error
+ * was reported. */
+static int *read_coils(struct dalcs_reader *reader, int n) {
     struct dalcs_builder *builder = reader->builder;
-    const struct dalcs_token *coil[2];
-    for (int k = 0; k < 2; k++) {
-        if (!dalcs_reader_name(reader, "the name of an inductor", &coil[k])) {
-            return false;
+    int *coil = dalcs_arena_alloc(&builder->scratch, (size_t)n, sizeof *coil);
+    if (coil == NULL) {
+        builder->out_of_memory = true;
+        return NULL;
+    }
+    for (int k = 0; k < n; k++) {
+        const struct dalcs_token *name;
+        if (!dalcs_reader_name(reader, "the name of an inductor", &name)) {
+            return NULL;
+        }
+        coil[k] = find_coil(builder, name);
+        for (int j = 0; j < k && coil[k] >= 0; j++) {
+            if (coil[j] == coil[k]) {
+                dalcs_builder_error(builder, name, NULL, "'%s' is coupled to itself", name->text);
+                return NULL;
+            }
         }
     }
-    const struct dalcs_token *third = dalcs_reader_peek(reader, 0);
-    if (third != NULL && third->kind == DALCS_TOKEN_WORD && third->text[0] == 'l') {
-        dalcs_builder_error(builder, third, "write one K for each pair of coils",
-                            "coupling more than two coils at once is not supported yet");
+    return coil;
+}
+
+static bool read_factor(struct dalcs_reader *reader, double *k) {
+    if (!dalcs_reader_number(reader, DALCS_PLAIN, "a coupling factor", k)) {
         return false;
     }
-    for (int k = 0; k < 2; k++) {
-        coupling->inductor[k] = find_coil(builder, coil[k]);
-    }
-    if (!dalcs_reader_number(reader, DALCS_PLAIN, "a coupling factor", &coupling->k)) {
+    if (fabs(*k) > 1) {
+        dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), USAGE,
+                            "a coupling factor of %g: its magnitude is at most 1", *k);
         return false;
     }
-    if (fabs(coupling->k) > 1) {
-        dalcs_builder_error(builder, dalcs_reader_previous(reader), USAGE,
-                            "a coupling factor of %g: its magnitude is at most 1", coupling->k);
-        return false;
+    return dalcs_reader_end(reader);
+}
+
+int dalcs_coupling_count_coils(const struct dalcs_card *card) {
+    int n = 0;
+    while (n + 1 < card->n && card->token[n + 1].kind == DALCS_TOKEN_WORD &&
+           card->token[n + 1].text[0] == 'l') {
+        n++;
     }
-    if (!dalcs_reader_end(reader) || coupling->inductor[0] < 0 || coupling->inductor[1] < 0) {
-        return false;
+    return n < 2 || n > MOST_COILS ? 2 : n;
+}
+
+static void add_pair(struct dalcs_builder *builder, const struct dalcs_token *card_name, int place,
+                     struct dalcs_coupling coupling) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    if (coupling.inductor[0] >= 0 && coupling.inductor[1] >= 0 &&
+        is_new_pair(builder, card_name, coupling.inductor, place)) {
+        circuit->coupling[circuit->n_couplings++] = coupling;
     }
-    if (coupling->inductor[0] == coupling->inductor[1]) {
-        dalcs_builder_error(builder, coil[1], NULL, "'%s' is coupled to itself", coil[1]->text);
-        return false;
-    }
-    return is_new_pair(builder, reader->card->token, coupling->inductor, place);
 }
 
 void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
-    struct dalcs_coupling *coupling = &circuit->coupling[circuit->n_couplings];
+    struct dalcs_coupling coupling = {.where = dalcs_builder_keep_location(builder, card->token)};
     const int place = builder->n_device_cards + builder->n_couplings_seen++;
     builder->device_token[place] = card->token;
     dalcs_builder_add_name(builder, card->token, place);
-    coupling->name =
-        dalcs_arena_copy(&circuit->arena, card->token->text, strlen(card->token->text));
-    coupling->where = dalcs_builder_keep_location(builder, card->token);
-    if (coupling->name == NULL) {
+    coupling.name = dalcs_arena_copy(&circuit->arena, card->token->text, strlen(card->token->text));
+    if (coupling.name == NULL) {
         builder->out_of_memory = true;
         return;
     }
-    if (read_coupling(&reader, place, coupling)) {
-        circuit->n_couplings++;
+    const int n = dalcs_coupling_count_coils(card);
+    const int *coil = read_coils(&reader, n);
+    const struct dalcs_token *next = dalcs_reader_peek(&reader, 0);
+    if (coil != NULL && next != NULL && next->kind == DALCS_TOKEN_WORD && next->text[0] == 'l') {
+        dalcs_builder_error(builder, next, NULL, "one card couples %d coils at most", MOST_COILS);
+        return;
+    }
+    if (coil == NULL || !read_factor(&reader, &coupling.k)) {
+        return;
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = i + 1; j < n && !builder->out_of_memory; j++) {
+            coupling.inductor[0] = coil[i];
+            coupling.inductor[1] = coil[j];
+            add_pair(builder, card->token, place, coupling);
+        }
     }
 }

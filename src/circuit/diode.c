@@ -1,16 +1,21 @@
-/* diode.c - D elements and their models.
+/* diode.c - D elements, and A elements whose model is a sidiode.
  *
- * A model is piecewise linear, with the lines of LTspice's idealised diode: slope 1/Roff up to Vfwd,
- * then 1/Ron, and 1/Rrev below -Vrev. What is left out is ideal: Ron = 0, Roff infinite, Vfwd = 0, no
- * breakdown. The parameters of the exponential diode are refused rather than guessed at. */
+ * m= diodes in parallel and n= in series are LTspice's; the area is that of SPICE's exponential
+ * diode. A diode with one of these has a model of its own. What limits the current is a current
+ * source with an ideal diode across it, in series: it lets less pass, never more. */
 #include "builder.h"
 
 #include <math.h>
 #include <string.h>
 
-static const char USAGE[] = "a diode is: Dname anode cathode [model]";
-static const char MODEL_USAGE[] =
-    "a diode model is: .model name D [(Ron=ohms Roff=ohms Vfwd=volts Vrev=volts Rrev=ohms)]";
+static const char USAGE[] =
+    "a diode is: Dname anode cathode [model] [area] [m=parallel] [n=series]";
+
+/* What may follow the model's name. */
+struct scale {
+    double area, parallel, series;
+    const struct dalcs_token *place; /* of the last one, NULL: none */
+};
 
 static int ideal_model(struct dalcs_builder *builder) {
     if (builder->ideal_diode < 0) {
@@ -22,39 +27,152 @@ static int ideal_model(struct dalcs_builder *builder) {
     return builder->ideal_diode;
 }
 
-/* What may follow the model's name. */
-static void read_rest(struct dalcs_reader *reader) {
+static bool read_positive(struct dalcs_reader *reader, const char *what, double *value) {
+    if (!dalcs_reader_number(reader, DALCS_PLAIN, what, value)) {
+        return false;
+    }
+    if (*value <= 0) {
+        dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
+                            "%s must be positive", what);
+        return false;
+    }
+    return true;
+}
+
+static bool read_scale(struct dalcs_reader *reader, const struct dalcs_token *name,
+                       struct scale *scale) {
+    scale->place = name;
+    return read_positive(reader, strcmp(name->text, "area") == 0 ? "an area" : "a number of diodes",
+                         strcmp(name->text, "area") == 0 ? &scale->area
+                         : strcmp(name->text, "m") == 0  ? &scale->parallel
+                                                         : &scale->series);
+}
+
+static bool read_rest(struct dalcs_reader *reader, struct scale *scale) {
+    static const char *const scales[] = {"m", "n", "area"};
+    static const char *const ignored[] = {"ic", "temp", "dtemp"};
     struct dalcs_builder *builder = reader->builder;
-    double ignored;
+    double value;
     while (!dalcs_reader_at_end(reader)) {
         const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
         const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
         if (name == NULL && dalcs_reader_take_word(reader, "off")) {
             dalcs_builder_note(builder, token, NULL, "'off' has no meaning here and is ignored");
         } else if (name == NULL && dalcs_reader_is_number(token)) {
-            if (!dalcs_reader_number(reader, DALCS_PLAIN, "an area", &ignored)) {
-                return;
+            scale->place = token;
+            if (!read_positive(reader, "an area", &scale->area)) {
+                return false;
             }
-            dalcs_builder_warn(builder, token, NULL,
-                               "the area of a piecewise linear diode is ignored");
-        } else if (name != NULL &&
-                   (strcmp(name->text, "ic") == 0 || strcmp(name->text, "temp") == 0 ||
-                    strcmp(name->text, "dtemp") == 0)) {
-            if (!dalcs_reader_number(reader, DALCS_PLAIN, "a number", &ignored)) {
-                return;
+        } else if (name != NULL && dalcs_builder_is_one_of(name->text, ignored,
+                                                           sizeof ignored / sizeof ignored[0])) {
+            if (!dalcs_reader_number(reader, DALCS_PLAIN, "a number", &value)) {
+                return false;
             }
             dalcs_builder_note(builder, name, NULL, "'%s' of a diode is ignored", name->text);
-        } else if (name != NULL && (strcmp(name->text, "m") == 0 || strcmp(name->text, "n") == 0 ||
-                                    strcmp(name->text, "area") == 0)) {
-            dalcs_builder_error(builder, name, "write a model for it",
-                                "'%s' of a diode is not supported yet", name->text);
-            return;
+        } else if (name != NULL &&
+                   dalcs_builder_is_one_of(name->text, scales, sizeof scales / sizeof scales[0])) {
+            if (!read_scale(reader, name, scale)) {
+                return false;
+            }
         } else {
             reader->at -= name != NULL ? 2 : 0;
             dalcs_reader_unexpected(reader);
-            return;
+            return false;
         }
     }
+    return true;
+}
+
+/* A model for a diode that is not as large as its model; false when an error was reported. */
+static bool scale_model(struct dalcs_builder *builder, const struct dalcs_diode_card *card,
+                        struct dalcs_device *device, const struct scale *scale) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    struct dalcs_diode_model *model = &circuit->diode_model[circuit->n_diode_models];
+    *model = circuit->diode_model[device->model];
+    if (card->is_berkeley) {
+        if (scale->series != 1) {
+            dalcs_builder_error(builder, scale->place, NULL,
+                                "n= counts idealised diodes in series; that of an exponential "
+                                "diode is its model's");
+            return false;
+        }
+        dalcs_diode_model_map(card, builder->diode_current, scale->area * scale->parallel, model);
+    } else if (scale->area != 1) {
+        dalcs_builder_warn(builder, scale->place, NULL,
+                           "the area of a piecewise linear diode is ignored");
+    }
+    if (!card->is_berkeley) {
+        const double factor = scale->series / scale->parallel;
+        model->ron *= factor;
+        model->roff *= factor;
+        model->rrev *= factor;
+        model->vfwd *= scale->series;
+        model->vrev *= scale->series;
+    }
+    device->model = circuit->n_diode_models++;
+    return true;
+}
+
+/* Lets at most `limit` pass from `from` to `to`. */
+static void add_limit(struct dalcs_builder *builder, const struct dalcs_token *name,
+                      const char *const *what, double limit, int from, int to) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    struct dalcs_device *source =
+        dalcs_builder_add_inner_device(builder, DALCS_ISOURCE, what[0], name);
+    struct dalcs_device *bypass =
+        dalcs_builder_add_inner_device(builder, DALCS_DIODE, what[1], name);
+    if (source == NULL || bypass == NULL) {
+        return;
+    }
+    source->node[0] = bypass->node[1] = from;
+    source->node[1] = bypass->node[0] = to;
+    source->stimulus = circuit->n_stimuli++;
+    circuit->stimulus[source->stimulus] =
+        (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .has_dc = true, .dc = limit};
+    bypass->model = ideal_model(builder);
+}
+
+static void add_limits(struct dalcs_builder *builder, const struct dalcs_token *name,
+                       const struct dalcs_diode_card *card, struct dalcs_device *device,
+                       double parallel) {
+    static const char *const forward[2] = {"ilimit", "below_ilimit"};
+    static const char *const reverse[2] = {"revilimit", "below_revilimit"};
+    if (isfinite(card->ilimit)) {
+        const int node = dalcs_builder_inner_node(builder, "before_ilimit", name);
+        if (node < 0) {
+            return;
+        }
+        add_limit(builder, name, forward, card->ilimit * parallel, node, device->node[1]);
+        device->node[1] = node;
+    }
+    if (isfinite(card->revilimit)) {
+        const int node = dalcs_builder_inner_node(builder, "before_revilimit", name);
+        if (node < 0) {
+            return;
+        }
+        add_limit(builder, name, reverse, card->revilimit * parallel, device->node[1], node);
+        device->node[1] = node;
+    }
+}
+
+/* After the nodes. */
+static void read_model(struct dalcs_reader *reader, struct dalcs_device *device) {
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *name;
+    struct scale scale = {1, 1, 1, NULL};
+    if (!dalcs_reader_name(reader, "the name of a model", &name)) {
+        return;
+    }
+    device->model = dalcs_model_find(builder, name, DALCS_MODEL_DIODE);
+    if (!read_rest(reader, &scale) || device->model < 0) {
+        return;
+    }
+    const struct dalcs_diode_card *card =
+        &builder->model[dalcs_names_find(&builder->models, name->text)].diode;
+    if (scale.place != NULL && !scale_model(builder, card, device, &scale)) {
+        return;
+    }
+    add_limits(builder, reader->card->token, card, device, scale.parallel);
 }
 
 void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -67,106 +185,26 @@ void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *c
         device->model = ideal_model(builder);
         return;
     }
-    const struct dalcs_token *model;
-    if (!dalcs_reader_name(&reader, "the name of a model", &model)) {
+    read_model(&reader, device);
+}
+
+void dalcs_diode_parse_block(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    const struct dalcs_token *last = &card->token[card->n - 1];
+    const int index = dalcs_names_find(&builder->models, last->text);
+    if (index < 0 || builder->model[index].type == NULL ||
+        strcmp(builder->model[index].type->text, "sidiode") != 0) {
+        dalcs_builder_error(builder, card->token, NULL,
+                            "XSPICE and special function blocks are not supported yet ('%s')",
+                            card->token->text);
+        builder->hidden |= DALCS_HIDDEN_ELEMENTS;
         return;
     }
-    device->model = dalcs_model_find(builder, model, DALCS_MODEL_DIODE);
-    read_rest(&reader);
-}
-
-/* ---- Models -------------------------------------------------------------------------------- */
-
-/* Reports a parameter that a diode here does not have; false for one that means nothing. */
-static bool report_parameter(struct dalcs_builder *builder, const struct dalcs_token *name) {
-    static const char *const ours[] = {"ron", "roff", "vfwd", "vrev", "rrev"};
-    static const char *const berkeley[] = {
-        "is",   "js",    "jsw",  "n",    "ns",  "rs",   "bv",   "ibv",  "nbv",  "ibvl",
-        "nbvl", "cjo",   "cj0",  "cj",   "cjp", "vj",   "pb",   "m",    "mj",   "fc",
-        "fcs",  "tt",    "eg",   "xti",  "kf",  "af",   "ik",   "ikf",  "ikr",  "isr",
-        "nr",   "tbv",   "tbv1", "tbv2", "trs", "trs1", "trs2", "tikf", "tnom", "tref",
-        "vp",   "level", "area", "rsw",  "tcv", "cta",  "vjsw", "php",  "mjsw"};
-    static const char *const later[] = {"ilimit", "revilimit", "epsilon", "revepsilon"};
-    /* Data that libraries keep in a model, of no effect in any simulator. */
-    static const char *const labels[] = {"mfg",  "type", "vpk",  "ipk",     "iave",
-                                         "irms", "diss", "vceo", "icrating"};
-    if (dalcs_builder_is_one_of(name->text, labels, sizeof labels / sizeof labels[0])) {
-        return false;
+    struct dalcs_reader reader =
+        dalcs_reader_start(builder, card, "an XSPICE diode is: Aname %gd(anode cathode) model");
+    struct dalcs_device *device = dalcs_builder_add_device(builder, DALCS_DIODE, card->token);
+    const struct dalcs_token *port = dalcs_reader_peek(&reader, 0);
+    reader.at += port != NULL && port->text[0] == '%';
+    if (device != NULL && dalcs_reader_nodes(&reader, 2, device->node)) {
+        read_model(&reader, device);
     }
-    if (dalcs_builder_is_one_of(name->text, berkeley, sizeof berkeley / sizeof berkeley[0])) {
-        dalcs_builder_error(builder, name,
-                            "write a piecewise linear diode, such as D(Ron=10m Vfwd=0.7), or D "
-                            "for an ideal one",
-                            "'%s' belongs to the exponential diode, which is not supported yet",
-                            name->text);
-    } else if (dalcs_builder_is_one_of(name->text, later, sizeof later / sizeof later[0])) {
-        dalcs_builder_error(builder, name, MODEL_USAGE, "'%s' is not supported yet", name->text);
-    } else {
-        dalcs_builder_error(builder, name,
-                            dalcs_builder_suggest_of(builder, ours, sizeof ours / sizeof ours[0],
-                                                     name->text, MODEL_USAGE),
-                            "a diode model has no parameter '%s'", name->text);
-    }
-    return true;
-}
-
-enum { RON, ROFF, VFWD, VREV, RREV, N_PARAMETERS };
-
-static bool check_model(struct dalcs_builder *builder, const struct dalcs_parameter *p) {
-    if (p[RON].value < 0) {
-        dalcs_builder_error(builder, p[RON].place, NULL, "Ron cannot be negative");
-        return false;
-    }
-    if (p[ROFF].value <= 0) {
-        dalcs_builder_error(builder, p[ROFF].place, "leave Roff out for a diode without leakage",
-                            "Roff must be positive");
-        return false;
-    }
-    if (p[VREV].value <= 0) {
-        dalcs_builder_error(builder, p[VREV].place,
-                            "Vrev is the magnitude of the breakdown voltage; leave it out for none",
-                            "Vrev must be positive");
-        return false;
-    }
-    if (p[VFWD].value <= -p[VREV].value) {
-        dalcs_builder_error(builder, p[VFWD].place, NULL,
-                            "Vfwd is not above the breakdown at -Vrev");
-        return false;
-    }
-    if (p[RREV].value < 0) {
-        dalcs_builder_error(builder, p[RREV].place, NULL, "Rrev cannot be negative");
-        return false;
-    }
-    double largest = fmax(p[RON].value, p[VREV].place ? p[RREV].value : 0.0);
-    if (p[ROFF].value <= largest) {
-        dalcs_builder_error(builder, p[ROFF].place, "leave Roff out for a diode without leakage",
-                            "Roff must be above Ron and Rrev: what conducts more when off is no "
-                            "diode");
-        return false;
-    }
-    return true;
-}
-
-bool dalcs_diode_parse_model(struct dalcs_reader *reader, struct dalcs_diode_model *model) {
-    const double infinite = (double)INFINITY;
-    struct dalcs_parameter parameter[N_PARAMETERS] = {
-        [RON] = {"ron", DALCS_OHM, false, 0, NULL},
-        [ROFF] = {"roff", DALCS_OHM, true, infinite, NULL},
-        [VFWD] = {"vfwd", DALCS_VOLTAGE, false, 0, NULL},
-        [VREV] = {"vrev", DALCS_VOLTAGE, true, infinite, NULL},
-        [RREV] = {"rrev", DALCS_OHM, false, 0, NULL},
-    };
-    reader->usage = MODEL_USAGE;
-    if (!dalcs_model_read_parameters(reader, parameter, N_PARAMETERS, report_parameter)) {
-        return false;
-    }
-    if (parameter[RREV].place == NULL) {
-        parameter[RREV].value = parameter[RON].value;
-    }
-    model->ron = parameter[RON].value;
-    model->roff = parameter[ROFF].value;
-    model->vfwd = parameter[VFWD].value;
-    model->vrev = parameter[VREV].value;
-    model->rrev = parameter[RREV].value;
-    return check_model(reader->builder, parameter);
 }

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static const char USAGE[] = "a model is: .model name D|SW [(parameter=value ...)]";
+static const char USAGE[] = "a model is: .model name D|SW|CSW [(parameter=value ...)]";
 
 struct type {
     const char *name;
@@ -18,11 +18,11 @@ static const struct type *find_type(const char *name) {
     static const struct type types[] = {
         {"d", DALCS_MODEL_DIODE, "diode"},
         {"sw", DALCS_MODEL_SWITCH, "switch"},
-        {"csw", DALCS_MODEL_OTHER, "current controlled switch"},
-        {"vswitch", DALCS_MODEL_OTHER, "smooth switch"},
-        {"iswitch", DALCS_MODEL_OTHER, "smooth current controlled switch"},
+        {"vswitch", DALCS_MODEL_SWITCH, "switch"},
+        {"csw", DALCS_MODEL_CURRENT_SWITCH, "current controlled switch"},
+        {"iswitch", DALCS_MODEL_CURRENT_SWITCH, "current controlled switch"},
         {"aswitch", DALCS_MODEL_OTHER, "smooth switch"},
-        {"sidiode", DALCS_MODEL_OTHER, "XSPICE diode"},
+        {"sidiode", DALCS_MODEL_DIODE, "diode"},
         {"npn", DALCS_MODEL_OTHER, "transistor"},
         {"pnp", DALCS_MODEL_OTHER, "transistor"},
         {"lpnp", DALCS_MODEL_OTHER, "transistor"},
@@ -78,7 +78,7 @@ static bool skip_value(struct dalcs_reader *reader) {
 
 bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_parameter *parameter,
                                  int n,
-                                 bool (*unknown)(struct dalcs_builder *builder,
+                                 bool (*unknown)(struct dalcs_reader *reader,
                                                  const struct dalcs_token *name)) {
     bool ok = true;
     const struct dalcs_token *name;
@@ -92,7 +92,7 @@ bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_param
         }
         if (k == n) {
             /* A library's card has a dozen of these: one message is enough. */
-            ok = ok && !unknown(reader->builder, name);
+            ok = ok && !unknown(reader, name);
             if (!skip_value(reader)) {
                 return false;
             }
@@ -116,11 +116,12 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
     if (model->kind == DALCS_MODEL_DIODE) {
         model->index = circuit->n_diode_models++;
         circuit->diode_model[model->index].name = name;
-        ok = dalcs_diode_parse_model(reader, &circuit->diode_model[model->index]);
+        ok = dalcs_diode_parse_model(reader, model->type, &model->diode,
+                                     &circuit->diode_model[model->index]);
     } else {
         model->index = circuit->n_switch_models++;
         circuit->switch_model[model->index].name = name;
-        ok = dalcs_switch_parse_model(reader, &circuit->switch_model[model->index]);
+        ok = dalcs_switch_parse_model(reader, model->type, &circuit->switch_model[model->index]);
     }
     if (!ok) {
         return false;
@@ -188,6 +189,11 @@ void dalcs_model_check(struct dalcs_builder *builder) {
     }
 }
 
+/* The type that a card must have. */
+static const char *wanted_type(enum dalcs_model_kind kind) {
+    return kind == DALCS_MODEL_DIODE ? "D" : kind == DALCS_MODEL_SWITCH ? "SW" : "CSW";
+}
+
 int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *name,
                      enum dalcs_model_kind kind) {
     const int index = dalcs_names_find(&builder->models, name->text);
@@ -199,7 +205,9 @@ int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *na
                 builder->n_models > 0
                     ? dalcs_builder_suggest(builder, &builder->models, name->text, "models")
                     : dalcs_builder_hint(builder, "add a line: .model %s %s", name->text,
-                                         kind == DALCS_MODEL_DIODE ? "D" : "SW(Vt=0.5)"),
+                                         kind == DALCS_MODEL_DIODE    ? "D"
+                                         : kind == DALCS_MODEL_SWITCH ? "SW(Vt=0.5)"
+                                                                      : "CSW(It=0.5)"),
                 "there is no model '%s'", name->text);
         }
         return -1;
@@ -211,7 +219,7 @@ int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *na
     if (model->kind != kind) {
         model->was_refused = true;
         dalcs_builder_error(builder, name, NULL, "model '%s' is of type %s, here %s is wanted",
-                            name->text, model->type->text, kind == DALCS_MODEL_DIODE ? "D" : "SW");
+                            name->text, model->type->text, wanted_type(kind));
         return -1;
     }
     return model->index;

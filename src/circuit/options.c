@@ -8,8 +8,8 @@
 #include <string.h>
 
 /* Known here. */
-static const char *const OURS[] = {"reltol", "abstol", "vntol",   "method",
-                                   "step",   "stages", "compress"};
+static const char *const OURS[] = {"reltol", "abstol", "vntol",    "method",
+                                   "step",   "stages", "compress", "diodecurrent"};
 
 static const char *const FOREIGN[] = {
     "itl1",          "itl2",        "itl3",         "itl4",        "itl5",         "itl6",
@@ -44,14 +44,16 @@ static void report_unknown(struct dalcs_builder *builder, const struct dalcs_tok
 
 static bool read_positive(struct dalcs_reader *reader, enum dalcs_quantity quantity,
                           double *value) {
-    if (!dalcs_reader_number(reader, quantity, "a value", value)) {
+    double given;
+    if (!dalcs_reader_number(reader, quantity, "a value", &given)) {
         return false;
     }
-    if (*value <= 0) {
+    if (given <= 0) {
         dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
                             "this option must be positive");
         return false;
     }
+    *value = given;
     return true;
 }
 
@@ -141,6 +143,9 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     }
     if (strcmp(name, "stages") == 0) {
         return read_stages(reader, &options->stages);
+    }
+    if (strcmp(name, "diodecurrent") == 0) {
+        return read_positive(reader, DALCS_CURRENT, &reader->builder->diode_current);
     }
     if (strcmp(name, "compress") == 0) {
         return read_compress(reader, options);

@@ -39,21 +39,45 @@ static bool is_value_name(const struct family *family, const char *name) {
     return false;
 }
 
+/* What a card says besides its nodes. */
+struct values {
+    bool has_value;
+    double multiplier; /* 0: none */
+    struct dalcs_parasitics parasitics;
+};
+
+/* An inductor has no Lser, a resistor nothing. */
+static bool may_have(enum dalcs_device_kind kind, const char *parasitic) {
+    return dalcs_parasitic_is_name(parasitic) &&
+           (kind == DALCS_CAPACITOR || (kind == DALCS_INDUCTOR && strchr(parasitic, 'l') == NULL));
+}
+
+static bool read_multiplier(struct dalcs_reader *reader, double *multiplier) {
+    if (!dalcs_reader_number(reader, DALCS_PLAIN, "a number", multiplier)) {
+        return false;
+    }
+    if (*multiplier <= 0) {
+        dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
+                            "a multiplier must be positive");
+        return false;
+    }
+    return true;
+}
+
 /* The value of a parameter after the card's value. False ends the card. */
 static bool read_parameter(struct dalcs_reader *reader, const struct family *family,
                            const struct dalcs_token *name, struct dalcs_device *device,
-                           bool *has_value) {
+                           struct values *values) {
     static const char *const temperature[] = {"tc",    "tc1",   "tc2",  "temp",
                                               "dtemp", "noisy", "noise"};
-    static const char *const parasitic[] = {"rser", "rpar", "lser", "cpar", "rlshunt"};
     struct dalcs_builder *builder = reader->builder;
     double ignored;
     if (is_value_name(family, name->text)) {
-        if (*has_value) {
+        if (values->has_value) {
             dalcs_builder_error(builder, name, NULL, "%s is given twice", family->value);
             return false;
         }
-        *has_value = true;
+        values->has_value = true;
         return dalcs_reader_number(reader, family->quantity, family->value, &device->value);
     }
     if (strcmp(name->text, "ic") == 0 && device->kind != DALCS_RESISTOR) {
@@ -79,15 +103,11 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
         }
         return true;
     }
-    if (dalcs_builder_is_one_of(name->text, parasitic, sizeof parasitic / sizeof parasitic[0])) {
-        dalcs_builder_error(builder, name, "write it as an element of its own",
-                            "parasitic '%s' is not supported yet", name->text);
-        return false;
+    if (may_have(device->kind, name->text)) {
+        return dalcs_parasitic_read(reader, name, &values->parasitics);
     }
     if (strcmp(name->text, "m") == 0) {
-        dalcs_builder_error(builder, name, "put the total into the value",
-                            "multiplier 'm' is not supported yet");
-        return false;
+        return read_multiplier(reader, &values->multiplier);
     }
     dalcs_builder_error(builder, name, family->usage, "%s has no parameter '%s'",
                         dalcs_builder_kind_text(device->kind), name->text);
@@ -121,27 +141,27 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
     if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node)) {
         return;
     }
-    bool has_value = false;
+    struct values values = {.has_value = false};
     const struct dalcs_token *equal = dalcs_reader_peek(&reader, 1);
     if (equal == NULL || equal->kind != DALCS_TOKEN_EQUAL) {
         if (!dalcs_reader_number(&reader, family->quantity, family->value, &device->value)) {
             return;
         }
-        has_value = true;
+        values.has_value = true;
     }
     const struct dalcs_token *value = dalcs_reader_previous(&reader);
     const struct dalcs_token *name;
     while ((name = dalcs_reader_take_parameter(&reader)) != NULL) {
-        const bool had_value = has_value;
-        if (!read_parameter(&reader, family, name, device, &has_value)) {
+        const bool had_value = values.has_value;
+        if (!read_parameter(&reader, family, name, device, &values)) {
             return;
         }
-        value = has_value && !had_value ? dalcs_reader_previous(&reader) : value;
+        value = values.has_value && !had_value ? dalcs_reader_previous(&reader) : value;
     }
     if (!dalcs_reader_end(&reader)) {
         return;
     }
-    if (!has_value) {
+    if (!values.has_value) {
         dalcs_reader_missing(&reader, family->value);
         return;
     }
@@ -149,6 +169,12 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_builder_error(builder, value, NULL, "%s cannot be negative", family->value);
         return;
     }
+    if (values.multiplier > 0) {
+        device->value *= kind == DALCS_CAPACITOR ? values.multiplier : 1 / values.multiplier;
+        device->initial *= kind == DALCS_INDUCTOR ? values.multiplier : 1;
+        dalcs_parasitic_multiply(&values.parasitics, values.multiplier);
+    }
+    dalcs_parasitic_expand(builder, card->token, device, &values.parasitics);
     if (device->value == 0 && kind != DALCS_RESISTOR) {
         replace_zero(builder, device, value);
     }

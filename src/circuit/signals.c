@@ -1,6 +1,6 @@
 /* signals.c - what is recorded: .save, .print, .plot and .probe, or the default.
  *
- * The default is every node voltage and the currents of V, L, D, S, E and H. Naming signals
+ * The default is every node voltage and the currents of V, L, D, S, W, E and H. Naming signals
  * replaces it, `all` adds it. Each signal is recorded once. */
 #include "builder.h"
 
@@ -42,18 +42,24 @@ static void add_voltage(struct dalcs_builder *builder, int a, int b, bool is_pai
 static void add_current(struct dalcs_builder *builder, int device) {
     const char *name = dalcs_arena_printf(&builder->circuit->arena, "i(%s)",
                                           builder->circuit->device[device].name);
-    add_signal(builder, name,
-               (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .device = device});
+    add_signal(
+        builder, name,
+        (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .device = builder->current_of[device]});
 }
 
 void dalcs_signals_add_default(struct dalcs_builder *builder) {
     const struct dalcs_circuit *circuit = builder->circuit;
     for (int k = 1; k < circuit->n_nodes; k++) {
-        add_voltage(builder, k, 0, false);
+        if (!dalcs_builder_is_inner(builder->node_name[k])) {
+            add_voltage(builder, k, 0, false);
+        }
     }
     /* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
     for (int k = 0; k < circuit->n_devices; k++) {
-        if (strchr("vldseh", circuit->device[k].name[0]) != NULL) {
+        const char *name = circuit->device[k].name;
+        const bool is_default =
+            strchr("vldsweh", name[0]) != NULL || circuit->device[k].kind == DALCS_DIODE;
+        if (is_default && !dalcs_builder_is_inner(name)) {
             add_current(builder, k);
         }
     }

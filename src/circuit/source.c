@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const char USAGE[] =
-    "a source is: Vname node node [DC value] [SIN(...), PULSE(...), PWL(...) or EXP(...)]";
+    "a source is: Vname node node [DC value] [SIN, PULSE, PWL, EXP, AM or SFFM(...)]";
 
 static void skip_ac(struct dalcs_reader *reader) {
     double ignored;
@@ -39,9 +39,9 @@ static bool read_dc(struct dalcs_reader *reader, enum dalcs_quantity quantity,
 
 /* A word that is neither DC, AC nor the name of a function. */
 static void report_word(struct dalcs_reader *reader, const struct dalcs_token *token) {
-    static const char *const later[] = {"sffm", "am", "trnoise", "trrandom", "external", "port",
-                                        "r",    "td", "value",   "poly",     "table",    "laplace"};
-    static const char *const known[] = {"sin", "pulse", "pwl", "exp", "dc", "ac"};
+    static const char *const later[] = {"trnoise", "trrandom", "external", "port",
+                                        "value",   "poly",     "table",    "laplace"};
+    static const char *const known[] = {"sin", "pulse", "pwl", "exp", "am", "sffm", "dc", "ac"};
     struct dalcs_builder *builder = reader->builder;
     if (dalcs_builder_is_one_of(token->text, later, sizeof later / sizeof later[0])) {
         dalcs_builder_error(builder, token, NULL, "'%s' on a source is not supported yet",
@@ -54,14 +54,26 @@ static void report_word(struct dalcs_reader *reader, const struct dalcs_token *t
                         "'%s' is neither a value nor a source function", token->text);
 }
 
+/* Rser= or Cpar= of a V. */
+static bool takes_parasitic(struct dalcs_reader *reader, enum dalcs_quantity quantity) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    return quantity == DALCS_VOLTAGE &&
+           (strcmp(token->text, "rser") == 0 || strcmp(token->text, "cpar") == 0) &&
+           dalcs_reader_take_parameter(reader) != NULL;
+}
+
 static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantity,
-                        struct dalcs_stimulus *stimulus) {
+                        struct dalcs_stimulus *stimulus, struct dalcs_parasitics *parasitics) {
     bool has_function = false;
     const struct dalcs_token *token;
     while ((token = dalcs_reader_peek(reader, 0)) != NULL) {
         if (dalcs_reader_take_word(reader, "dc")) {
             dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
             if (!read_dc(reader, quantity, stimulus)) {
+                return;
+            }
+        } else if (takes_parasitic(reader, quantity)) {
+            if (!dalcs_parasitic_read(reader, token, parasitics)) {
                 return;
             }
         } else if (dalcs_reader_take_word(reader, "ac")) {
@@ -103,27 +115,34 @@ void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *
         return;
     }
     device->stimulus = circuit->n_stimuli++;
+    struct dalcs_parasitics parasitics = {.place = {NULL}};
     read_source(&reader, kind == DALCS_VSOURCE ? DALCS_VOLTAGE : DALCS_CURRENT,
-                &circuit->stimulus[device->stimulus]);
+                &circuit->stimulus[device->stimulus], &parasitics);
+    dalcs_parasitic_expand(builder, card->token, device, &parasitics);
+}
+
+/* Edges are told apart to 1e-15 of the time; leave room for a few points in between. */
+static void check_period(struct dalcs_builder *builder, const struct dalcs_token *name,
+                         double period) {
+    const double stop = builder->circuit->transient.stop;
+    if (builder->circuit->transient.present && period < stop * 1e-13) {
+        dalcs_builder_error(builder, name, NULL,
+                            "a period of %g s cannot be told apart at times up to %g s", period,
+                            stop);
+    }
 }
 
 static void check_pulse(struct dalcs_builder *builder, const struct dalcs_token *name,
                         const struct dalcs_stimulus *s) {
     const double length = s->u.pulse.rise + s->u.pulse.width + s->u.pulse.fall;
     const double period = s->u.pulse.period;
-    const double stop = builder->circuit->transient.stop;
     if (length > period * (1 + 1e-12)) {
         dalcs_builder_warn(builder, name, NULL,
                            "the pulse lasts %g s, longer than its period of %g s: each is cut by "
                            "the next",
                            length, period);
     }
-    /* Edges are told apart to 1e-15 of the time; leave room for a few points in between. */
-    if (builder->circuit->transient.present && period < stop * 1e-13) {
-        dalcs_builder_error(builder, name, NULL,
-                            "a period of %g s cannot be told apart at times up to %g s", period,
-                            stop);
-    }
+    check_period(builder, name, period);
 }
 
 void dalcs_source_check(struct dalcs_builder *builder) {
@@ -143,6 +162,10 @@ void dalcs_source_check(struct dalcs_builder *builder) {
         }
         if (s->kind == DALCS_STIMULUS_PULSE) {
             check_pulse(builder, builder->device_token[k], s);
+        }
+        if (s->kind == DALCS_STIMULUS_PWL && s->u.pwl.repeats) {
+            check_period(builder, builder->device_token[k],
+                         s->u.pwl.t[s->u.pwl.n - 1] - s->u.pwl.repeat_from);
         }
     }
 }

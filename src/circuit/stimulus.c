@@ -1,4 +1,4 @@
-/* stimulus.c - values, edges and jumps of DC, SIN, PULSE, PWL and EXP sources.
+/* stimulus.c - values, edges and jumps of DC, SIN, PULSE, PWL and EXP sources, and of sums of tones.
  *
  * A PULSE is a row of edges, delay + n period + offset with n an integer, each followed by a
  * segment (rise, high, fall, low). Every question is answered from the few edges around t: edges at
@@ -37,16 +37,25 @@ static double sin_of_cycles(double x) {
     return sin(2 * PI * r);
 }
 
-/* Phase in cycles, less whole ones, at `since` after the delay. The product's rounding error, which
- * grows with the number of cycles, is put back. */
+/* Phase in cycles, less whole ones, at `since` after a start at `phase`. The product's rounding error,
+ * which grows with the number of cycles, is put back. */
+static double cycles_at(double frequency, double since, double phase) {
+    const double cycles = frequency * since;
+    const double lost = fma(frequency, since, -cycles);
+    return (cycles - nearest_whole(cycles)) + (phase + lost);
+}
+
 static double cycles_of(const struct dalcs_stimulus *s, double since) {
-    const double cycles = s->u.sine.frequency * since;
-    const double lost = fma(s->u.sine.frequency, since, -cycles);
-    return (cycles - nearest_whole(cycles)) + (s->u.sine.phase / 360 + lost);
+    return cycles_at(s->u.sine.frequency, since, s->u.sine.phase / 360);
+}
+
+/* How long the cycles last, INFINITY when there is no end. */
+static double sine_length(const struct dalcs_stimulus *s) {
+    return s->u.sine.n_cycles > 0 ? s->u.sine.n_cycles / s->u.sine.frequency : (double)INFINITY;
 }
 
 static double sine_value(const struct dalcs_stimulus *s, double t) {
-    const double since = t - s->u.sine.delay;
+    const double since = fmin(t - s->u.sine.delay, sine_length(s));
     if (since <= 0) {
         return s->u.sine.offset + s->u.sine.amplitude * sin_of_cycles(s->u.sine.phase / 360);
     }
@@ -59,7 +68,7 @@ static double sine_value(const struct dalcs_stimulus *s, double t) {
 
 /* ---- PULSE --------------------------------------------------------------------------------- */
 
-enum segment { BEFORE = -1, RISE = 0, HIGH = 1, FALL = 2, LOW = 3 };
+enum segment { BEFORE = -1, RISE = 0, HIGH = 1, FALL = 2, LOW = 3, AFTER = 4 };
 
 /* An edge and the segment that follows it. */
 struct edge {
@@ -71,11 +80,21 @@ struct edge {
  * must be there. */
 enum { PERIODS_AROUND = 4 };
 
-/* The edges of the periods around a time, ascending. */
+/* The edges of the periods around a time, ascending, and the end of the last period. */
 struct edges {
-    struct edge item[4 * PERIODS_AROUND];
+    struct edge item[4 * PERIODS_AROUND + 1];
     int n;
 };
+
+/* Puts the end of the last period in place of all edges from there on. */
+static void end_edges(const struct dalcs_stimulus *s, struct edges *edges) {
+    const double stop = s->u.pulse.delay + s->u.pulse.n_periods * s->u.pulse.period;
+    const double near = tolerance(stop, s->u.pulse.delay);
+    while (edges->n > 0 && edges->item[edges->n - 1].time >= stop - near) {
+        edges->n--;
+    }
+    edges->item[edges->n++] = (struct edge){stop, AFTER};
+}
 
 static void collect_edges(const struct dalcs_stimulus *s, double t, struct edges *edges) {
     const double rise_end = s->u.pulse.rise;
@@ -84,7 +103,7 @@ static void collect_edges(const struct dalcs_stimulus *s, double t, struct edges
     /* An offset equal to the period but for rounding is the next period's start, not an edge of its
      * own a hair away from it. */
     double end = isinf(period) ? (double)INFINITY : period * (1 - 4 * DBL_EPSILON);
-    if (rise_end == 0 && fall_start >= end) {
+    if (rise_end == 0 && fall_start >= end && s->u.pulse.n_periods == 0) {
         /* High for ever: the restarts change nothing. */
         fall_start = period = end = (double)INFINITY;
     }
@@ -100,6 +119,9 @@ static void collect_edges(const struct dalcs_stimulus *s, double t, struct edges
         for (int j = 0; j < 4 && offset[j] < end; j++) {
             edges->item[edges->n++] = (struct edge){start + offset[j], (enum segment)j};
         }
+    }
+    if (s->u.pulse.n_periods > 0 && first + n_periods >= s->u.pulse.n_periods) {
+        end_edges(s, edges);
     }
 }
 
@@ -130,7 +152,7 @@ static double segment_end(const struct dalcs_stimulus *s, enum segment segment) 
 static double within_segment(const struct dalcs_stimulus *s, enum segment segment, double since,
                              double near) {
     const double length = segment == RISE ? s->u.pulse.rise : s->u.pulse.fall;
-    if (segment == BEFORE || segment == HIGH || segment == LOW || since >= length - near) {
+    if ((segment != RISE && segment != FALL) || since >= length - near) {
         return segment_end(s, segment);
     }
     const double from = segment_start(s, segment);
@@ -210,10 +232,36 @@ static int pwl_search(const struct dalcs_stimulus *s, double limit, bool or_equa
     return low;
 }
 
-static double pwl_value(const struct dalcs_stimulus *s, double t, enum dalcs_side side) {
+/* Where a time is in the first course of a PWL that repeats. */
+struct place {
+    double time;  /* repeat_from to the last point, once that is passed */
+    double ahead; /* s, of the present course before t: a whole number of periods */
+    bool is_seam; /* the last point and repeat_from at once */
+};
+
+static struct place find_place(const struct dalcs_stimulus *s, double t, double near) {
+    const double from = s->u.pwl.repeat_from;
+    const double last = s->u.pwl.t[s->u.pwl.n - 1];
+    struct place place = {.time = t};
+    if (!s->u.pwl.repeats || t < last - near) {
+        return place;
+    }
+    const double period = last - from;
+    double n = floor((t - from) / period);
+    place.ahead = n * period;
+    place.time = t - place.ahead;
+    if (place.time >= last - near) {
+        place.ahead = (n + 1) * period;
+        place.time = from;
+    }
+    place.is_seam = fabs(place.time - from) <= near;
+    return place;
+}
+
+static double pwl_value_once(const struct dalcs_stimulus *s, double t, double near,
+                             enum dalcs_side side) {
     const double *time = s->u.pwl.t;
     const double *value = s->u.pwl.v;
-    const double near = tolerance(t, 0);
     const int first = pwl_search(s, t - near, true);
     const int last = pwl_search(s, t + near, false);
     if (last > first) {
@@ -227,6 +275,41 @@ static double pwl_value(const struct dalcs_stimulus *s, double t, enum dalcs_sid
     }
     const double part = (t - time[first - 1]) / (time[first] - time[first - 1]);
     return value[first - 1] + (value[first] - value[first - 1]) * part;
+}
+
+static double pwl_value(const struct dalcs_stimulus *s, double t, enum dalcs_side side) {
+    const double near = tolerance(t, 0);
+    const struct place place = find_place(s, t, near);
+    const bool ends = place.is_seam && side == DALCS_LEFT;
+    return pwl_value_once(s, ends ? s->u.pwl.t[s->u.pwl.n - 1] : place.time, near, side);
+}
+
+static double pwl_next_edge(const struct dalcs_stimulus *s, double t) {
+    const double near = tolerance(t, 0);
+    const struct place place = find_place(s, t, near);
+    const int next = pwl_search(s, place.time + near, false);
+    return next < s->u.pwl.n ? s->u.pwl.t[next] + place.ahead : (double)INFINITY;
+}
+
+/* ---- Tones --------------------------------------------------------------------------------- */
+
+static bool tones_have_begun(const struct dalcs_stimulus *s, double t, enum dalcs_side side) {
+    const double near = s->u.tones.delay > 0 ? tolerance(t, s->u.tones.delay) : 0;
+    return s->u.tones.delay <= 0 || t > s->u.tones.delay + near ||
+           (side == DALCS_RIGHT && t >= s->u.tones.delay - near);
+}
+
+static double tones_value(const struct dalcs_stimulus *s, double t, enum dalcs_side side) {
+    if (!tones_have_begun(s, t, side)) {
+        return 0;
+    }
+    double sum = s->u.tones.offset;
+    for (int k = 0; k < s->u.tones.n; k++) {
+        const struct dalcs_tone *tone = &s->u.tones.tone[k];
+        sum += tone->amplitude *
+               sin_of_cycles(cycles_at(tone->frequency, t - s->u.tones.delay, tone->phase));
+    }
+    return sum;
 }
 
 /* ---- The interface ------------------------------------------------------------------------- */
@@ -243,6 +326,8 @@ double dalcs_stimulus_value(const struct dalcs_stimulus *s, double t, enum dalcs
         return pwl_value(s, t, side);
     case DALCS_STIMULUS_EXP:
         return exponential_value(s, t, side);
+    case DALCS_STIMULUS_TONES:
+        return tones_value(s, t, side);
     }
     return 0;
 }
@@ -256,16 +341,17 @@ double dalcs_stimulus_next_edge(const struct dalcs_stimulus *s, double t) {
     case DALCS_STIMULUS_DC:
         return INFINITY;
     case DALCS_STIMULUS_SIN:
-        return if_after(s->u.sine.delay, t, tolerance(t, 0));
+        return fmin(if_after(s->u.sine.delay, t, tolerance(t, 0)),
+                    if_after(s->u.sine.delay + sine_length(s), t, tolerance(t, 0)));
     case DALCS_STIMULUS_PULSE:
         return pulse_next_edge(s, t);
-    case DALCS_STIMULUS_PWL: {
-        const int next = pwl_search(s, t + tolerance(t, 0), false);
-        return next < s->u.pwl.n ? s->u.pwl.t[next] : INFINITY;
-    }
+    case DALCS_STIMULUS_PWL:
+        return pwl_next_edge(s, t);
     case DALCS_STIMULUS_EXP:
         return fmin(if_after(s->u.exponential.rise_delay, t, tolerance(t, 0)),
                     if_after(s->u.exponential.fall_delay, t, tolerance(t, 0)));
+    case DALCS_STIMULUS_TONES:
+        return if_after(s->u.tones.delay, t, tolerance(t, 0));
     }
     return INFINITY;
 }
@@ -277,12 +363,12 @@ bool dalcs_stimulus_jumps_at(const struct dalcs_stimulus *s, double t) {
 static void sine_piece(const struct dalcs_stimulus *s, double t,
                        struct dalcs_stimulus_piece *piece) {
     const double since = t - s->u.sine.delay;
-    piece->n_terms = 1;
     struct dalcs_stimulus_term *term = piece->term;
     *term = (struct dalcs_stimulus_term){.decay = s->u.sine.damping,
                                          .omega = 2 * PI * s->u.sine.frequency};
     piece->level = s->u.sine.offset;
-    if (isfinite(piece->to)) { /* before the delay */
+    const bool is_over = since >= sine_length(s) - tolerance(t, 0);
+    if (piece->to == s->u.sine.delay || is_over) {
         piece->level = sine_value(s, t);
         return;
     }
@@ -298,7 +384,6 @@ static void exponential_piece(const struct dalcs_stimulus *s, double t,
     const double delay[2] = {s->u.exponential.rise_delay, s->u.exponential.fall_delay};
     const double tau[2] = {s->u.exponential.rise_tau, s->u.exponential.fall_tau};
     piece->level = s->u.exponential.low;
-    piece->n_terms = 2;
     for (int k = 0; k < 2; k++) {
         const double near = tolerance(t, 0);
         double height = s->u.exponential.high - s->u.exponential.low;
@@ -312,15 +397,52 @@ static void exponential_piece(const struct dalcs_stimulus *s, double t,
     }
 }
 
+static void tones_piece(const struct dalcs_stimulus *s, double t,
+                        struct dalcs_stimulus_piece *piece) {
+    const bool have_begun = tones_have_begun(s, t, DALCS_RIGHT);
+    piece->level = have_begun ? s->u.tones.offset : 0;
+    for (int k = 0; k < s->u.tones.n; k++) {
+        const struct dalcs_tone *tone = &s->u.tones.tone[k];
+        const double amplitude = have_begun ? tone->amplitude : 0;
+        const double cycles = cycles_at(tone->frequency, t - s->u.tones.delay, tone->phase);
+        piece->term[k] = (struct dalcs_stimulus_term){
+            .omega = 2 * PI * tone->frequency,
+            .cosine = amplitude * sin_of_cycles(cycles),
+            .sine = amplitude * sin_of_cycles(cycles + 0.25),
+        };
+    }
+}
+
+int dalcs_stimulus_n_terms(const struct dalcs_stimulus *s) {
+    switch (s->kind) {
+    case DALCS_STIMULUS_SIN:
+        return 1;
+    case DALCS_STIMULUS_EXP:
+        return 2;
+    case DALCS_STIMULUS_TONES:
+        return s->u.tones.n;
+    case DALCS_STIMULUS_DC:
+    case DALCS_STIMULUS_PULSE:
+    case DALCS_STIMULUS_PWL:
+        return 0;
+    }
+    return 0;
+}
+
 void dalcs_stimulus_piece_at(const struct dalcs_stimulus *s, double t,
                              struct dalcs_stimulus_piece *piece) {
-    *piece = (struct dalcs_stimulus_piece){.to = dalcs_stimulus_next_edge(s, t)};
+    *piece = (struct dalcs_stimulus_piece){.to = dalcs_stimulus_next_edge(s, t),
+                                           .n_terms = dalcs_stimulus_n_terms(s),
+                                           .term = piece->term};
     switch (s->kind) {
     case DALCS_STIMULUS_SIN:
         sine_piece(s, t, piece);
         return;
     case DALCS_STIMULUS_EXP:
         exponential_piece(s, t, piece);
+        return;
+    case DALCS_STIMULUS_TONES:
+        tones_piece(s, t, piece);
         return;
     case DALCS_STIMULUS_DC:
     case DALCS_STIMULUS_PULSE:

@@ -16,11 +16,17 @@ enum dalcs_stimulus_kind {
     DALCS_STIMULUS_SIN,
     DALCS_STIMULUS_PULSE,
     DALCS_STIMULUS_PWL,
-    DALCS_STIMULUS_EXP
+    DALCS_STIMULUS_EXP,
+    DALCS_STIMULUS_TONES /* AM and SFFM */
 };
 
 /* Which limit to take at a discontinuity. */
 enum dalcs_side { DALCS_LEFT, DALCS_RIGHT };
+
+/* amplitude sin(2 pi (frequency t + phase)); V or A, Hz, cycles. */
+struct dalcs_tone {
+    double amplitude, frequency, phase;
+};
 
 struct dalcs_stimulus {
     enum dalcs_stimulus_kind kind;
@@ -29,17 +35,20 @@ struct dalcs_stimulus {
 
     union {
         /* offset + amplitude exp(-damping (t - delay)) sin(2 pi frequency (t - delay) + phase);
-         * before the delay offset + amplitude sin(phase) */
+         * before the delay offset + amplitude sin(phase). After n_cycles (0: endless; need not be
+         * whole) it stays where it is. */
         struct {
             double offset, amplitude, frequency, delay, damping,
                 phase; /* V or A, Hz, s, 1/s, deg */
+            double n_cycles;
         } sine;
 
         /* low until the delay; then in each period: rise, high for `width`, fall, low. A pulse
-         * longer than its period is cut by the next one. */
+         * longer than its period is cut by the next one. Low again after n_periods (0: endless). */
         struct {
             double low, high, delay, rise, fall, width, period; /* V or A, s; width or period
                                                                    INFINITY: for ever, once */
+            double n_periods;
         } pulse;
 
         /* low + (high - low) (r - f), r = 1 - exp(-(t - rise_delay) / rise_tau) after rise_delay,
@@ -48,12 +57,22 @@ struct dalcs_stimulus {
             double low, high, rise_delay, rise_tau, fall_delay, fall_tau;
         } exponential;
 
-        /* straight lines; constant before the first and after the last point */
+        /* straight lines; constant before the first and after the last point, or, repeating, what
+         * is from repeat_from to the last point again and again */
         struct {
             int n; /* points, n >= 1; times ascending, equal times are a jump */
             const double *t;
             const double *v;
+            bool repeats;
+            double repeat_from; /* s, before the last point */
         } pwl;
+
+        /* offset + sum of tones, t counted from the delay; 0 before a delay above 0 */
+        struct {
+            double offset, delay;
+            int n; /* at most DALCS_STIMULUS_MOST_TERMS */
+            const struct dalcs_tone *tone;
+        } tones;
     } u;
 };
 
@@ -79,9 +98,14 @@ struct dalcs_stimulus_piece {
     struct dalcs_stimulus_term {
         double decay, omega; /* 1/s */
         double cosine, sine;
-    } term[2];
+    } * term; /* [dalcs_stimulus_n_terms], of the caller */
 };
 
+enum { DALCS_STIMULUS_MOST_TERMS = 255 };
+
+int dalcs_stimulus_n_terms(const struct dalcs_stimulus *s);
+
+/* Fills *piece, whose `term` the caller has set. */
 void dalcs_stimulus_piece_at(const struct dalcs_stimulus *s, double t,
                              struct dalcs_stimulus_piece *piece);
 

@@ -1,50 +1,112 @@
-/* switch.c - S elements (voltage controlled switches) and their models.
+/* switch.c - S and W elements (switches controlled by a voltage or by a current) and their models.
  *
  * A switch is a wire or a cut (Ron = 0, Roff infinite) unless its model says otherwise. It closes
- * when the control rises through Vt + Vh and opens when it falls through Vt - Vh. */
+ * when the control rises through Vt + Vh and opens when it falls through Vt - Vh. The switches of
+ * PSpice and LTspice that change over smoothly do it at once here, half way. */
 #include "builder.h"
 
 #include <math.h>
 #include <string.h>
 
 static const char USAGE[] = "a switch is: Sname node node control control model [ON|OFF]";
-static const char MODEL_USAGE[] =
-    "a switch model is: .model name SW [(Ron=ohms Roff=ohms Vt=volts Vh=volts)]";
+static const char CURRENT_USAGE[] = "a switch is: Wname node node Vsource model [ON|OFF]";
 
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
+    const bool by_current = card->token->text[0] == 'w';
+    struct dalcs_reader reader =
+        dalcs_reader_start(builder, card, by_current ? CURRENT_USAGE : USAGE);
     struct dalcs_device *device = dalcs_builder_add_device(builder, DALCS_SWITCH, card->token);
     const struct dalcs_token *model;
-    if (device == NULL || !dalcs_reader_nodes(&reader, 4, device->node) ||
-        !dalcs_reader_name(&reader, "the name of a model", &model)) {
+    if (device == NULL || !dalcs_reader_nodes(&reader, by_current ? 2 : 4, device->node)) {
         return;
     }
-    device->model = dalcs_model_find(builder, model, DALCS_MODEL_SWITCH);
+    if (by_current &&
+        !dalcs_reader_name(&reader, "the name of a voltage source",
+                           &builder->control_token[device - builder->circuit->device])) {
+        return;
+    }
+    if (!dalcs_reader_name(&reader, "the name of a model", &model)) {
+        return;
+    }
+    device->model = dalcs_model_find(builder, model,
+                                     by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
     device->initially_on = dalcs_reader_take_word(&reader, "on");
     device->has_initial_state = device->initially_on || dalcs_reader_take_word(&reader, "off");
     dalcs_reader_end(&reader);
 }
 
-static bool report_parameter(struct dalcs_builder *builder, const struct dalcs_token *name) {
-    static const char *const ours[] = {"ron", "roff", "vt", "vh"};
-    static const char *const later[] = {"von",   "voff",   "vton",   "vtoff", "vhon",
-                                        "vhoff", "ilimit", "lser",   "vser",  "level",
-                                        "td",    "oneway", "epsilon"};
+/* ---- Models -------------------------------------------------------------------------------- */
+
+enum { RON, ROFF, THRESHOLD, HYSTERESIS, ON, OFF, N_PARAMETERS };
+
+/* The four types: how their parameters are called. */
+struct form {
+    const char *type;
+    const char *usage;
+    const char *name[N_PARAMETERS];
+    enum dalcs_quantity quantity; /* of the control */
+    const char *unit;
+    double on; /* PSpice's when left out */
+};
+
+static const struct form *form_of(const char *type) {
+    static const struct form forms[] = {
+        {"sw",
+         "a switch model is: .model name SW [(Ron=ohms Roff=ohms Vt=volts Vh=volts)]",
+         {"ron", "roff", "vt", "vh", NULL, NULL},
+         DALCS_VOLTAGE,
+         "V",
+         0},
+        {"csw",
+         "a current switch model is: .model name CSW [(Ron=ohms Roff=ohms It=amperes Ih=amperes)]",
+         {"ron", "roff", "it", "ih", NULL, NULL},
+         DALCS_CURRENT,
+         "A",
+         0},
+        {"vswitch",
+         "a PSpice switch model is: .model name VSWITCH [(Ron=ohms Roff=ohms Von=volts "
+         "Voff=volts)]",
+         {"ron", "roff", "vt", "vh", "von", "voff"},
+         DALCS_VOLTAGE,
+         "V",
+         1},
+        {"iswitch",
+         "a PSpice current switch model is: .model name ISWITCH [(Ron=ohms Roff=ohms Ion=amperes "
+         "Ioff=amperes)]",
+         {"ron", "roff", "it", "ih", "ion", "ioff"},
+         DALCS_CURRENT,
+         "A",
+         1e-3},
+    };
+    int k = 0;
+    while (strcmp(forms[k].type, type) != 0) {
+        k++;
+    }
+    return &forms[k];
+}
+
+static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_token *name) {
+    static const char *const ours[] = {"ron", "roff", "vt",   "vh",  "it",
+                                       "ih",  "von",  "voff", "ion", "ioff"};
+    static const char *const later[] = {"vton", "vtoff", "vhon", "vhoff",  "ilimit", "lser",
+                                        "vser", "level", "td",   "oneway", "epsilon"};
+    struct dalcs_builder *builder = reader->builder;
     if (dalcs_builder_is_one_of(name->text, later, sizeof later / sizeof later[0])) {
-        dalcs_builder_error(builder, name, MODEL_USAGE, "'%s' of a switch is not supported yet",
+        dalcs_builder_error(builder, name, reader->usage, "'%s' of a switch is not supported yet",
                             name->text);
+    } else if (dalcs_builder_is_one_of(name->text, ours, sizeof ours / sizeof ours[0])) {
+        dalcs_builder_error(builder, name, reader->usage,
+                            "'%s' belongs to a switch model of another type", name->text);
     } else {
         dalcs_builder_error(builder, name,
                             dalcs_builder_suggest_of(builder, ours, sizeof ours / sizeof ours[0],
-                                                     name->text, MODEL_USAGE),
+                                                     name->text, reader->usage),
                             "a switch model has no parameter '%s'", name->text);
     }
     return true;
 }
 
-enum { RON, ROFF, VT, VH, N_PARAMETERS };
-
-static bool check_model(struct dalcs_builder *builder, const struct dalcs_parameter *p) {
+static bool check_resistances(struct dalcs_builder *builder, const struct dalcs_parameter *p) {
     if (p[RON].value < 0) {
         dalcs_builder_error(builder, p[RON].place, NULL, "Ron cannot be negative");
         return false;
@@ -53,13 +115,6 @@ static bool check_model(struct dalcs_builder *builder, const struct dalcs_parame
         dalcs_builder_error(builder, p[ROFF].place,
                             "leave Roff out for a switch that is open when off",
                             "Roff must be positive");
-        return false;
-    }
-    if (p[VH].value < 0) {
-        dalcs_builder_error(builder, p[VH].place,
-                            "write Vh=0 for a hard switch at Vt, or a positive hysteresis",
-                            "a negative Vh asks for a smooth transition (LTspice) or a delayed one "
-                            "(ngspice); this switch is on or off");
         return false;
     }
     if (p[ROFF].value <= p[RON].value) {
@@ -73,20 +128,80 @@ static bool check_model(struct dalcs_builder *builder, const struct dalcs_parame
     return true;
 }
 
-bool dalcs_switch_parse_model(struct dalcs_reader *reader, struct dalcs_switch_model *model) {
+/* Vt and Vh of SW and CSW. LTspice's negative Vh asks for a smooth change between Vt - |Vh| and
+ * Vt + |Vh|; ngspice's for something that no one knows. */
+static void set_threshold(struct dalcs_builder *builder, const struct form *form,
+                          const struct dalcs_parameter *p, struct dalcs_switch_model *model) {
+    model->vt = p[THRESHOLD].value;
+    model->vh = fmax(p[HYSTERESIS].value, 0);
+    if (p[HYSTERESIS].value < 0) {
+        dalcs_builder_warn(builder, p[HYSTERESIS].place, NULL,
+                           "a switch that changes over smoothly from %g to %g %s (LTspice): here "
+                           "it does so at once, at %g %s",
+                           model->vt + p[HYSTERESIS].value, model->vt - p[HYSTERESIS].value,
+                           form->unit, model->vt, form->unit);
+    }
+}
+
+/* Von and Voff of VSWITCH and ISWITCH, between which the logarithm of the resistance changes
+ * smoothly: half way it is the mean of the two. */
+static bool set_midpoint(struct dalcs_builder *builder, const struct form *form,
+                         const struct dalcs_token *name, const struct dalcs_parameter *p,
+                         struct dalcs_switch_model *model) {
+    if (p[ON].value == p[OFF].value) {
+        dalcs_builder_error(builder, p[ON].place != NULL ? p[ON].place : p[OFF].place, form->usage,
+                            "the switch is on and off at the same control, %g %s", p[ON].value,
+                            form->unit);
+        return false;
+    }
+    const double middle = p[OFF].value + 0.5 * (p[ON].value - p[OFF].value);
+    model->is_inverted = p[ON].value < p[OFF].value;
+    model->vt = model->is_inverted ? -middle : middle;
+    dalcs_builder_warn(builder, name, NULL,
+                       "a switch that changes over smoothly from %g to %g %s: here it does so at "
+                       "once, at %g %s",
+                       p[OFF].value, p[ON].value, form->unit, middle, form->unit);
+    return true;
+}
+
+bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
+                              struct dalcs_switch_model *model) {
+    const struct form *form = form_of(type->text);
     struct dalcs_parameter parameter[N_PARAMETERS] = {
-        [RON] = {"ron", DALCS_OHM, false, 0, NULL},
-        [ROFF] = {"roff", DALCS_OHM, true, (double)INFINITY, NULL},
-        [VT] = {"vt", DALCS_VOLTAGE, false, 0, NULL},
-        [VH] = {"vh", DALCS_VOLTAGE, false, 0, NULL},
+        [RON] = {.quantity = DALCS_OHM},
+        [ROFF] = {.quantity = DALCS_OHM, .may_be_infinite = true, .value = (double)INFINITY},
+        [THRESHOLD] = {.quantity = form->quantity},
+        [HYSTERESIS] = {.quantity = form->quantity},
+        [ON] = {.quantity = form->quantity, .value = form->on},
+        [OFF] = {.quantity = form->quantity},
     };
-    reader->usage = MODEL_USAGE;
-    if (!dalcs_model_read_parameters(reader, parameter, N_PARAMETERS, report_parameter)) {
+    const bool has_midpoint = form->name[ON] != NULL;
+    for (int k = 0; k < N_PARAMETERS; k++) {
+        parameter[k].name = form->name[k];
+    }
+    reader->usage = form->usage;
+    if (!dalcs_model_read_parameters(reader, parameter, has_midpoint ? N_PARAMETERS : ON,
+                                     report_parameter)) {
         return false;
     }
     model->ron = parameter[RON].value;
     model->roff = parameter[ROFF].value;
-    model->vt = parameter[VT].value;
-    model->vh = parameter[VH].value;
-    return check_model(reader->builder, parameter);
+    if (!check_resistances(reader->builder, parameter)) {
+        return false;
+    }
+    const struct dalcs_token *given = parameter[THRESHOLD].place != NULL
+                                          ? parameter[THRESHOLD].place
+                                          : parameter[HYSTERESIS].place;
+    if (!has_midpoint ||
+        (given != NULL && parameter[ON].place == NULL && parameter[OFF].place == NULL)) {
+        set_threshold(reader->builder, form, parameter, model);
+        return true;
+    }
+    if (given != NULL) {
+        dalcs_builder_error(
+            reader->builder, given, form->usage, "a switch model has either %s and %s or %s and %s",
+            form->name[THRESHOLD], form->name[HYSTERESIS], form->name[ON], form->name[OFF]);
+        return false;
+    }
+    return set_midpoint(reader->builder, form, type, parameter, model);
 }

@@ -1,4 +1,4 @@
-/* waveform_card.c - SIN, PULSE, PWL and EXP as they stand on a source's card.
+/* waveform_card.c - SIN, PULSE, EXP, AM and SFFM as they stand on a source's card.
  *
  * Parentheses and commas are optional, as in SPICE. Values that are left out: PULSE edges are of
  * zero width, its width and period infinite; an EXP time constant is 0 (a jump), its fall never
@@ -6,13 +6,12 @@
 #include "builder.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { MOST_ARGUMENTS = 7 };
+enum { MOST_ARGUMENTS = 8 };
 
 /* What one argument may be. */
-enum range { ANY, NOT_NEGATIVE };
+enum range { ANY, NOT_NEGATIVE, POSITIVE };
 
 struct argument {
     const char *what;
@@ -33,26 +32,28 @@ struct form {
 static const struct form *form_of(const char *name) {
     static const struct form forms[] = {
         {"sin",
-         "SIN(offset amplitude frequency delay damping phase)",
+         "SIN(offset amplitude frequency delay damping phase cycles)",
          2,
-         6,
+         7,
          {{"an offset", DALCS_PLAIN, true, ANY, 0},
           {"an amplitude", DALCS_PLAIN, true, ANY, 0},
           {"a frequency", DALCS_HERTZ, false, NOT_NEGATIVE, 0},
           {"a delay", DALCS_SECOND, false, ANY, 0},
           {"a damping", DALCS_HERTZ, false, ANY, 0},
-          {"a phase in degrees", DALCS_PLAIN, false, ANY, 0}}},
+          {"a phase in degrees", DALCS_PLAIN, false, ANY, 0},
+          {"a number of cycles", DALCS_PLAIN, false, NOT_NEGATIVE, 0}}},
         {"pulse",
-         "PULSE(low high delay rise fall width period)",
+         "PULSE(low high delay rise fall width period periods)",
          2,
-         7,
+         8,
          {{"a low value", DALCS_PLAIN, true, ANY, 0},
           {"a high value", DALCS_PLAIN, true, ANY, 0},
           {"a delay", DALCS_SECOND, false, ANY, 0},
           {"a rise time", DALCS_SECOND, false, NOT_NEGATIVE, 0},
           {"a fall time", DALCS_SECOND, false, NOT_NEGATIVE, 0},
           {"a width", DALCS_SECOND, false, NOT_NEGATIVE, (double)INFINITY},
-          {"a period", DALCS_SECOND, false, NOT_NEGATIVE, (double)INFINITY}}},
+          {"a period", DALCS_SECOND, false, NOT_NEGATIVE, (double)INFINITY},
+          {"a number of periods", DALCS_PLAIN, false, NOT_NEGATIVE, 0}}},
         {"exp",
          "EXP(low high rise_delay rise_tau fall_delay fall_tau)",
          2,
@@ -63,7 +64,28 @@ static const struct form *form_of(const char *name) {
           {"a time constant", DALCS_SECOND, false, NOT_NEGATIVE, 0},
           {"a delay", DALCS_SECOND, false, NOT_NEGATIVE, (double)INFINITY},
           {"a time constant", DALCS_SECOND, false, NOT_NEGATIVE, 0}}},
-        {"pwl", "PWL(time value time value ...)", 2, 0, {{0}}},
+        {"am",
+         "AM(amplitude offset modulating_frequency carrier_frequency delay)",
+         4,
+         5,
+         {{"an amplitude", DALCS_PLAIN, true, ANY, 0},
+          {"an offset", DALCS_PLAIN, false, ANY, 0},
+          {"a modulating frequency", DALCS_HERTZ, false, POSITIVE, 0},
+          {"a carrier frequency", DALCS_HERTZ, false, POSITIVE, 0},
+          {"a delay", DALCS_SECOND, false, ANY, 0}}},
+        {"sffm",
+         "SFFM(offset amplitude carrier_frequency index signal_frequency carrier_phase "
+         "signal_phase)",
+         5,
+         7,
+         {{"an offset", DALCS_PLAIN, true, ANY, 0},
+          {"an amplitude", DALCS_PLAIN, true, ANY, 0},
+          {"a carrier frequency", DALCS_HERTZ, false, POSITIVE, 0},
+          {"a modulation index", DALCS_PLAIN, false, ANY, 0},
+          {"a signal frequency", DALCS_HERTZ, false, POSITIVE, 0},
+          {"a phase in degrees", DALCS_PLAIN, false, ANY, 0},
+          {"a phase in degrees", DALCS_PLAIN, false, ANY, 0}}},
+        {"pwl", NULL, 0, 0, {{0}}},
     };
     name = strcmp(name, "sine") == 0 ? "sin" : name;
     for (size_t k = 0; k < sizeof forms / sizeof forms[0]; k++) {
@@ -97,86 +119,21 @@ static bool read_arguments(struct dalcs_reader *reader, const struct form *form,
                                       argument->what, &value[k])) {
             return false;
         }
-        if (argument->range == NOT_NEGATIVE && value[k] < 0) {
+        if ((argument->range == NOT_NEGATIVE && value[k] < 0) ||
+            (argument->range == POSITIVE && value[k] <= 0)) {
             dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
-                                "%s cannot be negative", argument->what);
+                                argument->range == POSITIVE ? "%s must be positive"
+                                                            : "%s cannot be negative",
+                                argument->what);
             return false;
         }
     }
     if (more(reader)) {
-        const bool counts = strcmp(form->name, "exp") != 0;
         dalcs_builder_error(reader->builder, dalcs_reader_peek(reader, 0), form->usage,
-                            counts ? "a number of cycles is not supported yet"
-                                   : "EXP has six values at most");
+                            "%.*s has %d values at most", (int)strcspn(form->usage, "("),
+                            form->usage, form->n);
         return false;
     }
-    return true;
-}
-
-/* ---- PWL ----------------------------------------------------------------------------------- */
-
-static bool check_time(struct dalcs_reader *reader, const struct dalcs_token *token, double time,
-                       const double *before) {
-    struct dalcs_builder *builder = reader->builder;
-    if (token->text[0] == '+') {
-        dalcs_builder_error(builder, token, "write the time from 0",
-                            "times relative to the point before are not supported yet");
-        return false;
-    }
-    if (before != NULL && time < *before) {
-        dalcs_builder_error(builder, token, "times must ascend; two equal times are a jump",
-                            "PWL time %g s is before the one ahead of it, %g s", time, *before);
-        return false;
-    }
-    return true;
-}
-
-static bool read_points(struct dalcs_reader *reader, enum dalcs_quantity quantity,
-                        struct dalcs_stimulus *stimulus) {
-    struct dalcs_builder *builder = reader->builder;
-    const struct dalcs_token *first = dalcs_reader_peek(reader, 0);
-    if (first != NULL && first->kind == DALCS_TOKEN_WORD && !dalcs_reader_is_number(first)) {
-        dalcs_builder_error(builder, first, reader->usage, "PWL with '%s' is not supported yet",
-                            first->text);
-        return false;
-    }
-    int n_numbers = 0;
-    for (int k = 0; dalcs_reader_peek(reader, k) != NULL; k++) {
-        const struct dalcs_token *token = dalcs_reader_peek(reader, k);
-        if (!dalcs_reader_is_number(token) && token->kind != DALCS_TOKEN_OPEN &&
-            token->kind != DALCS_TOKEN_CLOSE) {
-            break;
-        }
-        n_numbers++;
-    }
-    const size_t most = (size_t)n_numbers / 2 + 1;
-    double *t = dalcs_arena_alloc(&builder->circuit->arena, most, sizeof *t);
-    double *v = dalcs_arena_alloc(&builder->circuit->arena, most, sizeof *v);
-    if (t == NULL || v == NULL) {
-        builder->out_of_memory = true;
-        return false;
-    }
-    int n = 0;
-    do {
-        const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
-        if (!dalcs_reader_list_number(reader, DALCS_SECOND, "a time", &t[n]) ||
-            !check_time(reader, token, t[n], n > 0 ? &t[n - 1] : NULL)) {
-            return false;
-        }
-        if (!more(reader)) {
-            dalcs_builder_error(builder, token, "PWL(time value time value ...)",
-                                "this PWL time has no value");
-            return false;
-        }
-        if (!dalcs_reader_list_number(reader, quantity, "a value", &v[n])) {
-            return false;
-        }
-        n++;
-    } while (more(reader));
-    stimulus->kind = DALCS_STIMULUS_PWL;
-    stimulus->u.pwl.n = n;
-    stimulus->u.pwl.t = t;
-    stimulus->u.pwl.v = v;
     return true;
 }
 
@@ -192,6 +149,7 @@ static bool set_stimulus(struct dalcs_reader *reader, const struct form *form, c
         s->u.sine.delay = value[3];
         s->u.sine.damping = value[4];
         s->u.sine.phase = value[5];
+        s->u.sine.n_cycles = value[6];
     } else if (strcmp(form->name, "pulse") == 0) {
         s->kind = DALCS_STIMULUS_PULSE;
         s->u.pulse.low = value[0];
@@ -201,6 +159,11 @@ static bool set_stimulus(struct dalcs_reader *reader, const struct form *form, c
         s->u.pulse.fall = value[4];
         s->u.pulse.width = value[5];
         s->u.pulse.period = value[6] == 0 ? (double)INFINITY : value[6];
+        s->u.pulse.n_periods = isfinite(s->u.pulse.period) ? value[7] : 0;
+    } else if (strcmp(form->name, "am") == 0) {
+        return dalcs_modulation_set_am(reader->builder, value, s);
+    } else if (strcmp(form->name, "sffm") == 0) {
+        return dalcs_modulation_set_fm(reader->builder, dalcs_reader_previous(reader), value, s);
     } else {
         s->kind = DALCS_STIMULUS_EXP;
         s->u.exponential.low = value[0];
@@ -224,18 +187,17 @@ bool dalcs_waveform_card_parse(struct dalcs_reader *reader, enum dalcs_quantity 
     const struct dalcs_token *name = dalcs_reader_peek(reader, 0);
     const struct form *form = form_of(name->text);
     const char *usage = reader->usage;
-    reader->usage = form->usage;
     reader->at++;
+    if (form->n == 0) {
+        return dalcs_pwl_card_parse(reader, quantity, stimulus);
+    }
+    reader->usage = form->usage;
     const struct dalcs_token *open = dalcs_reader_peek(reader, 0);
     const bool opened = dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
 
     double value[MOST_ARGUMENTS];
-    if (form->n == 0) {
-        if (!read_points(reader, quantity, stimulus)) {
-            return false;
-        }
-    } else if (!read_arguments(reader, form, quantity, value) ||
-               !set_stimulus(reader, form, value, stimulus)) {
+    if (!read_arguments(reader, form, quantity, value) ||
+        !set_stimulus(reader, form, value, stimulus)) {
         return false;
     }
     if (opened && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {

@@ -217,17 +217,20 @@ static enum dalcs_status stamp_pair(struct stamps *b, int anode, int cathode, do
     return threshold == 0.0 ? DALCS_OK : dalcs_triplets_add(&b->F, k, 0, threshold);
 }
 
-/* Roff lies across two branches, one of Vfwd and Ron and one of Vrev and Rrev. */
+/* Roff lies across two branches, one of Vfwd and one of Vrev, whose resistances make up Ron and Rrev
+ * with it. */
 static enum dalcs_status stamp_diode(struct stamps *b, int device) {
     const struct dalcs_circuit *c = b->layout->circuit;
     const struct dalcs_device *d = &c->device[device];
     const struct dalcs_diode_model *m = &c->diode_model[d->model];
     b->layout->pair[device] = b->next_pair;
     struct dalcs_pair pair = {.kind = DALCS_PAIR_DIODE, .element = d->name};
-    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], m->vfwd, m->ron, pair));
+    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], m->vfwd,
+                         dalcs_stamp_series_part(m->ron, m->roff), pair));
     if (isfinite(m->vrev)) {
         pair.is_breakdown = true;
-        DALCS_TRY(stamp_pair(b, d->node[1], d->node[0], m->vrev, m->rrev, pair));
+        DALCS_TRY(stamp_pair(b, d->node[1], d->node[0], m->vrev,
+                             dalcs_stamp_series_part(m->rrev, m->roff), pair));
     }
     return isfinite(m->roff) ? dalcs_stamp_conductance(b, d, 1.0 / m->roff) : DALCS_OK;
 }
@@ -235,6 +238,10 @@ static enum dalcs_status stamp_diode(struct stamps *b, int device) {
 static bool is_direct(const struct dalcs_layout *l, int node) {
     int n = l->topology.node_of[node];
     return n == 0 || l->topology.potential_source[n] >= 0;
+}
+
+static double control_sign(const struct dalcs_switch_model *m) {
+    return m->is_inverted ? -1.0 : 1.0;
 }
 
 /* A switch with finite Roff is Roff in parallel with a branch that makes up Ron when closed. */
@@ -248,8 +255,11 @@ static enum dalcs_status stamp_switch(struct stamps *b, int device) {
                               .turn_on = m->vt + m->vh,
                               .turn_off = m->vt - m->vh};
     b->layout->pair[device] = b->next_pair;
-    DALCS_TRY(dalcs_stamp_add_voltage(b, &b->control, b->next_pair, d->node[2], d->node[3], 1.0));
-    pair.is_direct = is_direct(b->layout, d->node[2]) && is_direct(b->layout, d->node[3]);
+    if (d->control < 0) {
+        DALCS_TRY(dalcs_stamp_add_voltage(b, &b->control, b->next_pair, d->node[2], d->node[3],
+                                          control_sign(m)));
+        pair.is_direct = is_direct(b->layout, d->node[2]) && is_direct(b->layout, d->node[3]);
+    }
     DALCS_TRY(
         stamp_pair(b, d->node[0], d->node[1], 0.0, dalcs_stamp_series_part(m->ron, m->roff), pair));
     return isfinite(m->roff) ? dalcs_stamp_conductance(b, d, 1.0 / m->roff) : DALCS_OK;
@@ -310,7 +320,8 @@ static enum dalcs_status stamp_direct_controls(struct stamps *b, int n_devices, 
             continue;
         }
         for (int e = 0; e < 2; e++) {
-            double sign = e == 0 ? 1.0 : -1.0;
+            double sign = control_sign(&l->circuit->switch_model[d->model]);
+            sign = e == 0 ? sign : -sign;
             for (int n = t->node_of[d->node[2 + e]]; n != 0;) {
                 int source = t->potential_source[n];
                 const struct dalcs_device *v = &l->circuit->device[source];
@@ -324,7 +335,7 @@ static enum dalcs_status stamp_direct_controls(struct stamps *b, int n_devices, 
     return DALCS_OK;
 }
 
-/* F and H wait until every current column is known. */
+/* F, H and W wait until every current column is known. */
 static enum dalcs_status stamp_current_controls(struct stamps *b, int n_devices,
                                                 const int *device) {
     struct dalcs_layout *l = b->layout;
@@ -335,6 +346,10 @@ static enum dalcs_status stamp_current_controls(struct stamps *b, int n_devices,
         } else if (d->kind == DALCS_CCVS) {
             DALCS_TRY(dalcs_stamp_add(&b->A, l->branch_row[device[i]],
                                       l->current_column[d->control], -d->value));
+        } else if (d->kind == DALCS_SWITCH && d->control >= 0) {
+            DALCS_TRY(dalcs_stamp_add(&b->control, l->pair[device[i]],
+                                      l->current_column[d->control],
+                                      control_sign(&l->circuit->switch_model[d->model])));
         }
     }
     return DALCS_OK;

@@ -144,6 +144,7 @@ static void let_go_of_controls(struct dalcs_circuit *to) {
     for (int i = 0; i < to->n_devices; i++) {
         if (to->device[i].kind == DALCS_SWITCH) {
             to->device[i].node[2] = to->device[i].node[3] = 0;
+            to->device[i].control = -1;
         }
     }
     for (int k = 0; k < to->n_switch_models; k++) {

@@ -33,7 +33,9 @@ enum verdict { CONTRADICT, AGREE, UNKNOWN };
 
 static bool same_points(const struct dalcs_stimulus *a, const struct dalcs_stimulus *b) {
     size_t n = (size_t)a->u.pwl.n;
-    return a->u.pwl.n == b->u.pwl.n && memcmp(a->u.pwl.t, b->u.pwl.t, n * sizeof(double)) == 0 &&
+    return a->u.pwl.n == b->u.pwl.n && a->u.pwl.repeats == b->u.pwl.repeats &&
+           a->u.pwl.repeat_from == b->u.pwl.repeat_from &&
+           memcmp(a->u.pwl.t, b->u.pwl.t, n * sizeof(double)) == 0 &&
            memcmp(a->u.pwl.v, b->u.pwl.v, n * sizeof(double)) == 0;
 }
 
@@ -51,6 +53,11 @@ static bool same(const struct dalcs_stimulus *a, const struct dalcs_stimulus *b)
         return same_points(a, b);
     case DALCS_STIMULUS_EXP:
         return memcmp(&a->u.exponential, &b->u.exponential, sizeof(a->u.exponential)) == 0;
+    case DALCS_STIMULUS_TONES:
+        return a->u.tones.offset == b->u.tones.offset && a->u.tones.delay == b->u.tones.delay &&
+               a->u.tones.n == b->u.tones.n &&
+               memcmp(a->u.tones.tone, b->u.tones.tone,
+                      (size_t)a->u.tones.n * sizeof(*a->u.tones.tone)) == 0;
     default:
         return a->dc == b->dc;
     }

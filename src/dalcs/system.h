@@ -44,7 +44,7 @@ struct dalcs_pair {
     bool is_breakdown;        /* the reverse branch of a diode with Vrev */
     bool initially_on;        /* switches */
     bool is_direct;           /* switches: use direct_control, known before the step is solved */
-    double turn_on, turn_off; /* switches: control thresholds vt + vh and vt - vh, in V */
+    double turn_on, turn_off; /* switches: control thresholds vt + vh and vt - vh, V or A */
 };
 
 struct dalcs_system {
@@ -55,7 +55,9 @@ struct dalcs_system {
     struct dalcs_csr C;       /* [n_pairs][n_columns] */
     struct dalcs_csr F;       /* [n_pairs][n_inputs] */
     struct dalcs_csr storage; /* [n_x][n_x] symmetric: the stored energy is 1/2 x' storage x */
-    struct dalcs_csr control; /* [n_pairs][n_columns] controlling voltage of a switch; else empty */
+    struct dalcs_csr
+        control; /* [n_pairs][n_columns] controlling voltage or current of a switch; else
+                                 empty */
     struct dalcs_csr direct_control; /* [n_pairs][n_inputs] the same as a sum of sources, where V
                                         sources alone fix it */
 
@@ -83,6 +85,12 @@ static inline int dalcs_system_n_equations(const struct dalcs_system *s) {
 
 static inline int dalcs_system_n_columns(const struct dalcs_system *s) {
     return s->n_x + s->n_z + s->n_pairs;
+}
+
+/* Does a current command switch `pair`, or a voltage? */
+static inline bool dalcs_system_control_is_current(const struct dalcs_system *s, int pair) {
+    int first = s->control.p[pair];
+    return first < s->control.p[pair + 1] && s->column_is_current[s->control.j[first]];
 }
 
 void dalcs_system_finish(struct dalcs_system *system);

@@ -47,7 +47,7 @@ static void find_components(struct dalcs_topology *t, const struct dalcs_circuit
                 dalcs_union_join(parent, n, c->n_nodes + i);
             }
         }
-        if (d->kind == DALCS_CCCS || d->kind == DALCS_CCVS) {
+        if (d->control >= 0) {
             dalcs_union_join(parent, c->n_nodes + i, c->n_nodes + d->control);
         }
     }

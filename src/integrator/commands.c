@@ -93,6 +93,7 @@ static void recognise_pulse(const struct dalcs_commands *c, struct dalcs_command
         }
     }
     if (pulse == NULL || pulse->u.pulse.delay < 0.0 || isinf(pulse->u.pulse.period) ||
+        pulse->u.pulse.n_periods > 0.0 ||
         pulse->u.pulse.rise + pulse->u.pulse.width + pulse->u.pulse.fall >=
             pulse->u.pulse.period * (1 - 8 * DBL_EPSILON)) {
         return;

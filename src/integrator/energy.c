@@ -417,9 +417,19 @@ static void drop_idle(struct waves *w) {
 
 static enum dalcs_status integrate(struct dalcs_energy *energy, struct waves *w, double stop) {
     size_t n = (size_t)w->n;
+    size_t n_terms = 0;
+    for (size_t i = 0; i < n; i++) {
+        n_terms += (size_t)dalcs_stimulus_n_terms(w->stimulus[i]);
+    }
     struct dalcs_stimulus_piece *piece = dalcs_alloc(n, sizeof(*piece));
+    struct dalcs_stimulus_term *term = dalcs_alloc(n_terms, sizeof(*term));
     double *integral = dalcs_alloc(n * n, sizeof(*integral));
-    enum dalcs_status status = piece == NULL || integral == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    enum dalcs_status status =
+        piece == NULL || term == NULL || integral == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    for (size_t i = 0, first = 0; i < n && status == DALCS_OK; i++) {
+        piece[i].term = term + first;
+        first += (size_t)dalcs_stimulus_n_terms(w->stimulus[i]);
+    }
     if (status == DALCS_OK && n > 0) {
         dalcs_source_products(w->n, w->stimulus, stop, piece, integral);
         for (int a = 0; a < DALCS_N_POWER_ACCOUNTS; a++) {
@@ -431,6 +441,7 @@ static enum dalcs_status integrate(struct dalcs_energy *energy, struct waves *w,
         }
     }
     free(piece);
+    free(term);
     free(integral);
     return status;
 }

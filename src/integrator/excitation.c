@@ -40,7 +40,9 @@ static void add_wave(struct dalcs_excitation *excitation, int input,
     struct dalcs_excitation_wave *wave = &excitation->wave[excitation->n_waves++];
     *wave = (struct dalcs_excitation_wave){
         .input = input, .stimulus = stimulus, .first = excitation->n_functions};
+    wave->piece.term = excitation->term + excitation->n_terms;
     dalcs_stimulus_piece_at(stimulus, 0.0, &wave->piece);
+    excitation->n_terms += wave->piece.n_terms;
     wave->is_curved = wave->piece.n_terms > 0;
     excitation->is_curved = excitation->is_curved || wave->is_curved;
     add_function(excitation, wave, DALCS_EXCITATION_LEVEL, NULL);
@@ -58,19 +60,38 @@ static void add_wave(struct dalcs_excitation *excitation, int input,
     }
 }
 
+/* Room for all waves. */
+static enum dalcs_status allocate(struct dalcs_excitation *excitation,
+                                  const struct dalcs_circuit *circuit,
+                                  const struct dalcs_system *system) {
+    size_t n = (size_t)system->n_inputs;
+    size_t n_terms = 0;
+    int most = 0;
+    for (int k = 1; k < system->n_inputs; k++) {
+        int n_of_wave = dalcs_stimulus_n_terms(&circuit->stimulus[system->stimulus[k]]);
+        n_terms += (size_t)n_of_wave;
+        most = n_of_wave > most ? n_of_wave : most;
+    }
+    excitation->wave = dalcs_alloc(n, sizeof(*excitation->wave));
+    excitation->function = dalcs_alloc(2 * n + 2 * n_terms, sizeof(*excitation->function));
+    excitation->term = dalcs_alloc(n_terms + (size_t)most, sizeof(*excitation->term));
+    excitation->constant = dalcs_alloc(n, sizeof(double));
+    if (excitation->wave == NULL || excitation->function == NULL || excitation->term == NULL ||
+        excitation->constant == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    excitation->scratch = excitation->term + n_terms;
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
                                          const struct dalcs_circuit *circuit,
                                          const struct dalcs_system *system) {
     *excitation = (struct dalcs_excitation){.system = system, .shortest_period = INFINITY};
-    size_t n = (size_t)system->n_inputs;
-    excitation->wave = dalcs_alloc(n, sizeof(*excitation->wave));
-    excitation->function = dalcs_alloc(5 * n, sizeof(*excitation->function));
-    excitation->constant = dalcs_alloc(n, sizeof(double));
-    if (excitation->wave == NULL || excitation->function == NULL || excitation->constant == NULL) {
-        dalcs_excitation_finish(excitation);
-        return DALCS_E_NOMEM;
+    enum dalcs_status status = allocate(excitation, circuit, system);
+    if (status == DALCS_OK) {
+        status = dalcs_bystanders_find(&excitation->bystanders, system);
     }
-    enum dalcs_status status = dalcs_bystanders_find(&excitation->bystanders, system);
     if (status != DALCS_OK) {
         dalcs_excitation_finish(excitation);
         return status;
@@ -91,6 +112,7 @@ enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
 void dalcs_excitation_finish(struct dalcs_excitation *excitation) {
     free(excitation->wave);
     free(excitation->function);
+    free(excitation->term);
     free(excitation->constant);
     dalcs_bystanders_finish(&excitation->bystanders);
     *excitation = (struct dalcs_excitation){0};
@@ -119,11 +141,13 @@ void dalcs_excitation_coefficients(const struct dalcs_excitation *excitation, do
         struct dalcs_stimulus_piece now = wave->piece;
         if (t != wave->from) {
             /* the piece, not the neighbour that rounding may put t into */
+            now.term = excitation->scratch;
             if (isinf(wave->piece.to)) {
                 dalcs_stimulus_piece_at(wave->stimulus, t, &now);
             } else {
                 for (int i = 0; i < now.n_terms; i++) {
                     struct dalcs_stimulus_term *term = &now.term[i];
+                    *term = wave->piece.term[i];
                     double factor = exp(-term->decay * (t - wave->from));
                     double c = cos(term->omega * (t - wave->from));
                     double s = sin(term->omega * (t - wave->from));

@@ -40,10 +40,13 @@ struct dalcs_excitation {
     struct dalcs_excitation_wave *wave; /* sources that vary and act on the system */
     int n_functions;
     struct dalcs_excitation_function *function;
-    double *constant;       /* [n_inputs] the inputs that never change; 0 for waves */
-    bool is_curved;         /* any wave is */
-    double shortest_period; /* s, of the oscillations; INFINITY without */
-    double next_edge;       /* s, of the waves */
+    int n_terms;
+    struct dalcs_stimulus_term *term;    /* of the waves' pieces */
+    struct dalcs_stimulus_term *scratch; /* of one wave, at another time */
+    double *constant;                    /* [n_inputs] the inputs that never change; 0 for waves */
+    bool is_curved;                      /* any wave is */
+    double shortest_period;              /* s, of the oscillations; INFINITY without */
+    double next_edge;                    /* s, of the waves */
 };
 
 /* Inputs that only command switches, and do so along straight lines, are left out, for commands have

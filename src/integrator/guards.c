@@ -74,7 +74,8 @@ static double scale_of(const struct dalcs_radau_part *part, int guard, const dou
     if (guard < s->n_pairs) {
         return unit[dalcs_osnsp_is_on(&part->component->osnsp, d) ? 1 : 0];
     }
-    return fmax(unit[0], fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off)));
+    return fmax(unit[dalcs_system_control_is_current(s, d)],
+                fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off)));
 }
 
 /* What rounding may make of a guard that is 0, in V or A. */

@@ -49,10 +49,11 @@ static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *p
             int d = part->stages.watched[i];
             const struct dalcs_pair *p = &s->pair[d];
             bool is_on = dalcs_osnsp_is_on(&c->osnsp, d);
+            bool is_current = dalcs_system_control_is_current(s, d);
             double v = p->is_direct ? dalcs_csr_row_dot(&s->direct_control, d, part->u + s->n_x)
                                     : dalcs_csr_row_dot(&s->control, d, y);
             double slack = part->t > 0.0 ? 10.0 * r->inner_tolerance *
-                                               fmax(part->unit_scale[0], fabs(p->turn_on))
+                                               fmax(part->unit_scale[is_current], fabs(p->turn_on))
                                          : 0.0;
             bool wants = is_on ? !(v < p->turn_off - slack) : v > p->turn_on + slack;
             if (wants != is_on) {

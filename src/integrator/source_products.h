@@ -8,7 +8,9 @@
 #include "stimulus.h"
 
 /* integral[n][n] of stimulus[i] stimulus[j] from 0 to stop (s), symmetric. */
-void dalcs_source_products(int n, const struct dalcs_stimulus *const *stimulus, double stop,
-                           struct dalcs_stimulus_piece *piece /* work [n] */, double *integral);
+void dalcs_source_products(
+    int n, const struct dalcs_stimulus *const *stimulus, double stop,
+    struct dalcs_stimulus_piece *piece /* work [n], each with room for its terms */,
+    double *integral);
 
 #endif

@@ -58,7 +58,8 @@ static const char *quantity(struct dalcs_session *s, double value, const char *u
 
 /* 0 where the value is rounding of what it consists of. */
 static double without_rounding(const struct dalcs_stimulus *s, double t, double value) {
-    struct dalcs_stimulus_piece piece;
+    struct dalcs_stimulus_term terms[DALCS_STIMULUS_MOST_TERMS];
+    struct dalcs_stimulus_piece piece = {.term = terms};
     dalcs_stimulus_piece_at(s, t, &piece);
     double size = fabs(piece.level);
     for (int k = 0; k < piece.n_terms; k++) {
@@ -68,7 +69,8 @@ static double without_rounding(const struct dalcs_stimulus *s, double t, double 
 }
 
 static double slope_at(const struct dalcs_stimulus *s, double t) {
-    struct dalcs_stimulus_piece piece;
+    struct dalcs_stimulus_term terms[DALCS_STIMULUS_MOST_TERMS];
+    struct dalcs_stimulus_piece piece = {.term = terms};
     dalcs_stimulus_piece_at(s, t, &piece);
     double slope = piece.slope;
     for (int k = 0; k < piece.n_terms; k++) {

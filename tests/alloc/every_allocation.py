@@ -40,6 +40,35 @@ R1 p m 1k
 .save v(p,m) i(d1)
 .end
 """, 0),
+    "elements": ("""What cards expand into
+V1 a 0 AM(5 2 1k 20k) Rser=1 Cpar=1n
+V2 b 0 PWL REPEAT FOREVER (0 0 2u 3 4u 0) ENDREPEAT
+I3 0 b SFFM(0 1 10k 0.3 50k)
+L1 a 0 10u Rser=1 Rpar=1k
+L2 e 0 20u
+L3 f 0 30u
+K1 L1 L2 L3 0.9
+R2 e 0 10
+R3 f 0 10
+D1 b d limited m=2
+R4 d 0 1
+D2 b g exponential 2
+A1 %gd(b g) block
+R5 g 0 1
+W1 b h V2 cs
+S1 b h b 0 vs
+R6 h 0 1
+E1 k 0 POLY(2) b 0 g 0 1 2 3
+G1 k 0 POLY(2) b 0 g 0 1 2 3
+.model limited D(Ron=1 Ilimit=1 RevIlimit=1 Vrev=5 Epsilon=0.1)
+.model exponential D(IS=1n RS=0.1 CJO=1p BV=50)
+.model block sidiode(Ron=1)
+.model cs ISWITCH(Ron=1 It=1 Ih=0.2)
+.model vs VSWITCH(Ron=1 Von=2)
+.tran 2u 6u uic
+.save v(d) i(l1) i(g1) i(d1) i(v1)
+.end
+""", 0),
     "switched": ("""Coupled inductors, controlled sources, an ideal switch
 Vin in 0 12
 Vg g 0 PULSE(0 1 0 0 0 4u 10u)

@@ -16,10 +16,10 @@ import sys
 
 
 def main():
-    program, netlist = sys.argv[1], pathlib.Path(sys.argv[2])
+    program, netlist = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     expected_file = netlist.with_suffix(".err")
-    done = subprocess.run([program, netlist, netlist.name], capture_output=True, timeout=60,
-                          check=False)
+    done = subprocess.run([program, netlist, netlist.name], cwd=netlist.parent,
+                          capture_output=True, timeout=60, check=False)
     said = done.stderr.decode("utf-8")
     if sys.argv[3:] == ["--update"]:
         expected_file.write_text(said, encoding="utf-8")

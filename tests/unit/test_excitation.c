@@ -48,7 +48,7 @@ static void check_near(double a, double b, double tolerance) {
 /* A step from `at` of length h, all within the present pieces, against the sources. */
 static void check_step(double at, double h) {
     const struct dalcs_system *s = &t.network.system[0];
-    double coefficient[40];
+    double coefficient[200];
     double input[10];
     dalcs_excitation_coefficients(&x, at, h, coefficient);
     for (int k = 0; k <= 8; k++) {
@@ -81,11 +81,17 @@ static const char ALL[] = "all kinds\n"
                           "I6 0 o SIN(0 1 2)\n"
                           "C1 o 0 1\n.tran 1 10\n";
 
-START_TEST(test_all_kinds) {
-    start(ALL);
-    ck_assert_int_eq(x.n_waves, 5);
-    ck_assert(x.is_curved);
-    check_near(x.shortest_period, 0.5, 1e-15);
+/* Those that end, repeat or are modulated. */
+static const char MODULATED[] = "modulated\n"
+                                "V1 a 0 PULSE(-1 2 0.25 0.5 0.25 1 3 2)\nR1 a o 1\n"
+                                "V2 b 0 SIN(1 2 0.3 0.75 0.2 40 1.7)\nR2 b o 2\n"
+                                "V3 c 0 PWL(0 1 1 1 1 2 3 -1) r=1\nR3 c o 3\n"
+                                "V4 d 0 AM(2 1.5 0.2 1 0.5)\nR4 d o 4\n"
+                                "V5 e 0 SFFM(1 2 0.5 -1.5 0.2 30 50)\nR5 e o 5\n"
+                                "C1 o 0 1\n.tran 1 10\n";
+
+/* Every step between edges, whole and in parts; returns the number of edges. */
+static int check_steps(void) {
     double at = 0.0;
     int n_edges = 0;
     while (at < 10.0) {
@@ -98,7 +104,16 @@ START_TEST(test_all_kinds) {
         dalcs_excitation_enter(&x, at);
         n_edges++;
     }
-    ck_assert_int_gt(n_edges, 15);
+    return n_edges;
+}
+
+START_TEST(test_all_kinds) {
+    start(ALL);
+    ck_assert_int_eq(x.n_waves, 5);
+    ck_assert(x.is_curved);
+    check_near(x.shortest_period, 0.5, 1e-15);
+    ck_assert_int_gt(check_steps(), 15);
+    const double at = 10.0;
     const int dc = input_named("v5");
     ck_assert_double_eq(x.constant[dc], 5.0);
     ck_assert_double_eq(x.constant[0], 1.0);
@@ -106,6 +121,17 @@ START_TEST(test_all_kinds) {
     double input[10];
     dalcs_excitation_inputs(&x, at, 0.0, input);
     ck_assert_double_eq(input[dc], 5.0);
+    finish();
+}
+
+END_TEST
+
+START_TEST(test_modulated) {
+    start(MODULATED);
+    ck_assert_int_eq(x.n_waves, 5);
+    ck_assert_int_eq(wave_named("v4")->n_functions, 7);
+    ck_assert_int_gt(wave_named("v5")->n_functions, 40);
+    ck_assert_int_gt(check_steps(), 15);
     finish();
 }
 
@@ -146,4 +172,4 @@ START_TEST(test_left_out) {
 
 END_TEST
 
-RUN_TESTS("excitation", test_all_kinds, test_over_edges, test_left_out)
+RUN_TESTS("excitation", test_all_kinds, test_modulated, test_over_edges, test_left_out)

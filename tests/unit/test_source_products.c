@@ -14,15 +14,19 @@ static const double VALUES[] = {1.0, 3.0, -1.0, 0.5};
 
 static const struct dalcs_stimulus SOURCE[N] = {
     {.kind = DALCS_STIMULUS_DC, .dc = 2.0},
-    {.kind = DALCS_STIMULUS_SIN, .u.sine = {0.5, 2.0, 3.0, 0.3, 0.7, 40.0}},
-    {.kind = DALCS_STIMULUS_PULSE, .u.pulse = {-1.0, 2.0, 0.1, 0.05, 0.0, 0.2, 0.5}},
-    {.kind = DALCS_STIMULUS_PWL, .u.pwl = {4, TIMES, VALUES}},
+    {.kind = DALCS_STIMULUS_SIN, .u.sine = {0.5, 2.0, 3.0, 0.3, 0.7, 40.0, 0.0}},
+    {.kind = DALCS_STIMULUS_PULSE, .u.pulse = {-1.0, 2.0, 0.1, 0.05, 0.0, 0.2, 0.5, 0.0}},
+    {.kind = DALCS_STIMULUS_PWL, .u.pwl = {4, TIMES, VALUES, false, 0.0}},
     {.kind = DALCS_STIMULUS_EXP, .u.exponential = {0.0, 2.0, 0.2, 1e-3, 0.9, 0.5}},
 };
 
 static void integrate(int n, const struct dalcs_stimulus *const *source, double stop,
                       double *integral) {
     struct dalcs_stimulus_piece piece[N];
+    struct dalcs_stimulus_term term[2 * N];
+    for (int i = 0; i < n; i++) {
+        piece[i].term = term + 2 * (ptrdiff_t)i;
+    }
     dalcs_source_products(n, source, stop, piece, integral);
 }
 

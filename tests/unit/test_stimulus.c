@@ -296,9 +296,39 @@ static double decimal_time(void) {
 static double pwl_t[12];
 static double pwl_v[12];
 
+static const struct dalcs_tone tones[3] = {{2, 3, 0.25}, {-1.5, -0.75, 0.1}, {0.3, 17, 0.9}};
+
+/* Kinds from 4 on end or repeat. */
 static struct dalcs_stimulus random_stimulus(int kind) {
     const double low = uniform(-5, 5);
     const double high = uniform(-5, 5);
+    if (kind == 4) {
+        struct dalcs_stimulus s =
+            make_pulse(low, high, decimal_time() - 0.5, decimal_time() / 4, decimal_time() / 4,
+                       decimal_time(), decimal_time() + 0.01);
+        s.u.pulse.n_periods = uniform(0, 1) < 0.7 ? floor(uniform(1, 6)) : uniform(0.1, 6);
+        return s;
+    }
+    if (kind == 5) {
+        struct dalcs_stimulus s =
+            make_sine(low, high, uniform(1, 50), decimal_time(), uniform(0, 1), uniform(-180, 180));
+        s.u.sine.n_cycles = uniform(0.1, 20);
+        return s;
+    }
+    if (kind == 6) {
+        struct dalcs_stimulus s = {.kind = DALCS_STIMULUS_TONES};
+        s.u.tones.offset = low;
+        s.u.tones.delay = uniform(0, 1) < 0.3 ? 0 : decimal_time();
+        s.u.tones.n = 3;
+        s.u.tones.tone = tones;
+        return s;
+    }
+    if (kind == 7) {
+        struct dalcs_stimulus s = random_stimulus(3);
+        s.u.pwl.repeat_from = pwl_t[(int)uniform(0, 11)];
+        s.u.pwl.repeats = s.u.pwl.repeat_from < pwl_t[11];
+        return s;
+    }
     if (kind == 0) {
         const double period = uniform(0, 1) < 0.2 ? INFINITY : decimal_time() + 0.01;
         return make_pulse(low, high, decimal_time() - 0.5, decimal_time() / 4, decimal_time() / 4,
@@ -337,8 +367,8 @@ static void check_smooth(const struct dalcs_stimulus *s, double a, double b) {
 }
 
 START_TEST(test_contract) {
-    for (int trial = 0; trial < 1200; trial++) {
-        const struct dalcs_stimulus s = random_stimulus(trial % 4);
+    for (int trial = 0; trial < 2400; trial++) {
+        const struct dalcs_stimulus s = random_stimulus(trial % 8);
         double t = 0;
         for (int k = 0; k < 30; k++) {
             const double next = dalcs_stimulus_next_edge(&s, t);
@@ -363,6 +393,75 @@ START_TEST(test_contract) {
 
 END_TEST
 
+/* ---- What ends, repeats or is modulated ------------------------------------------------------ */
+
+START_TEST(test_counted_pulses) {
+    struct dalcs_stimulus s = make_pulse(0, 1, 1, 0, 0, 1, 3);
+    s.u.pulse.n_periods = 2;
+    const double edge[] = {1, 2, 4, 5, 7};
+    double t = 0;
+    for (size_t k = 0; k < sizeof edge / sizeof edge[0]; k++) {
+        t = dalcs_stimulus_next_edge(&s, t);
+        ck_assert_double_eq(t, edge[k]);
+    }
+    ck_assert(isinf(dalcs_stimulus_next_edge(&s, t)));
+    check_limits(&s, 4, 0, 1);
+    check_limits(&s, 5, 1, 0);
+    check_limits(&s, 7, 0, 0);
+    check_limits(&s, 1000, 0, 0);
+    /* Longer than the period: the last one is cut, too. */
+    s.u.pulse.width = 10;
+    check_limits(&s, 4, 1, 1);
+    check_limits(&s, 7, 1, 0);
+}
+
+END_TEST
+
+START_TEST(test_counted_cycles) {
+    struct dalcs_stimulus s = make_sine(1, 2, 0.5, 1, 0, 0);
+    s.u.sine.n_cycles = 1.25;
+    ck_assert_double_eq(dalcs_stimulus_next_edge(&s, 1), 3.5);
+    ck_assert(isinf(dalcs_stimulus_next_edge(&s, 3.5)));
+    check_limits(&s, 1.5, 3, 3);
+    check_limits(&s, 2.5, -1, -1);
+    check_limits(&s, 3.5, 3, 3);
+    check_limits(&s, 100, 3, 3);
+}
+
+END_TEST
+
+START_TEST(test_repeated_points) {
+    const double time[] = {0, 1, 1, 2, 3};
+    const double value[] = {0, 1, 4, 6, 5};
+    struct dalcs_stimulus s = make_pwl(time, value, 5);
+    s.u.pwl.repeats = true;
+    s.u.pwl.repeat_from = 1;
+    const double edge[] = {1, 2, 3, 4, 5, 6, 7};
+    double t = 0;
+    for (size_t k = 0; k < sizeof edge / sizeof edge[0]; k++) {
+        t = dalcs_stimulus_next_edge(&s, t);
+        ck_assert_double_eq(t, edge[k]);
+    }
+    check_limits(&s, 1, 1, 4);
+    check_limits(&s, 3, 5, 4);
+    check_limits(&s, 4, 6, 6);
+    check_limits(&s, 1000.5, 5.5, 5.5);
+    check_limits(&s, 1001, 5, 4);
+    /* A million times, at times computed in other ways than the edge itself. */
+    const double fine[] = {0, 1e-6, 4e-6};
+    const double triangle[] = {0, 3, 0};
+    s = make_pwl(fine, triangle, 3);
+    s.u.pwl.repeats = true;
+    for (long n = 1; n < 1000000; n += n < 1000 ? 1 : 997) {
+        const double at = (double)n * 4e-6;
+        ck_assert_double_eq(dalcs_stimulus_value(&s, at, DALCS_LEFT), 0);
+        ck_assert_double_eq(dalcs_stimulus_value(&s, (double)n / 250000, DALCS_RIGHT), 0);
+        ck_assert_double_eq_tol(dalcs_stimulus_next_edge(&s, at), at + 1e-6, 8 * DBL_EPSILON * at);
+    }
+}
+
+END_TEST
+
 /* ---- Pieces --------------------------------------------------------------------------------- */
 
 static double piece_value(const struct dalcs_stimulus_piece *piece, double tau) {
@@ -378,7 +477,8 @@ static double piece_value(const struct dalcs_stimulus_piece *piece, double tau) 
 /* From t to the next edge, its limits included. */
 static void check_piece(const struct dalcs_stimulus *s, double t,
                         const struct dalcs_stimulus_piece *first) {
-    struct dalcs_stimulus_piece piece;
+    struct dalcs_stimulus_term term[3];
+    struct dalcs_stimulus_piece piece = {.term = term};
     dalcs_stimulus_piece_at(s, t, &piece);
     ck_assert_double_eq(piece.to, dalcs_stimulus_next_edge(s, t));
     ck_assert_int_eq(piece.n_terms, first->n_terms);
@@ -399,9 +499,10 @@ static void check_piece(const struct dalcs_stimulus *s, double t,
 }
 
 START_TEST(test_pieces) {
-    for (int trial = 0; trial < 1200; trial++) {
-        const struct dalcs_stimulus s = random_stimulus(trial % 4);
-        struct dalcs_stimulus_piece first;
+    for (int trial = 0; trial < 2400; trial++) {
+        const struct dalcs_stimulus s = random_stimulus(trial % 8);
+        struct dalcs_stimulus_term term[3];
+        struct dalcs_stimulus_piece first = {.term = term};
         dalcs_stimulus_piece_at(&s, 0, &first);
         double t = 0;
         for (int k = 0; k < 20 && isfinite(t); k++) {
@@ -413,7 +514,8 @@ START_TEST(test_pieces) {
         }
     }
     const struct dalcs_stimulus dc = {.kind = DALCS_STIMULUS_DC, .dc = 3};
-    struct dalcs_stimulus_piece piece;
+    struct dalcs_stimulus_term term[3];
+    struct dalcs_stimulus_piece piece = {.term = term};
     dalcs_stimulus_piece_at(&dc, 2, &piece);
     ck_assert(piece.level == 3 && piece.slope == 0 && piece.n_terms == 0 && isinf(piece.to));
 }
@@ -423,7 +525,8 @@ END_TEST
 /* The pieces themselves: a ramp, a jump at its end, a sine before and after its delay. */
 START_TEST(test_known_pieces) {
     struct dalcs_stimulus s = make_pulse(1, 3, 0.5, 0.25, 0, 1, 4);
-    struct dalcs_stimulus_piece piece;
+    struct dalcs_stimulus_term term[3];
+    struct dalcs_stimulus_piece piece = {.term = term};
     dalcs_stimulus_piece_at(&s, 0.5, &piece);
     ck_assert(piece.level == 1 && piece.slope == 8 && piece.to == 0.75);
     dalcs_stimulus_piece_at(&s, 0.75, &piece);
@@ -444,4 +547,5 @@ END_TEST
 RUN_TESTS("stimulus", test_pulse_jumps, test_pulse_edges, test_pulse_once_and_for_ever,
           test_pulse_triangle, test_pulse_cut_short, test_pulse_narrow_edges, test_sine,
           test_sine_late, test_exponential, test_pwl, test_operating_value, test_contract,
-          test_pieces, test_known_pieces)
+          test_counted_pulses, test_counted_cycles, test_repeated_points, test_pieces,
+          test_known_pieces)

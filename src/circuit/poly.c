@@ -1,0 +1,196 @@
+/* poly.c - POLY on E, F, G and H: a sum of several controls, as far as it is linear.
+ *
+ *     p0 + p1 c1 + ... + pn cn, c a voltage (E, G) or the current of a V source (F, H)
+ *
+ * Each term is a device of its own: the voltages of E and H in series, the currents of F and G side
+ * by side behind a short that is no unknown where nobody asks for the sum. */
+#include "builder.h"
+
+#include <string.h>
+
+enum { MOST_CONTROLS = 1000 };
+
+struct poly {
+    struct dalcs_reader *reader;
+    struct dalcs_device *device; /* of the card, with its nodes; takes the first control */
+    int n;
+    int *node;                         /* [2 n] E, G */
+    const struct dalcs_token **source; /* [n] F, H */
+    double *coefficient;               /* [n + 1] */
+};
+
+static bool is_by_voltage(const struct poly *p) {
+    return p->device->kind == DALCS_VCVS || p->device->kind == DALCS_VCCS;
+}
+
+static bool read_count(struct poly *p) {
+    struct dalcs_reader *reader = p->reader;
+    const bool opened = dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
+    double n;
+    if (!dalcs_reader_list_number(reader, DALCS_PLAIN, "a number of controls", &n)) {
+        return false;
+    }
+    if (!(n >= 1 && n <= MOST_CONTROLS) || n != (int)n) {
+        dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
+                            "a number of controls is 1, 2, 3, ... up to %d", MOST_CONTROLS);
+        return false;
+    }
+    if (opened && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        dalcs_reader_missing(reader, "')'");
+        return false;
+    }
+    p->n = (int)n;
+    return true;
+}
+
+static bool allocate(struct poly *p) {
+    struct dalcs_builder *builder = p->reader->builder;
+    const size_t n = (size_t)p->n;
+    p->node = dalcs_arena_alloc(&builder->scratch, 2 * n, sizeof *p->node);
+    p->source = dalcs_arena_alloc(&builder->scratch, n, sizeof *p->source);
+    p->coefficient = dalcs_arena_alloc(&builder->scratch, n + 1, sizeof *p->coefficient);
+    const bool ok = p->node != NULL && p->source != NULL && p->coefficient != NULL;
+    builder->out_of_memory = builder->out_of_memory || !ok;
+    return ok;
+}
+
+static bool read_controls(struct poly *p) {
+    if (is_by_voltage(p)) {
+        return dalcs_reader_nodes(p->reader, 2 * p->n, p->node);
+    }
+    for (int k = 0; k < p->n; k++) {
+        if (!dalcs_reader_name(p->reader, "the name of a voltage source", &p->source[k])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool read_coefficients(struct poly *p) {
+    struct dalcs_reader *reader = p->reader;
+    const bool opened = dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
+    int n = 0;
+    do {
+        double value;
+        if (!dalcs_reader_list_number(reader, DALCS_PLAIN, "a coefficient", &value)) {
+            return false;
+        }
+        if (n <= p->n) {
+            p->coefficient[n++] = value;
+        } else if (value != 0) {
+            dalcs_builder_error(reader->builder, dalcs_reader_previous(reader),
+                                "of POLY(n) the coefficients are p0 p1 ... pn",
+                                "products of controls are not linear: no ideal diodes make them");
+            return false;
+        }
+    } while (!dalcs_reader_at_end(reader) && dalcs_reader_is_number(dalcs_reader_peek(reader, 0)));
+    if (opened && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        dalcs_reader_missing(reader, "')'");
+        return false;
+    }
+    if (p->n == 1 && n == 1) {
+        dalcs_builder_warn(reader->builder, dalcs_reader_previous(reader),
+                           dalcs_builder_hint(reader->builder, "write 0 %g if a factor is meant",
+                                              p->coefficient[0]),
+                           "the only coefficient is p0, a constant, as in ngspice; other "
+                           "simulators take it for the factor p1");
+    }
+    return dalcs_reader_end(reader);
+}
+
+static void set_control(struct poly *p, struct dalcs_device *device, int k) {
+    struct dalcs_builder *builder = p->reader->builder;
+    device->value = p->coefficient[k + 1];
+    if (is_by_voltage(p)) {
+        device->node[2] = p->node[2 * k];
+        device->node[3] = p->node[2 * k + 1];
+    } else {
+        builder->control_token[device - builder->circuit->device] = p->source[k];
+    }
+}
+
+/* Puts `part` behind the device: in series with it, or beside it. */
+static bool place(struct poly *p, struct dalcs_device *part, const char *what, bool in_series) {
+    struct dalcs_device *device = p->device;
+    if (part == NULL) {
+        return false;
+    }
+    part->node[0] = device->node[0];
+    part->node[1] = device->node[1];
+    if (in_series) {
+        const int node = dalcs_builder_inner_node(p->reader->builder, what, p->reader->card->token);
+        part->node[0] = device->node[1] = node;
+        return node >= 0;
+    }
+    return true;
+}
+
+static bool add_parts(struct poly *p, bool in_series) {
+    struct dalcs_builder *builder = p->reader->builder;
+    struct dalcs_circuit *circuit = builder->circuit;
+    const struct dalcs_token *name = p->reader->card->token;
+    for (int k = 1; k < p->n; k++) {
+        const char *what = dalcs_builder_hint(builder, "p%d", k + 1);
+        if (what == NULL) {
+            return false;
+        }
+        struct dalcs_device *part =
+            dalcs_builder_add_inner_device(builder, p->device->kind, what, name);
+        if (!place(p, part, what, in_series)) {
+            return false;
+        }
+        set_control(p, part, k);
+    }
+    if (p->coefficient[0] == 0) {
+        return true;
+    }
+    struct dalcs_device *constant = dalcs_builder_add_inner_device(
+        builder, in_series ? DALCS_VSOURCE : DALCS_ISOURCE, "p0", name);
+    if (!place(p, constant, "p0", in_series)) {
+        return false;
+    }
+    constant->stimulus = circuit->n_stimuli++;
+    circuit->stimulus[constant->stimulus] =
+        (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .has_dc = true, .dc = p->coefficient[0]};
+    return true;
+}
+
+/* The currents of all parts together. */
+static bool add_terminal(struct poly *p) {
+    struct dalcs_builder *builder = p->reader->builder;
+    const struct dalcs_token *name = p->reader->card->token;
+    const int inside = dalcs_builder_inner_node(builder, "terminal", name);
+    struct dalcs_device *terminal =
+        dalcs_builder_add_inner_device(builder, DALCS_RESISTOR, "terminal", name);
+    if (inside < 0 || terminal == NULL) {
+        return false;
+    }
+    terminal->node[0] = p->device->node[0];
+    terminal->node[1] = p->device->node[0] = inside;
+    builder->current_of[p->device - builder->circuit->device] =
+        (int)(terminal - builder->circuit->device);
+    return true;
+}
+
+void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device) {
+    struct poly p = {.reader = reader, .device = device};
+    if (!read_count(&p) || !allocate(&p) || !read_controls(&p) || !read_coefficients(&p)) {
+        return;
+    }
+    const bool in_series = device->kind == DALCS_VCVS || device->kind == DALCS_CCVS;
+    set_control(&p, device, 0);
+    if (p.n == 1 && p.coefficient[0] == 0) {
+        return;
+    }
+    if (in_series || add_terminal(&p)) {
+        (void)add_parts(&p, in_series);
+    }
+}
+
+size_t dalcs_poly_count(const struct dalcs_card *card) {
+    bool found = false;
+    for (int k = 1; k < card->n; k++) {
+        found = found || strcmp(card->token[k].text, "poly") == 0;
+    }
+    return found ? (size_t)card->n : 0;
+}

@@ -1,0 +1,419 @@
+/* pwl_card.c - PWL on a source's card: points, repetition, scales, and points in a file.
+ *
+ *   ngspice    PWL(t v t v ...) [r=time] [td=time]: from r to the last point again and again
+ *   LTspice    PWL(t v +dt v ...), REPEAT FOR n (...) ENDREPEAT, REPEAT FOREVER (...) ENDREPEAT,
+ *              FILE=name, TIME_SCALE_FACTOR=x, VALUE_SCALE_FACTOR=x
+ *
+ * A block that is repeated counts its times from where it begins. What ends is written out; what
+ * does not end is written out twice, and the second course repeats. */
+#include "builder.h"
+#include "number.h"
+#include "text_file.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char USAGE[] = "PWL(time value time value ...) [r=time] [td=time]";
+
+enum { MOST_POINTS = 10000000, LONGEST_WORD = 64, DEEPEST = 4 };
+
+/* The points so far. */
+struct points {
+    struct dalcs_reader *reader;
+    enum dalcs_quantity quantity;
+    double *t, *v;
+    size_t n, t_capacity, v_capacity;
+    double time_scale, value_scale;
+    bool is_in_block; /* between REPEAT and ENDREPEAT */
+    bool is_closed;   /* a parenthesis was closed: a number after it is no point */
+    bool has_forever; /* the last block repeats for ever */
+    bool is_relative; /* a note about times with + was made */
+    size_t block;     /* the first point of the block being read */
+    double from;      /* s, where that begins */
+    double repeat_from;
+    const struct dalcs_token *repeat; /* r= */
+    double delay;
+};
+
+static bool add_point(struct points *p, const struct dalcs_token *place, double t, double v) {
+    struct dalcs_builder *builder = p->reader->builder;
+    if (p->n >= MOST_POINTS) {
+        dalcs_builder_error(builder, place, NULL, "a PWL of more than %d points", MOST_POINTS);
+        return false;
+    }
+    if (p->n > 0 && t < p->t[p->n - 1]) {
+        dalcs_builder_error(builder, place, "times must ascend; two equal times are a jump",
+                            "PWL time %g s is before the one ahead of it, %g s", t, p->t[p->n - 1]);
+        return false;
+    }
+    if (dalcs_grow(&p->t, &p->t_capacity, p->n + 1, sizeof *p->t) != DALCS_OK ||
+        dalcs_grow(&p->v, &p->v_capacity, p->n + 1, sizeof *p->v) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return false;
+    }
+    p->t[p->n] = t;
+    p->v[p->n++] = v;
+    return true;
+}
+
+/* Does a number follow? */
+static bool more(const struct dalcs_reader *reader) {
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
+    return next != NULL && dalcs_reader_is_number(next);
+}
+
+static bool read_point(struct points *p) {
+    struct dalcs_reader *reader = p->reader;
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    double t;
+    double v;
+    if (!dalcs_reader_list_number(reader, DALCS_SECOND, "a time", &t)) {
+        return false;
+    }
+    if (!more(reader)) {
+        dalcs_builder_error(builder, token, USAGE, "this PWL time has no value");
+        return false;
+    }
+    if (!dalcs_reader_list_number(reader, p->quantity, "a value", &v)) {
+        return false;
+    }
+    if (p->has_forever) {
+        dalcs_builder_error(builder, token, USAGE, "a point after what repeats for ever");
+        return false;
+    }
+    double origin = p->from;
+    if (token->text[0] == '+') {
+        origin = p->n > p->block ? p->t[p->n - 1] : p->from;
+        if (!p->is_relative) {
+            p->is_relative = true;
+            dalcs_builder_note(builder, token, NULL,
+                               "a time with '+' counts from the point before, as in LTspice");
+        }
+    }
+    return add_point(p, token, origin + t * p->time_scale, v * p->value_scale);
+}
+
+/* ---- A file -------------------------------------------------------------------------------- */
+
+/* The text of a name as it was written: file names have capitals. */
+static const char *written_text(struct dalcs_builder *builder, const struct dalcs_token *token) {
+    return token->kind == DALCS_TOKEN_STRING
+               ? token->text
+               : dalcs_builder_hint(builder, "%.*s", token->length,
+                                    token->line->text + token->offset);
+}
+
+/* Relative to the netlist. */
+static const char *find_path(struct dalcs_builder *builder, const struct dalcs_token *token) {
+    const char *name = written_text(builder, token);
+    const char *slash = strrchr(token->line->file, '/');
+    if (name == NULL || name[0] == '/' || slash == NULL) {
+        return name;
+    }
+    return dalcs_builder_hint(builder, "%.*s/%s", (int)(slash - token->line->file),
+                              token->line->file, name);
+}
+
+/* The next number of a file's text; false at its end, or, with *wrong set, at what is none. */
+static bool next_number(const char **text, int *line, double *value, const char **wrong) {
+    const char *s = *text;
+    for (;;) {
+        s += strspn(s, " \t\r,");
+        if (*s == '\n') {
+            (*line)++;
+            s++;
+        } else if (*s == '*' || *s == '#' || *s == ';') {
+            s += strcspn(s, "\n");
+        } else {
+            break;
+        }
+    }
+    const size_t length = strcspn(s, " \t\r\n,;");
+    *text = s + length;
+    if (length == 0) {
+        return false;
+    }
+    char word[LONGEST_WORD];
+    struct dalcs_number number;
+    *wrong = s;
+    if (length >= sizeof word) {
+        return false;
+    }
+    memcpy(word, s, length);
+    word[length] = '\0';
+    if (dalcs_number_parse(word, &number) != DALCS_NUMBER_OK) {
+        return false;
+    }
+    *wrong = NULL;
+    *value = number.value;
+    return true;
+}
+
+static bool read_text(struct points *p, const struct dalcs_token *place, const char *path,
+                      const char *text) {
+    struct dalcs_builder *builder = p->reader->builder;
+    const char *wrong = NULL;
+    int line = 1;
+    double t;
+    double v;
+    const size_t before = p->n;
+    while (next_number(&text, &line, &t, &wrong)) {
+        if (!next_number(&text, &line, &v, &wrong)) {
+            if (wrong != NULL) {
+                break;
+            }
+            dalcs_builder_error(builder, place, "each line is a time and a value",
+                                "%s:%d: the last time has no value", path, line);
+            return false;
+        }
+        if (p->n > before && p->from + t * p->time_scale < p->t[p->n - 1]) {
+            dalcs_builder_error(builder, place, "times must ascend; two equal times are a jump",
+                                "%s:%d: time %g s is before the one ahead of it", path, line, t);
+            return false;
+        }
+        if (!add_point(p, place, p->from + t * p->time_scale, v * p->value_scale)) {
+            return false;
+        }
+    }
+    if (wrong != NULL) {
+        dalcs_builder_error(builder, place, "each line is a time and a value",
+                            "%s:%d: '%.*s' is not a number", path, line,
+                            (int)fmin((double)strcspn(wrong, " \t\r\n,;"), LONGEST_WORD), wrong);
+        return false;
+    }
+    if (p->n == before) {
+        dalcs_builder_error(builder, place, NULL, "there are no points in %s", path);
+        return false;
+    }
+    return true;
+}
+
+static bool read_file(struct points *p) {
+    struct dalcs_builder *builder = p->reader->builder;
+    const struct dalcs_token *place = dalcs_reader_peek(p->reader, 0);
+    if (place == NULL || (place->kind != DALCS_TOKEN_WORD && place->kind != DALCS_TOKEN_STRING)) {
+        dalcs_reader_missing(p->reader, "the name of a file");
+        return false;
+    }
+    p->reader->at++;
+    const char *path = find_path(builder, place);
+    if (path == NULL) {
+        return false;
+    }
+    struct dalcs_diag said = {0};
+    char *text = NULL;
+    size_t length;
+    const enum dalcs_status status = dalcs_text_file_read(path, INT_MAX, &text, &length, &said);
+    bool ok = false;
+    if (status == DALCS_E_IO) {
+        dalcs_builder_error(builder, place, NULL, "cannot read the points of %s", path);
+    } else if (status != DALCS_OK) {
+        builder->out_of_memory = true;
+    } else {
+        ok = read_text(p, place, path, text);
+    }
+    dalcs_diag_finish(&said);
+    free(text);
+    return ok;
+}
+
+/* ---- Repetition ---------------------------------------------------------------------------- */
+
+static bool read_items(struct points *p, int depth);
+
+/* Appends the block again, `later` after its first course. */
+static bool repeat_block(struct points *p, const struct dalcs_token *place, size_t n,
+                         double later) {
+    for (size_t k = 0; k < n; k++) {
+        /* Rounding must not put the start of a course before the end of the last. */
+        const double t = fmax(p->t[p->block + k] + later, p->t[p->n - 1]);
+        if (!add_point(p, place, t, p->v[p->block + k])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* After REPEAT. */
+static bool read_repeat(struct points *p, int depth) {
+    struct dalcs_reader *reader = p->reader;
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *place = dalcs_reader_previous(reader);
+    const bool is_forever = dalcs_reader_take_word(reader, "forever");
+    double n = 2;
+    if (!is_forever && !dalcs_reader_take_word(reader, "for")) {
+        dalcs_reader_missing(reader, "FOR or FOREVER");
+        return false;
+    }
+    if (!is_forever && !dalcs_reader_list_number(reader, DALCS_PLAIN, "a number of times", &n)) {
+        return false;
+    }
+    if (n < 1 || n != floor(n)) {
+        dalcs_builder_error(builder, dalcs_reader_previous(reader), NULL,
+                            "a number of times is 1, 2, 3, ...");
+        return false;
+    }
+    p->block = p->n;
+    p->from = p->n > 0 ? p->t[p->n - 1] : 0;
+    p->is_in_block = true;
+    if (!read_items(p, depth + 1)) {
+        return false;
+    }
+    if (!dalcs_reader_take_word(reader, "endrepeat")) {
+        dalcs_reader_missing(reader, "ENDREPEAT");
+        return false;
+    }
+    const size_t points = p->n - p->block;
+    const double length = points > 0 ? p->t[p->n - 1] - p->from : 0;
+    if (length <= 0) {
+        dalcs_builder_error(builder, place, NULL, "what is repeated lasts no time");
+        return false;
+    }
+    for (double k = 1; k < n; k++) {
+        if (!repeat_block(p, place, points, k * length)) {
+            return false;
+        }
+    }
+    p->has_forever = is_forever;
+    p->repeat_from = p->from + length;
+    p->block = p->n;
+    p->from = 0;
+    p->is_in_block = false;
+    return true;
+}
+
+/* ---- The card ------------------------------------------------------------------------------ */
+
+static bool read_scale(struct points *p, double *scale) {
+    if (!dalcs_reader_number(p->reader, DALCS_PLAIN, "a factor", scale)) {
+        return false;
+    }
+    if (scale == &p->time_scale && *scale <= 0) {
+        dalcs_builder_error(p->reader->builder, dalcs_reader_previous(p->reader), NULL,
+                            "a factor of times must be positive");
+        return false;
+    }
+    return true;
+}
+
+/* A parameter that belongs to a PWL; false with *ok when another or none comes next. */
+static bool take_parameter(struct points *p, bool *ok) {
+    static const char *const names[] = {"file", "time_scale_factor", "value_scale_factor", "r",
+                                        "td"};
+    const struct dalcs_token *name = dalcs_reader_peek(p->reader, 0);
+    const int at = p->reader->at;
+    *ok = true;
+    if (!dalcs_builder_is_one_of(name->text, names, sizeof names / sizeof names[0]) ||
+        (dalcs_reader_take_parameter(p->reader) == NULL && strcmp(name->text, "file") != 0)) {
+        p->reader->at = at;
+        return false;
+    }
+    if (strcmp(name->text, "file") == 0) {
+        p->reader->at += p->reader->at == at; /* Xyce has no = */
+        *ok = read_file(p);
+    } else if (strcmp(name->text, "time_scale_factor") == 0) {
+        *ok = read_scale(p, &p->time_scale);
+    } else if (strcmp(name->text, "value_scale_factor") == 0) {
+        *ok = read_scale(p, &p->value_scale);
+    } else if (strcmp(name->text, "r") == 0) {
+        p->repeat = name;
+        *ok = dalcs_reader_number(p->reader, DALCS_SECOND, "a time", &p->repeat_from);
+    } else {
+        *ok = dalcs_reader_number(p->reader, DALCS_SECOND, "a time", &p->delay);
+    }
+    return true;
+}
+
+/* After an opening parenthesis. */
+static bool read_group(struct points *p, int depth) {
+    struct dalcs_reader *reader = p->reader;
+    const struct dalcs_token *open = dalcs_reader_previous(reader);
+    if (!read_items(p, depth + 1)) {
+        return false;
+    }
+    p->is_closed = dalcs_reader_take(reader, DALCS_TOKEN_CLOSE);
+    if (!p->is_closed && dalcs_reader_at_end(reader)) {
+        dalcs_builder_error(reader->builder, open, USAGE, "this parenthesis is never closed");
+    } else if (!p->is_closed) {
+        dalcs_reader_unexpected(reader);
+    }
+    return p->is_closed;
+}
+
+/* Everything up to the end, or to what is somebody else's; depth counts parentheses and blocks. */
+static bool read_items(struct points *p, int depth) {
+    struct dalcs_reader *reader = p->reader;
+    const struct dalcs_token *token;
+    bool ok = true;
+    while (ok && (token = dalcs_reader_peek(reader, 0)) != NULL) {
+        if (depth < DEEPEST && dalcs_reader_take(reader, DALCS_TOKEN_OPEN)) {
+            ok = read_group(p, depth);
+        } else if (dalcs_reader_is_number(token) && (depth > 0 || !p->is_closed)) {
+            ok = read_point(p);
+        } else if (!p->is_in_block && dalcs_reader_take_word(reader, "repeat")) {
+            ok = read_repeat(p, depth);
+        } else if (!take_parameter(p, &ok)) {
+            break;
+        }
+    }
+    return ok;
+}
+
+/* r= must be one of the times, as in ngspice. */
+static bool find_repeat(struct points *p) {
+    struct dalcs_builder *builder = p->reader->builder;
+    const double from = p->repeat_from * p->time_scale;
+    bool found = false;
+    for (size_t k = 0; k + 1 < p->n && !found; k++) {
+        found = p->t[k] == from && p->t[p->n - 1] > from;
+    }
+    if (p->has_forever || !found) {
+        dalcs_builder_error(builder, p->repeat, USAGE,
+                            "r= is the time of a point before the last one");
+        return false;
+    }
+    p->repeat_from = from;
+    return true;
+}
+
+static bool keep_points(struct points *p, struct dalcs_stimulus *stimulus) {
+    struct dalcs_arena *arena = &p->reader->builder->circuit->arena;
+    double *t = dalcs_arena_alloc(arena, p->n, sizeof *t);
+    double *v = dalcs_arena_alloc(arena, p->n, sizeof *v);
+    if (t == NULL || v == NULL) {
+        p->reader->builder->out_of_memory = true;
+        return false;
+    }
+    for (size_t k = 0; k < p->n; k++) {
+        t[k] = p->t[k] + p->delay;
+        v[k] = p->v[k];
+    }
+    stimulus->kind = DALCS_STIMULUS_PWL;
+    stimulus->u.pwl.n = (int)p->n;
+    stimulus->u.pwl.t = t;
+    stimulus->u.pwl.v = v;
+    stimulus->u.pwl.repeats = p->repeat != NULL || p->has_forever;
+    stimulus->u.pwl.repeat_from = stimulus->u.pwl.repeats ? p->repeat_from + p->delay : 0;
+    return true;
+}
+
+bool dalcs_pwl_card_parse(struct dalcs_reader *reader, enum dalcs_quantity quantity,
+                          struct dalcs_stimulus *stimulus) {
+    struct points points = {
+        .reader = reader, .quantity = quantity, .time_scale = 1, .value_scale = 1};
+    const char *usage = reader->usage;
+    reader->usage = USAGE;
+    bool ok = read_items(&points, 0);
+    if (ok && points.n == 0) {
+        dalcs_reader_missing(reader, "a time");
+        ok = false;
+    }
+    ok = ok && (points.repeat == NULL || find_repeat(&points)) && keep_points(&points, stimulus);
+    reader->usage = usage;
+    free(points.t);
+    free(points.v);
+    return ok;
+}
