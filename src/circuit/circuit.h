@@ -37,7 +37,7 @@ struct dalcs_device {
     struct dalcs_location where; /* the element's card */
 };
 
-/* Slope 1/roff from -vrev to vfwd, 1/ron above and 1/rrev below.
+/* Slope 1/roff from -vrev to vfwd, 1/ron more above and 1/rrev more below.
  * Ron = 0 is complementarity, Roff = INFINITY exactly open, Vrev = INFINITY no breakdown. */
 struct dalcs_diode_model {
     const char *name;

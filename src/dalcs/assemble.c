@@ -217,20 +217,17 @@ static enum dalcs_status stamp_pair(struct stamps *b, int anode, int cathode, do
     return threshold == 0.0 ? DALCS_OK : dalcs_triplets_add(&b->F, k, 0, threshold);
 }
 
-/* Roff lies across two branches, one of Vfwd and one of Vrev, whose resistances make up Ron and Rrev
- * with it. */
+/* Roff lies across two branches, one of Vfwd and Ron and one of Vrev and Rrev. */
 static enum dalcs_status stamp_diode(struct stamps *b, int device) {
     const struct dalcs_circuit *c = b->layout->circuit;
     const struct dalcs_device *d = &c->device[device];
     const struct dalcs_diode_model *m = &c->diode_model[d->model];
     b->layout->pair[device] = b->next_pair;
     struct dalcs_pair pair = {.kind = DALCS_PAIR_DIODE, .element = d->name};
-    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], m->vfwd,
-                         dalcs_stamp_series_part(m->ron, m->roff), pair));
+    DALCS_TRY(stamp_pair(b, d->node[0], d->node[1], m->vfwd, m->ron, pair));
     if (isfinite(m->vrev)) {
         pair.is_breakdown = true;
-        DALCS_TRY(stamp_pair(b, d->node[1], d->node[0], m->vrev,
-                             dalcs_stamp_series_part(m->rrev, m->roff), pair));
+        DALCS_TRY(stamp_pair(b, d->node[1], d->node[0], m->vrev, m->rrev, pair));
     }
     return isfinite(m->roff) ? dalcs_stamp_conductance(b, d, 1.0 / m->roff) : DALCS_OK;
 }

@@ -119,11 +119,9 @@ static void put_device(const struct dalcs_layout *l, const struct dalcs_system *
         return;
     case DALCS_DIODE: {
         const struct dalcs_diode_model *m = &c->diode_model[d->model];
-        put_pair(t, s, l->pair[device], DALCS_POWER_DIODES, m->vfwd,
-                 dalcs_stamp_series_part(m->ron, m->roff));
+        put_pair(t, s, l->pair[device], DALCS_POWER_DIODES, m->vfwd, m->ron);
         if (isfinite(m->vrev)) {
-            put_pair(t, s, l->pair[device] + 1, DALCS_POWER_DIODES, m->vrev,
-                     dalcs_stamp_series_part(m->rrev, m->roff));
+            put_pair(t, s, l->pair[device] + 1, DALCS_POWER_DIODES, m->vrev, m->rrev);
         }
         put_resistance(l, t, d, m->roff);
         return;

@@ -287,14 +287,13 @@ VT = 300.15 * 1.380649e-23 / 1.602176634e-19
 
 
 def idealised(v, ron, roff=math.inf, vfwd=0.0, vrev=math.inf, rrev=None, m=1, n=1):
-    """LTspice's law."""
+    """Three lines; Roff lies beside the two others."""
     v /= n
+    current = v / roff
     if v > vfwd:
-        current = (v - vfwd) / ron + vfwd / roff
+        current += (v - vfwd) / ron
     elif v < -vrev:
-        current = (v + vrev) / (ron if rrev is None else rrev) - vrev / roff
-    else:
-        current = v / roff
+        current += (v + vrev) / (ron if rrev is None else rrev)
     return m * current
 
 

@@ -267,11 +267,11 @@ class Results(Case):
         self.assertRegex(done.stdout, r"v\(out\) +5\.000  V\n")
 
     def test_lines_of_a_model(self):
-        """The five parameters of a diode: slopes 1/Roff, 1/Ron and 1/Rrev that meet at Vfwd and
-        -Vrev. Ron and Roff of a switch are its two resistances."""
+        """The five parameters of a diode: Roff lies beside the branch of Vfwd and Ron and that of
+        Vrev and Rrev. Ron and Roff of a switch are its two resistances."""
         model = "D(Ron=5 Roff=20 Vfwd=0.2 Vrev=0.5 Rrev=10)"
-        for volts, amperes in [(1, 0.8 / 5 + 0.2 / 20), (0.1, 0.1 / 20), (-0.4, -0.4 / 20),
-                               (-1, -0.5 / 10 - 0.5 / 20)]:
+        for volts, amperes in [(1, 0.8 / 5 + 1 / 20), (0.1, 0.1 / 20), (-0.4, -0.4 / 20),
+                               (-1, -0.5 / 10 - 1 / 20)]:
             self.write(f"line\nV1 a 0 {volts}\nD1 a 0 m\n.model m {model}\n.op\n.end\n")
             self.dalcs("run", "a.cir", "-q", "-o", "out.csv")
             header, rows = self.table("out.csv")
