@@ -17,7 +17,7 @@ static int find_coil(struct dalcs_builder *builder, const struct dalcs_token *na
     if (builder->circuit->device[device].kind != DALCS_INDUCTOR) {
         dalcs_builder_error(
             builder, name, USAGE, "'%s' is %s, only inductors can be coupled", name->text,
-            name->text[0] == 'l' ? "an inductor of 0 H"
+            builder->circuit->device[device].letter == 'l' ? "an inductor of 0 H"
                                  : dalcs_builder_kind_text(builder->circuit->device[device].kind));
         return -1;
     }
@@ -58,7 +58,7 @@ static bool read_coupling(struct dalcs_reader *reader, int place, struct dalcs_c
         }
     }
     const struct dalcs_token *third = dalcs_reader_peek(reader, 0);
-    if (third != NULL && third->kind == DALCS_TOKEN_WORD && third->text[0] == 'l') {
+    if (third != NULL && third->kind == DALCS_TOKEN_WORD && dalcs_builder_letter(third) == 'l') {
         dalcs_builder_error(builder, third, "write one K for each pair of coils",
                             "coupling more than two coils at once is not supported yet");
         return false;

@@ -53,7 +53,7 @@ void dalcs_signals_add_default(struct dalcs_builder *builder) {
     }
     /* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
     for (int k = 0; k < circuit->n_devices; k++) {
-        if (strchr("vldseh", circuit->device[k].name[0]) != NULL) {
+        if (strchr("vldseh", circuit->device[k].letter) != NULL) {
             add_current(builder, k);
         }
     }

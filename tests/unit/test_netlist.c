@@ -235,7 +235,7 @@ START_TEST(test_file) {
     remove(path);
     ck_assert_uint_eq(netlist.n_cards, 20000);
     ck_assert_str_eq(card_text(19999), "r19999 n19999 n20000 1k ");
-    ck_assert_str_eq(netlist.card[7].token->line->file, path);
+    ck_assert_str_eq(netlist.card[7].token->line->source->name, path);
     ck_assert_int_eq(netlist.card[19999].token->line->number, 20001);
     finish();
 }
