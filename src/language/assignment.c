@@ -26,11 +26,19 @@ bool dalcs_assignment_starts(const struct dalcs_card *card, int k) {
            is_kind(card, k + 1, DALCS_TOKEN_EQUAL) && !is_kind(card, k + 2, DALCS_TOKEN_EQUAL);
 }
 
+bool dalcs_assignment_is_params(const struct dalcs_token *token) {
+    return token->kind == DALCS_TOKEN_WORD &&
+           (strcmp(token->text, "params:") == 0 || strcmp(token->text, "param:") == 0);
+}
+
 const struct dalcs_token *dalcs_assignment_next(struct dalcs_language *language,
                                                 const struct dalcs_scope *scope,
                                                 const struct dalcs_card *card, int *at,
                                                 int *value) {
     static const char usage[] = "name=value name={expression} ...";
+    while (*at < card->n && dalcs_assignment_is_params(&card->token[*at])) {
+        ++*at;
+    }
     const struct dalcs_token *name = &card->token[*at];
     if (*at >= card->n) {
         return NULL;
@@ -47,7 +55,8 @@ const struct dalcs_token *dalcs_assignment_next(struct dalcs_language *language,
     }
     *value = *at + 2;
     int k = *value;
-    while (k < card->n && !dalcs_assignment_starts(card, k)) {
+    while (k < card->n && !dalcs_assignment_starts(card, k) &&
+           !dalcs_assignment_is_params(&card->token[k])) {
         if (card->token[k].kind == DALCS_TOKEN_BAD) {
             return NULL; /* reported when it was read */
         }

@@ -167,12 +167,6 @@ static enum dalcs_status read_function(struct collector *c, const struct dalcs_c
     return add_function(c, card, 1, head, body, card->n);
 }
 
-/* Is the word `params:` or `param:`? */
-static bool is_params(const struct dalcs_token *token) {
-    return token->kind == DALCS_TOKEN_WORD &&
-           (strcmp(token->text, "params:") == 0 || strcmp(token->text, "param:") == 0);
-}
-
 static enum dalcs_status read_assignments(struct collector *c, const struct dalcs_card *card, int at,
                                           bool is_formal) {
     int value;
@@ -288,14 +282,13 @@ static enum dalcs_status begin_subcircuit(struct collector *c, const struct dalc
     c->definition = d;
     c->base[++c->depth] = c->n_open;
     int ports = has_name ? 2 : 1;
-    while (ports < card->n && !is_params(&card->token[ports]) &&
+    while (ports < card->n && !dalcs_assignment_is_params(&card->token[ports]) &&
            !dalcs_assignment_starts(card, ports)) {
         ports++;
     }
     if (has_name) {
         DALCS_TRY(read_ports(c, card, ports));
     }
-    ports += ports < card->n && is_params(&card->token[ports]);
     return read_assignments(c, card, ports, true);
 }
 

@@ -216,6 +216,10 @@ static bool apply(const struct run *r, const struct dalcs_operation *o, double x
             report(r, o, NULL, "division by 0");
             return false;
         }
+        if (o->code == DALCS_QUOTIENT && x / y < 0) {
+            report(r, o, "write int(x / y)", "a\\b of %.9g: ngspice drops its sign", x / y);
+            return false;
+        }
         *value = o->code == DALCS_REMAINDER ? fmod(x, y) : x / y;
         *value = o->code == DALCS_QUOTIENT ? trunc(*value) : *value;
         break;

@@ -228,8 +228,7 @@ static bool read_call(struct call *call) {
             }
             return false;
         }
-        if (strcmp(token->text, "params:") == 0 || strcmp(token->text, "param:") == 0) {
-            k++;
+        if (dalcs_assignment_is_params(token)) {
             break;
         }
         call->n_nodes += call->name > 0;

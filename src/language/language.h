@@ -164,6 +164,9 @@ const struct dalcs_token *dalcs_assignment_next(struct dalcs_language *language,
                                                 const struct dalcs_scope *scope,
                                                 const struct dalcs_card *card, int *at, int *value);
 
+/* Is the word `params:`, which may stand before assignments? */
+bool dalcs_assignment_is_params(const struct dalcs_token *token);
+
 /* Does `name =` stand at token k (and not a comparison)? */
 bool dalcs_assignment_starts(const struct dalcs_card *card, int k);
 

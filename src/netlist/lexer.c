@@ -153,10 +153,12 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
             memcpy(low + p + 1, raw + p + 1, q - p - 1);
         } else {
             token->kind = DALCS_TOKEN_EXPRESSION;
+            lexer->netlist->has_language = true;
         }
         token->text = low + p + 1;
     } else if (c == '{') {
         token->kind = DALCS_TOKEN_EXPRESSION;
+        lexer->netlist->has_language = true;
         int depth = 1;
         for (; raw[q] != '\0'; q++) {
             depth += (raw[q] == '{') - (raw[q] == '}');
@@ -173,8 +175,6 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
         }
         token->text = low + p;
     }
-    lexer->netlist->has_language =
-        lexer->netlist->has_language || token->kind == DALCS_TOKEN_EXPRESSION;
     const bool invalid = memchr(low + p, INVALID, q - p) != NULL;
     low[q] = '\0';
     if (token->kind != DALCS_TOKEN_WORD && closed) {
