@@ -74,7 +74,7 @@ START_TEST(test_tokens) {
     check_place(0, 3, 2, 11, 4);
     check_place(1, 4, 3, 13, 1);
     check_place(1, 7, 3, 18, 1);
-    check_place(2, 1, 4, 10, 15);
+    check_place(2, 1, 4, 8, 5);
     check_place(3, 3, 5, 8, 10);
     ck_assert_str_eq(netlist.card[0].token->line->text, "R1 In OUT 4.7K");
     finish();
