@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { EXCERPT_BEFORE = 60, EXCERPT_AFTER = 90, LINE_MAX_SHOWN = 160 };
+enum { EXCERPT_BEFORE = 60, EXCERPT_AFTER = 90, LINE_MAX_SHOWN = 160, NAME_MAX_SHOWN = 60 };
 
 /* A growing string; after a failed allocation `failed` is set and appending does nothing. */
 struct text {
@@ -127,7 +127,11 @@ static void append_chain(struct text *text, const struct dalcs_origin *origin) {
             append_text(text, ", ...");
         } else if (n < MOST_SHOWN || o->outer == NULL) {
             if (o->instance != NULL) {
-                append_format(text, "in %s (%s:%d)", o->instance, o->file, o->line);
+                const size_t length = strlen(o->instance);
+                const bool whole = length <= NAME_MAX_SHOWN;
+                append_format(text, "in %s%s (%s:%d)", whole ? "" : "...",
+                              o->instance + (whole ? 0 : length - NAME_MAX_SHOWN), o->file,
+                              o->line);
             } else {
                 append_format(text, "%sfrom %s:%d", n == 0 ? "included " : "", o->file, o->line);
             }

@@ -46,7 +46,7 @@ const struct dalcs_token *dalcs_assignment_next(struct dalcs_language *language,
     if (!dalcs_assignment_starts(card, *at)) {
         if (name->kind != DALCS_TOKEN_BAD) {
             dalcs_language_report(language, DALCS_ERROR, scope, name, usage,
-                                  is_kind(card, *at + 1, DALCS_TOKEN_EQUAL)
+                                  is_kind(card, *at + 1, DALCS_TOKEN_EQUAL) && !is_name(name->text)
                                       ? "'%s' cannot be the name of a parameter"
                                       : "expected name=value, not '%s'",
                                   name->text);

@@ -107,11 +107,24 @@ static int function_head(const struct dalcs_card *card, int at) {
     return k < card->n && token[k].kind == DALCS_TOKEN_CLOSE ? k + 1 : 0;
 }
 
+static const char FUNC_USAGE[] = ".func name(argument, ...) {expression}";
+
 /* A function whose head is token[at..head-1] and whose body is token[body..end-1]. */
 static enum dalcs_status add_function(struct collector *c, const struct dalcs_card *card, int at,
                                       int head, int body, int end) {
     struct dalcs_definition *d = c->definition;
     const struct dalcs_token *name = &card->token[at];
+    bool is_bad = body >= end;
+    if (is_bad) {
+        missing(c, &card->token[body - 1], FUNC_USAGE, "the expression");
+    }
+    for (int k = body; k < end; k++) {
+        is_bad = is_bad || card->token[k].kind == DALCS_TOKEN_BAD;
+    }
+    if (is_bad) {
+        c->language->misses_assignment = true;
+        return DALCS_OK;
+    }
     struct dalcs_user_function *function =
         dalcs_arena_alloc(c->language->arena, 1, sizeof *function);
     if (function == NULL) {
@@ -151,19 +164,15 @@ static enum dalcs_status add_function(struct collector *c, const struct dalcs_ca
 }
 
 static enum dalcs_status read_function(struct collector *c, const struct dalcs_card *card) {
-    static const char usage[] = ".func name(argument, ...) {expression}";
     const int head = function_head(card, 1);
+    c->language->misses_assignment = c->language->misses_assignment || head == 0;
     if (head == 0) {
-        missing(c, card->n > 1 ? &card->token[1] : card->token, usage,
+        missing(c, card->n > 1 ? &card->token[1] : card->token, FUNC_USAGE,
                 card->n > 1 ? "the list of arguments" : "the name of the function");
         return DALCS_OK;
     }
     int body = head;
     body += body < card->n && card->token[body].kind == DALCS_TOKEN_EQUAL;
-    if (body >= card->n) {
-        missing(c, &card->token[card->n - 1], usage, "the expression");
-        return DALCS_OK;
-    }
     return add_function(c, card, 1, head, body, card->n);
 }
 
@@ -184,6 +193,7 @@ static enum dalcs_status read_assignments(struct collector *c, const struct dalc
         const struct dalcs_token *name =
             dalcs_assignment_next(c->language, NULL, card, &at, &value);
         if (name == NULL) {
+            c->language->misses_assignment = c->language->misses_assignment || at < card->n;
             return DALCS_OK;
         }
         DALCS_TRY(assign(c, name, &card->token[value], at - value, is_formal));

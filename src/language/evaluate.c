@@ -49,6 +49,11 @@ static enum dalcs_outcome outcome_of(bool ok) {
 
 /* ---- Names ----------------------------------------------------------------------------------- */
 
+/* Was an error reported that may be why a name is not known? */
+static bool hides_names(const struct dalcs_language *language) {
+    return language->netlist->misses_file || language->misses_assignment;
+}
+
 static const char *suggest_name(struct dalcs_language *language, struct dalcs_scope *scope,
                                 const char *name) {
     if (dalcs_function_find(name) != NULL) {
@@ -59,6 +64,9 @@ static const char *suggest_name(struct dalcs_language *language, struct dalcs_sc
     }
     for (const struct dalcs_scope *s = scope; s != NULL; s = s->caller) {
         const char *nearest = dalcs_names_nearest(&s->definition->parameters, name);
+        if (nearest != NULL && strcmp(nearest, name) == 0) {
+            return "the branch of .if that sets it was not chosen, or not yet";
+        }
         if (nearest != NULL) {
             return dalcs_language_text(language, "did you mean '%s'?", nearest);
         }
@@ -81,6 +89,9 @@ static enum dalcs_outcome push_name(const struct run *r, const struct dalcs_oper
     if (dalcs_constant_find(o->u.name, &constant)) {
         return outcome_of(push(language, constant));
     }
+    if (hides_names(language)) {
+        return DALCS_OUTCOME_WRONG;
+    }
     report(r, o, suggest_name(language, r->scope, o->u.name), "there is no parameter '%s'",
            o->u.name);
     return DALCS_OUTCOME_WRONG;
@@ -95,8 +106,11 @@ static bool check_count(const struct run *r, const struct dalcs_operation *o, in
         return true;
     }
     report(r, o, NULL, "'%s' takes %s%d argument%s, not %d", o->u.name,
-           least < most ? "at least " : "", o->count < least ? least : most,
-           least == 1 && most == 1 ? "" : "s", o->count);
+           least == most        ? ""
+           : o->count < least ? "at least "
+                                : "at most ",
+           o->count < least ? least : most, o->count < least && least == 1 ? "" : most == 1 ? "" : "s",
+           o->count);
     return false;
 }
 
@@ -150,6 +164,9 @@ static enum dalcs_outcome call(const struct run *r, const struct dalcs_operation
         return call_user(r, o, user);
     }
     const struct dalcs_function *function = dalcs_function_find(o->u.name);
+    if (function == NULL && hides_names(language)) {
+        return DALCS_OUTCOME_WRONG;
+    }
     if (function == NULL) {
         report(r, o, suggest_function(r, o->u.name), "there is no function '%s'", o->u.name);
         return DALCS_OUTCOME_WRONG;

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEEPEST = 1000 };
+enum { DEEPEST = 200 };
 
 /* ---- Names ------------------------------------------------------------------------------------- */
 
@@ -393,7 +393,9 @@ static void check_use(const struct call *call, const struct dalcs_scope *inner) 
     }
 }
 
-static enum dalcs_status name_instance(const struct call *call, struct dalcs_scope *inner) {
+/* Names the instance; *is_new is false when there is one of the name, an error. */
+static enum dalcs_status name_instance(const struct call *call, struct dalcs_scope *inner,
+                                       bool *is_new) {
     struct dalcs_language *language = call->language;
     const struct dalcs_token *x = call->item->card->token;
     struct dalcs_origin *origin = dalcs_arena_alloc(language->arena, 1, sizeof *origin);
@@ -405,6 +407,7 @@ static enum dalcs_status name_instance(const struct call *call, struct dalcs_sco
                                     call->scope->origin};
     inner->origin = origin;
     const int first = dalcs_names_find(&language->deck->instances, inner->name);
+    *is_new = first < 0;
     if (first >= 0) {
         const struct dalcs_origin *known = language->scope[first]->origin;
         dalcs_language_report(language, DALCS_ERROR, call->scope, x, "give it another name",
@@ -437,14 +440,18 @@ static enum dalcs_status expand_call(struct dalcs_language *language, struct dal
     if (definition->is_open || language->depth >= DEEPEST) {
         fail(&call, name, NULL, definition->is_open
                                     ? "this subcircuit calls itself"
-                                    : "subcircuits call each other more than 1000 deep");
+                                    : "subcircuits call each other more than 200 deep");
         return DALCS_OK;
     }
     struct dalcs_scope *inner = dalcs_scope_make(language, definition, scope, owner);
     if (inner == NULL) {
         return DALCS_E_NOMEM;
     }
-    DALCS_TRY(name_instance(&call, inner));
+    bool is_new;
+    DALCS_TRY(name_instance(&call, inner, &is_new));
+    if (!is_new) {
+        return DALCS_OK;
+    }
     if (!connect(&call, definition, inner) || !give_parameters(&call, inner)) {
         language->deck->hides_elements = true;
         return language->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;

@@ -119,6 +119,7 @@ struct dalcs_language {
     size_t n_emitted;
     int depth;
     bool too_large;
+    bool misses_assignment; /* an error on a .param or .func: names may be unknown for it */
     bool out_of_memory;
     bool noted_caret;
     bool noted_log;

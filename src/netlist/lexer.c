@@ -123,6 +123,23 @@ static enum dalcs_status add_token(struct dalcs_lexer *lexer, const struct dalcs
     return DALCS_OK;
 }
 
+/* Net-(D1-K), as KiCad names a net: takes the part in parentheses into the word that ends at raw[*q],
+ * and what follows it. Elsewhere a minus before a parenthesis is in an expression. */
+static bool closes_name(const char *raw, size_t *q) {
+    size_t r = *q + 1;
+    while (!ends_word(raw[r])) {
+        r++;
+    }
+    if (raw[r] != ')') {
+        return false;
+    }
+    do {
+        r++;
+    } while (!ends_word(raw[r]));
+    *q = r;
+    return true;
+}
+
 /* The token that starts at raw[p]; the result is the first byte after it. */
 static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
                          struct dalcs_token *token) {
@@ -172,6 +189,8 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
         token->kind = DALCS_TOKEN_WORD;
         while (!ends_word(raw[q])) {
             q++;
+        }
+        while (raw[q] == '(' && raw[q - 1] == '-' && closes_name(raw, &q)) {
         }
         token->text = low + p;
     }

@@ -319,8 +319,8 @@ def large(program, checker):
     text += ["V1 n0 0 1", "Rl n10000 0 1k"]
     text += [f".param p{k}={{p{k + 1}+1}}" for k in range(5000)] + [".param p5000=0"]
     text += ["R9 q 0 {p0}", "I9 0 q 1"]
-    text += [f".subckt t{k} a\nX1 a t{k + 1}\n.ends" for k in range(500)]
-    text += [".subckt t500 a\nR1 a 0 2\n.ends", "X_t q2 t0", "I2 0 q2 1"]
+    text += [f".subckt t{k} a\nX1 a t{k + 1}\n.ends" for k in range(150)]
+    text += [".subckt t150 a\nR1 a 0 2\n.ends", "X_t q2 t0", "I2 0 q2 1"]
     text += [".save v(q) v(q2) v(n10000)", ".op", ".end"]
     run = dalcs_program.run(program, "\n".join(text) + "\n", method=None)
     checker.check(run.status == 0, run.stderr[-500:])
