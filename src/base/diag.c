@@ -120,6 +120,7 @@ static void append_excerpt(struct text *text, const struct dalcs_location *where
 /* The calls or inclusions from the innermost outwards; of a long chain the inner ones and the last. */
 static void append_chain(struct text *text, const struct dalcs_origin *origin) {
     enum { MOST_SHOWN = 4 };
+
     int n = 0;
     for (const struct dalcs_origin *o = origin; o != NULL; o = o->outer, n++) {
         append_text(text, n == 0 ? "\n  " : n < MOST_SHOWN || o->outer == NULL ? ", " : "");

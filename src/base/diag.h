@@ -24,8 +24,8 @@ struct dalcs_location {
     const char *file;        /* borrowed: lives as long as the netlist or circuit that made it */
     const char *source_line; /* borrowed: the physical line's text without its newline, or NULL */
     int line;
-    int column; /* in characters (UTF-8 code points), as an editor counts */
-    int length; /* characters to underline, at least 1 */
+    int column;      /* in characters (UTF-8 code points), as an editor counts */
+    int length;      /* characters to underline, at least 1 */
     int file_number; /* of included files, in the order of reading; 0 for the netlist itself */
     const struct dalcs_origin *instance; /* borrowed: the subcircuit calls it is in, or NULL */
     const struct dalcs_origin *included; /* borrowed: how the file was included, or NULL */
@@ -36,9 +36,10 @@ struct dalcs_diagnostic {
     int file_number;
     int line; /* 0: no place */
     int column;
-    const char *format; /* of a place in a subcircuit, else NULL: one mistake in its text is told once,
+    const char
+        *format; /* of a place in a subcircuit, else NULL: one mistake in its text is told once,
                            not once for each of its instances */
-    char *text; /* the whole formatted message: "file:line:col: error: ...", source line, caret,
+    char *text;  /* the whole formatted message: "file:line:col: error: ...", source line, caret,
                    hint; ends without a newline */
 };
 

@@ -107,14 +107,14 @@ static const struct dalcs_origin *keep_chain(struct dalcs_builder *builder,
     for (; origin != NULL; origin = origin->outer) {
         struct dalcs_origin *copy = dalcs_arena_alloc(arena, 1, sizeof *copy);
         const char *file = dalcs_arena_copy(arena, origin->file, strlen(origin->file));
-        const char *name = origin->instance != NULL ? dalcs_arena_copy(arena, origin->instance,
-                                                                       strlen(origin->instance))
-                                                    : "";
+        const char *name = origin->instance != NULL
+                               ? dalcs_arena_copy(arena, origin->instance, strlen(origin->instance))
+                               : "";
         if (!note_memory(builder, copy != NULL && file != NULL && name != NULL)) {
             return NULL;
         }
-        *copy = (struct dalcs_origin){origin->instance != NULL ? name : NULL, file, origin->line,
-                                      NULL};
+        *copy =
+            (struct dalcs_origin){origin->instance != NULL ? name : NULL, file, origin->line, NULL};
         if (last != NULL) {
             last->outer = copy;
         } else {
@@ -237,8 +237,7 @@ static int find_device_alias(struct dalcs_builder *builder, const char *name) {
     }
     const char *dotted = with_dots(builder, name);
     const int device = dotted != NULL ? dalcs_names_find(&builder->devices, dotted) : -1;
-    if (dotted == NULL || device >= 0 || dotted[1] != '.' ||
-        strrchr(dotted, '.')[1] != dotted[0]) {
+    if (dotted == NULL || device >= 0 || dotted[1] != '.' || strrchr(dotted, '.')[1] != dotted[0]) {
         return device;
     }
     return dalcs_names_find(&builder->devices, dotted + 2);

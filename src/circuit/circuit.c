@@ -116,8 +116,7 @@ static void read_card(struct dalcs_builder *builder, const struct dalcs_card *ca
 static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigned char *class_of) {
     for (enum pass pass = MODELS; pass <= REFERENCES; pass++) {
         for (size_t k = 0; k < builder->deck->n_cards; k++) {
-            read_card(builder, &builder->deck->card[k], (enum dalcs_card_class)class_of[k],
-                      pass);
+            read_card(builder, &builder->deck->card[k], (enum dalcs_card_class)class_of[k], pass);
             if (builder->out_of_memory) {
                 return DALCS_E_NOMEM;
             }

@@ -15,10 +15,11 @@ static int find_coil(struct dalcs_builder *builder, const struct dalcs_token *na
     }
     /* An inductance of 0 became a resistor: coupling nothing. */
     if (builder->circuit->device[device].kind != DALCS_INDUCTOR) {
-        dalcs_builder_error(
-            builder, name, USAGE, "'%s' is %s, only inductors can be coupled", name->text,
-            builder->circuit->device[device].letter == 'l' ? "an inductor of 0 H"
-                                 : dalcs_builder_kind_text(builder->circuit->device[device].kind));
+        dalcs_builder_error(builder, name, USAGE, "'%s' is %s, only inductors can be coupled",
+                            name->text,
+                            builder->circuit->device[device].letter == 'l'
+                                ? "an inductor of 0 H"
+                                : dalcs_builder_kind_text(builder->circuit->device[device].kind));
         return -1;
     }
     return device;

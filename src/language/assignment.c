@@ -6,8 +6,8 @@
 #include <string.h>
 
 static bool is_name(const char *text) {
-    const bool starts = (*text >= 'a' && *text <= 'z') || *text == '_' ||
-                        (unsigned char)*text >= 0x80;
+    const bool starts =
+        (*text >= 'a' && *text <= 'z') || *text == '_' || (unsigned char)*text >= 0x80;
     for (const char *p = text; *p != '\0'; p++) {
         const bool letter = (*p >= 'a' && *p <= 'z') || (*p >= '0' && *p <= '9');
         if (!letter && strchr("_.$#@", *p) == NULL && (unsigned char)*p < 0x80) {

@@ -130,8 +130,8 @@ static enum dalcs_status add_function(struct collector *c, const struct dalcs_ca
     if (function == NULL) {
         return DALCS_E_NOMEM;
     }
-    DALCS_TRY(dalcs_grow(&d->function, &d->function_capacity, d->n_functions + 1,
-                         sizeof *d->function));
+    DALCS_TRY(
+        dalcs_grow(&d->function, &d->function_capacity, d->n_functions + 1, sizeof *d->function));
     d->function[d->n_functions++] = function; /* from here on it is freed with the definition */
     function->name = name;
     function->body = &card->token[body];
@@ -176,8 +176,8 @@ static enum dalcs_status read_function(struct collector *c, const struct dalcs_c
     return add_function(c, card, 1, head, body, card->n);
 }
 
-static enum dalcs_status read_assignments(struct collector *c, const struct dalcs_card *card, int at,
-                                          bool is_formal) {
+static enum dalcs_status read_assignments(struct collector *c, const struct dalcs_card *card,
+                                          int at, bool is_formal) {
     int value;
     while (at < card->n) {
         const int head = is_formal ? 0 : function_head(card, at);
@@ -230,7 +230,8 @@ static enum dalcs_status read_ports(struct collector *c, const struct dalcs_card
         } else if (strcmp(port->text, "0") == 0) {
             error_at(c, port, NULL, "node 0 is ground everywhere: it cannot be a port");
         } else if (strcmp(port->text, "optional:") == 0) {
-            error_at(c, port, "leave it out and write the node", "optional ports are not supported");
+            error_at(c, port, "leave it out and write the node",
+                     "optional ports are not supported");
             return DALCS_OK;
         } else if (dalcs_names_find(&d->port_index, port->text) >= 0) {
             dalcs_language_report(c->language, DALCS_ERROR, NULL, port, NULL,
@@ -275,8 +276,7 @@ static enum dalcs_status begin_subcircuit(struct collector *c, const struct dalc
     } else {
         const int first = dalcs_names_find(&outer->subcircuits, d->name->text);
         if (first < 0) {
-            DALCS_TRY(
-                dalcs_names_add(&outer->subcircuits, d->name->text, (int)outer->n_inner - 1));
+            DALCS_TRY(dalcs_names_add(&outer->subcircuits, d->name->text, (int)outer->n_inner - 1));
         } else if (check_second(c, outer->inner[first], d->name)) {
             d->other = outer->inner[first]->other;
             outer->inner[first]->other = d;
@@ -346,16 +346,16 @@ static enum dalcs_status read_condition(struct collector *c, const struct dalcs_
         return add_item(c, card, kind);
     }
     if (!is_conditional(c)) {
-        dalcs_language_report(c->language, DALCS_ERROR, NULL, card->token, NULL, "%s without an .if",
-                              card->token->text);
+        dalcs_language_report(c->language, DALCS_ERROR, NULL, card->token, NULL,
+                              "%s without an .if", card->token->text);
         return DALCS_OK;
     }
     struct open_if *open = &c->open[c->n_open - 1];
     if (open->has_else && kind != DALCS_ITEM_ENDIF) {
-        dalcs_language_report(c->language, DALCS_ERROR, NULL, card->token, NULL,
-                              "%s after .else: the .if is at %s", card->token->text,
-                              dalcs_language_place(
-                                  c->language, c->definition->item[open->first].card->token));
+        dalcs_language_report(
+            c->language, DALCS_ERROR, NULL, card->token, NULL, "%s after .else: the .if is at %s",
+            card->token->text,
+            dalcs_language_place(c->language, c->definition->item[open->first].card->token));
     }
     open->has_else = open->has_else || kind == DALCS_ITEM_ELSE;
     c->n_open -= kind == DALCS_ITEM_ENDIF;
@@ -395,13 +395,15 @@ static enum dalcs_status read_global(struct collector *c, const struct dalcs_car
 static enum dalcs_status read_card(struct collector *c, const struct dalcs_card *card) {
     static const struct {
         const char *name;
+
         enum { PARAM, FUNC, SUBCKT, ENDS, GLOBAL, MODEL, IF, ELSEIF, ELSE, ENDIF } what;
     } cards[] = {
-        {".param", PARAM},        {".params", PARAM}, {".csparam", PARAM}, {".global_param", PARAM},
-        {".func", FUNC},          {".subckt", SUBCKT}, {".ends", ENDS},    {".eom", ENDS},
-        {".macro", SUBCKT},       {".global", GLOBAL}, {".model", MODEL},  {".if", IF},
-        {".elseif", ELSEIF},      {".else", ELSE},     {".endif", ENDIF},
+        {".param", PARAM},   {".params", PARAM},  {".csparam", PARAM}, {".global_param", PARAM},
+        {".func", FUNC},     {".subckt", SUBCKT}, {".ends", ENDS},     {".eom", ENDS},
+        {".macro", SUBCKT},  {".global", GLOBAL}, {".model", MODEL},   {".if", IF},
+        {".elseif", ELSEIF}, {".else", ELSE},     {".endif", ENDIF},
     };
+
     if (card->letter == 'x') {
         return add_item(c, card, DALCS_ITEM_CALL);
     }

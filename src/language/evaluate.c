@@ -106,10 +106,13 @@ static bool check_count(const struct run *r, const struct dalcs_operation *o, in
         return true;
     }
     report(r, o, NULL, "'%s' takes %s%d argument%s, not %d", o->u.name,
-           least == most        ? ""
+           least == most      ? ""
            : o->count < least ? "at least "
-                                : "at most ",
-           o->count < least ? least : most, o->count < least && least == 1 ? "" : most == 1 ? "" : "s",
+                              : "at most ",
+           o->count < least ? least : most,
+           o->count < least && least == 1 ? ""
+           : most == 1                    ? ""
+                                          : "s",
            o->count);
     return false;
 }
@@ -121,8 +124,9 @@ static enum dalcs_outcome call_user(const struct run *r, const struct dalcs_oper
         return DALCS_OUTCOME_WRONG;
     }
     if (function->is_active || language->call_depth >= DEEPEST_CALL) {
-        report(r, o, NULL, function->is_active ? "function '%s' calls itself"
-                                               : "functions call each other too deep, here '%s'",
+        report(r, o, NULL,
+               function->is_active ? "function '%s' calls itself"
+                                   : "functions call each other too deep, here '%s'",
                o->u.name);
         return DALCS_OUTCOME_WRONG;
     }
@@ -198,6 +202,15 @@ static enum dalcs_outcome call(const struct run *r, const struct dalcs_operation
     }
     language->n_stack -= (size_t)o->count;
     return outcome_of(push(language, value));
+}
+
+/* Before the arguments of v(...), gauss(...) and the like, unless the netlist has such a function. */
+static enum dalcs_outcome check_call(const struct run *r, const struct dalcs_operation *o) {
+    if (dalcs_scope_find_function(r->scope, o->u.name) != NULL) {
+        return DALCS_OUTCOME_VALUE;
+    }
+    report(r, o, dalcs_function_refusal(o->u.name), "'%s(...)' is not a number", o->u.name);
+    return DALCS_OUTCOME_WRONG;
 }
 
 /* ---- Operators ------------------------------------------------------------------------------- */
@@ -330,6 +343,9 @@ static enum dalcs_outcome run(struct run *r) {
         case DALCS_JUMP_AND:
         case DALCS_JUMP_OR:
             k += jumps(language, o->code) ? o->count - 1 : 0;
+            break;
+        case DALCS_CHECK_CALL:
+            outcome = check_call(r, o);
             break;
         case DALCS_CALL:
             outcome = call(r, o);

@@ -98,8 +98,8 @@ static bool is_parameter(struct dalcs_scope *scope, const struct dalcs_card *car
     const struct dalcs_token *token = &card->token[k];
     const bool after_equal = card->token[k - 1].kind == DALCS_TOKEN_EQUAL;
     const bool is_name = (token->text[0] >= 'a' && token->text[0] <= 'z') || token->text[0] == '_';
-    const bool may = card->letter == '.' ? after_equal && strcmp(card->token->text, ".model") == 0
-                                         : true;
+    const bool may =
+        card->letter == '.' ? after_equal && strcmp(card->token->text, ".model") == 0 : true;
     if (token->kind != DALCS_TOKEN_WORD || !is_name || !may) {
         return false;
     }
@@ -142,7 +142,7 @@ static void rename_token(struct dalcs_language *language, struct dalcs_scope *sc
 
 /* Cards that steer the run belong to the whole netlist. */
 static bool belongs_outside(const struct dalcs_card *card) {
-    static const char *const inside[] = {".model", ".ic",    ".save",  ".print",
+    static const char *const inside[] = {".model", ".ic",    ".save",   ".print",
                                          ".plot",  ".probe", ".nodeset"};
     for (size_t k = 0; k < sizeof inside / sizeof inside[0]; k++) {
         if (strcmp(card->token->text, inside[k]) == 0) {
@@ -292,14 +292,12 @@ static bool connect(const struct call *call, const struct dalcs_definition *defi
             dalcs_language_text(language, "%s: .subckt %s%s",
                                 dalcs_language_place(language, definition->name),
                                 definition->name->text, port_list(language, definition)),
-            "%d node%s for '%s', which has %d port%s", call->n_nodes,
-            call->n_nodes == 1 ? "" : "s", definition->name->text, definition->n_ports,
-            definition->n_ports == 1 ? "" : "s");
+            "%d node%s for '%s', which has %d port%s", call->n_nodes, call->n_nodes == 1 ? "" : "s",
+            definition->name->text, definition->n_ports, definition->n_ports == 1 ? "" : "s");
         language->deck->hides_elements = true;
         return false;
     }
-    inner->port =
-        dalcs_arena_alloc(language->arena, (size_t)call->n_nodes, sizeof *inner->port);
+    inner->port = dalcs_arena_alloc(language->arena, (size_t)call->n_nodes, sizeof *inner->port);
     if (inner->port == NULL) {
         language->out_of_memory = true;
         return false;
@@ -314,8 +312,7 @@ static bool connect(const struct call *call, const struct dalcs_definition *defi
 }
 
 /* The parameter `name` of the scope, or a new one that nothing declares. */
-static struct dalcs_value *parameter_of(struct dalcs_scope *inner,
-                                        const struct dalcs_token *name) {
+static struct dalcs_value *parameter_of(struct dalcs_scope *inner, const struct dalcs_token *name) {
     const int slot = dalcs_names_find(&inner->definition->parameters, name->text);
     if (slot >= 0) {
         return &inner->value[slot];
@@ -385,11 +382,10 @@ static void check_use(const struct call *call, const struct dalcs_scope *inner) 
                                   "multiplier 'm' of a subcircuit is not supported yet");
             continue;
         }
-        dalcs_language_report(language, DALCS_WARNING, call->scope, extra->name,
-                              dalcs_language_suggest(language, &inner->definition->parameters, name,
-                                                     "parameters"),
-                              "'%s' has no parameter '%s': it is ignored",
-                              inner->definition->name->text, name);
+        dalcs_language_report(
+            language, DALCS_WARNING, call->scope, extra->name,
+            dalcs_language_suggest(language, &inner->definition->parameters, name, "parameters"),
+            "'%s' has no parameter '%s': it is ignored", inner->definition->name->text, name);
     }
 }
 
@@ -438,9 +434,9 @@ static enum dalcs_status expand_call(struct dalcs_language *language, struct dal
         return DALCS_OK;
     }
     if (definition->is_open || language->depth >= DEEPEST) {
-        fail(&call, name, NULL, definition->is_open
-                                    ? "this subcircuit calls itself"
-                                    : "subcircuits call each other more than 200 deep");
+        fail(&call, name, NULL,
+             definition->is_open ? "this subcircuit calls itself"
+                                 : "subcircuits call each other more than 200 deep");
         return DALCS_OK;
     }
     struct dalcs_scope *inner = dalcs_scope_make(language, definition, scope, owner);

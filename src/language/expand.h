@@ -16,7 +16,7 @@
 struct dalcs_deck {
     const struct dalcs_card *card; /* those of the netlist when nothing was to be expanded */
     size_t n_cards;
-    bool has_errors;      /* some were reported; they may hide others: */
+    bool has_errors; /* some were reported; they may hide others: */
     bool hides_elements;
     bool hides_all;
     struct dalcs_language *language; /* NULL: nothing was expanded */

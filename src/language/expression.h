@@ -47,6 +47,7 @@ enum dalcs_operation_code {
     DALCS_JUMP_IF_ZERO, /* the same; takes the condition off the stack */
     DALCS_JUMP_AND,     /* if 0, keeping it; else takes it off */
     DALCS_JUMP_OR,      /* if not 0, as 1; else takes it off */
+    DALCS_CHECK_CALL,   /* of a function that other simulators have: is it the netlist's own? */
     DALCS_CALL
 };
 
@@ -54,6 +55,7 @@ struct dalcs_operation {
     enum dalcs_operation_code code;
     int count;         /* of arguments, of operations to jump over, or which argument */
     int begin, length; /* its place in the text */
+
     union {
         double number;
         const char *name; /* of a parameter or a function */
@@ -102,6 +104,9 @@ struct dalcs_function {
 
 /* A function by name, or NULL. */
 const struct dalcs_function *dalcs_function_find(const char *name);
+
+/* Why a function of other simulators is not here, as a hint; NULL for any other name. */
+const char *dalcs_function_refusal(const char *name);
 
 /* The name of a built-in function like this one, or NULL. */
 const char *dalcs_function_nearest(const char *name);

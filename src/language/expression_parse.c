@@ -49,8 +49,7 @@ struct parser {
 /* ---- Messages -------------------------------------------------------------------------------- */
 
 static void report(struct parser *p, enum dalcs_severity severity, int begin, int length,
-                   const char *hint, const char *format, ...)
-    __attribute__((format(printf, 6, 7)));
+                   const char *hint, const char *format, ...) __attribute__((format(printf, 6, 7)));
 
 static void report(struct parser *p, enum dalcs_severity severity, int begin, int length,
                    const char *hint, const char *format, ...) {
@@ -95,8 +94,8 @@ static int number_length(const char *t) {
     while (is_digit(t[n]) || t[n] == '.') {
         n++;
     }
-    if (t[n] == 'e' && (is_digit(t[n + 1]) || ((t[n + 1] == '+' || t[n + 1] == '-') &&
-                                               is_digit(t[n + 2])))) {
+    if (t[n] == 'e' &&
+        (is_digit(t[n + 1]) || ((t[n + 1] == '+' || t[n + 1] == '-') && is_digit(t[n + 2])))) {
         n += 2;
     }
     while (is_digit(t[n]) || t[n] == '.' || starts_name(t[n])) {
@@ -179,6 +178,7 @@ static bool read_operator(struct parser *p, const char *t) {
         {"?", QUESTION, 0, 0},
         {":", COLON, 0, 0},
     };
+
     for (size_t k = 0; k < sizeof operators / sizeof operators[0]; k++) {
         const size_t n = strlen(operators[k].text);
         if (strncmp(t, operators[k].text, n) == 0) {
@@ -223,8 +223,8 @@ static void next(struct parser *p) {
 
 /* Appends an operation; its index, which a jump needs to be completed. */
 static size_t emit(struct parser *p, struct dalcs_operation operation) {
-    if (p->out_of_memory || dalcs_grow(&p->operation, &p->capacity, p->n + 1,
-                                       sizeof *p->operation) != DALCS_OK) {
+    if (p->out_of_memory ||
+        dalcs_grow(&p->operation, &p->capacity, p->n + 1, sizeof *p->operation) != DALCS_OK) {
         p->out_of_memory = true;
         p->failed = true;
         return 0;
@@ -287,24 +287,6 @@ static void parse_if(struct parser *p, int begin, int length) {
     land(p, skip_second);
 }
 
-/* What users of other simulators call, and why not here. */
-static const char *why_not(const char *name) {
-    static const char *const random[] = {"gauss", "agauss", "unif", "aunif", "mc",  "flat",
-                                         "rand",  "random", "rnd",  "white", "mean"};
-    static const char *const signal[] = {"v", "i", "ddt", "idt", "sdt", "delay", "time"};
-    for (size_t k = 0; k < sizeof random / sizeof random[0]; k++) {
-        if (strcmp(name, random[k]) == 0) {
-            return "random values are not supported: write the number";
-        }
-    }
-    for (size_t k = 0; k < sizeof signal / sizeof signal[0]; k++) {
-        if (strcmp(name, signal[k]) == 0) {
-            return "an expression here is a number that is known before the run";
-        }
-    }
-    return NULL;
-}
-
 static void note_log(struct parser *p, int begin, int length, const char *name) {
     if (strcmp(name, "log") == 0 && !*p->context->noted_log) {
         *p->context->noted_log = true;
@@ -323,6 +305,10 @@ static void parse_call(struct parser *p, int begin, int length, const char *name
         close_parenthesis(p, open);
         return;
     }
+    if (dalcs_function_refusal(name) != NULL) {
+        emit(p, (struct dalcs_operation){
+                    .code = DALCS_CHECK_CALL, .begin = begin, .length = length, .u.name = name});
+    }
     int n = 0;
     if (p->symbol != CLOSE) {
         do {
@@ -334,9 +320,6 @@ static void parse_call(struct parser *p, int begin, int length, const char *name
         } while (p->symbol == COMMA && !p->failed);
     }
     close_parenthesis(p, open);
-    if (why_not(name) != NULL && !p->failed) {
-        report(p, DALCS_ERROR, begin, length, why_not(name), "'%s(...)' is not a number", name);
-    }
     note_log(p, begin, length, name);
     emit(p, (struct dalcs_operation){
                 .code = DALCS_CALL, .count = n, .begin = begin, .length = length, .u.name = name});
@@ -345,8 +328,7 @@ static void parse_call(struct parser *p, int begin, int length, const char *name
 static void parse_name(struct parser *p) {
     const int begin = p->begin;
     const int length = p->length;
-    const char *name =
-        dalcs_arena_copy(p->context->arena, p->text->text + begin, (size_t)length);
+    const char *name = dalcs_arena_copy(p->context->arena, p->text->text + begin, (size_t)length);
     if (name == NULL) {
         p->out_of_memory = true;
         p->failed = true;

@@ -57,9 +57,8 @@ struct dalcs_location dalcs_expression_place(const struct dalcs_expression_text 
         k--;
     }
     const struct dalcs_piece *piece = &text->piece[k];
-    const struct dalcs_token token = {.line = piece->line,
-                                      .offset = piece->offset + begin - piece->begin,
-                                      .length = length};
+    const struct dalcs_token token = {
+        .line = piece->line, .offset = piece->offset + begin - piece->begin, .length = length};
     struct dalcs_location where = dalcs_token_location(&token);
     where.length = where.length > 0 ? where.length : 1;
     return where;

@@ -157,6 +157,23 @@ const char *dalcs_function_nearest(const char *name) {
     return dalcs_names_nearest_of(names, N_FUNCTIONS, name);
 }
 
+const char *dalcs_function_refusal(const char *name) {
+    static const char *const random[] = {"gauss", "agauss", "unif",   "aunif", "mc",
+                                         "flat",  "rand",   "random", "rnd",   "white"};
+    static const char *const signal[] = {"v", "i", "ddt", "idt", "sdt", "delay", "time"};
+    for (size_t k = 0; k < sizeof random / sizeof random[0]; k++) {
+        if (strcmp(name, random[k]) == 0) {
+            return "random values are not supported: write the number";
+        }
+    }
+    for (size_t k = 0; k < sizeof signal / sizeof signal[0]; k++) {
+        if (strcmp(name, signal[k]) == 0) {
+            return "an expression here is a number that is known before the run";
+        }
+    }
+    return NULL;
+}
+
 bool dalcs_constant_find(const char *name, double *value) {
     static const struct {
         const char *name;
@@ -173,6 +190,7 @@ bool dalcs_constant_find(const char *name, double *value) {
         {"planck", 6.62607015e-34},
         {"kelvin", -273.15},
     };
+
     for (size_t k = 0; k < sizeof constants / sizeof constants[0]; k++) {
         if (strcmp(constants[k].name, name) == 0) {
             *value = constants[k].value;

@@ -13,14 +13,14 @@ struct dalcs_scope;
 
 /* What a card is for. */
 enum dalcs_item_kind {
-    DALCS_ITEM_CARD,   /* an element, an analysis, ...: copied */
-    DALCS_ITEM_MODEL,  /* copied; its name is local */
-    DALCS_ITEM_CALL,   /* X */
+    DALCS_ITEM_CARD,  /* an element, an analysis, ...: copied */
+    DALCS_ITEM_MODEL, /* copied; its name is local */
+    DALCS_ITEM_CALL,  /* X */
     DALCS_ITEM_IF,
     DALCS_ITEM_ELSEIF,
     DALCS_ITEM_ELSE,
     DALCS_ITEM_ENDIF,
-    DALCS_ITEM_NONE    /* .param, .func, .subckt, .global: only definitions */
+    DALCS_ITEM_NONE /* .param, .func, .subckt, .global: only definitions */
 };
 
 struct dalcs_item {
@@ -34,8 +34,8 @@ struct dalcs_assignment {
     const struct dalcs_token *name;
     const struct dalcs_token *value; /* the first token of its expression */
     int n_tokens;
-    int slot; /* of the parameter, which may be assigned more than once */
-    int item; /* that it stands in; -1 on the .subckt card */
+    int slot;            /* of the parameter, which may be assigned more than once */
+    int item;            /* that it stands in; -1 on the .subckt card */
     bool is_conditional; /* inside an .if */
     struct dalcs_expression *expression; /* made when first needed */
 };
@@ -47,17 +47,17 @@ struct dalcs_user_function {
     const struct dalcs_token *body;
     int n_tokens;
     int item;
-    bool is_active; /* being evaluated */
+    bool is_active;                      /* being evaluated */
     struct dalcs_expression *expression; /* made when first needed */
     struct dalcs_user_function *other;   /* one more of this name, or NULL */
 };
 
 struct dalcs_definition {
-    const struct dalcs_token *name;      /* NULL: the netlist itself */
-    const struct dalcs_token *card;      /* its .subckt */
-    struct dalcs_definition *enclosing;  /* or NULL */
-    struct dalcs_definition *other;      /* one more of this name, or NULL */
-    int place;                           /* the item of `enclosing` that defines it */
+    const struct dalcs_token *name;     /* NULL: the netlist itself */
+    const struct dalcs_token *card;     /* its .subckt */
+    struct dalcs_definition *enclosing; /* or NULL */
+    struct dalcs_definition *other;     /* one more of this name, or NULL */
+    int place;                          /* the item of `enclosing` that defines it */
     struct dalcs_names port_index;
     const struct dalcs_token **port; /* [n_ports] */
     int n_ports;
@@ -74,16 +74,22 @@ struct dalcs_definition {
     struct dalcs_definition **inner;
     size_t n_inner, inner_capacity;
     struct dalcs_names models; /* name -> 0 */
-    int condition_depth; /* of .if inside each other; 0: none */
-    bool is_open;        /* an instance of it is being expanded */
+    int condition_depth;       /* of .if inside each other; 0: none */
+    bool is_open;              /* an instance of it is being expanded */
 };
 
-enum dalcs_value_state { DALCS_VALUE_UNKNOWN, DALCS_VALUE_SOUGHT, DALCS_VALUE_KNOWN, DALCS_VALUE_WRONG };
+enum dalcs_value_state {
+    DALCS_VALUE_UNKNOWN,
+    DALCS_VALUE_SOUGHT,
+    DALCS_VALUE_KNOWN,
+    DALCS_VALUE_WRONG
+};
 
 /* A parameter in a scope. */
 struct dalcs_value {
     const struct dalcs_token *name;
-    const struct dalcs_token *token; /* its expression, compiled when it is needed; NULL: none yet */
+    const struct dalcs_token
+        *token; /* its expression, compiled when it is needed; NULL: none yet */
     int n_tokens;
     struct dalcs_expression **expression;
     struct dalcs_scope *where; /* the scope that its expression is evaluated in */
@@ -103,7 +109,7 @@ struct dalcs_scope {
     struct dalcs_value *value; /* [n_slots] */
     struct dalcs_value *extra; /* [n_extra] parameters that the call gives and nothing declares */
     int n_extra;
-    bool *active; /* [n_items] in a branch that counts; NULL: all are */
+    bool *active;                         /* [n_items] in a branch that counts; NULL: all are */
     const struct dalcs_source_line *line; /* the last line copied, */
     struct dalcs_source_line *copy;       /* and its copy */
 };
@@ -206,8 +212,7 @@ bool dalcs_scope_evaluate(struct dalcs_language *language, struct dalcs_scope *s
 /* Compiles token[0..n-1] into *expression unless that was done; false when it is wrong. */
 bool dalcs_scope_compile(struct dalcs_language *language, const struct dalcs_scope *scope,
                          const struct dalcs_token *token, int n,
-                         const struct dalcs_names *arguments,
-                         struct dalcs_expression **expression);
+                         const struct dalcs_names *arguments, struct dalcs_expression **expression);
 
 /* ---- evaluate.c -------------------------------------------------------------------------------- */
 
@@ -219,8 +224,13 @@ enum dalcs_outcome dalcs_evaluate(struct dalcs_language *language, struct dalcs_
 
 /* ---- roles.c: which words of a card are names -------------------------------------------------- */
 
-enum dalcs_role { DALCS_ROLE_VALUE, DALCS_ROLE_NODE, DALCS_ROLE_DEVICE, DALCS_ROLE_MODEL,
-                  DALCS_ROLE_RAW };
+enum dalcs_role {
+    DALCS_ROLE_VALUE,
+    DALCS_ROLE_NODE,
+    DALCS_ROLE_DEVICE,
+    DALCS_ROLE_MODEL,
+    DALCS_ROLE_RAW
+};
 
 /* role[card->n] of an element or a card such as .ic, its first token excepted. RAW: an expression of
  * voltages, which is not a number. */

@@ -113,13 +113,13 @@ bool dalcs_scope_compile(struct dalcs_language *language, const struct dalcs_sco
                          const struct dalcs_names *arguments,
                          struct dalcs_expression **expression) {
     if (*expression == NULL) {
-        const struct dalcs_expression_context context = {
-            .arena = language->arena,
-            .diag = language->diag,
-            .instance = scope != NULL ? scope->origin : NULL,
-            .arguments = arguments,
-            .noted_caret = &language->noted_caret,
-            .noted_log = &language->noted_log};
+        const struct dalcs_expression_context context = {.arena = language->arena,
+                                                         .diag = language->diag,
+                                                         .instance =
+                                                             scope != NULL ? scope->origin : NULL,
+                                                         .arguments = arguments,
+                                                         .noted_caret = &language->noted_caret,
+                                                         .noted_log = &language->noted_log};
         struct dalcs_expression_text text;
         if (!dalcs_expression_text(language->arena, token, n, &text) ||
             (*expression = dalcs_expression_parse(&context, &text)) == NULL) {
@@ -142,6 +142,7 @@ static enum dalcs_outcome try_value(struct dalcs_language *language, struct dalc
 /* `value` waits for itself: says by which way, and makes all on it wrong. */
 static void report_cycle(struct dalcs_language *language, struct dalcs_value *value) {
     enum { MOST_SHOWN = 8 };
+
     size_t first = language->n_sought;
     while (language->sought[first - 1] != value) {
         first--;

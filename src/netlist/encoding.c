@@ -44,6 +44,7 @@ static size_t put(char *to, unsigned code) {
 enum dalcs_status dalcs_encoding_to_utf8(struct dalcs_arena *arena, const char **text,
                                          size_t *length) {
     enum { NO_CHARACTER = 0xFF };
+
     const unsigned char *p = (const unsigned char *)*text;
     bool little;
     size_t k;

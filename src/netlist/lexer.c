@@ -203,11 +203,11 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
 
     if (invalid) {
         dalcs_lexer_report(lexer, token, "save the netlist as UTF-8 text",
-               "a byte that is not text, shown as ?");
+                           "a byte that is not text, shown as ?");
         token->kind = DALCS_TOKEN_BAD;
     } else if (!closed) {
         dalcs_lexer_report(lexer, token, NULL, "%s",
-               c == '{' ? "this brace is never closed" : "this quote is never closed");
+                           c == '{' ? "this brace is never closed" : "this quote is never closed");
         token->kind = DALCS_TOKEN_BAD;
     }
     return q;
@@ -263,7 +263,7 @@ static enum dalcs_status continue_card(struct dalcs_lexer *lexer, size_t plus, s
     const struct dalcs_token token = {
         .line = lexer->line, .offset = (int)(plus - begin), .length = 1};
     dalcs_lexer_report(lexer, &token, "a line that starts with + continues the card before it",
-           "there is no card to continue");
+                       "there is no card to continue");
     return DALCS_OK;
 }
 
@@ -311,9 +311,9 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
 
 /* A card that is not of a flat netlist of numbers. */
 static bool is_language(const struct dalcs_token *name) {
-    static const char *const words[] = {".param", ".params", ".csparam", ".global_param", ".func",
-                                        ".subckt", ".ends",  ".global",  ".if",           ".elseif",
-                                        ".else",   ".endif"};
+    static const char *const words[] = {".param", ".params", ".csparam", ".global_param",
+                                        ".func",  ".subckt", ".ends",    ".global",
+                                        ".if",    ".elseif", ".else",    ".endif"};
     for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
         if (strcmp(name->text, words[k]) == 0) {
             return true;

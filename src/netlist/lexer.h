@@ -17,11 +17,11 @@ struct dalcs_lexer {
     bool in_control; /* between .control and .endc, which hold another language */
     bool ended;      /* .end was seen */
 
-    size_t at;           /* the line being read starts here; in the end the length of the text */
+    size_t at; /* the line being read starts here; in the end the length of the text */
     size_t length;
     const char *section; /* the only section of a library that is wanted, else NULL */
     bool section_found;
-    bool skipping;       /* a section that is not wanted, until .endl */
+    bool skipping;                  /* a section that is not wanted, until .endl */
     const struct dalcs_token *open; /* the .lib of the section being read, else NULL */
     struct dalcs_names *sections;   /* of the library; for messages */
 

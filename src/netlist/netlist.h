@@ -57,7 +57,7 @@ struct dalcs_card {
 
 /* Zero-initialise, set no_includes and most_cards if wanted, read, then finish. */
 struct dalcs_netlist {
-    bool no_includes; /* refuse .include and .lib: no other file is read */
+    bool no_includes;  /* refuse .include and .lib: no other file is read */
     size_t most_cards; /* that subcircuit calls may expand to; 0: DALCS_MOST_CARDS */
 
     const char *name; /* the file's path, or what read_text was told */
@@ -66,11 +66,11 @@ struct dalcs_netlist {
     struct dalcs_card *card;
     size_t n_cards;
     size_t capacity;
-    bool has_errors; /* of spelling: a circuit cannot be built, but may be looked at for more */
-    bool misses_file;    /* one that it includes could not be read: much may be undefined */
-    bool has_language;   /* expressions, parameters, subcircuits or conditions: must be expanded */
-    int n_sources;       /* files read, the netlist itself included */
-    size_t n_bytes;      /* of them together */
+    bool has_errors;   /* of spelling: a circuit cannot be built, but may be looked at for more */
+    bool misses_file;  /* one that it includes could not be read: much may be undefined */
+    bool has_language; /* expressions, parameters, subcircuits or conditions: must be expanded */
+    int n_sources;     /* files read, the netlist itself included */
+    size_t n_bytes;    /* of them together */
     struct dalcs_arena arena;
 };
 
