@@ -104,6 +104,31 @@ static int number_length(const char *t) {
     return n;
 }
 
+/* 1M and 1F, where the line is not written in capitals anyway: what the number is for is not known
+ * here, but whoever writes them so seldom means milli and femto. */
+static void warn_of_capital(struct parser *p, const struct dalcs_number *number) {
+    const struct dalcs_location where = dalcs_expression_place(p->text, p->begin, p->length);
+    const struct dalcs_piece *piece = p->text->piece;
+    while (piece + 1 < p->text->piece + p->text->n_pieces && piece[1].begin <= p->begin) {
+        piece++;
+    }
+    const char *raw = where.source_line + piece->offset + p->begin - piece->begin;
+    const bool is_last = number->tail == p->length;
+    const char *capital = raw + number->digits;
+    if (!is_last || (number->suffix != 'm' && number->suffix != 'f') ||
+        (*capital != 'M' && *capital != 'F') ||
+        strpbrk(where.source_line, "abcdefghijklmnopqrstuvwxyz") == NULL) {
+        return;
+    }
+    if (*capital == 'M') {
+        report(p, DALCS_WARNING, p->begin, p->length, "write m for milli, Meg for mega",
+               "M is milli: this is %g", number->value);
+    } else {
+        report(p, DALCS_WARNING, p->begin, p->length, "write f for femto, no letter for farad",
+               "F is femto: this is %g", number->value);
+    }
+}
+
 static void read_number(struct parser *p) {
     const char *t = p->text->text + p->begin;
     p->length = number_length(t);
@@ -118,6 +143,7 @@ static void read_number(struct parser *p) {
     switch (dalcs_number_parse(copy, &number)) {
     case DALCS_NUMBER_OK:
         p->number = number.value;
+        warn_of_capital(p, &number);
         if (number.suffix == 'i') {
             report(p, DALCS_WARNING, p->begin, p->length, "write m for milli",
                    "mil is 25.4e-6: this is %g", number.value);
