@@ -4,6 +4,7 @@
  * with a card is said later, by the reader of its family. */
 #include "language.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* The words after an element's name, by its first letter: nodes, then elements, then a model. */
@@ -63,6 +64,37 @@ static void coupling_roles(const struct dalcs_card *card, unsigned char *role) {
     }
 }
 
+/* ... POLY(n) and what controls it: 2 n nodes for E and G, n elements for F and H. The words before
+ * POLY have their roles. */
+static void poly_roles(const struct dalcs_card *card, int poly, unsigned char *role) {
+    const struct dalcs_token *token = card->token;
+    const bool by_voltage = card->letter == 'e' || card->letter == 'g';
+    int k = poly + 1;
+    k += k < card->n && token[k].kind == DALCS_TOKEN_OPEN;
+    long n = k < card->n && token[k].kind == DALCS_TOKEN_WORD ? strtol(token[k].text, NULL, 10) : 0;
+    k++;
+    k += k < card->n && token[k].kind == DALCS_TOKEN_CLOSE;
+    n = n < card->n ? n : card->n;
+    for (n = by_voltage ? 2 * n : n; k < card->n && n > 0; k++) {
+        if (token[k].kind == DALCS_TOKEN_WORD) {
+            role[k] = by_voltage ? DALCS_ROLE_NODE : DALCS_ROLE_DEVICE;
+            n--;
+        }
+    }
+}
+
+/* XSPICE: nodes, types such as %v, parentheses and brackets; the last word is the model. */
+static void block_roles(const struct dalcs_card *card, unsigned char *role) {
+    int last = 0;
+    for (int k = 1; k < card->n; k++) {
+        if (card->token[k].kind == DALCS_TOKEN_WORD && card->token[k].text[0] != '%') {
+            role[k] = DALCS_ROLE_NODE;
+            last = k;
+        }
+    }
+    role[last] = DALCS_ROLE_MODEL;
+}
+
 static void element_roles(const struct dalcs_card *card, const struct shape *shape,
                           unsigned char *role) {
     const struct dalcs_token *token = card->token;
@@ -74,8 +106,13 @@ static void element_roles(const struct dalcs_card *card, const struct shape *sha
             continue;
         }
         const bool is_parameter = k + 1 < card->n && token[k + 1].kind == DALCS_TOKEN_EQUAL;
-        if (shape->letter == 'e' || shape->letter == 'g') {
-            n_nodes = n_nodes == 2 && is_form(&token[k]) ? 0 : n_nodes;
+        const bool is_controlled = strchr("efgh", shape->letter) != NULL;
+        const int n_controls = shape->letter == 'e' || shape->letter == 'g' ? 2 : 0;
+        if (is_controlled && n_nodes == n_controls && is_form(&token[k])) {
+            if (is_word(&token[k], "poly")) {
+                poly_roles(card, k, role);
+            }
+            return;
         }
         if (n_nodes > 0) {
             role[k] = DALCS_ROLE_NODE;
@@ -132,6 +169,8 @@ void dalcs_roles(const struct dalcs_card *card, unsigned char *role) {
         if (strchr("beg", card->letter) != NULL) {
             raw_roles(card, role);
         }
+    } else if (card->letter == 'a') {
+        block_roles(card, role);
     } else if (card->letter == 'k') {
         coupling_roles(card, role);
     } else if (card->letter == '.' && strcmp(card->token->text, ".model") != 0) {

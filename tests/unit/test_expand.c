@@ -76,6 +76,22 @@ START_TEST(test_renaming) {
 
 END_TEST
 
+/* Forms that have their names elsewhere. */
+START_TEST(test_forms) {
+    expand("t\n.subckt s p\nE1 p m poly(2) p 0 (m,n) 0 1 2\nF1 p m POLY(2) V1 V2 0 1 2\n"
+           "G1 p m value={v(p)*2}\nA1 %gd(p m) dm\nW1 p m V1 cm on\nK1 L1 L2 L3 0.9\n"
+           ".model dm sidiode\n.ends\nX1 a s\n");
+    ck_assert_uint_eq(diag.n, 0);
+    ck_assert_str_eq(cards(), "x1.e1 a x1.m poly ( 2 ) a 0 ( x1.m x1.n ) 0 1 2\n"
+                              "x1.f1 a x1.m poly ( 2 ) x1.v1 x1.v2 0 1 2\n"
+                              "x1.g1 a x1.m value = v(p)*2\nx1.a1 %gd ( a x1.m ) x1.dm\n"
+                              "x1.w1 a x1.m x1.v1 cm on\nx1.k1 x1.l1 x1.l2 x1.l3 0.9\n"
+                              ".model x1.dm sidiode\n");
+    finish();
+}
+
+END_TEST
+
 START_TEST(test_parameters) {
     expand("t\n.param c={b+1} b='a*2' a=5\nR1 1 0 {c}\nR2 1 0 b\nV1 1 0 sin(0 {a} '1/a')\n"
            "X1 1 s y={a} z=9\n.subckt s p x={y*2} y=1\n.param z=4 w={x+z}\nR1 p 0 {w}\n"
@@ -148,5 +164,5 @@ START_TEST(test_limits) {
 
 END_TEST
 
-RUN_TESTS("expand", test_flat, test_renaming, test_parameters, test_conditions, test_places,
-          test_repetition, test_limits)
+RUN_TESTS("expand", test_flat, test_renaming, test_forms, test_parameters, test_conditions,
+          test_places, test_repetition, test_limits)
