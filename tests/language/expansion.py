@@ -143,6 +143,7 @@ D1 p q dm
 .LIB Fast
 .model dm d(vfwd=0.3)
 .endl
+Rstray outside of all sections
 .lib slow2
 .model dm d(vfwd=0.8
 .endl

@@ -115,6 +115,12 @@ START_TEST(test_conditions) {
     ck_assert_uint_eq(diag.n, 0);
     ck_assert_str_eq(cards(), "x1.x1.r3 a 0 [2]\nx2.x1.r1 a 0 [20]\nx3.x1.r2 a 0 [5]\n");
     finish();
+
+    /* What a call gives comes before a .param under a condition. */
+    expand("t\n.subckt s p r=1\n.if (1)\n.param r=5\n.endif\nR1 p 0 {r}\n.ends\nX1 a s\n"
+           "X2 a s r=9\n");
+    ck_assert_str_eq(cards(), "x1.r1 a 0 [5]\nx2.r1 a 0 [9]\n");
+    finish();
 }
 
 END_TEST
