@@ -68,7 +68,8 @@ enum dalcs_status dalcs_session_create(struct dalcs_session **session) DALCS_MUS
 void dalcs_session_destroy(struct dalcs_session *session);
 
 /* Reads a netlist from a file, or from text[0..length-1] that messages call `name`. A session reads
- * one netlist, once: a second call is DALCS_E_OPTION. Errors in the netlist: DALCS_E_NETLIST, all
+ * one netlist, once: a second call is DALCS_E_OPTION. Files that it includes are read too, relative to
+ * the folder of `path` or `name`. Errors in the netlist: DALCS_E_NETLIST, all
  * of them in the messages. */
 enum dalcs_status dalcs_session_read_file(struct dalcs_session *session,
                                           const char *path) DALCS_MUST_CHECK;

@@ -5,7 +5,8 @@
  *               ^~~
  *       hint: ...
  *
- * A message is one string, made when it is added, so it needs nothing of the netlist afterwards.
+ * Then follow the subcircuit calls and the inclusions by which the line came in. A message is one
+ * string, made when it is added, so it needs nothing of the netlist afterwards.
  * Very long source lines are shown as an excerpt around the caret. */
 #include "diag.h"
 
@@ -13,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { EXCERPT_BEFORE = 60, EXCERPT_AFTER = 90, LINE_MAX_SHOWN = 160 };
+enum { EXCERPT_BEFORE = 60, EXCERPT_AFTER = 90, LINE_MAX_SHOWN = 160, NAME_MAX_SHOWN = 60 };
 
 /* A growing string; after a failed allocation `failed` is set and appending does nothing. */
 struct text {
@@ -116,9 +117,49 @@ static void append_excerpt(struct text *text, const struct dalcs_location *where
     }
 }
 
+/* The calls or inclusions from the innermost outwards; of a long chain the inner ones and the last. */
+static void append_chain(struct text *text, const struct dalcs_origin *origin) {
+    enum { MOST_SHOWN = 4 };
+
+    int n = 0;
+    for (const struct dalcs_origin *o = origin; o != NULL; o = o->outer, n++) {
+        append_text(text, n == 0 ? "\n  " : n < MOST_SHOWN || o->outer == NULL ? ", " : "");
+        if (n == MOST_SHOWN && o->outer != NULL) {
+            append_text(text, ", ...");
+        } else if (n < MOST_SHOWN || o->outer == NULL) {
+            if (o->instance != NULL) {
+                const size_t length = strlen(o->instance);
+                const bool whole = length <= NAME_MAX_SHOWN;
+                append_format(text, "in %s%s (%s:%d)", whole ? "" : "...",
+                              o->instance + (whole ? 0 : length - NAME_MAX_SHOWN), o->file,
+                              o->line);
+            } else {
+                append_format(text, "%sfrom %s:%d", n == 0 ? "included " : "", o->file, o->line);
+            }
+        }
+    }
+}
+
+/* Was this said of the same place in another instance of the subcircuit? */
+static bool is_repetition(const struct dalcs_diag *diag, const struct dalcs_location *where,
+                          const char *format) {
+    if (where == NULL || where->instance == NULL) {
+        return false;
+    }
+    for (size_t k = 0; k < diag->n; k++) {
+        const struct dalcs_diagnostic *item = &diag->item[k];
+        if (item->format != NULL && strcmp(item->format, format) == 0 &&
+            item->line == where->line && item->column == where->column &&
+            item->file_number == where->file_number) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Takes over text->data. */
 static void keep(struct dalcs_diag *diag, enum dalcs_severity severity,
-                 const struct dalcs_location *where, struct text *text) {
+                 const struct dalcs_location *where, const char *format, struct text *text) {
     if (text->failed ||
         dalcs_grow(&diag->item, &diag->capacity, diag->n + 1, sizeof *diag->item) != DALCS_OK) {
         free(text->data);
@@ -127,6 +168,8 @@ static void keep(struct dalcs_diag *diag, enum dalcs_severity severity,
     }
     struct dalcs_diagnostic *item = &diag->item[diag->n++];
     item->severity = severity;
+    item->file_number = where != NULL ? where->file_number : 0;
+    item->format = where != NULL && where->instance != NULL ? format : NULL;
     item->line = where != NULL ? where->line : 0;
     item->column = where != NULL ? where->column : 0;
     item->text = text->data;
@@ -138,6 +181,9 @@ void dalcs_diag_add_list(struct dalcs_diag *diag, enum dalcs_severity severity,
     static const char *const label[] = {"note", "warning", "error"};
     size_t *count = severity == DALCS_ERROR ? &diag->n_errors : &diag->n_other;
     const size_t limit = severity == DALCS_ERROR ? DALCS_DIAG_MAX_ERRORS : DALCS_DIAG_MAX_OTHER;
+    if (is_repetition(diag, where, format)) {
+        return;
+    }
     ++*count;
     if (*count > limit) {
         return;
@@ -146,7 +192,7 @@ void dalcs_diag_add_list(struct dalcs_diag *diag, enum dalcs_severity severity,
     if (*count == limit) {
         append_text(&text, severity == DALCS_ERROR ? "error: more errors than are shown here"
                                                    : "note: more warnings than are shown here");
-        keep(diag, severity, NULL, &text);
+        keep(diag, severity, NULL, NULL, &text);
         return;
     }
     if (where != NULL && where->file != NULL) {
@@ -164,10 +210,14 @@ void dalcs_diag_add_list(struct dalcs_diag *diag, enum dalcs_severity severity,
     if (where != NULL && where->line > 0 && where->source_line != NULL) {
         append_excerpt(&text, where);
     }
+    if (where != NULL) {
+        append_chain(&text, where->instance);
+        append_chain(&text, where->included);
+    }
     if (hint != NULL) {
         append_format(&text, "\n  hint: %s", hint);
     }
-    keep(diag, severity, where, &text);
+    keep(diag, severity, where, format, &text);
 }
 
 void dalcs_diag_add(struct dalcs_diag *diag, enum dalcs_severity severity,
@@ -181,6 +231,9 @@ void dalcs_diag_add(struct dalcs_diag *diag, enum dalcs_severity severity,
 static bool comes_before(const struct dalcs_diagnostic *a, const struct dalcs_diagnostic *b) {
     if ((a->line == 0) != (b->line == 0)) {
         return b->line == 0;
+    }
+    if (a->file_number != b->file_number) {
+        return a->file_number < b->file_number;
     }
     return a->line != b->line ? a->line < b->line : a->column < b->column;
 }

@@ -10,20 +10,36 @@
 
 enum dalcs_severity { DALCS_NOTE, DALCS_WARNING, DALCS_ERROR };
 
+/* Why a line counts: the card that calls its subcircuit or includes its file, and what that card is
+ * in, outwards. */
+struct dalcs_origin {
+    const char *instance; /* "x1.x2"; NULL for an included file */
+    const char *file;     /* where the calling or including card stands */
+    int line;
+    const struct dalcs_origin *outer; /* NULL: the netlist itself */
+};
+
 /* A place in a netlist. line and column count from 1; line 0 means "no place in the file". */
 struct dalcs_location {
     const char *file;        /* borrowed: lives as long as the netlist or circuit that made it */
     const char *source_line; /* borrowed: the physical line's text without its newline, or NULL */
     int line;
-    int column; /* in characters (UTF-8 code points), as an editor counts */
-    int length; /* characters to underline, at least 1 */
+    int column;      /* in characters (UTF-8 code points), as an editor counts */
+    int length;      /* characters to underline, at least 1 */
+    int file_number; /* of included files, in the order of reading; 0 for the netlist itself */
+    const struct dalcs_origin *instance; /* borrowed: the subcircuit calls it is in, or NULL */
+    const struct dalcs_origin *included; /* borrowed: how the file was included, or NULL */
 };
 
 struct dalcs_diagnostic {
     enum dalcs_severity severity;
+    int file_number;
     int line; /* 0: no place */
     int column;
-    char *text; /* the whole formatted message: "file:line:col: error: ...", source line, caret,
+    const char
+        *format; /* of a place in a subcircuit, else NULL: one mistake in its text is told once,
+                           not once for each of its instances */
+    char *text;  /* the whole formatted message: "file:line:col: error: ...", source line, caret,
                    hint; ends without a newline */
 };
 

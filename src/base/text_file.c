@@ -19,13 +19,14 @@ static enum dalcs_status read_stream(FILE *file, size_t limit, char **text, size
 }
 
 enum dalcs_status dalcs_text_file_read(const char *path, size_t limit, char **text, size_t *length,
+                                       const struct dalcs_location *where,
                                        struct dalcs_diag *diag) {
     *text = NULL;
     *length = 0;
     FILE *file = fopen(path, "rb");
     enum dalcs_status status = file == NULL ? DALCS_E_IO : read_stream(file, limit, text, length);
     if (status == DALCS_E_IO) {
-        dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "cannot read '%s': %s", path,
+        dalcs_diag_add(diag, DALCS_ERROR, where, NULL, "cannot read '%s': %s", path,
                        strerror(errno));
     }
     if (file != NULL) {

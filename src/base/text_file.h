@@ -5,8 +5,10 @@
 #include "diag.h"
 
 /* Reads the file at `path`, but not much more than `limit` bytes of it, into *text[*length], which the
- * caller frees; *text is NULL on failure. DALCS_E_IO comes with a message. */
+ * caller frees; *text is NULL on failure. DALCS_E_IO comes with a message at `where`, the card that
+ * names the file (or NULL). */
 enum dalcs_status dalcs_text_file_read(const char *path, size_t limit, char **text, size_t *length,
+                                       const struct dalcs_location *where,
                                        struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
 #endif

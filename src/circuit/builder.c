@@ -98,13 +98,46 @@ const char *dalcs_builder_place(struct dalcs_builder *builder, const struct dalc
     return text != NULL ? text : where.file;
 }
 
+/* A copy of a chain of calls or inclusions. */
+static const struct dalcs_origin *keep_chain(struct dalcs_builder *builder,
+                                             const struct dalcs_origin *origin) {
+    struct dalcs_arena *arena = &builder->circuit->arena;
+    const struct dalcs_origin *first = NULL;
+    struct dalcs_origin *last = NULL;
+    for (; origin != NULL; origin = origin->outer) {
+        struct dalcs_origin *copy = dalcs_arena_alloc(arena, 1, sizeof *copy);
+        const char *file = dalcs_arena_copy(arena, origin->file, strlen(origin->file));
+        const char *name = origin->instance != NULL
+                               ? dalcs_arena_copy(arena, origin->instance, strlen(origin->instance))
+                               : "";
+        if (!note_memory(builder, copy != NULL && file != NULL && name != NULL)) {
+            return NULL;
+        }
+        *copy =
+            (struct dalcs_origin){origin->instance != NULL ? name : NULL, file, origin->line, NULL};
+        if (last != NULL) {
+            last->outer = copy;
+        } else {
+            first = copy;
+        }
+        last = copy;
+    }
+    return first;
+}
+
 struct dalcs_location dalcs_builder_keep_location(struct dalcs_builder *builder,
                                                   const struct dalcs_token *token) {
     struct dalcs_arena *arena = &builder->circuit->arena;
-    if (builder->kept_file == NULL) {
-        const char *file = token->line->file;
-        builder->kept_file = dalcs_arena_copy(arena, file, strlen(file));
+    const struct dalcs_source *source = token->line->source;
+    if (builder->kept_source != source) {
+        builder->kept_source = source;
+        builder->kept_file = dalcs_arena_copy(arena, source->name, strlen(source->name));
+        builder->kept_included = keep_chain(builder, source->included);
         note_memory(builder, builder->kept_file != NULL);
+    }
+    if (builder->kept_origin != token->line->instance) {
+        builder->kept_origin = token->line->instance;
+        builder->kept_instance = keep_chain(builder, token->line->instance);
     }
     if (builder->kept_line != token->line) {
         const char *text = token->line->text;
@@ -115,6 +148,8 @@ struct dalcs_location dalcs_builder_keep_location(struct dalcs_builder *builder,
     struct dalcs_location where = dalcs_token_location(token);
     where.file = builder->kept_file;
     where.source_line = builder->kept_text;
+    where.included = builder->kept_included;
+    where.instance = builder->kept_instance;
     return where;
 }
 
@@ -166,15 +201,44 @@ int dalcs_builder_inner_node(struct dalcs_builder *builder, const char *what,
                     element);
 }
 
+/* "rser(c1)"; KiCad's "net-(d1-k)" is a name that a person gave. */
 bool dalcs_builder_is_inner(const char *name) {
-    return strchr(name, '(') != NULL;
+    const char *open = strchr(name, '(');
+    return open != NULL && (open == name || open[-1] != '-');
+}
+
+/* x1:n1 as x1.n1, in scratch; NULL when out of memory. */
+static char *with_dots(struct dalcs_builder *builder, const char *name) {
+    char *copy = dalcs_arena_copy(&builder->scratch, name, strlen(name));
+    note_memory(builder, copy != NULL);
+    for (char *p = copy; p != NULL && *p != '\0'; p++) {
+        *p = *p == ':' ? '.' : *p;
+    }
+    return copy;
+}
+
+/* A node by another of its names: x1:n1, or a port of a subcircuit. */
+static int find_alias(struct dalcs_builder *builder, const char *name) {
+    if (strpbrk(name, ".:") == NULL) {
+        return -1;
+    }
+    const char *dotted = with_dots(builder, name);
+    if (dotted == NULL) {
+        return -1;
+    }
+    const char *port = dalcs_deck_port(builder->deck, dotted);
+    const char *known = port != NULL ? port : dotted;
+    return is_ground(known) ? 0 : dalcs_names_find(&builder->nodes, known);
 }
 
 int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_token *token) {
     if (is_ground(token->text)) {
         return 0;
     }
-    const int node = dalcs_names_find(&builder->nodes, token->text);
+    int node = dalcs_names_find(&builder->nodes, token->text);
+    if (node < 0) {
+        node = find_alias(builder, token->text);
+    }
     if (node < 0) {
         builder->failed = true;
         if ((builder->hidden & DALCS_HIDDEN_ELEMENTS) == 0) {
@@ -189,8 +253,24 @@ int dalcs_builder_find_node(struct dalcs_builder *builder, const struct dalcs_to
 
 /* ---- Devices ------------------------------------------------------------------------------- */
 
+/* x1:d1 is x1.d1, and so are d.x1.d1 and d:x1:d1, as ngspice and LTspice call it. */
+static int find_device_alias(struct dalcs_builder *builder, const char *name) {
+    if (strpbrk(name, ".:") == NULL) {
+        return -1;
+    }
+    const char *dotted = with_dots(builder, name);
+    const int device = dotted != NULL ? dalcs_names_find(&builder->devices, dotted) : -1;
+    if (dotted == NULL || device >= 0 || dotted[1] != '.' || strrchr(dotted, '.')[1] != dotted[0]) {
+        return device;
+    }
+    return dalcs_names_find(&builder->devices, dotted + 2);
+}
+
 int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_token *token) {
-    const int device = dalcs_names_find(&builder->devices, token->text);
+    int device = dalcs_names_find(&builder->devices, token->text);
+    if (device < 0) {
+        device = find_device_alias(builder, token->text);
+    }
     if (device >= 0 && device < builder->n_device_cards) {
         return device;
     }
@@ -217,6 +297,11 @@ void dalcs_builder_add_name(struct dalcs_builder *builder, const struct dalcs_to
     dalcs_builder_error(builder, name, "give it another name",
                         "there are two elements '%s', the first at %s", name->text,
                         dalcs_builder_place(builder, builder->device_token[first]));
+}
+
+char dalcs_builder_letter(const struct dalcs_token *name) {
+    const char c = name->line->text[name->offset];
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
 
 /* NULL when out of memory, which a name that is NULL is, too. */
@@ -246,6 +331,7 @@ struct dalcs_device *dalcs_builder_add_device(struct dalcs_builder *builder,
     struct dalcs_device *device = add_device(
         builder, kind, dalcs_arena_copy(&circuit->arena, name->text, strlen(name->text)), name);
     if (device != NULL) {
+        device->letter = dalcs_builder_letter(name);
         dalcs_builder_add_name(builder, name, circuit->n_devices - 1);
     }
     return device;

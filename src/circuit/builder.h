@@ -4,6 +4,7 @@
 #define DALCS_BUILDER_H
 
 #include "circuit.h"
+#include "expand.h"
 #include "names.h"
 #include "netlist.h"
 
@@ -42,6 +43,7 @@ enum dalcs_hidden {
 struct dalcs_builder {
     struct dalcs_circuit *circuit;
     const struct dalcs_netlist *netlist;
+    const struct dalcs_deck *deck; /* its cards, flat */
     struct dalcs_diag *diag;
     struct dalcs_arena scratch; /* hints and the like: dies with the builder */
     bool failed;                /* an error was reported */
@@ -87,7 +89,11 @@ struct dalcs_builder {
 
     const struct dalcs_source_line *kept_line; /* the last line copied by keep_location */
     const char *kept_text;
+    const struct dalcs_source *kept_source; /* the last file whose name was, */
     const char *kept_file;
+    const struct dalcs_origin *kept_included; /* and how it was included */
+    const struct dalcs_origin *kept_origin;   /* the last calls copied, */
+    const struct dalcs_origin *kept_instance; /* and their copy */
 };
 
 /* ---- builder.c ----------------------------------------------------------------------------- */
@@ -155,6 +161,8 @@ int dalcs_builder_inner_node(struct dalcs_builder *builder, const char *what,
 
 /* Was this name made by one of the two? */
 bool dalcs_builder_is_inner(const char *name);
+/* The first letter of an element's name in its own subcircuit, lower case. */
+char dalcs_builder_letter(const struct dalcs_token *name);
 
 /* Registers an element's name under `value` or reports its first use. */
 void dalcs_builder_add_name(struct dalcs_builder *builder, const struct dalcs_token *name,
@@ -203,7 +211,7 @@ bool dalcs_reader_take(struct dalcs_reader *reader, enum dalcs_token_kind kind);
 /* Takes `name =` and returns the name; NULL, nothing taken, when no parameter comes next. */
 const struct dalcs_token *dalcs_reader_take_parameter(struct dalcs_reader *reader);
 
-/* Does a token look like a number (it starts as one)? */
+/* Does a token look like a number (it starts as one, or was an expression)? */
 bool dalcs_reader_is_number(const struct dalcs_token *token);
 
 /* The functions below report what is wrong and return false.

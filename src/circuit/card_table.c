@@ -1,7 +1,8 @@
 /* card_table.c - which card is whose, and which are not for this simulator.
  *
  * What other simulators know is named as such: "not supported yet", or not the business of a
- * simulator of ideal diodes. The cards inside a refused .subckt or .if are not looked at. */
+ * simulator of ideal diodes. The cards inside a refused block are not looked at. Parameters, subcircuits,
+ * conditions and included files are gone before: language/ has expanded them. */
 #include "card_table.h"
 
 #include "number.h"
@@ -39,24 +40,6 @@ static const struct dot_card DOT_CARDS[] = {
     {".probe", DALCS_CARD_SIGNALS, NULL, NULL, NOTHING, NULL},
     {".backanno", DALCS_CARD_NONE, NULL, NULL, NOTHING, NULL},
 
-    {".param", DALCS_CARD_NONE, "parameters", "write the numbers in place", NOTHING, NULL},
-    {".params", DALCS_CARD_NONE, "parameters", "write the numbers in place", NOTHING, NULL},
-    {".csparam", DALCS_CARD_NONE, "parameters", "write the numbers in place", NOTHING, NULL},
-    {".global_param", DALCS_CARD_NONE, "parameters", "write the numbers in place", NOTHING, NULL},
-    {".func", DALCS_CARD_NONE, "functions", "write the numbers in place", NOTHING, NULL},
-    {".subckt", DALCS_CARD_NONE, "subcircuits", "write its elements in place", MODELS, ".ends"},
-    {".ends", DALCS_CARD_NONE, "subcircuits", NULL, NOTHING, NULL},
-    {".global", DALCS_CARD_NONE, "global nodes", "without subcircuits every node is global",
-     NOTHING, NULL},
-    {".include", DALCS_CARD_NONE, "included files", "paste the file's lines here", ALL, NULL},
-    {".incl", DALCS_CARD_NONE, "included files", "paste the file's lines here", ALL, NULL},
-    {".inc", DALCS_CARD_NONE, "included files", "paste the file's lines here", ALL, NULL},
-    {".lib", DALCS_CARD_NONE, "libraries", "paste the models that are used here", ALL, NULL},
-    {".endl", DALCS_CARD_NONE, "libraries", NULL, NOTHING, NULL},
-    {".if", DALCS_CARD_NONE, "conditions", "keep the branch that is wanted", ALL, ".endif"},
-    {".elseif", DALCS_CARD_NONE, "conditions", NULL, NOTHING, NULL},
-    {".else", DALCS_CARD_NONE, "conditions", NULL, NOTHING, NULL},
-    {".endif", DALCS_CARD_NONE, "conditions", NULL, NOTHING, NULL},
     {".control", DALCS_CARD_NONE, "control blocks",
      "write the analysis as a card, such as: .tran 10u 20m", ANALYSES, NULL},
     {".endc", DALCS_CARD_NONE, "control blocks", NULL, NOTHING, NULL},
@@ -106,8 +89,6 @@ static const char *refused_element(char letter) {
     case 'y':
     case 'p':
         return "transmission lines";
-    case 'x':
-        return "subcircuit calls";
     default:
         return NULL;
     }
@@ -124,8 +105,6 @@ static const char *hint_of_element(char letter) {
         return "a linear one is E, F, G or H";
     case 't':
         return "write sections of L and C";
-    case 'x':
-        return "write its elements in place";
     default:
         return NULL;
     }
@@ -189,7 +168,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
                                               const struct dalcs_card *card) {
     struct dalcs_builder *builder = table->builder;
     const struct dalcs_token *name = card->token;
-    const char letter = name->text[0];
+    const char letter = card->letter;
     if (letter == 'k') {
         const size_t n_coils = (size_t)dalcs_coupling_count_coils(card);
         table->n_pairs += n_coils * (n_coils - 1) / 2;
@@ -256,7 +235,7 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
         return DALCS_CARD_NONE;
     }
     table->has_limits = table->has_limits || (strcmp(name->text, ".model") == 0 && has_limit(card));
-    return name->text[0] == '.' ? classify_dot(table, name) : classify_element(table, card);
+    return card->letter == '.' ? classify_dot(table, name) : classify_element(table, card);
 }
 
 /* Word number `index` of a line, as a NUL-terminated copy of at most `size` - 1 bytes. */

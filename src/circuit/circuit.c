@@ -17,11 +17,11 @@
 
 /* Counts what the arrays must hold, reports what is not supported. */
 static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned char *class_of) {
-    const struct dalcs_netlist *netlist = builder->netlist;
+    const struct dalcs_deck *deck = builder->deck;
     size_t count[DALCS_N_CARD_CLASSES] = {0};
     struct dalcs_card_table table = {.builder = builder};
-    for (size_t k = 0; k < netlist->n_cards; k++) {
-        const enum dalcs_card_class c = dalcs_card_table_classify(&table, &netlist->card[k]);
+    for (size_t k = 0; k < deck->n_cards; k++) {
+        const enum dalcs_card_class c = dalcs_card_table_classify(&table, &deck->card[k]);
         class_of[k] = (unsigned char)c;
         count[c]++;
     }
@@ -54,7 +54,7 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
 }
 
 static void read_element(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    switch (card->token->text[0]) {
+    switch (card->letter) {
     case 'r':
         dalcs_passive_parse(builder, card, DALCS_RESISTOR);
         return;
@@ -126,9 +126,8 @@ static void read_card(struct dalcs_builder *builder, const struct dalcs_card *ca
 
 static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigned char *class_of) {
     for (enum pass pass = OPTIONS; pass <= REFERENCES; pass++) {
-        for (size_t k = 0; k < builder->netlist->n_cards; k++) {
-            read_card(builder, &builder->netlist->card[k], (enum dalcs_card_class)class_of[k],
-                      pass);
+        for (size_t k = 0; k < builder->deck->n_cards; k++) {
+            read_card(builder, &builder->deck->card[k], (enum dalcs_card_class)class_of[k], pass);
             if (builder->out_of_memory) {
                 return DALCS_E_NOMEM;
             }
@@ -137,10 +136,15 @@ static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigne
     return DALCS_OK;
 }
 
+/* Before any card was understood. */
+static bool has_errors(const struct dalcs_builder *builder) {
+    return builder->netlist->has_errors || builder->deck->has_errors;
+}
+
 /* Errors that are nowhere: something that every netlist has is missing. */
 static void check_presence(struct dalcs_builder *builder) {
     const struct dalcs_location where = {.file = builder->netlist->name};
-    if (builder->netlist->has_errors) {
+    if (has_errors(builder)) {
         return;
     }
     if (builder->n_device_cards == 0 && (builder->hidden & DALCS_HIDDEN_ELEMENTS) == 0) {
@@ -185,7 +189,7 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
 }
 
 static enum dalcs_status build(struct dalcs_builder *builder) {
-    const size_t n_cards = builder->netlist->n_cards;
+    const size_t n_cards = builder->deck->n_cards;
     unsigned char *class_of = dalcs_arena_alloc(&builder->scratch, n_cards, 1);
     if (class_of == NULL) {
         return DALCS_E_NOMEM;
@@ -204,7 +208,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     }
     DALCS_TRY(collect(builder));
     /* Checks of the whole make no sense of a half. */
-    if (!builder->failed && !builder->netlist->has_errors) {
+    if (!builder->failed && !has_errors(builder)) {
         dalcs_source_check(builder);
         dalcs_topology_check(builder);
         dalcs_initial_check(builder);
@@ -215,15 +219,23 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
 enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
                                       const struct dalcs_netlist *netlist,
                                       struct dalcs_diag *diag) {
+    struct dalcs_deck deck = {0};
     struct dalcs_builder builder = {.circuit = circuit,
                                     .netlist = netlist,
+                                    .deck = &deck,
                                     .diag = diag,
                                     .ideal_diode = -1,
                                     .diode_current = 1};
     *circuit = (struct dalcs_circuit){.n_nodes = 1};
 
-    enum dalcs_status status = build(&builder);
-    if (status == DALCS_OK && (builder.failed || netlist->has_errors)) {
+    enum dalcs_status status = dalcs_deck_expand(&deck, netlist, diag);
+    if (status == DALCS_OK) {
+        builder.hidden = deck.hides_all        ? DALCS_HIDDEN_ALL
+                         : deck.hides_elements ? DALCS_HIDDEN_ELEMENTS
+                                               : 0;
+        status = build(&builder);
+    }
+    if (status == DALCS_OK && (builder.failed || has_errors(&builder))) {
         /* Errors that nobody can read are no explanation. */
         status = diag->out_of_memory ? DALCS_E_NOMEM : DALCS_E_NETLIST;
     }
@@ -240,6 +252,7 @@ enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
     free(builder.node_token);
     free(builder.signal);
     free(builder.initial_condition);
+    dalcs_deck_finish(&deck);
     if (status != DALCS_OK) {
         dalcs_circuit_finish(circuit);
     }

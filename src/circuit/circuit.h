@@ -24,7 +24,8 @@ enum dalcs_device_kind {
 
 struct dalcs_device {
     enum dalcs_device_kind kind;
-    const char *name; /* "d1" */
+    const char *name; /* "d1", "x1.d1" */
+    char letter;      /* 'd': of the name in its own subcircuit */
     int node[4];      /* terminals, then controlling nodes for E, G, S */
     double value;     /* ohm, H, F, or gain */
     double initial;   /* IC=: V for C, A for L */

@@ -18,10 +18,11 @@ static int find_coil(struct dalcs_builder *builder, const struct dalcs_token *na
     }
     /* An inductance of 0 became a resistor: coupling nothing. */
     if (builder->circuit->device[device].kind != DALCS_INDUCTOR) {
-        dalcs_builder_error(
-            builder, name, USAGE, "'%s' is %s, only inductors can be coupled", name->text,
-            name->text[0] == 'l' ? "an inductor of 0 H"
-                                 : dalcs_builder_kind_text(builder->circuit->device[device].kind));
+        dalcs_builder_error(builder, name, USAGE, "'%s' is %s, only inductors can be coupled",
+                            name->text,
+                            builder->circuit->device[device].letter == 'l'
+                                ? "an inductor of 0 H"
+                                : dalcs_builder_kind_text(builder->circuit->device[device].kind));
         return -1;
     }
     return device;
@@ -91,7 +92,7 @@ static bool read_factor(struct dalcs_reader *reader, double *k) {
 int dalcs_coupling_count_coils(const struct dalcs_card *card) {
     int n = 0;
     while (n + 1 < card->n && card->token[n + 1].kind == DALCS_TOKEN_WORD &&
-           card->token[n + 1].text[0] == 'l') {
+           dalcs_builder_letter(&card->token[n + 1]) == 'l') {
         n++;
     }
     return n < 2 || n > MOST_COILS ? 2 : n;
@@ -121,7 +122,8 @@ void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card
     const int n = dalcs_coupling_count_coils(card);
     const int *coil = read_coils(&reader, n);
     const struct dalcs_token *next = dalcs_reader_peek(&reader, 0);
-    if (coil != NULL && next != NULL && next->kind == DALCS_TOKEN_WORD && next->text[0] == 'l') {
+    if (coil != NULL && next != NULL && next->kind == DALCS_TOKEN_WORD &&
+        dalcs_builder_letter(next) == 'l') {
         dalcs_builder_error(builder, next, NULL, "one card couples %d coils at most", MOST_COILS);
         return;
     }

@@ -109,12 +109,12 @@ static const char *written_text(struct dalcs_builder *builder, const struct dalc
 /* Relative to the netlist. */
 static const char *find_path(struct dalcs_builder *builder, const struct dalcs_token *token) {
     const char *name = written_text(builder, token);
-    const char *slash = strrchr(token->line->file, '/');
+    const char *file = token->line->source->name;
+    const char *slash = strrchr(file, '/');
     if (name == NULL || name[0] == '/' || slash == NULL) {
         return name;
     }
-    return dalcs_builder_hint(builder, "%.*s/%s", (int)(slash - token->line->file),
-                              token->line->file, name);
+    return dalcs_builder_hint(builder, "%.*s/%s", (int)(slash - file), file, name);
 }
 
 /* The next number of a file's text; false at its end, or, with *wrong set, at what is none. */
@@ -206,7 +206,8 @@ static bool read_file(struct points *p) {
     struct dalcs_diag said = {0};
     char *text = NULL;
     size_t length;
-    const enum dalcs_status status = dalcs_text_file_read(path, INT_MAX, &text, &length, &said);
+    const enum dalcs_status status =
+        dalcs_text_file_read(path, INT_MAX, &text, &length, NULL, &said);
     bool ok = false;
     if (status == DALCS_E_IO) {
         dalcs_builder_error(builder, place, NULL, "cannot read the points of %s", path);

@@ -73,11 +73,6 @@ void dalcs_reader_unexpected(struct dalcs_reader *reader) {
     if (token == NULL || token->kind == DALCS_TOKEN_BAD) {
         return;
     }
-    if (token->kind == DALCS_TOKEN_EXPRESSION || token->kind == DALCS_TOKEN_STRING) {
-        dalcs_builder_error(reader->builder, token, reader->usage,
-                            "expressions are not supported yet");
-        return;
-    }
     dalcs_builder_error(reader->builder, token, reader->usage, "did not expect '%s' here",
                         token->text);
 }
@@ -98,7 +93,8 @@ static bool is_digit(char c) {
 
 bool dalcs_reader_is_number(const struct dalcs_token *token) {
     const char *p = token->text;
-    if (token->kind == DALCS_TOKEN_EXPRESSION || token->kind == DALCS_TOKEN_BAD) {
+    if (token->kind == DALCS_TOKEN_NUMBER || token->kind == DALCS_TOKEN_EXPRESSION ||
+        token->kind == DALCS_TOKEN_BAD) {
         return true;
     }
     p += *p == '+' || *p == '-';
@@ -220,11 +216,13 @@ bool dalcs_reader_list_number(struct dalcs_reader *reader, enum dalcs_quantity q
         dalcs_reader_missing(reader, what);
         return false;
     }
+    if (token->kind == DALCS_TOKEN_NUMBER) {
+        reader->at++;
+        *value = token->value;
+        return true;
+    }
     if (token->kind != DALCS_TOKEN_WORD) {
-        const char *usage = reader->usage;
-        reader->usage = "write the number";
         dalcs_reader_unexpected(reader);
-        reader->usage = usage;
         return false;
     }
     struct dalcs_number number;

@@ -56,10 +56,10 @@ void dalcs_signals_add_default(struct dalcs_builder *builder) {
     }
     /* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
     for (int k = 0; k < circuit->n_devices; k++) {
-        const char *name = circuit->device[k].name;
+        const struct dalcs_device *d = &circuit->device[k];
         const bool is_default =
-            strchr("vldsweh", name[0]) != NULL || circuit->device[k].kind == DALCS_DIODE;
-        if (is_default && !dalcs_builder_is_inner(name)) {
+            (d->letter != 0 && strchr("vldsweh", d->letter) != NULL) || d->kind == DALCS_DIODE;
+        if (is_default && !dalcs_builder_is_inner(d->name)) {
             add_current(builder, k);
         }
     }

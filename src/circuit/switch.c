@@ -12,7 +12,7 @@ static const char USAGE[] = "a switch is: Sname node node control control model 
 static const char CURRENT_USAGE[] = "a switch is: Wname node node Vsource model [ON|OFF]";
 
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    const bool by_current = card->token->text[0] == 'w';
+    const bool by_current = card->letter == 'w';
     struct dalcs_reader reader =
         dalcs_reader_start(builder, card, by_current ? CURRENT_USAGE : USAGE);
     struct dalcs_device *device = dalcs_builder_add_device(builder, DALCS_SWITCH, card->token);

@@ -520,7 +520,7 @@ enum dalcs_status dalcs_system_file_read(struct dalcs_system_file *file, const c
     *file = (struct dalcs_system_file){0};
     char *text;
     size_t length;
-    enum dalcs_status status = dalcs_text_file_read(path, SIZE_MAX, &text, &length, diag);
+    enum dalcs_status status = dalcs_text_file_read(path, SIZE_MAX, &text, &length, NULL, diag);
     if (status == DALCS_OK) {
         status = dalcs_system_file_read_text(file, path, text, length, diag);
     }

@@ -583,8 +583,9 @@ static void check_column(struct builder *b, int column, int rhs_column, double s
     double largest = is_state ? 1.0 / b->column_scale[column] : 0.0;
     double worst = 0.0;
     for (int r = b->n_x; r < b->n && (b->nullity == 0 || is_state); r++) {
-        double residual = -b->rhs[rhs_column * b->n + r] * (is_state ? 1.0 : share);
-        largest = fmax(largest, fabs(residual));
+        double drive = b->rhs[rhs_column * b->n + r];
+        double residual = -drive * (is_state ? 1.0 : share);
+        largest = fmax(largest, fabs(drive)); /* a sine may be near 0 just there */
         for (int c = 0; c < b->n; c++) {
             double increment = y[c] - (is_state && c == column ? 1.0 : 0.0);
             double term = b->base[c * b->n + r] * increment / b->column_scale[c];

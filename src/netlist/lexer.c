@@ -99,17 +99,20 @@ static enum dalcs_status need_line(struct dalcs_lexer *lexer, size_t begin) {
     if (line == NULL) {
         return DALCS_E_NOMEM;
     }
-    line->file = lexer->netlist->name;
+    line->source = lexer->source;
     line->text = lexer->raw + begin;
     line->number = lexer->line_number;
     lexer->line = line;
     return DALCS_OK;
 }
 
-static void report(struct dalcs_lexer *lexer, const struct dalcs_token *token, const char *hint,
-                   const char *what) {
+void dalcs_lexer_report(struct dalcs_lexer *lexer, const struct dalcs_token *token,
+                        const char *hint, const char *format, ...) {
     const struct dalcs_location where = dalcs_token_location(token);
-    dalcs_diag_add(lexer->diag, DALCS_ERROR, &where, hint, "%s", what);
+    va_list arguments;
+    va_start(arguments, format);
+    dalcs_diag_add_list(lexer->diag, DALCS_ERROR, &where, hint, format, arguments);
+    va_end(arguments);
     lexer->netlist->has_errors = true;
 }
 
@@ -118,6 +121,23 @@ static enum dalcs_status add_token(struct dalcs_lexer *lexer, const struct dalcs
         dalcs_grow(&lexer->token, &lexer->capacity, lexer->n_tokens + 1, sizeof *lexer->token));
     lexer->token[lexer->n_tokens++] = *token;
     return DALCS_OK;
+}
+
+/* Net-(D1-K), as KiCad names a net: takes the part in parentheses into the word that ends at raw[*q],
+ * and what follows it. Elsewhere a minus before a parenthesis is in an expression. */
+static bool closes_name(const char *raw, size_t *q) {
+    size_t r = *q + 1;
+    while (!ends_word(raw[r])) {
+        r++;
+    }
+    if (raw[r] != ')') {
+        return false;
+    }
+    do {
+        r++;
+    } while (!ends_word(raw[r]));
+    *q = r;
+    return true;
 }
 
 /* The token that starts at raw[p]; the result is the first byte after it. */
@@ -146,10 +166,16 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
             q++;
         }
         closed = raw[q] == c;
-        memcpy(low + p + 1, raw + p + 1, q - p - 1);
+        if (c == '"') {
+            memcpy(low + p + 1, raw + p + 1, q - p - 1);
+        } else {
+            token->kind = DALCS_TOKEN_EXPRESSION;
+            lexer->netlist->has_language = true;
+        }
         token->text = low + p + 1;
     } else if (c == '{') {
         token->kind = DALCS_TOKEN_EXPRESSION;
+        lexer->netlist->has_language = true;
         int depth = 1;
         for (; raw[q] != '\0'; q++) {
             depth += (raw[q] == '{') - (raw[q] == '}');
@@ -164,6 +190,8 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
         while (!ends_word(raw[q])) {
             q++;
         }
+        while (raw[q] == '(' && raw[q - 1] == '-' && closes_name(raw, &q)) {
+        }
         token->text = low + p;
     }
     const bool invalid = memchr(low + p, INVALID, q - p) != NULL;
@@ -174,12 +202,12 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
     token->length = (int)(q - p);
 
     if (invalid) {
-        report(lexer, token, "save the netlist as UTF-8 text",
-               "a byte that is not text, shown as ?");
+        dalcs_lexer_report(lexer, token, "save the netlist as UTF-8 text",
+                           "a byte that is not text, shown as ?");
         token->kind = DALCS_TOKEN_BAD;
     } else if (!closed) {
-        report(lexer, token, NULL,
-               c == '{' ? "this brace is never closed" : "this quote is never closed");
+        dalcs_lexer_report(lexer, token, NULL, "%s",
+                           c == '{' ? "this brace is never closed" : "this quote is never closed");
         token->kind = DALCS_TOKEN_BAD;
     }
     return q;
@@ -210,8 +238,7 @@ static enum dalcs_status read_tokens(struct dalcs_lexer *lexer, size_t p, size_t
     }
 }
 
-/* Does the line at p start with this word? */
-static bool starts_with_word(const struct dalcs_lexer *lexer, size_t p, const char *word) {
+bool dalcs_lexer_starts_with(const struct dalcs_lexer *lexer, size_t p, const char *word) {
     const size_t length = strlen(word);
     return strncmp(lexer->low + p, word, length) == 0 && ends_word(lexer->raw[p + length]);
 }
@@ -235,8 +262,8 @@ static enum dalcs_status continue_card(struct dalcs_lexer *lexer, size_t plus, s
     DALCS_TRY(need_line(lexer, begin));
     const struct dalcs_token token = {
         .line = lexer->line, .offset = (int)(plus - begin), .length = 1};
-    report(lexer, &token, "a line that starts with + continues the card before it",
-           "there is no card to continue");
+    dalcs_lexer_report(lexer, &token, "a line that starts with + continues the card before it",
+                       "there is no card to continue");
     return DALCS_OK;
 }
 
@@ -244,7 +271,7 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
     lexer->line_number++;
     lexer->line = NULL;
     clean_line(lexer, begin, end);
-    if (lexer->line_number == 1) {
+    if (lexer->line_number == 1 && lexer->source->outer == NULL) {
         DALCS_TRY(need_line(lexer, begin));
         lexer->netlist->title_line = lexer->line;
         return read_title(lexer, begin, end);
@@ -254,25 +281,45 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
         p++;
     }
     if (lexer->in_control) {
-        lexer->in_control = !starts_with_word(lexer, p, ".endc");
+        lexer->in_control = !dalcs_lexer_starts_with(lexer, p, ".endc");
         return DALCS_OK;
     }
     if (p == end || lexer->raw[p] == '*' || lexer->raw[p] == ';') {
         return DALCS_OK;
     }
-    if (lexer->raw[p] == '+') {
+    if (lexer->raw[p] == '+' && !lexer->skipping) {
         return continue_card(lexer, p, begin);
     }
     DALCS_TRY(dalcs_lexer_flush(lexer));
-    if (starts_with_word(lexer, p, ".end")) {
+    if (lexer->skipping) {
+        bool skips;
+        DALCS_TRY(dalcs_include_skips(lexer, p, &skips));
+        if (skips) {
+            return DALCS_OK;
+        }
+    }
+    if (dalcs_lexer_starts_with(lexer, p, ".end")) {
         lexer->ended = true;
         return DALCS_OK;
     }
-    if (starts_with_word(lexer, p, ".title")) {
+    if (dalcs_lexer_starts_with(lexer, p, ".title")) {
         return read_title(lexer, p + strlen(".title"), end);
     }
-    lexer->in_control = starts_with_word(lexer, p, ".control");
+    lexer->in_control = dalcs_lexer_starts_with(lexer, p, ".control");
     return read_tokens(lexer, p, begin);
+}
+
+/* A card that is not of a flat netlist of numbers. */
+static bool is_language(const struct dalcs_token *name) {
+    static const char *const words[] = {".param", ".params", ".csparam", ".global_param",
+                                        ".func",  ".subckt", ".ends",    ".global",
+                                        ".if",    ".elseif", ".else",    ".endif"};
+    for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
+        if (strcmp(name->text, words[k]) == 0) {
+            return true;
+        }
+    }
+    return false;
 }
 
 enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
@@ -288,9 +335,15 @@ enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
         return DALCS_E_NOMEM;
     }
     memcpy(token, lexer->token, lexer->n_tokens * sizeof *token);
+    const struct dalcs_card card = {token, (int)lexer->n_tokens, token->text[0]};
+    lexer->n_tokens = 0;
+    if (card.letter == '.' && dalcs_include_is_card(token->text)) {
+        return dalcs_include_card(lexer, &card);
+    }
+    netlist->has_language =
+        netlist->has_language || card.letter == 'x' || (card.letter == '.' && is_language(token));
     DALCS_TRY(dalcs_grow(&netlist->card, &netlist->capacity, netlist->n_cards + 1,
                          sizeof *netlist->card));
-    netlist->card[netlist->n_cards++] = (struct dalcs_card){token, (int)lexer->n_tokens};
-    lexer->n_tokens = 0;
+    netlist->card[netlist->n_cards++] = card;
     return DALCS_OK;
 }

@@ -2,18 +2,28 @@
 #ifndef DALCS_LEXER_H
 #define DALCS_LEXER_H
 
+#include "names.h"
 #include "netlist.h"
 
-/* A netlist's text, line by line. `raw` is shown to people, `low` is what tokens point into: both
+/* One file's text, line by line. `raw` is shown to people, `low` is what tokens point into: both
  * have the same length and the same offsets. */
 struct dalcs_lexer {
     struct dalcs_netlist *netlist;
+    const struct dalcs_source *source;
     struct dalcs_diag *diag;
     char *raw;
     char *low;
     int line_number;
     bool in_control; /* between .control and .endc, which hold another language */
     bool ended;      /* .end was seen */
+
+    size_t at; /* the line being read starts here; in the end the length of the text */
+    size_t length;
+    const char *section; /* the only section of a library that is wanted, else NULL */
+    bool section_found;
+    bool skipping;                  /* a section that is not wanted, until .endl */
+    const struct dalcs_token *open; /* the .lib of the section being read, else NULL */
+    struct dalcs_names *sections;   /* of the library; for messages */
 
     const struct dalcs_source_line *line; /* the present one, made when first needed */
     struct dalcs_token *token;            /* of the card being read */
@@ -27,5 +37,35 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
 
 /* Ends the last card. */
 enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) DALCS_MUST_CHECK;
+
+/* Does the line at p start with this word? */
+bool dalcs_lexer_starts_with(const struct dalcs_lexer *lexer, size_t p, const char *word);
+
+void dalcs_lexer_report(struct dalcs_lexer *lexer, const struct dalcs_token *token,
+                        const char *hint, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* ---- include.c ----------------------------------------------------------------------------- */
+
+/* Is this card .include, .lib or .endl, or an alias of them? */
+bool dalcs_include_is_card(const char *name);
+
+/* Reads what the card names into the netlist, or begins or ends a section. */
+enum dalcs_status dalcs_include_card(struct dalcs_lexer *lexer,
+                                     const struct dalcs_card *card) DALCS_MUST_CHECK;
+
+/* Of a library of which one section is wanted: is the line at p, whose first byte that is not blank
+ * is at p, outside it? */
+enum dalcs_status dalcs_include_skips(struct dalcs_lexer *lexer, size_t p,
+                                      bool *skips) DALCS_MUST_CHECK;
+
+/* ---- netlist.c ----------------------------------------------------------------------------- */
+
+/* Reads the text of a file into the netlist; `section` NULL: all of it. `call` is the word that names
+ * the section. */
+enum dalcs_status dalcs_source_read(struct dalcs_netlist *netlist,
+                                    const struct dalcs_source *source, const char *text,
+                                    size_t length, const struct dalcs_token *section,
+                                    struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
 #endif

@@ -1,9 +1,10 @@
 /* netlist.c - a file or a text to cards, and the places of tokens.
  *
- * Splits the text into lines and hands them to the lexer. A file that is no text at all (UTF-16, a
- * NUL byte) is one error, not a thousand. */
+ * Splits the text into lines and hands them to the lexer. A file that is no text at all (a NUL byte)
+ * is one error, not a thousand. */
 #include "netlist.h"
 
+#include "encoding.h"
 #include "lexer.h"
 #include "text_file.h"
 
@@ -12,80 +13,135 @@
 #include <string.h>
 
 /* Says so when the text is not one; else false. */
-static bool is_no_text(struct dalcs_netlist *netlist, const char *text, size_t length,
-                       struct dalcs_diag *diag) {
-    const bool utf16 =
-        length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0);
+static bool is_no_text(struct dalcs_netlist *netlist, const struct dalcs_source *source,
+                       const char *text, size_t length, struct dalcs_diag *diag) {
     const char *nul = length > 0 ? memchr(text, '\0', length) : NULL;
-    if (!utf16 && nul == NULL) {
+    if (nul == NULL) {
         return false;
     }
-    struct dalcs_location where = {.file = netlist->name, .line = 1, .length = 1};
-    if (!utf16) {
-        const char *line = text;
-        for (const char *p = text; p < nul; p++) {
-            if (*p == '\n') {
-                where.line++;
-                line = p + 1;
-            }
+    struct dalcs_location where = {.file = source->name,
+                                   .line = 1,
+                                   .length = 1,
+                                   .file_number = source->number,
+                                   .included = source->included};
+    const char *line = text;
+    for (const char *p = text; p < nul; p++) {
+        if (*p == '\n') {
+            where.line++;
+            line = p + 1;
         }
-        where.column = (int)(nul - line) + 1;
     }
+    where.column = (int)(nul - line) + 1;
     dalcs_diag_add(diag, DALCS_ERROR, &where, "save the netlist as UTF-8 text",
-                   utf16 ? "the file is UTF-16" : "NUL byte: this is not a text file");
+                   "NUL byte: this is not a text file");
     netlist->has_errors = true;
     return true;
 }
 
-static enum dalcs_status read_lines(struct dalcs_lexer *lexer, size_t begin, size_t length) {
-    while (begin < length && !lexer->ended) {
-        const char *newline = memchr(lexer->raw + begin, '\n', length - begin);
-        const size_t end = newline != NULL ? (size_t)(newline - lexer->raw) : length;
+static enum dalcs_status read_lines(struct dalcs_lexer *lexer, size_t begin) {
+    while (begin < lexer->length && !lexer->ended) {
+        const char *newline = memchr(lexer->raw + begin, '\n', lexer->length - begin);
+        const size_t end = newline != NULL ? (size_t)(newline - lexer->raw) : lexer->length;
         /* The carriage return of a CRLF is no part of the line. */
         const bool crlf = end > begin && lexer->raw[end - 1] == '\r';
+        lexer->at = begin;
         DALCS_TRY(dalcs_lexer_read_line(lexer, begin, crlf ? end - 1 : end));
         begin = end + 1;
     }
+    lexer->at = lexer->length;
     return dalcs_lexer_flush(lexer);
 }
 
-enum dalcs_status dalcs_netlist_read_text(struct dalcs_netlist *netlist, const char *name,
-                                          const char *text, size_t length,
-                                          struct dalcs_diag *diag) {
-    netlist->name = dalcs_arena_copy(&netlist->arena, name, strlen(name));
-    if (netlist->name == NULL) {
-        return DALCS_E_NOMEM;
+/* A library was read to its end: was the section there, and closed? */
+static void check_section(struct dalcs_lexer *lexer, const struct dalcs_token *section) {
+    if (section != NULL && !lexer->section_found) {
+        struct dalcs_arena *arena = &lexer->netlist->arena;
+        const char *near = dalcs_names_nearest(lexer->sections, section->text);
+        const char *list = dalcs_names_join(lexer->sections, 8, arena);
+        const char *hint = near != NULL   ? dalcs_arena_printf(arena, "did you mean '%s'?", near)
+                           : list != NULL ? dalcs_arena_printf(arena, "its sections are: %s", list)
+                                          : "a section is: .lib name ... .endl";
+        dalcs_lexer_report(lexer, section, hint, "'%s' has no section '%s'", lexer->source->name,
+                           section->text);
+        lexer->netlist->misses_file = true;
+    } else if (lexer->open != NULL) {
+        dalcs_lexer_report(lexer, lexer->open, "add a line: .endl", "this section is never closed");
     }
-    netlist->title = "";
-    if (length > INT_MAX / 2) {
-        const struct dalcs_location where = {.file = netlist->name};
+}
+
+enum dalcs_status dalcs_source_read(struct dalcs_netlist *netlist,
+                                    const struct dalcs_source *source, const char *text,
+                                    size_t length, const struct dalcs_token *section,
+                                    struct dalcs_diag *diag) {
+    if (length > INT_MAX / 2 - netlist->n_bytes) {
+        const struct dalcs_location where = {.file = source->name};
         dalcs_diag_add(diag, DALCS_ERROR, &where, NULL, "the netlist is larger than 1 GiB");
         netlist->has_errors = true;
         return DALCS_E_LIMIT;
     }
-    if (is_no_text(netlist, text, length, diag)) {
+    netlist->n_bytes += length;
+    struct dalcs_lexer lexer = {.netlist = netlist, .source = source, .diag = diag};
+    DALCS_TRY(dalcs_encoding_to_utf8(&netlist->arena, &text, &length));
+    if (is_no_text(netlist, source, text, length, diag)) {
         return DALCS_OK;
     }
-    struct dalcs_lexer lexer = {.netlist = netlist, .diag = diag};
     lexer.raw = dalcs_arena_copy(&netlist->arena, text, length);
     lexer.low = dalcs_arena_alloc(&netlist->arena, length + 1, 1);
     if (lexer.raw == NULL || lexer.low == NULL) {
         return DALCS_E_NOMEM;
     }
+    struct dalcs_names sections = {0};
+    lexer.length = length;
+    lexer.section = section != NULL ? section->text : NULL;
+    lexer.skipping = section != NULL;
+    lexer.sections = &sections;
     const size_t bom = length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
-    const enum dalcs_status status = read_lines(&lexer, bom, length);
+    const enum dalcs_status status = read_lines(&lexer, bom);
+    if (status == DALCS_OK) {
+        check_section(&lexer, section);
+    }
+    dalcs_names_finish(&sections);
     free(lexer.token);
     return status;
+}
+
+/* The netlist itself: `real` is its absolute path, NULL for a text. */
+static enum dalcs_status read_first(struct dalcs_netlist *netlist, const char *name,
+                                    const char *real, const char *text, size_t length,
+                                    struct dalcs_diag *diag) {
+    struct dalcs_source *source = dalcs_arena_alloc(&netlist->arena, 1, sizeof *source);
+    netlist->name = dalcs_arena_copy(&netlist->arena, name, strlen(name));
+    netlist->title = "";
+    if (source == NULL || netlist->name == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    source->name = netlist->name;
+    netlist->n_sources = 1;
+    if (real != NULL) {
+        source->real = dalcs_arena_copy(&netlist->arena, real, strlen(real));
+        if (source->real == NULL) {
+            return DALCS_E_NOMEM;
+        }
+    }
+    return dalcs_source_read(netlist, source, text, length, NULL, diag);
+}
+
+enum dalcs_status dalcs_netlist_read_text(struct dalcs_netlist *netlist, const char *name,
+                                          const char *text, size_t length,
+                                          struct dalcs_diag *diag) {
+    return read_first(netlist, name, NULL, text, length, diag);
 }
 
 enum dalcs_status dalcs_netlist_read_file(struct dalcs_netlist *netlist, const char *path,
                                           struct dalcs_diag *diag) {
     char *text;
     size_t length;
-    /* Beyond the limit, read_text says that it is too large. */
-    enum dalcs_status status = dalcs_text_file_read(path, INT_MAX, &text, &length, diag);
+    /* Beyond the limit, dalcs_source_read says that it is too large. */
+    enum dalcs_status status = dalcs_text_file_read(path, INT_MAX, &text, &length, NULL, diag);
     if (status == DALCS_OK) {
-        status = dalcs_netlist_read_text(netlist, path, text, length, diag);
+        char *real = realpath(path, NULL); /* NULL: a pipe, say, which cannot include itself */
+        status = read_first(netlist, path, real, text, length, diag);
+        free(real);
     }
     free(text);
     return status;
@@ -108,11 +164,14 @@ static int count_characters(const char *text, int bytes) {
 
 static struct dalcs_location make_location(const struct dalcs_source_line *line, int offset,
                                            int length) {
-    return (struct dalcs_location){.file = line->file,
+    return (struct dalcs_location){.file = line->source->name,
                                    .source_line = line->text,
                                    .line = line->number,
                                    .column = count_characters(line->text, offset) + 1,
-                                   .length = count_characters(line->text + offset, length)};
+                                   .length = count_characters(line->text + offset, length),
+                                   .file_number = line->source->number,
+                                   .instance = line->instance,
+                                   .included = line->source->included};
 }
 
 struct dalcs_location dalcs_token_location(const struct dalcs_token *token) {

@@ -4,7 +4,8 @@
  * the first line is the title; '*' starts a comment line, ';' a trailing comment, and so does '$'
  * between blanks; a line that starts with '+' continues the last card, over blank and comment
  * lines; '.end' ends it all. Blanks and commas separate; '=', '(' and ')' are tokens of their own;
- * '...', "..." and {...} are one token each. */
+ * '...', "..." and {...} are one token each. The cards of .include and .lib are replaced by those of
+ * the file they name. What .param, .subckt, X and .if mean is for the next folder to say. */
 #ifndef DALCS_NETLIST_H
 #define DALCS_NETLIST_H
 
@@ -12,19 +13,30 @@
 
 enum dalcs_token_kind {
     DALCS_TOKEN_WORD,       /* a name, keyword or number: lower case */
-    DALCS_TOKEN_STRING,     /* quoted: case kept, quotes removed */
-    DALCS_TOKEN_EXPRESSION, /* {...}: lower case, braces removed */
+    DALCS_TOKEN_STRING,     /* "...": case kept, quotes removed */
+    DALCS_TOKEN_EXPRESSION, /* {...} or '...': lower case, braces or quotes removed */
+    DALCS_TOKEN_NUMBER,     /* an expression that was evaluated: text is the expression's */
     DALCS_TOKEN_EQUAL,
     DALCS_TOKEN_OPEN,
     DALCS_TOKEN_CLOSE,
     DALCS_TOKEN_BAD /* an error was reported: readers fail without another word */
 };
 
+/* A file, or the text that was given in place of one. */
+struct dalcs_source {
+    const char *name;                    /* as messages call it */
+    const char *real;                    /* its absolute path, NULL for a text */
+    int number;                          /* in the order of reading, from 0 */
+    const struct dalcs_source *outer;    /* the one that includes it, or NULL */
+    const struct dalcs_origin *included; /* the same for messages */
+};
+
 /* A physical line. */
 struct dalcs_source_line {
-    const char *file;
-    const char *text; /* without its newline; bytes that are no text are shown as '?' */
-    int number;       /* from 1 */
+    const struct dalcs_source *source;
+    const char *text;                    /* without its newline; bytes that are no text: '?' */
+    const struct dalcs_origin *instance; /* in the copy that a subcircuit call makes, else NULL */
+    int number;                          /* from 1 */
 };
 
 struct dalcs_token {
@@ -34,22 +46,31 @@ struct dalcs_token {
     int length;       /* its bytes there */
     enum dalcs_token_kind kind;
     bool after_comma; /* a comma stands between it and the token before */
+    double value;     /* of a NUMBER */
 };
 
 struct dalcs_card {
     const struct dalcs_token *token;
-    int n; /* at least 1 */
+    int n;       /* at least 1 */
+    char letter; /* the first of its first word, before a subcircuit call puts its name there */
 };
 
-/* Zero-initialise, read, then finish. */
+/* Zero-initialise, set no_includes and most_cards if wanted, read, then finish. */
 struct dalcs_netlist {
+    bool no_includes;  /* refuse .include and .lib: no other file is read */
+    size_t most_cards; /* that subcircuit calls may expand to; 0: DALCS_MOST_CARDS */
+
     const char *name; /* the file's path, or what read_text was told */
     const char *title;
     const struct dalcs_source_line *title_line;
     struct dalcs_card *card;
     size_t n_cards;
     size_t capacity;
-    bool has_errors; /* of spelling: a circuit cannot be built, but may be looked at for more */
+    bool has_errors;   /* of spelling: a circuit cannot be built, but may be looked at for more */
+    bool misses_file;  /* one that it includes could not be read: much may be undefined */
+    bool has_language; /* expressions, parameters, subcircuits or conditions: must be expanded */
+    int n_sources;     /* files read, the netlist itself included */
+    size_t n_bytes;    /* of them together */
     struct dalcs_arena arena;
 };
 
@@ -63,6 +84,8 @@ enum dalcs_status dalcs_netlist_read_text(struct dalcs_netlist *netlist, const c
 /* The same from a file. DALCS_E_IO, with a message, when it cannot be read. */
 enum dalcs_status dalcs_netlist_read_file(struct dalcs_netlist *netlist, const char *path,
                                           struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
+enum { DALCS_MOST_CARDS = 20000000 };
 
 void dalcs_netlist_finish(struct dalcs_netlist *netlist);
 

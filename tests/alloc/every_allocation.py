@@ -168,6 +168,44 @@ I2 3 0 2
 .op
 .end
 """, 3),
+    "language": ("""Parameters, a subcircuit in another, a condition, a library
+.param r={2*k} k=500 tau='r*1u'
+.func twice(x) {2*x + k - 500}
+.lib part.lib fast
+V1 in 0 SIN(0 9 {1/(6*tau)})
+Xa in out part r={twice(r)} params: c=1u
+.if (k > 1)
+R9 out 0 r
+.endif
+.subckt part a b r=1 c=1
+X1 a m half r={r/2}
+X2 m b half
+C1 b 0 {c}
+.subckt half p q r=1k
+R1 p q {r}
+D1 q 0 clamp
+.ends
+.ends
+.tran 100u 2m
+.save v(out) v(xa:m) i(xa.x1.d1)
+.end
+""", 0),
+    "wrong_language": ("""Mistakes in parameters and subcircuits
+.param a={b} b={a} c={nobody} d={sqrt(0-1)
+.func f(x) {f(x)}
+Xa 1 2 part q=3
+Xb 1 nowhere
+Xc 1 part
+.subckt part n
+R1 n 0 {f(1)}
+R2 n 0 {c + 1/0}
+.ends
+.if (c
+.include nothing.inc
+.endif
+.op
+.end
+""", 3),
     "mistaken": ("""Several mistakes
 R1 1 0 1kk2
 C1 1 0
@@ -177,6 +215,13 @@ D1 1 0 nowhere
 .end
 """, 3),
 }
+FILES = {"part.lib": """.lib slow
+.model clamp d(vfwd=5)
+.endl
+.lib fast
+.model clamp d(vfwd=4 ron=1)
+.endl
+"""}
 OLD = b"from an earlier run\n"
 
 
@@ -185,6 +230,8 @@ class Case:
         self.library, self.folder = library, pathlib.Path(folder)
         netlist, self.status = CASES[name]
         (self.folder / "circuit.cir").write_text(netlist)
+        for file, text in FILES.items():
+            (self.folder / file).write_text(text)
         self.output = self.folder / "out.csv"
         self.command = [program, "run", "circuit.cir", "--method", method, "-o", "out.csv",
                         "--report", "report.json"]

@@ -1,6 +1,6 @@
 /* check_netlist.c - reads a netlist as far as its equations, prints the messages on stderr.
  *
- *     check_netlist FILE [NAME]     messages call the file NAME
+ *     check_netlist FILE [NAME]     with NAME: as text, which messages call NAME
  *
  * Exit status 0, 3 for a netlist with errors, 4 for a file that cannot be read, as the program. */
 #include "dalcs.h"
@@ -39,7 +39,8 @@ int main(int argc, char **argv) {
     struct dalcs_session *session = NULL;
     enum dalcs_status status = dalcs_session_create(&session);
     if (status == DALCS_OK) {
-        status = dalcs_session_read_text(session, argc > 2 ? argv[2] : argv[1], text, length);
+        status = argc > 2 ? dalcs_session_read_text(session, argv[2], text, length)
+                          : dalcs_session_read_file(session, argv[1]);
     }
     for (size_t k = 0; session != NULL && k < dalcs_session_n_messages(session); k++) {
         fprintf(stderr, "%s\n", dalcs_session_message(session, k, NULL));

@@ -16,10 +16,11 @@ import sys
 
 
 def main():
-    program, netlist = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    program, netlist = pathlib.Path(sys.argv[1]).absolute(), pathlib.Path(sys.argv[2])
     expected_file = netlist.with_suffix(".err")
-    done = subprocess.run([program, netlist, netlist.name], cwd=netlist.parent,
-                          capture_output=True, timeout=60, check=False)
+    # In the netlist's folder, so that the names in the messages and of included files are short.
+    done = subprocess.run([program, netlist.name], capture_output=True, timeout=60, check=False,
+                          cwd=netlist.absolute().parent)
     said = done.stderr.decode("utf-8")
     if sys.argv[3:] == ["--update"]:
         expected_file.write_text(said, encoding="utf-8")

@@ -22,7 +22,8 @@ START_TEST(test_places) {
     const struct dalcs_location line = {.file = "a.cir", .line = 3};
     dalcs_diag_add(&diag, DALCS_ERROR, &line, NULL, "a line");
     check_last(DALCS_ERROR, "a.cir:3: error: a line");
-    const struct dalcs_location place = {"a.cir", "R1 in out abc", 4, 11, 3};
+    const struct dalcs_location place = {
+        .file = "a.cir", .source_line = "R1 in out abc", .line = 4, .column = 11, .length = 3};
     dalcs_diag_add(&diag, DALCS_ERROR, &place, "write a number", "'%s' is not a number", "abc");
     check_last(DALCS_ERROR, "a.cir:4:11: error: 'abc' is not a number\n"
                             "R1 in out abc\n"
@@ -37,17 +38,24 @@ END_TEST
 
 /* The caret stands right whatever a tab's width, and counts characters, not bytes. */
 START_TEST(test_caret) {
-    const struct dalcs_location tabs = {"t", "R1\tin\tx", 1, 7, 1};
+    const struct dalcs_location tabs = {
+        .file = "t", .source_line = "R1\tin\tx", .line = 1, .column = 7, .length = 1};
     dalcs_diag_add(&diag, DALCS_ERROR, &tabs, NULL, "x");
     check_last(DALCS_ERROR, "t:1:7: error: x\nR1\tin\tx\n  \t  \t^");
-    const struct dalcs_location utf8 = {"t", "C\xC2\xB5 \xE2\x84\xA6 x", 1, 6, 1};
+    const struct dalcs_location utf8 = {.file = "t",
+                                        .source_line = "C\xC2\xB5 \xE2\x84\xA6 x",
+                                        .line = 1,
+                                        .column = 6,
+                                        .length = 1};
     dalcs_diag_add(&diag, DALCS_ERROR, &utf8, NULL, "x");
     check_last(DALCS_ERROR, "t:1:6: error: x\nC\xC2\xB5 \xE2\x84\xA6 x\n     ^");
     /* Underlining stops with the line, and a caret may stand just after it. */
-    const struct dalcs_location beyond = {"t", "ab", 1, 2, 9};
+    const struct dalcs_location beyond = {
+        .file = "t", .source_line = "ab", .line = 1, .column = 2, .length = 9};
     dalcs_diag_add(&diag, DALCS_ERROR, &beyond, NULL, "x");
     check_last(DALCS_ERROR, "t:1:2: error: x\nab\n ^");
-    const struct dalcs_location after = {"t", "ab", 1, 3, 1};
+    const struct dalcs_location after = {
+        .file = "t", .source_line = "ab", .line = 1, .column = 3, .length = 1};
     dalcs_diag_add(&diag, DALCS_ERROR, &after, NULL, "x");
     check_last(DALCS_ERROR, "t:1:3: error: x\nab\n  ^");
     dalcs_diag_finish(&diag);
@@ -61,7 +69,11 @@ START_TEST(test_long_line) {
         text[k] = (char)('a' + k % 26);
     }
     text[1000] = '\0';
-    const struct dalcs_location where = {"t", text, 1, 521, 2}; /* character 520 is 'a' */
+    const struct dalcs_location where = {.file = "t",
+                                         .source_line = text,
+                                         .line = 1,
+                                         .column = 521,
+                                         .length = 2}; /* character 520 is 'a' */
     dalcs_diag_add(&diag, DALCS_ERROR, &where, NULL, "x");
     const char *line = strchr(diag.item[0].text, '\n') + 1;
     const char *caret_line = strchr(line, '\n') + 1;
@@ -97,7 +109,11 @@ END_TEST
 START_TEST(test_sort) {
     static const int place[][2] = {{7, 1}, {0, 0}, {2, 5}, {7, 1}, {2, 1}, {1, 9}, {0, 0}};
     for (int k = 0; k < 7; k++) {
-        const struct dalcs_location where = {"t", NULL, place[k][0], place[k][1], 1};
+        const struct dalcs_location where = {.file = "t",
+                                             .source_line = NULL,
+                                             .line = place[k][0],
+                                             .column = place[k][1],
+                                             .length = 1};
         dalcs_diag_add(&diag, DALCS_ERROR, &where, NULL, "%d", k);
     }
     dalcs_diag_sort(&diag);

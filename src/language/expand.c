@@ -1,0 +1,562 @@
+/* expand.c - walks through a definition for each of its instances and copies its cards.
+ *
+ * Calls are followed by recursion, DEEPEST levels at most. A definition that is open already is a
+ * recursion of the netlist, an error. */
+#include "expand.h"
+
+#include "language.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DEEPEST = 200 };
+
+/* ---- Names ------------------------------------------------------------------------------------- */
+
+/* A name of this scope as the flat netlist has it. */
+static const char *flat_name(struct dalcs_language *language, const struct dalcs_scope *scope,
+                             const char *name) {
+    return scope->caller == NULL ? name : dalcs_language_text(language, "%s.%s", scope->name, name);
+}
+
+static const char *node_name(struct dalcs_language *language, const struct dalcs_scope *scope,
+                             const char *name) {
+    if (scope->caller == NULL) {
+        return name;
+    }
+    const int port = dalcs_names_find(&scope->definition->port_index, name);
+    if (port >= 0) {
+        return scope->port[port];
+    }
+    if (strcmp(name, "0") == 0 || strcmp(name, "gnd") == 0 ||
+        dalcs_names_find(&language->globals, name) >= 0) {
+        return name;
+    }
+    return flat_name(language, scope, name);
+}
+
+static const char *model_name(struct dalcs_language *language, const struct dalcs_scope *scope,
+                              const char *name) {
+    for (const struct dalcs_scope *s = scope; s != NULL; s = s->enclosing) {
+        if (dalcs_names_find(&s->definition->models, name) >= 0) {
+            return flat_name(language, s, name);
+        }
+    }
+    return name;
+}
+
+/* ---- Copying a card ---------------------------------------------------------------------------- */
+
+static enum dalcs_status emit(struct dalcs_language *language, const struct dalcs_card *card) {
+    struct dalcs_deck *deck = language->deck;
+    DALCS_TRY(dalcs_grow(&deck->own, &deck->own_capacity, deck->n_cards + 1, sizeof *deck->own));
+    deck->own[deck->n_cards++] = *card;
+    return DALCS_OK;
+}
+
+/* The line of a token, as this instance has it. */
+static const struct dalcs_source_line *line_of(struct dalcs_language *language,
+                                               struct dalcs_scope *scope,
+                                               const struct dalcs_source_line *line) {
+    if (scope->origin == NULL) {
+        return line;
+    }
+    if (scope->line != line) {
+        struct dalcs_source_line *copy = dalcs_arena_alloc(language->arena, 1, sizeof *copy);
+        if (copy == NULL) {
+            language->out_of_memory = true;
+            return line;
+        }
+        *copy = *line;
+        copy->instance = scope->origin;
+        scope->line = line;
+        scope->copy = copy;
+    }
+    return scope->copy;
+}
+
+/* The value of {...} on a card, or of the name of a parameter. */
+static void evaluate_token(struct dalcs_language *language, struct dalcs_scope *scope,
+                           struct dalcs_item *item, int k, struct dalcs_token *token) {
+    if (item->expression == NULL) {
+        item->expression =
+            dalcs_arena_alloc(language->arena, (size_t)item->card->n, sizeof *item->expression);
+        if (item->expression == NULL) {
+            language->out_of_memory = true;
+            return;
+        }
+    }
+    const bool ok = dalcs_scope_compile(language, scope, &item->card->token[k], 1, NULL,
+                                        &item->expression[k]) &&
+                    dalcs_scope_evaluate(language, scope, item->expression[k], &token->value);
+    token->kind = ok ? DALCS_TOKEN_NUMBER : DALCS_TOKEN_BAD;
+}
+
+/* A bare word where a value stands: a parameter's name? */
+static bool is_parameter(struct dalcs_scope *scope, const struct dalcs_card *card, int k) {
+    const struct dalcs_token *token = &card->token[k];
+    const bool after_equal = card->token[k - 1].kind == DALCS_TOKEN_EQUAL;
+    const bool is_name = (token->text[0] >= 'a' && token->text[0] <= 'z') || token->text[0] == '_';
+    const bool may =
+        card->letter == '.' ? after_equal && strcmp(card->token->text, ".model") == 0 : true;
+    if (token->kind != DALCS_TOKEN_WORD || !is_name || !may) {
+        return false;
+    }
+    if (k + 1 < card->n && (card->token[k + 1].kind == DALCS_TOKEN_EQUAL ||
+                            card->token[k + 1].kind == DALCS_TOKEN_OPEN)) {
+        return false;
+    }
+    return dalcs_scope_find_value(scope, token->text) != NULL;
+}
+
+static bool has_parameters(const struct dalcs_scope *scope) {
+    for (; scope != NULL; scope = scope->caller) {
+        if (scope->definition->n_slots > 0 || scope->n_extra > 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Does the card stay as it is? */
+static bool is_flat(struct dalcs_scope *scope, const struct dalcs_card *card) {
+    if (scope->caller != NULL || has_parameters(scope)) {
+        return false;
+    }
+    for (int k = 1; k < card->n; k++) {
+        if (card->token[k].kind == DALCS_TOKEN_EXPRESSION) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void rename_token(struct dalcs_language *language, struct dalcs_scope *scope,
+                         enum dalcs_role role, struct dalcs_token *token) {
+    const char *name = role == DALCS_ROLE_NODE     ? node_name(language, scope, token->text)
+                       : role == DALCS_ROLE_DEVICE ? flat_name(language, scope, token->text)
+                                                   : model_name(language, scope, token->text);
+    token->text = name != NULL ? name : token->text;
+}
+
+/* Cards that steer the run belong to the whole netlist. */
+static bool belongs_outside(const struct dalcs_card *card) {
+    static const char *const inside[] = {".model", ".ic",    ".save",   ".print",
+                                         ".plot",  ".probe", ".nodeset"};
+    for (size_t k = 0; k < sizeof inside / sizeof inside[0]; k++) {
+        if (strcmp(card->token->text, inside[k]) == 0) {
+            return false;
+        }
+    }
+    return card->letter == '.';
+}
+
+static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs_scope *scope,
+                                   struct dalcs_item *item) {
+    const struct dalcs_card *card = item->card;
+    if (is_flat(scope, card)) {
+        return emit(language, card);
+    }
+    if (scope->caller != NULL && belongs_outside(card)) {
+        dalcs_language_report(language, DALCS_ERROR, scope, card->token, NULL,
+                              "%s does not belong into a subcircuit", card->token->text);
+        return DALCS_OK;
+    }
+    struct dalcs_token *token = dalcs_arena_alloc(language->arena, (size_t)card->n, sizeof *token);
+    unsigned char few[64];
+    unsigned char *role =
+        card->n <= (int)sizeof few ? few : dalcs_arena_alloc(language->arena, (size_t)card->n, 1);
+    if (token == NULL || role == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    memcpy(token, card->token, (size_t)card->n * sizeof *token);
+    dalcs_roles(card, role);
+    const bool may_be_bare = has_parameters(scope);
+    for (int k = 0; k < card->n; k++) {
+        token[k].line = line_of(language, scope, token[k].line);
+        if (k == 0) {
+            if (card->letter != '.') {
+                rename_token(language, scope, DALCS_ROLE_DEVICE, token);
+            }
+        } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] != DALCS_ROLE_RAW) {
+            evaluate_token(language, scope, item, k, &token[k]);
+        } else if (token[k].kind == DALCS_TOKEN_WORD && role[k] != DALCS_ROLE_VALUE) {
+            rename_token(language, scope, (enum dalcs_role)role[k], &token[k]);
+        } else if (k == 1 && item->kind == DALCS_ITEM_MODEL) {
+            rename_token(language, scope, DALCS_ROLE_MODEL, &token[k]);
+        } else if (may_be_bare && is_parameter(scope, card, k)) {
+            evaluate_token(language, scope, item, k, &token[k]);
+        }
+    }
+    const struct dalcs_card copy = {token, card->n, card->letter};
+    return language->out_of_memory ? DALCS_E_NOMEM : emit(language, &copy);
+}
+
+/* ---- Calls ------------------------------------------------------------------------------------- */
+
+/* The parts of an X card. */
+struct call {
+    struct dalcs_language *language;
+    struct dalcs_scope *scope; /* the caller's */
+    struct dalcs_item *item;
+    int name; /* the token that names the subcircuit; 0: none */
+    int n_nodes;
+    int parameters; /* where they start */
+};
+
+static void fail(const struct call *call, const struct dalcs_token *token, const char *hint,
+                 const char *what) {
+    dalcs_language_report(call->language, DALCS_ERROR, call->scope, token, hint, "%s", what);
+    call->language->deck->hides_elements = true;
+}
+
+/* Nodes, then the name, then name=value; false when an error was reported. */
+static bool read_call(struct call *call) {
+    static const char usage[] = "a call is: Xname node ... subcircuit [name=value ...]";
+    const struct dalcs_card *card = call->item->card;
+    int k = 1;
+    for (; k < card->n && !dalcs_assignment_starts(card, k); k++) {
+        const struct dalcs_token *token = &card->token[k];
+        if (token->kind == DALCS_TOKEN_OPEN || token->kind == DALCS_TOKEN_CLOSE) {
+            continue;
+        }
+        if (token->kind != DALCS_TOKEN_WORD) {
+            call->language->deck->hides_elements = true;
+            if (token->kind != DALCS_TOKEN_BAD) {
+                fail(call, token, usage, "neither a node nor the name of a subcircuit");
+            }
+            return false;
+        }
+        if (dalcs_assignment_is_params(token)) {
+            break;
+        }
+        call->n_nodes += call->name > 0;
+        call->name = k;
+    }
+    call->parameters = k;
+    if (call->name == 0) {
+        dalcs_language_report_at(call->language, DALCS_ERROR, call->scope,
+                                 dalcs_token_end(&card->token[k - 1]), usage,
+                                 "the name of the subcircuit is missing");
+        call->language->deck->hides_elements = true;
+        return false;
+    }
+    return true;
+}
+
+static void report_unknown(const struct call *call) {
+    struct dalcs_language *language = call->language;
+    const struct dalcs_card *card = call->item->card;
+    const struct dalcs_token *name = &card->token[call->name];
+    struct dalcs_scope *owner;
+    const char *hint = NULL;
+    language->deck->hides_elements = true;
+    language->deck->has_errors = true;
+    if (language->netlist->misses_file || language->deck->hides_all) {
+        return; /* it may stand there */
+    }
+    for (int k = 1; k < call->name && hint == NULL; k++) {
+        if (card->token[k].kind == DALCS_TOKEN_WORD &&
+            dalcs_scope_find_subcircuit(call->scope, card->token[k].text, &owner) != NULL) {
+            hint = dalcs_language_text(language, "after the subcircuit '%s' write name=value",
+                                       card->token[k].text);
+        }
+    }
+    for (struct dalcs_scope *s = call->scope; s != NULL && hint == NULL; s = s->enclosing) {
+        hint = dalcs_language_suggest(language, &s->definition->subcircuits, name->text,
+                                      "subcircuits");
+    }
+    dalcs_language_report(language, DALCS_ERROR, call->scope, name,
+                          hint != NULL ? hint : "a subcircuit is: .subckt name port ... .ends",
+                          "there is no subcircuit '%s'", name->text);
+}
+
+/* "a b": the ports, for a message. */
+static const char *port_list(struct dalcs_language *language,
+                             const struct dalcs_definition *definition) {
+    const char *list = "";
+    for (int k = 0; k < definition->n_ports && k < 20 && list != NULL; k++) {
+        list = dalcs_language_text(language, "%s %s", list, definition->port[k]->text);
+    }
+    return list != NULL ? list : "";
+}
+
+static bool connect(const struct call *call, const struct dalcs_definition *definition,
+                    struct dalcs_scope *inner) {
+    struct dalcs_language *language = call->language;
+    const struct dalcs_card *card = call->item->card;
+    if (call->n_nodes != definition->n_ports) {
+        dalcs_language_report(
+            language, DALCS_ERROR, call->scope, &card->token[call->name],
+            dalcs_language_text(language, "%s: .subckt %s%s",
+                                dalcs_language_place(language, definition->name),
+                                definition->name->text, port_list(language, definition)),
+            "%d node%s for '%s', which has %d port%s", call->n_nodes, call->n_nodes == 1 ? "" : "s",
+            definition->name->text, definition->n_ports, definition->n_ports == 1 ? "" : "s");
+        language->deck->hides_elements = true;
+        return false;
+    }
+    inner->port = dalcs_arena_alloc(language->arena, (size_t)call->n_nodes, sizeof *inner->port);
+    if (inner->port == NULL) {
+        language->out_of_memory = true;
+        return false;
+    }
+    int n = 0;
+    for (int k = 1; k < call->name; k++) {
+        if (card->token[k].kind == DALCS_TOKEN_WORD) {
+            inner->port[n++] = node_name(language, call->scope, card->token[k].text);
+        }
+    }
+    return !language->out_of_memory;
+}
+
+/* The parameter `name` of the scope, or a new one that nothing declares. */
+static struct dalcs_value *parameter_of(struct dalcs_scope *inner, const struct dalcs_token *name) {
+    const int slot = dalcs_names_find(&inner->definition->parameters, name->text);
+    if (slot >= 0) {
+        return &inner->value[slot];
+    }
+    for (int k = 0; k < inner->n_extra; k++) {
+        if (strcmp(inner->extra[k].name->text, name->text) == 0) {
+            return &inner->extra[k];
+        }
+    }
+    return &inner->extra[inner->n_extra++];
+}
+
+static bool give_parameters(const struct call *call, struct dalcs_scope *inner) {
+    struct dalcs_language *language = call->language;
+    struct dalcs_item *item = call->item;
+    const struct dalcs_card *card = item->card;
+    int at = call->parameters;
+    int value_at;
+    if (at >= card->n) {
+        return true;
+    }
+    inner->extra =
+        dalcs_arena_alloc(language->arena, (size_t)(card->n - at) / 3 + 1, sizeof *inner->extra);
+    if (item->expression == NULL) {
+        item->expression =
+            dalcs_arena_alloc(language->arena, (size_t)card->n, sizeof *item->expression);
+    }
+    if (inner->extra == NULL || item->expression == NULL) {
+        language->out_of_memory = true;
+        return false;
+    }
+    while (at < card->n) {
+        const struct dalcs_token *name =
+            dalcs_assignment_next(language, call->scope, card, &at, &value_at);
+        if (name == NULL) {
+            language->deck->has_errors = true;
+            return false;
+        }
+        struct dalcs_value *value = parameter_of(inner, name);
+        if (value->is_given) {
+            dalcs_language_report(language, DALCS_ERROR, call->scope, name, NULL,
+                                  "'%s' is given twice", name->text);
+            return false;
+        }
+        *value = (struct dalcs_value){.name = name,
+                                      .token = &card->token[value_at],
+                                      .n_tokens = at - value_at,
+                                      .expression = &item->expression[value_at],
+                                      .where = call->scope,
+                                      .is_given = true};
+    }
+    return true;
+}
+
+/* Parameters that the call gives and nothing inside looks at. */
+static void check_use(const struct call *call, const struct dalcs_scope *inner) {
+    struct dalcs_language *language = call->language;
+    for (int k = 0; k < inner->n_extra; k++) {
+        const struct dalcs_value *extra = &inner->extra[k];
+        const char *name = extra->name->text;
+        if (extra->is_used) {
+            continue;
+        }
+        if (strcmp(name, "m") == 0) {
+            dalcs_language_report(language, DALCS_ERROR, call->scope, extra->name,
+                                  "write as many calls",
+                                  "multiplier 'm' of a subcircuit is not supported yet");
+            continue;
+        }
+        dalcs_language_report(
+            language, DALCS_WARNING, call->scope, extra->name,
+            dalcs_language_suggest(language, &inner->definition->parameters, name, "parameters"),
+            "'%s' has no parameter '%s': it is ignored", inner->definition->name->text, name);
+    }
+}
+
+/* Names the instance; *is_new is false when there is one of the name, an error. */
+static enum dalcs_status name_instance(const struct call *call, struct dalcs_scope *inner,
+                                       bool *is_new) {
+    struct dalcs_language *language = call->language;
+    const struct dalcs_token *x = call->item->card->token;
+    struct dalcs_origin *origin = dalcs_arena_alloc(language->arena, 1, sizeof *origin);
+    inner->name = flat_name(language, call->scope, x->text);
+    if (origin == NULL || inner->name == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    *origin = (struct dalcs_origin){inner->name, x->line->source->name, x->line->number,
+                                    call->scope->origin};
+    inner->origin = origin;
+    const int first = dalcs_names_find(&language->deck->instances, inner->name);
+    *is_new = first < 0;
+    if (first >= 0) {
+        const struct dalcs_origin *known = language->scope[first]->origin;
+        dalcs_language_report(language, DALCS_ERROR, call->scope, x, "give it another name",
+                              "there are two calls '%s', the first at %s:%d", inner->name,
+                              known->file, known->line);
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_grow(&language->scope, &language->scope_capacity, language->n_scopes + 1,
+                         sizeof(struct dalcs_scope *)));
+    DALCS_TRY(dalcs_names_add(&language->deck->instances, inner->name, (int)language->n_scopes));
+    language->scope[language->n_scopes++] = inner;
+    return DALCS_OK;
+}
+
+static enum dalcs_status expand_scope(struct dalcs_language *language, struct dalcs_scope *scope);
+
+static enum dalcs_status expand_call(struct dalcs_language *language, struct dalcs_scope *scope,
+                                     struct dalcs_item *item) {
+    struct call call = {.language = language, .scope = scope, .item = item};
+    struct dalcs_scope *owner = NULL;
+    if (!read_call(&call)) {
+        return DALCS_OK;
+    }
+    const struct dalcs_token *name = &item->card->token[call.name];
+    struct dalcs_definition *definition = dalcs_scope_find_subcircuit(scope, name->text, &owner);
+    if (definition == NULL) {
+        report_unknown(&call);
+        return DALCS_OK;
+    }
+    if (definition->is_open || language->depth >= DEEPEST) {
+        fail(&call, name, NULL,
+             definition->is_open ? "this subcircuit calls itself"
+                                 : "subcircuits call each other more than 200 deep");
+        return DALCS_OK;
+    }
+    struct dalcs_scope *inner = dalcs_scope_make(language, definition, scope, owner);
+    if (inner == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    bool is_new;
+    DALCS_TRY(name_instance(&call, inner, &is_new));
+    if (!is_new) {
+        return DALCS_OK;
+    }
+    if (!connect(&call, definition, inner) || !give_parameters(&call, inner)) {
+        language->deck->hides_elements = true;
+        return language->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
+    }
+    definition->is_open = true;
+    language->depth++;
+    DALCS_TRY(expand_scope(language, inner));
+    language->depth--;
+    definition->is_open = false;
+    check_use(&call, inner);
+    return DALCS_OK;
+}
+
+static bool is_too_large(struct dalcs_language *language, struct dalcs_scope *scope,
+                         const struct dalcs_item *item) {
+    const size_t most = language->netlist->most_cards > 0 ? language->netlist->most_cards
+                                                          : (size_t)DALCS_MOST_CARDS;
+    if (language->n_emitted++ < most || scope->caller == NULL) {
+        return false;
+    }
+    if (!language->too_large) {
+        language->too_large = true;
+        language->deck->hides_all = true;
+        dalcs_language_report(language, DALCS_ERROR, scope, item->card->token, NULL,
+                              "the subcircuits hold more than %zu cards", most);
+    }
+    return true;
+}
+
+static enum dalcs_status expand_scope(struct dalcs_language *language, struct dalcs_scope *scope) {
+    struct dalcs_definition *definition = scope->definition;
+    dalcs_scope_settle(language, scope);
+    for (size_t k = 0; k < definition->n_items; k++) {
+        struct dalcs_item *item = &definition->item[k];
+        if (!dalcs_scope_is_active(scope, (int)k)) {
+            continue;
+        }
+        if (is_too_large(language, scope, item)) {
+            return DALCS_OK;
+        }
+        if (item->kind == DALCS_ITEM_CALL) {
+            DALCS_TRY(expand_call(language, scope, item));
+        } else if (item->kind == DALCS_ITEM_CARD || item->kind == DALCS_ITEM_MODEL) {
+            DALCS_TRY(copy_card(language, scope, item));
+        }
+        if (language->out_of_memory) {
+            return DALCS_E_NOMEM;
+        }
+    }
+    return DALCS_OK;
+}
+
+/* ---- The whole netlist --------------------------------------------------------------------------- */
+
+enum dalcs_status dalcs_deck_expand(struct dalcs_deck *deck, const struct dalcs_netlist *netlist,
+                                    struct dalcs_diag *diag) {
+    deck->hides_all = netlist->misses_file;
+    if (!netlist->has_language) {
+        deck->card = netlist->card;
+        deck->n_cards = netlist->n_cards;
+        return DALCS_OK;
+    }
+    struct dalcs_language *language = dalcs_arena_alloc(&deck->arena, 1, sizeof *language);
+    if (language == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    deck->language = language;
+    language->deck = deck;
+    language->netlist = netlist;
+    language->diag = diag;
+    language->arena = &deck->arena;
+    DALCS_TRY(dalcs_definition_collect(language));
+    language->top = dalcs_scope_make(language, &language->root, NULL, NULL);
+    if (language->top == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    const enum dalcs_status status = expand_scope(language, language->top);
+    deck->card = deck->own;
+    return language->out_of_memory ? DALCS_E_NOMEM : status;
+}
+
+const char *dalcs_deck_port(const struct dalcs_deck *deck, const char *name) {
+    const char *dot = strrchr(name, '.');
+    char instance[256];
+    if (deck->language == NULL || dot == NULL || (size_t)(dot - name) >= sizeof instance) {
+        return NULL;
+    }
+    memcpy(instance, name, (size_t)(dot - name));
+    instance[dot - name] = '\0';
+    const int k = dalcs_names_find(&deck->instances, instance);
+    if (k < 0) {
+        return NULL;
+    }
+    const struct dalcs_scope *scope = deck->language->scope[k];
+    const int port = dalcs_names_find(&scope->definition->port_index, dot + 1);
+    return port >= 0 && scope->port != NULL ? scope->port[port] : NULL;
+}
+
+void dalcs_deck_finish(struct dalcs_deck *deck) {
+    struct dalcs_language *language = deck->language;
+    if (language != NULL) {
+        dalcs_definition_finish(&language->root);
+        dalcs_names_finish(&language->globals);
+        free(language->stack);
+        free(language->sought);
+        free(language->scope);
+    }
+    dalcs_names_finish(&deck->instances);
+    free(deck->own);
+    dalcs_arena_finish(&deck->arena);
+    *deck = (struct dalcs_deck){0};
+}

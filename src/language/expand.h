@@ -1,0 +1,38 @@
+/* expand.h - cards to flat cards: parameters, subcircuits and conditions are gone afterwards.
+ *
+ *     text -> cards (netlist/) -> flat cards (here) -> devices (circuit/)
+ *
+ * An element of a subcircuit is copied for each X: its name becomes x1.r1, a node of its own x1.n, a
+ * port the node outside, a local model x1.name; each expression becomes a NUMBER. The copies keep
+ * their places in the text, and their lines say by which calls they came. doc/netlist.md has the
+ * rules for users. */
+#ifndef DALCS_EXPAND_H
+#define DALCS_EXPAND_H
+
+#include "names.h"
+#include "netlist.h"
+
+/* Zero-initialise, expand, then finish. Borrows from the netlist. */
+struct dalcs_deck {
+    const struct dalcs_card *card; /* those of the netlist when nothing was to be expanded */
+    size_t n_cards;
+    bool has_errors; /* some were reported; they may hide others: */
+    bool hides_elements;
+    bool hides_all;
+    struct dalcs_language *language; /* NULL: nothing was expanded */
+    struct dalcs_arena arena;
+    struct dalcs_card *own; /* heap */
+    size_t own_capacity;
+    struct dalcs_names instances; /* "x1.x2" */
+};
+
+/* Errors go to diag and set has_errors. Fails with DALCS_E_NOMEM only. */
+enum dalcs_status dalcs_deck_expand(struct dalcs_deck *deck, const struct dalcs_netlist *netlist,
+                                    struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
+/* The node outside that x1.a stands for, when a is a port of x1; else NULL. */
+const char *dalcs_deck_port(const struct dalcs_deck *deck, const char *name);
+
+void dalcs_deck_finish(struct dalcs_deck *deck);
+
+#endif

@@ -1,0 +1,201 @@
+/* functions.c - the functions and constants that expressions have.
+ *
+ * Where dialects differ, what they agree on is taken and the rest is left out; doc/netlist.md lists
+ * the differences. A result that is not finite is reported by the caller. */
+#include "expression.h"
+
+#include <math.h>
+#include <string.h>
+
+static double square(double x) {
+    return x * x;
+}
+
+static double sign(double x) {
+    return (double)((x > 0) - (x < 0));
+}
+
+static double step(double x) {
+    return x > 0 ? 1 : 0;
+}
+
+static double ramp(double x) {
+    return x > 0 ? x : 0;
+}
+
+static double buffer(double x) {
+    return x > 0.5 ? 1 : 0;
+}
+
+static double invert(double x) {
+    return x > 0.5 ? 0 : 1;
+}
+
+/* The magnitude to a power, as pwr() in every dialect. */
+static double magnitude_power(double x, double y) {
+    return pow(fabs(x), y);
+}
+
+static double signed_power(double x, double y) {
+    return copysign(pow(fabs(x), y), x);
+}
+
+static double least(const double *x, int n) {
+    double value = x[0];
+    for (int k = 1; k < n; k++) {
+        value = x[k] < value ? x[k] : value;
+    }
+    return value;
+}
+
+static double largest(const double *x, int n) {
+    double value = x[0];
+    for (int k = 1; k < n; k++) {
+        value = x[k] > value ? x[k] : value;
+    }
+    return value;
+}
+
+/* limit(x, a, b): x between a and b, in either order. */
+static double limit(const double *x, int n) {
+    (void)n;
+    const double low = x[1] < x[2] ? x[1] : x[2];
+    const double high = x[1] < x[2] ? x[2] : x[1];
+    return x[0] < low ? low : x[0] > high ? high : x[0];
+}
+
+/* table(x, x1, y1, x2, y2, ...): straight lines, constant outside. NAN: the x do not ascend. */
+static double table(const double *x, int n) {
+    const double *point = x + 1;
+    const int n_points = (n - 1) / 2;
+    for (int k = 1; k < n_points; k++) {
+        if (!(point[2 * k] > point[2 * k - 2])) {
+            return (double)NAN;
+        }
+    }
+    if (n % 2 == 0 || n_points == 0) {
+        return (double)NAN;
+    }
+    if (x[0] <= point[0]) {
+        return point[1];
+    }
+    for (int k = 1; k < n_points; k++) {
+        const double *a = point + 2 * k - 2;
+        if (x[0] <= a[2]) {
+            return a[1] + (a[3] - a[1]) * ((x[0] - a[0]) / (a[2] - a[0]));
+        }
+    }
+    return point[2 * n_points - 1];
+}
+
+static const struct dalcs_function FUNCTIONS[] = {
+    {"sin", 1, 1, sin, NULL, NULL},
+    {"cos", 1, 1, cos, NULL, NULL},
+    {"tan", 1, 1, tan, NULL, NULL},
+    {"asin", 1, 1, asin, NULL, NULL},
+    {"acos", 1, 1, acos, NULL, NULL},
+    {"atan", 1, 1, atan, NULL, NULL},
+    {"arcsin", 1, 1, asin, NULL, NULL},
+    {"arccos", 1, 1, acos, NULL, NULL},
+    {"arctan", 1, 1, atan, NULL, NULL},
+    {"atan2", 2, 2, NULL, atan2, NULL},
+    {"sinh", 1, 1, sinh, NULL, NULL},
+    {"cosh", 1, 1, cosh, NULL, NULL},
+    {"tanh", 1, 1, tanh, NULL, NULL},
+    {"asinh", 1, 1, asinh, NULL, NULL},
+    {"acosh", 1, 1, acosh, NULL, NULL},
+    {"atanh", 1, 1, atanh, NULL, NULL},
+    {"sqrt", 1, 1, sqrt, NULL, NULL},
+    {"sqr", 1, 1, square, NULL, NULL},
+    {"square", 1, 1, square, NULL, NULL},
+    {"cbrt", 1, 1, cbrt, NULL, NULL},
+    {"hypot", 2, 2, NULL, hypot, NULL},
+    {"exp", 1, 1, exp, NULL, NULL},
+    {"ln", 1, 1, log, NULL, NULL},
+    {"log", 1, 1, log, NULL, NULL},
+    {"log10", 1, 1, log10, NULL, NULL},
+    {"abs", 1, 1, fabs, NULL, NULL},
+    {"sgn", 1, 1, sign, NULL, NULL},
+    {"int", 1, 1, trunc, NULL, NULL},
+    {"floor", 1, 1, floor, NULL, NULL},
+    {"ceil", 1, 1, ceil, NULL, NULL},
+    {"nint", 1, 1, rint, NULL, NULL},
+    {"round", 1, 1, round, NULL, NULL},
+    {"fmod", 2, 2, NULL, fmod, NULL},
+    {"pow", 2, 2, NULL, pow, NULL},
+    {"pwr", 2, 2, NULL, magnitude_power, NULL},
+    {"pwrs", 2, 2, NULL, signed_power, NULL},
+    {"min", 1, 1000, NULL, NULL, least},
+    {"max", 1, 1000, NULL, NULL, largest},
+    {"limit", 3, 3, NULL, NULL, limit},
+    {"u", 1, 1, step, NULL, NULL},
+    {"stp", 1, 1, step, NULL, NULL},
+    {"uramp", 1, 1, ramp, NULL, NULL},
+    {"buf", 1, 1, buffer, NULL, NULL},
+    {"inv", 1, 1, invert, NULL, NULL},
+    {"table", 3, 1001, NULL, NULL, table},
+    {"if", 3, 3, NULL, NULL, NULL}, /* these two jump */
+    {"ternary_fcn", 3, 3, NULL, NULL, NULL},
+};
+
+enum { N_FUNCTIONS = sizeof FUNCTIONS / sizeof FUNCTIONS[0] };
+
+const struct dalcs_function *dalcs_function_find(const char *name) {
+    for (int k = 0; k < N_FUNCTIONS; k++) {
+        if (strcmp(FUNCTIONS[k].name, name) == 0) {
+            return &FUNCTIONS[k];
+        }
+    }
+    return NULL;
+}
+
+const char *dalcs_function_nearest(const char *name) {
+    const char *names[N_FUNCTIONS];
+    for (int k = 0; k < N_FUNCTIONS; k++) {
+        names[k] = FUNCTIONS[k].name;
+    }
+    return dalcs_names_nearest_of(names, N_FUNCTIONS, name);
+}
+
+const char *dalcs_function_refusal(const char *name) {
+    static const char *const random[] = {"gauss", "agauss", "unif",   "aunif", "mc",
+                                         "flat",  "rand",   "random", "rnd",   "white"};
+    static const char *const signal[] = {"v", "i", "ddt", "idt", "sdt", "delay", "time"};
+    for (size_t k = 0; k < sizeof random / sizeof random[0]; k++) {
+        if (strcmp(name, random[k]) == 0) {
+            return "random values are not supported: write the number";
+        }
+    }
+    for (size_t k = 0; k < sizeof signal / sizeof signal[0]; k++) {
+        if (strcmp(name, signal[k]) == 0) {
+            return "an expression here is a number that is known before the run";
+        }
+    }
+    return NULL;
+}
+
+bool dalcs_constant_find(const char *name, double *value) {
+    static const struct {
+        const char *name;
+        double value;
+    } constants[] = {
+        {"pi", 3.14159265358979323846},
+        {"e", 2.71828182845904523536},
+        {"temper", 27}, /* degrees: ideal elements do not warm up */
+        {"temp", 27},
+        {"true", 1},
+        {"false", 0},
+        {"boltz", 1.380649e-23}, /* SI 2019, exact */
+        {"echarge", 1.602176634e-19},
+        {"planck", 6.62607015e-34},
+        {"kelvin", -273.15},
+    };
+
+    for (size_t k = 0; k < sizeof constants / sizeof constants[0]; k++) {
+        if (strcmp(constants[k].name, name) == 0) {
+            *value = constants[k].value;
+            return true;
+        }
+    }
+    return false;
+}

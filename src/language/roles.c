@@ -1,0 +1,179 @@
+/* roles.c - which words of a card are names of nodes, elements or models.
+ *
+ * This is all that the expansion of subcircuits knows about elements: what to rename. What is wrong
+ * with a card is said later, by the reader of its family. */
+#include "language.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The words after an element's name, by its first letter: nodes, then elements, then a model. */
+struct shape {
+    char letter;
+    int n_nodes;
+    int n_devices;
+    bool has_model;
+};
+
+static const struct shape *shape_of(char letter) {
+    static const struct shape shapes[] = {
+        {'r', 2, 0, false}, {'l', 2, 0, false}, {'c', 2, 0, false}, {'v', 2, 0, false},
+        {'i', 2, 0, false}, {'e', 4, 0, false}, {'g', 4, 0, false}, {'f', 2, 1, false},
+        {'h', 2, 1, false}, {'d', 2, 0, true},  {'s', 4, 0, true},  {'w', 2, 1, true},
+        {'b', 2, 0, false}, {'t', 4, 0, false}, {'q', 3, 0, true},  {'j', 3, 0, true},
+        {'m', 4, 0, true},  {'z', 3, 0, true},
+    };
+    for (size_t k = 0; k < sizeof shapes / sizeof shapes[0]; k++) {
+        if (shapes[k].letter == letter) {
+            return &shapes[k];
+        }
+    }
+    return NULL;
+}
+
+static bool is_word(const struct dalcs_token *token, const char *word) {
+    return token->kind == DALCS_TOKEN_WORD && strcmp(token->text, word) == 0;
+}
+
+/* POLY, VALUE= and the like: the controlling nodes of E and G are elsewhere. */
+static bool is_form(const struct dalcs_token *token) {
+    static const char *const forms[] = {"poly", "value", "table", "laplace",
+                                        "freq", "vol",   "cur",   "chebyshev"};
+    for (size_t k = 0; k < sizeof forms / sizeof forms[0]; k++) {
+        if (is_word(token, forms[k])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool starts_number(const char *text) {
+    text += *text == '+' || *text == '-';
+    text += *text == '.';
+    return *text >= '0' && *text <= '9';
+}
+
+/* K1 L1 L2 ... k: coils up to the last word or the first number. */
+static void coupling_roles(const struct dalcs_card *card, unsigned char *role) {
+    for (int k = 1; k < card->n - 1; k++) {
+        const struct dalcs_token *token = &card->token[k];
+        if (token->kind != DALCS_TOKEN_WORD || starts_number(token->text)) {
+            return;
+        }
+        role[k] = DALCS_ROLE_DEVICE;
+    }
+}
+
+/* ... POLY(n) and what controls it: 2 n nodes for E and G, n elements for F and H. The words before
+ * POLY have their roles. */
+static void poly_roles(const struct dalcs_card *card, int poly, unsigned char *role) {
+    const struct dalcs_token *token = card->token;
+    const bool by_voltage = card->letter == 'e' || card->letter == 'g';
+    int k = poly + 1;
+    k += k < card->n && token[k].kind == DALCS_TOKEN_OPEN;
+    long n = k < card->n && token[k].kind == DALCS_TOKEN_WORD ? strtol(token[k].text, NULL, 10) : 0;
+    k++;
+    k += k < card->n && token[k].kind == DALCS_TOKEN_CLOSE;
+    n = n < card->n ? n : card->n;
+    for (n = by_voltage ? 2 * n : n; k < card->n && n > 0; k++) {
+        if (token[k].kind == DALCS_TOKEN_WORD) {
+            role[k] = by_voltage ? DALCS_ROLE_NODE : DALCS_ROLE_DEVICE;
+            n--;
+        }
+    }
+}
+
+/* XSPICE: nodes, types such as %v, parentheses and brackets; the last word is the model. */
+static void block_roles(const struct dalcs_card *card, unsigned char *role) {
+    int last = 0;
+    for (int k = 1; k < card->n; k++) {
+        if (card->token[k].kind == DALCS_TOKEN_WORD && card->token[k].text[0] != '%') {
+            role[k] = DALCS_ROLE_NODE;
+            last = k;
+        }
+    }
+    role[last] = DALCS_ROLE_MODEL;
+}
+
+static void element_roles(const struct dalcs_card *card, const struct shape *shape,
+                          unsigned char *role) {
+    const struct dalcs_token *token = card->token;
+    int n_nodes = shape->n_nodes;
+    int n_devices = shape->n_devices;
+    bool has_model = shape->has_model;
+    for (int k = 1; k < card->n; k++) {
+        if (token[k].kind != DALCS_TOKEN_WORD) {
+            continue;
+        }
+        const bool is_parameter = k + 1 < card->n && token[k + 1].kind == DALCS_TOKEN_EQUAL;
+        const bool is_controlled = strchr("efgh", shape->letter) != NULL;
+        const int n_controls = shape->letter == 'e' || shape->letter == 'g' ? 2 : 0;
+        if (is_controlled && n_nodes == n_controls && is_form(&token[k])) {
+            if (is_word(&token[k], "poly")) {
+                poly_roles(card, k, role);
+            }
+            return;
+        }
+        if (n_nodes > 0) {
+            role[k] = DALCS_ROLE_NODE;
+            n_nodes--;
+        } else if (is_parameter) {
+            return;
+        } else if (n_devices > 0) {
+            role[k] = DALCS_ROLE_DEVICE;
+            n_devices--;
+        } else if (has_model) {
+            role[k] = DALCS_ROLE_MODEL;
+            return;
+        } else {
+            return;
+        }
+    }
+}
+
+/* Behavioural sources: their formulas are of voltages and currents. */
+static void raw_roles(const struct dalcs_card *card, unsigned char *role) {
+    for (int k = 1; k < card->n; k++) {
+        const bool is_formula = card->letter == 'b' ||
+                                (k >= 2 && card->token[k - 1].kind == DALCS_TOKEN_EQUAL &&
+                                 is_form(&card->token[k - 2])) ||
+                                is_form(&card->token[k - 1]);
+        if (card->token[k].kind == DALCS_TOKEN_EXPRESSION && is_formula) {
+            role[k] = DALCS_ROLE_RAW;
+        }
+    }
+}
+
+/* v(a), v(a,b) and i(x) on .ic, .save and the like. */
+static void signal_roles(const struct dalcs_card *card, unsigned char *role) {
+    enum dalcs_role inside = DALCS_ROLE_VALUE;
+    for (int k = 1; k < card->n; k++) {
+        const struct dalcs_token *token = &card->token[k];
+        if (token->kind == DALCS_TOKEN_OPEN) {
+            inside = is_word(token - 1, "v")   ? DALCS_ROLE_NODE
+                     : is_word(token - 1, "i") ? DALCS_ROLE_DEVICE
+                                               : DALCS_ROLE_VALUE;
+        } else if (token->kind == DALCS_TOKEN_CLOSE) {
+            inside = DALCS_ROLE_VALUE;
+        } else if (token->kind == DALCS_TOKEN_WORD) {
+            role[k] = (unsigned char)inside;
+        }
+    }
+}
+
+void dalcs_roles(const struct dalcs_card *card, unsigned char *role) {
+    memset(role, DALCS_ROLE_VALUE, (size_t)card->n);
+    const struct shape *shape = shape_of(card->letter);
+    if (shape != NULL) {
+        element_roles(card, shape, role);
+        if (strchr("beg", card->letter) != NULL) {
+            raw_roles(card, role);
+        }
+    } else if (card->letter == 'a') {
+        block_roles(card, role);
+    } else if (card->letter == 'k') {
+        coupling_roles(card, role);
+    } else if (card->letter == '.' && strcmp(card->token->text, ".model") != 0) {
+        signal_roles(card, role);
+    }
+}

@@ -1,0 +1,80 @@
+/* encoding.c - UTF-16 to UTF-8. */
+#include "encoding.h"
+
+#include <string.h>
+
+/* How UTF-16 text starts; no byte order mark: two characters of ASCII. */
+static bool is_utf16(const unsigned char *p, size_t n, bool *little, size_t *mark) {
+    if (n < 2) {
+        return false;
+    }
+    *mark = 2;
+    *little = p[0] == 0xFF && p[1] == 0xFE;
+    if (*little || (p[0] == 0xFE && p[1] == 0xFF)) {
+        return true;
+    }
+    *mark = 0;
+    if (n < 4) {
+        return false;
+    }
+    *little = p[0] != 0 && p[1] == 0 && p[2] != 0 && p[3] == 0;
+    return *little || (p[0] == 0 && p[1] != 0 && p[2] == 0 && p[3] != 0);
+}
+
+static unsigned unit_at(const unsigned char *p, bool little) {
+    return little ? p[0] | (unsigned)p[1] << 8 : (unsigned)p[0] << 8 | p[1];
+}
+
+/* Writes a code point; the bytes written. */
+static size_t put(char *to, unsigned code) {
+    if (code < 0x80) {
+        to[0] = (char)code;
+        return 1;
+    }
+    const size_t n = code < 0x800 ? 2 : code < 0x10000 ? 3 : 4;
+    static const unsigned lead[] = {0, 0, 0xC0, 0xE0, 0xF0};
+    for (size_t k = n - 1; k > 0; k--) {
+        to[k] = (char)(0x80U | (code & 0x3FU));
+        code >>= 6;
+    }
+    to[0] = (char)(lead[n] | code);
+    return n;
+}
+
+enum dalcs_status dalcs_encoding_to_utf8(struct dalcs_arena *arena, const char **text,
+                                         size_t *length) {
+    enum { NO_CHARACTER = 0xFF };
+
+    const unsigned char *p = (const unsigned char *)*text;
+    bool little;
+    size_t k;
+    if (!is_utf16(p, *length, &little, &k)) {
+        return DALCS_OK;
+    }
+    /* A unit of two bytes takes three at most. */
+    char *utf8 = dalcs_arena_alloc(arena, *length + *length / 2 + 4, 1);
+    if (utf8 == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    size_t n = 0;
+    for (; k + 1 < *length; k += 2) {
+        unsigned code = unit_at(p + k, little);
+        const bool high = code >= 0xD800 && code < 0xDC00;
+        const unsigned low = high && k + 3 < *length ? unit_at(p + k + 2, little) : 0;
+        if (low >= 0xDC00 && low < 0xE000) {
+            code = 0x10000 + ((code - 0xD800) << 10) + (low - 0xDC00);
+            k += 2;
+        }
+        if (code >= 0xD800 && code < 0xE000) {
+            utf8[n++] = (char)NO_CHARACTER;
+        } else {
+            n += put(utf8 + n, code);
+        }
+    }
+    if (k < *length) {
+        utf8[n++] = (char)NO_CHARACTER; /* half a unit */
+    }
+    *text = utf8;
+    *length = n;
+    return DALCS_OK;
+}
