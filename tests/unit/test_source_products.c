@@ -80,8 +80,9 @@ END_TEST
 
 /* A ramp with a decay so slow that it is nearly constant. */
 START_TEST(test_slow) {
-    const struct dalcs_stimulus ramp = {.kind = DALCS_STIMULUS_PWL,
-                                        .u.pwl = {2, (double[]){0, 1}, (double[]){0, 1}}};
+    const struct dalcs_stimulus ramp = {
+        .kind = DALCS_STIMULUS_PWL,
+        .u.pwl = {.n = 2, .t = (double[]){0, 1}, .v = (double[]){0, 1}}};
     const struct dalcs_stimulus slow = {.kind = DALCS_STIMULUS_EXP,
                                         .u.exponential = {1.0, 0.0, 0.0, 1e9, INFINITY, 1.0}};
     const struct dalcs_stimulus *const source[] = {&ramp, &slow};
