@@ -92,6 +92,33 @@ Fv 0 v Vs 1
 """ + MODEL + ".tran 2m 4 uic\n"
 
 
+# No jump: 8 V within 1 ns, through the threshold of D2 at 3/8 of it. C0 follows through D0.
+EDGE = """an edge of 1 ns into a capacitor
+V1 1 0 PULSE(-3 5 0.1m 1n 1u 0.2m 0.45m)
+R2 2 0 1.5
+R3 3 0 20
+C0 2 3 3u
+D0 2 0 DI
+D2 1 3 DI
+""" + MODEL + ".tran 1u 0.2m\n"
+
+# Not passive, and open but for one diode: the mode is singular, and only 1 mA of I6 flows.
+OPEN = """a singular mode that states contradict
+V1 1 2 DC 5
+E0 0 1 0 3 -1.74
+R1 4 2 4.521
+S2 2 5 ctl 0 SW
+R3 5 4 2972
+C4 0 2 3.951u
+D5 5 2 DO
+I6 1 0 1m
+D7 3 0 DI
+Vctl ctl 0 PULSE(0 5 0.12m 1n 1n 0.1m 0.25m)
+.model DO D(Ron=0.01 Roff=1meg)
+.model SW SW(vt=2.5 vh=0.5 ron=0.01 roff=1meg)
+""" + MODEL + ".tran 1u 0.2m\n"
+
+
 class Jumps:
     def __init__(self, program, method):
         self.program = program
@@ -178,9 +205,20 @@ class Jumps:
                 last = result.column(signal)[-1]
                 self.check.close(last, wanted, 1e-9, f"{signal} at rest, tolerance {tolerance}")
 
+    def edge(self):
+        result = self.run(EDGE)
+        self.check.check(result.report["jumps"] == [], f"{result.report['jumps']}")
+        if self.method != "euler":
+            self.check.close(result.at("v(3)", 101e-6), 5.0, 1e-6, "v(3) behind the edge")
+
+    def open(self):
+        result = self.run(OPEN)
+        for signal, wanted in (("i(v1)", 0.0), ("i(e0)", 1e-3)):
+            self.check.close(result.column(signal)[-1], wanted, 1e-6, f"{signal} of an open mode")
+
     def all(self):
         for case in (self.source, self.interruption, self.no_jump, self.beside, self.many,
-                     self.doubler, self.derivative, self.impact):
+                     self.doubler, self.derivative, self.impact, self.edge, self.open):
             case()
         return self.check.finish()
 
