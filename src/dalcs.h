@@ -284,9 +284,9 @@ struct dalcs_report {
 
     struct {
         bool present;
-        double time; /* s */
-        const char
-            *kind; /* "loop", "cutset", or "mode": no mode of a circuit that is not passive */
+        double time;      /* s */
+        const char *kind; /* "loop", "cutset", "mode": no mode of a circuit that is not passive, or
+                             "derivative": states would jump by the derivative of an impulse */
         size_t n_elements;
         const char *const *element; /* a loop's in its order, from the source that drives on */
         const char *because;        /* the sentence of the message */

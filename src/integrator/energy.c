@@ -101,15 +101,6 @@ static void enter(struct dalcs_energy *energy, enum dalcs_power_account account,
     energy->turnover += fabs(joule);
 }
 
-/* 1/2 x' storage x */
-static double stored(const struct dalcs_system *s, const double *x) {
-    double sum = 0.0;
-    for (int i = 0; i < s->n_x; i++) {
-        sum += 0.5 * x[i] * dalcs_csr_row_dot(&s->storage, i, x);
-    }
-    return sum;
-}
-
 static inline double larger(double a, double b) {
     return a > b ? a : b;
 }
@@ -130,7 +121,7 @@ static void enter_swing(struct dalcs_energy *energy, const struct dalcs_energy_p
 }
 
 void dalcs_energy_start(struct dalcs_energy *energy, int k, const double *x) {
-    energy->part[k].stored_at_start = stored(energy->part[k].system, x);
+    energy->part[k].stored_at_start = dalcs_euler_stored_energy(energy->part[k].system, x);
 }
 
 static double difference(const double *y, const int *column) {
@@ -173,7 +164,7 @@ void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, cons
 void dalcs_energy_move(struct dalcs_energy *energy, const struct dalcs_radau_part *part,
                        const double *after) {
     const struct dalcs_system *s = part->component->system;
-    double change = stored(s, after) - stored(s, part->x);
+    double change = dalcs_euler_stored_energy(s, after) - dalcs_euler_stored_energy(s, part->x);
     energy->method -= change;
     energy->missed += fabs(change);
     energy->turnover += fabs(change);
@@ -525,7 +516,8 @@ static enum dalcs_status close_radau(struct dalcs_energy *energy, struct dalcs_r
         memcpy(radau->after, radau->x, (size_t)part->system->n_x * sizeof(double));
         dalcs_step_states(radau, radau->end, radau->x);
         dalcs_energy_segment(energy, radau, radau->after);
-        energy->stored_change += stored(part->system, radau->x) - part->stored_at_start;
+        energy->stored_change +=
+            dalcs_euler_stored_energy(part->system, radau->x) - part->stored_at_start;
         largest[0] = radau->unit_scale[0];
         largest[1] = radau->unit_scale[1];
     }
@@ -538,7 +530,7 @@ static void close_euler(struct dalcs_energy *energy, int k, const struct dalcs_c
     if (c->is_static) { /* it took no steps */
         dalcs_energy_step(energy, k, c->y, c->y, c->u + c->system->n_x, stop);
     }
-    energy->stored_change += stored(part->system, c->u) - part->stored_at_start;
+    energy->stored_change += dalcs_euler_stored_energy(part->system, c->u) - part->stored_at_start;
     for (int i = 0; i < dalcs_system_n_columns(part->system); i++) {
         int unit = part->system->column_is_current[i];
         largest[unit] = larger(largest[unit], part->largest[i]);

@@ -157,15 +157,10 @@ double dalcs_euler_jump_energy(const struct dalcs_system *s, const double *befor
     return energy;
 }
 
-/* 1/2 after' storage after - 1/2 before' storage before, J. */
-static double stored_change(const struct dalcs_system *s, const double *before,
-                            const double *after) {
+double dalcs_euler_stored_energy(const struct dalcs_system *s, const double *x) {
     double energy = 0.0;
     for (int i = 0; i < s->n_x; i++) {
-        for (int k = s->storage.p[i]; k < s->storage.p[i + 1]; k++) {
-            int j = s->storage.j[k];
-            energy += 0.5 * s->storage.x[k] * (after[i] * after[j] - before[i] * before[j]);
-        }
+        energy += 0.5 * x[i] * dalcs_csr_row_dot(&s->storage, i, x);
     }
     return energy;
 }
@@ -173,8 +168,8 @@ static double stored_change(const struct dalcs_system *s, const double *before,
 /* What a jump cost, J: stored, lost, and in the thresholds that charge has passed. */
 static double cost_of(const struct dalcs_system *s, const double *before,
                       const struct dalcs_jump_answer *jump) {
-    double cost =
-        stored_change(s, before, jump->after) + dalcs_euler_jump_energy(s, before, jump->after);
+    double cost = dalcs_euler_stored_energy(s, jump->after) - dalcs_euler_stored_energy(s, before) +
+                  dalcs_euler_jump_energy(s, before, jump->after);
     for (int d = 0; d < s->n_pairs; d++) {
         for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
             cost += s->F.j[k] == 0 ? s->F.x[k] * jump->charge[d] : 0.0;
@@ -211,20 +206,20 @@ enum dalcs_status dalcs_euler_refuse_derivative(struct dalcs_euler *e, int k, co
 enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double time,
                                           const double *before) {
     const struct dalcs_system *s = e->component[k].system;
-    if (e->on_jump == NULL) {
-        return DALCS_OK;
+    const struct dalcs_euler_jump jump = {
+        .time = time,
+        .system = k,
+        .before = before,
+        .after = e->jump.after,
+        .charge = e->jump.charge,
+        .flux = e->jump.flux,
+        .energy_lost = dalcs_euler_jump_energy(s, before, e->jump.after),
+        .source_work = e->jump.source_work,
+    };
+    if (e->energy != NULL) {
+        dalcs_energy_jump(e->energy, &jump);
     }
-    return e->on_jump(e->jump_user,
-                      &(struct dalcs_euler_jump){
-                          .time = time,
-                          .system = k,
-                          .before = before,
-                          .after = e->jump.after,
-                          .charge = e->jump.charge,
-                          .flux = e->jump.flux,
-                          .energy_lost = dalcs_euler_jump_energy(s, before, e->jump.after),
-                          .source_work = e->jump.source_work,
-                      });
+    return e->on_jump != NULL ? e->on_jump(e->jump_user, &jump) : DALCS_OK;
 }
 
 /* What two micro-steps, y of length h and the component's scratch of half of it, say of a jump. */

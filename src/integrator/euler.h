@@ -90,7 +90,7 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) DALCS_MUST_CHECK;
 /* At a jump of the sources: y becomes the values just after e->t; the state stays. */
 enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) DALCS_MUST_CHECK;
 
-/* Hands a jump of component k, from `before` to e->jump.after, to on_jump. */
+/* Hands a jump of component k, from `before` to e->jump.after, to the ledger and to on_jump. */
 enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double time,
                                           const double *before) DALCS_MUST_CHECK;
 
@@ -106,6 +106,9 @@ enum dalcs_status dalcs_euler_refuse_derivative(struct dalcs_euler *e, int k, co
                                                 const double *y2) DALCS_MUST_CHECK;
 /* Calls on_open if the last answer of component k, now in its y, may be one of several. */
 enum dalcs_status dalcs_euler_tell_open(struct dalcs_euler *e, int k) DALCS_MUST_CHECK;
+
+/* 1/2 x' storage x for states [n_x], J. */
+double dalcs_euler_stored_energy(const struct dalcs_system *s, const double *x);
 
 /* 1/2 d' storage d for d = after - before, states [n_x]: what a jump dissipates, J. */
 double dalcs_euler_jump_energy(const struct dalcs_system *s, const double *before,

@@ -22,7 +22,7 @@ const char *dalcs_explain_row(struct dalcs_session *s, const struct dalcs_euler 
                               d->row[where].element);
 }
 
-static const struct dalcs_location *place_of(const struct dalcs_circuit *c, const char *element) {
+const struct dalcs_location *dalcs_place_of(const struct dalcs_circuit *c, const char *element) {
     for (int i = 0; i < c->n_devices; i++) {
         if (strcmp(c->device[i].name, element) == 0) {
             return &c->device[i].where;
@@ -130,7 +130,7 @@ static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e,
     dalcs_refusal_explain(&x);
     const struct dalcs_location *where = NULL;
     for (size_t k = 0; k < x.n_elements && where == NULL; k++) {
-        where = place_of(&s->circuit, x.element[k]);
+        where = dalcs_place_of(&s->circuit, x.element[k]);
     }
     dalcs_diag_add(&s->diag, DALCS_ERROR, where, hint, "%s no solution exists: %s", when,
                    x.because);

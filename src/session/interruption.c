@@ -5,7 +5,6 @@
 #include "session_internal.h"
 
 #include <math.h>
-#include <string.h>
 
 /* A flux below this part of the largest is rounding, and so is a change of a current. */
 static const double noticeable = 1e-9;
@@ -37,19 +36,14 @@ static const struct dalcs_state *interrupted_coil(const struct dalcs_network *n,
 
 static enum dalcs_status warn(struct dalcs_run *r, const struct dalcs_euler_jump *j,
                               const char *name, double flux) {
-    const struct dalcs_circuit *c = &r->s->circuit;
     double before = 0.0;
     double after = 0.0;
     const struct dalcs_state *coil = interrupted_coil(&r->s->network, j, &before, &after);
     if (coil == NULL || dalcs_names_find(&r->interrupting, name) >= 0) {
         return DALCS_OK;
     }
-    const struct dalcs_location *where = NULL;
-    for (int i = 0; i < c->n_devices && where == NULL; i++) {
-        where = strcmp(c->device[i].name, name) == 0 ? &c->device[i].where : NULL;
-    }
     dalcs_diag_add(
-        &r->s->diag, DALCS_WARNING, where,
+        &r->s->diag, DALCS_WARNING, dalcs_place_of(&r->s->circuit, name),
         "a diode or a capacitor would let the current go on, Roff= would bound the voltage",
         "opening at t = %.9g s, '%s' interrupts the current of '%s': it jumps from %.6g A "
         "to %.6g A with a voltage impulse of %.6g Wb, and %.6g J are lost",

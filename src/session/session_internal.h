@@ -69,6 +69,10 @@ enum dalcs_status dalcs_run_begin_plot(struct dalcs_run *r,
 /* The counts of one engine run into the report. */
 void dalcs_run_add_work(struct dalcs_run *r, const struct dalcs_euler *e);
 
+/* Where the netlist has an element; NULL when it is no device. */
+const struct dalcs_location *dalcs_place_of(const struct dalcs_circuit *circuit,
+                                            const char *element);
+
 /* "KCL at out", "branch v1", "complementarity of d1"; NULL when out of memory. `where` is a row, or a
  * pair behind them, of a system of e's network, which need not be the session's. */
 const char *dalcs_explain_row(struct dalcs_session *session, const struct dalcs_euler *e,

@@ -272,18 +272,6 @@ static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau)
 
 /* ---- The ledger of energies ---------------------------------------------------------------- */
 
-/* Who is told of a jump. */
-struct jump_listeners {
-    struct dalcs_run *run;
-    struct dalcs_energy *energy;
-};
-
-static enum dalcs_status enter_jump(void *user, const struct dalcs_euler_jump *jump) {
-    const struct jump_listeners *listeners = user;
-    dalcs_energy_jump(listeners->energy, jump);
-    return dalcs_note_jump(listeners->run, jump);
-}
-
 /* The ledger into the report. Where it does not add up, an equation was not what its devices are, or a
  * step went where it should not. */
 static enum dalcs_status close_ledger(struct dalcs_run *r, struct dalcs_energy *energy,
@@ -319,7 +307,6 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     struct dalcs_euler e;
     struct dalcs_radau radau = {0};
     struct dalcs_energy energy = {0};
-    struct jump_listeners listeners = {r, &energy};
     struct dalcs_schedule schedule = choose_schedule(r);
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
@@ -345,8 +332,6 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     if (status == DALCS_OK && r->options->energy) {
         status = dalcs_energy_setup(&energy, &e, is_euler ? NULL : &radau);
         e.energy = &energy;
-        e.jump_user = &listeners;
-        e.on_jump = enter_jump;
     }
     if (status == DALCS_OK) {
         status = walk(r, &e, is_euler ? NULL : &radau);

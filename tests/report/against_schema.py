@@ -30,6 +30,8 @@ MADE = {
     "cutset": ("a diode against a current source\nI1 a 0 1\nD1 a 0\n.op\n.end\n", 1, "cutset"),
     "late": ("a loop that turns forward later\nV1 a 0 PWL(0 -1 1m 1)\nD1 a 0\nR1 a b 1\nC1 b 0 1u\n"
              ".tran 10u 2m\n.end\n", 1, "loop"),
+    "ball": ("a ball below the floor\nC1 1 0 1 ic=-1\nG1 0 1 2 0 1\nC2 2 0 1\nE1 3 0 1 0 1\nVs 4 3 0\n"
+             "D1 0 4\nF1 0 2 Vs 1\n.tran 1m 2 uic\n.end\n", 1, "derivative"),
     "both": ("\"quotes\\ \u00b5 and no diode\nV1 a 0 1\nR1 a b 1k\nC1 b 0 1u\n.op\n.tran 10u 1m\n"
              ".end\n", 0, None),
     "parts": ("three parts, one of each kind\nV1 a 0 1\nR1 a 0 1k\nC2 b 0 1u ic=1\nR2 b 0 1k\n"

@@ -54,19 +54,12 @@ static const char ALL[] = "all families\n"
                           ".model SW SW(Ron=0.5 Roff=1meg Vt=0.5)\n"
                           ".tran 10u 2m uic\n";
 
-static enum dalcs_status enter_jump(void *user, const struct dalcs_euler_jump *jump) {
-    dalcs_energy_jump(user, jump);
-    return DALCS_OK;
-}
-
 static void prepare(const char *text, double h, double stop) {
     build_good_network(&t, text);
     const struct dalcs_osnsp_options options = usual_osnsp_options();
     ck_assert_int_eq(dalcs_euler_setup(&e, &t.circuit, &t.network, &options, h, stop), DALCS_OK);
     e.detect_jumps = true;
     e.energy = &energy;
-    e.jump_user = &energy;
-    e.on_jump = enter_jump;
 }
 
 static void run_euler(const char *text, double h, double stop) {
