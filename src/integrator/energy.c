@@ -46,15 +46,16 @@ static enum dalcs_status part_setup(struct dalcs_energy_part *part,
                                     const struct dalcs_radau_part *radau) {
     part->system = system;
     part->term = dalcs_alloc((size_t)power->n, sizeof(*part->term));
-    part->largest = dalcs_alloc((size_t)dalcs_system_n_columns(system), sizeof(double));
     part->half = dalcs_alloc((size_t)system->n_x, sizeof(double));
     part->defect = dalcs_alloc((size_t)system->n_x, sizeof(double));
-    if (part->term == NULL || part->largest == NULL || part->half == NULL || part->defect == NULL) {
+    if (part->term == NULL || part->half == NULL || part->defect == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int x = 0; x < system->n_x; x++) {
         for (int k = system->storage.p[x]; k < system->storage.p[x + 1]; k++) {
-            part->half[x] += system->storage.j[k] == x ? 0.5 * system->storage.x[k] : 0.0;
+            bool is_own = system->storage.j[k] == x;
+            part->half[x] += is_own ? 0.5 * system->storage.x[k] : 0.0;
+            part->is_coupled = part->is_coupled || !is_own;
         }
     }
     for (int decided = 0; decided < 2; decided++) {
@@ -86,7 +87,6 @@ enum dalcs_status dalcs_energy_setup(struct dalcs_energy *energy, const struct d
 void dalcs_energy_finish(struct dalcs_energy *energy) {
     for (int k = 0; energy->part != NULL && k < energy->n_parts; k++) {
         free(energy->part[k].term);
-        free(energy->part[k].largest);
         free(energy->part[k].half);
         free(energy->part[k].defect);
     }
@@ -106,18 +106,23 @@ static inline double larger(double a, double b) {
 }
 
 /* What goes back and forth in capacitors and coils, and how much rounding it may leave: a segment that
- * is cut is a small part of a step, whose other end may be far away. */
-static void enter_swing(struct dalcs_energy *energy, const struct dalcs_energy_part *part,
-                        const double *x, const double *after, const double *far) {
+ * is cut is a small part of a step, whose other end may be far away. Returns 1/2 |after - x|^2 by the
+ * diagonal of the storage. */
+static double enter_swing(struct dalcs_energy *energy, const struct dalcs_energy_part *part,
+                          const double *x, const double *after, const double *far) {
     double turnover = 0.0;
     double size = 0.0;
+    double distance = 0.0;
     for (int i = 0; i < part->system->n_x; i++) {
         double near = larger(fabs(x[i]), fabs(after[i]));
-        turnover += part->half[i] * fabs(after[i] * after[i] - x[i] * x[i]);
+        double step = after[i] - x[i];
+        turnover += part->half[i] * fabs(step * (after[i] + x[i]));
         size += part->half[i] * near * larger(near, fabs(far[i]));
+        distance += part->half[i] * step * step;
     }
     energy->turnover += turnover;
     energy->rounding += residual_part * size;
+    return distance;
 }
 
 void dalcs_energy_start(struct dalcs_energy *energy, int k, const double *x) {
@@ -149,16 +154,22 @@ void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, cons
     for (int i = 0; i < part->n_stepped; i++) {
         enter(energy, part->term[i].account, h * power_of(&part->term[i], y, inputs));
     }
-    double loss = dalcs_euler_jump_energy(part->system, x, y);
+    double loss = enter_swing(energy, part, x, y, y);
+    if (part->is_coupled) {
+        loss = dalcs_euler_jump_energy(part->system, x, y);
+    }
     double jumps = fmin(part->lost, loss);
     part->lost = 0.0;
     energy->jumps += jumps;
     energy->method += loss - jumps;
     energy->turnover += loss;
-    enter_swing(energy, part, x, y, y);
-    for (int c = 0; c < dalcs_system_n_columns(part->system); c++) {
-        part->largest[c] = larger(part->largest[c], fabs(y[c]));
-    }
+}
+
+void dalcs_energy_scale(struct dalcs_energy *energy, int k,
+                        const struct dalcs_certificate *certificate) {
+    double *largest = energy->part[k].largest;
+    largest[0] = larger(largest[0], certificate->volt);
+    largest[1] = larger(largest[1], certificate->ampere);
 }
 
 void dalcs_energy_move(struct dalcs_energy *energy, const struct dalcs_radau_part *part,
@@ -204,10 +215,23 @@ static void fetch(const struct dalcs_radau_part *part, const int *column, double
         return;
     }
     int one = column[0] >= 0 ? column[0] : column[1];
-    double sign = column[0] >= 0 ? 1.0 : one >= 0 ? -1.0 : 0.0;
-    for (int i = 0; i < s; i++) {
-        value[i] = one >= 0 ? sign * y[i * stride + one] : 0.0;
+    if (one < 0) {
+        memset(value, 0, (size_t)s * sizeof(double));
+        return;
     }
+    double sign = column[0] >= 0 ? 1.0 : -1.0;
+    y += one;
+    for (int i = 0; i < s; i++, y += stride) {
+        value[i] = sign * *y;
+    }
+}
+
+static bool varies(const struct dalcs_excitation *e, int input) {
+    bool found = false;
+    for (int f = 0; f < e->n_functions && !found; f++) {
+        found = e->function[f].input == input;
+    }
+    return found;
 }
 
 /* value[s] of an input, from the coefficients that the step was made with. */
@@ -240,6 +264,10 @@ static double integral_of(const struct dalcs_radau_part *part, const struct dalc
         fetch(part, term->second, second);
         return term->coefficient * dalcs_stage_rule_product(rule, first, second);
     case DALCS_POWER_INPUT:
+        if (!varies(&part->excitation, term->input)) {
+            return term->coefficient * part->excitation.constant[term->input] *
+                   dalcs_stage_rule_integral(rule, first);
+        }
         fetch_input(part, term->input, second);
         return term->coefficient * dalcs_stage_rule_product(rule, first, second);
     }
@@ -254,10 +282,13 @@ static double loss_of(const struct dalcs_energy_part *ledger, const struct dalcs
     double square = 0.0;
     double along_start = 0.0;
     double along[DALCS_MAX_STAGES] = {0.0};
+    const double *y = part->out + stride;
     for (int x = 0; x < s->n_x; x++) {
         double start = 0.0;
-        for (int i = 0; i < m->s; i++) {
-            start += m->back[i] * part->out[(i + 1) * stride + x];
+        const double *at = y + x;
+#pragma GCC unroll 8
+        for (int i = 0; i < m->s; i++, at += stride) {
+            start += m->back[i] * *at;
         }
         ledger->defect[x] = state[x] - start;
     }
@@ -265,8 +296,10 @@ static double loss_of(const struct dalcs_energy_part *ledger, const struct dalcs
         double loaded = dalcs_csr_row_dot(&s->storage, x, ledger->defect);
         square += loaded * ledger->defect[x];
         along_start += loaded * (state[x] - ledger->defect[x]);
-        for (int i = 0; i < m->s && !rule->is_whole; i++) {
-            along[i] += loaded * part->out[(i + 1) * stride + x];
+        const double *at = y + x;
+#pragma GCC unroll 8
+        for (int i = 0; i < m->s; i++, at += stride) {
+            along[i] += loaded * *at;
         }
     }
     return dalcs_stage_rule_loss(rule, square, along, along_start);
@@ -531,10 +564,8 @@ static void close_euler(struct dalcs_energy *energy, int k, const struct dalcs_c
         dalcs_energy_step(energy, k, c->y, c->y, c->u + c->system->n_x, stop);
     }
     energy->stored_change += dalcs_euler_stored_energy(part->system, c->u) - part->stored_at_start;
-    for (int i = 0; i < dalcs_system_n_columns(part->system); i++) {
-        int unit = part->system->column_is_current[i];
-        largest[unit] = larger(largest[unit], part->largest[i]);
-    }
+    largest[0] = part->largest[0];
+    largest[1] = part->largest[1];
 }
 
 enum dalcs_status dalcs_energy_close(struct dalcs_energy *energy, struct dalcs_euler *e,

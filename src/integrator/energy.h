@@ -21,8 +21,9 @@ struct dalcs_energy_part {
     struct dalcs_power_term *term; /* [n_terms] */
     double stored_at_start;        /* J */
     double lost;                   /* J, in the jumps that the next step of euler crosses */
-    double *largest;               /* [n_columns] magnitudes */
+    double largest[2];             /* V, A: physical scales of the steps of euler */
     double *half;                  /* [n_x] of the diagonal of the storage */
+    bool is_coupled;               /* the storage has entries off its diagonal */
     double *defect;                /* [n_x] work: how far states are off */
 };
 
@@ -50,6 +51,10 @@ void dalcs_energy_start(struct dalcs_energy *energy, int k, const double *x);
  * at its end. */
 void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, const double *y,
                        const double *inputs, double h);
+
+/* The answer of a step of component k has these scales. */
+void dalcs_energy_scale(struct dalcs_energy *energy, int k,
+                        const struct dalcs_certificate *certificate);
 
 /* A part's present segment has been passed through from the state start[n_x] to part->x. */
 void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_part *part,

@@ -417,6 +417,9 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
         size_t n_x = (size_t)c->system->n_x;
         dalcs_component_sample(c, e->t, DALCS_LEFT, c->u);
         DALCS_TRY(solve(e, k, n_x > 0 ? sigma : 0.0, c->u, c->y));
+        if (e->energy != NULL) {
+            dalcs_energy_scale(e->energy, k, &c->osnsp.certificate);
+        }
         if (e->detect_jumps && c->commanded && n_x > 0) {
             size_t mode_bytes = (size_t)c->osnsp.n_words * sizeof(uint64_t);
             memcpy(c->saved_mode, c->osnsp.mode, mode_bytes);

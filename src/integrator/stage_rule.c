@@ -3,51 +3,111 @@
 
 #include <string.h>
 
+/* As in dense_map.c: the clones differ in vector width only, not in any bit of their results. */
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) &&                             \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define FOR_WIDE_VECTORS __attribute__((target_clones("avx2", "default")))
+#else
+#define FOR_WIDE_VECTORS
+#endif
+
 /* Integral of what has these values at the points. */
 static inline double weigh(const struct dalcs_stage_rule *rule, const dalcs_points *value) {
-    dalcs_points a = rule->weight * *value;
-    return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
+    double sum[DALCS_POINT_GROUPS];
+    for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
+        dalcs_points a = rule->weight[g] * value[g];
+        sum[g] = (a[0] + a[1]) + (a[2] + a[3]);
+    }
+    return sum[0] + sum[1];
+}
+
+FOR_WIDE_VECTORS
+static void set_cut(struct dalcs_stage_rule *rule, const struct dalcs_collocation *m, double end) {
+    dalcs_points point[DALCS_POINT_GROUPS];
+    dalcs_points before[DALCS_POINT_GROUPS]; /* products of the distances from the stages before */
+    dalcs_points behind[DALCS_POINT_GROUPS];
+    dalcs_points slope[DALCS_POINT_GROUPS];
+    memcpy(point, m->gauss, sizeof(point));
+    memcpy(rule->weight, m->gauss_weight, sizeof(rule->weight));
+    for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
+        point[g] *= end;
+        rule->weight[g] *= end;
+        before[g] = behind[g] = (dalcs_points){1.0, 1.0, 1.0, 1.0};
+        slope[g] = (dalcs_points){0.0};
+    }
+    double start = 1.0;
+    for (int j = 0; j < m->s; j++) {
+        for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
+            rule->value[j][g] = before[g];
+            before[g] *= point[g] - m->node[j + 1];
+        }
+        start *= -m->node[j + 1];
+    }
+    rule->miss_at_end = before[DALCS_POINT_GROUPS - 1][3] / start;
+    for (int j = m->s - 1; j >= 0; j--) {
+        double scale = m->barycentric[j + 1] * m->node[j + 1]; /* without the node at the start */
+        for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
+            dalcs_points others = rule->value[j][g] * behind[g];
+            behind[g] *= point[g] - m->node[j + 1];
+            slope[g] += others;
+            rule->value[j][g] = scale * others;
+        }
+    }
+    for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
+        rule->slope[g] = slope[g] / start;
+    }
 }
 
 void dalcs_stage_rule_set(struct dalcs_stage_rule *rule, const struct dalcs_collocation *m,
                           double end) {
-    int s = m->s;
-    rule->s = s;
+    rule->s = m->s;
     rule->is_whole = end == 1.0;
-    rule->integral = rule->is_whole ? m->weight : rule->own_integral;
-    if (rule->is_whole) {
-        return;
+    rule->integral = m->weight;
+    if (!rule->is_whole) {
+        set_cut(rule, m, end);
     }
-    dalcs_points point;
-    dalcs_points weight;
-    memcpy(&point, m->gauss, sizeof(point));
-    memcpy(&weight, m->gauss_weight, sizeof(weight));
-    point *= end;
-    weight *= end;
-    rule->weight = weight;
-    dalcs_points before = {1.0, 1.0, 1.0, 1.0, 1.0,
-                           1.0, 1.0, 1.0}; /* products of the distances from the stages before */
-    double start = 1.0;
-    for (int j = 0; j < s; j++) {
-        rule->value[j] = before;
-        before *= point - m->node[j + 1];
-        start *= -m->node[j + 1];
+}
+
+/* a at the points. */
+static inline void spread(const struct dalcs_stage_rule *rule, const double *a,
+                          dalcs_points *value) {
+    dalcs_points sum[DALCS_POINT_GROUPS] = {{0.0}};
+    for (int j = 0; j < rule->s; j++) {
+        for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
+            sum[g] += a[j] * rule->value[j][g];
+        }
     }
-    rule->miss_at_end = before[s] / start;
-    dalcs_points behind = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
-    dalcs_points slope = {0.0};
-    for (int j = s - 1; j >= 0; j--) {
-        double scale = m->barycentric[j + 1] * m->node[j + 1]; /* without the node at the start */
-        dalcs_points others = rule->value[j] * behind;
-        behind *= point - m->node[j + 1];
-        slope += others;
-        rule->value[j] = scale * others;
-        rule->own_integral[j] = weigh(rule, &rule->value[j]);
+    memcpy(value, sum, sizeof(sum));
+}
+
+FOR_WIDE_VECTORS
+static double integral_of_cut(const struct dalcs_stage_rule *rule, const double *a) {
+    dalcs_points at_points[DALCS_POINT_GROUPS];
+    spread(rule, a, at_points);
+    return weigh(rule, at_points);
+}
+
+FOR_WIDE_VECTORS
+static double product_of_cut(const struct dalcs_stage_rule *rule, const double *a,
+                             const double *b) {
+    dalcs_points at_points[DALCS_POINT_GROUPS];
+    dalcs_points other[DALCS_POINT_GROUPS];
+    spread(rule, a, at_points);
+    if (a == b) {
+        memcpy(other, at_points, sizeof(other));
+    } else {
+        spread(rule, b, other);
     }
-    rule->slope = slope / start;
+    for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
+        at_points[g] *= other[g];
+    }
+    return weigh(rule, at_points);
 }
 
 double dalcs_stage_rule_integral(const struct dalcs_stage_rule *rule, const double *a) {
+    if (!rule->is_whole) {
+        return integral_of_cut(rule, a);
+    }
     double sum = 0.0;
     for (int j = 0; j < rule->s; j++) {
         sum += rule->integral[j] * a[j];
@@ -55,49 +115,38 @@ double dalcs_stage_rule_integral(const struct dalcs_stage_rule *rule, const doub
     return sum;
 }
 
-/* a at the points. */
-static inline void spread(const struct dalcs_stage_rule *rule, const double *a,
-                          dalcs_points *value) {
-    dalcs_points sum = a[0] * rule->value[0];
-    for (int j = 1; j < rule->s; j++) {
-        sum += a[j] * rule->value[j];
-    }
-    *value = sum;
-}
-
 double dalcs_stage_rule_product(const struct dalcs_stage_rule *rule, const double *a,
                                 const double *b) {
-    if (rule->is_whole) {
-        double sum = 0.0;
-        for (int j = 0; j < rule->s; j++) {
-            sum += rule->integral[j] * a[j] * b[j];
-        }
-        return sum;
+    if (!rule->is_whole) {
+        return product_of_cut(rule, a, b);
     }
-    dalcs_points at_points;
-    dalcs_points other;
-    spread(rule, a, &at_points);
-    if (a == b) {
-        other = at_points;
-    } else {
-        spread(rule, b, &other);
+    double sum = 0.0;
+    for (int j = 0; j < rule->s; j++) {
+        sum += rule->integral[j] * a[j] * b[j];
     }
-    at_points *= other;
-    return weigh(rule, &at_points);
+    return sum;
 }
 
 /* With x - x~ = miss(theta) defect, and by parts,
  *     integral of miss defect' storage (x~' + miss' defect)
  *         = [miss along] - integral of miss' along + 1/2 [miss^2] square. */
+FOR_WIDE_VECTORS
+static double loss_of_cut(const struct dalcs_stage_rule *rule, double square, const double *along,
+                          double along_start) {
+    dalcs_points at_points[DALCS_POINT_GROUPS];
+    spread(rule, along, at_points);
+    double sum = rule->miss_at_end * at_points[DALCS_POINT_GROUPS - 1][3] - along_start;
+    for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
+        at_points[g] *= rule->slope[g];
+    }
+    sum -= weigh(rule, at_points);
+    return -(sum + 0.5 * square * (rule->miss_at_end * rule->miss_at_end - 1.0));
+}
+
 double dalcs_stage_rule_loss(const struct dalcs_stage_rule *rule, double square,
                              const double *along, double along_start) {
     if (rule->is_whole) { /* miss is orthogonal to all of a lower degree than s - 1, and 0 at the end */
         return 0.5 * square;
     }
-    dalcs_points at_points;
-    spread(rule, along, &at_points);
-    double sum = rule->miss_at_end * at_points[rule->s] - along_start;
-    at_points *= rule->slope;
-    sum -= weigh(rule, &at_points);
-    return -(sum + 0.5 * square * (rule->miss_at_end * rule->miss_at_end - 1.0));
+    return loss_of_cut(rule, square, along, along_start);
 }

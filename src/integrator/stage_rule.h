@@ -10,22 +10,23 @@
 
 #include <stdbool.h>
 
-/* Eight points at once, as many as instructions take. */
-typedef double dalcs_points __attribute__((vector_size(8 * DALCS_MAX_NODES), aligned(16)));
+/* Points by fours, as many as an instruction takes. */
+typedef double dalcs_points __attribute__((vector_size(32), aligned(32)));
+
+enum { DALCS_POINT_GROUPS = DALCS_MAX_NODES / 4 };
 
 struct dalcs_stage_rule {
     int s;
     bool is_whole;
-    const double *integral; /* [s] of the stages' Lagrange polynomials, up to the end, in steps */
+    const double *integral; /* [s] of the stages' Lagrange polynomials over a whole step */
 
     /* The rest only where the step is cut. Points 0..s-1 are those of the rule, the others the end. */
-    double own_integral[DALCS_MAX_STAGES];
-    dalcs_points weight;                  /* 0 from point s on */
-    dalcs_points value[DALCS_MAX_STAGES]; /* of the stages' polynomials at the points */
+    dalcs_points weight[DALCS_POINT_GROUPS];                  /* 0 from point s on */
+    dalcs_points value[DALCS_MAX_STAGES][DALCS_POINT_GROUPS]; /* of the stages' polynomials */
 
     /* The polynomial with its zeros at the stages that is 1 at the start: what states miss the one
      * through the stages by, over what they miss it by at the start. At the points, its derivative. */
-    dalcs_points slope;
+    dalcs_points slope[DALCS_POINT_GROUPS];
     double miss_at_end;
 };
 

@@ -247,12 +247,15 @@ static void check_references(struct dalcs_osnsp *p, const double *y, struct scal
 
 void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *y,
                                 bool *sources_clash) {
-    p->certificate = (struct dalcs_certificate){.where = -1};
+    p->certificate.worst = 0.0;
+    p->certificate.where = -1;
     p->n_violating = 0;
     *sources_clash = false;
     recover_states(p, u, y);
     struct scales drive = driving_scales(p, u);
     struct scales scale = physical_scales(p, drive, y);
+    p->certificate.volt = scale.volt;
+    p->certificate.ampere = scale.ampere;
     check_equations(p, u, y, scale);
     check_pairs(p, u, y, scale);
     check_references(p, y, scale, drive, sources_clash);

@@ -40,6 +40,7 @@ struct dalcs_certificate {
     double worst; /* largest residual over its physical scale: KCL, branch equations, signs and
                      complementarity */
     int where;    /* row of the system; n_equations + d for pair d; -1: none */
+    double volt, ampere; /* the physical scale: the largest of the answer and of what drives it */
 };
 
 /* Why there is no answer: a direction along which nothing resists and sources push, reduced to
