@@ -97,7 +97,7 @@ struct search {
     bool opened;  /* and are open now, to try */
     bool projected;
     int stuck;
-    double ratio_before;
+    double ratio_before, ratio_first;
     double tolerated; /* the ratio that is let pass */
 };
 
@@ -164,10 +164,21 @@ static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_par
     return dalcs_radau_euler_step(r, part, part->fell_back);
 }
 
-static void shorten(struct dalcs_radau_part *part, double ratio) {
+/* Long moves end on every n-th rung, so that searches up and down the ladder meet on the same step
+ * lengths, which have their factors already. Towards the shorter step. */
+static int shared_rung(int level, int n) {
+    int beyond = ((level % n) + n) % n;
+    return beyond > 0 ? level + n - beyond : level;
+}
+
+static void shorten(struct dalcs_radau_part *part, double ratio, int stuck) {
     double rungs = log2(ratio) / (double)(part->stages.method->s + 1);
     int down = rungs < MOST_RUNGS ? (int)ceil(rungs) : MOST_RUNGS;
     part->level += down > 1 ? down : 1;
+    if (stuck > 0) { /* something much faster than the step has to die away */
+        int far = stuck == 1 ? 2 : 5;
+        part->level = shared_rung(part->level + (far > down ? far - down : 0), 3);
+    }
     int patience = part->grew ? 2 * part->patience : part->patience;
     part->patience = patience < MOST_PATIENCE ? patience : MOST_PATIENCE;
     part->waited = 0;
@@ -177,14 +188,23 @@ static void shorten(struct dalcs_radau_part *part, double ratio) {
 /* A longer step next time if the error promises it, or, as errors near rounding promise nothing, now
  * and then to see. */
 static void lengthen(struct dalcs_radau_part *part, double ratio) {
-    bool promising = ratio * ldexp(1.0, part->stages.method->s + 1) < safety;
+    double rungs = log2(safety / ratio) / (double)(part->stages.method->s + 1);
+    bool promising = rungs > 1.0;
+    int up = rungs > MOST_RUNGS ? MOST_RUNGS : promising ? (int)rungs : 1;
+    while (up > 0 && dalcs_radau_ladder(part->level - up) > part->longest) {
+        up--;
+    }
     part->waited++;
     part->grew = false;
-    if (!(promising ? part->waited > 1 : part->waited > part->patience) ||
-        dalcs_radau_ladder(part->level - 1) > part->longest) {
+    if (up == 0) {
         return;
     }
-    part->level--;
+    int level = up < 2 ? part->level - 1 : shared_rung(part->level - up, up < 3 ? 2 : 3);
+    bool is_far = level < part->level - 1;
+    if (!is_far && !(promising ? part->waited > 1 : part->waited > part->patience)) {
+        return;
+    }
+    part->level = is_far ? level : part->level - 1;
     part->waited = 0;
     part->grew = !promising;
 }
@@ -235,11 +255,14 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
      * not mend it, and rounding is all it is, or small beside the largest signal of its unit. */
     search->stuck = quality->ratio > 0.3 * search->ratio_before ? search->stuck + 1 : 0;
     search->ratio_before = quality->ratio;
+    if (part->level == search->first_level) {
+        search->ratio_first = quality->ratio;
+    }
     bool is_rounding = search->stuck >= STUCK && quality->of_unit < most_tolerated * part->rounding;
     bool is_small = search->stuck >= VERY_STUCK && quality->of_unit < r->inner_tolerance;
     if ((is_rounding || is_small) && isfinite(quality->ratio) && search->tolerated == 1.0) {
         search->tolerated = 4.0 * quality->ratio;
-        part->level = search->first_level;
+        part->level = search->ratio_first <= search->tolerated ? search->first_level : part->level;
         return DALCS_OK;
     }
     bool wrong_flip = search->flips > 0 && !(quality->ratio < most_projected);
@@ -247,7 +270,7 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
         *done = true;
         return fall_back(r, part, search);
     }
-    shorten(part, quality->ratio);
+    shorten(part, quality->ratio, search->stuck);
     return DALCS_OK;
 }
 
@@ -389,6 +412,7 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
                             .first_level = part->level,
                             .fixed = r->options.fixed_step > 0.0,
                             .ratio_before = INFINITY,
+                            .ratio_first = INFINITY,
                             .tolerated = 1.0};
     if (part->crowd > CROWD + 4 * part->component->system->n_pairs) {
         part->fresh = true;

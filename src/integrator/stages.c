@@ -1,6 +1,6 @@
 /* stages.c - entries by (mode, h), least recently used out first. */
 #include "stage_plan.h"
-#include "stages_internal.h"
+#include "stage_workshop.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -93,6 +93,7 @@ void dalcs_stages_finish(struct dalcs_stages *stages) {
         remove_entry(stages, stages->oldest);
     }
     dalcs_stage_plan_destroy(stages);
+    dalcs_stage_workshop_destroy(stages->workshop);
     free(stages->watched);
     free(stages->key);
     *stages = (struct dalcs_stages){0};

@@ -19,6 +19,7 @@
 
 struct dalcs_stage_entry;
 struct dalcs_stage_plan;
+struct dalcs_stage_workshop;
 
 /* Where things are in an answer. Node k of the step starts at k * stride: the columns, then the
  * watched voltages. In the place of lambda_d an open pair has its w_d. */
@@ -47,6 +48,7 @@ struct dalcs_stages {
     long factorizations, cache_hits;
     klu_common klu, klu_complex;
     struct dalcs_stage_plan *plan; /* what sparse factors share; NULL until there are any */
+    struct dalcs_stage_workshop *workshop; /* what makes dense maps; NULL until there are any */
 };
 
 enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,

@@ -12,18 +12,49 @@ static void swap_rows(int width, long double *a, long double *b) {
     }
 }
 
-/* target -= factor * source from column `from` on. */
-static void subtract(int from, int width, long double *target, const long double *source,
-                     long double factor) {
-    for (int j = from; j < width; j++) {
-        target[j] -= factor * source[j];
+/* Columns of a pivot row that are looked at together. */
+enum { COLUMNS = 64 };
+
+/* The columns in [from, to) where the row has something. Rows of circuits are mostly empty. */
+static int list_nonzeros(int from, int to, const long double *re, const long double *im,
+                         int *column) {
+    int n = 0;
+    for (int j = from; j < to; j++) {
+        column[n] = j;
+        n += re[j] != 0.0L || (im != NULL && im[j] != 0.0L) ? 1 : 0;
+    }
+    return n;
+}
+
+static void divide(int n, const int *column, long double *re, long double *im, long double d_re,
+                   long double d_im) {
+    long double square = d_re * d_re + d_im * d_im;
+    for (int k = 0; k < n; k++) {
+        int j = column[k];
+        if (im == NULL) {
+            re[j] /= d_re;
+            continue;
+        }
+        long double a = re[j];
+        long double b = im[j];
+        re[j] = (a * d_re + b * d_im) / square;
+        im[j] = (b * d_re - a * d_im) / square;
     }
 }
 
-static void subtract_complex(int from, int width, long double *target_re, long double *target_im,
-                             const long double *source_re, const long double *source_im,
-                             long double re, long double im) {
-    for (int j = from; j < width; j++) {
+/* target -= factor * source */
+static void subtract(int n, const int *column, long double *target, const long double *source,
+                     long double factor) {
+    for (int k = 0; k < n; k++) {
+        target[column[k]] -= factor * source[column[k]];
+    }
+}
+
+static void subtract_complex(int n, const int *column, long double *target_re,
+                             long double *target_im, const long double *source_re,
+                             const long double *source_im, long double re, long double im) {
+    for (int k = 0; k < n; k++) {
+        int j = column[k];
         target_re[j] -= re * source_re[j] - im * source_im[j];
         target_im[j] -= re * source_im[j] + im * source_re[j];
     }
@@ -55,34 +86,27 @@ long double dalcs_extended_solve(int n, int n_rhs, long double *re, long double 
                 swap_rows(width, row_im, im + (size_t)pivot * (size_t)width);
             }
         }
-        /* the pivot row is divided by its pivot, then eliminates the column above and below */
+        /* The pivot row is divided by its pivot, then eliminates the column above and below. What
+         * stays in the column is never read again. */
         long double d_re = row_re[k];
         long double d_im = im != NULL ? row_im[k] : 0.0L;
-        long double square = d_re * d_re + d_im * d_im;
-        for (int j = k; j < width; j++) {
-            if (im == NULL) {
-                row_re[j] /= d_re;
-                continue;
-            }
-            long double a = row_re[j];
-            long double b = row_im[j];
-            if (a != 0.0L || b != 0.0L) {
-                row_re[j] = (a * d_re + b * d_im) / square;
-                row_im[j] = (b * d_re - a * d_im) / square;
-            }
-        }
-        for (int i = 0; i < n; i++) {
-            long double *other_re = re + (size_t)i * (size_t)width;
-            long double *other_im = im != NULL ? im + (size_t)i * (size_t)width : NULL;
-            long double f_re = other_re[k];
-            long double f_im = im != NULL ? other_im[k] : 0.0L;
-            if (i == k || (f_re == 0.0L && f_im == 0.0L)) {
-                continue;
-            }
-            if (im == NULL) {
-                subtract(k, width, other_re, row_re, f_re);
-            } else {
-                subtract_complex(k, width, other_re, other_im, row_re, row_im, f_re, f_im);
+        for (int from = k + 1; from < width; from += COLUMNS) {
+            int column[COLUMNS];
+            int to = from + COLUMNS < width ? from + COLUMNS : width;
+            int n_columns = list_nonzeros(from, to, row_re, row_im, column);
+            divide(n_columns, column, row_re, row_im, d_re, d_im);
+            for (int i = 0; i < n; i++) {
+                long double *other_re = re + (size_t)i * (size_t)width;
+                long double *other_im = im != NULL ? im + (size_t)i * (size_t)width : NULL;
+                if (i == k || (other_re[k] == 0.0L && (im == NULL || other_im[k] == 0.0L))) {
+                    continue;
+                }
+                if (im == NULL) {
+                    subtract(n_columns, column, other_re, row_re, other_re[k]);
+                } else {
+                    subtract_complex(n_columns, column, other_re, other_im, row_re, row_im,
+                                     other_re[k], other_im[k]);
+                }
             }
         }
     }

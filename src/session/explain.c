@@ -176,7 +176,7 @@ void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
     const char *when = e->at_operating_point              ? "at the operating point"
                        : is_from && e->failed_time == 0.0 ? "from t = 0 on"
                        : is_from
-                           ? dalcs_arena_printf(&s->arena, "from t = %.9g s on", e->failed_time)
+                           ? dalcs_arena_printf(&s->arena, "from t = %.8g s on", e->failed_time)
                            : dalcs_arena_printf(&s->arena, "at t = %.9g s (step %ld, h = %.6g s)",
                                                 e->failed_time, e->steps + 1, e->failed_h);
     when = when == NULL ? "" : when;

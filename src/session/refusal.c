@@ -61,7 +61,7 @@ static double without_rounding(const struct dalcs_stimulus *s, double t, double 
     struct dalcs_stimulus_term terms[DALCS_STIMULUS_MOST_TERMS];
     struct dalcs_stimulus_piece piece = {.term = terms};
     dalcs_stimulus_piece_at(s, t, &piece);
-    double size = fabs(piece.level);
+    double size = fabs(piece.level) + fabs(piece.slope) * t; /* t has rounding, too */
     for (int k = 0; k < piece.n_terms; k++) {
         size += fabs(piece.term[k].cosine) + fabs(piece.term[k].sine);
     }

@@ -1,0 +1,346 @@
+/* stage_workshop.c - the equations of the stages for every eigenvalue, balanced and solved. */
+#include "stage_workshop.h"
+
+#include "extended.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A pivot smaller than this (balanced) asks for a rank decision; kept ones are above 1e-7, those of
+ * singular modes below 1e-15. */
+static const double doubtful_pivot = 1e-9;
+static const double rank_tolerance = 1e-12;
+
+enum { BALANCING_ROUNDS = 3 };
+
+/* ---- Room ---------------------------------------------------------------------------------- */
+
+static long double *extendeds(struct dalcs_arena *arena, int n) {
+    return dalcs_arena_alloc(arena, (size_t)(n > 0 ? n : 1), sizeof(long double));
+}
+
+/* For as many unknowns as a map may have. */
+static bool allocate(struct dalcs_stage_workshop *b) {
+    const struct dalcs_system *s = b->system;
+    struct dalcs_arena *kept = &b->kept;
+    int all = dalcs_system_n_columns(s);
+    int n = all < b->stages->dense_limit ? all : b->stages->dense_limit;
+    b->wave_column = dalcs_arena_alloc(kept, (size_t)s->n_inputs + 1, sizeof(int));
+    b->place = dalcs_arena_alloc(kept, (size_t)all + 1, sizeof(int));
+    b->row_scale = dalcs_stage_workshop_reals(kept, n);
+    b->column_scale = dalcs_stage_workshop_reals(kept, n);
+    b->base = dalcs_stage_workshop_reals(kept, n * n);
+    b->P = dalcs_stage_workshop_reals(kept, b->n_x * b->n_x);
+    b->rhs = dalcs_stage_workshop_reals(kept, n * b->n_rhs);
+    b->S = dalcs_stage_workshop_reals(kept, n * n);
+    b->re = extendeds(kept, n * (n + b->n_rhs));
+    b->im = extendeds(kept, n * (n + b->n_rhs));
+    b->part = extendeds(kept, n * b->n_rhs * DALCS_SOLUTION_PARTS);
+    b->node = dalcs_stage_workshop_reals(kept, n * b->stages->layout.n_nodes);
+    b->start = extendeds(kept, n);
+    b->defect = extendeds(kept, n);
+    b->guard = dalcs_stage_workshop_reals(kept, s->n_pairs);
+    b->drift = dalcs_stage_workshop_reals(kept, n);
+    b->residual = dalcs_stage_workshop_reals(kept, n);
+    return b->wave_column != NULL && b->place != NULL && b->row_scale != NULL &&
+           b->column_scale != NULL && b->base != NULL && b->P != NULL && b->rhs != NULL &&
+           b->S != NULL && b->re != NULL && b->im != NULL && b->part != NULL && b->node != NULL &&
+           b->start != NULL && b->defect != NULL && b->guard != NULL && b->drift != NULL &&
+           b->residual != NULL;
+}
+
+enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **workshop,
+                                              const struct dalcs_stages *stages) {
+    const struct dalcs_excitation *e = stages->excitation;
+    struct dalcs_stage_workshop *b = dalcs_alloc(1, sizeof(*b));
+    *workshop = b;
+    if (b == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    *b = (struct dalcs_stage_workshop){.stages = stages,
+                                       .system = stages->system,
+                                       .n_x = stages->system->n_x,
+                                       .n_rhs = stages->system->n_x + 1 + e->n_waves};
+    if (!allocate(b)) {
+        dalcs_stage_workshop_destroy(b);
+        *workshop = NULL;
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < b->system->n_inputs; k++) {
+        b->wave_column[k] = -1;
+    }
+    for (int w = e->n_waves - 1; w >= 0; w--) {
+        b->wave_column[e->wave[w].input] = b->n_x + 1 + w;
+    }
+    return DALCS_OK;
+}
+
+void dalcs_stage_workshop_destroy(struct dalcs_stage_workshop *workshop) {
+    if (workshop != NULL) {
+        dalcs_arena_finish(&workshop->arena);
+        dalcs_arena_finish(&workshop->kept);
+        free(workshop);
+    }
+}
+
+/* ---- The equations ------------------------------------------------------------------------- */
+
+/* Column of a system's column in the unknowns; -1 for an open pair. */
+static void place_columns(const struct dalcs_stage_workshop *b) {
+    int n_equations = dalcs_system_n_equations(b->system);
+    for (int c = 0; c < n_equations; c++) {
+        b->place[c] = c;
+    }
+    for (int d = 0; d < b->system->n_pairs; d++) {
+        b->place[n_equations + d] = -1;
+    }
+    for (int k = 0; k < b->entry->n_on; k++) {
+        b->place[n_equations + b->entry->on[k]] = n_equations + k;
+    }
+}
+
+/* Adds sign * row of a matrix to a row of the base and, for its states, to the right-hand sides with
+ * the opposite sign. */
+static void add_row(const struct dalcs_stage_workshop *b, const struct dalcs_csr *a, int from,
+                    int to, double sign) {
+    for (int k = a->p[from]; k < a->p[from + 1]; k++) {
+        int column = b->place[a->j[k]];
+        if (column < 0) {
+            continue;
+        }
+        b->base[column * b->n + to] += sign * a->x[k];
+        if (column < b->n_x) {
+            b->rhs[column * b->n + to] -= sign * a->x[k];
+        }
+    }
+}
+
+static void add_inputs(const struct dalcs_stage_workshop *b, const struct dalcs_csr *a, int from,
+                       int to, double sign) {
+    for (int k = a->p[from]; k < a->p[from + 1]; k++) {
+        int wave = b->wave_column[a->j[k]];
+        if (wave >= 0) {
+            b->rhs[wave * b->n + to] += sign * a->x[k];
+        } else {
+            b->rhs[b->n_x * b->n + to] += sign * a->x[k] * b->stages->excitation->constant[a->j[k]];
+        }
+    }
+}
+
+static void fill(struct dalcs_stage_workshop *b) {
+    const struct dalcs_system *s = b->system;
+    int n_equations = dalcs_system_n_equations(s);
+    memset(b->base, 0, (size_t)b->n * (size_t)b->n * sizeof(double));
+    memset(b->P, 0, (size_t)b->n_x * (size_t)b->n_x * sizeof(double));
+    memset(b->rhs, 0, (size_t)b->n * (size_t)b->n_rhs * sizeof(double));
+    place_columns(b);
+    for (int r = 0; r < n_equations; r++) {
+        add_row(b, &s->A, r, r, -1.0);
+        add_inputs(b, &s->E, r, r, 1.0);
+    }
+    for (int k = 0; k < b->entry->n_on; k++) {
+        add_row(b, &s->C, b->entry->on[k], n_equations + k, 1.0);
+        add_inputs(b, &s->F, b->entry->on[k], n_equations + k, -1.0);
+    }
+    for (int i = 0; i < b->n_x; i++) {
+        for (int k = s->P.p[i]; k < s->P.p[i + 1]; k++) {
+            b->P[s->P.j[k] * b->n_x + i] = s->P.x[k];
+        }
+    }
+}
+
+static double power_of_2(double largest) {
+    int exponent;
+    (void)frexp(largest, &exponent);
+    return largest > 0.0 && isfinite(largest) ? ldexp(1.0, -exponent) : 1.0;
+}
+
+/* Rows and columns of |S| at the real eigenvalue get a largest entry near 1. */
+static void balance(struct dalcs_stage_workshop *b) {
+    int n = b->n;
+    double sigma = b->stages->method->lambda / b->entry->h;
+    for (int i = 0; i < n; i++) {
+        b->row_scale[i] = 1.0;
+        b->column_scale[i] = 1.0;
+    }
+    memcpy(b->S, b->base, (size_t)n * (size_t)n * sizeof(double));
+    for (int j = 0; j < b->n_x; j++) {
+        for (int i = 0; i < b->n_x; i++) {
+            b->S[j * n + i] += sigma * b->P[j * b->n_x + i];
+        }
+    }
+    for (int round = 0; round < BALANCING_ROUNDS; round++) {
+        for (int i = 0; i < n; i++) {
+            double largest = 0.0;
+            for (int j = 0; j < n; j++) {
+                double a = fabs(b->S[j * n + i]) * b->column_scale[j];
+                largest = a > largest ? a : largest;
+            }
+            b->row_scale[i] = power_of_2(largest);
+        }
+        for (int j = 0; j < n; j++) {
+            double largest = 0.0;
+            for (int i = 0; i < n; i++) {
+                double a = fabs(b->S[j * n + i]) * b->row_scale[i];
+                largest = a > largest ? a : largest;
+            }
+            b->column_scale[j] = power_of_2(largest);
+        }
+    }
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < n; i++) {
+            double scale = b->row_scale[i] * b->column_scale[j];
+            b->base[j * n + i] *= scale;
+            b->S[j * n + i] *= scale;
+            if (j < b->n_x && i < b->n_x) {
+                b->P[j * b->n_x + i] *= scale;
+            }
+        }
+    }
+    memcpy(b->entry->natural, b->column_scale,
+           (size_t)dalcs_system_n_equations(b->system) * sizeof(double));
+    for (int j = 0; j < b->n_rhs; j++) {
+        for (int i = 0; i < n; i++) {
+            b->rhs[j * n + i] *= b->row_scale[i];
+        }
+    }
+}
+
+/* Null vectors of S from a rank-revealing QR. They have no state in them, so they belong to every
+ * eigenvalue and step. */
+static enum dalcs_status find_null_space(struct dalcs_stage_workshop *b, const double *S) {
+    int n = b->n;
+    double *qr = dalcs_stage_workshop_reals(&b->arena, n * n);
+    double *tau = dalcs_stage_workshop_reals(&b->arena, n);
+    lapack_int *order = dalcs_arena_alloc(&b->arena, (size_t)n, sizeof(*order));
+    if (qr == NULL || tau == NULL || order == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    memcpy(qr, S, (size_t)n * (size_t)n * sizeof(double));
+    if (LAPACKE_dgeqp3(LAPACK_COL_MAJOR, n, n, qr, n, order, tau) != 0) {
+        return DALCS_E_NOMEM;
+    }
+    int rank = 0;
+    while (rank < n && fabs(qr[rank * n + rank]) > rank_tolerance * fabs(qr[0])) {
+        rank++;
+    }
+    b->nullity = n - rank;
+    if (b->nullity == 0) {
+        return DALCS_OK;
+    }
+    b->left = dalcs_stage_workshop_reals(&b->arena, n * b->nullity);
+    b->right = dalcs_stage_workshop_reals(&b->arena, n * b->nullity);
+    if (b->left == NULL || b->right == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    if (rank > 0) {
+        (void)LAPACKE_dtrtrs(LAPACK_COL_MAJOR, 'U', 'N', 'N', rank, b->nullity, qr, n,
+                             qr + rank * n, n);
+    }
+    for (int k = 0; k < b->nullity; k++) {
+        double *v = b->right + k * n;
+        for (int i = 0; i < rank; i++) {
+            v[order[i] - 1] = -qr[(rank + k) * n + i];
+        }
+        v[order[rank + k] - 1] = 1.0;
+        for (int x = 0; x < b->n_x; x++) {
+            v[x] = 0.0;
+        }
+    }
+    if (LAPACKE_dorgqr(LAPACK_COL_MAJOR, n, n, n, qr, n, tau) != 0) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < b->nullity; k++) {
+        for (int i = 0; i < n; i++) {
+            b->left[k * n + i] = i < b->n_x ? 0.0 : qr[(rank + k) * n + i];
+        }
+    }
+    return DALCS_OK;
+}
+
+/* With left right^T added, S is regular and its solutions, where there are any, are those of S that
+ * have nothing of the null vectors. */
+static double border(const struct dalcs_stage_workshop *b, int i, int j) {
+    double sum = 0.0;
+    for (int k = 0; k < b->nullity; k++) {
+        sum += b->left[k * b->n + i] * b->right[k * b->n + j];
+    }
+    return sum;
+}
+
+/* The system at sigma, with its right-hand sides. im: NULL where sigma is real. */
+static void fill_system(const struct dalcs_stage_workshop *b, long double sigma_re,
+                        long double sigma_im, long double *im) {
+    int n = b->n;
+    int width = n + b->n_rhs;
+    for (int i = 0; i < n; i++) {
+        long double *row = b->re + i * width;
+        for (int j = 0; j < n; j++) {
+            row[j] = b->base[j * n + i];
+        }
+        for (int j = 0; j < n && b->nullity > 0; j++) {
+            row[j] += border(b, i, j);
+        }
+        for (int j = 0; j < b->n_rhs; j++) {
+            row[n + j] = b->rhs[j * n + i];
+        }
+        for (int j = 0; j < b->n_x && i < b->n_x; j++) {
+            row[j] += sigma_re * b->P[j * b->n_x + i];
+        }
+        for (int j = 0; j < width && im != NULL; j++) {
+            im[i * width + j] = i < b->n_x && j < b->n_x ? sigma_im * b->P[j * b->n_x + i] : 0.0L;
+        }
+    }
+}
+
+static void take_solutions(const struct dalcs_stage_workshop *b, const long double *from,
+                           int part) {
+    for (int i = 0; i < b->n; i++) {
+        const long double *row = from + i * (b->n + b->n_rhs) + b->n;
+        for (int j = 0; j < b->n_rhs; j++) {
+            b->part[(j * b->n + i) * DALCS_SOLUTION_PARTS + part] = row[j];
+        }
+    }
+}
+
+static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
+    long double sigma = b->stages->method->exact_lambda / b->entry->h;
+    fill_system(b, sigma, 0.0L, NULL);
+    long double pivot = dalcs_extended_solve(b->n, b->n_rhs, b->re, NULL);
+    if (pivot < doubtful_pivot) {
+        DALCS_TRY(find_null_space(b, b->S));
+        fill_system(b, sigma, 0.0L, NULL);
+        pivot = dalcs_extended_solve(b->n, b->n_rhs, b->re, NULL);
+    }
+    take_solutions(b, b->re, 0);
+    return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
+}
+
+static enum dalcs_status solve_pair(struct dalcs_stage_workshop *b, int p) {
+    long double complex sigma = b->stages->method->exact_mu[p] / b->entry->h;
+    fill_system(b, creall(sigma), cimagl(sigma), b->im);
+    long double pivot = dalcs_extended_solve(b->n, b->n_rhs, b->re, b->im);
+    take_solutions(b, b->re, 1 + 2 * p);
+    take_solutions(b, b->im, 2 + 2 * p);
+    return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
+}
+
+enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,
+                                             struct dalcs_stage_entry *entry) {
+    b->entry = entry;
+    b->n = entry->n;
+    b->nullity = 0;
+    b->choice = NULL;
+    dalcs_arena_finish(&b->arena);
+    fill(b);
+    balance(b);
+    if (b->n > 0) {
+        DALCS_TRY(solve_real(b));
+        for (int p = 0; p < b->stages->method->n_pairs; p++) {
+            DALCS_TRY(solve_pair(b, p));
+        }
+    }
+    return DALCS_OK;
+}

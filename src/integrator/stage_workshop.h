@@ -1,0 +1,55 @@
+/* stage_workshop.h - a map in the making: the stage equations of a small system in one mode, solved for
+ * unit states and unit inputs.
+ *
+ * Unknowns are the increments of the states over x_0, z, and lambda of the closed pairs. For each
+ * eigenvalue mu the matrix is
+ *     S = [mu/h P - A; C_on],     right-hand sides [A; -C_on] x_0 + [E; -F_on] s,
+ * balanced by powers of 2 and solved in extended precision. */
+#ifndef DALCS_STAGE_WORKSHOP_H
+#define DALCS_STAGE_WORKSHOP_H
+
+#include "stages_internal.h"
+
+/* Solutions of one unknown side by side: the real eigenvalue's, then (re, im) of each complex one's, 0
+ * where there are fewer: loops of known length are worth more than what they skip. */
+enum { DALCS_SOLUTION_PARTS = 1 + 2 * DALCS_MAX_CONJUGATES };
+
+/* Kept from map to map; what a map needs apart from it is in the arena. */
+struct dalcs_stage_workshop {
+    const struct dalcs_stages *stages;
+    const struct dalcs_system *system;
+    struct dalcs_stage_entry *entry; /* the map in the making */
+    int n, n_x, n_rhs;
+    int *wave_column; /* [n_inputs] right-hand side of an input that varies, else -1 */
+    int *place;       /* [n_columns] in the unknowns; -1: an open pair */
+    double *row_scale, *column_scale; /* [n] */
+    double *base;                     /* [n][n] balanced S without P, by columns */
+    double *P;                        /* [n_x][n_x] balanced */
+    double *rhs;                      /* [n_rhs][n] balanced: unit states, constants, unit waves */
+    double *S;                        /* [n][n] the real one, balanced */
+    long double *re, *im;             /* [n][n + n_rhs] a system by rows, then its solutions */
+    long double *part;                /* [n_rhs][n][parts] the solutions, balanced */
+    double *node;                     /* [s + 1][n] the answer at the nodes */
+    long double *start, *defect;      /* [n] at the first of them, before rounding */
+    double *guard;                    /* [n_pairs] */
+    double *drift;                    /* [n] */
+    double *residual;                 /* [n] */
+    int nullity;
+    double *left, *right; /* [nullity][n] null vectors, balanced */
+    double *choice;       /* [nullity][n_pairs] what the other sides of pairs add of them */
+    struct dalcs_arena kept, arena;
+};
+
+enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **workshop,
+                                              const struct dalcs_stages *stages) DALCS_MUST_CHECK;
+void dalcs_stage_workshop_destroy(struct dalcs_stage_workshop *workshop);
+
+/* The solutions for an entry's mode and step length, and the null vectors of a singular mode. */
+enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *workshop,
+                                             struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
+
+static inline double *dalcs_stage_workshop_reals(struct dalcs_arena *arena, int n) {
+    return dalcs_arena_alloc(arena, (size_t)(n > 0 ? n : 1), sizeof(double));
+}
+
+#endif
