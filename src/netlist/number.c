@@ -122,10 +122,29 @@ static const char *read_exponent(const char *p, long long *exponent) {
     return q;
 }
 
+/* Integers and powers of ten up to these are exact in a double, so that one multiplication or division
+ * rounds once (Clinger, PLDI 1990). */
+enum { EXACT_DIGITS = 15, EXACT_POWER = 22 };
+
+static double convert_short(const struct mantissa *m, int power) {
+    static const double ten[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+    double whole = 0.0;
+    for (int k = 0; k < m->n; k++) {
+        whole = whole * 10.0 + (m->digit[k] - '0');
+    }
+    return power < 0 ? whole / ten[-power] : whole * ten[power];
+}
+
 static double convert(const struct mantissa *m, long long power, bool negative) {
     char buffer[MAX_DIGITS + 40];
     if (m->n == 0) {
         return negative ? -0.0 : 0.0;
+    }
+    if (m->n <= EXACT_DIGITS && power >= -EXACT_POWER && power <= EXACT_POWER) {
+        double value = convert_short(m, (int)power);
+        return negative ? -value : value;
     }
     power = power > 1000000 ? 1000000 : power < -1000000 ? -1000000 : power;
     /* One more digit stands for everything that was cut off: rounding only asks whether it is 0. */
