@@ -1,4 +1,4 @@
-/* encoding.c - UTF-16 to UTF-8. */
+/* encoding.c - UTF-16 and Latin-1 to UTF-8. */
 #include "encoding.h"
 
 #include <string.h>
@@ -41,6 +41,34 @@ static size_t put(char *to, unsigned code) {
     return n;
 }
 
+/* Text of old editors, where a byte is a character. That of any UTF-8 sequence is taken to be UTF-8, and
+ * bytes that Latin-1 has no character for are no text at all. */
+static bool is_latin1(const unsigned char *p, size_t n) {
+    bool found = false;
+    for (size_t k = 0; k < n; k++) {
+        const bool is_sequence = p[k] >= 0xC2 && k + 1 < n && p[k + 1] >= 0x80 && p[k + 1] < 0xC0;
+        if ((p[k] >= 0x80 && p[k] < 0xA0) || is_sequence) {
+            return false;
+        }
+        found = found || p[k] >= 0xA0;
+    }
+    return found;
+}
+
+static enum dalcs_status from_latin1(struct dalcs_arena *arena, const char **text, size_t *length) {
+    char *utf8 = dalcs_arena_alloc(arena, 2 * *length + 1, 1);
+    if (utf8 == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    size_t n = 0;
+    for (size_t k = 0; k < *length; k++) {
+        n += put(utf8 + n, (unsigned char)(*text)[k]);
+    }
+    *text = utf8;
+    *length = n;
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_encoding_to_utf8(struct dalcs_arena *arena, const char **text,
                                          size_t *length) {
     enum { NO_CHARACTER = 0xFF };
@@ -49,7 +77,7 @@ enum dalcs_status dalcs_encoding_to_utf8(struct dalcs_arena *arena, const char *
     bool little;
     size_t k;
     if (!is_utf16(p, *length, &little, &k)) {
-        return DALCS_OK;
+        return is_latin1(p, *length) ? from_latin1(arena, text, length) : DALCS_OK;
     }
     /* A unit of two bytes takes three at most. */
     char *utf8 = dalcs_arena_alloc(arena, *length + *length / 2 + 4, 1);

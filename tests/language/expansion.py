@@ -263,12 +263,12 @@ def same_bits(program, checker):
 
 
 def encodings(program, checker):
-    """UTF-16 of both orders, with and without a mark; the micro sign in it."""
+    """UTF-16 of both orders, with and without a mark, and Latin-1; the micro sign in it."""
     text = RC.replace("470n", "0.47\u00b5")
     wanted = dalcs_program.run(program, text, method=None)
-    for codec in ("utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"):
+    for codec in ("utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "latin-1"):
         for mark in ("", "\ufeff"):
-            if codec in ("utf-8-sig", "utf-16") and mark:
+            if codec in ("utf-8-sig", "utf-16", "latin-1") and mark:
                 continue
             with tempfile.TemporaryDirectory() as folder:
                 main = write(pathlib.Path(folder), {"main.cir": text},
