@@ -33,6 +33,24 @@ static void merge_shorts(struct dalcs_topology *t, const struct dalcs_circuit *c
     }
 }
 
+/* What a formula reads belongs to its source. */
+struct reader {
+    struct dalcs_topology *topology;
+    const struct dalcs_circuit *circuit;
+    int *parent;
+    int device;
+};
+
+static void join_term(void *to, const struct dalcs_affine_term *term) {
+    const struct reader *r = to;
+    int n_nodes = r->circuit->n_nodes;
+    if (term->kind == DALCS_QUANTITY_VOLTAGE && r->topology->node_of[term->index] != 0) {
+        dalcs_union_join(r->parent, r->topology->node_of[term->index], n_nodes + r->device);
+    } else if (term->kind == DALCS_QUANTITY_CURRENT) {
+        dalcs_union_join(r->parent, n_nodes + term->index, n_nodes + r->device);
+    }
+}
+
 /* Components hang together through anything but ground. Devices are vertices too, so that one
  * between ground and ground, or one that a coupling or a current control reaches, has its place. What
  * .ic says of two nodes takes one equation for both. */
@@ -50,6 +68,8 @@ static void find_components(struct dalcs_topology *t, const struct dalcs_circuit
         if (d->control >= 0) {
             dalcs_union_join(parent, c->n_nodes + i, c->n_nodes + d->control);
         }
+        struct reader reader = {t, c, parent, i};
+        dalcs_behaviour_visit(d->behaviour, join_term, &reader);
     }
     for (int k = 0; k < c->n_couplings; k++) {
         dalcs_union_join(parent, c->n_nodes + c->coupling[k].inductor[0],
