@@ -185,6 +185,7 @@ const struct dalcs_form *dalcs_form_min(struct dalcs_compiler *c, const struct d
 
 const struct dalcs_form *dalcs_form_to_logic(struct dalcs_compiler *c, const struct dalcs_form *a) {
     struct dalcs_form_part whole;
+    struct dalcs_form_part stepped;
     if (a == NULL) {
         return NULL;
     }
@@ -192,10 +193,11 @@ const struct dalcs_form *dalcs_form_to_logic(struct dalcs_compiler *c, const str
         return dalcs_form_scale(c, 1 / a->height, a);
     }
     if (!is_of_one(c, a, &whole) || !dalcs_piecewise_is_stepped(&whole.f) ||
-        !check(c, dalcs_piecewise_to_logic(c->arena, &whole.f, &whole.f))) {
+        !check(c, dalcs_piecewise_to_logic(c->arena, &whole.f, &stepped.f))) {
         return NULL;
     }
-    const struct dalcs_form *value = from_one(c, &whole);
+    stepped.direction = whole.direction;
+    const struct dalcs_form *value = from_one(c, &stepped);
     if (value == NULL) {
         return NULL;
     }

@@ -37,7 +37,8 @@ enum dalcs_status dalcs_stamp_behaviour_branch(struct stamps *b, int device) {
     l->pair[device] = b->next_pair;
     for (int k = 0; k < d->behaviour->n_pairs; k++) {
         int pair = b->next_pair++;
-        s->pair[pair] = (struct dalcs_pair){.kind = DALCS_PAIR_DIODE, .element = d->name};
+        s->pair[pair] =
+            (struct dalcs_pair){.kind = DALCS_PAIR_DIODE, .element = d->name, .is_formula = true};
         s->column_is_current[s->n_x + s->n_z + pair] = true;
     }
     if (d->kind == DALCS_VCVS) {

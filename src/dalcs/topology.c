@@ -10,10 +10,25 @@ static int controlling_nodes(const struct dalcs_device *d) {
     return d->kind == DALCS_VCVS || d->kind == DALCS_VCCS || d->kind == DALCS_SWITCH ? 2 : 0;
 }
 
+/* Does a term read the voltage of a terminal? */
+struct self_reading {
+    const struct dalcs_device *device;
+    bool found;
+};
+
+static void note_terminal(void *to, const struct dalcs_affine_term *term) {
+    struct self_reading *r = to;
+    bool is_terminal = term->index == r->device->node[0] || term->index == r->device->node[1];
+    r->found = r->found || (term->kind == DALCS_QUANTITY_VOLTAGE && is_terminal);
+}
+
 /* Does the device tie the voltages of its two terminals, in some mode or at some step? Current
- * sources do not: an island that hangs on them alone floats. */
+ * sources do not: an island that hangs on them alone floats. One whose formula reads the voltage it
+ * feeds is a resistance. */
 static bool conducts(const struct dalcs_device *d) {
-    return d->kind != DALCS_ISOURCE && d->kind != DALCS_CCCS && d->kind != DALCS_VCCS;
+    struct self_reading r = {.device = d};
+    dalcs_behaviour_visit(d->behaviour, note_terminal, &r);
+    return (d->kind != DALCS_ISOURCE && d->kind != DALCS_CCCS && d->kind != DALCS_VCCS) || r.found;
 }
 
 static void merge_shorts(struct dalcs_topology *t, const struct dalcs_circuit *c,
