@@ -205,16 +205,12 @@ static void check_call(struct work *w, const struct frame *f, const struct dalcs
 
 static void call_user(struct work *w, const struct frame *f, const struct dalcs_operation *o,
                       struct dalcs_user_function *function) {
-    if (o->count != function->n_arguments || function->is_active || w->depth >= DEEPEST_CALL) {
-        w->n -= (size_t)o->count;
-        if (o->count != function->n_arguments) {
-            fail(w, f, o, NULL, "'%s' takes another number of arguments", o->u.name);
-        } else {
-            fail(w, f, o, NULL,
-                 function->is_active ? "function '%s' calls itself"
-                                     : "functions call each other too deep, here '%s'",
-                 o->u.name);
-        }
+    if (o->count != function->n_arguments || function->is_active) {
+        fold(w, f, o, o->count); /* which says what is wrong */
+        return;
+    }
+    if (w->depth >= DEEPEST_CALL) {
+        fail(w, f, o, NULL, "functions call each other too deep, here '%s'", o->u.name);
         return;
     }
     if (!dalcs_scope_compile(w->language, NULL, function->body, function->n_tokens,
