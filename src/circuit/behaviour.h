@@ -4,7 +4,7 @@
  *             -> behaviour: an affine function of voltages, currents, stimuli and lambdas, and a pair
  *                0 <= lambda _|_ w >= 0 for every kink, two for every jump and every saturation
  *
- * doc/theory.md, section 9, has the pairs. Private to this folder. */
+ * doc/theory.md, section 10, has the pairs. Private to this folder. */
 #ifndef DALCS_BEHAVIOUR_H
 #define DALCS_BEHAVIOUR_H
 

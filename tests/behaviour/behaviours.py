@@ -219,6 +219,24 @@ def check_events(checker, program):
                       f"no edge at {time}: {sides}")
 
 
+OSCILLATOR = """a relaxation oscillator, whose trigger has infinite gain
+B1 out 0 V=10*sgn(v(p,n))
+R1 out p 1k
+R2 p 0 1k
+R3 out n 1k
+C1 n 0 1u ic=0.1
+.tran 10u 20m uic
+"""
+
+
+def check_oscillator(checker, program):
+    result = successful(checker, program, OSCILLATOR, method=None, tolerance=FINE)
+    times = [event["time"] for event in result.report["events"]]
+    checker.check(len(times) in (17, 18), f"oscillator: {len(times)} events")
+    for first, second in zip(times, times[1:]):
+        checker.close(second - first, math.log(3) * 1e-3, 1e-12, "oscillator: a half-cycle")
+
+
 # ---- Currents ----------------------------------------------------------------------------------------
 
 CURRENTS = """the current of every kind of element
@@ -273,6 +291,7 @@ def main():
     check_hard_cases(checker, program)
     check_operating_points(checker, program)
     check_events(checker, program)
+    check_oscillator(checker, program)
     check_currents(checker, program)
     return checker.finish()
 
