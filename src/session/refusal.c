@@ -429,9 +429,13 @@ static const char *explain_modes(const struct dalcs_refusal *r) {
     if (active.n == 0) {
         put(&active, "something"); /* without memory, or where .ic alone is named */
     }
+    int first = r->n_elements > 0 ? device_of(r->circuit, r->element[0]) : -1;
+    bool is_formula = first >= 0 && r->circuit->device[first].behaviour != NULL;
     const char *format =
-        !has_modes(r)  ? "the equations contradict each other, most at %s; %s %s the circuit from "
-                         "being passive"
+        !has_modes(r) ? "the equations contradict each other, most at %s; %s %s the circuit from "
+                        "being passive"
+        : named.n == 1 && is_formula
+            ? "%s fits no piece of its formula; %s %s the circuit from being passive"
         : named.n == 1 ? "%s fits neither conducting nor blocking; %s %s the circuit from being "
                          "passive"
                        : "no combination of conducting and blocking fits %s; %s %s the circuit "
