@@ -216,8 +216,11 @@ static const struct dalcs_form *table(struct dalcs_compiler *c, const struct dal
         }
         const double number = argument[k + 1]->affine.constant;
         struct dalcs_knot *point = &knot[k / 2];
-        *point = k % 2 == 0 ? (struct dalcs_knot){.at = number}
-                            : (struct dalcs_knot){point->at, number, number, number};
+        if (k % 2 == 0) {
+            point->at = number;
+        } else {
+            point->left = point->value = point->right = number;
+        }
         if (k % 2 == 0 && k > 0 && !(number > knot[k / 2 - 1].at)) {
             return refuse_name(c, f, "table(x, x1, y1, x2, y2, ...) with x1 < x2 < ...",
                                "the points of '%s' are not in order");
