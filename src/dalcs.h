@@ -233,6 +233,7 @@ struct dalcs_report {
 
     struct {
         int nodes, x, z, lambda, switches, components;
+        int corners; /* of the lambdas, those of sources with a formula */
     } size;
 
     struct {

@@ -69,6 +69,10 @@ struct dalcs_builder {
     int ideal_diode;          /* the model of diodes without one, -1 before the first */
     double diode_current;     /* A, where an exponential diode and its tangent touch */
 
+    struct dalcs_formula_source *formula; /* heap: the sources whose formula is compiled when all
+                                             elements are known */
+    size_t n_formulas, formula_capacity;
+
     struct dalcs_names models; /* name -> index of model */
     struct dalcs_model *model;
     int n_models;
@@ -290,6 +294,12 @@ void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device);
 size_t dalcs_poly_count(const struct dalcs_card *card);
 /* Finds the V sources of all F, H and W, when all devices are known. */
 void dalcs_controlled_resolve(struct dalcs_builder *builder);
+/* B, and what follows the first two nodes of E and G: VALUE, TABLE. */
+void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+bool dalcs_behavioural_is_form(const struct dalcs_token *token);
+void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_device *device);
+/* Compiles all formulas, when all elements are known. */
+void dalcs_behavioural_resolve(struct dalcs_builder *builder);
 void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* An A card: a diode when its model is a sidiode. */
 void dalcs_diode_parse_block(struct dalcs_builder *builder, const struct dalcs_card *card);

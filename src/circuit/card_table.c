@@ -74,8 +74,6 @@ static const char *const NEVER[] = {
 /* Elements by letter that are not supported. */
 static const char *refused_element(char letter) {
     switch (letter) {
-    case 'b':
-        return "behavioural sources";
     case 'j':
     case 'm':
     case 'q':
@@ -101,8 +99,6 @@ static const char *hint_of_element(char letter) {
     case 'q':
     case 'z':
         return "write an ideal switch S, with a diode D across it for a body diode";
-    case 'b':
-        return "a linear one is E, F, G or H";
     case 't':
         return "write sections of L and C";
     default:
@@ -174,7 +170,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         table->n_pairs += n_coils * (n_coils - 1) / 2;
         return DALCS_CARD_COUPLING;
     }
-    if (strchr("rlcviefghdswa", letter) != NULL) {
+    if (strchr("rlcviefghdswab", letter) != NULL) {
         table->n_stimuli += strchr("vic", letter) != NULL;
         table->n_inner += count_parasitics(card);
         if (strchr("efgh", letter) != NULL) {

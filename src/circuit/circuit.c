@@ -88,6 +88,9 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
     case 'a':
         dalcs_diode_parse_block(builder, card);
         return;
+    case 'b':
+        dalcs_behavioural_parse(builder, card);
+        return;
     default:
         dalcs_switch_parse(builder, card);
         return;
@@ -198,6 +201,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     DALCS_TRY(classify_cards(builder, class_of));
     DALCS_TRY(read_cards(builder, class_of));
     dalcs_controlled_resolve(builder);
+    dalcs_behavioural_resolve(builder);
     dalcs_model_check(builder);
     check_presence(builder);
     if (builder->n_signals == 0) {
@@ -252,6 +256,7 @@ enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
     free(builder.node_token);
     free(builder.signal);
     free(builder.initial_condition);
+    free(builder.formula);
     dalcs_deck_finish(&deck);
     if (status != DALCS_OK) {
         dalcs_circuit_finish(circuit);

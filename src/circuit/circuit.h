@@ -14,12 +14,41 @@ enum dalcs_device_kind {
     DALCS_CAPACITOR, /* C a b value [IC=] */
     DALCS_VSOURCE,   /* V a b stimulus */
     DALCS_ISOURCE,   /* I a b stimulus: current flows a -> b inside the source */
-    DALCS_VCVS,      /* E a b ca cb gain */
+    DALCS_VCVS,      /* E a b ca cb gain; B a b V= */
     DALCS_CCCS,      /* F a b Vname gain */
-    DALCS_VCCS,      /* G a b ca cb gain */
+    DALCS_VCCS,      /* G a b ca cb gain; B a b I= */
     DALCS_CCVS,      /* H a b Vname gain */
     DALCS_DIODE,     /* D anode cathode model */
     DALCS_SWITCH     /* S a b ca cb model [ON|OFF]; W a b Vname model [ON|OFF] */
+};
+
+/* What an affine function is made of. */
+enum dalcs_quantity_kind {
+    DALCS_QUANTITY_VOLTAGE, /* of a node, V */
+    DALCS_QUANTITY_CURRENT, /* of a device, A */
+    DALCS_QUANTITY_STIMULUS,
+    DALCS_QUANTITY_PAIR, /* the lambda of a pair of the same behaviour */
+    DALCS_QUANTITY_TIME, /* these two while formulas are compiled: then they are stimuli */
+    DALCS_QUANTITY_WAVE
+};
+
+struct dalcs_affine {
+    double constant;
+    int n;
+
+    const struct dalcs_affine_term {
+        enum dalcs_quantity_kind kind;
+        int index; /* node, device, stimulus, pair */
+        double coefficient;
+    } * term; /* [n] ascending by kind and index, none 0 */
+};
+
+/* What B, and E and G with VALUE or TABLE, put out: a piecewise-linear function, with
+ * 0 <= lambda_k _|_ w_k >= 0 for k = 0..n_pairs-1. */
+struct dalcs_behaviour {
+    struct dalcs_affine output; /* V or A */
+    int n_pairs;
+    const struct dalcs_affine *w; /* [n_pairs] */
 };
 
 struct dalcs_device {
@@ -30,12 +59,13 @@ struct dalcs_device {
     double value;     /* ohm, H, F, or gain */
     double initial;   /* IC=: V for C, A for L */
     bool has_initial;
-    bool initially_on;           /* S ... ON */
-    bool has_initial_state;      /* S carries ON or OFF */
-    int stimulus;                /* V, I: index into circuit->stimulus, else -1 */
-    int control;                 /* F, H, W: index of the controlling V device, else -1 */
-    int model;                   /* D: index into diode_model; S: into switch_model; else -1 */
-    struct dalcs_location where; /* the element's card */
+    bool initially_on;      /* S ... ON */
+    bool has_initial_state; /* S carries ON or OFF */
+    int stimulus;           /* V, I: index into circuit->stimulus, else -1 */
+    int control;            /* F, H, W: index of the controlling V device, else -1 */
+    int model;              /* D: index into diode_model; S: into switch_model; else -1 */
+    const struct dalcs_behaviour *behaviour; /* E, G and B; else NULL: linear in node[2..3] */
+    struct dalcs_location where;             /* the element's card */
 };
 
 /* Slope 1/roff from -vrev to vfwd, 1/ron more above and 1/rrev more below.
@@ -136,9 +166,30 @@ static inline bool dalcs_device_is_short(const struct dalcs_device *device) {
     return device->kind == DALCS_RESISTOR && device->value == 0.0;
 }
 
-/* wanted[n_devices], zeroed by the caller: the devices whose current a signal asks for. */
+/* Calls visit(to, term) for each term of a behaviour. */
+static inline void
+dalcs_behaviour_visit(const struct dalcs_behaviour *behaviour,
+                      void (*visit)(void *to, const struct dalcs_affine_term *term), void *to) {
+    for (int k = -1; behaviour != NULL && k < behaviour->n_pairs; k++) {
+        const struct dalcs_affine *a = k < 0 ? &behaviour->output : &behaviour->w[k];
+        for (int i = 0; i < a->n; i++) {
+            visit(to, &a->term[i]);
+        }
+    }
+}
+
+static inline void dalcs_mark_wanted_term(void *wanted, const struct dalcs_affine_term *term) {
+    if (term->kind == DALCS_QUANTITY_CURRENT) {
+        ((bool *)wanted)[term->index] = true;
+    }
+}
+
+/* wanted[n_devices], zeroed by the caller: the devices whose current a signal or a formula asks for. */
 static inline void dalcs_circuit_mark_wanted_currents(const struct dalcs_circuit *circuit,
                                                       bool *wanted) {
+    for (int i = 0; i < circuit->n_devices; i++) {
+        dalcs_behaviour_visit(circuit->device[i].behaviour, dalcs_mark_wanted_term, wanted);
+    }
     for (int i = 0; i < circuit->n_signals; i++) {
         if (circuit->signal[i].kind == DALCS_SIGNAL_CURRENT) {
             wanted[circuit->signal[i].device] = true;

@@ -18,10 +18,9 @@ static const char *usage_of(enum dalcs_device_kind kind) {
     }
 }
 
-/* VALUE=, TABLE and their like stand where the control should be. */
-static bool is_nonlinear(struct dalcs_reader *reader) {
-    static const char *const forms[] = {"value", "table", "laplace",  "freq",
-                                        "vol",   "cur",   "chebyshev"};
+/* LAPLACE and its like stand where the control should be. */
+static bool is_refused(struct dalcs_reader *reader) {
+    static const char *const forms[] = {"laplace", "freq", "chebyshev"};
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     if (token == NULL ||
         !dalcs_builder_is_one_of(token->text, forms, sizeof forms / sizeof forms[0])) {
@@ -36,15 +35,23 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
                             enum dalcs_device_kind kind) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, usage_of(kind));
     struct dalcs_device *device = dalcs_builder_add_device(builder, kind, card->token);
-    if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node) || is_nonlinear(&reader)) {
+    if (device == NULL || !dalcs_reader_nodes(&reader, 2, device->node) || is_refused(&reader)) {
         return;
     }
     if (dalcs_reader_take_word(&reader, "poly")) {
         dalcs_poly_parse(&reader, device);
         return;
     }
+    if (is_voltage_controlled(kind) && dalcs_behavioural_is_form(dalcs_reader_peek(&reader, 0))) {
+        dalcs_behavioural_parse_form(&reader, device);
+        return;
+    }
     if (is_voltage_controlled(kind)) {
         if (!dalcs_reader_nodes(&reader, 2, device->node + 2)) {
+            return;
+        }
+        if (dalcs_behavioural_is_form(dalcs_reader_peek(&reader, 0))) {
+            dalcs_behavioural_parse_form(&reader, device);
             return;
         }
     } else {

@@ -1,6 +1,7 @@
 /* signals.c - what is recorded: .save, .print, .plot and .probe, or the default.
  *
- * The default is every node voltage and the currents of V, L, D, S, W, E and H. Naming signals
+ * The default is every node voltage and the currents of V, L, D, S, W, E, H and
+ * B with V=. Naming signals
  * replaces it, `all` adds it. Each signal is recorded once. */
 #include "builder.h"
 
@@ -57,8 +58,9 @@ void dalcs_signals_add_default(struct dalcs_builder *builder) {
     /* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
     for (int k = 0; k < circuit->n_devices; k++) {
         const struct dalcs_device *d = &circuit->device[k];
-        const bool is_default =
-            (d->letter != 0 && strchr("vldsweh", d->letter) != NULL) || d->kind == DALCS_DIODE;
+        const bool is_default = (d->letter != 0 && strchr("vldsweh", d->letter) != NULL) ||
+                                d->kind == DALCS_DIODE ||
+                                (d->letter == 'b' && d->kind == DALCS_VCVS);
         if (is_default && !dalcs_builder_is_inner(d->name)) {
             add_current(builder, k);
         }

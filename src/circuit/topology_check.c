@@ -16,6 +16,20 @@ struct touch {
     int device; /* the last one */
 };
 
+/* What a formula reads is a control. */
+struct reading {
+    struct touch *touch;
+    int device;
+};
+
+static void touch_term(void *to, const struct dalcs_affine_term *term) {
+    const struct reading *r = to;
+    if (term->kind == DALCS_QUANTITY_VOLTAGE) {
+        r->touch[term->index].n_controls++;
+        r->touch[term->index].device = r->device;
+    }
+}
+
 static void check_nodes(struct dalcs_builder *builder, const struct touch *touch) {
     const struct dalcs_circuit *circuit = builder->circuit;
     for (int k = 1; k < circuit->n_nodes; k++) {
@@ -50,6 +64,8 @@ void dalcs_topology_check(struct dalcs_builder *builder) {
                 t->n_controls++;
             }
         }
+        struct reading reading = {touch, k};
+        dalcs_behaviour_visit(device->behaviour, touch_term, &reading);
         if (device->node[0] == device->node[1]) {
             dalcs_builder_warn(builder, builder->device_token[k], NULL,
                                "both ends of '%s' are on node '%s'", device->name,

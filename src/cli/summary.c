@@ -17,9 +17,10 @@ static const char *plural(long n) {
 }
 
 static void write_size(FILE *out, const struct dalcs_report *report) {
-    fprintf(out, "  circuit   %d node%s, %d state%s (x), %d algebraic (z), %d diode%s (lambda)",
+    const char *pairs = report->size.corners > 0 ? "pair" : "diode";
+    fprintf(out, "  circuit   %d node%s, %d state%s (x), %d algebraic (z), %d %s%s (lambda)",
             report->size.nodes, plural(report->size.nodes), report->size.x, plural(report->size.x),
-            report->size.z, report->size.lambda, plural(report->size.lambda));
+            report->size.z, report->size.lambda, pairs, plural(report->size.lambda));
     if (report->size.switches > 0) {
         fprintf(out, ", %d switch%s", report->size.switches,
                 report->size.switches == 1 ? "" : "es");

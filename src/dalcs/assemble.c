@@ -13,7 +13,7 @@
  * and resistances on its diagonal blocks. */
 #include "assemble.h"
 
-#include "stamp.h"
+#include "stamp_behaviour.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -265,6 +265,9 @@ static enum dalcs_status stamp_switch(struct stamps *b, int device) {
 static enum dalcs_status stamp_device(struct stamps *b, int device, int *next_forest) {
     struct dalcs_layout *l = b->layout;
     const struct dalcs_device *d = &l->circuit->device[device];
+    if (d->behaviour != NULL) {
+        return dalcs_stamp_behaviour_branch(b, device);
+    }
     switch (d->kind) {
     case DALCS_RESISTOR:
         if (d->value == 0.0) {
@@ -303,6 +306,15 @@ static enum dalcs_status stamp_device(struct stamps *b, int device, int *next_fo
         return stamp_diode(b, device);
     case DALCS_SWITCH:
         return stamp_switch(b, device);
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status stamp_formulas(struct stamps *b, int n_devices, const int *device) {
+    for (int i = 0; i < n_devices; i++) {
+        if (b->layout->circuit->device[device[i]].behaviour != NULL) {
+            DALCS_TRY(dalcs_stamp_behaviour(b, device[i]));
+        }
     }
     return DALCS_OK;
 }
@@ -433,6 +445,12 @@ static void count(struct stamps *b, int n_devices, const int *device, int n_node
     }
     for (int i = 0; i < n_devices; i++) {
         const struct dalcs_device *d = &c->device[device[i]];
+        if (d->behaviour != NULL) {
+            s->n_z++;
+            s->n_pairs += d->behaviour->n_pairs;
+            s->n_inputs += dalcs_behaviour_n_inputs(d->behaviour);
+            continue;
+        }
         switch (d->kind) {
         case DALCS_RESISTOR:
             s->n_z += d->value == 0.0 ? 1 : 0;
@@ -552,6 +570,9 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_de
     }
     if (status == DALCS_OK) {
         status = stamp_direct_controls(&b, n_devices, device);
+    }
+    if (status == DALCS_OK) {
+        status = stamp_formulas(&b, n_devices, device);
     }
     if (status == DALCS_OK) {
         status = stamp_references(&b, n_nodes, node);

@@ -2,6 +2,7 @@
 #include "network.h"
 
 #include "capacitive_parts.h"
+#include "current.h"
 #include "source_conflicts.h"
 #include "stamp.h"
 #include "union_find.h"
@@ -231,7 +232,7 @@ done:
 
 struct probe_terms {
     int n;
-    struct dalcs_probe_term term[16];
+    struct dalcs_probe_term term[1];
 };
 
 static void put(struct probe_terms *t, int column, double coefficient) {
@@ -259,80 +260,15 @@ static enum dalcs_status keep_probe(struct dalcs_network *network, struct dalcs_
     return DALCS_OK;
 }
 
-static void put_voltage(const struct dalcs_layout *l, struct probe_terms *t, int first, int second,
-                        double coefficient) {
-    put(t, dalcs_stamp_node_column(l, first), coefficient);
-    put(t, dalcs_stamp_node_column(l, second), -coefficient);
-}
-
 static enum dalcs_status current_probe(struct dalcs_network *network, const struct dalcs_layout *l,
                                        int device, struct dalcs_probe *probe) {
-    const struct dalcs_circuit *c = l->circuit;
-    const struct dalcs_device *d = &c->device[device];
     int system = l->topology.device_component[device];
-    struct probe_terms t = {0};
-    int n_inputs = 0;
     if (system < 0) {
-        return keep_probe(network, probe, -1, t.term, 0, 0);
+        return keep_probe(network, probe, -1, NULL, 0, 0);
     }
-    const struct dalcs_system *s = &network->system[system];
-    int first_pair = s->n_x + s->n_z + l->pair[device];
-    switch (d->kind) {
-    case DALCS_RESISTOR:
-        if (d->value == 0.0) {
-            put(&t, l->current_column[device], 1.0);
-        } else {
-            put_voltage(l, &t, d->node[0], d->node[1], 1.0 / d->value);
-        }
-        break;
-    case DALCS_INDUCTOR: {
-        size_t n = l->group_of[device] < 0 ? 1 : (size_t)l->group[l->group_of[device]].n + 1;
-        int *column = dalcs_arena_alloc(&network->arena, n, sizeof(*column));
-        double *coefficient = dalcs_arena_alloc(&network->arena, n, sizeof(*coefficient));
-        struct dalcs_probe_term *term = dalcs_arena_alloc(&network->arena, n, sizeof(*term));
-        if (column == NULL || coefficient == NULL || term == NULL) {
-            return DALCS_E_NOMEM;
-        }
-        int n_terms = dalcs_layout_coil_current(l, device, column, coefficient);
-        for (int k = 0; k < n_terms; k++) {
-            term[k] = (struct dalcs_probe_term){column[k], coefficient[k]};
-        }
-        return keep_probe(network, probe, system, term, n_terms, 0);
-    }
-    case DALCS_VCCS:
-        put_voltage(l, &t, d->node[2], d->node[3], d->value);
-        break;
-    case DALCS_CCCS:
-        put(&t, l->current_column[d->control], d->value);
-        break;
-    case DALCS_ISOURCE:
-        t.term[t.n] = (struct dalcs_probe_term){l->input[device], 1.0};
-        n_inputs = 1;
-        break;
-    case DALCS_DIODE: {
-        const struct dalcs_diode_model *m = &c->diode_model[d->model];
-        put(&t, first_pair, 1.0);
-        if (isfinite(m->vrev)) {
-            put(&t, first_pair + 1, -1.0);
-        }
-        if (isfinite(m->roff)) {
-            put_voltage(l, &t, d->node[0], d->node[1], 1.0 / m->roff);
-        }
-        break;
-    }
-    case DALCS_SWITCH: {
-        const struct dalcs_switch_model *m = &c->switch_model[d->model];
-        put(&t, first_pair, 1.0);
-        if (isfinite(m->roff)) {
-            put_voltage(l, &t, d->node[0], d->node[1], 1.0 / m->roff);
-        }
-        break;
-    }
-    default: /* C, V, E, H: the current is an unknown */
-        put(&t, l->current_column[device], 1.0);
-        break;
-    }
-    return keep_probe(network, probe, system, t.term, t.n, n_inputs);
+    struct dalcs_current current;
+    DALCS_TRY(dalcs_layout_current(l, &network->system[system], device, &network->arena, &current));
+    return keep_probe(network, probe, system, current.term, current.n_terms, current.n_inputs);
 }
 
 static enum dalcs_status node_probe(struct dalcs_network *network, const struct dalcs_layout *l,

@@ -42,6 +42,7 @@ struct dalcs_pair {
     enum dalcs_pair_kind kind;
     const char *element;      /* "d1", "s1" */
     bool is_breakdown;        /* the reverse branch of a diode with Vrev */
+    bool is_formula;          /* a kink or a jump of a source: its lambda carries no charge */
     bool initially_on;        /* switches */
     bool is_direct;           /* switches: use direct_control, known before the step is solved */
     double turn_on, turn_off; /* switches: control thresholds vt + vh and vt - vh, V or A */

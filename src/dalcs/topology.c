@@ -10,10 +10,25 @@ static int controlling_nodes(const struct dalcs_device *d) {
     return d->kind == DALCS_VCVS || d->kind == DALCS_VCCS || d->kind == DALCS_SWITCH ? 2 : 0;
 }
 
+/* Does a term read the voltage of a terminal? */
+struct self_reading {
+    const struct dalcs_device *device;
+    bool found;
+};
+
+static void note_terminal(void *to, const struct dalcs_affine_term *term) {
+    struct self_reading *r = to;
+    bool is_terminal = term->index == r->device->node[0] || term->index == r->device->node[1];
+    r->found = r->found || (term->kind == DALCS_QUANTITY_VOLTAGE && is_terminal);
+}
+
 /* Does the device tie the voltages of its two terminals, in some mode or at some step? Current
- * sources do not: an island that hangs on them alone floats. */
+ * sources do not: an island that hangs on them alone floats. One whose formula reads the voltage it
+ * feeds is a resistance. */
 static bool conducts(const struct dalcs_device *d) {
-    return d->kind != DALCS_ISOURCE && d->kind != DALCS_CCCS && d->kind != DALCS_VCCS;
+    struct self_reading r = {.device = d};
+    dalcs_behaviour_visit(d->behaviour, note_terminal, &r);
+    return (d->kind != DALCS_ISOURCE && d->kind != DALCS_CCCS && d->kind != DALCS_VCCS) || r.found;
 }
 
 static void merge_shorts(struct dalcs_topology *t, const struct dalcs_circuit *c,
@@ -30,6 +45,24 @@ static void merge_shorts(struct dalcs_topology *t, const struct dalcs_circuit *c
     }
     for (int n = 0; n < c->n_nodes; n++) {
         t->node_of[n] = dalcs_union_find(parent, n);
+    }
+}
+
+/* What a formula reads belongs to its source. */
+struct reader {
+    struct dalcs_topology *topology;
+    const struct dalcs_circuit *circuit;
+    int *parent;
+    int device;
+};
+
+static void join_term(void *to, const struct dalcs_affine_term *term) {
+    const struct reader *r = to;
+    int n_nodes = r->circuit->n_nodes;
+    if (term->kind == DALCS_QUANTITY_VOLTAGE && r->topology->node_of[term->index] != 0) {
+        dalcs_union_join(r->parent, r->topology->node_of[term->index], n_nodes + r->device);
+    } else if (term->kind == DALCS_QUANTITY_CURRENT) {
+        dalcs_union_join(r->parent, n_nodes + term->index, n_nodes + r->device);
     }
 }
 
@@ -50,6 +83,8 @@ static void find_components(struct dalcs_topology *t, const struct dalcs_circuit
         if (d->control >= 0) {
             dalcs_union_join(parent, c->n_nodes + i, c->n_nodes + d->control);
         }
+        struct reader reader = {t, c, parent, i};
+        dalcs_behaviour_visit(d->behaviour, join_term, &reader);
     }
     for (int k = 0; k < c->n_couplings; k++) {
         dalcs_union_join(parent, c->n_nodes + c->coupling[k].inductor[0],

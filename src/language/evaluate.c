@@ -344,6 +344,8 @@ static enum dalcs_outcome run(struct run *r) {
         case DALCS_JUMP_OR:
             k += jumps(language, o->code) ? o->count - 1 : 0;
             break;
+        case DALCS_PUSH_SIGNAL:
+        case DALCS_SIGNAL_NAME:
         case DALCS_CHECK_CALL:
             outcome = check_call(r, o);
             break;

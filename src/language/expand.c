@@ -36,6 +36,11 @@ static const char *node_name(struct dalcs_language *language, const struct dalcs
     return flat_name(language, scope, name);
 }
 
+const char *dalcs_scope_flat_name(struct dalcs_language *language, const struct dalcs_scope *scope,
+                                  bool is_node, const char *name) {
+    return is_node ? node_name(language, scope, name) : flat_name(language, scope, name);
+}
+
 static const char *model_name(struct dalcs_language *language, const struct dalcs_scope *scope,
                               const char *name) {
     for (const struct dalcs_scope *s = scope; s != NULL; s = s->enclosing) {
@@ -121,7 +126,9 @@ static bool has_parameters(const struct dalcs_scope *scope) {
 
 /* Does the card stay as it is? */
 static bool is_flat(struct dalcs_scope *scope, const struct dalcs_card *card) {
-    if (scope->caller != NULL || has_parameters(scope)) {
+    int first;
+    int n;
+    if (scope->caller != NULL || has_parameters(scope) || dalcs_formula_find(card, &first, &n)) {
         return false;
     }
     for (int k = 1; k < card->n; k++) {
@@ -138,6 +145,20 @@ static void rename_token(struct dalcs_language *language, struct dalcs_scope *sc
                        : role == DALCS_ROLE_DEVICE ? flat_name(language, scope, token->text)
                                                    : model_name(language, scope, token->text);
     token->text = name != NULL ? name : token->text;
+}
+
+/* Puts one token in the place of those that a formula has; how many are left. */
+static int put_formula(struct dalcs_language *language, struct dalcs_scope *scope,
+                       const struct dalcs_card *card, struct dalcs_token *token, int first, int n) {
+    struct dalcs_token *place = &token[first];
+    const struct dalcs_token *last = &token[first + n - 1];
+    place->formula = dalcs_formula_make(language, scope, &card->token[first], n);
+    place->kind = place->formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;
+    if (last->line == place->line) {
+        place->length = last->offset + last->length - place->offset;
+    }
+    memmove(place + 1, last + 1, (size_t)(card->n - first - n) * sizeof *token);
+    return card->n - n + 1;
 }
 
 /* Cards that steer the run belong to the whole netlist. */
@@ -173,8 +194,16 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
     memcpy(token, card->token, (size_t)card->n * sizeof *token);
     dalcs_roles(card, role);
     const bool may_be_bare = has_parameters(scope);
+    int formula = card->n;
+    int n_formula = 0;
+    if (!dalcs_formula_find(card, &formula, &n_formula)) {
+        formula = card->n;
+    }
     for (int k = 0; k < card->n; k++) {
         token[k].line = line_of(language, scope, token[k].line);
+        if (k >= formula && k < formula + n_formula) {
+            continue;
+        }
         if (k == 0) {
             if (card->letter != '.') {
                 rename_token(language, scope, DALCS_ROLE_DEVICE, token);
@@ -189,7 +218,9 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
             evaluate_token(language, scope, item, k, &token[k]);
         }
     }
-    const struct dalcs_card copy = {token, card->n, card->letter};
+    const int n =
+        formula < card->n ? put_formula(language, scope, card, token, formula, n_formula) : card->n;
+    const struct dalcs_card copy = {token, n, card->letter};
     return language->out_of_memory ? DALCS_E_NOMEM : emit(language, &copy);
 }
 

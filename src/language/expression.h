@@ -27,6 +27,8 @@ enum dalcs_operation_code {
     DALCS_PUSH_NUMBER,
     DALCS_PUSH_NAME,     /* a parameter */
     DALCS_PUSH_ARGUMENT, /* of the function whose body this is */
+    DALCS_PUSH_SIGNAL,   /* v(...) or i(...) with `count` names, */
+    DALCS_SIGNAL_NAME,   /* which follow */
     DALCS_NEGATE,
     DALCS_NOT,
     DALCS_ADD,
@@ -58,7 +60,7 @@ struct dalcs_operation {
 
     union {
         double number;
-        const char *name; /* of a parameter or a function */
+        const char *name; /* of a parameter, a function, a node, an element */
     } u;
 };
 
@@ -74,6 +76,10 @@ struct dalcs_expression {
 bool dalcs_expression_text(struct dalcs_arena *arena, const struct dalcs_token *token, int n,
                            struct dalcs_expression_text *text) DALCS_MUST_CHECK;
 
+/* The piece that holds text[begin]. */
+const struct dalcs_piece *dalcs_expression_piece(const struct dalcs_expression_text *text,
+                                                 int begin);
+
 /* The place of text[begin..begin+length-1]. */
 struct dalcs_location dalcs_expression_place(const struct dalcs_expression_text *text, int begin,
                                              int length);
@@ -84,6 +90,7 @@ struct dalcs_expression_context {
     struct dalcs_diag *diag;
     const struct dalcs_origin *instance; /* for messages, or NULL */
     const struct dalcs_names *arguments; /* name -> index, of a function's body; else NULL */
+    bool has_signals;                    /* v(a), v(a,b) and i(x) are signals */
     bool *noted_caret;                   /* this and the next: a note about it was made */
     bool *noted_log;
 };

@@ -321,9 +321,74 @@ static void note_log(struct parser *p, int begin, int length, const char *name) 
     }
 }
 
+/* The name of a node or an element, which may hold any byte but these, and what follows it. */
+static void parse_signal_name(struct parser *p) {
+    const char *text = p->text->text;
+    int end = p->begin;
+    while (text[end] != '\0' && text[end] != ',' && text[end] != '(' && text[end] != ')') {
+        end++;
+    }
+    int stop = end;
+    while (stop > p->begin && (text[stop - 1] == ' ' || text[stop - 1] == '\t')) {
+        stop--;
+    }
+    if (stop == p->begin) {
+        report(p, DALCS_ERROR, p->begin, 1, NULL, "a name is missing");
+        return;
+    }
+    const char *name =
+        dalcs_arena_copy(p->context->arena, text + p->begin, (size_t)(stop - p->begin));
+    p->out_of_memory = p->out_of_memory || name == NULL;
+    p->failed = p->failed || name == NULL;
+    if (name != NULL && p->context->arguments != NULL &&
+        dalcs_names_find(p->context->arguments, name) >= 0) {
+        report(p, DALCS_ERROR, p->begin, stop - p->begin, "give the function the voltage itself",
+               "an argument is a value, not the name of a node or an element");
+    }
+    emit(p, (struct dalcs_operation){.code = DALCS_SIGNAL_NAME,
+                                     .begin = p->begin,
+                                     .length = stop - p->begin,
+                                     .u.name = name});
+    p->begin = end;
+    p->length = 0;
+    next(p);
+}
+
+/* v(a), v(a,b), i(x): the parser stands at the parenthesis, not yet read beyond it. */
+static void parse_signal(struct parser *p, int begin, const char *name) {
+    const int open = p->begin;
+    const size_t place = emit(
+        p, (struct dalcs_operation){.code = DALCS_PUSH_SIGNAL, .begin = begin, .u.name = name});
+    int n = 0;
+    do {
+        p->begin += p->length;
+        p->length = 0;
+        while (p->text->text[p->begin] == ' ' || p->text->text[p->begin] == '\t') {
+            p->begin++;
+        }
+        parse_signal_name(p);
+        n++;
+    } while (p->symbol == COMMA && !p->failed);
+    const int end = p->begin + p->length;
+    close_parenthesis(p, open);
+    if (n > (*name == 'v' ? 2 : 1)) {
+        report(p, DALCS_ERROR, begin, end - begin, NULL,
+               *name == 'v' ? "a voltage is that of one node, or between two"
+                            : "a current is that of one element");
+    }
+    if (!p->failed) {
+        p->operation[place].count = n;
+        p->operation[place].length = end - begin;
+    }
+}
+
 static void parse_call(struct parser *p, int begin, int length, const char *name) {
     const int open = p->begin;
     const struct dalcs_function *function = dalcs_function_find(name);
+    if (p->context->has_signals && (strcmp(name, "v") == 0 || strcmp(name, "i") == 0)) {
+        parse_signal(p, begin, name);
+        return;
+    }
     next(p);
     if (function != NULL && function->one == NULL && function->two == NULL &&
         function->many == NULL) {

@@ -50,13 +50,18 @@ bool dalcs_expression_text(struct dalcs_arena *arena, const struct dalcs_token *
     return true;
 }
 
-struct dalcs_location dalcs_expression_place(const struct dalcs_expression_text *text, int begin,
-                                             int length) {
+const struct dalcs_piece *dalcs_expression_piece(const struct dalcs_expression_text *text,
+                                                 int begin) {
     int k = text->n_pieces - 1;
     while (k > 0 && text->piece[k].begin > begin) {
         k--;
     }
-    const struct dalcs_piece *piece = &text->piece[k];
+    return &text->piece[k];
+}
+
+struct dalcs_location dalcs_expression_place(const struct dalcs_expression_text *text, int begin,
+                                             int length) {
+    const struct dalcs_piece *piece = dalcs_expression_piece(text, begin);
     const struct dalcs_token token = {
         .line = piece->line, .offset = piece->offset + begin - piece->begin, .length = length};
     struct dalcs_location where = dalcs_token_location(&token);

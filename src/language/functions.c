@@ -88,6 +88,22 @@ static double table(const double *x, int n) {
     return point[2 * n_points - 1];
 }
 
+/* The same, but the first and the last line go on, as ngspice's pwl() does. */
+static double lines(const double *x, int n) {
+    const double *point = x + 1;
+    const int n_points = (n - 1) / 2;
+    const double inside = table(x, n);
+    if (isnan(inside) || n_points == 1 || (x[0] >= point[0] && x[0] <= point[2 * n_points - 2])) {
+        return inside;
+    }
+    const double *a = x[0] < point[0] ? point : point + 2 * n_points - 4;
+    return a[1] + (a[3] - a[1]) * ((x[0] - a[0]) / (a[2] - a[0]));
+}
+
+static double clip(double x) {
+    return x < 0 ? 0 : x > 1 ? 1 : x;
+}
+
 static const struct dalcs_function FUNCTIONS[] = {
     {"sin", 1, 1, sin, NULL, NULL},
     {"cos", 1, 1, cos, NULL, NULL},
@@ -131,9 +147,11 @@ static const struct dalcs_function FUNCTIONS[] = {
     {"u", 1, 1, step, NULL, NULL},
     {"stp", 1, 1, step, NULL, NULL},
     {"uramp", 1, 1, ramp, NULL, NULL},
+    {"u2", 1, 1, clip, NULL, NULL},
     {"buf", 1, 1, buffer, NULL, NULL},
     {"inv", 1, 1, invert, NULL, NULL},
     {"table", 3, 1001, NULL, NULL, table},
+    {"pwl", 3, 1001, NULL, NULL, lines},
     {"if", 3, 3, NULL, NULL, NULL}, /* these two jump */
     {"ternary_fcn", 3, 3, NULL, NULL, NULL},
 };

@@ -8,6 +8,7 @@
 
 #include "expand.h"
 #include "expression.h"
+#include "formula.h"
 
 struct dalcs_scope;
 
@@ -221,6 +222,23 @@ enum dalcs_outcome { DALCS_OUTCOME_VALUE, DALCS_OUTCOME_WAITS, DALCS_OUTCOME_WRO
 /* Runs an expression as far as the parameters are known: WAITS sets language->awaited. */
 enum dalcs_outcome dalcs_evaluate(struct dalcs_language *language, struct dalcs_scope *scope,
                                   const struct dalcs_expression *expression, double *value);
+
+/* ---- formula.c --------------------------------------------------------------------------------- */
+
+/* Where the card has a formula: token[*first..*first+*n-1]; false when nowhere. */
+bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n);
+
+/* The formula of token[0..n-1]; NULL when an error was reported or out of memory. */
+const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
+                                               struct dalcs_scope *scope,
+                                               const struct dalcs_token *token, int n);
+
+/* ---- expand.c ---------------------------------------------------------------------------------- */
+
+/* The name that a node, or else an element, of this scope has in the flat netlist; NULL: out of
+ * memory. */
+const char *dalcs_scope_flat_name(struct dalcs_language *language, const struct dalcs_scope *scope,
+                                  bool is_node, const char *name);
 
 /* ---- roles.c: which words of a card are names -------------------------------------------------- */
 

@@ -322,6 +322,15 @@ static bool is_language(const struct dalcs_token *name) {
     return false;
 }
 
+/* B sources, and E and G with name=expression: formulas need no braces. */
+static bool may_have_formula(const struct dalcs_card *card) {
+    bool may = card->letter == 'b';
+    for (int k = 3; k < card->n && (card->letter == 'e' || card->letter == 'g') && !may; k++) {
+        may = card->token[k].kind == DALCS_TOKEN_EQUAL;
+    }
+    return may;
+}
+
 enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
     struct dalcs_netlist *netlist = lexer->netlist;
     if (lexer->n_tokens == 0) {
@@ -340,8 +349,8 @@ enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
     if (card.letter == '.' && dalcs_include_is_card(token->text)) {
         return dalcs_include_card(lexer, &card);
     }
-    netlist->has_language =
-        netlist->has_language || card.letter == 'x' || (card.letter == '.' && is_language(token));
+    netlist->has_language = netlist->has_language || card.letter == 'x' ||
+                            (card.letter == '.' && is_language(token)) || may_have_formula(&card);
     DALCS_TRY(dalcs_grow(&netlist->card, &netlist->capacity, netlist->n_cards + 1,
                          sizeof *netlist->card));
     netlist->card[netlist->n_cards++] = card;

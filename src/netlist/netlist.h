@@ -11,11 +11,14 @@
 
 #include "diag.h"
 
+struct dalcs_formula;
+
 enum dalcs_token_kind {
     DALCS_TOKEN_WORD,       /* a name, keyword or number: lower case */
     DALCS_TOKEN_STRING,     /* "...": case kept, quotes removed */
     DALCS_TOKEN_EXPRESSION, /* {...} or '...': lower case, braces or quotes removed */
     DALCS_TOKEN_NUMBER,     /* an expression that was evaluated: text is the expression's */
+    DALCS_TOKEN_FORMULA,    /* an expression of voltages, currents and time (language/formula.h) */
     DALCS_TOKEN_EQUAL,
     DALCS_TOKEN_OPEN,
     DALCS_TOKEN_CLOSE,
@@ -46,7 +49,11 @@ struct dalcs_token {
     int length;       /* its bytes there */
     enum dalcs_token_kind kind;
     bool after_comma; /* a comma stands between it and the token before */
-    double value;     /* of a NUMBER */
+
+    union {
+        double value;                        /* of a NUMBER */
+        const struct dalcs_formula *formula; /* of a FORMULA */
+    };
 };
 
 struct dalcs_card {

@@ -136,6 +136,7 @@ static void report_size(struct dalcs_report *report, const struct dalcs_network 
             report->size.switches += is_switch ? 1 : 0;
             report->size.z += is_switch ? 1 : 0; /* a switch's current is algebraic */
             report->size.lambda += is_switch ? 0 : 1;
+            report->size.corners += s->pair[d].is_formula ? 1 : 0;
         }
     }
 }

@@ -339,7 +339,9 @@ static bool has_modes(const struct dalcs_refusal *r) {
     bool has = false;
     for (int i = 0; i < r->circuit->n_devices && !has; i++) {
         enum dalcs_device_kind kind = r->circuit->device[i].kind;
-        has = r->is_named[i] && (kind == DALCS_DIODE || kind == DALCS_SWITCH);
+        const struct dalcs_behaviour *behaviour = r->circuit->device[i].behaviour;
+        has = r->is_named[i] && (kind == DALCS_DIODE || kind == DALCS_SWITCH ||
+                                 (behaviour != NULL && behaviour->n_pairs > 0));
     }
     return has;
 }
@@ -351,6 +353,22 @@ static int device_of(const struct dalcs_circuit *c, const char *name) {
         device = strcmp(c->device[i].name, name) == 0 ? i : -1;
     }
     return device;
+}
+
+/* A union-find that a device is joined in. */
+struct joined {
+    int *part;
+    int n_nodes, device;
+};
+
+/* What a formula reads belongs to its source. */
+static void join_term(void *to, const struct dalcs_affine_term *term) {
+    const struct joined *j = to;
+    if (term->kind == DALCS_QUANTITY_VOLTAGE) {
+        dalcs_union_join(j->part, term->index, j->n_nodes + j->device);
+    } else if (term->kind == DALCS_QUANTITY_CURRENT) {
+        dalcs_union_join(j->part, j->n_nodes + term->index, j->n_nodes + j->device);
+    }
 }
 
 /* part[n_nodes + n_devices]: what hangs together through anything but ground, as a union-find. */
@@ -368,6 +386,8 @@ static void find_parts(const struct dalcs_circuit *c, int *part) {
         if (d->control >= 0) {
             dalcs_union_join(part, c->n_nodes + i, c->n_nodes + d->control);
         }
+        struct joined joined = {part, c->n_nodes, i};
+        dalcs_behaviour_visit(d->behaviour, join_term, &joined);
     }
     for (int k = 0; k < c->n_couplings; k++) {
         const int *coil = c->coupling[k].inductor;
@@ -409,9 +429,13 @@ static const char *explain_modes(const struct dalcs_refusal *r) {
     if (active.n == 0) {
         put(&active, "something"); /* without memory, or where .ic alone is named */
     }
+    int first = r->n_elements > 0 ? device_of(r->circuit, r->element[0]) : -1;
+    bool is_formula = first >= 0 && r->circuit->device[first].behaviour != NULL;
     const char *format =
-        !has_modes(r)  ? "the equations contradict each other, most at %s; %s %s the circuit from "
-                         "being passive"
+        !has_modes(r) ? "the equations contradict each other, most at %s; %s %s the circuit from "
+                        "being passive"
+        : named.n == 1 && is_formula
+            ? "%s fits no piece of its formula; %s %s the circuit from being passive"
         : named.n == 1 ? "%s fits neither conducting nor blocking; %s %s the circuit from being "
                          "passive"
                        : "no combination of conducting and blocking fits %s; %s %s the circuit "

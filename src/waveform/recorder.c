@@ -103,6 +103,14 @@ static enum dalcs_status emit(struct dalcs_recorder *r, double time, const doubl
 }
 
 /* Modes that changed since last time become events. */
+/* A source whose formula has several pairs crosses them all at once where it jumps: one event. */
+static bool is_told(const struct dalcs_recorder *r, const struct dalcs_pair *pair, double t,
+                    bool on) {
+    const struct dalcs_event *last = r->n_events > 0 ? &r->event[r->n_events - 1] : NULL;
+    return pair->is_formula && last != NULL && last->element == pair->element && last->time == t &&
+           last->on == on;
+}
+
 static enum dalcs_status note_events(struct dalcs_recorder *r, const struct dalcs_euler *e,
                                      bool record) {
     for (int k = 0; k < e->n_components; k++) {
@@ -114,14 +122,15 @@ static enum dalcs_status note_events(struct dalcs_recorder *r, const struct dalc
             }
             r->seen[k][word] = p->mode[word];
             for (int bit = 0; record && bit < 64; bit++) {
-                if ((changed >> bit & 1) == 0) {
+                int d = 64 * word + bit;
+                if ((changed >> bit & 1) == 0 ||
+                    is_told(r, &p->system->pair[d], e->t, dalcs_osnsp_is_on(p, d))) {
                     continue;
                 }
                 if (r->n_events == r->limit) {
                     r->n_events_dropped++;
                     continue;
                 }
-                int d = 64 * word + bit;
                 DALCS_TRY(
                     dalcs_grow(&r->event, &r->event_capacity, r->n_events + 1, sizeof(*r->event)));
                 r->event[r->n_events++] =
@@ -267,7 +276,7 @@ static size_t list_impulses(const struct dalcs_recorder *r, const struct dalcs_e
         bool is_switch = s->pair[d].kind == DALCS_PAIR_SWITCH;
         const double value[2] = {j->charge[d], is_switch ? -j->flux[d] : j->flux[d]};
         for (int i = 0; i < 2; i++) {
-            if (value[i] != 0.0 && is_noticeable(value[i], largest[i])) {
+            if (!s->pair[d].is_formula && value[i] != 0.0 && is_noticeable(value[i], largest[i])) {
                 r->impulse[n++] = (struct dalcs_impulse){
                     .element = s->pair[d].element, .is_flux = i == 1, .value = value[i]};
             }

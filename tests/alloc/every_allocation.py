@@ -190,6 +190,34 @@ D1 q 0 clamp
 .save v(out) v(xa:m) i(xa.x1.d1)
 .end
 """, 0),
+    "formulas": ("""Sources with a formula, in a subcircuit and out of it
+.func clip(x,y) {min(max(x,-y),y)}
+.subckt amp p n out gain=1e6
+B1 out 0 V=limit(gain*v(p,n), -10, 10)
+.ends
+V1 in 0 SIN(0 5 1k)
+R1 in n 1k
+R2 n out 3k
+X1 0 n out amp
+C1 y 0 1u
+B2 0 y I=1m*sgn(v(in)) - clip(v(y)/1k, 1m) + 1m*sin(1000*time)*exp(-time) + u(time-0.1m)*1m
+B3 z 0 V=max(abs(v(in)), abs(v(out))) + i(R1) + (v(in) > 1 && v(out) > 2 ? 1 : 0)
+E4 w 0 TABLE {v(in)} = (-1,-2) (0,0) (1,1)
+R3 z w 1k
+.tran 50u 0.2m
+.end
+""", 0),
+    "wrong_formulas": ("""Mistakes in formulas
+.func f(x) {x*f(x)}
+V1 a 0 1
+B1 b 0 V=f(v(a))
+B2 b 0 V=v(a)*v(b)
+B3 c 0 V=v(nowhere) + i(nobody) + g(v(a))
+B4 d 0 V=u(v(a))*v(b)
+E1 e 0 TABLE {v(a)} = (1,2) (0,3)
+.op
+.end
+""", 3),
     "wrong_language": ("""Mistakes in parameters and subcircuits
 .param a={b} b={a} c={nobody} d={sqrt(0-1)
 .func f(x) {f(x)}

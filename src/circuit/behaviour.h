@@ -1,0 +1,138 @@
+/* behaviour.h - formulas of voltages, currents and time to complementarity pairs.
+ *
+ *     formula -> value: an affine function plus piecewise-linear ones, each of one affine quantity
+ *             -> behaviour: an affine function of voltages, currents, stimuli and lambdas, and a pair
+ *                0 <= lambda _|_ w >= 0 for every kink, two for every jump and every saturation
+ *
+ * doc/theory.md, section 10, has the pairs. Private to this folder. */
+#ifndef DALCS_BEHAVIOUR_H
+#define DALCS_BEHAVIOUR_H
+
+#include "builder.h"
+
+#include "formula.h"
+#include "piecewise.h"
+
+/* A part of a value: a function of the affine quantity `direction`, which has no constant and whose
+ * first coefficient is 1. */
+struct dalcs_form_part {
+    struct dalcs_affine direction;
+    struct dalcs_piecewise f;
+};
+
+struct dalcs_form {
+    struct dalcs_affine affine;
+    int n;
+    const struct dalcs_form_part *part;
+    double height; /* not 0: the value is 0 or this, or between the two at a jump */
+};
+
+/* exp(-decay t) sin(2 pi (frequency t + phase)) from `delay` on, 0 before */
+struct dalcs_wave {
+    double decay, frequency, phase, delay; /* 1/s, Hz, cycles, s */
+};
+
+/* A kink, a jump or a saturation: see dalcs_behaviour_freeze. */
+struct dalcs_cell {
+    struct dalcs_affine argument;
+    double resistance; /* 1 / slope, 0: a jump */
+    double height;     /* INFINITY: a kink, of one pair; else of two */
+    int pair;          /* the first */
+};
+
+struct dalcs_compiler {
+    struct dalcs_builder *builder;
+    struct dalcs_arena *arena;         /* of values: scratch */
+    const struct dalcs_form **form_of; /* by number_of, NULL before */
+    struct dalcs_wave *wave;           /* heap */
+    size_t n_waves, wave_capacity;
+    struct dalcs_cell *cell; /* heap */
+    size_t n_cells, cell_capacity;
+    int n_pairs;
+    struct dalcs_stimulus *stimulus; /* heap: of all compilers, those of the circuit follow */
+    size_t n_stimuli, stimulus_capacity;
+    bool failed;
+};
+
+/* ---- affine.c: all fail, with `failed`, where memory runs out ------------------------------------ */
+
+/* a + factor b */
+struct dalcs_affine dalcs_affine_add(struct dalcs_compiler *c, const struct dalcs_affine *a,
+                                     double factor, const struct dalcs_affine *b);
+struct dalcs_affine dalcs_affine_of(struct dalcs_compiler *c, enum dalcs_quantity_kind kind,
+                                    int index);
+struct dalcs_affine dalcs_affine_constant(double constant);
+
+/* a = constant + factor * direction, normalised; factor 0 when a is constant. */
+double dalcs_affine_direction(struct dalcs_compiler *c, const struct dalcs_affine *a,
+                              struct dalcs_affine *direction);
+bool dalcs_affine_is_along(const struct dalcs_affine *a, const struct dalcs_affine *direction,
+                           double *factor);
+bool dalcs_affine_is_constant(const struct dalcs_affine *a);
+
+/* A function of time alone that no wave takes part in? */
+bool dalcs_affine_is_time(const struct dalcs_affine *a);
+
+/* ---- form.c --------------------------------------------------------------------------------------- */
+
+const struct dalcs_form *dalcs_form_number(struct dalcs_compiler *c, double number);
+const struct dalcs_form *dalcs_form_affine(struct dalcs_compiler *c,
+                                           const struct dalcs_affine *affine);
+bool dalcs_form_is_number(const struct dalcs_form *v);
+
+/* a + factor b */
+const struct dalcs_form *dalcs_form_add(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                        double factor, const struct dalcs_form *b);
+const struct dalcs_form *dalcs_form_scale(struct dalcs_compiler *c, double factor,
+                                          const struct dalcs_form *a);
+
+/* outer(a) */
+const struct dalcs_form *dalcs_form_apply(struct dalcs_compiler *c,
+                                          const struct dalcs_piecewise *outer,
+                                          const struct dalcs_form *a);
+const struct dalcs_form *dalcs_form_max(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                        const struct dalcs_form *b);
+const struct dalcs_form *dalcs_form_min(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                        const struct dalcs_form *b);
+
+/* 1 where a is not 0; NULL where a is not constant between jumps. */
+const struct dalcs_form *dalcs_form_to_logic(struct dalcs_compiler *c, const struct dalcs_form *a);
+
+enum dalcs_product { DALCS_PRODUCT_IS, DALCS_PRODUCT_HAS_JUMP, DALCS_PRODUCT_IS_CURVED };
+
+/* a b where that is piecewise linear, into *product. */
+enum dalcs_product dalcs_form_multiply(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                       const struct dalcs_form *b,
+                                       const struct dalcs_form **product);
+
+/* ---- wave.c: functions of time --------------------------------------------------------------------- */
+
+/* sin(2 pi (frequency t + phase)) exp(-decay t) as a value. */
+const struct dalcs_form *dalcs_wave_value(struct dalcs_compiler *c, const struct dalcs_wave *wave);
+
+/* The product of two waves, a sum of two others; false where one begins later than the other. */
+bool dalcs_wave_multiply(struct dalcs_compiler *c, int a, int b, const struct dalcs_form **product);
+
+/* A wave that begins at a time; -1: a damped one, or out of memory. */
+int dalcs_wave_delayed(struct dalcs_compiler *c, int wave, double delay);
+
+/* The stimulus of a wave, and of a piecewise-linear function of time; -1: out of memory. */
+int dalcs_wave_stimulus(struct dalcs_compiler *c, int wave);
+int dalcs_time_stimulus(struct dalcs_compiler *c, const struct dalcs_piecewise *f);
+
+/* ---- pairs.c --------------------------------------------------------------------------------------- */
+
+/* The value as an affine function of quantities and lambdas. */
+struct dalcs_affine dalcs_behaviour_freeze(struct dalcs_compiler *c, const struct dalcs_form *v);
+
+/* Freezes the output and makes the behaviour, in the circuit's arena; NULL when out of memory. */
+const struct dalcs_behaviour *dalcs_behaviour_make(struct dalcs_compiler *c,
+                                                   const struct dalcs_form *output);
+
+/* ---- compile.c ------------------------------------------------------------------------------------- */
+
+/* The value of a formula; NULL when an error was reported or out of memory. */
+const struct dalcs_form *dalcs_compile(struct dalcs_compiler *c,
+                                       const struct dalcs_formula *formula);
+
+#endif

@@ -1,0 +1,215 @@
+/* behavioural.c - sources with a formula: B with V= or I=, E and G with VALUE or TABLE. */
+#include "behaviour.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A source that waits for all elements to be known. */
+struct dalcs_formula_source {
+    int device;
+    const struct dalcs_token *token; /* its formula; NULL: the voltage of its controlling nodes */
+    bool has_table;
+    struct dalcs_piecewise table;
+};
+
+static const char USAGE[] =
+    "a behavioural source is: Bname node node V=expression, or I=expression";
+
+static struct dalcs_formula_source *add_source(struct dalcs_builder *builder,
+                                               const struct dalcs_device *device) {
+    if (dalcs_grow(&builder->formula, &builder->formula_capacity, builder->n_formulas + 1,
+                   sizeof *builder->formula) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return NULL;
+    }
+    struct dalcs_formula_source *source = &builder->formula[builder->n_formulas++];
+    *source = (struct dalcs_formula_source){.device = (int)(device - builder->circuit->device)};
+    return source;
+}
+
+/* A formula; `false` when an error was reported. */
+static bool read_formula(struct dalcs_reader *reader, const struct dalcs_token **token) {
+    *token = dalcs_reader_peek(reader, 0);
+    if (*token == NULL) {
+        dalcs_reader_missing(reader, "an expression");
+        return false;
+    }
+    if ((*token)->kind == DALCS_TOKEN_BAD) {
+        reader->builder->failed = true;
+        return false;
+    }
+    if ((*token)->kind != DALCS_TOKEN_FORMULA) {
+        dalcs_reader_unexpected(reader);
+        return false;
+    }
+    reader->at++;
+    return true;
+}
+
+void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
+    int node[2];
+    if (!dalcs_reader_nodes(&reader, 2, node)) {
+        return;
+    }
+    const struct dalcs_token *what = dalcs_reader_take_parameter(&reader);
+    if (what == NULL || strlen(what->text) != 1 || strchr("vi", *what->text) == NULL) {
+        if (what != NULL) {
+            dalcs_builder_error(builder, what, USAGE, "a behavioural source has no '%s='",
+                                what->text);
+        } else {
+            dalcs_reader_missing(&reader, "V= or I=");
+        }
+        return;
+    }
+    struct dalcs_device *device = dalcs_builder_add_device(
+        builder, *what->text == 'v' ? DALCS_VCVS : DALCS_VCCS, card->token);
+    const struct dalcs_token *token;
+    if (device == NULL) {
+        return;
+    }
+    device->node[0] = node[0];
+    device->node[1] = node[1];
+    if (!read_formula(&reader, &token) || !dalcs_reader_end(&reader)) {
+        return;
+    }
+    struct dalcs_formula_source *source = add_source(builder, device);
+    if (source != NULL) {
+        source->token = token;
+    }
+}
+
+bool dalcs_behavioural_is_form(const struct dalcs_token *token) {
+    static const char *const forms[] = {"value", "vol", "cur", "table"};
+    return token != NULL && token->kind == DALCS_TOKEN_WORD &&
+           dalcs_builder_is_one_of(token->text, forms, sizeof forms / sizeof forms[0]);
+}
+
+/* (x,y) (x,y) ..., with parentheses or without. */
+static bool read_points(struct dalcs_reader *reader, struct dalcs_piecewise *table) {
+    const size_t most = (size_t)reader->card->n;
+    table->knot = dalcs_arena_alloc(&reader->builder->scratch, most, sizeof *table->knot);
+    if (table->knot == NULL) {
+        reader->builder->out_of_memory = true;
+        return false;
+    }
+    do {
+        double x;
+        double y;
+        while (dalcs_reader_take(reader, DALCS_TOKEN_OPEN)) {
+        }
+        if (!dalcs_reader_list_number(reader, DALCS_PLAIN, "the x of a point", &x)) {
+            return false;
+        }
+        const struct dalcs_token *place = dalcs_reader_previous(reader);
+        if (!dalcs_reader_list_number(reader, DALCS_PLAIN, "the y of a point", &y)) {
+            return false;
+        }
+        while (dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        }
+        if (table->n > 0 && !(x > table->knot[table->n - 1].at)) {
+            dalcs_builder_error(reader->builder, place, "a jump is written with sgn() or u()",
+                                "the x of a table must ascend");
+            return false;
+        }
+        table->knot[table->n++] = (struct dalcs_knot){x, y, y, y};
+    } while (!dalcs_reader_at_end(reader));
+    return true;
+}
+
+void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_device *device) {
+    const struct dalcs_token *form = dalcs_reader_peek(reader, 0);
+    const bool is_table = strcmp(form->text, "table") == 0;
+    const struct dalcs_token *next;
+    struct dalcs_piecewise table = {0};
+    const struct dalcs_token *token = NULL;
+    reader->usage = is_table ? "a table is: TABLE {expression} = (x1,y1) (x2,y2) ..."
+                             : "such a source is: VALUE={expression}";
+    reader->at++;
+    dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+    next = dalcs_reader_peek(reader, 0);
+    const bool has_formula = next == NULL || next->kind == DALCS_TOKEN_FORMULA ||
+                             next->kind == DALCS_TOKEN_BAD || !is_table;
+    if (has_formula && !read_formula(reader, &token)) {
+        return;
+    }
+    if (is_table && has_formula) {
+        dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+    }
+    if (is_table ? !read_points(reader, &table) : !dalcs_reader_end(reader)) {
+        return;
+    }
+    struct dalcs_formula_source *source = add_source(reader->builder, device);
+    if (source != NULL) {
+        source->token = token;
+        source->has_table = is_table;
+        source->table = table;
+    }
+}
+
+/* ---- When all elements are known --------------------------------------------------------------- */
+
+static const struct dalcs_form *input_of(struct dalcs_compiler *c,
+                                         const struct dalcs_formula_source *source,
+                                         const struct dalcs_device *device) {
+    if (source->token != NULL) {
+        const struct dalcs_formula *formula = source->token->formula;
+        c->form_of = dalcs_arena_alloc(c->arena, (size_t)formula->number_of + 1,
+                                       sizeof(const struct dalcs_form *));
+        c->builder->out_of_memory = c->builder->out_of_memory || c->form_of == NULL;
+        return c->form_of != NULL ? dalcs_compile(c, formula) : NULL;
+    }
+    struct dalcs_affine sum = dalcs_affine_constant(0);
+    for (int k = 0; k < 2; k++) {
+        const int node = device->node[2 + k];
+        const struct dalcs_affine v = dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, node);
+        sum = node != 0 ? dalcs_affine_add(c, &sum, k == 0 ? 1 : -1, &v) : sum;
+    }
+    return dalcs_form_affine(c, &sum);
+}
+
+static void resolve(struct dalcs_compiler *c, const struct dalcs_formula_source *source) {
+    struct dalcs_device *device = &c->builder->circuit->device[source->device];
+    c->failed = false;
+    c->n_waves = 0;
+    c->n_cells = 0;
+    c->n_pairs = 0;
+    const struct dalcs_form *form = input_of(c, source, device);
+    if (source->has_table) {
+        form = dalcs_form_apply(c, &source->table, form);
+    }
+    device->node[2] = device->node[3] = 0;
+    if (form != NULL && !c->failed) {
+        device->behaviour = dalcs_behaviour_make(c, form);
+    }
+}
+
+/* Those that formulas made come after those of V and I. */
+static void take_stimuli(struct dalcs_compiler *c) {
+    struct dalcs_circuit *circuit = c->builder->circuit;
+    const size_t n = (size_t)circuit->n_stimuli;
+    struct dalcs_stimulus *all = dalcs_arena_alloc(&circuit->arena, n + c->n_stimuli, sizeof *all);
+    if (all == NULL) {
+        c->builder->out_of_memory = true;
+        return;
+    }
+    if (n > 0) {
+        memcpy(all, circuit->stimulus, n * sizeof *all);
+    }
+    memcpy(all + n, c->stimulus, c->n_stimuli * sizeof *all);
+    circuit->stimulus = all;
+    circuit->n_stimuli += (int)c->n_stimuli;
+}
+
+void dalcs_behavioural_resolve(struct dalcs_builder *builder) {
+    struct dalcs_compiler c = {.builder = builder, .arena = &builder->scratch};
+    for (size_t k = 0; k < builder->n_formulas && !builder->out_of_memory; k++) {
+        resolve(&c, &builder->formula[k]);
+    }
+    if (c.n_stimuli > 0 && !builder->out_of_memory) {
+        take_stimuli(&c);
+    }
+    free(c.wave);
+    free(c.cell);
+    free(c.stimulus);
+}

@@ -1,0 +1,372 @@
+/* compile.c - formulas to values, operation by operation, each refused where it is not piecewise
+ * linear. */
+#include "behaviour.h"
+
+#include <math.h>
+#include <string.h>
+
+static const struct dalcs_form *refuse(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                       const char *hint, const char *what) {
+    if (!c->failed) {
+        dalcs_builder_error_at(c->builder, &f->where, hint, "%s", what);
+        c->failed = true;
+    }
+    return NULL;
+}
+
+static const struct dalcs_form *refuse_name(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                            const char *hint, const char *format) {
+    if (!c->failed) {
+        dalcs_builder_error_at(c->builder, &f->where, hint, format, f->function);
+        c->failed = true;
+    }
+    return NULL;
+}
+
+/* ---- Signals ------------------------------------------------------------------------------------- */
+
+static const struct dalcs_form *voltage(struct dalcs_compiler *c, const struct dalcs_formula *f) {
+    const int plus = dalcs_builder_find_node(c->builder, f->signal[0]);
+    const int minus = f->signal[1] != NULL ? dalcs_builder_find_node(c->builder, f->signal[1]) : 0;
+    if (plus < 0 || minus < 0) {
+        c->failed = true;
+        return NULL;
+    }
+    struct dalcs_affine sum = dalcs_affine_constant(0);
+    for (int k = 0; k < 2; k++) {
+        const int node = k == 0 ? plus : minus;
+        const struct dalcs_affine v = dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, node);
+        sum = node != 0 ? dalcs_affine_add(c, &sum, k == 0 ? 1 : -1, &v) : sum;
+    }
+    return dalcs_form_affine(c, &sum);
+}
+
+static const struct dalcs_form *current(struct dalcs_compiler *c, const struct dalcs_formula *f) {
+    const int device = dalcs_builder_find_device(c->builder, f->signal[0]);
+    if (device < 0) {
+        c->failed = true;
+        return NULL;
+    }
+    const int of = c->builder->current_of[device];
+    const struct dalcs_affine i = dalcs_affine_of(c, DALCS_QUANTITY_CURRENT, of);
+    return dalcs_form_affine(c, &i);
+}
+
+/* ---- Operations ---------------------------------------------------------------------------------- */
+
+static const struct dalcs_form *multiply(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                         const struct dalcs_form *a, const struct dalcs_form *b) {
+    const struct dalcs_form *product;
+    switch (dalcs_form_multiply(c, a, b, &product)) {
+    case DALCS_PRODUCT_IS:
+        return product;
+    case DALCS_PRODUCT_HAS_JUMP:
+        return refuse(c, f, "an ideal switch S turns a voltage or a current on and off",
+                      "the height of this jump is not constant: no complementarity pairs make it");
+    default:
+        return refuse(c, f, "one of the factors must be a number, or a step",
+                      "a product of two quantities that vary is not piecewise linear");
+    }
+}
+
+static const struct dalcs_form *divide(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                       const struct dalcs_form *a, const struct dalcs_form *b) {
+    if (!dalcs_form_is_number(b)) {
+        return refuse(c, f, "the divisor must be a number",
+                      "a division by a quantity that varies is not piecewise linear");
+    }
+    return b->affine.constant == 0 ? refuse(c, f, NULL, "division by 0")
+                                   : dalcs_form_scale(c, 1 / b->affine.constant, a);
+}
+
+/* a > b; at equality over a whole range it is `at_0`. */
+static const struct dalcs_form *compare(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                        const struct dalcs_form *b, double at_0) {
+    struct dalcs_knot knot = {0, 0, at_0, 1};
+    const struct dalcs_piecewise step = {1, &knot, 0, 0};
+    const struct dalcs_form *result = dalcs_form_apply(c, &step, dalcs_form_add(c, a, -1, b));
+    return dalcs_form_to_logic(c, result);
+}
+
+static const struct dalcs_form *to_logic(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                         const struct dalcs_form *a) {
+    const struct dalcs_form *logic = dalcs_form_to_logic(c, a);
+    if (logic == NULL) {
+        return refuse(c, f, "write a comparison, such as v(a) > 0",
+                      "a condition that is true unless a quantity is exactly 0");
+    }
+    return logic;
+}
+
+static const struct dalcs_form *negated(struct dalcs_compiler *c, const struct dalcs_form *logic) {
+    if (logic == NULL) {
+        return NULL;
+    }
+    const struct dalcs_form *one = dalcs_form_number(c, 1);
+    const struct dalcs_form *result = dalcs_form_add(c, one, -1, logic);
+    if (result == NULL) {
+        return NULL;
+    }
+    struct dalcs_form marked = *result;
+    marked.height = 1;
+    struct dalcs_form *kept = dalcs_arena_alloc(c->arena, 1, sizeof *kept);
+    if (kept == NULL) {
+        c->builder->out_of_memory = true;
+        c->failed = true;
+        return NULL;
+    }
+    *kept = marked;
+    return kept;
+}
+
+static const struct dalcs_form *operation(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                          const struct dalcs_form *a, const struct dalcs_form *b) {
+    const struct dalcs_form *x;
+    const struct dalcs_form *y;
+    switch (f->code) {
+    case DALCS_NEGATE:
+        return dalcs_form_scale(c, -1, a);
+    case DALCS_ADD:
+        return dalcs_form_add(c, a, 1, b);
+    case DALCS_SUBTRACT:
+        return dalcs_form_add(c, a, -1, b);
+    case DALCS_MULTIPLY:
+        return multiply(c, f, a, b);
+    case DALCS_DIVIDE:
+        return divide(c, f, a, b);
+    case DALCS_POWER:
+        return dalcs_form_is_number(b) && b->affine.constant == 1
+                   ? a
+                   : refuse(c, f, NULL,
+                            "a power of a quantity that varies is not piecewise linear");
+    case DALCS_GREATER:
+        return compare(c, a, b, 0);
+    case DALCS_GREATER_EQUAL:
+        return compare(c, a, b, 1);
+    case DALCS_LESS:
+        return compare(c, b, a, 0);
+    case DALCS_LESS_EQUAL:
+        return compare(c, b, a, 1);
+    case DALCS_EQUAL:
+    case DALCS_UNEQUAL:
+        return refuse(c, f, "write a comparison with < or >",
+                      "two quantities that vary are equal at single points only");
+    case DALCS_NOT:
+        return negated(c, to_logic(c, f->argument[0], a));
+    case DALCS_TO_LOGIC:
+        return to_logic(c, f->argument[0], a);
+    case DALCS_JUMP_AND:
+    case DALCS_JUMP_OR:
+        x = to_logic(c, f->argument[0], a);
+        y = x != NULL ? to_logic(c, f->argument[1], b) : NULL;
+        if (y == NULL) {
+            return NULL;
+        }
+        if (f->code == DALCS_JUMP_AND) {
+            return multiply(c, f, x, y);
+        }
+        /* a or b: not (not a and not b) */
+        x = negated(c, x);
+        y = negated(c, y);
+        return x != NULL && y != NULL ? negated(c, multiply(c, f, x, y)) : NULL;
+    default:
+        return refuse(c, f, NULL, "a remainder of a quantity that varies is not piecewise linear");
+    }
+}
+
+/* condition ? a : b = b + condition (a - b) */
+static const struct dalcs_form *choice(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                       const struct dalcs_form *condition,
+                                       const struct dalcs_form *a, const struct dalcs_form *b) {
+    const struct dalcs_form *logic = to_logic(c, f->argument[0], condition);
+    const struct dalcs_form *difference = logic != NULL ? dalcs_form_add(c, a, -1, b) : NULL;
+    const struct dalcs_form *product;
+    if (difference == NULL) {
+        return NULL;
+    }
+    if (dalcs_form_multiply(c, logic, difference, &product) != DALCS_PRODUCT_IS) {
+        return refuse(c, f, "an ideal switch S chooses between two voltages",
+                      "the two values differ by what is not constant where the condition changes: "
+                      "no complementarity pairs make such a jump");
+    }
+    return dalcs_form_add(c, b, 1, product);
+}
+
+/* ---- Functions ------------------------------------------------------------------------------------- */
+
+static const struct dalcs_form *apply(struct dalcs_compiler *c, struct dalcs_knot *knot, int n,
+                                      double before, double after, const struct dalcs_form *a) {
+    const struct dalcs_piecewise outer = {n, knot, before, after};
+    return dalcs_form_apply(c, &outer, a);
+}
+
+/* table(x, x1, y1, ...), constant outside; pwl the same with lines that go on. */
+static const struct dalcs_form *table(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                      const struct dalcs_form **argument, bool goes_on) {
+    const int n = (f->n - 1) / 2;
+    struct dalcs_knot *knot = dalcs_arena_alloc(c->arena, (size_t)n, sizeof *knot);
+    if (knot == NULL) {
+        c->builder->out_of_memory = true;
+        c->failed = true;
+        return NULL;
+    }
+    for (int k = 0; k < 2 * n; k++) {
+        if (!dalcs_form_is_number(argument[k + 1])) {
+            return refuse(c, f->argument[k + 1], NULL, "the points of a table are numbers");
+        }
+        const double number = argument[k + 1]->affine.constant;
+        struct dalcs_knot *point = &knot[k / 2];
+        if (k % 2 == 0) {
+            point->at = number;
+        } else {
+            point->left = point->value = point->right = number;
+        }
+        if (k % 2 == 0 && k > 0 && !(number > knot[k / 2 - 1].at)) {
+            return refuse_name(c, f, "table(x, x1, y1, x2, y2, ...) with x1 < x2 < ...",
+                               "the points of '%s' are not in order");
+        }
+    }
+    if (f->n % 2 == 0 || n < 1) {
+        return refuse_name(c, f, "table(x, x1, y1, x2, y2, ...) with x1 < x2 < ...",
+                           "the points of '%s' are not in order");
+    }
+    const struct dalcs_piecewise inside = {n, knot, 0, 0};
+    const bool has_slopes = goes_on && n > 1;
+    return apply(c, knot, n, has_slopes ? dalcs_piecewise_slope(&inside, 1) : 0,
+                 has_slopes ? dalcs_piecewise_slope(&inside, n - 1) : 0, argument[0]);
+}
+
+/* sin, cos and exp of a straight line in time. */
+static const struct dalcs_form *wave(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                     const struct dalcs_form *a) {
+    static const double PI = 3.14159265358979323846;
+    if (a->n > 0 || !dalcs_affine_is_time(&a->affine)) {
+        return refuse_name(c, f, NULL, "%s(...) of a quantity that varies is not piecewise linear");
+    }
+    const double rate = a->affine.term[0].coefficient;
+    const double offset = a->affine.constant;
+    if (*f->function != 'e') {
+        const struct dalcs_wave w = {.frequency = rate / (2 * PI),
+                                     .phase = offset / (2 * PI) + (*f->function == 'c' ? 0.25 : 0)};
+        return dalcs_wave_value(c, &w);
+    }
+    if (rate > 0) {
+        return refuse(c, f, "exp(-time/1m) is one", "this exponential of time grows without end");
+    }
+    const struct dalcs_wave w = {.decay = -rate, .phase = 0.25};
+    return dalcs_form_scale(c, exp(offset), dalcs_wave_value(c, &w));
+}
+
+static const struct dalcs_form *
+fold(struct dalcs_compiler *c, const struct dalcs_formula *f, const struct dalcs_form **argument,
+     const struct dalcs_form *(*two)(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                     const struct dalcs_form *b)) {
+    const struct dalcs_form *result = argument[0];
+    for (int k = 1; k < f->n && result != NULL; k++) {
+        result = two(c, result, argument[k]);
+    }
+    return result;
+}
+
+static bool is_named(const struct dalcs_formula *f, const char *name) {
+    return strcmp(f->function, name) == 0;
+}
+
+static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                     const struct dalcs_form **argument) {
+    static const char *const steps[] = {"int", "floor", "ceil", "nint", "round", "fmod"};
+    const struct dalcs_form *a = argument[0];
+    if (is_named(f, "abs")) {
+        return apply(c, (struct dalcs_knot[]){{0, 0, 0, 0}}, 1, -1, 1, a);
+    }
+    if (is_named(f, "sgn")) {
+        return apply(c, (struct dalcs_knot[]){{0, -1, 0, 1}}, 1, 0, 0, a);
+    }
+    if (is_named(f, "u") || is_named(f, "stp")) {
+        return compare(c, a, dalcs_form_number(c, 0), 0);
+    }
+    if (is_named(f, "buf")) {
+        return compare(c, a, dalcs_form_number(c, 0.5), 0);
+    }
+    if (is_named(f, "inv")) {
+        return compare(c, dalcs_form_number(c, 0.5), a, 1);
+    }
+    if (is_named(f, "uramp")) {
+        return apply(c, (struct dalcs_knot[]){{0, 0, 0, 0}}, 1, 0, 1, a);
+    }
+    if (is_named(f, "u2")) {
+        return apply(c, (struct dalcs_knot[]){{0, 0, 0, 0}, {1, 1, 1, 1}}, 2, 0, 0, a);
+    }
+    if (is_named(f, "max")) {
+        return fold(c, f, argument, dalcs_form_max);
+    }
+    if (is_named(f, "min")) {
+        return fold(c, f, argument, dalcs_form_min);
+    }
+    if (is_named(f, "limit")) {
+        const struct dalcs_form *low = dalcs_form_min(c, argument[1], argument[2]);
+        const struct dalcs_form *high = dalcs_form_max(c, argument[1], argument[2]);
+        return dalcs_form_min(c, dalcs_form_max(c, a, low), high);
+    }
+    if (is_named(f, "table") || is_named(f, "pwl")) {
+        return table(c, f, argument, is_named(f, "pwl"));
+    }
+    if (is_named(f, "sin") || is_named(f, "cos") || is_named(f, "exp")) {
+        return wave(c, f, a);
+    }
+    if ((is_named(f, "pow") || is_named(f, "pwrs")) && dalcs_form_is_number(argument[1]) &&
+        argument[1]->affine.constant == 1) {
+        return a;
+    }
+    if (dalcs_builder_is_one_of(f->function, steps, sizeof steps / sizeof steps[0])) {
+        return refuse_name(c, f, "sums of u(...) make a staircase of so many steps",
+                           "%s(...) of a quantity that varies has steps without end");
+    }
+    return refuse_name(c, f, NULL, "%s(...) of a quantity that varies is not piecewise linear");
+}
+
+/* ---- Formulas -------------------------------------------------------------------------------------- */
+
+static const struct dalcs_form *compile_new(struct dalcs_compiler *c,
+                                            const struct dalcs_formula *f) {
+    const struct dalcs_form **argument =
+        dalcs_arena_alloc(c->arena, (size_t)f->n + 1, sizeof(const struct dalcs_form *));
+    if (argument == NULL) {
+        c->builder->out_of_memory = true;
+        c->failed = true;
+    }
+    for (int k = 0; k < f->n && !c->failed; k++) {
+        argument[k] = dalcs_compile(c, f->argument[k]);
+    }
+    if (c->failed) {
+        return NULL;
+    }
+    struct dalcs_affine time;
+    switch (f->kind) {
+    case DALCS_FORMULA_NUMBER:
+        return dalcs_form_number(c, f->number);
+    case DALCS_FORMULA_VOLTAGE:
+        return voltage(c, f);
+    case DALCS_FORMULA_CURRENT:
+        return current(c, f);
+    case DALCS_FORMULA_TIME:
+        time = dalcs_affine_of(c, DALCS_QUANTITY_TIME, 0);
+        return dalcs_form_affine(c, &time);
+    case DALCS_FORMULA_OPERATION:
+        return operation(c, f, argument[0], argument[1]);
+    case DALCS_FORMULA_CHOICE:
+        return choice(c, f, argument[0], argument[1], argument[2]);
+    case DALCS_FORMULA_CALL:
+        return call(c, f, argument);
+    }
+    return NULL;
+}
+
+const struct dalcs_form *dalcs_compile(struct dalcs_compiler *c,
+                                       const struct dalcs_formula *formula) {
+    const struct dalcs_form **known = &c->form_of[formula->number_of];
+    if (*known == NULL && !c->failed) {
+        *known = compile_new(c, formula);
+    }
+    return *known;
+}

@@ -1,0 +1,114 @@
+/* stamp_behaviour.c - sources with a formula.
+ *
+ *     0 = v(a) - v(b) - f   (V=)      0 = i - f   (I=),     f affine in columns, inputs and lambdas
+ *     0 <= lambda_k _|_ w_k >= 0, w_k affine in the same
+ *
+ * The current is an unknown in both. Lambdas are counted as currents and w as voltages, as those of
+ * diodes are: for scales, a formula in volts and one in amperes are the same. */
+#include "stamp_behaviour.h"
+
+#include "current.h"
+
+static bool is_input(const struct dalcs_behaviour *behaviour, int row, int term) {
+    const struct dalcs_affine *a = row < 0 ? &behaviour->output : &behaviour->w[row];
+    return a->term[term].kind == DALCS_QUANTITY_STIMULUS;
+}
+
+int dalcs_behaviour_n_inputs(const struct dalcs_behaviour *behaviour) {
+    int n = 0;
+    for (int row = -1; row < behaviour->n_pairs; row++) {
+        const struct dalcs_affine *a = row < 0 ? &behaviour->output : &behaviour->w[row];
+        for (int k = 0; k < a->n; k++) {
+            n += is_input(behaviour, row, k) ? 1 : 0;
+        }
+    }
+    return n;
+}
+
+enum dalcs_status dalcs_stamp_behaviour_branch(struct stamps *b, int device) {
+    struct dalcs_layout *l = b->layout;
+    struct dalcs_system *s = b->s;
+    const struct dalcs_device *d = &l->circuit->device[device];
+    int column;
+    int row;
+    s->monotone = false;
+    dalcs_stamp_new_branch(b, device, &column, &row);
+    DALCS_TRY(dalcs_stamp_branch_current(b, d, column, 1.0));
+    l->pair[device] = b->next_pair;
+    for (int k = 0; k < d->behaviour->n_pairs; k++) {
+        int pair = b->next_pair++;
+        s->pair[pair] =
+            (struct dalcs_pair){.kind = DALCS_PAIR_DIODE, .element = d->name, .is_formula = true};
+        s->column_is_current[s->n_x + s->n_z + pair] = true;
+    }
+    if (d->kind == DALCS_VCVS) {
+        return dalcs_stamp_add_voltage(b, &b->A, row, d->node[0], d->node[1], 1.0);
+    }
+    s->row_is_current[row] = true;
+    return dalcs_stamp_add(&b->A, row, column, 1.0);
+}
+
+/* Where one affine function goes: a row of A and E, or of C and F. */
+struct target {
+    struct dalcs_triplets *columns, *inputs;
+    int row;
+    double factor;
+};
+
+static enum dalcs_status stamp_current(struct stamps *b, const struct target *t, int device,
+                                       double coefficient) {
+    struct dalcs_arena arena = {0};
+    struct dalcs_current current;
+    enum dalcs_status status = dalcs_layout_current(b->layout, b->s, device, &arena, &current);
+    for (int k = 0; status == DALCS_OK && k < current.n_terms + current.n_inputs; k++) {
+        status = dalcs_stamp_add(k < current.n_terms ? t->columns : t->inputs, t->row,
+                                 current.term[k].index, coefficient * current.term[k].coefficient);
+    }
+    dalcs_arena_finish(&arena);
+    return status;
+}
+
+static enum dalcs_status stamp_affine(struct stamps *b, int device, const struct target *t,
+                                      const struct dalcs_affine *a) {
+    struct dalcs_layout *l = b->layout;
+    struct dalcs_system *s = b->s;
+    if (a->constant != 0.0) {
+        DALCS_TRY(dalcs_triplets_add(t->inputs, t->row, 0, t->factor * a->constant));
+    }
+    for (int k = 0; k < a->n; k++) {
+        const struct dalcs_affine_term *term = &a->term[k];
+        double coefficient = t->factor * term->coefficient;
+        int input;
+        switch (term->kind) {
+        case DALCS_QUANTITY_VOLTAGE:
+            DALCS_TRY(dalcs_stamp_add(t->columns, t->row, dalcs_stamp_node_column(l, term->index),
+                                      coefficient));
+            break;
+        case DALCS_QUANTITY_CURRENT:
+            DALCS_TRY(stamp_current(b, t, term->index, coefficient));
+            break;
+        case DALCS_QUANTITY_PAIR:
+            DALCS_TRY(dalcs_stamp_add(
+                t->columns, t->row, s->n_x + s->n_z + l->pair[device] + term->index, coefficient));
+            break;
+        default:
+            input = b->next_input++;
+            s->stimulus[input] = term->index;
+            s->input_element[input] = l->circuit->device[device].name;
+            DALCS_TRY(dalcs_triplets_add(t->inputs, t->row, input, coefficient));
+            break;
+        }
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_stamp_behaviour(struct stamps *b, int device) {
+    const struct dalcs_behaviour *behaviour = b->layout->circuit->device[device].behaviour;
+    struct target t = {&b->A, &b->E, b->layout->branch_row[device], -1.0};
+    DALCS_TRY(stamp_affine(b, device, &t, &behaviour->output));
+    for (int k = 0; k < behaviour->n_pairs; k++) {
+        t = (struct target){&b->C, &b->F, b->layout->pair[device] + k, 1.0};
+        DALCS_TRY(stamp_affine(b, device, &t, &behaviour->w[k]));
+    }
+    return DALCS_OK;
+}

@@ -1,0 +1,36 @@
+/* formula.h - an expression of voltages, currents and time, with all parameters in place.
+ *
+ * The B sources, and E and G with VALUE or TABLE, have such expressions. What language/ can say of them
+ * is done here: parameters are numbers, functions of the netlist are written out, parts that depend on
+ * numbers alone are one number, names of nodes and elements are those of the flat netlist. What they
+ * mean for the circuit is said in circuit/behaviour.c. */
+#ifndef DALCS_FORMULA_H
+#define DALCS_FORMULA_H
+
+#include "expression.h"
+
+enum dalcs_formula_kind {
+    DALCS_FORMULA_NUMBER,
+    DALCS_FORMULA_VOLTAGE, /* v(a) or v(a,b) */
+    DALCS_FORMULA_CURRENT, /* i(x) */
+    DALCS_FORMULA_TIME,
+    DALCS_FORMULA_OPERATION, /* `code`, of one or two arguments; JUMP_AND and JUMP_OR of two */
+    DALCS_FORMULA_CHOICE,    /* condition, value, otherwise */
+    DALCS_FORMULA_CALL       /* */
+};
+
+struct dalcs_formula {
+    enum dalcs_formula_kind kind;
+    enum dalcs_operation_code code;
+    int number_of; /* of this part among all: every part is there once, though more may use it */
+    double number;
+    const char *function;                /* of a CALL */
+    const struct dalcs_token *signal[2]; /* a node or two, or an element; NULL: none */
+    int n;                               /* arguments */
+    const struct dalcs_formula *const *argument;
+    struct dalcs_location where;
+    const struct dalcs_expression_text *text; /* of text[begin..end-1] */
+    int begin, end;
+};
+
+#endif
