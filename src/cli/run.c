@@ -2,6 +2,7 @@
 #include "cli.h"
 
 #include "arguments.h"
+#include "measurements.h"
 #include "outputs.h"
 #include "paths.h"
 #include "progress.h"
@@ -144,6 +145,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
     if (arguments->energy) {
         dalcs_summary_write_energy(out, report);
     }
+    dalcs_measurements_write(out, report);
     fputc('\n', out);
 }
 
