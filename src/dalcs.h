@@ -90,6 +90,8 @@ struct dalcs_request {
     bool operating_point;
     bool transient;
     double step, stop, start, max_step;
+    bool prints; /* there is a .print or .plot */
+    bool ascii;  /* .options filetype=ascii: raw files as text */
 };
 struct dalcs_request dalcs_session_request(const struct dalcs_session *session);
 

@@ -121,6 +121,7 @@ struct dalcs_circuit {
     struct dalcs_fourier_card *fourier; /* .four, one for each signal */
     struct dalcs_transient transient;
     bool operating_point; /* .op */
+    bool prints;          /* .print or .plot */
 
     struct dalcs_circuit_options {
         double reltol, abstol, vntol;          /* 0: not given; the last two in A, V */
@@ -130,6 +131,7 @@ struct dalcs_circuit {
         double step;     /* 0: not given */
         int stages;      /* of radau; 0: not given */
         double compress; /* 0: not given */
+        bool ascii;      /* filetype=ascii */
         struct dalcs_location compress_where;
     } options;
     struct dalcs_arena arena; /* owns everything above, source text of locations included */

@@ -171,6 +171,9 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     const struct dalcs_token *type = dalcs_reader_peek(&reader, 0);
     builder->names_signals = true;
+    builder->circuit->prints = builder->circuit->prints ||
+                               strcmp(card->token->text, ".print") == 0 ||
+                               strcmp(card->token->text, ".plot") == 0;
     const bool is_print = strcmp(card->token->text, ".save") != 0;
     for (size_t k = 0; is_print && k < sizeof other / sizeof other[0]; k++) {
         if (dalcs_reader_take_word(&reader, other[k])) {
