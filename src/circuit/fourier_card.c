@@ -60,8 +60,10 @@ void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_builder_error(builder, place, USAGE, "the frequency must be positive");
         return;
     }
-    if ((next_is_number(&reader) && !read_whole(&reader, "the harmonics", &fourier.n_harmonics)) ||
-        (next_is_number(&reader) && !read_whole(&reader, "the periods", &fourier.n_periods))) {
+    if ((next_is_number(&reader) &&
+         !read_whole(&reader, "the number of harmonics", &fourier.n_harmonics)) ||
+        (next_is_number(&reader) &&
+         !read_whole(&reader, "the number of periods", &fourier.n_periods))) {
         return;
     }
     if (dalcs_reader_at_end(&reader)) {

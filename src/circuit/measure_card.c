@@ -11,7 +11,7 @@ static const char USAGE[] =
     ".meas tran name AVG|RMS|MIN|MAX|PP|INTEG|MIN_AT|MAX_AT formula [FROM= TO=], "
     "FIND|DERIV formula AT=|WHEN ..., WHEN a=b, TRIG ... TARG ..., PARAM='formula'";
 static const char CONDITION[] =
-    "a condition is: formula=formula or formula VAL=value [RISE=n|FALL=n|CROSS=n|LAST] [TD=time]";
+    "a condition is: formula=formula or formula VAL=value [RISE=|FALL=|CROSS=n or LAST] [TD=time]";
 
 static const struct {
     const char *name;

@@ -51,7 +51,7 @@ struct batch {
 
 bool dalcs_cli_is_batch(int argc, char **argv) {
     bool found = false;
-    for (int i = 1; i < argc && argv[1][0] == '-'; i++) {
+    for (int i = 1; i < argc; i++) {
         found = found || strcmp(argv[i], "-b") == 0 || strcmp(argv[i], "--batch") == 0;
     }
     return found;

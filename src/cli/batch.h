@@ -4,7 +4,7 @@
 
 #include "cli.h"
 
-/* Is there a -b, and no verb? */
+/* Is there a -b? */
 bool dalcs_cli_is_batch(int argc, char **argv);
 
 enum dalcs_exit dalcs_cli_batch(const struct dalcs_cli *cli, int argc, char **argv);

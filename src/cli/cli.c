@@ -93,13 +93,13 @@ enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **arg
         fprintf(cli->out, "dalcs %s\n", dalcs_version());
         return DALCS_EXIT_OK;
     }
-    if (dalcs_cli_is_batch(argc, argv)) {
-        return dalcs_cli_batch(cli, argc, argv);
-    }
     for (int i = 0; i < N_VERBS; i++) {
         if (strcmp(argv[1], verb[i].name) == 0) {
             return verb[i].function(cli, argc - 1, argv + 1);
         }
+    }
+    if (dalcs_cli_is_batch(argc, argv)) {
+        return dalcs_cli_batch(cli, argc, argv);
     }
     return refuse_verb(cli, argv[1]);
 }

@@ -11,7 +11,7 @@
 enum { N = DALCS_STRETCH_NODES, MOST_CUTS = 60, MOST_ROUNDS = 80 };
 
 /* Of an extreme, over the largest value. */
-static const double rounding = 1e-14;
+static const double rounding = 1e-14, same = 4e-15;
 
 /* ---- Setting up ------------------------------------------------------------------------------- */
 
@@ -104,10 +104,14 @@ struct climb {
     double *best, *where;
 };
 
+/* Of extremes that only rounding tells apart, as those of periods are, the place is the first one's. */
 static void consider(const struct climb *c, double value, double time) {
-    if (c->sign * (value - *c->best) > 0.0) {
-        *c->best = value;
+    double higher = c->sign * (value - *c->best);
+    if (higher > same * c->scale) {
         *c->where = time;
+    }
+    if (higher > 0.0) {
+        *c->best = value;
     }
 }
 

@@ -55,12 +55,17 @@ void dalcs_stretch_rule_make(struct dalcs_stretch_rule *rule) {
 
 void dalcs_stretch_expand(const struct dalcs_stretch_rule *rule, const double *value,
                           double *coefficient) {
+    double largest = 0.0;
+    for (int i = 0; i < N; i++) {
+        largest = fmax(largest, fabs(value[i]));
+    }
     for (int k = 0; k < N; k++) {
         double sum = 0.0;
         for (int i = 0; i < N; i++) {
             sum += rule->expand[k][i] * value[i];
         }
-        coefficient[k] = sum;
+        /* What rounding leaves is nothing: a constant must not look like one that wriggles. */
+        coefficient[k] = fabs(sum) > (2 * k + 1) * DBL_EPSILON * largest ? sum : 0.0;
     }
 }
 
