@@ -57,8 +57,8 @@ static bool check_instant(struct result *r, const struct dalcs_instant *i) {
     double from = fmax(r->measuring->start, card->from);
     double to = fmin(r->measuring->stop, card->to);
     if (c->kind == DALCS_INSTANT_AT) {
-        fail(r, "AT=%s does not lie between %s and %s", moment(r, a, c->at),
-             moment(r, b, from), moment(r, (char[DALCS_QUANTITY_SIZE]){0}, to));
+        fail(r, "AT=%s does not lie between %s and %s", moment(r, a, c->at), moment(r, b, from),
+             moment(r, (char[DALCS_QUANTITY_SIZE]){0}, to));
         return false;
     }
     if (i->has_no_value) {
