@@ -351,18 +351,21 @@ void dalcs_signals_add_default(struct dalcs_builder *builder);
 int dalcs_signals_measure(struct dalcs_builder *builder, struct dalcs_signal signal);
 
 /* What a formula may hold. */
-struct dalcs_formula_rules {
+struct dalcs_signal_formula_rules {
     const char *variable;              /* "time", or what is swept */
     const char *no_signals;            /* why it may have none, for the message; NULL: it may */
     const struct dalcs_names *results; /* earlier measurements that it may use, or NULL */
 };
 
 /* Compiles token[0..n-1]; false when an error was reported. */
-bool dalcs_formula_compile(struct dalcs_builder *builder, const struct dalcs_token *token, int n,
-                           const struct dalcs_formula_rules *rules, struct dalcs_formula *formula);
+bool dalcs_signal_formula_compile(struct dalcs_builder *builder, const struct dalcs_token *token,
+                                  int n, const struct dalcs_signal_formula_rules *rules,
+                                  struct dalcs_signal_formula *formula);
 /* left - right */
-bool dalcs_formula_difference(struct dalcs_builder *builder, const struct dalcs_formula *left,
-                              const struct dalcs_formula *right, struct dalcs_formula *difference);
+bool dalcs_signal_formula_difference(struct dalcs_builder *builder,
+                                     const struct dalcs_signal_formula *left,
+                                     const struct dalcs_signal_formula *right,
+                                     struct dalcs_signal_formula *difference);
 void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* Warnings about the whole network. */

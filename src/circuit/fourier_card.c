@@ -50,7 +50,7 @@ static int signal_end(const struct dalcs_card *card, int k) {
 
 void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
-    const struct dalcs_formula_rules rules = {.variable = "time"};
+    const struct dalcs_signal_formula_rules rules = {.variable = "time"};
     const struct dalcs_token *place = dalcs_reader_peek(&reader, 0);
     struct dalcs_fourier_card fourier = {.n_harmonics = USUAL_HARMONICS, .n_periods = 1};
     if (!dalcs_reader_number(&reader, DALCS_HERTZ, "a frequency", &fourier.frequency)) {
@@ -77,7 +77,8 @@ void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card 
     while (!dalcs_reader_at_end(&reader)) {
         const struct dalcs_token *token = dalcs_reader_peek(&reader, 0);
         const int end = signal_end(card, reader.at);
-        if (!dalcs_formula_compile(builder, token, end - reader.at, &rules, &fourier.formula)) {
+        if (!dalcs_signal_formula_compile(builder, token, end - reader.at, &rules,
+                                          &fourier.formula)) {
             return;
         }
         reader.at = end;

@@ -40,7 +40,7 @@ struct reading {
     const struct dalcs_card *card;
     struct dalcs_reader reader;
     struct dalcs_measure_card *measure;
-    struct dalcs_formula_rules rules;
+    struct dalcs_signal_formula_rules rules;
 };
 
 static bool is_word(const struct dalcs_token *token, const char *word) {
@@ -80,7 +80,8 @@ static int formula_end(const struct dalcs_card *card, int k, bool at_equal) {
 
 /* A formula up to the next keyword. */
 static bool read_formula(struct reading *r, bool at_equal, const char *what,
-                         const struct dalcs_formula_rules *rules, struct dalcs_formula *formula) {
+                         const struct dalcs_signal_formula_rules *rules,
+                         struct dalcs_signal_formula *formula) {
     const int begin = r->reader.at;
     const int end = formula_end(r->card, begin, at_equal);
     const struct dalcs_token *token = &r->card->token[begin];
@@ -92,19 +93,19 @@ static bool read_formula(struct reading *r, bool at_equal, const char *what,
     /* par('...') is how ngspice marks a formula. */
     const bool is_par =
         end - begin == 4 && is_word(token, "par") && token[2].kind == DALCS_TOKEN_EXPRESSION;
-    return is_par ? dalcs_formula_compile(r->builder, token + 2, 1, rules, formula)
-                  : dalcs_formula_compile(r->builder, token, end - begin, rules, formula);
+    return is_par ? dalcs_signal_formula_compile(r->builder, token + 2, 1, rules, formula)
+                  : dalcs_signal_formula_compile(r->builder, token, end - begin, rules, formula);
 }
 
 /* A value that is known before the run. */
 static bool read_constant(struct reading *r, const char *what, double *value) {
-    const struct dalcs_formula_rules rules = {.variable = "",
-                                              .no_signals = "this must be known before the run"};
-    struct dalcs_formula formula;
+    const struct dalcs_signal_formula_rules rules = {
+        .variable = "", .no_signals = "this must be known before the run"};
+    struct dalcs_signal_formula formula;
     if (!read_formula(r, false, what, &rules, &formula)) {
         return false;
     }
-    *value = dalcs_formula_value(&formula, &(struct dalcs_formula_point){0});
+    *value = dalcs_signal_formula_value(&formula, &(struct dalcs_signal_formula_point){0});
     if (!isfinite(*value)) {
         dalcs_builder_error(r->builder, dalcs_reader_previous(&r->reader), NULL,
                             "%s has no value here", what);
@@ -157,7 +158,7 @@ static bool check_crossing(struct reading *r, struct dalcs_measure_instant *inst
 
 /* v(out)=2.5, v(a)=v(b), or v(out) VAL=2.5, and which of the crossings. */
 static bool read_condition(struct reading *r, struct dalcs_measure_instant *instant) {
-    struct dalcs_formula right = {0};
+    struct dalcs_signal_formula right = {0};
     instant->kind = DALCS_INSTANT_CROSSING;
     if (!read_formula(r, true, "a condition", &r->rules, &instant->left)) {
         return false;
@@ -206,7 +207,8 @@ static bool read_condition(struct reading *r, struct dalcs_measure_instant *inst
         dalcs_reader_missing(&r->reader, "'=' or VAL=");
         return false;
     }
-    if (!dalcs_formula_difference(r->builder, &instant->left, &right, &instant->difference)) {
+    if (!dalcs_signal_formula_difference(r->builder, &instant->left, &right,
+                                         &instant->difference)) {
         return false;
     }
     instant->difference.is_constant = right.is_constant;
@@ -337,7 +339,7 @@ static bool read_measurement(struct reading *r) {
     case DALCS_MEASURE_DELAY:
         return read_interval(r) && read_bounds(r);
     case DALCS_MEASURE_PARAM: {
-        const struct dalcs_formula_rules rules = {
+        const struct dalcs_signal_formula_rules rules = {
             .variable = "",
             .no_signals = "PARAM is computed from measurements; FIND takes signals",
             .results = &r->builder->measure_names};

@@ -3,7 +3,7 @@
 #define DALCS_MEASUREMENT_H
 
 #include "diag.h"
-#include "formula.h"
+#include "signal_formula.h"
 
 enum dalcs_measured_analysis {
     DALCS_MEASURED_TRAN,
@@ -33,8 +33,9 @@ struct dalcs_measure_instant {
     enum dalcs_instant_kind { DALCS_INSTANT_NONE, DALCS_INSTANT_AT, DALCS_INSTANT_CROSSING } kind;
 
     double at;
-    struct dalcs_formula left, difference; /* left = right: of the difference a zero is sought */
-    const char *text;                      /* of the right side */
+    struct dalcs_signal_formula left,
+        difference;   /* left = right: of the difference a zero is sought */
+    const char *text; /* of the right side */
 
     enum dalcs_measure_edge { DALCS_EDGE_ANY, DALCS_EDGE_RISE, DALCS_EDGE_FALL } edge;
 
@@ -46,7 +47,7 @@ struct dalcs_measure_card {
     const char *name;
     enum dalcs_measured_analysis analysis;
     enum dalcs_measure_kind kind;
-    struct dalcs_formula formula;
+    struct dalcs_signal_formula formula;
     double from, to; /* infinite: from the first to the last point */
     struct dalcs_measure_instant instant[2];
     struct dalcs_location where;
@@ -56,7 +57,7 @@ struct dalcs_fourier_card {
     double frequency; /* Hz */
     int n_harmonics;  /* the constant not counted */
     int n_periods;    /* the last ones of the run */
-    struct dalcs_formula formula;
+    struct dalcs_signal_formula formula;
     struct dalcs_location where;
 };
 

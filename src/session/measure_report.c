@@ -147,8 +147,8 @@ static void tell(struct result *r, const double *results) {
     }
     switch (card->kind) {
     case DALCS_MEASURE_PARAM: {
-        double value =
-            dalcs_formula_value(&card->formula, &(struct dalcs_formula_point){.result = results});
+        double value = dalcs_signal_formula_value(
+            &card->formula, &(struct dalcs_signal_formula_point){.result = results});
         if (isfinite(value)) {
             give(r, value);
         } else {
@@ -184,10 +184,10 @@ static void tell(struct result *r, const double *results) {
 
 /* The measurement that a PARAM needs and that failed; NULL: none. */
 static const struct dalcs_measure_card *failed_source(const struct dalcs_circuit *c,
-                                                      const struct dalcs_formula *formula,
+                                                      const struct dalcs_signal_formula *formula,
                                                       const double *results) {
     for (int k = 0; k < formula->n; k++) {
-        const struct dalcs_formula_step *step = &formula->step[k];
+        const struct dalcs_signal_formula_step *step = &formula->step[k];
         if (step->push == DALCS_PUSH_RESULT && isnan(results[step->index])) {
             return &c->measure[step->index];
         }

@@ -228,7 +228,7 @@ static bool find_slope(void *user, const struct dalcs_span *span) {
 
 /* FIND or DERIV at a time of the present stretch. */
 static void evaluate(const struct dalcs_measuring *m, struct dalcs_measured *item, double time) {
-    const struct dalcs_formula *formula = &item->card->formula;
+    const struct dalcs_signal_formula *formula = &item->card->formula;
     item->waits = false;
     if (item->card->kind == DALCS_MEASURE_FIND) {
         item->value = dalcs_stretch_value(&m->stretch, formula, time);
@@ -307,7 +307,7 @@ static void measure_point(struct dalcs_measuring *m, double at, const double *re
     }
     for (int k = 0; k < m->n; k++) {
         struct dalcs_measured *item = &m->item[k];
-        const struct dalcs_formula *formula = &item->card->formula;
+        const struct dalcs_signal_formula *formula = &item->card->formula;
         if (item->card->analysis == m->analysis && formula->n > 0 &&
             item->card->kind != DALCS_MEASURE_PARAM &&
             item->card->instant[0].kind == DALCS_INSTANT_NONE) {

@@ -123,7 +123,7 @@ static double complex_part(enum dalcs_signal_part part, double re, double im) {
     }
 }
 
-static double signal_at(const struct dalcs_formula_point *point, int index,
+static double signal_at(const struct dalcs_signal_formula_point *point, int index,
                         enum dalcs_signal_part part) {
     const struct place *place = point->user;
     const struct dalcs_stretch *stretch = place->stretch;
@@ -134,14 +134,14 @@ static double signal_at(const struct dalcs_formula_point *point, int index,
     return stretch->imaginary == NULL && part == DALCS_PART_PLAIN ? re : complex_part(part, re, im);
 }
 
-static double evaluate(const struct dalcs_stretch *stretch, const struct dalcs_formula *formula,
-                       int node, double x) {
+static double evaluate(const struct dalcs_stretch *stretch,
+                       const struct dalcs_signal_formula *formula, int node, double x) {
     const struct place place = {stretch, node, x};
-    const struct dalcs_formula_point point = {
+    const struct dalcs_signal_formula_point point = {
         .time = stretch->from + 0.5 * (1.0 + x) * (stretch->to - stretch->from),
         .user = &place,
         .signal = signal_at};
-    return dalcs_formula_value(formula, &point);
+    return dalcs_signal_formula_value(formula, &point);
 }
 
 /* Where a time is in the stretch: -1 to 1. */
@@ -150,8 +150,8 @@ static double place_of(const struct dalcs_stretch *stretch, double time) {
     return time == stretch->to ? 1.0 : fmax(-1.0, fmin(1.0, x));
 }
 
-double dalcs_stretch_value(const struct dalcs_stretch *stretch, const struct dalcs_formula *formula,
-                           double time) {
+double dalcs_stretch_value(const struct dalcs_stretch *stretch,
+                           const struct dalcs_signal_formula *formula, double time) {
     return evaluate(stretch, formula, -1, place_of(stretch, time));
 }
 
@@ -159,7 +159,7 @@ double dalcs_stretch_value(const struct dalcs_stretch *stretch, const struct dal
 
 struct visit {
     const struct dalcs_stretch *stretch;
-    const struct dalcs_formula *formula;
+    const struct dalcs_signal_formula *formula;
     double *scale;
     void *user;
     bool (*visit)(void *user, const struct dalcs_span *span);
@@ -224,8 +224,9 @@ static void halve(struct visit *v, double a, double b, const struct dalcs_span *
     }
 }
 
-bool dalcs_stretch_visit(const struct dalcs_stretch *stretch, const struct dalcs_formula *formula,
-                         double from, double to, double *scale, void *user,
+bool dalcs_stretch_visit(const struct dalcs_stretch *stretch,
+                         const struct dalcs_signal_formula *formula, double from, double to,
+                         double *scale, void *user,
                          bool (*visit)(void *user, const struct dalcs_span *span)) {
     struct visit v = {
         .stretch = stretch, .formula = formula, .scale = scale, .user = user, .visit = visit};

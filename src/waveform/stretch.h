@@ -7,7 +7,7 @@
 #ifndef DALCS_STRETCH_H
 #define DALCS_STRETCH_H
 
-#include "formula.h"
+#include "signal_formula.h"
 #include "status.h"
 
 enum { DALCS_STRETCH_NODES = 18 };
@@ -50,13 +50,14 @@ struct dalcs_span {
 /* Hands spans that together make up [from, to] of the stretch to visit, in their order; false from visit
  * ends it. *scale is the largest magnitude of the formula so far, and becomes larger if need be. False
  * when the formula has no value somewhere. */
-bool dalcs_stretch_visit(const struct dalcs_stretch *stretch, const struct dalcs_formula *formula,
-                         double from, double to, double *scale, void *user,
+bool dalcs_stretch_visit(const struct dalcs_stretch *stretch,
+                         const struct dalcs_signal_formula *formula, double from, double to,
+                         double *scale, void *user,
                          bool (*visit)(void *user, const struct dalcs_span *span));
 
 /* The formula at a time of the stretch, NAN where it has no value. */
-double dalcs_stretch_value(const struct dalcs_stretch *stretch, const struct dalcs_formula *formula,
-                           double time);
+double dalcs_stretch_value(const struct dalcs_stretch *stretch,
+                           const struct dalcs_signal_formula *formula, double time);
 
 /* Part of a span: x from a to b. */
 void dalcs_span_cut(const struct dalcs_stretch_rule *rule, const struct dalcs_span *span, double a,

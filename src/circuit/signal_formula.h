@@ -1,8 +1,8 @@
-/* formula.h - formulas of signals, as measurements have them: v(out)*i(v1), max(v(a),0) - time.
+/* signal_formula.h - formulas of signals, as measurements have them: v(out)*i(v1), max(v(a),0) - time.
  *
  * Compiled once from the text of a card; evaluated at any point of a waveform. */
-#ifndef DALCS_FORMULA_H
-#define DALCS_FORMULA_H
+#ifndef DALCS_SIGNAL_FORMULA_H
+#define DALCS_SIGNAL_FORMULA_H
 
 #include "expression.h"
 
@@ -16,8 +16,8 @@ enum dalcs_signal_part {
     DALCS_PART_IMAGINARY
 };
 
-struct dalcs_formula_step {
-    enum dalcs_formula_push {
+struct dalcs_signal_formula_step {
+    enum dalcs_signal_formula_push {
         DALCS_PUSH_NOTHING, /* an operation: code */
         DALCS_PUSH_VALUE,   /* number */
         DALCS_PUSH_SIGNAL,  /* index, part */
@@ -34,28 +34,28 @@ struct dalcs_formula_step {
 };
 
 /* n = 0: there is none. */
-struct dalcs_formula {
+struct dalcs_signal_formula {
     int n;
-    const struct dalcs_formula_step *step;
+    const struct dalcs_signal_formula_step *step;
     const char *text; /* as on the card, lower case */
     bool is_affine;   /* a sum of signals, time and numbers with constant factors */
     bool is_constant;
     bool has_results;
 };
 
-enum { DALCS_FORMULA_DEEPEST = 128 }; /* values on the stack */
+enum { DALCS_SIGNAL_FORMULA_DEEPEST = 128 }; /* values on the stack */
 
 /* What a formula is asked about. */
-struct dalcs_formula_point {
+struct dalcs_signal_formula_point {
     double time;
     const void *user;
-    double (*signal)(const struct dalcs_formula_point *point, int index,
+    double (*signal)(const struct dalcs_signal_formula_point *point, int index,
                      enum dalcs_signal_part part); /* NULL: it has none */
     const double *result;                          /* [measurements]; NULL: it has none */
 };
 
 /* NAN where it has no value, such as at a division by 0. */
-double dalcs_formula_value(const struct dalcs_formula *formula,
-                           const struct dalcs_formula_point *point);
+double dalcs_signal_formula_value(const struct dalcs_signal_formula *formula,
+                                  const struct dalcs_signal_formula_point *point);
 
 #endif

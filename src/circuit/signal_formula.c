@@ -1,5 +1,5 @@
-/* formula.c - runs the steps of a formula on a stack. */
-#include "formula.h"
+/* signal_formula.c - runs the steps of a formula on a stack. */
+#include "signal_formula.h"
 
 #include <math.h>
 
@@ -44,8 +44,8 @@ static double call(const struct dalcs_function *f, const double *x, int n) {
     return f->one != NULL ? f->one(x[0]) : f->two != NULL ? f->two(x[0], x[1]) : f->many(x, n);
 }
 
-static double pushed(const struct dalcs_formula_step *step,
-                     const struct dalcs_formula_point *point) {
+static double pushed(const struct dalcs_signal_formula_step *step,
+                     const struct dalcs_signal_formula_point *point) {
     switch (step->push) {
     case DALCS_PUSH_SIGNAL:
         return point->signal(point, step->index, step->part);
@@ -72,12 +72,12 @@ static bool jumps(enum dalcs_operation_code code, double *stack, int *n) {
     return taken;
 }
 
-double dalcs_formula_value(const struct dalcs_formula *formula,
-                           const struct dalcs_formula_point *point) {
-    double stack[DALCS_FORMULA_DEEPEST];
+double dalcs_signal_formula_value(const struct dalcs_signal_formula *formula,
+                                  const struct dalcs_signal_formula_point *point) {
+    double stack[DALCS_SIGNAL_FORMULA_DEEPEST];
     int n = 0;
     for (int k = 0; k < formula->n; k++) {
-        const struct dalcs_formula_step *step = &formula->step[k];
+        const struct dalcs_signal_formula_step *step = &formula->step[k];
         if (step->push != DALCS_PUSH_NOTHING) {
             stack[n++] = pushed(step, point);
             continue;

@@ -1,4 +1,4 @@
-/* formula_card.c - formulas of signals on cards: v(...), i(...) and names to what they mean.
+/* signal_formula_card.c - formulas of signals on cards: v(...), i(...) and names to what they mean.
  *
  * The parser of expressions knows no signals. Each is masked by a name of the same length that no
  * netlist can have, so that all places stay what they are. */
@@ -14,7 +14,7 @@ enum { MASK = 0xff, DIGITS = 36, MOST_SIGNALS = DIGITS * DIGITS * DIGITS };
 /* A formula on its way to be compiled. */
 struct compilation {
     struct dalcs_builder *builder;
-    const struct dalcs_formula_rules *rules;
+    const struct dalcs_signal_formula_rules *rules;
     struct dalcs_expression_text text;
     char *masked;
     int n_signals; /* masked so far */
@@ -198,9 +198,9 @@ static void mask_signals(struct compilation *c) {
 /* ---- Steps ----------------------------------------------------------------------------------- */
 
 static void take_name(struct compilation *c, const struct dalcs_operation *o,
-                      struct dalcs_formula_step *step) {
+                      struct dalcs_signal_formula_step *step) {
     struct dalcs_builder *builder = c->builder;
-    const struct dalcs_formula_rules *rules = c->rules;
+    const struct dalcs_signal_formula_rules *rules = c->rules;
     if ((unsigned char)o->u.name[0] == MASK) {
         const int k = unmask(o->u.name);
         step->push = DALCS_PUSH_SIGNAL;
@@ -240,7 +240,7 @@ static void take_name(struct compilation *c, const struct dalcs_operation *o,
 }
 
 static void take_call(struct compilation *c, const struct dalcs_operation *o,
-                      struct dalcs_formula_step *step) {
+                      struct dalcs_signal_formula_step *step) {
     step->function = dalcs_function_find(o->u.name);
     if (step->function == NULL) {
         const char *nearest = dalcs_function_nearest(o->u.name);
@@ -260,8 +260,8 @@ static void take_call(struct compilation *c, const struct dalcs_operation *o,
 }
 
 /* Degree in signals and time of what the steps leave on the stack: 0, 1, or 2 for anything else. */
-static int degree_of(const struct dalcs_formula_step *step, int n) {
-    unsigned char degree[DALCS_FORMULA_DEEPEST];
+static int degree_of(const struct dalcs_signal_formula_step *step, int n) {
+    unsigned char degree[DALCS_SIGNAL_FORMULA_DEEPEST];
     int top = 0;
     for (int k = 0; k < n; k++) {
         const enum dalcs_operation_code code = step[k].code;
@@ -293,7 +293,7 @@ static int degree_of(const struct dalcs_formula_step *step, int n) {
 }
 
 /* The deepest that the stack can get; every choice is counted twice, which is more than it takes. */
-static int depth_of(const struct dalcs_formula_step *step, int n) {
+static int depth_of(const struct dalcs_signal_formula_step *step, int n) {
     int depth = 0;
     int most = 0;
     for (int k = 0; k < n; k++) {
@@ -313,8 +313,8 @@ static int depth_of(const struct dalcs_formula_step *step, int n) {
 }
 
 static void set_steps(struct compilation *c, const struct dalcs_expression *e,
-                      struct dalcs_formula *formula) {
-    struct dalcs_formula_step *step =
+                      struct dalcs_signal_formula *formula) {
+    struct dalcs_signal_formula_step *step =
         dalcs_arena_alloc(&c->builder->circuit->arena, (size_t)e->n, sizeof *step);
     if (step == NULL) {
         c->builder->out_of_memory = true;
@@ -341,7 +341,7 @@ static void set_steps(struct compilation *c, const struct dalcs_expression *e,
     if (c->failed) {
         return;
     }
-    if (depth_of(step, e->n) > DALCS_FORMULA_DEEPEST) {
+    if (depth_of(step, e->n) > DALCS_SIGNAL_FORMULA_DEEPEST) {
         report(c, 0, 1, NULL, "the formula is too long");
         return;
     }
@@ -352,11 +352,12 @@ static void set_steps(struct compilation *c, const struct dalcs_expression *e,
     formula->is_constant = degree == 0 && !formula->has_results;
 }
 
-bool dalcs_formula_compile(struct dalcs_builder *builder, const struct dalcs_token *token, int n,
-                           const struct dalcs_formula_rules *rules, struct dalcs_formula *formula) {
+bool dalcs_signal_formula_compile(struct dalcs_builder *builder, const struct dalcs_token *token,
+                                  int n, const struct dalcs_signal_formula_rules *rules,
+                                  struct dalcs_signal_formula *formula) {
     struct compilation c = {.builder = builder, .rules = rules};
     struct dalcs_arena *scratch = &builder->scratch;
-    *formula = (struct dalcs_formula){0};
+    *formula = (struct dalcs_signal_formula){0};
     if (!dalcs_expression_text(scratch, token, n, &c.text)) {
         builder->out_of_memory = true;
         return false;
@@ -390,10 +391,12 @@ bool dalcs_formula_compile(struct dalcs_builder *builder, const struct dalcs_tok
     return !c.failed;
 }
 
-bool dalcs_formula_difference(struct dalcs_builder *builder, const struct dalcs_formula *left,
-                              const struct dalcs_formula *right, struct dalcs_formula *difference) {
+bool dalcs_signal_formula_difference(struct dalcs_builder *builder,
+                                     const struct dalcs_signal_formula *left,
+                                     const struct dalcs_signal_formula *right,
+                                     struct dalcs_signal_formula *difference) {
     const int n = left->n + right->n + 1;
-    struct dalcs_formula_step *step =
+    struct dalcs_signal_formula_step *step =
         dalcs_arena_alloc(&builder->circuit->arena, (size_t)n, sizeof *step);
     if (step == NULL) {
         builder->out_of_memory = true;
@@ -402,7 +405,7 @@ bool dalcs_formula_difference(struct dalcs_builder *builder, const struct dalcs_
     memcpy(step, left->step, (size_t)left->n * sizeof *step);
     memcpy(step + left->n, right->step, (size_t)right->n * sizeof *step);
     step[n - 1].code = DALCS_SUBTRACT;
-    *difference = (struct dalcs_formula){
+    *difference = (struct dalcs_signal_formula){
         .n = n, .step = step, .text = left->text, .is_affine = left->is_affine && right->is_affine};
-    return depth_of(step, n) <= DALCS_FORMULA_DEEPEST;
+    return depth_of(step, n) <= DALCS_SIGNAL_FORMULA_DEEPEST;
 }
