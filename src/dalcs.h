@@ -90,6 +90,8 @@ struct dalcs_request {
     bool operating_point;
     bool transient;
     double step, stop, start, max_step;
+    bool prints; /* there is a .print or .plot */
+    bool ascii;  /* .options filetype=ascii: raw files as text */
 };
 struct dalcs_request dalcs_session_request(const struct dalcs_session *session);
 
@@ -215,6 +217,32 @@ struct dalcs_nonunique {
     const char *because; /* "d1 parallel to d2" */
 };
 
+/* What a .meas gave. */
+struct dalcs_measurement {
+    const char *name;
+    bool found;
+    double value;        /* in the unit of what was measured; 0 unless found */
+    const char *failure; /* why not; NULL when found */
+    int n_details;
+
+    struct dalcs_measurement_detail {
+        const char *name; /* "from", "to", "at", "with", "targ", "trig", as ngspice prints them */
+        double value;
+    } detail[2];
+};
+
+/* What a .four gave: signal = magnitude[0] + sum of magnitude[k] sin(2 pi k frequency (t - from) +
+ * phase[k]) over the periods from `from` to `to`. */
+struct dalcs_fourier {
+    const char *signal;
+    double frequency;   /* Hz */
+    double from, to;    /* s */
+    double thd;         /* harmonics from the second on over the first; not finite without that */
+    size_t n_harmonics; /* the constant counted */
+    const double *magnitude; /* [n_harmonics] */
+    const double *phase;     /* [n_harmonics] degrees */
+};
+
 /* What a run did. Strings and arrays are borrowed from the session and live until its next run. */
 struct dalcs_report {
     const char *netlist; /* path or name */
@@ -268,6 +296,11 @@ struct dalcs_report {
     const struct dalcs_jump *jump;
     size_t n_nonunique; /* each signal once */
     const struct dalcs_nonunique *nonunique;
+
+    size_t n_measurements; /* .meas of the analyses that were run, in the netlist's order */
+    const struct dalcs_measurement *measurement;
+    size_t n_fourier;
+    const struct dalcs_fourier *fourier;
 
     /* J, over .tran: sources = resistors + diodes + jumps + stored_change + method + balance */
     struct {

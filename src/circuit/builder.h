@@ -91,6 +91,18 @@ struct dalcs_builder {
     size_t n_initial_conditions;
     size_t initial_condition_capacity;
 
+    struct dalcs_signal *measured; /* heap: what formulas name */
+    size_t n_measured;
+    size_t measured_capacity;
+    struct dalcs_names measure_names;   /* name -> place in measure */
+    struct dalcs_measure_card *measure; /* heap */
+    size_t n_measures;
+    size_t measure_capacity;
+    struct dalcs_fourier_card *fourier; /* heap */
+    size_t n_fouriers;
+    size_t fourier_capacity;
+    bool noted_caret, noted_log; /* in a formula */
+
     const struct dalcs_source_line *kept_line; /* the last line copied by keep_location */
     const char *kept_text;
     const struct dalcs_source *kept_source; /* the last file whose name was, */
@@ -345,6 +357,27 @@ void dalcs_initial_check(struct dalcs_builder *builder);
 /* .save, .print, .plot and .probe */
 void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_signals_add_default(struct dalcs_builder *builder);
+/* The place of a signal that a formula names among builder->measured; -1 when out of memory. */
+int dalcs_signals_measure(struct dalcs_builder *builder, struct dalcs_signal signal);
+
+/* What a formula may hold. */
+struct dalcs_signal_formula_rules {
+    const char *variable;              /* "time", or what is swept */
+    const char *no_signals;            /* why it may have none, for the message; NULL: it may */
+    const struct dalcs_names *results; /* earlier measurements that it may use, or NULL */
+};
+
+/* Compiles token[0..n-1]; false when an error was reported. */
+bool dalcs_signal_formula_compile(struct dalcs_builder *builder, const struct dalcs_token *token,
+                                  int n, const struct dalcs_signal_formula_rules *rules,
+                                  struct dalcs_signal_formula *formula);
+/* left - right */
+bool dalcs_signal_formula_difference(struct dalcs_builder *builder,
+                                     const struct dalcs_signal_formula *left,
+                                     const struct dalcs_signal_formula *right,
+                                     struct dalcs_signal_formula *difference);
+void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* Warnings about the whole network. */
 void dalcs_topology_check(struct dalcs_builder *builder);
 

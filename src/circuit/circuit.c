@@ -4,7 +4,7 @@
  *     options    .options: what models may ask for
  *     models     .model, .tran, .op: what elements refer to
  *     elements   devices and nodes
- *     references K, F, H, .ic, .save: what refers to elements
+ *     references K, F, H, .ic, .save, .meas, .four: what refers to elements
  *     checks     of the whole
  *
  * Every pass goes on after an error, so that a person sees all of them. */
@@ -124,6 +124,10 @@ static void read_card(struct dalcs_builder *builder, const struct dalcs_card *ca
         dalcs_initial_parse(builder, card);
     } else if (c == DALCS_CARD_SIGNALS) {
         dalcs_signals_parse(builder, card);
+    } else if (c == DALCS_CARD_MEASURE) {
+        dalcs_measure_parse(builder, card);
+    } else if (c == DALCS_CARD_FOURIER) {
+        dalcs_fourier_parse(builder, card);
     }
 }
 
@@ -161,13 +165,49 @@ static void check_presence(struct dalcs_builder *builder) {
     }
 }
 
+/* What formulas name: a signal that is recorded anyway, or one more behind those. */
+static enum dalcs_status collect_measured(struct dalcs_builder *builder) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    struct dalcs_arena *arena = &circuit->arena;
+    const size_t n = builder->n_measured;
+    circuit->n_measured = (int)n;
+    circuit->measured = dalcs_arena_alloc(arena, n, sizeof *circuit->measured);
+    circuit->measure = dalcs_arena_alloc(arena, builder->n_measures, sizeof *circuit->measure);
+    circuit->fourier = dalcs_arena_alloc(arena, builder->n_fouriers, sizeof *circuit->fourier);
+    if (circuit->measured == NULL || circuit->measure == NULL || circuit->fourier == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k < n; k++) {
+        int place = 0;
+        while (place < circuit->n_shown &&
+               !dalcs_signal_is_same(&circuit->signal[place], &builder->measured[k])) {
+            place++;
+        }
+        if (place == circuit->n_shown) {
+            place = circuit->n_signals++;
+            circuit->signal[place] = builder->measured[k];
+        }
+        circuit->measured[k] = place;
+    }
+    circuit->n_measures = (int)builder->n_measures;
+    for (size_t k = 0; k < builder->n_measures; k++) {
+        circuit->measure[k] = builder->measure[k];
+    }
+    circuit->n_fouriers = (int)builder->n_fouriers;
+    for (size_t k = 0; k < builder->n_fouriers; k++) {
+        circuit->fourier[k] = builder->fourier[k];
+    }
+    return DALCS_OK;
+}
+
 /* Moves what grew on the heap into the circuit's arena. */
 static enum dalcs_status collect(struct dalcs_builder *builder) {
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_arena *arena = &circuit->arena;
     const size_t n_nodes = (size_t)circuit->n_nodes;
     circuit->node_name = dalcs_arena_alloc(arena, n_nodes, sizeof *circuit->node_name);
-    circuit->signal = dalcs_arena_alloc(arena, builder->n_signals, sizeof *circuit->signal);
+    circuit->signal =
+        dalcs_arena_alloc(arena, builder->n_signals + builder->n_measured, sizeof *circuit->signal);
     circuit->initial_condition =
         dalcs_arena_alloc(arena, builder->n_initial_conditions, sizeof *circuit->initial_condition);
     circuit->title =
@@ -181,6 +221,7 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
         circuit->node_name[k] = builder->node_name[k];
     }
     circuit->n_signals = (int)builder->n_signals;
+    circuit->n_shown = circuit->n_signals;
     for (size_t k = 0; k < builder->n_signals; k++) {
         circuit->signal[k] = builder->signal[k];
     }
@@ -188,7 +229,7 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
     for (size_t k = 0; k < builder->n_initial_conditions; k++) {
         circuit->initial_condition[k] = builder->initial_condition[k];
     }
-    return DALCS_OK;
+    return collect_measured(builder);
 }
 
 static enum dalcs_status build(struct dalcs_builder *builder) {
@@ -251,10 +292,14 @@ enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
     dalcs_names_finish(&builder.pairs);
     dalcs_names_finish(&builder.initial_pairs);
     dalcs_names_finish(&builder.signals);
+    dalcs_names_finish(&builder.measure_names);
     dalcs_arena_finish(&builder.scratch);
     free(builder.node_name);
     free(builder.node_token);
     free(builder.signal);
+    free(builder.measured);
+    free(builder.measure);
+    free(builder.fourier);
     free(builder.initial_condition);
     free(builder.formula);
     dalcs_deck_finish(&deck);

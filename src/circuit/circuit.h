@@ -6,6 +6,7 @@
 #define DALCS_CIRCUIT_H
 
 #include "diag.h"
+#include "measurement.h"
 #include "stimulus.h"
 
 enum dalcs_device_kind {
@@ -108,6 +109,13 @@ struct dalcs_signal {
     int device;       /* current: index of the device, else -1 */
 };
 
+static inline bool dalcs_signal_is_same(const struct dalcs_signal *a,
+                                        const struct dalcs_signal *b) {
+    return a->kind == b->kind && a->device == b->device &&
+           (a->kind == DALCS_SIGNAL_CURRENT ||
+            (a->node[0] == b->node[0] && a->node[1] == b->node[1]));
+}
+
 /* What .tran asks for; times in s. */
 struct dalcs_transient {
     bool present;
@@ -134,8 +142,16 @@ struct dalcs_circuit {
     struct dalcs_initial_condition *initial_condition;
     int n_signals; /* default: every node voltage, then currents of V, L, D, S, W, E, H */
     struct dalcs_signal *signal;
+    int n_shown; /* the first of them, which results have; the others are there to be measured */
+    int n_measured;
+    int *measured; /* [n_measured] signals that formulas name, by their number there */
+    int n_measures;
+    struct dalcs_measure_card *measure; /* .meas, in their order */
+    int n_fouriers;
+    struct dalcs_fourier_card *fourier; /* .four, one for each signal */
     struct dalcs_transient transient;
     bool operating_point; /* .op */
+    bool prints;          /* .print or .plot */
 
     struct dalcs_circuit_options {
         double reltol, abstol, vntol;          /* 0: not given; the last two in A, V */
@@ -145,6 +161,7 @@ struct dalcs_circuit {
         double step;     /* 0: not given */
         int stages;      /* of radau; 0: not given */
         double compress; /* 0: not given */
+        bool ascii;      /* filetype=ascii */
         struct dalcs_location compress_where;
     } options;
     struct dalcs_arena arena; /* owns everything above, source text of locations included */

@@ -8,8 +8,8 @@
 #include <string.h>
 
 /* Known here. */
-static const char *const OURS[] = {"reltol", "abstol", "vntol",    "method",
-                                   "step",   "stages", "compress", "diodecurrent"};
+static const char *const OURS[] = {"reltol", "abstol",   "vntol",        "method",  "step",
+                                   "stages", "compress", "diodecurrent", "filetype"};
 
 static const char *const FOREIGN[] = {
     "itl1",          "itl2",        "itl3",         "itl4",        "itl5",         "itl6",
@@ -101,6 +101,19 @@ static bool read_compress(struct dalcs_reader *reader, struct dalcs_circuit_opti
     return true;
 }
 
+static bool read_filetype(struct dalcs_reader *reader) {
+    const struct dalcs_token *type;
+    if (!dalcs_reader_name(reader, "ascii or binary", &type)) {
+        return false;
+    }
+    if (strcmp(type->text, "ascii") != 0 && strcmp(type->text, "binary") != 0) {
+        dalcs_builder_error(reader->builder, type, NULL, "filetype is ascii or binary");
+        return false;
+    }
+    reader->builder->circuit->options.ascii = type->text[0] == 'a';
+    return true;
+}
+
 static bool read_method(struct dalcs_reader *reader) {
     static const char *const theirs[] = {"trap", "trapezoidal", "gear", "bdf"};
     struct dalcs_builder *builder = reader->builder;
@@ -149,6 +162,9 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     }
     if (strcmp(name, "compress") == 0) {
         return read_compress(reader, options);
+    }
+    if (strcmp(name, "filetype") == 0) {
+        return read_filetype(reader);
     }
     return read_method(reader);
 }

@@ -67,6 +67,22 @@ void dalcs_signals_add_default(struct dalcs_builder *builder) {
     }
 }
 
+int dalcs_signals_measure(struct dalcs_builder *builder, struct dalcs_signal signal) {
+    for (size_t k = 0; k < builder->n_measured; k++) {
+        if (dalcs_signal_is_same(&builder->measured[k], &signal)) {
+            return (int)k;
+        }
+    }
+    if (signal.name == NULL ||
+        dalcs_grow(&builder->measured, &builder->measured_capacity, builder->n_measured + 1,
+                   sizeof *builder->measured) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return -1;
+    }
+    builder->measured[builder->n_measured] = signal;
+    return (int)builder->n_measured++;
+}
+
 /* After `v (`: a node or two, and the closing parenthesis. */
 static bool read_voltage(struct dalcs_reader *reader) {
     const struct dalcs_token *name[2];
@@ -157,6 +173,9 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     const struct dalcs_token *type = dalcs_reader_peek(&reader, 0);
     builder->names_signals = true;
+    builder->circuit->prints = builder->circuit->prints ||
+                               strcmp(card->token->text, ".print") == 0 ||
+                               strcmp(card->token->text, ".plot") == 0;
     const bool is_print = strcmp(card->token->text, ".save") != 0;
     for (size_t k = 0; is_print && k < sizeof other / sizeof other[0]; k++) {
         if (dalcs_reader_take_word(&reader, other[k])) {

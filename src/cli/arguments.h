@@ -18,7 +18,11 @@ struct dalcs_arguments {
     const char *dump;
     char *default_output, *default_dump; /* NULL: not needed */
     bool quiet, all_signals, energy;
-    bool help; /* asked for: nothing else is set */
+    bool ascii; /* raw files as text */
+    bool batch; /* as ngspice -b: outputs are raw files whatever their names, tables are printed
+                        when there is none */
+    const char *log; /* of -b: where what is printed goes, or NULL */
+    bool help;       /* asked for: nothing else is set */
 };
 
 /* DALCS_E_OPTION when the command line makes no sense. Messages go to cli->err. */

@@ -1,6 +1,7 @@
 /* cli.c - finds the verb; help and version. */
 #include "cli.h"
 
+#include "batch.h"
 #include "names.h"
 
 #include <stdarg.h>
@@ -51,6 +52,7 @@ static void write_help(FILE *stream) {
     }
     fputs("\n"
           "  dalcs VERB --help    the options of a verb\n"
+          "  dalcs -b --help      ngspice's command line\n"
           "  dalcs --version\n"
           "\n"
           "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n",
@@ -95,6 +97,9 @@ enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **arg
         if (strcmp(argv[1], verb[i].name) == 0) {
             return verb[i].function(cli, argc - 1, argv + 1);
         }
+    }
+    if (dalcs_cli_is_batch(argc, argv)) {
+        return dalcs_cli_batch(cli, argc, argv);
     }
     return refuse_verb(cli, argv[1]);
 }

@@ -16,8 +16,14 @@ static enum dalcs_status init_tables(struct dalcs_outputs *outputs,
         return DALCS_E_NOMEM;
     }
     for (size_t i = 0; i < arguments->n_outputs; i++) {
-        enum dalcs_status status = dalcs_table_init(&outputs->table[outputs->n_tables++],
-                                                    arguments->output[i], request->transient);
+        const char *path = arguments->output[i];
+        const struct dalcs_table_format *format =
+            arguments->batch ? &dalcs_raw_format : dalcs_table_find_format(path);
+        if (format == &dalcs_raw_format && (arguments->ascii || request->ascii)) {
+            format = &dalcs_raw_ascii_format;
+        }
+        enum dalcs_status status = dalcs_table_init_as(&outputs->table[outputs->n_tables++], path,
+                                                       format, request->transient);
         if (status != DALCS_OK) {
             return status;
         }

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { N_INPUTS = 2, N_OTHER_RESULTS = 3 };
+enum { N_INPUTS = 2, N_OTHER_RESULTS = 4 };
 
 /* A file that exists, or a name in a folder. */
 struct place {
@@ -69,8 +69,8 @@ static enum dalcs_status check_readable(const struct dalcs_cli *cli, const char 
 }
 
 static const char *result_path(const struct dalcs_arguments *arguments, size_t i) {
-    const char *const other[N_OTHER_RESULTS] = {arguments->report, arguments->plot,
-                                                arguments->dump};
+    const char *const other[N_OTHER_RESULTS] = {arguments->report, arguments->plot, arguments->dump,
+                                                arguments->log};
     return i < arguments->n_outputs ? arguments->output[i] : other[i - arguments->n_outputs];
 }
 

@@ -1,9 +1,11 @@
 /* run.c - `dalcs run`: read the netlist, run it, stream the results, say what happened. */
-#include "cli.h"
+#include "run.h"
 
 #include "arguments.h"
+#include "measurements.h"
 #include "outputs.h"
 #include "paths.h"
+#include "print_table.h"
 #include "progress.h"
 #include "quantity.h"
 #include "summary.h"
@@ -16,6 +18,7 @@
 struct run {
     const struct dalcs_cli *cli;
     struct dalcs_outputs outputs;
+    struct dalcs_print_table printed;
     struct dalcs_progress progress;
     double time; /* s, how far the run has come */
 };
@@ -44,6 +47,7 @@ static const char help[] =
     "                      beside the output, out.failed.dalcs for out.csv)\n"
     "      --all-signals   print the measurements of all signals, not of the first 24\n"
     "      --energy        print where the energy came from and where it went\n"
+    "      --ascii         write raw files as text (default: .options filetype, else binary)\n"
     "  -q, --quiet         print nothing but warnings and errors\n"
     "  -h, --help          this text\n"
     "\n"
@@ -57,12 +61,14 @@ static enum dalcs_status check_interrupt(const struct run *run) {
 
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct run *run = user;
+    dalcs_print_table_begin(&run->printed, plot);
     return dalcs_outputs_begin(&run->outputs, plot);
 }
 
 static enum dalcs_status row(void *user, double time, const double *value) {
     struct run *run = user;
     run->time = time;
+    dalcs_print_table_row(&run->printed, time, value);
     enum dalcs_status status = dalcs_outputs_row(&run->outputs, time, value);
     return status == DALCS_OK ? check_interrupt(run) : status;
 }
@@ -144,6 +150,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
     if (arguments->energy) {
         dalcs_summary_write_energy(out, report);
     }
+    dalcs_measurements_write(out, report);
     fputc('\n', out);
 }
 
@@ -206,6 +213,9 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         }
     }
     struct run run = {.cli = cli};
+    if (arguments->batch && arguments->n_outputs == 0 && (request.prints || !request.transient)) {
+        run.printed.out = cli->out;
+    }
     bool at = times.n > 0;
     status =
         dalcs_outputs_init(&run.outputs, arguments, &request, at ? times.time[0] : request.start,
@@ -217,6 +227,19 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
     }
     dalcs_times_finish(&times);
+    return status;
+}
+
+enum dalcs_status dalcs_cli_run_arguments(const struct dalcs_cli *cli,
+                                          const struct dalcs_arguments *arguments) {
+    struct dalcs_session *session = NULL;
+    enum dalcs_status status = dalcs_session_create(&session);
+    if (status == DALCS_OK) {
+        status = run_netlist(cli, arguments, session);
+    } else {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+    }
+    dalcs_session_destroy(session);
     return status;
 }
 
@@ -232,14 +255,7 @@ enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv
         status = dalcs_paths_check(cli, &arguments);
     }
     if (status == DALCS_OK && !arguments.help) {
-        struct dalcs_session *session = NULL;
-        status = dalcs_session_create(&session);
-        if (status == DALCS_OK) {
-            status = run_netlist(cli, &arguments, session);
-        } else {
-            dalcs_cli_error(cli, "%s", dalcs_status_text(status));
-        }
-        dalcs_session_destroy(session);
+        status = dalcs_cli_run_arguments(cli, &arguments);
     }
     dalcs_arguments_finish(&arguments);
     return dalcs_cli_exit(status);

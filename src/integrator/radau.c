@@ -378,6 +378,11 @@ static enum dalcs_status evaluate(const struct dalcs_radau *r, struct dalcs_rada
     return DALCS_OK;
 }
 
+enum dalcs_status dalcs_radau_evaluate_part(struct dalcs_radau *r, int part, double t,
+                                            enum dalcs_side side) {
+    return evaluate(r, &r->part[part], t, side);
+}
+
 enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t, enum dalcs_side side) {
     for (int k = 0; k < r->n_parts; k++) {
         DALCS_TRY(evaluate(r, &r->part[k], t, side));

@@ -117,6 +117,10 @@ double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens);
 /* Ends all segments that end at t and starts the next ones. */
 enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) DALCS_MUST_CHECK;
 
+/* The same as below for one part. */
+enum dalcs_status dalcs_radau_evaluate_part(struct dalcs_radau *r, int part, double t,
+                                            enum dalcs_side side) DALCS_MUST_CHECK;
+
 /* y and u of every component at t, which lies in the present segments: the left limit at their ends,
  * the right one at their starts. */
 enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t,

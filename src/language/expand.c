@@ -577,6 +577,18 @@ const char *dalcs_deck_port(const struct dalcs_deck *deck, const char *name) {
     return port >= 0 && scope->port != NULL ? scope->port[port] : NULL;
 }
 
+bool dalcs_deck_parameter(const struct dalcs_deck *deck, const char *name, double *value) {
+    struct dalcs_value *found = deck->language != NULL && deck->language->top != NULL
+                                    ? dalcs_scope_find_value(deck->language->top, name)
+                                    : NULL;
+    if (found == NULL || found->state != DALCS_VALUE_KNOWN) {
+        return false;
+    }
+    found->is_used = true;
+    *value = found->value;
+    return true;
+}
+
 void dalcs_deck_finish(struct dalcs_deck *deck) {
     struct dalcs_language *language = deck->language;
     if (language != NULL) {

@@ -33,6 +33,9 @@ enum dalcs_status dalcs_deck_expand(struct dalcs_deck *deck, const struct dalcs_
 /* The node outside that x1.a stands for, when a is a port of x1; else NULL. */
 const char *dalcs_deck_port(const struct dalcs_deck *deck, const char *name);
 
+/* The value of one of the netlist's own parameters; false when there is none of that name. */
+bool dalcs_deck_parameter(const struct dalcs_deck *deck, const char *name, double *value);
+
 void dalcs_deck_finish(struct dalcs_deck *deck);
 
 #endif

@@ -161,6 +161,19 @@ static void signal_roles(const struct dalcs_card *card, unsigned char *role) {
     }
 }
 
+/* Formulas of measurements. */
+static bool measures(const struct dalcs_card *card) {
+    return is_word(card->token, ".meas") || is_word(card->token, ".measure");
+}
+
+static void formula_roles(const struct dalcs_card *card, unsigned char *role) {
+    for (int k = 1; k < card->n; k++) {
+        if (card->token[k].kind == DALCS_TOKEN_EXPRESSION) {
+            role[k] = DALCS_ROLE_RAW;
+        }
+    }
+}
+
 void dalcs_roles(const struct dalcs_card *card, unsigned char *role) {
     memset(role, DALCS_ROLE_VALUE, (size_t)card->n);
     const struct shape *shape = shape_of(card->letter);
@@ -173,6 +186,8 @@ void dalcs_roles(const struct dalcs_card *card, unsigned char *role) {
         block_roles(card, role);
     } else if (card->letter == 'k') {
         coupling_roles(card, role);
+    } else if (measures(card)) {
+        formula_roles(card, role);
     } else if (card->letter == '.' && strcmp(card->token->text, ".model") != 0) {
         signal_roles(card, role);
     }

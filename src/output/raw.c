@@ -1,9 +1,10 @@
-/* raw.c - the binary raw file that ngspice, gaw, spicelib and others read: a text header, then
- * native doubles point after point. Several plots follow one another.
+/* raw.c - the raw file that ngspice, gaw, spicelib and others read: a text header, then native doubles
+ * point after point, or text that gives the same doubles. Several plots follow one another.
  *
  * The number of points is not known while streaming: its field is padded and filled in at the end.
  * ngspice runs a Command line when it loads the file; starting with '*' it is a comment there, and
  * spicelib still finds the word that it looks for. */
+#include "decimal.h"
 #include "memory.h"
 #include "table.h"
 
@@ -16,9 +17,10 @@
 
 struct raw {
     size_t n_columns, n_points;
-    bool has_time;
+    bool has_time, is_ascii;
     off_t points_at; /* file position of the number of points */
     double *point;   /* [n_columns], and at least 1 */
+    struct dalcs_decimal decimal;
 };
 
 /* SOURCE_DATE_EPOCH, where set, makes two runs give the same bytes. */
@@ -74,8 +76,15 @@ static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plo
         fprintf(stream, "\t%zu\t%s\t%s\n", column++, plot->name[i],
                 plot->unit[i] == DALCS_VOLT ? "voltage" : "current");
     }
-    fputs("Binary:\n", stream);
+    fputs(raw->is_ascii ? "Values:\n" : "Binary:\n", stream);
     return DALCS_OK;
+}
+
+static enum dalcs_status begin_ascii(void *state, FILE *stream, const struct dalcs_plot *plot) {
+    struct raw *raw = state;
+    raw->is_ascii = true;
+    dalcs_decimal_init(&raw->decimal);
+    return begin(state, stream, plot);
 }
 
 static void row(void *state, FILE *stream, double time, const double *value) {
@@ -85,6 +94,19 @@ static void row(void *state, FILE *stream, double time, const double *value) {
     memcpy(raw->point + n_before, value, (raw->n_columns - n_before) * sizeof(double));
     fwrite(raw->point, sizeof(double), raw->n_columns, stream);
     raw->n_points++;
+}
+
+/* " 12\t1e-06\n\t5\n\t0.1\n\n": the number of the point, then a value on each line. */
+static void row_ascii(void *state, FILE *stream, double time, const double *value) {
+    struct raw *raw = state;
+    fprintf(stream, " %zu", raw->n_points++);
+    for (size_t i = 0; i < raw->n_columns; i++) {
+        char text[DALCS_DECIMAL_SIZE];
+        double number = raw->has_time ? (i == 0 ? time : value[i - 1]) : value[i];
+        size_t n = dalcs_decimal_write(&raw->decimal, number, text);
+        fprintf(stream, "\t%.*s\n", (int)n, text);
+    }
+    fputc('\n', stream);
 }
 
 static void end(void *state, FILE *stream) {
@@ -105,6 +127,15 @@ const struct dalcs_table_format dalcs_raw_format = {
     .state_size = sizeof(struct raw),
     .begin = begin,
     .row = row,
+    .end = end,
+    .finish = finish,
+};
+
+const struct dalcs_table_format dalcs_raw_ascii_format = {
+    .extension = ".raw",
+    .state_size = sizeof(struct raw),
+    .begin = begin_ascii,
+    .row = row_ascii,
     .end = end,
     .finish = finish,
 };

@@ -20,15 +20,21 @@ const struct dalcs_table_format *dalcs_table_find_format(const char *path) {
     return NULL;
 }
 
-enum dalcs_status dalcs_table_init(struct dalcs_table *table, const char *path,
-                                   bool transient_expected) {
-    *table = (struct dalcs_table){.path = path, .transient_expected = transient_expected};
-    table->format = dalcs_table_find_format(path);
+enum dalcs_status dalcs_table_init_as(struct dalcs_table *table, const char *path,
+                                      const struct dalcs_table_format *format,
+                                      bool transient_expected) {
+    *table = (struct dalcs_table){
+        .format = format, .path = path, .transient_expected = transient_expected};
     if (!table->format) {
         return DALCS_E_OPTION;
     }
     table->state = dalcs_alloc(1, table->format->state_size);
     return table->state ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+enum dalcs_status dalcs_table_init(struct dalcs_table *table, const char *path,
+                                   bool transient_expected) {
+    return dalcs_table_init_as(table, path, dalcs_table_find_format(path), transient_expected);
 }
 
 static enum dalcs_status check_stream(struct dalcs_table *table) {

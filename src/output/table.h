@@ -19,6 +19,7 @@ struct dalcs_table_format {
 
 extern const struct dalcs_table_format dalcs_csv_format;
 extern const struct dalcs_table_format dalcs_raw_format;
+extern const struct dalcs_table_format dalcs_raw_ascii_format; /* the same file as text */
 
 struct dalcs_table {
     const struct dalcs_table_format *format;
@@ -38,6 +39,11 @@ const struct dalcs_table_format *dalcs_table_find_format(const char *path);
  * will come, so a format with room for one plot leaves an operating point out. */
 enum dalcs_status dalcs_table_init(struct dalcs_table *table, const char *path,
                                    bool transient_expected) DALCS_MUST_CHECK;
+
+/* The same in a format that the name does not tell; NULL is DALCS_E_OPTION. */
+enum dalcs_status dalcs_table_init_as(struct dalcs_table *table, const char *path,
+                                      const struct dalcs_table_format *format,
+                                      bool transient_expected) DALCS_MUST_CHECK;
 
 /* The callbacks of struct dalcs_sink. After DALCS_E_IO, table->file.error is the errno. */
 enum dalcs_status dalcs_table_begin(struct dalcs_table *table, const struct dalcs_plot *plot);

@@ -1,7 +1,7 @@
 /* pipeline.c - running: DALCS -> one OSNSP per step -> certified rows.
  *
  * dalcs_session_run at the end is the table of contents. */
-#include "session_internal.h"
+#include "measures.h"
 
 #include "thinning.h"
 
@@ -11,12 +11,13 @@
 
 static enum dalcs_status name_signals(struct dalcs_run *r) {
     const struct dalcs_network *n = &r->s->network;
-    r->name = dalcs_arena_alloc(&r->s->arena, (size_t)n->n_outputs, sizeof(*r->name));
-    r->unit = dalcs_arena_alloc(&r->s->arena, (size_t)n->n_outputs, sizeof(*r->unit));
+    const int n_shown = r->s->circuit.n_shown;
+    r->name = dalcs_arena_alloc(&r->s->arena, (size_t)n_shown, sizeof(*r->name));
+    r->unit = dalcs_arena_alloc(&r->s->arena, (size_t)n_shown, sizeof(*r->unit));
     if (r->name == NULL || r->unit == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (int i = 0; i < n->n_outputs; i++) {
+    for (int i = 0; i < n_shown; i++) {
         r->name[i] = n->output[i].name;
         r->unit[i] = n->output[i].is_current ? DALCS_AMPERE : DALCS_VOLT;
     }
@@ -30,7 +31,7 @@ enum dalcs_status dalcs_run_begin_plot(struct dalcs_run *r, enum dalcs_analysis 
     }
     *plot = (struct dalcs_plot){.analysis = analysis,
                                 .title = r->s->circuit.title,
-                                .n_signals = (size_t)r->s->network.n_outputs,
+                                .n_signals = (size_t)r->s->circuit.n_shown,
                                 .name = r->name,
                                 .unit = r->unit};
     return r->sink->begin(r->sink->user, plot);
@@ -74,6 +75,17 @@ void dalcs_run_add_work(struct dalcs_run *r, const struct dalcs_euler *e) {
     }
 }
 
+static enum dalcs_status measure_operating_point(struct dalcs_run *r, const double *row) {
+    struct dalcs_measures measures = {0};
+    enum dalcs_status status = dalcs_measures_start_rows(&measures, r, DALCS_MEASURED_OP, 0.0, 0.0);
+    if (status == DALCS_OK) {
+        dalcs_measures_row(&measures, 0.0, row);
+        status = dalcs_measures_report(&measures, r, DALCS_OK);
+    }
+    dalcs_measures_finish(&measures);
+    return status;
+}
+
 static enum dalcs_status run_operating_point(struct dalcs_run *r) {
     struct dalcs_session *s = r->s;
     struct dalcs_euler e;
@@ -98,6 +110,9 @@ static enum dalcs_status run_operating_point(struct dalcs_run *r) {
         status = r->sink->row(r->sink->user, 0.0, row);
     }
     if (status == DALCS_OK) {
+        status = measure_operating_point(r, row);
+    }
+    if (status == DALCS_OK) {
         status = r->sink->end(r->sink->user);
     }
     if (status == DALCS_OK && !s->circuit.transient.present) {
@@ -115,7 +130,7 @@ static enum dalcs_status run_operating_point(struct dalcs_run *r) {
 static enum dalcs_status run_thinned(struct dalcs_run *r) {
     struct dalcs_thinning thinning;
     const struct dalcs_sink *sink = r->sink;
-    DALCS_TRY(dalcs_thinning_setup(&thinning, sink, (size_t)r->s->network.n_outputs, r->compress));
+    DALCS_TRY(dalcs_thinning_setup(&thinning, sink, (size_t)r->s->circuit.n_shown, r->compress));
     r->sink = &thinning.sink;
     enum dalcs_status status = dalcs_transient_run(r);
     enum dalcs_status flushed = dalcs_thinning_flush(&thinning); /* of a run that stopped early */

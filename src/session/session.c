@@ -111,7 +111,9 @@ struct dalcs_request dalcs_session_request(const struct dalcs_session *session) 
                                   .step = t->step,
                                   .stop = t->stop,
                                   .start = t->start,
-                                  .max_step = t->max_step};
+                                  .max_step = t->max_step,
+                                  .prints = session->circuit.prints,
+                                  .ascii = session->circuit.options.ascii};
 }
 
 const struct dalcs_report *dalcs_session_report(const struct dalcs_session *session) {

@@ -41,6 +41,8 @@ struct dalcs_run {
     double fixed_step;    /* s; of radau without error control; 0: with it */
     double max_step;      /* s; of radau with error control; 0: no bound */
 
+    struct dalcs_measurement *measurement; /* [n_measures] of the report; NULL: none yet */
+    double *result;                        /* [n_measures] NAN: could not be measured */
     const char **name;
     enum dalcs_unit *unit;
     struct dalcs_names interrupting; /* switches that a warning has named */

@@ -2,7 +2,7 @@
  *
  * Implicit Euler walks its grid and rows follow. The Radau methods go where something happens, and
  * rows are evaluated when they are due. dalcs_transient_run at the end is the table of contents. */
-#include "session_internal.h"
+#include "measures.h"
 
 #include "energy.h"
 
@@ -97,15 +97,18 @@ static long progress_interval(const struct dalcs_network *n) {
     return n_steps < 1 ? 1 : n_steps < PROGRESS_STEPS ? n_steps : PROGRESS_STEPS;
 }
 
-static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct dalcs_euler *e) {
+static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct dalcs_euler *e,
+                                         struct dalcs_measures *measures) {
     struct dalcs_recorder *recorder = &r->s->recorder;
     const long interval = progress_interval(&r->s->network);
     while (!dalcs_grid_at_end(&e->grid)) {
         DALCS_TRY(dalcs_euler_step(e));
         DALCS_TRY(dalcs_recorder_step(recorder, e));
+        dalcs_measures_step(measures, e);
         if (e->at_jump && !dalcs_grid_at_end(&e->grid)) {
             DALCS_TRY(dalcs_euler_cross(e));
             DALCS_TRY(dalcs_recorder_cross(recorder, e));
+            dalcs_measures_cross(measures, e);
         }
         if (e->steps % interval == 0) {
             DALCS_TRY(r->sink->progress(r->sink->user, e->t, e->grid.stop));
@@ -118,6 +121,7 @@ struct transient {
     struct dalcs_run *run;
     struct dalcs_recorder *recorder;
     struct dalcs_radau *radau;
+    struct dalcs_measures *measures;
     double t;
     double next_edge; /* s, of any source: rows are wanted there */
 };
@@ -155,6 +159,7 @@ static enum dalcs_status advance(struct transient *c) {
     double due = dalcs_recorder_due(c->recorder);
     double end = dalcs_radau_next_stop(radau, &happens);
     double t = fmin(fmin(due, end), fmin(c->next_edge, stop));
+    t = fmin(t, c->measures->next_edge);
     bool ends = end <= t + near;
     bool edge = c->next_edge <= t + near;
     if (ends) {
@@ -163,6 +168,7 @@ static enum dalcs_status advance(struct transient *c) {
         t = c->next_edge;
     }
     c->t = t;
+    DALCS_TRY(dalcs_measures_reach(c->measures, radau, fmin(t, stop), near));
     bool sides = dalcs_recorder_wants_sides(c->recorder, t);
     bool is_due = due <= t + near;
     bool written = is_due || (sides && (edge || (ends && happens)));
@@ -189,8 +195,10 @@ static enum dalcs_status advance(struct transient *c) {
     return DALCS_OK;
 }
 
-static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau *radau) {
-    struct transient c = {.run = r, .recorder = &r->s->recorder, .radau = radau};
+static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau *radau,
+                                        struct dalcs_measures *measures) {
+    struct transient c = {
+        .run = r, .recorder = &r->s->recorder, .radau = radau, .measures = measures};
     c.next_edge = edge_after(&c, 0.0);
     const long interval = progress_interval(&r->s->network);
     long rounds = 0;
@@ -226,8 +234,8 @@ static enum dalcs_status report_methods(struct dalcs_run *r, const struct dalcs_
     return DALCS_OK;
 }
 
-static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e,
-                              struct dalcs_radau *radau) {
+static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct dalcs_radau *radau,
+                              struct dalcs_measures *measures) {
     struct dalcs_session *s = r->s;
     DALCS_TRY(report_methods(r, radau));
     DALCS_TRY(start_transient(r, e, radau));
@@ -238,7 +246,9 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e,
     dalcs_recorder_states(&s->network, e, s->start);
     DALCS_TRY(dalcs_run_begin_plot(r, DALCS_TRANSIENT));
     DALCS_TRY(dalcs_recorder_start(&s->recorder, e));
-    enum dalcs_status status = radau != NULL ? run_to_the_end(r, radau) : step_to_the_end(r, e);
+    DALCS_TRY(dalcs_measures_start(measures, r, e, radau));
+    enum dalcs_status status =
+        radau != NULL ? run_to_the_end(r, radau, measures) : step_to_the_end(r, e, measures);
     if (status == DALCS_OK && radau != NULL) {
         status = dalcs_radau_evaluate(radau, radau->options.stop, DALCS_LEFT);
     }
@@ -307,6 +317,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     struct dalcs_euler e;
     struct dalcs_radau radau = {0};
     struct dalcs_energy energy = {0};
+    struct dalcs_measures measures = {0};
     struct dalcs_schedule schedule = choose_schedule(r);
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
@@ -334,7 +345,9 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
         e.energy = &energy;
     }
     if (status == DALCS_OK) {
-        status = walk(r, &e, is_euler ? NULL : &radau);
+        status = walk(r, &e, is_euler ? NULL : &radau, &measures);
+        enum dalcs_status reported = dalcs_measures_report(&measures, r, status);
+        status = status == DALCS_OK ? reported : status;
     }
     if (status == DALCS_OK && r->options->energy) {
         status = close_ledger(r, &energy, &e, is_euler ? NULL : &radau);
@@ -342,6 +355,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     dalcs_explain_failure(r, &e, status);
     dalcs_run_add_work(r, &e);
     add_radau_work(r, &radau);
+    dalcs_measures_finish(&measures);
     dalcs_energy_finish(&energy);
     dalcs_radau_finish(&radau);
     dalcs_euler_finish(&e);

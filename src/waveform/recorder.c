@@ -66,11 +66,16 @@ static double probe(const struct dalcs_probe *p, const struct dalcs_euler *e) {
     return dalcs_probe_value(p, c->y, c->u + c->system->n_x);
 }
 
+double dalcs_recorder_signal(const struct dalcs_network *network, const struct dalcs_euler *e,
+                             int output) {
+    const struct dalcs_output *out = &network->output[output];
+    return probe(&out->plus, e) - (out->minus.system < 0 ? 0.0 : probe(&out->minus, e));
+}
+
 void dalcs_recorder_evaluate(const struct dalcs_network *network, const struct dalcs_euler *e,
                              double *value) {
     for (int i = 0; i < network->n_outputs; i++) {
-        const struct dalcs_output *out = &network->output[i];
-        value[i] = probe(&out->plus, e) - (out->minus.system < 0 ? 0.0 : probe(&out->minus, e));
+        value[i] = dalcs_recorder_signal(network, e, i);
     }
 }
 

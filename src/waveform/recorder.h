@@ -80,6 +80,10 @@ enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump 
 void dalcs_recorder_evaluate(const struct dalcs_network *network, const struct dalcs_euler *e,
                              double *value /* [n_outputs] */);
 
+/* One output's. */
+double dalcs_recorder_signal(const struct dalcs_network *network, const struct dalcs_euler *e,
+                             int output);
+
 /* Every state's present value, by element. */
 void dalcs_recorder_states(const struct dalcs_network *network, const struct dalcs_euler *e,
                            double *value /* [n_states] */);

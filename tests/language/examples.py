@@ -4,7 +4,8 @@
 usage: examples.py PROGRAM PAGE.md
 
 An example is a block that starts with ```spice. It runs without an error or a warning, and where a
-comment says `* v(out) ends at 2.5`, it does, to the digits that are written. A block may be several
+comment says `* v(out) ends at 2.5`, it does, to the digits that are written; where it says
+`* measured mean = 2.5m`, to 1e-10. A block may be several
 files: a line `* ---- file NAME` starts the next one; the first is the netlist.
 """
 
@@ -33,6 +34,14 @@ def check_claims(checker, run, block, where):
                       f"{where}: {signal}")
 
 
+def check_measurements(checker, run, block, where):
+    found = {entry["name"]: entry["value"] for entry in run.report["measurements"]}
+    for name, written, milli in re.findall(r"^\* measured (\S+) = ([-+.\de]+)(m?)$", block,
+                                           re.MULTILINE):
+        wanted = float(written) * (1e-3 if milli else 1.0)
+        checker.close(found[name], wanted, 1e-10 * abs(wanted), f"{where}: {name}")
+
+
 def main():
     program, page = sys.argv[1:]
     text = pathlib.Path(page).read_text(encoding="utf-8")
@@ -45,6 +54,7 @@ def main():
         checker.check(run.status == 0 and "warning" not in run.stderr, f"{where}: {run.stderr}")
         if run.status == 0:
             check_claims(checker, run, match.group(1), where)
+            check_measurements(checker, run, match.group(1), where)
     return checker.finish()
 
 

@@ -11,6 +11,14 @@ static const struct dalcs_event event[] = {{0.005, "d1", true}, {0.25, "s1", fal
 static const struct dalcs_jump_state jump_state[] = {{"c1", 10.0, 4.0}};
 static const struct dalcs_impulse impulse[] = {{"d1", false, 6e-6}, {"d2", true, 0.001}};
 static const struct dalcs_jump jump[] = {{0.0, 1, jump_state, 2, impulse, 24e-6, 0.25}};
+static const struct dalcs_measurement measurement[] = {
+    {.name = "mean",
+     .found = true,
+     .value = 0.5,
+     .n_details = 2,
+     .detail = {{"from", 0.0}, {"to", 2.0}}},
+    {.name = "late", .failure = "never"},
+};
 static const struct dalcs_nonunique nonunique[] = {
     {"i(d1)", 0.25, 0.0, INFINITY, 0.5, "d1 parallel to d2"}};
 static const char *const element[] = {"v1", "d1"};
@@ -50,6 +58,8 @@ START_TEST(test_everything) {
         .jump = jump,
         .n_nonunique = 1,
         .nonunique = nonunique,
+        .n_measurements = 2,
+        .measurement = measurement,
         .energy = {true, 4.0, 2.0, 1.0, 0.25, 0.5, 0.125, 0.125},
         .infeasible = {true, 0.5, "loop", 2, element, "v1 drives d1"},
     };
@@ -119,6 +129,10 @@ START_TEST(test_everything) {
                  "      \"because\": \"d1 parallel to d2\"\n"
                  "    }\n"
                  "  ],\n"
+                 "  \"measurements\": [\n"
+                 "    {\"name\": \"mean\", \"value\": 0.5, \"from\": 0, \"to\": 2},\n"
+                 "    {\"name\": \"late\", \"value\": null, \"failure\": \"never\"}\n"
+                 "  ],\n"
                  "  \"energy\": {\n"
                  "    \"sources\": 4,\n"
                  "    \"resistors\": 2,\n"
@@ -187,7 +201,8 @@ START_TEST(test_nothing) {
                  "  \"final\": {},\n"
                  "  \"events\": [],\n"
                  "  \"jumps\": [],\n"
-                 "  \"nonunique\": []\n"
+                 "  \"nonunique\": [],\n"
+                 "  \"measurements\": []\n"
                  "}\n");
 }
 

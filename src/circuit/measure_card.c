@@ -1,0 +1,421 @@
+/* measure_card.c - .meas: what is measured, where, between which times.
+ *
+ * Formulas end where the next word is a keyword: AVG v(a)*i(r1) FROM=1m. Their text is taken as it
+ * stands, so that tokens are only looked at to find the keywords. */
+#include "builder.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char USAGE[] =
+    ".meas tran name AVG|RMS|MIN|MAX|PP|INTEG|MIN_AT|MAX_AT formula [FROM= TO=], "
+    "FIND|DERIV formula AT=|WHEN ..., WHEN a=b, TRIG ... TARG ..., PARAM='formula'";
+static const char CONDITION[] =
+    "a condition is: formula=formula or formula VAL=value [RISE=|FALL=|CROSS=n or LAST] [TD=time]";
+
+static const struct {
+    const char *name;
+    enum dalcs_measure_kind kind;
+} KINDS[] = {{"avg", DALCS_MEASURE_AVERAGE},
+             {"rms", DALCS_MEASURE_RMS},
+             {"integ", DALCS_MEASURE_INTEGRAL},
+             {"integral", DALCS_MEASURE_INTEGRAL},
+             {"min", DALCS_MEASURE_MIN},
+             {"max", DALCS_MEASURE_MAX},
+             {"pp", DALCS_MEASURE_PEAK_TO_PEAK},
+             {"min_at", DALCS_MEASURE_MIN_AT},
+             {"max_at", DALCS_MEASURE_MAX_AT},
+             {"deriv", DALCS_MEASURE_DERIVATIVE},
+             {"derivative", DALCS_MEASURE_DERIVATIVE},
+             {"find", DALCS_MEASURE_FIND},
+             {"when", DALCS_MEASURE_WHEN},
+             {"trig", DALCS_MEASURE_DELAY},
+             {"param", DALCS_MEASURE_PARAM}};
+
+enum { N_KINDS = sizeof KINDS / sizeof KINDS[0] };
+
+/* A .meas card being read. */
+struct reading {
+    struct dalcs_builder *builder;
+    const struct dalcs_card *card;
+    struct dalcs_reader reader;
+    struct dalcs_measure_card *measure;
+    struct dalcs_signal_formula_rules rules;
+};
+
+static bool is_word(const struct dalcs_token *token, const char *word) {
+    return token->kind == DALCS_TOKEN_WORD && strcmp(token->text, word) == 0;
+}
+
+static bool is_one_of(const struct dalcs_token *token, const char *const *list, size_t n) {
+    return token->kind == DALCS_TOKEN_WORD && dalcs_builder_is_one_of(token->text, list, n);
+}
+
+/* Does a keyword stand at token k, which ends a formula before it? */
+static bool is_keyword(const struct dalcs_card *card, int k) {
+    static const char *const alone[] = {"when", "trig", "targ"};
+    static const char *const with_value[] = {"from", "to",  "td",   "rise",   "fall",   "cross",
+                                             "at",   "val", "goal", "minval", "weight", "print"};
+    if (is_one_of(&card->token[k], alone, sizeof alone / sizeof alone[0])) {
+        return true;
+    }
+    return k + 1 < card->n && card->token[k + 1].kind == DALCS_TOKEN_EQUAL &&
+           is_one_of(&card->token[k], with_value, sizeof with_value / sizeof with_value[0]);
+}
+
+/* The end of the formula that starts at token k: a keyword, or, if asked for, an equal sign. */
+static int formula_end(const struct dalcs_card *card, int k, bool at_equal) {
+    int depth = 0;
+    for (int first = k; k < card->n; k++) {
+        const enum dalcs_token_kind kind = card->token[k].kind;
+        depth += (kind == DALCS_TOKEN_OPEN) - (kind == DALCS_TOKEN_CLOSE);
+        const bool ends =
+            (at_equal && kind == DALCS_TOKEN_EQUAL) || (k > first && is_keyword(card, k));
+        if (depth <= 0 && ends) {
+            break;
+        }
+    }
+    return k;
+}
+
+/* A formula up to the next keyword. */
+static bool read_formula(struct reading *r, bool at_equal, const char *what,
+                         const struct dalcs_signal_formula_rules *rules,
+                         struct dalcs_signal_formula *formula) {
+    const int begin = r->reader.at;
+    const int end = formula_end(r->card, begin, at_equal);
+    const struct dalcs_token *token = &r->card->token[begin];
+    if (end == begin || is_keyword(r->card, begin)) {
+        dalcs_reader_missing(&r->reader, what);
+        return false;
+    }
+    r->reader.at = end;
+    /* par('...') is how ngspice marks a formula. */
+    const bool is_par =
+        end - begin == 4 && is_word(token, "par") && token[2].kind == DALCS_TOKEN_EXPRESSION;
+    return is_par ? dalcs_signal_formula_compile(r->builder, token + 2, 1, rules, formula)
+                  : dalcs_signal_formula_compile(r->builder, token, end - begin, rules, formula);
+}
+
+/* A value that is known before the run. */
+static bool read_constant(struct reading *r, const char *what, double *value) {
+    const struct dalcs_signal_formula_rules rules = {
+        .variable = "", .no_signals = "this must be known before the run"};
+    struct dalcs_signal_formula formula;
+    if (!read_formula(r, false, what, &rules, &formula)) {
+        return false;
+    }
+    *value = dalcs_signal_formula_value(&formula, &(struct dalcs_signal_formula_point){0});
+    if (!isfinite(*value)) {
+        dalcs_builder_error(r->builder, dalcs_reader_previous(&r->reader), NULL,
+                            "%s has no value here", what);
+        return false;
+    }
+    return true;
+}
+
+/* RISE=2, FALL=LAST */
+static bool read_count(struct reading *r, int *count) {
+    const struct dalcs_token *token = dalcs_reader_peek(&r->reader, 0);
+    if (token != NULL && is_word(token, "last")) {
+        r->reader.at++;
+        *count = 0;
+        return true;
+    }
+    double value;
+    if (!read_constant(r, "a count or LAST", &value)) {
+        return false;
+    }
+    if (!(value >= 1.0 && value <= 1e9) || value != floor(value)) {
+        dalcs_builder_error(r->builder, token, NULL, "a count is 1, 2, 3, ... or LAST");
+        return false;
+    }
+    *count = (int)value;
+    return true;
+}
+
+/* Takes a keyword and its equal sign, if this one comes next. */
+static bool take(struct reading *r, const char *word) {
+    const struct dalcs_token *next = dalcs_reader_peek(&r->reader, 1);
+    if (next == NULL || next->kind != DALCS_TOKEN_EQUAL) {
+        return false;
+    }
+    const bool taken = dalcs_reader_take_word(&r->reader, word);
+    r->reader.at += taken;
+    return taken;
+}
+
+/* ---- Instants -------------------------------------------------------------------------------- */
+
+static bool check_crossing(struct reading *r, struct dalcs_measure_instant *instant) {
+    if (instant->left.is_constant && instant->difference.is_constant) {
+        dalcs_builder_error(r->builder, dalcs_reader_previous(&r->reader), CONDITION,
+                            "neither side of this depends on the run");
+        return false;
+    }
+    return true;
+}
+
+/* v(out)=2.5, v(a)=v(b), or v(out) VAL=2.5, and which of the crossings. */
+static bool read_condition(struct reading *r, struct dalcs_measure_instant *instant) {
+    struct dalcs_signal_formula right = {0};
+    instant->kind = DALCS_INSTANT_CROSSING;
+    if (!read_formula(r, true, "a condition", &r->rules, &instant->left)) {
+        return false;
+    }
+    bool has_value = dalcs_reader_take(&r->reader, DALCS_TOKEN_EQUAL);
+    bool has_edge = false;
+    if (has_value && !read_formula(r, false, "a value", &r->rules, &right)) {
+        return false;
+    }
+    while (!dalcs_reader_at_end(&r->reader)) {
+        static const char *const edges[] = {
+            [DALCS_EDGE_ANY] = "cross", [DALCS_EDGE_RISE] = "rise", [DALCS_EDGE_FALL] = "fall"};
+        const struct dalcs_token *token = dalcs_reader_peek(&r->reader, 0);
+        if (!has_value && take(r, "val")) {
+            has_value = true;
+            if (!read_formula(r, false, "a value", &r->rules, &right)) {
+                return false;
+            }
+            continue;
+        }
+        if (take(r, "td")) {
+            if (!read_constant(r, "a time", &instant->delay)) {
+                return false;
+            }
+            continue;
+        }
+        int edge = 0;
+        while (edge <= DALCS_EDGE_FALL && !take(r, edges[edge])) {
+            edge++;
+        }
+        if (edge > DALCS_EDGE_FALL) {
+            break;
+        }
+        if (has_edge) {
+            dalcs_builder_error(r->builder, token, CONDITION,
+                                "one of RISE, FALL and CROSS, and once");
+            return false;
+        }
+        has_edge = true;
+        instant->edge = (enum dalcs_measure_edge)edge;
+        if (!read_count(r, &instant->count)) {
+            return false;
+        }
+    }
+    if (!has_value) {
+        dalcs_reader_missing(&r->reader, "'=' or VAL=");
+        return false;
+    }
+    if (!dalcs_signal_formula_difference(r->builder, &instant->left, &right,
+                                         &instant->difference)) {
+        return false;
+    }
+    instant->difference.is_constant = right.is_constant;
+    instant->text = right.text;
+    return check_crossing(r, instant);
+}
+
+/* AT=time, or a condition. */
+static bool read_instant(struct reading *r, struct dalcs_measure_instant *instant) {
+    if (take(r, "at")) {
+        instant->kind = DALCS_INSTANT_AT;
+        return read_constant(r, "a time", &instant->at);
+    }
+    return read_condition(r, instant);
+}
+
+/* ---- Kinds ----------------------------------------------------------------------------------- */
+
+/* TRIG ... TARG ..., after the word TRIG. */
+static bool read_interval(struct reading *r) {
+    struct dalcs_measure_instant *instant = r->measure->instant;
+    if (!read_instant(r, &instant[0])) {
+        return false;
+    }
+    if (!dalcs_reader_take_word(&r->reader, "targ")) {
+        dalcs_reader_missing(&r->reader, "TARG");
+        return false;
+    }
+    return read_instant(r, &instant[1]);
+}
+
+/* FROM=, TO= and, for statistics, TRIG ... TARG; then nothing more. */
+static bool read_bounds(struct reading *r) {
+    struct dalcs_measure_card *m = r->measure;
+    const bool is_statistic = m->kind <= DALCS_MEASURE_MAX_AT;
+    while (!dalcs_reader_at_end(&r->reader)) {
+        const struct dalcs_token *token = dalcs_reader_peek(&r->reader, 0);
+        if (take(r, "from") || (is_statistic && take(r, "td"))) {
+            if (!read_constant(r, "a time", &m->from)) {
+                return false;
+            }
+        } else if (take(r, "to")) {
+            if (!read_constant(r, "a time", &m->to)) {
+                return false;
+            }
+        } else if (take(r, "goal") || take(r, "minval") || take(r, "weight")) {
+            double unused;
+            dalcs_builder_note(r->builder, token, NULL, "%s is for optimizers and is ignored",
+                               token->text);
+            if (!read_constant(r, "a value", &unused)) {
+                return false;
+            }
+        } else if (is_statistic && m->instant[0].kind == DALCS_INSTANT_NONE &&
+                   dalcs_reader_take_word(&r->reader, "trig")) {
+            if (!read_interval(r)) {
+                return false;
+            }
+            for (int k = 0; k < 2; k++) {
+                if (m->instant[k].kind == DALCS_INSTANT_CROSSING && m->instant[k].count == 0) {
+                    dalcs_builder_error(r->builder, token, "measure TRIG and TARG by themselves",
+                                        "LAST cannot bound this: it is not known before the end");
+                    return false;
+                }
+            }
+        } else {
+            dalcs_reader_unexpected(&r->reader);
+            return false;
+        }
+    }
+    if (m->from >= m->to) {
+        dalcs_builder_error(r->builder, dalcs_reader_previous(&r->reader), NULL,
+                            "FROM=%g does not come before TO=%g", m->from, m->to);
+        return false;
+    }
+    return true;
+}
+
+/* FIND formula AT=time or WHEN condition; at an operating point there is no need of them. */
+static bool read_place(struct reading *r) {
+    struct dalcs_measure_card *m = r->measure;
+    if (dalcs_reader_take_word(&r->reader, "when")) {
+        return read_condition(r, &m->instant[0]);
+    }
+    if (take(r, "at")) {
+        m->instant[0].kind = DALCS_INSTANT_AT;
+        return read_constant(r, "a time", &m->instant[0].at);
+    }
+    if (m->analysis == DALCS_MEASURED_OP && m->kind == DALCS_MEASURE_FIND) {
+        return true;
+    }
+    dalcs_reader_missing(&r->reader, "WHEN or AT=");
+    return false;
+}
+
+static bool read_kind(struct reading *r) {
+    struct dalcs_measure_card *m = r->measure;
+    const struct dalcs_token *token = dalcs_reader_peek(&r->reader, 0);
+    int k = 0;
+    while (token != NULL && k < N_KINDS && !dalcs_reader_take_word(&r->reader, KINDS[k].name)) {
+        k++;
+    }
+    if (token == NULL) {
+        dalcs_reader_missing(&r->reader, "what to measure");
+        return false;
+    }
+    if (k == N_KINDS) {
+        const char *name[N_KINDS];
+        for (int i = 0; i < N_KINDS; i++) {
+            name[i] = KINDS[i].name;
+        }
+        dalcs_builder_error(r->builder, token,
+                            dalcs_builder_suggest_of(r->builder, name, N_KINDS, token->text, USAGE),
+                            "'%s' is nothing that can be measured", token->text);
+        return false;
+    }
+    m->kind = KINDS[k].kind;
+    return true;
+}
+
+static bool read_measurement(struct reading *r) {
+    struct dalcs_measure_card *m = r->measure;
+    if (!read_kind(r)) {
+        return false;
+    }
+    switch (m->kind) {
+    case DALCS_MEASURE_WHEN:
+        return read_condition(r, &m->instant[0]) && read_bounds(r);
+    case DALCS_MEASURE_DELAY:
+        return read_interval(r) && read_bounds(r);
+    case DALCS_MEASURE_PARAM: {
+        const struct dalcs_signal_formula_rules rules = {
+            .variable = "",
+            .no_signals = "PARAM is computed from measurements; FIND takes signals",
+            .results = &r->builder->measure_names};
+        dalcs_reader_take(&r->reader, DALCS_TOKEN_EQUAL);
+        return read_formula(r, false, "a formula", &rules, &m->formula) && read_bounds(r);
+    }
+    default:
+        if (!read_formula(r, false, "a formula", &r->rules, &m->formula)) {
+            return false;
+        }
+        return (m->kind < DALCS_MEASURE_DERIVATIVE || read_place(r)) && read_bounds(r);
+    }
+}
+
+/* ---- The card -------------------------------------------------------------------------------- */
+
+/* `tran` and the like, which LTspice lets people leave out. */
+static enum dalcs_measured_analysis read_analysis(struct reading *r) {
+    static const char *const names[] = {[DALCS_MEASURED_TRAN] = "tran",
+                                        [DALCS_MEASURED_OP] = "op",
+                                        [DALCS_MEASURED_DC] = "dc",
+                                        [DALCS_MEASURED_AC] = "ac"};
+    const struct dalcs_token *next = dalcs_reader_peek(&r->reader, 1);
+    for (int k = 0; next != NULL && k <= DALCS_MEASURED_AC; k++) {
+        if (dalcs_reader_take_word(&r->reader, names[k])) {
+            return (enum dalcs_measured_analysis)k;
+        }
+    }
+    return r->builder->tran == NULL && r->builder->op != NULL ? DALCS_MEASURED_OP
+                                                              : DALCS_MEASURED_TRAN;
+}
+
+static bool is_run(const struct dalcs_builder *builder, enum dalcs_measured_analysis analysis) {
+    return analysis == DALCS_MEASURED_TRAN ? builder->tran != NULL
+                                           : analysis == DALCS_MEASURED_OP && builder->op != NULL;
+}
+
+void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct reading r = {
+        .builder = builder, .card = card, .reader = dalcs_reader_start(builder, card, USAGE)};
+    const enum dalcs_measured_analysis analysis = read_analysis(&r);
+    const struct dalcs_token *name;
+    if (!dalcs_reader_name(&r.reader, "a name", &name)) {
+        return;
+    }
+    const int first = dalcs_names_find(&builder->measure_names, name->text);
+    if (first >= 0) {
+        dalcs_builder_error(builder, name, "give it another name",
+                            "a second measurement '%s', the first at line %d", name->text,
+                            builder->measure[first].where.line);
+        return;
+    }
+    struct dalcs_measure_card measure = {
+        .name = dalcs_arena_copy(&builder->circuit->arena, name->text, strlen(name->text)),
+        .analysis = analysis,
+        .from = -INFINITY,
+        .to = INFINITY,
+        .instant = {{.count = 1, .delay = -INFINITY}, {.count = 1, .delay = -INFINITY}},
+        .where = dalcs_builder_keep_location(builder, name)};
+    r.measure = &measure;
+    r.rules.variable = analysis == DALCS_MEASURED_AC ? "frequency" : "time";
+    if (measure.name == NULL || !read_measurement(&r)) {
+        builder->out_of_memory = builder->out_of_memory || measure.name == NULL;
+        return;
+    }
+    if (!is_run(builder, analysis)) {
+        dalcs_builder_note(builder, card->token, NULL,
+                           "there is no such analysis: this measurement is left out");
+        return;
+    }
+    if (dalcs_names_add(&builder->measure_names, measure.name, (int)builder->n_measures) !=
+            DALCS_OK ||
+        dalcs_grow(&builder->measure, &builder->measure_capacity, builder->n_measures + 1,
+                   sizeof *builder->measure) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return;
+    }
+    builder->measure[builder->n_measures++] = measure;
+}

@@ -1,0 +1,154 @@
+/* batch.c - `dalcs -b`: the command line of ngspice in batch mode, for scripts that have one.
+ *
+ *     dalcs -b -r out.raw -o log circuit.cir
+ *
+ * The order does not matter. What steers ngspice's shell has no meaning here. */
+#include "batch.h"
+
+#include "arguments.h"
+#include "memory.h"
+#include "paths.h"
+#include "run.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char help[] =
+    "usage: dalcs -b [-r FILE] [-o LOG] NETLIST\n"
+    "\n"
+    "Runs a netlist as ngspice does in batch mode, the options in any order.\n"
+    "\n"
+    "  -b, --batch         do this\n"
+    "  -r, --rawfile FILE  write the waveforms as a raw file; without it the signals of .print "
+    "and\n"
+    "                      .plot are printed as tables\n"
+    "  -o, --output LOG    write there what would be printed\n"
+    "      --ascii         write the raw file as text\n"
+    "  -a, -n, -i, -p, -s, -D VARIABLE=VALUE\n"
+    "                      are ngspice's and have no meaning here\n"
+    "  -h, --help          this text\n"
+    "\n"
+    "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n";
+
+enum { ASCII = 256 };
+
+static const struct option option[] = {
+    {"batch", no_argument, NULL, 'b'},        {"rawfile", required_argument, NULL, 'r'},
+    {"output", required_argument, NULL, 'o'}, {"ascii", no_argument, NULL, ASCII},
+    {"autorun", no_argument, NULL, 'a'},      {"no-spiceinit", no_argument, NULL, 'n'},
+    {"interactive", no_argument, NULL, 'i'},  {"pipe", no_argument, NULL, 'p'},
+    {"server", no_argument, NULL, 's'},       {"define", required_argument, NULL, 'D'},
+    {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
+};
+
+struct batch {
+    struct dalcs_arguments arguments;
+    const char *log;
+    bool help;
+};
+
+bool dalcs_cli_is_batch(int argc, char **argv) {
+    bool found = false;
+    for (int i = 1; i < argc; i++) {
+        found = found || strcmp(argv[i], "-b") == 0 || strcmp(argv[i], "--batch") == 0;
+    }
+    return found;
+}
+
+static enum dalcs_status parse(struct batch *b, const struct dalcs_cli *cli, int argc,
+                               char **argv) {
+    optind = 0; /* glibc: start afresh */
+    opterr = 0;
+    for (int code; (code = getopt_long(argc, argv, ":br:o:anipsD:h", option, NULL)) != -1;) {
+        switch (code) {
+        case 'r':
+            b->arguments.output[0] = optarg;
+            b->arguments.n_outputs = 1;
+            break;
+        case 'o':
+            b->log = optarg;
+            break;
+        case ASCII:
+            b->arguments.ascii = true;
+            break;
+        case 'h':
+            b->help = true;
+            return DALCS_OK;
+        case 'b':
+        case 'a': /* a batch run runs by itself, */
+        case 'n': /* and no file but the netlist is read */
+            break;
+        case 'i':
+        case 'p':
+        case 's':
+            fprintf(cli->err, "dalcs: note: -%c is for ngspice's shell and has no meaning here\n",
+                    code);
+            break;
+        case 'D':
+            fprintf(cli->err,
+                    "dalcs: note: -D %s sets a variable of ngspice's shell and has no meaning "
+                    "here\n",
+                    optarg);
+            break;
+        case ':':
+            dalcs_cli_error(cli, "option '%s' needs a value; see 'dalcs -b --help'",
+                            argv[optind - 1]);
+            return DALCS_E_OPTION;
+        default:
+            dalcs_cli_error(cli, "unknown option '%s'; see 'dalcs -b --help'", argv[optind - 1]);
+            return DALCS_E_OPTION;
+        }
+    }
+    if (optind != argc - 1) {
+        dalcs_cli_error(cli,
+                        optind == argc ? "no netlist given; see 'dalcs -b --help'"
+                                       : "one netlist at a time: '%s' is one too many",
+                        argv[argc - 1]);
+        return DALCS_E_OPTION;
+    }
+    b->arguments.netlist = argv[optind];
+    return DALCS_OK;
+}
+
+/* The run, with what it prints in the log. */
+static enum dalcs_status run_into_log(const struct dalcs_cli *cli, const struct batch *b) {
+    struct dalcs_cli logged = *cli;
+    FILE *log = fopen(b->log, "w");
+    if (log == NULL) {
+        dalcs_cli_error(cli, "cannot write '%s': %s", b->log, strerror(errno));
+        return DALCS_E_IO;
+    }
+    logged.out = log;
+    logged.err = log;
+    logged.err_is_terminal = false;
+    enum dalcs_status status = dalcs_cli_run_arguments(&logged, &b->arguments);
+    bool failed = ferror(log) != 0;
+    if (fclose(log) != 0 || failed) {
+        dalcs_cli_error(cli, "cannot write '%s': %s", b->log, strerror(errno));
+        return status == DALCS_OK ? DALCS_E_IO : status;
+    }
+    return status;
+}
+
+enum dalcs_exit dalcs_cli_batch(const struct dalcs_cli *cli, int argc, char **argv) {
+    struct batch b = {.arguments = {.batch = true}};
+    b.arguments.output = dalcs_alloc(1, sizeof *b.arguments.output);
+    if (!b.arguments.output) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
+        return DALCS_EXIT_RUN;
+    }
+    enum dalcs_status status = parse(&b, cli, argc, argv);
+    if (status == DALCS_OK && b.help) {
+        fputs(help, cli->out);
+    } else if (status == DALCS_OK) {
+        b.arguments.log = b.log;
+        status = dalcs_paths_check(cli, &b.arguments);
+        if (status == DALCS_OK) {
+            status = b.log ? run_into_log(cli, &b) : dalcs_cli_run_arguments(cli, &b.arguments);
+        }
+    }
+    dalcs_arguments_finish(&b.arguments);
+    return dalcs_cli_exit(status);
+}

@@ -1,0 +1,45 @@
+/* measurements.c - ngspice's layout, with 10 digits. */
+#include "measurements.h"
+
+#include <math.h>
+
+static void write_measurement(FILE *out, const struct dalcs_measurement *m) {
+    if (!m->found) {
+        fprintf(out, "%-20s=  failed\n", m->name);
+        return;
+    }
+    fprintf(out, "%-20s=  %.9e", m->name, m->value);
+    for (int k = 0; k < m->n_details; k++) {
+        fprintf(out, " %s=  %.9e", m->detail[k].name, m->detail[k].value);
+    }
+    fputc('\n', out);
+}
+
+static void write_fourier(FILE *out, const struct dalcs_fourier *f) {
+    const double largest = f->n_harmonics > 1 ? f->magnitude[1] : 0.0;
+    fprintf(out, "\nFourier analysis for %s:\n", f->signal);
+    fprintf(out, "  No. Harmonics: %zu, THD: %.10g %%, from= %.9e to= %.9e\n\n", f->n_harmonics,
+            100.0 * f->thd, f->from, f->to);
+    fprintf(out, "%-8s %-16s %-16s %-16s %-16s %s\n", "Harmonic", "Frequency", "Magnitude", "Phase",
+            "Norm. Mag", "Norm. Phase");
+    fprintf(out, "%-8s %-16s %-16s %-16s %-16s %s\n", "--------", "---------", "---------", "-----",
+            "---------", "-----------");
+    for (size_t k = 0; k < f->n_harmonics; k++) {
+        const double norm = k > 0 && largest > 0.0 ? f->magnitude[k] / largest : 0.0;
+        fprintf(out, " %-7zu %-16.10g %-16.10g %-16.10g %-16.10g %.10g\n", k,
+                (double)k * f->frequency, f->magnitude[k], f->phase[k], norm,
+                k > 0 ? f->phase[k] - f->phase[1] : 0.0);
+    }
+}
+
+void dalcs_measurements_write(FILE *out, const struct dalcs_report *report) {
+    if (report->n_measurements > 0) {
+        fputc('\n', out);
+    }
+    for (size_t k = 0; k < report->n_measurements; k++) {
+        write_measurement(out, &report->measurement[k]);
+    }
+    for (size_t k = 0; k < report->n_fourier; k++) {
+        write_fourier(out, &report->fourier[k]);
+    }
+}

@@ -1,0 +1,230 @@
+/* measures.c - hands the measurements stretches of the solution: of radau's polynomials between
+ * everything that happens, of the straight lines of implicit Euler, of the rows of a sweep. */
+#include "measures.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* A stretch of a sinusoid or an exponential is resolved up to this many radians and time constants. */
+static const double most_turn = 3.6, most_decay = 3.0;
+
+/* Parts of a source of this size, over the largest, are over. */
+static const double is_over = 1e-17;
+
+static enum dalcs_status allocate(struct dalcs_measures *measures, const struct dalcs_circuit *c,
+                                  const struct dalcs_network *n) {
+    int n_terms = 0;
+    for (int i = 0; i < c->n_stimuli; i++) {
+        int terms = dalcs_stimulus_n_terms(&c->stimulus[i]);
+        n_terms = terms > n_terms ? terms : n_terms;
+    }
+    measures->network = n;
+    measures->reads = dalcs_alloc((size_t)n->n_systems, sizeof(bool));
+    measures->stimulus = dalcs_alloc((size_t)c->n_stimuli, sizeof(const struct dalcs_stimulus *));
+    measures->term = dalcs_alloc((size_t)n_terms, sizeof(*measures->term));
+    measures->before = dalcs_alloc((size_t)c->n_measured, sizeof(double));
+    measures->now = dalcs_alloc((size_t)c->n_measured, sizeof(double));
+    bool complete = measures->reads != NULL && measures->stimulus != NULL &&
+                    measures->term != NULL && measures->before != NULL && measures->now != NULL;
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* Which components, and what drives them. */
+static void find_sources(struct dalcs_measures *measures, const struct dalcs_circuit *circuit,
+                         const struct dalcs_euler *e) {
+    for (int k = 0; k < circuit->n_measured; k++) {
+        const struct dalcs_output *out = &measures->network->output[circuit->measured[k]];
+        const int system[2] = {out->plus.system, out->minus.system};
+        for (int side = 0; side < 2; side++) {
+            if (system[side] >= 0) {
+                measures->reads[system[side]] = true;
+            }
+        }
+    }
+    for (int k = 0; k < e->n_components; k++) {
+        const struct dalcs_component *c = &e->component[k];
+        for (int i = 0; measures->reads[k] && i < c->n_varying; i++) {
+            const struct dalcs_stimulus *s = &circuit->stimulus[c->system->stimulus[c->varying[i]]];
+            bool known = false;
+            for (int j = 0; j < measures->n_stimuli && !known; j++) {
+                known = measures->stimulus[j] == s;
+            }
+            if (!known) {
+                measures->stimulus[measures->n_stimuli++] = s;
+            }
+        }
+    }
+}
+
+static double edge_after(const struct dalcs_measures *measures, double t) {
+    double edge = INFINITY;
+    for (int i = 0; i < measures->n_stimuli; i++) {
+        edge = fmin(edge, dalcs_stimulus_next_edge(measures->stimulus[i], t));
+    }
+    return edge;
+}
+
+static void read_signals(const struct dalcs_measures *measures, const struct dalcs_euler *e,
+                         double *value) {
+    const struct dalcs_circuit *c = measures->measuring.circuit;
+    for (int k = 0; k < c->n_measured; k++) {
+        value[k] = dalcs_recorder_signal(measures->network, e, c->measured[k]);
+    }
+}
+
+enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct dalcs_run *r,
+                                       const struct dalcs_euler *e,
+                                       const struct dalcs_radau *radau) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    measures->next_edge = INFINITY;
+    if (!dalcs_measuring_is_wanted(c, DALCS_MEASURED_TRAN)) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_measuring_setup(&measures->measuring, c, DALCS_MEASURED_TRAN,
+                                    c->transient.start, c->transient.stop));
+    measures->wanted = true;
+    DALCS_TRY(allocate(measures, c, &r->s->network));
+    if (radau == NULL) {
+        read_signals(measures, e, measures->now);
+        return DALCS_OK;
+    }
+    find_sources(measures, c, e);
+    measures->next_edge = edge_after(measures, 0.0);
+    return DALCS_OK;
+}
+
+void dalcs_measures_finish(struct dalcs_measures *measures) {
+    if (measures->wanted) {
+        dalcs_measuring_finish(&measures->measuring);
+    }
+    free(measures->reads);
+    free(measures->stimulus);
+    free(measures->term);
+    free(measures->before);
+    free(measures->now);
+    *measures = (struct dalcs_measures){0};
+}
+
+/* ---- Radau ------------------------------------------------------------------------------------- */
+
+/* How far a stretch from t may go, for the sake of the sources: what they drive has their shape where
+ * it has no memory, however long the steps are. */
+static double longest(const struct dalcs_measures *measures, double t) {
+    double length = INFINITY;
+    for (int i = 0; i < measures->n_stimuli; i++) {
+        struct dalcs_stimulus_piece piece = {.term = measures->term};
+        if (dalcs_stimulus_n_terms(measures->stimulus[i]) == 0) {
+            continue;
+        }
+        dalcs_stimulus_piece_at(measures->stimulus[i], t, &piece);
+        double largest = fabs(piece.level);
+        for (int k = 0; k < piece.n_terms; k++) {
+            largest = fmax(largest, hypot(piece.term[k].cosine, piece.term[k].sine));
+        }
+        for (int k = 0; k < piece.n_terms; k++) {
+            const struct dalcs_stimulus_term *term = &piece.term[k];
+            if (hypot(term->cosine, term->sine) > is_over * largest) {
+                length = fmin(length, most_turn / fabs(term->omega));
+                length = fmin(length, most_decay / fabs(term->decay));
+            }
+        }
+    }
+    return length;
+}
+
+static enum dalcs_status hand_over(struct dalcs_measures *measures, struct dalcs_radau *radau,
+                                   double from, double to) {
+    struct dalcs_measuring *m = &measures->measuring;
+    for (int i = 0; i < DALCS_STRETCH_NODES; i++) {
+        double t = from + 0.5 * (1.0 + m->rule.node[i]) * (to - from);
+        for (int k = 0; k < radau->n_parts; k++) {
+            if (measures->reads[k]) {
+                DALCS_TRY(dalcs_radau_evaluate_part(radau, k, t, DALCS_RIGHT));
+            }
+        }
+        read_signals(measures, radau->base, measures->now);
+        for (int k = 0; k < m->stretch.n_signals; k++) {
+            m->stretch.value[k][i] = measures->now[k];
+        }
+    }
+    dalcs_measuring_stretch(m, from, to);
+    return DALCS_OK;
+}
+
+/* Does anything end at t that the measured signals see? */
+static bool ends_at(const struct dalcs_measures *measures, const struct dalcs_radau *radau,
+                    double t, double near) {
+    bool ends = measures->next_edge <= t + near || t >= radau->options.stop - near;
+    for (int k = 0; k < radau->n_parts && !ends; k++) {
+        ends = measures->reads[k] && radau->part[k].t_end <= t;
+    }
+    return ends;
+}
+
+enum dalcs_status dalcs_measures_reach(struct dalcs_measures *measures, struct dalcs_radau *radau,
+                                       double t, double near) {
+    if (!measures->wanted || !ends_at(measures, radau, t, near)) {
+        return DALCS_OK;
+    }
+    while (measures->t < t) {
+        double to = fmin(t, measures->t + longest(measures, measures->t));
+        if (to - measures->t > near) {
+            DALCS_TRY(hand_over(measures, radau, measures->t, to));
+        }
+        measures->t = to;
+    }
+    if (measures->next_edge <= t + near) {
+        measures->next_edge = edge_after(measures, fmax(t, measures->next_edge));
+    }
+    return DALCS_OK;
+}
+
+/* ---- Implicit Euler and rows ------------------------------------------------------------------- */
+
+void dalcs_measures_step(struct dalcs_measures *measures, const struct dalcs_euler *e) {
+    struct dalcs_measuring *m = &measures->measuring;
+    if (!measures->wanted) {
+        return;
+    }
+    double *swap = measures->before;
+    measures->before = measures->now;
+    measures->now = swap;
+    read_signals(measures, e, measures->now);
+    for (int k = 0; k < m->stretch.n_signals; k++) {
+        for (int i = 0; i < DALCS_STRETCH_NODES; i++) {
+            double theta = 0.5 * (1.0 + m->rule.node[i]);
+            m->stretch.value[k][i] =
+                measures->before[k] + theta * (measures->now[k] - measures->before[k]);
+        }
+    }
+    dalcs_measuring_stretch(m, e->t_before, e->t);
+}
+
+void dalcs_measures_cross(struct dalcs_measures *measures, const struct dalcs_euler *e) {
+    if (measures->wanted) {
+        read_signals(measures, e, measures->now);
+    }
+}
+
+enum dalcs_status dalcs_measures_start_rows(struct dalcs_measures *measures, struct dalcs_run *r,
+                                            enum dalcs_measured_analysis analysis, double start,
+                                            double stop) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    if (!dalcs_measuring_is_wanted(c, analysis)) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_measuring_setup(&measures->measuring, c, analysis, start, stop));
+    measures->wanted = true;
+    return allocate(measures, c, &r->s->network);
+}
+
+void dalcs_measures_row(struct dalcs_measures *measures, double at, const double *value) {
+    const struct dalcs_circuit *c = measures->measuring.circuit;
+    if (!measures->wanted) {
+        return;
+    }
+    for (int k = 0; k < c->n_measured; k++) {
+        measures->now[k] = value[c->measured[k]];
+    }
+    dalcs_measuring_row(&measures->measuring, at, measures->now, NULL);
+}

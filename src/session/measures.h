@@ -1,0 +1,48 @@
+/* measures.h - .meas and .four while a run goes on, and what they gave in the report. */
+#ifndef DALCS_MEASURES_H
+#define DALCS_MEASURES_H
+
+#include "measuring.h"
+#include "radau.h"
+#include "session_internal.h"
+
+/* Zero-initialise; without a start nothing is measured and nothing costs anything. */
+struct dalcs_measures {
+    bool wanted;
+    struct dalcs_measuring measuring;
+    const struct dalcs_network *network;
+    bool *reads; /* [n_systems] components that measured signals come from */
+    int n_stimuli;
+    const struct dalcs_stimulus **stimulus; /* [n_stimuli] those that drive them and vary */
+    struct dalcs_stimulus_term *term;       /* work */
+    double t;                               /* s, measured so far */
+    double next_edge;                       /* s, of the stimuli; INFINITY without .meas */
+    double *before, *now; /* [n_measured] of euler, at the ends of a step; or of a row */
+};
+
+/* After the start of a transient: radau is NULL with implicit Euler. */
+enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct dalcs_run *r,
+                                       const struct dalcs_euler *e,
+                                       const struct dalcs_radau *radau) DALCS_MUST_CHECK;
+void dalcs_measures_finish(struct dalcs_measures *measures);
+
+/* Up to t, before the segments that end there are passed; `near`: s, times that are the same. */
+enum dalcs_status dalcs_measures_reach(struct dalcs_measures *measures, struct dalcs_radau *radau,
+                                       double t, double near) DALCS_MUST_CHECK;
+
+/* After a step of implicit Euler, and after it crossed a discontinuity. */
+void dalcs_measures_step(struct dalcs_measures *measures, const struct dalcs_euler *e);
+void dalcs_measures_cross(struct dalcs_measures *measures, const struct dalcs_euler *e);
+
+/* The results into the report; warnings about what could not be measured. status: of the run. */
+enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct dalcs_run *r,
+                                        enum dalcs_status status) DALCS_MUST_CHECK;
+
+/* For an analysis that has rows: the measured signals among the outputs `value`. */
+enum dalcs_status dalcs_measures_start_rows(struct dalcs_measures *measures, struct dalcs_run *r,
+                                            enum dalcs_measured_analysis analysis, double start,
+                                            double stop) DALCS_MUST_CHECK;
+void dalcs_measures_row(struct dalcs_measures *measures, double at,
+                        const double *value /* [n_outputs] */);
+
+#endif

@@ -1,0 +1,24 @@
+/* harmonics.h - .four: Fourier's coefficients of the last periods of a run. */
+#ifndef DALCS_HARMONICS_H
+#define DALCS_HARMONICS_H
+
+#include "measurement.h"
+#include "stretch.h"
+
+struct dalcs_harmonics {
+    const struct dalcs_fourier_card *card;
+    double from, to; /* s */
+    double scale;
+    double *cosine, *sine; /* [n_harmonics + 1] integrals over [from, to], over its length */
+    bool has_no_value;
+};
+
+/* For a run that ends at stop, in s. */
+enum dalcs_status dalcs_harmonics_setup(struct dalcs_harmonics *h,
+                                        const struct dalcs_fourier_card *card,
+                                        double stop) DALCS_MUST_CHECK;
+void dalcs_harmonics_finish(struct dalcs_harmonics *h);
+
+void dalcs_harmonics_add(struct dalcs_harmonics *h, const struct dalcs_stretch *stretch);
+
+#endif

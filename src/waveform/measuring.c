@@ -1,0 +1,354 @@
+/* measuring.c - sums and extremes over stretches, values at instants. */
+#include "measuring.h"
+
+#include "memory.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { N = DALCS_STRETCH_NODES, MOST_CUTS = 60, MOST_ROUNDS = 80 };
+
+/* Of an extreme, over the largest value. */
+static const double rounding = 1e-14, same = 4e-15;
+
+/* ---- Setting up ------------------------------------------------------------------------------- */
+
+bool dalcs_measuring_is_wanted(const struct dalcs_circuit *circuit,
+                               enum dalcs_measured_analysis analysis) {
+    bool wanted = analysis == DALCS_MEASURED_TRAN && circuit->n_fouriers > 0;
+    for (int k = 0; k < circuit->n_measures && !wanted; k++) {
+        wanted = circuit->measure[k].analysis == analysis;
+    }
+    return wanted;
+}
+
+static enum dalcs_status set_up_harmonics(struct dalcs_measuring *m, double stop) {
+    const struct dalcs_circuit *c = m->circuit;
+    if (m->analysis != DALCS_MEASURED_TRAN) {
+        return DALCS_OK;
+    }
+    m->harmonics = dalcs_alloc((size_t)c->n_fouriers, sizeof(*m->harmonics));
+    if (m->harmonics == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < c->n_fouriers; k++) {
+        DALCS_TRY(dalcs_harmonics_setup(&m->harmonics[k], &c->fourier[k], stop));
+        m->n_harmonics++;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
+                                        const struct dalcs_circuit *circuit,
+                                        enum dalcs_measured_analysis analysis, double start,
+                                        double stop) {
+    size_t n_signals = (size_t)circuit->n_measured;
+    *m = (struct dalcs_measuring){.circuit = circuit,
+                                  .analysis = analysis,
+                                  .start = start,
+                                  .stop = stop,
+                                  .n = circuit->n_measures};
+    dalcs_stretch_rule_make(&m->rule);
+    m->values = dalcs_alloc(3 * n_signals, sizeof(*m->values));
+    m->row = dalcs_alloc(n_signals, sizeof(double));
+    m->row_imaginary = dalcs_alloc(n_signals, sizeof(double));
+    m->item = dalcs_alloc((size_t)m->n, sizeof(*m->item));
+    enum dalcs_status status =
+        m->values == NULL || m->row == NULL || m->row_imaginary == NULL || m->item == NULL
+            ? DALCS_E_NOMEM
+            : set_up_harmonics(m, stop);
+    if (status != DALCS_OK) {
+        dalcs_measuring_finish(m);
+        return status;
+    }
+    m->stretch = (struct dalcs_stretch){.rule = &m->rule,
+                                        .n_signals = circuit->n_measured,
+                                        .value = m->values,
+                                        .coefficient = m->values + n_signals};
+    if (analysis == DALCS_MEASURED_AC) {
+        m->stretch.imaginary = m->values + 2 * n_signals;
+    }
+    for (int k = 0; k < m->n; k++) {
+        const struct dalcs_measure_card *card = &circuit->measure[k];
+        m->item[k] = (struct dalcs_measured){
+            .card = card,
+            .instant = {{.card = &card->instant[0]}, {.card = &card->instant[1]}},
+            .begin = INFINITY,
+            .end = -INFINITY,
+            .least = INFINITY,
+            .most = -INFINITY};
+    }
+    return DALCS_OK;
+}
+
+void dalcs_measuring_finish(struct dalcs_measuring *m) {
+    for (int k = 0; k < m->n_harmonics; k++) {
+        dalcs_harmonics_finish(&m->harmonics[k]);
+    }
+    free(m->harmonics);
+    free(m->values);
+    free(m->row);
+    free(m->row_imaginary);
+    free(m->item);
+    *m = (struct dalcs_measuring){0};
+}
+
+/* ---- Extremes --------------------------------------------------------------------------------- */
+
+struct climb {
+    const struct dalcs_stretch_rule *rule;
+    double sign;
+    double scale; /* largest magnitude so far */
+    double *best, *where;
+};
+
+/* Of extremes that only rounding tells apart, as those of periods are, the place is the first one's. */
+static void consider(const struct climb *c, double value, double time) {
+    double higher = c->sign * (value - *c->best);
+    if (higher > same * c->scale) {
+        *c->where = time;
+    }
+    if (higher > 0.0) {
+        *c->best = value;
+    }
+}
+
+/* The zero of a slope that changes its sign once between x = -1 and 1. */
+static double flat_at(const double *slope) {
+    double a = -1.0;
+    double b = 1.0;
+    bool rises = dalcs_stretch_at(slope, a) < 0.0;
+    for (int round = 0; round < MOST_ROUNDS && b - a > DBL_EPSILON; round++) {
+        double x = 0.5 * (a + b);
+        if ((dalcs_stretch_at(slope, x) < 0.0) == rises) {
+            a = x;
+        } else {
+            b = x;
+        }
+    }
+    return 0.5 * (a + b);
+}
+
+static void climb(const struct climb *c, const struct dalcs_span *span, int depth) {
+    double top = c->sign * span->coefficient[0] + dalcs_stretch_spread(span->coefficient);
+    if (top <= c->sign * *c->best) {
+        return;
+    }
+    consider(c, dalcs_stretch_at(span->coefficient, -1.0), span->from);
+    consider(c, dalcs_stretch_at(span->coefficient, 1.0), span->to);
+    double slope[N];
+    double bend[N];
+    dalcs_stretch_derive(span->coefficient, slope);
+    if (fabs(slope[0]) >= dalcs_stretch_spread(slope)) {
+        return;
+    }
+    dalcs_stretch_derive(slope, bend);
+    if (fabs(bend[0]) >= dalcs_stretch_spread(bend) || depth == MOST_CUTS) {
+        if ((dalcs_stretch_at(slope, -1.0) < 0.0) != (dalcs_stretch_at(slope, 1.0) < 0.0)) {
+            double x = flat_at(slope);
+            consider(c, dalcs_stretch_at(span->coefficient, x),
+                     span->from + 0.5 * (1.0 + x) * (span->to - span->from));
+        }
+        return;
+    }
+    if (top <= c->sign * *c->best + rounding * c->scale) {
+        return;
+    }
+    struct dalcs_span half;
+    dalcs_span_cut(c->rule, span, -1.0, 0.0, &half);
+    climb(c, &half, depth + 1);
+    dalcs_span_cut(c->rule, span, 0.0, 1.0, &half);
+    climb(c, &half, depth + 1);
+}
+
+/* ---- Statistics ------------------------------------------------------------------------------- */
+
+struct addition {
+    struct dalcs_measured *item;
+    const struct dalcs_stretch_rule *rule;
+};
+
+static bool add_span(void *user, const struct dalcs_span *span) {
+    const struct addition *a = user;
+    struct dalcs_measured *item = a->item;
+    enum dalcs_measure_kind kind = item->card->kind;
+    double length = span->to - span->from;
+    if (kind <= DALCS_MEASURE_INTEGRAL) {
+        double square = 0.0;
+        for (int i = 0; i < N; i++) {
+            square += a->rule->weight[i] * span->value[i] * span->value[i];
+        }
+        item->integral += length * span->coefficient[0];
+        item->square += length * square;
+        return true;
+    }
+    if (kind != DALCS_MEASURE_MIN && kind != DALCS_MEASURE_MIN_AT) {
+        climb(&(struct climb){a->rule, 1.0, item->scale, &item->most, &item->most_at}, span, 0);
+    }
+    if (kind != DALCS_MEASURE_MAX && kind != DALCS_MEASURE_MAX_AT) {
+        climb(&(struct climb){a->rule, -1.0, item->scale, &item->least, &item->least_at}, span, 0);
+    }
+    return true;
+}
+
+static void add_stretch(const struct dalcs_measuring *m, struct dalcs_measured *item, double from,
+                        double to) {
+    const struct dalcs_instant *trig = &item->instant[0];
+    const struct dalcs_instant *targ = &item->instant[1];
+    if (trig->card->kind != DALCS_INSTANT_NONE) {
+        from = trig->found ? fmax(from, trig->time) : INFINITY;
+        to = targ->found ? fmin(to, targ->time) : to;
+    }
+    if (from < to) {
+        item->begin = fmin(item->begin, from);
+        item->end = to;
+        struct addition a = {item, &m->rule};
+        item->has_no_value = !dalcs_stretch_visit(&m->stretch, &item->card->formula, from, to,
+                                                  &item->scale, &a, add_span);
+    }
+}
+
+/* ---- Values at instants ------------------------------------------------------------------------ */
+
+struct slope {
+    double time, value;
+};
+
+static bool find_slope(void *user, const struct dalcs_span *span) {
+    struct slope *s = user;
+    double derivative[N];
+    dalcs_stretch_derive(span->coefficient, derivative);
+    double length = span->to - span->from;
+    double x = fmax(-1.0, fmin(1.0, 2.0 * ((s->time - span->from) / length) - 1.0));
+    s->value = 2.0 * dalcs_stretch_at(derivative, x) / length;
+    return s->time >= span->to; /* the span that holds it, from its start on */
+}
+
+/* FIND or DERIV at a time of the present stretch. */
+static void evaluate(const struct dalcs_measuring *m, struct dalcs_measured *item, double time) {
+    const struct dalcs_signal_formula *formula = &item->card->formula;
+    item->waits = false;
+    if (item->card->kind == DALCS_MEASURE_FIND) {
+        item->value = dalcs_stretch_value(&m->stretch, formula, time);
+        item->has_no_value = isnan(item->value);
+    } else {
+        struct slope s = {.time = time};
+        item->has_no_value = !dalcs_stretch_visit(&m->stretch, formula, m->stretch.from,
+                                                  m->stretch.to, &item->scale, &s, find_slope);
+        item->value = s.value;
+    }
+    item->has_value = !item->has_no_value;
+}
+
+static bool needs_value(const struct dalcs_measured *item) {
+    return item->card->kind == DALCS_MEASURE_FIND || item->card->kind == DALCS_MEASURE_DERIVATIVE;
+}
+
+/* ---- Stretches --------------------------------------------------------------------------------- */
+
+static void measure(const struct dalcs_measuring *m, struct dalcs_measured *item) {
+    const struct dalcs_measure_card *card = item->card;
+    const struct dalcs_stretch *s = &m->stretch;
+    double from = fmax(s->from, fmax(m->start, card->from));
+    double to = fmin(s->to, fmin(m->stop, card->to));
+    if (card->analysis != m->analysis || card->kind == DALCS_MEASURE_PARAM || item->has_no_value) {
+        return;
+    }
+    if (item->waits) {
+        evaluate(m, item, s->from);
+    }
+    if (!(from <= to)) {
+        return;
+    }
+    bool is_new = dalcs_instant_look(&item->instant[0], s, from, to);
+    dalcs_instant_look(&item->instant[1], s, from, to);
+    if (is_new && needs_value(item)) {
+        double time = item->instant[0].time;
+        item->waits = time >= s->to - 16.0 * DBL_EPSILON * fabs(s->to);
+        if (!item->waits) {
+            evaluate(m, item, time);
+        }
+    }
+    if (card->kind <= DALCS_MEASURE_MAX_AT) {
+        add_stretch(m, item, from, to);
+    }
+}
+
+void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to) {
+    struct dalcs_stretch *s = &m->stretch;
+    s->from = from;
+    s->to = to;
+    for (int k = 0; k < s->n_signals; k++) {
+        dalcs_stretch_expand(&m->rule, s->value[k], s->coefficient[k]);
+    }
+    for (int k = 0; k < m->n; k++) {
+        measure(m, &m->item[k]);
+    }
+    for (int k = 0; k < m->n_harmonics; k++) {
+        dalcs_harmonics_add(&m->harmonics[k], s);
+    }
+}
+
+/* At a single point, as an operating point is. */
+static void measure_point(struct dalcs_measuring *m, double at, const double *re,
+                          const double *im) {
+    struct dalcs_stretch *s = &m->stretch;
+    s->from = at;
+    s->to = at;
+    for (int k = 0; k < s->n_signals; k++) {
+        memset(s->coefficient[k], 0, sizeof(s->coefficient[k]));
+        s->coefficient[k][0] = re[k];
+        if (s->imaginary != NULL) {
+            memset(s->imaginary[k], 0, sizeof(s->imaginary[k]));
+            s->imaginary[k][0] = im[k];
+        }
+    }
+    for (int k = 0; k < m->n; k++) {
+        struct dalcs_measured *item = &m->item[k];
+        const struct dalcs_signal_formula *formula = &item->card->formula;
+        if (item->card->analysis == m->analysis && formula->n > 0 &&
+            item->card->kind != DALCS_MEASURE_PARAM &&
+            item->card->instant[0].kind == DALCS_INSTANT_NONE) {
+            item->value = dalcs_stretch_value(s, formula, at);
+            item->has_no_value = isnan(item->value);
+            item->has_value = m->analysis == DALCS_MEASURED_OP && !item->has_no_value;
+        }
+    }
+}
+
+void dalcs_measuring_row(struct dalcs_measuring *m, double at, const double *re, const double *im) {
+    struct dalcs_stretch *s = &m->stretch;
+    if (!m->has_row) {
+        measure_point(m, at, re, im);
+    } else if (at > m->row_at) {
+        for (int k = 0; k < s->n_signals; k++) {
+            for (int i = 0; i < N; i++) {
+                double theta = 0.5 * (1.0 + m->rule.node[i]);
+                s->value[k][i] = m->row[k] + theta * (re[k] - m->row[k]);
+            }
+            if (s->imaginary != NULL) {
+                memset(s->imaginary[k], 0, sizeof(s->imaginary[k]));
+                s->imaginary[k][0] = 0.5 * (m->row_imaginary[k] + im[k]);
+                s->imaginary[k][1] = 0.5 * (im[k] - m->row_imaginary[k]);
+            }
+        }
+        dalcs_measuring_stretch(m, m->row_at, at);
+    }
+    size_t bytes = (size_t)s->n_signals * sizeof(double);
+    memcpy(m->row, re, bytes);
+    if (im != NULL) {
+        memcpy(m->row_imaginary, im, bytes);
+    }
+    m->row_at = at;
+    m->has_row = true;
+}
+
+void dalcs_measuring_close(struct dalcs_measuring *m) {
+    for (int k = 0; k < m->n; k++) {
+        if (m->item[k].waits) {
+            evaluate(m, &m->item[k], m->stretch.to);
+        }
+    }
+}

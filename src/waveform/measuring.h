@@ -1,0 +1,62 @@
+/* measuring.h - the measurements of one analysis while it runs, exact on what it computes.
+ *
+ * The run hands over one stretch after the other, between events and edges; nothing is kept but sums,
+ * extremes and the last crossing. What is asked for on the grid of the output has no influence. */
+#ifndef DALCS_MEASURING_H
+#define DALCS_MEASURING_H
+
+#include "circuit.h"
+#include "harmonics.h"
+#include "instant.h"
+
+struct dalcs_measured {
+    const struct dalcs_measure_card *card;
+    struct dalcs_instant instant[2];
+    double begin, end; /* what the sums are over; end < begin: nothing yet */
+    double integral, square;
+    double least, least_at, most, most_at;
+    double scale; /* largest magnitude so far */
+    bool has_value, has_no_value;
+    bool waits; /* for the next stretch, which starts where it is to be evaluated */
+    double value;
+};
+
+struct dalcs_measuring {
+    const struct dalcs_circuit *circuit;
+    enum dalcs_measured_analysis analysis;
+    double start, stop; /* what is measured, whatever cards say */
+    struct dalcs_stretch_rule rule;
+    struct dalcs_stretch stretch; /* to be filled */
+    double (*values)[DALCS_STRETCH_NODES];
+    int n;
+    struct dalcs_measured *item; /* [circuit->n_measures], those of other analyses unused */
+    int n_harmonics;
+    struct dalcs_harmonics *harmonics; /* one for each .four; in a .tran */
+    double *row, *row_imaginary;       /* [n_signals] the last one */
+    bool has_row;
+    double row_at;
+};
+
+/* Does the circuit ask for anything in such an analysis? */
+bool dalcs_measuring_is_wanted(const struct dalcs_circuit *circuit,
+                               enum dalcs_measured_analysis analysis);
+
+/* From start to stop, in s or in the unit of what is swept. */
+enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
+                                        const struct dalcs_circuit *circuit,
+                                        enum dalcs_measured_analysis analysis, double start,
+                                        double stop) DALCS_MUST_CHECK;
+void dalcs_measuring_finish(struct dalcs_measuring *m);
+
+/* m->stretch.value[circuit->n_measured] has been filled, at the nodes between from and to. Stretches
+ * follow each other. */
+void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to);
+
+/* A row of a sweep or an operating point: `at` is what is swept, not descending, in between straight
+ * lines; re and, of an .ac, im hold the measured signals [circuit->n_measured]. */
+void dalcs_measuring_row(struct dalcs_measuring *m, double at, const double *re, const double *im);
+
+/* After the last: what was still waited for. */
+void dalcs_measuring_close(struct dalcs_measuring *m);
+
+#endif

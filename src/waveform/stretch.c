@@ -1,0 +1,252 @@
+/* stretch.c - Gauss' rule and Legendre's polynomials; formulas cut until each part is resolved. */
+#include "stretch.h"
+
+#include <float.h>
+#include <math.h>
+
+enum { N = DALCS_STRETCH_NODES };
+
+/* Last coefficients of this size over the formula's largest value are rounding. */
+static const double resolved = 4e-14;
+
+/* Halving that leaves this much of the last coefficients in both halves does not help: that is noise.
+ * A kink is in one half only, and so is a jump. */
+static const double helps = 0.75;
+
+enum { MOST_HALVINGS = 50, MOST_IN_VAIN = 4, TAIL = 3 };
+
+/* P_0 to P_(N-1) at x. */
+static void polynomials(double x, double *p) {
+    p[0] = 1.0;
+    p[1] = x;
+    for (int k = 1; k + 1 < N; k++) {
+        p[k + 1] = ((2 * k + 1) * x * p[k] - k * p[k - 1]) / (k + 1);
+    }
+}
+
+/* Newton's method on P_N from Tricomi's estimates of its zeros. */
+void dalcs_stretch_rule_make(struct dalcs_stretch_rule *rule) {
+    const double pi = 3.14159265358979323846;
+    for (int i = 0; i < N; i++) {
+        long double x = -cosl((long double)pi * (i + 0.75L) / (N + 0.5L));
+        long double slope = 1.0L;
+        for (int round = 0; round < 8; round++) {
+            long double before = 1.0L;
+            long double p = x;
+            for (int k = 1; k < N; k++) {
+                long double next = ((2 * k + 1) * x * p - k * before) / (k + 1);
+                before = p;
+                p = next;
+            }
+            slope = N * (x * p - before) / (x * x - 1.0L);
+            x -= p / slope;
+        }
+        rule->node[i] = (double)x;
+        rule->weight[i] = (double)(1.0L / ((1.0L - x * x) * slope * slope));
+    }
+    for (int i = 0; i < N; i++) {
+        double p[N];
+        polynomials(rule->node[i], p);
+        for (int k = 0; k < N; k++) {
+            rule->expand[k][i] = (2 * k + 1) * rule->weight[i] * p[k];
+        }
+    }
+}
+
+void dalcs_stretch_expand(const struct dalcs_stretch_rule *rule, const double *value,
+                          double *coefficient) {
+    double largest = 0.0;
+    for (int i = 0; i < N; i++) {
+        largest = fmax(largest, fabs(value[i]));
+    }
+    for (int k = 0; k < N; k++) {
+        double sum = 0.0;
+        for (int i = 0; i < N; i++) {
+            sum += rule->expand[k][i] * value[i];
+        }
+        /* What rounding leaves is nothing: a constant must not look like one that wriggles. */
+        coefficient[k] = fabs(sum) > (2 * k + 1) * DBL_EPSILON * largest ? sum : 0.0;
+    }
+}
+
+/* Clenshaw's recurrence. */
+double dalcs_stretch_at(const double *coefficient, double x) {
+    double b1 = 0.0;
+    double b2 = 0.0;
+    for (int k = N - 1; k > 0; k--) {
+        double b = coefficient[k] + x * b1 * (2 * k + 1) / (k + 1) - b2 * (k + 1) / (k + 2);
+        b2 = b1;
+        b1 = b;
+    }
+    return coefficient[0] + x * b1 - 0.5 * b2;
+}
+
+/* P'_(k+1) - P'_(k-1) = (2 k + 1) P_k */
+void dalcs_stretch_derive(const double *coefficient, double *derivative) {
+    double sum[2] = {0.0, 0.0}; /* of the coefficients above, by parity */
+    for (int k = N - 1; k >= 0; k--) {
+        derivative[k] = (2 * k + 1) * sum[(k + 1) % 2];
+        sum[k % 2] += coefficient[k];
+    }
+}
+
+double dalcs_stretch_spread(const double *coefficient) {
+    double sum = 0.0;
+    for (int k = 1; k < N; k++) {
+        sum += fabs(coefficient[k]);
+    }
+    return sum;
+}
+
+/* ---- Formulas --------------------------------------------------------------------------------- */
+
+/* Where a formula is asked for: at a node of the stretch, or else at x. */
+struct place {
+    const struct dalcs_stretch *stretch;
+    int node;
+    double x;
+};
+
+static double complex_part(enum dalcs_signal_part part, double re, double im) {
+    static const double degrees = 57.295779513082320877;
+    switch (part) {
+    case DALCS_PART_DECIBEL:
+        return 20.0 * log10(hypot(re, im));
+    case DALCS_PART_PHASE:
+        return degrees * atan2(im, re);
+    case DALCS_PART_REAL:
+        return re;
+    case DALCS_PART_IMAGINARY:
+        return im;
+    default:
+        return hypot(re, im);
+    }
+}
+
+static double signal_at(const struct dalcs_signal_formula_point *point, int index,
+                        enum dalcs_signal_part part) {
+    const struct place *place = point->user;
+    const struct dalcs_stretch *stretch = place->stretch;
+    double re = place->node >= 0 ? stretch->value[index][place->node]
+                                 : dalcs_stretch_at(stretch->coefficient[index], place->x);
+    double im =
+        stretch->imaginary != NULL ? dalcs_stretch_at(stretch->imaginary[index], place->x) : 0.0;
+    return stretch->imaginary == NULL && part == DALCS_PART_PLAIN ? re : complex_part(part, re, im);
+}
+
+static double evaluate(const struct dalcs_stretch *stretch,
+                       const struct dalcs_signal_formula *formula, int node, double x) {
+    const struct place place = {stretch, node, x};
+    const struct dalcs_signal_formula_point point = {
+        .time = stretch->from + 0.5 * (1.0 + x) * (stretch->to - stretch->from),
+        .user = &place,
+        .signal = signal_at};
+    return dalcs_signal_formula_value(formula, &point);
+}
+
+/* Where a time is in the stretch: -1 to 1. */
+static double place_of(const struct dalcs_stretch *stretch, double time) {
+    double x = 2.0 * ((time - stretch->from) / (stretch->to - stretch->from)) - 1.0;
+    return time == stretch->to ? 1.0 : fmax(-1.0, fmin(1.0, x));
+}
+
+double dalcs_stretch_value(const struct dalcs_stretch *stretch,
+                           const struct dalcs_signal_formula *formula, double time) {
+    return evaluate(stretch, formula, -1, place_of(stretch, time));
+}
+
+/* ---- Spans ------------------------------------------------------------------------------------ */
+
+struct visit {
+    const struct dalcs_stretch *stretch;
+    const struct dalcs_signal_formula *formula;
+    double *scale;
+    void *user;
+    bool (*visit)(void *user, const struct dalcs_span *span);
+    bool ended, has_no_value;
+};
+
+/* The formula between x = a and x = b; whole: that is the stretch. */
+static void fill(struct visit *v, double a, double b, bool whole, struct dalcs_span *span) {
+    const struct dalcs_stretch *stretch = v->stretch;
+    const double length = stretch->to - stretch->from;
+    span->from = a == -1.0 ? stretch->from : stretch->from + 0.5 * (1.0 + a) * length;
+    span->to = b == 1.0 ? stretch->to : stretch->from + 0.5 * (1.0 + b) * length;
+    for (int i = 0; i < N; i++) {
+        double x = a + 0.5 * (1.0 + stretch->rule->node[i]) * (b - a);
+        span->value[i] =
+            whole ? evaluate(stretch, v->formula, i, x) : evaluate(stretch, v->formula, -1, x);
+        v->has_no_value = v->has_no_value || isnan(span->value[i]);
+        *v->scale = fmax(*v->scale, fabs(span->value[i]));
+    }
+    dalcs_stretch_expand(stretch->rule, span->value, span->coefficient);
+}
+
+static double tail_of(const struct dalcs_span *span) {
+    double tail = 0.0;
+    for (int k = N - TAIL; k < N; k++) {
+        tail = fmax(tail, fabs(span->coefficient[k]));
+    }
+    return tail;
+}
+
+static void halve(struct visit *v, double a, double b, const struct dalcs_span *span, int depth,
+                  int in_vain);
+
+/* A span goes to the visitor when it is resolved, else its halves do. */
+static void settle(struct visit *v, double a, double b, const struct dalcs_span *span, int depth,
+                   int in_vain) {
+    double tail = tail_of(span);
+    double t = fmax(fabs(span->from), fabs(span->to));
+    double noise = resolved * *v->scale + DBL_EPSILON * dalcs_stretch_spread(span->coefficient) *
+                                              t / (span->to - span->from);
+    bool is_done = v->formula->is_affine || tail <= noise || depth == MOST_HALVINGS ||
+                   in_vain == MOST_IN_VAIN || v->has_no_value ||
+                   !(span->to - span->from > 8.0 * DBL_EPSILON * t);
+    if (is_done) {
+        v->ended = v->has_no_value || !v->visit(v->user, span);
+    } else {
+        halve(v, a, b, span, depth, in_vain);
+    }
+}
+
+static void halve(struct visit *v, double a, double b, const struct dalcs_span *span, int depth,
+                  int in_vain) {
+    struct dalcs_span half[2];
+    double middle = 0.5 * (a + b);
+    fill(v, a, middle, false, &half[0]);
+    fill(v, middle, b, false, &half[1]);
+    double least = fmin(tail_of(&half[0]), tail_of(&half[1]));
+    int next = least > helps * tail_of(span) ? in_vain + 1 : 0;
+    settle(v, a, middle, &half[0], depth + 1, next);
+    if (!v->ended) {
+        settle(v, middle, b, &half[1], depth + 1, next);
+    }
+}
+
+bool dalcs_stretch_visit(const struct dalcs_stretch *stretch,
+                         const struct dalcs_signal_formula *formula, double from, double to,
+                         double *scale, void *user,
+                         bool (*visit)(void *user, const struct dalcs_span *span)) {
+    struct visit v = {
+        .stretch = stretch, .formula = formula, .scale = scale, .user = user, .visit = visit};
+    double a = place_of(stretch, from);
+    double b = place_of(stretch, to);
+    struct dalcs_span span;
+    if (b > a) {
+        fill(&v, a, b, a == -1.0 && b == 1.0, &span);
+        settle(&v, a, b, &span, 0, 0);
+    }
+    return !v.has_no_value;
+}
+
+void dalcs_span_cut(const struct dalcs_stretch_rule *rule, const struct dalcs_span *span, double a,
+                    double b, struct dalcs_span *part) {
+    part->from = a == -1.0 ? span->from : span->from + 0.5 * (1.0 + a) * (span->to - span->from);
+    part->to = b == 1.0 ? span->to : span->from + 0.5 * (1.0 + b) * (span->to - span->from);
+    for (int i = 0; i < N; i++) {
+        part->value[i] =
+            dalcs_stretch_at(span->coefficient, a + 0.5 * (1.0 + rule->node[i]) * (b - a));
+    }
+    dalcs_stretch_expand(rule, part->value, part->coefficient);
+}

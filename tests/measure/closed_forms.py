@@ -1,0 +1,372 @@
+#!/usr/bin/env python3
+"""Measurements against closed forms, to 1e-10 with the default method.
+
+usage: closed_forms.py PROGRAM
+
+Tolerance 1e-13 where a circuit has states, so that what is left is the measurement's own.
+"""
+
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import dalcs_program  # pylint: disable=wrong-import-position,import-error
+
+CLOSE = 1e-10
+PI = math.pi
+
+
+class Results:
+    """The measurements of one netlist."""
+
+    def __init__(self, program, checker, netlist, options=(), method=None, tolerance=1e-13,
+                 step=None):
+        self.checker = checker
+        self.title = netlist.split("\n", 1)[0]
+        self.run = dalcs_program.run(program, netlist, options=options, method=method,
+                                     tolerance=tolerance, step=step)
+        checker.check(self.run.status == 0, f"{self.title}: {self.run.stderr}")
+        found = self.run.report["measurements"] if self.run.status == 0 else []
+        self.of = {entry["name"]: entry for entry in found}
+
+    def close(self, name, wanted, key="value", scale=None, tolerance=CLOSE):
+        entry = self.of.get(name)
+        if not self.checker.check(entry is not None and entry.get(key) is not None,
+                                  f"{self.title}: no {key} of {name}: {entry}"):
+            return
+        allowed = tolerance * (abs(wanted) if scale is None else scale)
+        self.checker.close(entry[key], wanted, allowed, f"{self.title}: {name} {key}")
+
+
+def sines(program, checker):
+    """No memory, and a period that no row falls on."""
+    r = Results(program, checker, """sines
+V1 a 0 SIN(1 10 1k)
+R1 a 0 50
+V2 b 0 SIN(0 3 1k 0 0 30)
+R2 b 0 1
+.tran 77u 5m
+.meas tran mean AVG v(a)
+.meas tran rms RMS v(a)
+.meas tran over3 INTEG v(a) from=0.25m to=1.75m
+.meas tran top MAX v(a) from=1m
+.meas tran low MIN v(a)
+.meas tran pp PP v(a,b)
+.meas tran topat MAX_AT v(a) from=2m
+.meas tran lowat MIN_AT v(a) from=2m
+.meas tran power AVG v(a)*i(r1)
+.meas tran powers AVG {v(a)*i(r1)} from=1m to=4m
+.meas tran mixed AVG v(a)*v(b)
+.meas tran rectified AVG abs(v(b))
+.meas tran half AVG max(v(b),0)
+.meas tran root RMS sqrt(abs(v(b)))
+.meas tran conducts AVG v(b)>1.5
+.meas tran when WHEN v(a)=6 RISE=3
+.meas tran last WHEN v(a)=6 FALL=LAST
+.meas tran any WHEN v(a)=6 CROSS=4
+.meas tran late WHEN v(a)=6 RISE=1 TD=2.2m
+.meas tran between WHEN v(a)=6 RISE=1 from=1.5m
+.meas tran equal WHEN v(a)=v(b) RISE=2
+.meas tran find FIND v(b)+time*1k WHEN v(a)=6 FALL=2
+.meas tran at FIND v(a)**2 AT=1.3m
+.meas tran slope DERIV v(a) AT=1.3m
+.meas tran slopew DERIV v(a)*v(a) WHEN v(a)=6 RISE=1
+.meas tran delay TRIG v(a) VAL=1 RISE=2 TARG v(b) VAL=0 RISE=2
+.meas tran delay2 TRIG AT=1u TARG v(a)=6 CROSS=1
+.meas tran inside AVG v(a) TRIG v(a)=6 RISE=1 TARG v(a)=6 FALL=1
+.meas tran ratio PARAM='power/mean + 2*rms'
+.end
+""")
+    a = lambda t: 1 + 10 * math.sin(2 * PI * 1e3 * t)
+    b = lambda t: 3 * math.sin(2 * PI * 1e3 * t + PI / 6)
+    first = math.asin(0.5) / (2 * PI * 1e3)  # v(a) = 6
+    second = 0.5e-3 - first
+    r.close("mean", 1.0)
+    r.close("rms", math.sqrt(1 + 50))
+    r.close("over3", 1.5e-3 + 0.0, scale=1e-2)
+    r.close("top", 11.0)
+    r.close("top", 1.25e-3, "at", tolerance=1e-7)
+    r.close("low", -9.0)
+    r.close("pp", 2 * math.hypot(10 - 3 * math.cos(PI / 6), 1.5))
+    r.close("topat", 2.25e-3, tolerance=1e-7)  # flat there: the square root of rounding
+    r.close("topat", 11.0, "with")
+    r.close("lowat", 2.75e-3, tolerance=1e-7)
+    r.close("power", 51 / 50)
+    r.close("powers", 51 / 50)
+    r.close("powers", 1e-3, "from")
+    r.close("powers", 4e-3, "to")
+    r.close("mixed", 15 * math.cos(PI / 6))
+    r.close("rectified", 3 * 2 / PI)
+    r.close("half", 3 / PI)
+    r.close("root", math.sqrt(3 * 2 / PI))
+    r.close("conducts", 1 / 3)
+    r.close("when", 2e-3 + first)
+    r.close("last", 4e-3 + second)
+    r.close("any", 1e-3 + second)
+    r.close("late", 3e-3 + first)
+    r.close("between", 2e-3 + first)
+    # v(a) - v(b) = 1 + k sin(x - phi) with k, phi of the difference of the sines
+    k = math.hypot(10 - 3 * math.cos(PI / 6), 1.5)
+    phi = math.atan2(1.5, 10 - 3 * math.cos(PI / 6))
+    r.close("equal", (phi - math.asin(1 / k)) / (2 * PI * 1e3) + 1e-3 * (
+        2 if phi < math.asin(1 / k) else 1))
+    t = 1e-3 + second
+    r.close("find", b(t) + t * 1e3)
+    r.close("at", a(1.3e-3) ** 2)
+    r.close("slope", 2e4 * PI * math.cos(2 * PI * 1.3), scale=2e4 * PI)
+    r.close("slopew", 2 * 6 * 2e4 * PI * math.cos(2 * PI * 1e3 * first))
+    r.close("delay", -1e-3 / 12, scale=1e-3)
+    r.close("delay2", first - 1e-6)
+    r.close("inside", 1 + 10 * (2 * math.cos(2 * PI * 1e3 * first)) /
+            (2 * PI * 1e3 * (second - first)))
+    r.close("ratio", 51 / 50 + 2 * math.sqrt(51))
+
+
+def charging(program, checker):
+    tau = 1e-3
+    r = Results(program, checker, """RC and RL
+V1 in 0 PULSE(0 5 1m 0 0 10m 20m)
+R1 in c 1k
+C1 c 0 1u
+L1 in l 2m
+R2 l 0 2
+.tran 1m 40m
+.meas tran t1 WHEN v(c)=2 RISE=1
+.meas tran t2 TRIG v(c)=0.5 RISE=1 TARG v(c) VAL=4.5 RISE=1
+.meas tran edge WHEN v(in)=2.5 RISE=1
+.meas tran edge2 WHEN v(in)=2.5 FALL=2
+.meas tran before FIND v(c) WHEN v(in)=2.5 FALL=1
+.meas tran after FIND v(in) WHEN v(in)=2.5 FALL=1
+.meas tran i1 WHEN i(l1)=1 CROSS=1
+.meas tran slope DERIV v(c) AT=3m
+.meas tran jump DERIV i(l1) AT=1m
+.meas tran charge INTEG i(r1) from=0 to=11m
+.meas tran top MAX v(in)
+.meas tran duty AVG v(in)/5 from=0 to=20m
+.end
+""")
+    r.close("t1", 1e-3 - tau * math.log(1 - 2 / 5))
+    r.close("t2", tau * math.log(0.9 / 0.1))
+    r.close("edge", 1e-3)
+    r.close("edge2", 31e-3)
+    r.close("before", 5 * (1 - math.exp(-10)))
+    r.close("after", 0.0, scale=1.0)
+    r.close("i1", 1e-3 - 1e-3 * math.log(1 - 1 / 2.5))
+    r.close("slope", 5 / tau * math.exp(-2))
+    r.close("jump", 5 / 2e-3)
+    r.close("charge", 5e-6 * (1 - math.exp(-10)))
+    r.close("top", 5.0)
+    r.close("duty", 0.5)
+
+
+def rectifier(program, checker):
+    r = Results(program, checker, """half wave
+V1 in 0 SIN(0 10 50)
+D1 in out
+R1 out 0 100
+.tran 1m 100m
+.meas tran mean AVG v(out)
+.meas tran rms RMS v(out)
+.meas tran heat AVG v(out)*i(r1)
+.meas tran width TRIG i(d1) VAL=0.05 RISE=2 TARG i(d1) VAL=0.05 FALL=2
+.meas tran peak MAX v(in,out)
+.end
+""")
+    r.close("mean", 10 / PI)
+    r.close("rms", 5.0)
+    r.close("heat", 0.25)
+    r.close("width", 0.01 - 2 * math.asin(0.5) / (2 * PI * 50))
+    r.close("peak", 0.0, scale=10.0)
+
+
+def pulses(program, checker):
+    r = Results(program, checker, """pulses
+V1 a 0 PULSE(0 10 0 0 0 3.7u 10u)
+V2 b 0 PULSE(-2 2 1u 1u 2u 3u 10u)
+R1 a b 10
+.tran 1u 100u
+.meas tran mean AVG v(a)
+.meas tran rms RMS v(b)
+.meas tran width TRIG v(a) VAL=5 RISE=2 TARG v(a) VAL=5 FALL=3
+.meas tran on TRIG v(b)=1 RISE=3 TARG v(b)=1 FALL=3
+.meas tran ten WHEN v(a)=5 FALL=10
+.meas tran p AVG i(r1)*v(a,b)
+.end
+""")
+    r.close("mean", 3.7)
+    r.close("rms", math.sqrt((3 * 4 + 1 * 4 / 3 + 2 * 4 / 3 + 4 * 4) / 10))
+    r.close("width", 3.7e-6)
+    r.close("on", 0.25e-6 + 3e-6 + 0.5e-6)
+    r.close("ten", 93.7e-6)
+    # exact: (v_a - v_b)^2 / 10 over the pieces of a period
+    total = 0.0
+    for t0, t1, va, v0, v1 in ((0, 1, 10, -2, -2), (1, 2, 10, -2, 2), (2, 3.7, 10, 2, 2),
+                               (3.7, 5, 0, 2, 2), (5, 7, 0, 2, -2), (7, 10, 0, -2, -2)):
+        p, q = va - v0, va - v1
+        total += (t1 - t0) * (p * p + p * q + q * q) / 3
+    r.close("p", total / 100)
+
+
+def ledger(program, checker):
+    """Powers against the ledger of energies, and a converter in its steady state."""
+    r = Results(program, checker, """buck
+V1 in 0 12
+S1 in sw g 0 sw
+V2 g 0 PULSE(0 1 0 0 0 4u 10u)
+D1 0 sw
+L1 sw out 100u IC=1
+C1 out 0 47u IC=4.8
+R1 out 0 4.8
+.model sw SW(Vt=0.5 Ron=10m)
+.tran 10u 2m uic
+.meas tran given INTEG -v(in)*i(v1)
+.meas tran taken INTEG v(out)*i(r1)
+.meas tran lost INTEG v(in,sw)*i(s1)
+.meas tran vout AVG v(out) from=1.9m to=2m
+.meas tran ripple PP i(l1) from=1.99m to=2m
+.meas tran vl AVG v(sw,out) from=1.99m to=2m
+.meas tran on TRIG v(sw)=6 RISE=10 TARG v(sw)=6 FALL=11
+.end
+""", tolerance=1e-12)
+    e = r.run.report["energy"]
+    r.close("given", e["sources"])
+    taken, lost = r.of["taken"]["value"], r.of["lost"]["value"]
+    checker.close(taken + lost, e["resistors"], CLOSE * e["resistors"], "buck: dissipation")
+    r.close("on", 4e-6, tolerance=1e-8)
+    checker.close(r.of["vout"]["value"], 0.4 * 12, 0.05, "buck: output")
+    run = dalcs_program.run(program, "\n".join([
+        "buck, rows", "V1 in 0 12", "S1 in sw g 0 sw", "V2 g 0 PULSE(0 1 0 0 0 4u 10u)", "D1 0 sw",
+        "L1 sw out 100u IC=1", "C1 out 0 47u IC=4.8", "R1 out 0 4.8",
+        ".model sw SW(Vt=0.5 Ron=10m)", ".save i(l1)", ".tran 1m 2m uic",
+        ".meas tran given INTEG -v(in)*i(v1)", ".meas tran other AVG i(c1)", ".end", ""]),
+        method=None, tolerance=1e-12)
+    checker.check(run.names == ["time", "i(l1)"], f"measured signals in the output: {run.names}")
+    found = {m["name"]: m["value"] for m in run.report["measurements"]}
+    checker.close(found["given"], e["sources"], CLOSE * e["sources"], "buck: another grid")
+
+
+def euler(program, checker):
+    """The straight lines between the steps of implicit Euler."""
+    r = Results(program, checker, """steps
+V1 in 0 1
+R1 in c 1
+C1 c 0 1 IC=0
+.tran 1 3 uic
+.meas tran mean AVG v(c)
+.meas tran rms RMS v(c)
+.meas tran t WHEN v(c)=0.6
+.end
+""", method="euler", tolerance=None, step=1.0)
+    v = [0.0, 0.5, 0.75, 0.875]
+    r.close("mean", sum((p + q) / 2 for p, q in zip(v, v[1:])) / 3, tolerance=1e-9)
+    r.close("rms", math.sqrt(sum((p * p + p * q + q * q) / 3 for p, q in zip(v, v[1:])) / 3),
+            tolerance=1e-9)
+    r.close("t", 1 + 0.1 / 0.25, tolerance=1e-9)
+
+
+def others(program, checker):
+    """Failures, operating points, parameters, subcircuits, several parts."""
+    r = Results(program, checker, """others
+.param level=2 t0=1m
+.subckt part a b
+R1 a m 1k
+R2 m b 1k
+.ends
+V1 in 0 SIN(0 5 1k)
+X1 in 0 part
+V2 free 0 3
+R3 free 0 1
+.op
+.tran 1u 2m
+.meas op o1 FIND v(free)
+.meas op o2 MAX v(free)*2
+.meas op o3 PARAM='o1+o2'
+.meas tran a1 WHEN v(x1.m)=level RISE=1
+.meas tran a2 FIND v(x1:m) AT={t0/4}
+.meas a3 AVG v(x1.m,free)
+.meas tran never WHEN v(in)=6
+.meas tran few WHEN v(in)=2 RISE=5
+.meas tran outside FIND v(in) AT=5m
+.meas tran empty AVG v(in) from=3m to=4m
+.meas tran ratio AVG v(in)/v(in,in)
+.meas tran follows PARAM='a1*never'
+.meas tran order AVG v(in) TRIG v(in)=2 RISE=2 TARG v(in)=2 RISE=1
+.meas dc none MAX v(in)
+.end
+""")
+    r.close("o1", 3.0)
+    r.close("o2", 6.0)
+    r.close("o3", 9.0)
+    r.close("a1", math.asin(0.8) / (2 * PI * 1e3))
+    r.close("a2", 2.5)
+    r.close("a3", -3.0)
+    wanted = {
+        "never": "'v(in)' never crosses 6 between 0 s and 2 ms",
+        "few": "'v(in)' rises through 2 only 2 times between 0 s and 2 ms, not 5",
+        "outside": "AT=5 ms does not lie between 0 s and 2 ms",
+        "empty": "there is nothing to measure: the run goes from 0 s to 2 ms",
+        "ratio": "'v(in)/v(in,in)' has no value everywhere",
+        "follows": "it needs 'never', which could not be measured",
+        "order": "TARG at 65.4949 us does not come after TRIG at 1.06549 ms",
+    }
+    for name, why in wanted.items():
+        entry = r.of.get(name, {})
+        checker.check(entry.get("value", 0) is None and entry.get("failure") == why,
+                      f"others: {name}: {entry}")
+        checker.check(f"warning: {name}: {why}\n.meas" in r.run.stderr,
+                      f"others: no warning of {name} in {r.run.stderr}")
+    checker.check("none" not in r.of, "others: a measurement of an analysis that is not there")
+
+
+def fourier(program, checker):
+    run = dalcs_program.run(program, """fourier
+V1 sq 0 PULSE(-1 1 0 0 0 0.5m 1m)
+R1 sq 0 1
+V2 in 0 SIN(0 10 1k)
+D1 in out
+R2 out 0 10
+V3 tri 0 PWL(0 0 0.25m 1 0.75m -1 1m 0) r=0
+R3 tri 0 1
+.tran 10u 7.3m
+.four 1k v(sq)
+.four 1k 15 3 v(out) v(tri)
+.end
+""", method=None, tolerance=1e-13)
+    checker.check(run.status == 0, run.stderr)
+    square, half, triangle = run.report["fourier"]
+
+    def check(entry, k, wanted, what):
+        """wanted: the coefficient of exp(2 pi i k f t), of sines."""
+        found = entry["magnitude"][k]
+        checker.close(found, abs(wanted), CLOSE, f"{what}: magnitude {k}")
+        if abs(wanted) > 0.0:  # phases count from the start of the window
+            phase = entry["phase"][k] - 360.0 * k * 1e3 * entry["from"]
+            error = (phase - math.degrees(math.atan2(wanted.imag, wanted.real)) + 180) % 360 - 180
+            checker.close(error, 0.0, 1e-7, f"{what}: phase {k}")
+
+    for k in range(1, 10):
+        check(square, k, complex(4 / PI / k if k % 2 else 0.0), "square")
+    for k in range(1, 16):
+        if k == 1:
+            wanted = complex(5.0)
+        else:  # -20/pi/(k^2-1) cos(k x), even k
+            wanted = complex(0.0, -20 / PI / (k * k - 1)) if k % 2 == 0 else 0j
+        check(half, k, complex(wanted), "half wave")
+        check(triangle, k,
+              complex(8 / PI**2 / k**2 * (-1) ** ((k - 1) // 2) if k % 2 else 0.0), "triangle")
+    checker.close(half["magnitude"][0], 10 / PI, CLOSE, "half wave: mean")
+    checker.close(square["thd"], math.sqrt(sum(1 / k**2 for k in (3, 5, 7, 9))), CLOSE, "thd")
+    checker.close(half["from"], 4.3e-3, 1e-15, "half wave: window")
+
+
+def main():
+    program = sys.argv[1]
+    checker = dalcs_program.Checker("measurements")
+    for test in (sines, charging, rectifier, pulses, ledger, euler, others, fourier):
+        test(program, checker)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
