@@ -4,7 +4,7 @@
  *     options    .options: what models may ask for
  *     models     .model, .tran, .op: what elements refer to
  *     elements   devices and nodes
- *     references K, F, H, .ic, .save: what refers to elements
+ *     references K, F, H, .ic, .save, .dc, .ac, .step: what refers to elements
  *     checks     of the whole
  *
  * Every pass goes on after an error, so that a person sees all of them. */
@@ -121,6 +121,14 @@ static void read_card(struct dalcs_builder *builder, const struct dalcs_card *ca
         dalcs_initial_parse(builder, card);
     } else if (c == DALCS_CARD_SIGNALS) {
         dalcs_signals_parse(builder, card);
+    } else if (c == DALCS_CARD_NODESET) {
+        dalcs_initial_parse_nodeset(builder, card);
+    } else if (c == DALCS_CARD_DC) {
+        dalcs_sweep_parse_dc(builder, card);
+    } else if (c == DALCS_CARD_AC) {
+        dalcs_sweep_parse_ac(builder, card);
+    } else if (c == DALCS_CARD_STEP) {
+        dalcs_sweep_parse_step(builder, card);
     }
 }
 
@@ -151,10 +159,11 @@ static void check_presence(struct dalcs_builder *builder) {
         dalcs_builder_error_at(builder, &where, "the first line is the title, never an element",
                                "the netlist has no elements");
     }
-    if (builder->tran == NULL && builder->op == NULL &&
-        (builder->hidden & DALCS_HIDDEN_ANALYSES) == 0) {
+    const bool asks = builder->tran != NULL || builder->op != NULL || builder->dc != NULL ||
+                      builder->ac != NULL || builder->netlist->n_script_lines > 0;
+    if (!asks && (builder->hidden & DALCS_HIDDEN_ANALYSES) == 0) {
         dalcs_builder_error_at(builder, &where, "add a line such as: .tran 10u 20m",
-                               "the netlist asks for nothing: no .tran and no .op");
+                               "the netlist asks for nothing: no .tran, .op, .dc or .ac");
     }
 }
 
@@ -212,6 +221,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
         dalcs_source_check(builder);
         dalcs_topology_check(builder);
         dalcs_initial_check(builder);
+        dalcs_sweep_check(builder);
     }
     return builder->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
 }
@@ -219,7 +229,14 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
 enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
                                       const struct dalcs_netlist *netlist,
                                       struct dalcs_diag *diag) {
-    struct dalcs_deck deck = {0};
+    return dalcs_circuit_build_with(circuit, netlist, NULL, 0, diag);
+}
+
+enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
+                                           const struct dalcs_netlist *netlist,
+                                           const struct dalcs_override *override,
+                                           size_t n_overrides, struct dalcs_diag *diag) {
+    struct dalcs_deck deck = {.override = override, .n_overrides = n_overrides};
     struct dalcs_builder builder = {.circuit = circuit,
                                     .netlist = netlist,
                                     .deck = &deck,

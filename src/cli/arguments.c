@@ -10,7 +10,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { METHOD = 256, TOL, STAGES, STEP, COMPRESS, AT, REPORT, PLOT, DUMP, ALL_SIGNALS, ENERGY };
+enum {
+    METHOD = 256,
+    TOL,
+    STAGES,
+    STEP,
+    COMPRESS,
+    AT,
+    REPORT,
+    PLOT,
+    DUMP,
+    ALL_SIGNALS,
+    ENERGY,
+    SPLIT_STEPS
+};
 
 static const struct option option[] = {
     {"output", required_argument, NULL, 'o'},
@@ -25,6 +38,7 @@ static const struct option option[] = {
     {"dump", required_argument, NULL, DUMP},
     {"all-signals", no_argument, NULL, ALL_SIGNALS},
     {"energy", no_argument, NULL, ENERGY},
+    {"split-steps", no_argument, NULL, SPLIT_STEPS},
     {"quiet", no_argument, NULL, 'q'},
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
@@ -173,6 +187,9 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return DALCS_OK;
     case ENERGY:
         arguments->energy = true;
+        return DALCS_OK;
+    case SPLIT_STEPS:
+        arguments->split_steps = true;
         return DALCS_OK;
     case 'q':
         arguments->quiet = true;

@@ -18,7 +18,8 @@ struct dalcs_arguments {
     const char *dump;
     char *default_output, *default_dump; /* NULL: not needed */
     bool quiet, all_signals, energy;
-    bool help; /* asked for: nothing else is set */
+    bool split_steps; /* of .step into several plots of a raw file */
+    bool help;        /* asked for: nothing else is set */
 };
 
 /* DALCS_E_OPTION when the command line makes no sense. Messages go to cli->err. */

@@ -23,8 +23,8 @@ struct run {
 static const char help[] =
     "usage: dalcs run FILE [options]\n"
     "\n"
-    "Runs the .op and .tran of a SPICE netlist. Diodes and switches are ideal unless the netlist\n"
-    "says otherwise.\n"
+    "Runs the .op, .dc, .ac and .tran of a SPICE netlist, for each .step. Diodes and switches are\n"
+    "ideal unless the netlist says otherwise.\n"
     "\n"
     "  -o, --output FILE   write waveforms; the format is that of the name, .csv or .raw (may be\n"
     "                      repeated; without it FILE's name with .raw, in the current folder)\n"
@@ -44,6 +44,7 @@ static const char help[] =
     "                      beside the output, out.failed.dalcs for out.csv)\n"
     "      --all-signals   print the measurements of all signals, not of the first 24\n"
     "      --energy        print where the energy came from and where it went\n"
+    "      --split-steps   in a raw file, make each step of .step a plot of its own\n"
     "  -q, --quiet         print nothing but warnings and errors\n"
     "  -h, --help          this text\n"
     "\n"
@@ -122,6 +123,14 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
     }
 }
 
+/* The one that a file with room for one result holds. */
+static enum dalcs_analysis main_analysis(const struct dalcs_request *request) {
+    return request->transient  ? DALCS_TRANSIENT
+           : request->ac       ? DALCS_AC
+           : request->dc_sweep ? DALCS_DC_SWEEP
+                               : DALCS_OPERATING_POINT;
+}
+
 /* ---- The run -------------------------------------------------------------------------------- */
 
 static void write_summary(const struct run *run, const struct dalcs_arguments *arguments,
@@ -136,10 +145,20 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
         fprintf(out, "  stopped   at %s: %s\n", dalcs_quantity_write(text, run->time, "s", 6),
                 dalcs_status_text(status));
     }
-    dalcs_summary_write_signals(out, &run->outputs.measure[DALCS_OPERATING_POINT],
-                                arguments->all_signals);
-    dalcs_summary_write_signals(out, &run->outputs.measure[DALCS_TRANSIENT],
-                                arguments->all_signals);
+    dalcs_summary_write_sides(out, report);
+
+    static const enum dalcs_analysis shown[] = {DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_AC,
+                                                DALCS_TRANSIENT};
+
+    for (size_t i = 0; i < DALCS_N_ANALYSES; i++) {
+        const struct dalcs_plot *plot = run->outputs.measure[shown[i]].plot;
+        if (plot != NULL && plot->n_steps > 1) {
+            dalcs_step_lines_write(out, &run->outputs.steps, shown[i]);
+        } else {
+            dalcs_summary_write_signals(out, &run->outputs.measure[shown[i]],
+                                        arguments->all_signals);
+        }
+    }
     dalcs_summary_write_jumps(out, report);
     if (arguments->energy) {
         dalcs_summary_write_energy(out, report);
@@ -207,9 +226,9 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     }
     struct run run = {.cli = cli};
     bool at = times.n > 0;
-    status =
-        dalcs_outputs_init(&run.outputs, arguments, &request, at ? times.time[0] : request.start,
-                           at ? times.time[times.n - 1] : request.stop);
+    status = dalcs_outputs_init(&run.outputs, arguments, main_analysis(&request),
+                                at ? times.time[0] : request.start,
+                                at ? times.time[times.n - 1] : request.stop);
     if (status == DALCS_OK) {
         status = run_session(&run, session, arguments, &times, &n_written);
         dalcs_outputs_finish(&run.outputs);
