@@ -235,6 +235,9 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
                                       const char *name, const char *field, double value,
                                       const char **nearest) DALCS_MUST_CHECK;
 
+/* Forgets what dalcs_session_alter said of elements and models; parameters stay. */
+void dalcs_session_reset(struct dalcs_session *session);
+
 /* ---- The report ---------------------------------------------------------------------------- */
 
 /* A diode or switch changed sides. */

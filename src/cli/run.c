@@ -6,6 +6,7 @@
 #include "paths.h"
 #include "progress.h"
 #include "quantity.h"
+#include "script.h"
 #include "summary.h"
 #include "times.h"
 
@@ -17,7 +18,8 @@ struct run {
     const struct dalcs_cli *cli;
     struct dalcs_outputs outputs;
     struct dalcs_progress progress;
-    double time; /* s, how far the run has come */
+    double time;     /* s, how far the run has come */
+    bool has_script; /* a .control block says what is run */
 };
 
 static const char help[] =
@@ -183,7 +185,10 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     options.energy = arguments->report || arguments->energy;
     const struct dalcs_sink sink = {run, begin, row, end, progress};
     dalcs_progress_init(&run->progress, run->cli->err_is_terminal ? run->cli->err : NULL);
-    enum dalcs_status status = dalcs_session_run(session, &options, &sink);
+    const struct dalcs_script_host host = {
+        .session = session, .options = &options, .sink = &sink, .out = run->cli->out};
+    enum dalcs_status status =
+        run->has_script ? dalcs_script_run(&host) : dalcs_session_run(session, &options, &sink);
     dalcs_progress_finish(&run->progress);
 
     size_t n_before = *n_written;
@@ -224,10 +229,10 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
             return status;
         }
     }
-    struct run run = {.cli = cli};
+    enum dalcs_analysis main = main_analysis(&request);
+    struct run run = {.cli = cli, .has_script = dalcs_script_is_there(session, &main)};
     bool at = times.n > 0;
-    status = dalcs_outputs_init(&run.outputs, arguments, main_analysis(&request),
-                                at ? times.time[0] : request.start,
+    status = dalcs_outputs_init(&run.outputs, arguments, main, at ? times.time[0] : request.start,
                                 at ? times.time[times.n - 1] : request.stop);
     if (status == DALCS_OK) {
         status = run_session(&run, session, arguments, &times, &n_written);

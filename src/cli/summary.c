@@ -148,12 +148,9 @@ void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report) {
 }
 
 static const char *unit_name(enum dalcs_unit unit) {
-    static const char *const name[] = {[DALCS_VOLT] = "V",
-                                       [DALCS_AMPERE] = "A",
-                                       [DALCS_UNIT_SECOND] = "s",
-                                       [DALCS_UNIT_HERTZ] = "Hz",
-                                       [DALCS_UNIT_OHM] = "ohm",
-                                       [DALCS_UNIT_NONE] = ""};
+    static const char *const name[] = {
+        [DALCS_VOLT] = "V",        [DALCS_AMPERE] = "A",     [DALCS_UNIT_SECOND] = "s",
+        [DALCS_UNIT_HERTZ] = "Hz", [DALCS_UNIT_OHM] = "ohm", [DALCS_UNIT_NONE] = ""};
     return name[unit];
 }
 

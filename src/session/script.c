@@ -196,3 +196,14 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
     }
     return found ? keep_override(session, &override) : DALCS_E_OPTION;
 }
+
+void dalcs_session_reset(struct dalcs_session *session) {
+    size_t n = 0;
+    for (size_t k = 0; k < session->n_altered; k++) {
+        if (session->override[k].kind == DALCS_OVERRIDE_PARAMETER) {
+            session->override[n++] = session->override[k];
+        }
+    }
+    session->is_altered = session->is_altered || n < session->n_altered;
+    session->n_altered = n;
+}
