@@ -55,7 +55,12 @@ static bool set_parameter(struct dalcs_builder *builder, const struct dalcs_toke
         return false;
     }
     if (!dalcs_deck_uses_parameter(builder->deck, token->text)) {
-        dalcs_builder_warn(builder, token, NULL, "nothing uses the parameter '%s'", token->text);
+        const char *nearest = dalcs_deck_nearest_parameter(builder->deck, token->text);
+        const bool is_other = nearest != NULL && strcmp(nearest, token->text) != 0;
+        dalcs_builder_warn(builder, token,
+                           is_other ? dalcs_builder_hint(builder, "did you mean '%s'?", nearest)
+                                    : NULL,
+                           "nothing uses the parameter '%s'", token->text);
     }
     sweep->target = DALCS_SWEEP_PARAMETER;
     sweep->name = sweep->label = keep_text(builder, token->text);

@@ -230,10 +230,14 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         }
     }
     enum dalcs_analysis main = main_analysis(&request);
-    struct run run = {.cli = cli, .has_script = dalcs_script_is_there(session, &main)};
+    struct run run = {.cli = cli};
     bool at = times.n > 0;
-    status = dalcs_outputs_init(&run.outputs, arguments, main, at ? times.time[0] : request.start,
-                                at ? times.time[times.n - 1] : request.stop);
+    status = dalcs_script_look(session, &run.has_script, &main);
+    if (status == DALCS_OK) {
+        status =
+            dalcs_outputs_init(&run.outputs, arguments, main, at ? times.time[0] : request.start,
+                               at ? times.time[times.n - 1] : request.stop);
+    }
     if (status == DALCS_OK) {
         status = run_session(&run, session, arguments, &times, &n_written);
         dalcs_outputs_finish(&run.outputs);

@@ -1,7 +1,6 @@
 /* command.c - statements that are no blocks. */
 #include "script_internal.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -302,16 +301,10 @@ static enum dalcs_status write_file(struct dalcs_script *script, const struct da
         return dalcs_script_refuse(script, s, "tran, op, dc, ac or run must come before",
                                    "there is nothing to write");
     }
-    if (is_raw) {
-        int error;
-        status = dalcs_writing_raw(name, &script->vectors.plot, scale, vector, n, &error);
-        return status == DALCS_E_IO ? refuse_file(script, s, name, error) : status;
-    }
-    char *path;
-    status = dalcs_writing_data(name, &how, scale, vector, n, &path);
-    status = status == DALCS_E_IO ? refuse_file(script, s, path, errno) : status;
-    free(path);
-    return status;
+    int error;
+    status = is_raw ? dalcs_writing_raw(name, &script->vectors.plot, scale, vector, n, &error)
+                    : dalcs_writing_data(name, &how, scale, vector, n, &error);
+    return status == DALCS_E_IO ? refuse_file(script, s, name, error) : status;
 }
 
 /* ---- set and echo ----------------------------------------------------------------------------------- */

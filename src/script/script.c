@@ -172,7 +172,8 @@ static bool asks(const struct dalcs_statements *all) {
     return found;
 }
 
-bool dalcs_script_is_there(const struct dalcs_session *session, enum dalcs_analysis *main) {
+enum dalcs_status dalcs_script_look(const struct dalcs_session *session, bool *is_there,
+                                    enum dalcs_analysis *main) {
     static const struct {
         const char *word;
         enum dalcs_analysis analysis;
@@ -183,19 +184,18 @@ bool dalcs_script_is_there(const struct dalcs_session *session, enum dalcs_analy
 
     struct dalcs_statements all = {0};
     size_t best = sizeof ranked / sizeof ranked[0];
-    if (dalcs_statements_read(&all, session) == DALCS_OK) {
-        for (size_t k = 0; k < all.n; k++) {
-            for (size_t i = 0; i < best; i++) {
-                best = strcmp(all.statement[k].word, ranked[i].word) == 0 ? i : best;
-            }
+    const enum dalcs_status status = dalcs_statements_read(&all, session);
+    for (size_t k = 0; k < all.n; k++) {
+        for (size_t i = 0; i < best; i++) {
+            best = strcmp(all.statement[k].word, ranked[i].word) == 0 ? i : best;
         }
     }
     if (best < sizeof ranked / sizeof ranked[0]) {
         *main = ranked[best].analysis;
     }
-    const bool is_there = all.n > 0;
+    *is_there = all.n > 0;
     dalcs_statements_finish(&all);
-    return is_there;
+    return status;
 }
 
 enum dalcs_status dalcs_script_run(const struct dalcs_script_host *host) {

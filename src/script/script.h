@@ -23,9 +23,10 @@ struct dalcs_script_host {
     void (*after_run)(void *user, struct dalcs_session *session, enum dalcs_status status);
 };
 
-/* Is there a block with anything in it, and which is the main analysis of those that it names itself?
+/* *is_there: is there a block with anything in it, and which is the main analysis of those that it names itself?
  * *main is left as it is when there is none. */
-bool dalcs_script_is_there(const struct dalcs_session *session, enum dalcs_analysis *main);
+enum dalcs_status dalcs_script_look(const struct dalcs_session *session, bool *is_there,
+                                    enum dalcs_analysis *main) DALCS_MUST_CHECK;
 
 /* Runs it, after a `run` if it asks for no analysis at all. Messages go to the session. DALCS_E_NETLIST: an error in the script. */
 enum dalcs_status dalcs_script_run(const struct dalcs_script_host *host) DALCS_MUST_CHECK;

@@ -118,26 +118,23 @@ static void write_rows(FILE *file, bool single, const struct dalcs_vector *scale
     }
 }
 
-enum dalcs_status dalcs_writing_data(const char *name, const struct dalcs_writing *how,
+enum dalcs_status dalcs_writing_data(const char *path, const struct dalcs_writing *how,
                                      const struct dalcs_vector *scale,
                                      const struct dalcs_vector *const *vector, size_t n,
-                                     char **path) {
-    const char *slash = strrchr(name, '/');
-    const bool has_ending = strchr(slash != NULL ? slash : name, '.') != NULL;
-    const size_t size = strlen(name) + sizeof ".data";
-    *path = dalcs_alloc(size, 1);
-    if (*path == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    snprintf(*path, size, "%s%s", name, has_ending ? "" : ".data");
+                                     int *error) {
     struct dalcs_atomic_file file = {0};
     FILE *stream = NULL;
+    *error = 0;
     if (how->appends) {
-        stream = fopen(*path, "a");
-    } else if (dalcs_atomic_file_open(&file, *path) == DALCS_OK) {
-        stream = file.stream;
+        stream = fopen(path, "a");
+        *error = stream == NULL ? errno : 0;
     } else {
-        errno = file.error;
+        enum dalcs_status status = dalcs_atomic_file_open(&file, path);
+        if (status != DALCS_OK && status != DALCS_E_IO) {
+            return status;
+        }
+        stream = file.stream;
+        *error = file.error;
     }
     if (stream == NULL) {
         return DALCS_E_IO;
@@ -146,13 +143,17 @@ enum dalcs_status dalcs_writing_data(const char *name, const struct dalcs_writin
         write_names(stream, how->single_scale, scale, vector, n);
     }
     write_rows(stream, how->single_scale, scale, vector, n);
-    if (how->appends) {
-        const bool failed = ferror(stream) != 0;
-        return fclose(stream) != 0 || failed ? DALCS_E_IO : DALCS_OK;
+    if (!how->appends) {
+        enum dalcs_status status = dalcs_atomic_file_commit(&file);
+        *error = file.error;
+        return status;
     }
-    const enum dalcs_status status = dalcs_atomic_file_commit(&file);
-    errno = status == DALCS_OK ? errno : file.error;
-    return status;
+    const bool failed = ferror(stream) != 0;
+    if (fclose(stream) != 0 || failed) {
+        *error = errno != 0 ? errno : EIO;
+        return DALCS_E_IO;
+    }
+    return DALCS_OK;
 }
 
 /* ---- write ---------------------------------------------------------------------------------------- */

@@ -19,12 +19,11 @@ void dalcs_writing_print(FILE *out, const struct dalcs_writing *how,
                          const struct dalcs_vector *scale, const struct dalcs_vector *const *vector,
                          size_t n);
 
-/* In the layout of ngspice's wrdata; a name without a dot gets .data. *path is the file's (free() it).
- * DALCS_E_IO: errno says why. */
-enum dalcs_status dalcs_writing_data(const char *name, const struct dalcs_writing *how,
+/* In the layout of ngspice's wrdata. DALCS_E_IO: *error is an errno. */
+enum dalcs_status dalcs_writing_data(const char *path, const struct dalcs_writing *how,
                                      const struct dalcs_vector *scale,
                                      const struct dalcs_vector *const *vector, size_t n,
-                                     char **path) DALCS_MUST_CHECK;
+                                     int *error) DALCS_MUST_CHECK;
 
 /* A raw file of the vectors that are as long as the scale. DALCS_E_IO: *error is an errno. */
 enum dalcs_status dalcs_writing_raw(const char *path, const struct dalcs_plot_vectors *plot,
