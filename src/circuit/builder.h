@@ -106,6 +106,9 @@ void dalcs_builder_error(struct dalcs_builder *builder, const struct dalcs_token
 void dalcs_builder_error_at(struct dalcs_builder *builder, const struct dalcs_location *where,
                             const char *hint, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+void dalcs_builder_warn_at(struct dalcs_builder *builder, const struct dalcs_location *where,
+                           const char *hint, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 void dalcs_builder_warn(struct dalcs_builder *builder, const struct dalcs_token *token,
                         const char *hint, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

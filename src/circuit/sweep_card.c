@@ -369,6 +369,14 @@ void dalcs_sweep_check(struct dalcs_builder *builder) {
     const struct dalcs_circuit *circuit = builder->circuit;
     long total = 1;
     for (int k = 0; k < circuit->n_steps; k++) {
+        const int device = circuit->step[k].device;
+        const int stimulus = device >= 0 ? circuit->device[device].stimulus : -1;
+        if (stimulus >= 0 && circuit->stimulus[stimulus].kind != DALCS_STIMULUS_DC &&
+            circuit->transient.present) {
+            dalcs_builder_warn_at(
+                builder, &circuit->step[k].where, "put a parameter into the function and step that",
+                "this steps the DC value of '%s'; .tran uses its function", circuit->step[k].name);
+        }
         total *= circuit->step[k].n;
         if (total > DALCS_SWEEP_MOST) {
             dalcs_builder_error_at(builder, &circuit->step[k].where, NULL,

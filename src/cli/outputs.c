@@ -36,7 +36,7 @@ enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
         dalcs_outputs_finish(outputs);
         return status;
     }
-    if (arguments->plot && main == DALCS_TRANSIENT) {
+    if (arguments->plot && main == DALCS_TRANSIENT && stop > start) {
         outputs->has_figure = true;
         dalcs_figure_init(&outputs->figure, arguments->plot, start, stop);
     }

@@ -108,7 +108,7 @@ static void write_messages(const struct dalcs_cli *cli, const struct dalcs_sessi
 
 /* What was asked for on the command line and cannot apply to this netlist. */
 static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_arguments *arguments,
-                        const struct dalcs_request *request) {
+                        const struct dalcs_request *request, enum dalcs_analysis main) {
     const struct {
         const char *name;
         bool given;
@@ -118,7 +118,8 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
                   {"--energy", arguments->energy}};
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
-        if (option[i].given && !request->transient) {
+        const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
+        if (option[i].given && (is_plot ? !request->transient : main != DALCS_TRANSIENT)) {
             fprintf(cli->err, "dalcs: warning: the netlist has no .tran: %s has no effect\n",
                     option[i].name);
         }
@@ -220,7 +221,14 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         return status;
     }
     const struct dalcs_request request = dalcs_session_request(session);
-    warn_unused(cli, arguments, &request);
+    enum dalcs_analysis main = main_analysis(&request);
+    struct run run = {.cli = cli};
+    status = dalcs_script_look(session, &run.has_script, &main);
+    if (status != DALCS_OK) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+        return status;
+    }
+    warn_unused(cli, arguments, &request, main);
     struct dalcs_times times = {0};
     if (arguments->at) {
         status = dalcs_times_read(&times, cli, arguments->at,
@@ -229,15 +237,9 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
             return status;
         }
     }
-    enum dalcs_analysis main = main_analysis(&request);
-    struct run run = {.cli = cli};
     bool at = times.n > 0;
-    status = dalcs_script_look(session, &run.has_script, &main);
-    if (status == DALCS_OK) {
-        status =
-            dalcs_outputs_init(&run.outputs, arguments, main, at ? times.time[0] : request.start,
-                               at ? times.time[times.n - 1] : request.stop);
-    }
+    status = dalcs_outputs_init(&run.outputs, arguments, main, at ? times.time[0] : request.start,
+                                at ? times.time[times.n - 1] : request.stop);
     if (status == DALCS_OK) {
         status = run_session(&run, session, arguments, &times, &n_written);
         dalcs_outputs_finish(&run.outputs);

@@ -343,8 +343,8 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) {
     if (session->is_altered) {
-        DALCS_TRY(dalcs_session_rebuild(session, NULL, 0));
         session->is_altered = false;
+        DALCS_TRY(dalcs_session_rebuild(session, NULL, 0));
     }
     if (!session->has_network) {
         return DALCS_E_NETLIST;

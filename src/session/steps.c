@@ -106,6 +106,7 @@ enum dalcs_status dalcs_session_rebuild(struct dalcs_session *session,
     if (complete) {
         status = dalcs_session_build(session, own, n_more, &session->circuit, &session->network);
         session->has_circuit = session->has_network = status == DALCS_OK;
+        session->is_altered = session->is_altered || status != DALCS_OK;
     }
     free(own);
     return status;
