@@ -167,7 +167,11 @@ enum dalcs_status dalcs_vectors_row(struct dalcs_vectors *v, double scale, const
     for (size_t k = 0; k < v->n_columns; k++) {
         struct dalcs_vector *x = v->plot.vector[n_before + k];
         size_t i = v->column[k];
-        x->value[x->n++] = x->is_complex ? CMPLX(value[2 * i], value[2 * i + 1]) : value[i];
+        if (x->is_complex) { /* a complex number is its two parts side by side */
+            memcpy(&x->value[x->n++], &value[2 * i], sizeof *x->value);
+        } else {
+            x->value[x->n++] = value[i];
+        }
     }
     return DALCS_OK;
 }
