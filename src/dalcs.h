@@ -145,7 +145,7 @@ struct dalcs_sink {
      * left out (compress) the newest is held back: it may come after progress said to stop. */
     enum dalcs_status (*row)(void *user, double time, const double *value /* [n_signals] */);
     enum dalcs_status (*end)(void *user);
-    /* Called now and then, not more than every few thousand steps. Return DALCS_OK to
+    /* Simulated time of the stop time in s; of .dc and .ac points of all. Called now and then, not more than every few thousand steps. Return DALCS_OK to
      * go on, DALCS_E_CANCELLED to stop. */
     enum dalcs_status (*progress)(void *user, double time, double stop);
 };

@@ -60,6 +60,7 @@ static enum dalcs_status check_interrupt(const struct run *run) {
 
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct run *run = user;
+    run->progress.counts = plot->analysis != DALCS_TRANSIENT;
     return dalcs_outputs_begin(&run->outputs, plot);
 }
 
@@ -77,7 +78,7 @@ static enum dalcs_status end(void *user) {
 
 static enum dalcs_status progress(void *user, double time, double stop) {
     struct run *run = user;
-    run->time = time;
+    run->time = run->progress.counts ? run->time : time;
     dalcs_progress_update(&run->progress, time, stop);
     return check_interrupt(run);
 }
