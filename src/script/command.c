@@ -221,15 +221,15 @@ static enum dalcs_status let(struct dalcs_script *script, const struct dalcs_sta
         dalcs_script_word(script, &rest) != NULL) {
         return dalcs_script_refuse(script, s, "let name = formula", "a name and '=' are missing");
     }
-    struct dalcs_formula f = {
+    struct dalcs_vector_formula f = {
         .vectors = &script->vectors, .text = text + length + 1, .arena = &script->arena};
-    const struct dalcs_vector *v = dalcs_formula_next(&f);
+    const struct dalcs_vector *v = dalcs_vector_formula_next(&f);
     if (v == NULL) {
         return f.out_of_memory ? DALCS_E_NOMEM
                                : dalcs_script_refuse(script, s, f.hint[0] != '\0' ? f.hint : NULL,
                                                      "%s", f.message);
     }
-    if (!dalcs_formula_at_end(&f)) {
+    if (!dalcs_vector_formula_at_end(&f)) {
         return dalcs_script_refuse(script, s, NULL, "did not expect '%s'", f.text + f.at);
     }
     return dalcs_vectors_let(&script->vectors, first, v);

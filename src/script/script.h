@@ -1,7 +1,7 @@
 /* script.h - runs the .control block of a netlist.
  *
  *     lines -> statements (statement.c) -> runs of the session, vectors (vectors.c), formulas of them
- *     (formula.c) -> text and files (writing.c)
+ *     (vector_formula.c) -> text and files (writing.c)
  *
  * The whole block is checked before anything runs: what no simulator knows is an error, what other
  * simulators know and is skipped here a warning for each word. */

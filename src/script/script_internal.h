@@ -2,10 +2,10 @@
 #ifndef DALCS_SCRIPT_INTERNAL_H
 #define DALCS_SCRIPT_INTERNAL_H
 
-#include "formula.h"
 #include "script.h"
 #include "statement.h"
 #include "variables.h"
+#include "vector_formula.h"
 #include "writing.h"
 
 struct dalcs_script {

@@ -174,7 +174,7 @@ const char *dalcs_script_word(struct dalcs_script *script, const char **text) {
 }
 
 static enum dalcs_status report(struct dalcs_script *script, const struct dalcs_statement *s,
-                                const struct dalcs_formula *f) {
+                                const struct dalcs_vector_formula *f) {
     if (f->out_of_memory) {
         return DALCS_E_NOMEM;
     }
@@ -183,12 +183,13 @@ static enum dalcs_status report(struct dalcs_script *script, const struct dalcs_
 
 enum dalcs_status dalcs_script_number(struct dalcs_script *script, const struct dalcs_statement *s,
                                       const char *text, double *value) {
-    struct dalcs_formula f = {.vectors = &script->vectors, .text = text, .arena = &script->arena};
-    const struct dalcs_vector *v = dalcs_formula_next(&f);
+    struct dalcs_vector_formula f = {
+        .vectors = &script->vectors, .text = text, .arena = &script->arena};
+    const struct dalcs_vector *v = dalcs_vector_formula_next(&f);
     if (v == NULL) {
         return report(script, s, &f);
     }
-    if (!dalcs_formula_at_end(&f)) {
+    if (!dalcs_vector_formula_at_end(&f)) {
         return dalcs_script_refuse(script, s, NULL, "did not expect '%s'", text + f.at);
     }
     if (v->n != 1) {
@@ -225,8 +226,9 @@ static enum dalcs_status all_vectors(struct dalcs_script *script, size_t n_befor
 enum dalcs_status dalcs_script_vectors(struct dalcs_script *script, const struct dalcs_statement *s,
                                        const char *text, const struct dalcs_vector ***vector,
                                        size_t *n) {
-    struct dalcs_formula f = {.vectors = &script->vectors, .text = text, .arena = &script->arena};
-    if (dalcs_formula_at_end(&f)) {
+    struct dalcs_vector_formula f = {
+        .vectors = &script->vectors, .text = text, .arena = &script->arena};
+    if (dalcs_vector_formula_at_end(&f)) {
         return all_vectors(script, 0, vector, n);
     }
     *vector = dalcs_arena_alloc(&script->arena, strlen(text), sizeof(struct dalcs_vector *));
@@ -234,7 +236,7 @@ enum dalcs_status dalcs_script_vectors(struct dalcs_script *script, const struct
         return DALCS_E_NOMEM;
     }
     *n = 0;
-    while (!dalcs_formula_at_end(&f)) {
+    while (!dalcs_vector_formula_at_end(&f)) {
         if (is_all(f.text + f.at)) {
             const struct dalcs_vector **listed = *vector;
             const size_t n_listed = *n;
@@ -245,7 +247,7 @@ enum dalcs_status dalcs_script_vectors(struct dalcs_script *script, const struct
             memcpy(*vector, listed, n_listed * sizeof(struct dalcs_vector *));
             return DALCS_OK;
         }
-        const struct dalcs_vector *v = dalcs_formula_next(&f);
+        const struct dalcs_vector *v = dalcs_vector_formula_next(&f);
         if (v == NULL) {
             return report(script, s, &f);
         }

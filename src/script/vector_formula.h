@@ -1,11 +1,11 @@
-/* formula.h - formulas of vectors, as in `let x = mag(v(out))/2` and `print v(a)-v(b)`. */
-#ifndef DALCS_FORMULA_H
-#define DALCS_FORMULA_H
+/* vector_formula.h - formulas of vectors, as in `let x = mag(v(out))/2` and `print v(a)-v(b)`. */
+#ifndef DALCS_VECTOR_FORMULA_H
+#define DALCS_VECTOR_FORMULA_H
 
 #include "vectors.h"
 
 /* Zero-initialise all but vectors, text and arena. */
-struct dalcs_formula {
+struct dalcs_vector_formula {
     const struct dalcs_vectors *vectors;
     const char *text;          /* lower case */
     size_t at;                 /* the next character */
@@ -18,9 +18,9 @@ struct dalcs_formula {
 };
 
 /* The next formula of the text, as far as it goes: its name is the text of it. NULL when it failed. */
-struct dalcs_vector *dalcs_formula_next(struct dalcs_formula *formula);
+struct dalcs_vector *dalcs_vector_formula_next(struct dalcs_vector_formula *formula);
 
 /* Only blanks are left. */
-bool dalcs_formula_at_end(struct dalcs_formula *formula);
+bool dalcs_vector_formula_at_end(struct dalcs_vector_formula *formula);
 
 #endif

@@ -1,5 +1,5 @@
-/* formula.c - parses and evaluates in one pass; every value is a vector, a number one of length 1. */
-#include "formula.h"
+/* vector_formula.c - parses and evaluates in one pass; every value is a vector, a number one of length 1. */
+#include "vector_formula.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -9,10 +9,10 @@
 
 enum { DEEPEST = 100 };
 
-static struct dalcs_vector *fail(struct dalcs_formula *f, const char *format, ...)
+static struct dalcs_vector *fail(struct dalcs_vector_formula *f, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-static struct dalcs_vector *fail(struct dalcs_formula *f, const char *format, ...) {
+static struct dalcs_vector *fail(struct dalcs_vector_formula *f, const char *format, ...) {
     if (!f->failed) {
         va_list arguments;
         va_start(arguments, format);
@@ -23,7 +23,7 @@ static struct dalcs_vector *fail(struct dalcs_formula *f, const char *format, ..
     return NULL;
 }
 
-static struct dalcs_vector *make(struct dalcs_formula *f, size_t n, bool is_complex) {
+static struct dalcs_vector *make(struct dalcs_vector_formula *f, size_t n, bool is_complex) {
     struct dalcs_vector *v = dalcs_arena_alloc(f->arena, 1, sizeof *v);
     double complex *value = dalcs_arena_alloc(f->arena, n, sizeof *value);
     if (v == NULL || value == NULL) {
@@ -35,7 +35,7 @@ static struct dalcs_vector *make(struct dalcs_formula *f, size_t n, bool is_comp
     return v;
 }
 
-static struct dalcs_vector *number(struct dalcs_formula *f, double value) {
+static struct dalcs_vector *number(struct dalcs_vector_formula *f, double value) {
     struct dalcs_vector *v = make(f, 1, false);
     if (v != NULL) {
         v->value[0] = value;
@@ -45,16 +45,16 @@ static struct dalcs_vector *number(struct dalcs_formula *f, double value) {
 
 /* ---- Reading ----------------------------------------------------------------------------------- */
 
-static void skip_blanks(struct dalcs_formula *f) {
+static void skip_blanks(struct dalcs_vector_formula *f) {
     f->at += strspn(f->text + f->at, " \t,");
 }
 
-bool dalcs_formula_at_end(struct dalcs_formula *f) {
+bool dalcs_vector_formula_at_end(struct dalcs_vector_formula *f) {
     skip_blanks(f);
     return f->text[f->at] == '\0';
 }
 
-static bool take(struct dalcs_formula *f, const char *symbol) {
+static bool take(struct dalcs_vector_formula *f, const char *symbol) {
     f->at += strspn(f->text + f->at, " \t");
     size_t n = strlen(symbol);
     if (strncmp(f->text + f->at, symbol, n) != 0) {
@@ -130,7 +130,7 @@ static double complex apply(enum operation operation, double complex a, double c
     return NAN;
 }
 
-static struct dalcs_vector *combine(struct dalcs_formula *f, enum operation operation,
+static struct dalcs_vector *combine(struct dalcs_vector_formula *f, enum operation operation,
                                     const struct dalcs_vector *a, const struct dalcs_vector *b) {
     if (a == NULL || b == NULL) {
         return NULL;
@@ -247,7 +247,7 @@ static const struct {
     {"vecmin", smallest_of}, {"minimum", smallest_of}, {"length", length_of},
 };
 
-static struct dalcs_vector *call(struct dalcs_formula *f, const char *name,
+static struct dalcs_vector *call(struct dalcs_vector_formula *f, const char *name,
                                  const struct dalcs_vector *x) {
     for (size_t i = 0; i < sizeof EACH / sizeof EACH[0]; i++) {
         if (strcmp(EACH[i].name, name) == 0) {
@@ -280,7 +280,7 @@ static struct dalcs_vector *call(struct dalcs_formula *f, const char *name,
 
 /* ---- Names -------------------------------------------------------------------------------------- */
 
-static struct dalcs_vector *copy_of(struct dalcs_formula *f, const struct dalcs_vector *v) {
+static struct dalcs_vector *copy_of(struct dalcs_vector_formula *f, const struct dalcs_vector *v) {
     struct dalcs_vector *copy = make(f, v->n, v->is_complex);
     if (copy != NULL) {
         memcpy(copy->value, v->value, v->n * sizeof *v->value);
@@ -289,7 +289,7 @@ static struct dalcs_vector *copy_of(struct dalcs_formula *f, const struct dalcs_
     return copy;
 }
 
-static struct dalcs_vector *find(struct dalcs_formula *f, const char *name) {
+static struct dalcs_vector *find(struct dalcs_vector_formula *f, const char *name) {
     const struct dalcs_vector *v = dalcs_vectors_find(f->vectors, name);
     if (v == NULL) {
         if (!f->vectors->has_plot) {
@@ -302,7 +302,8 @@ static struct dalcs_vector *find(struct dalcs_formula *f, const char *name) {
 
 /* v(a), v(a,b), i(x): the text in parentheses is no formula. `what` may have a suffix: vdb, vm, vp, vr,
  * vi. */
-static struct dalcs_vector *read_signal(struct dalcs_formula *f, char letter, const char *suffix) {
+static struct dalcs_vector *read_signal(struct dalcs_vector_formula *f, char letter,
+                                        const char *suffix) {
     char inside[2][200] = {"", ""};
     int part = 0;
     size_t n = 0;
@@ -347,9 +348,9 @@ static const char *suffix_function(const char *word) {
     return NULL;
 }
 
-static struct dalcs_vector *parse_or(struct dalcs_formula *f);
+static struct dalcs_vector *parse_or(struct dalcs_vector_formula *f);
 
-static struct dalcs_vector *read_word(struct dalcs_formula *f) {
+static struct dalcs_vector *read_word(struct dalcs_vector_formula *f) {
     char word[256];
     size_t n = 0;
     const char *p = f->text + f->at;
@@ -388,7 +389,7 @@ static struct dalcs_vector *read_word(struct dalcs_formula *f) {
 
 /* ---- From tight to loose -------------------------------------------------------------------------- */
 
-static struct dalcs_vector *read_number(struct dalcs_formula *f) {
+static struct dalcs_vector *read_number(struct dalcs_vector_formula *f) {
     char text[64];
     size_t n = 0;
     const char *p = f->text + f->at;
@@ -407,7 +408,7 @@ static struct dalcs_vector *read_number(struct dalcs_formula *f) {
     return number(f, value);
 }
 
-static struct dalcs_vector *read_index(struct dalcs_formula *f, struct dalcs_vector *v) {
+static struct dalcs_vector *read_index(struct dalcs_vector_formula *f, struct dalcs_vector *v) {
     struct dalcs_vector *index = parse_or(f);
     if (index == NULL) {
         return NULL;
@@ -427,7 +428,7 @@ static struct dalcs_vector *read_index(struct dalcs_formula *f, struct dalcs_vec
     return element;
 }
 
-static struct dalcs_vector *parse_primary(struct dalcs_formula *f) {
+static struct dalcs_vector *parse_primary(struct dalcs_vector_formula *f) {
     struct dalcs_vector *v;
     skip_blanks(f);
     char c = f->text[f->at];
@@ -452,7 +453,7 @@ static struct dalcs_vector *parse_primary(struct dalcs_formula *f) {
     return v;
 }
 
-static struct dalcs_vector *parse_power(struct dalcs_formula *f) {
+static struct dalcs_vector *parse_power(struct dalcs_vector_formula *f) {
     struct dalcs_vector *v;
     if (++f->depth > DEEPEST) {
         return fail(f, "too many signs and parentheses");
@@ -474,7 +475,7 @@ static struct dalcs_vector *parse_power(struct dalcs_formula *f) {
     return v;
 }
 
-static struct dalcs_vector *parse_product(struct dalcs_formula *f) {
+static struct dalcs_vector *parse_product(struct dalcs_vector_formula *f) {
     struct dalcs_vector *v = parse_power(f);
     for (;;) {
         if (v != NULL && take(f, "*")) {
@@ -489,7 +490,7 @@ static struct dalcs_vector *parse_product(struct dalcs_formula *f) {
     }
 }
 
-static struct dalcs_vector *parse_sum(struct dalcs_formula *f) {
+static struct dalcs_vector *parse_sum(struct dalcs_vector_formula *f) {
     struct dalcs_vector *v = parse_product(f);
     for (;;) {
         if (v != NULL && take(f, "+")) {
@@ -502,7 +503,7 @@ static struct dalcs_vector *parse_sum(struct dalcs_formula *f) {
     }
 }
 
-static struct dalcs_vector *parse_comparison(struct dalcs_formula *f) {
+static struct dalcs_vector *parse_comparison(struct dalcs_vector_formula *f) {
     static const struct {
         const char *symbol;
         enum operation operation;
@@ -521,7 +522,7 @@ static struct dalcs_vector *parse_comparison(struct dalcs_formula *f) {
     return v;
 }
 
-static struct dalcs_vector *parse_or(struct dalcs_formula *f) {
+static struct dalcs_vector *parse_or(struct dalcs_vector_formula *f) {
     struct dalcs_vector *v = parse_comparison(f);
     for (;;) {
         if (v != NULL && (take(f, "&&") || take(f, "&") || take(f, "and"))) {
@@ -534,7 +535,7 @@ static struct dalcs_vector *parse_or(struct dalcs_formula *f) {
     }
 }
 
-struct dalcs_vector *dalcs_formula_next(struct dalcs_formula *f) {
+struct dalcs_vector *dalcs_vector_formula_next(struct dalcs_vector_formula *f) {
     skip_blanks(f);
     size_t begin = f->at;
     struct dalcs_vector *v = parse_or(f);
