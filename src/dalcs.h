@@ -89,6 +89,9 @@ const char *dalcs_session_message(const struct dalcs_session *session, size_t in
 struct dalcs_request {
     bool operating_point;
     bool transient;
+    bool dc_sweep;
+    bool ac;
+    size_t n_steps; /* of .step: how often each of these is run; 1 without */
     double step, stop, start, max_step;
     bool prints; /* there is a .print or .plot */
     bool ascii;  /* .options filetype=ascii: raw files as text */
@@ -97,31 +100,54 @@ struct dalcs_request dalcs_session_request(const struct dalcs_session *session);
 
 /* ---- Running ------------------------------------------------------------------------------- */
 
-enum dalcs_analysis { DALCS_OPERATING_POINT, DALCS_TRANSIENT };
+enum dalcs_analysis {
+    DALCS_OPERATING_POINT,
+    DALCS_TRANSIENT,
+    DALCS_DC_SWEEP,
+    DALCS_AC,
+    DALCS_N_ANALYSES
+};
 
-enum dalcs_unit { DALCS_VOLT, DALCS_AMPERE };
+enum dalcs_unit {
+    DALCS_VOLT,
+    DALCS_AMPERE,
+    DALCS_UNIT_SECOND,
+    DALCS_UNIT_HERTZ,
+    DALCS_UNIT_OHM,
+    DALCS_UNIT_NONE
+};
 
 /* One table of results. Borrowed: valid until the session is destroyed. */
 struct dalcs_plot {
     enum dalcs_analysis analysis;
-    const char *title;           /* the netlist's title line */
-    size_t n_signals;            /* time not counted */
-    const char *const *name;     /* [n_signals] "v(out)", "i(d1)" */
-    const enum dalcs_unit *unit; /* [n_signals] */
+    const char *title;             /* the netlist's title line */
+    const char *scale;             /* what a row is at: "time", "frequency", "v1" of .dc */
+    enum dalcs_unit scale_unit;    /* s, Hz, or the unit of what .dc sweeps */
+    size_t n_signals;              /* the scale not counted */
+    const char *const *name;       /* [n_signals] "v(out)", "i(d1)"; of a nested .dc the outer
+                                    source's value comes first, under its name */
+    const enum dalcs_unit *unit;   /* [n_signals] */
+    bool is_complex;               /* of .ac: a row has 2 n_signals values, re and im of each */
+    size_t step, n_steps;          /* of .step: the how manieth of how many; 0 of 1 without */
+    size_t n_parameters;           /* that .step changes, the innermost first */
+    const char *const *parameter;  /* [n_parameters] "rload", "v1", "dmod(vfwd)" */
+    const double *parameter_value; /* [n_parameters] in this step */
 };
 
-/* Receives results while they are made: for .op and for .tran begin, rows, end, in this order. Any
+/* Receives results while they are made: for each analysis begin, rows, end, in this order: .op, .dc,
+ * .ac, .tran; with .step all steps of an analysis before the next analysis. Any
  * callback may be NULL, or return a status other than DALCS_OK, which ends the run with that
  * status; end is then not called. */
 struct dalcs_sink {
     void *user;
     enum dalcs_status (*begin)(void *user, const struct dalcs_plot *plot);
-    /* Times ascend; two rows of equal time are the two sides of a discontinuity. Values are
-     * borrowed until the callback returns. An operating point has one row, at time 0. Where rows are
+    /* `time` is the row's scale. Times ascend; two rows of equal time are the two sides of a
+     * discontinuity. Values are borrowed until the callback returns. An operating point has one row,
+     * at 0. A nested .dc runs through its inner sweep again and again. Where rows are
      * left out (compress) the newest is held back: it may come after progress said to stop. */
     enum dalcs_status (*row)(void *user, double time, const double *value /* [n_signals] */);
     enum dalcs_status (*end)(void *user);
-    /* Called now and then, not more than every few thousand steps. Return DALCS_OK to
+    /* Simulated time of the stop time in s; of .dc and .ac points of all. Called now and then, not more than every few thousand steps. Return DALCS_OK to
      * go on, DALCS_E_CANCELLED to stop. */
     enum dalcs_status (*progress)(void *user, double time, double stop);
 };
@@ -169,12 +195,50 @@ struct dalcs_run_options {
 
 struct dalcs_run_options dalcs_run_options_default(void);
 
-/* Runs .op, then .tran, whichever the netlist has. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the
- * messages name the time and the elements; rows already handed to the sink stay true. A second run
- * replaces the report of the first. */
+/* Runs .op, .dc, .ac and .tran, whichever the netlist has, for each .step. DALCS_NOT_CONVERGED,
+ * DALCS_INFEASIBLE: the messages name the time and the elements; rows already handed to the sink stay
+ * true. A second run replaces the report of the first. With .step the report is that of the last step
+ * that was run, but for its work, which is of all. */
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) DALCS_MUST_CHECK;
+
+/* ---- Runs of other kinds --------------------------------------------------------------------- */
+
+/* The lines between .control and .endc, which the library does not run: without their newline; NULL
+ * when index is too large. */
+size_t dalcs_session_n_script_lines(const struct dalcs_session *session);
+const char *dalcs_session_script_line(const struct dalcs_session *session, size_t index);
+
+/* Adds a message at column..column+length-1 (from 1, in bytes) of a script line. hint may be NULL. */
+void dalcs_session_script_message(struct dalcs_session *session, size_t line, size_t column,
+                                  size_t length, enum dalcs_level level, const char *hint,
+                                  const char *text);
+
+/* A card that is added to the netlist for one run, as if it stood on that script line; without its
+ * first dot: "tran 1u 1m", "meas tran vavg avg v(out)". */
+struct dalcs_extra_card {
+    size_t line;
+    const char *text;
+};
+
+/* Like dalcs_session_run, with cards added. Where analyses (tran, op, dc, ac) are among them, those are
+ * run and not the netlist's. Errors in the cards: DALCS_E_NETLIST. Only for a netlist with a script. */
+enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
+                                          const struct dalcs_extra_card *card, size_t n_cards,
+                                          const struct dalcs_run_options *options,
+                                          const struct dalcs_sink *sink) DALCS_MUST_CHECK;
+
+/* Gives what the netlist names another value in all later runs: "r1", "v1" (its DC value),
+ * "x1.c2", a parameter of a model ("dmod", field "vfwd") or, is_parameter, of .param. Lower case.
+ * DALCS_E_OPTION: there is no such thing, *nearest (may be NULL) is the name most like it or NULL.
+ * Only for a netlist with a script. */
+enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_parameter,
+                                      const char *name, const char *field, double value,
+                                      const char **nearest) DALCS_MUST_CHECK;
+
+/* Forgets what dalcs_session_alter said of elements and models; parameters stay. */
+void dalcs_session_reset(struct dalcs_session *session);
 
 /* ---- The report ---------------------------------------------------------------------------- */
 
@@ -220,6 +284,7 @@ struct dalcs_nonunique {
 /* What a .meas gave. */
 struct dalcs_measurement {
     const char *name;
+    const char *step; /* of .step, "r = 500, c = 1e-06"; NULL without */
     bool found;
     double value;        /* in the unit of what was measured; 0 unless found */
     const char *failure; /* why not; NULL when found */
@@ -235,6 +300,7 @@ struct dalcs_measurement {
  * phase[k]) over the periods from `from` to `to`. */
 struct dalcs_fourier {
     const char *signal;
+    const char *step; /* as of a measurement */
     double frequency;   /* Hz */
     double from, to;    /* s */
     double thd;         /* harmonics from the second on over the first; not finite without that */
@@ -297,7 +363,8 @@ struct dalcs_report {
     size_t n_nonunique; /* each signal once */
     const struct dalcs_nonunique *nonunique;
 
-    size_t n_measurements; /* .meas of the analyses that were run, in the netlist's order */
+    size_t n_measurements; /* .meas of the analyses that were run, in the netlist's order; of all
+                              steps of .step */
     const struct dalcs_measurement *measurement;
     size_t n_fourier;
     const struct dalcs_fourier *fourier;
@@ -315,6 +382,14 @@ struct dalcs_report {
                                  if the method of radau is more than its tolerance explains, the run
                                  ends with DALCS_E_INTERNAL */
     } energy;
+
+    size_t n_sides; /* of .ac: where each diode and switch stands at the operating point */
+
+    const struct dalcs_side_taken {
+        const char *element;
+        bool on;         /* conducts, or is closed */
+        bool degenerate; /* a diode with neither current nor voltage: either side fits */
+    } * side;            /* [n_sides] */
 
     struct {
         bool present;

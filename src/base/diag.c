@@ -228,6 +228,16 @@ void dalcs_diag_add(struct dalcs_diag *diag, enum dalcs_severity severity,
     va_end(arguments);
 }
 
+void dalcs_diag_add_text(struct dalcs_diag *diag, enum dalcs_severity severity, const char *text) {
+    size_t *count = severity == DALCS_ERROR ? &diag->n_errors : &diag->n_other;
+    const size_t limit = severity == DALCS_ERROR ? DALCS_DIAG_MAX_ERRORS : DALCS_DIAG_MAX_OTHER;
+    struct text copy = {0};
+    if (++*count <= limit) {
+        append_text(&copy, text);
+        keep(diag, severity, NULL, NULL, &copy);
+    }
+}
+
 static bool comes_before(const struct dalcs_diagnostic *a, const struct dalcs_diagnostic *b) {
     if ((a->line == 0) != (b->line == 0)) {
         return b->line == 0;

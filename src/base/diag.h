@@ -67,6 +67,9 @@ void dalcs_diag_add_list(struct dalcs_diag *diag, enum dalcs_severity severity,
                          const struct dalcs_location *where, const char *hint, const char *format,
                          va_list arguments) __attribute__((format(printf, 5, 0)));
 
+/* Adds a message that is formatted already: the text of another list's item. */
+void dalcs_diag_add_text(struct dalcs_diag *diag, enum dalcs_severity severity, const char *text);
+
 /* Sorts by line and column, messages without a place last; equal places keep their order. Several
  * passes over a netlist find its errors in no order that a reader would expect. */
 void dalcs_diag_sort(struct dalcs_diag *diag);

@@ -5,9 +5,8 @@ static const char TRAN_USAGE[] = ".tran tstep tstop [tstart [tmax]] [uic]";
 
 enum { TSTEP, TSTOP, TSTART, TMAX, N_TIMES };
 
-/* A second .tran or .op is an error. */
-static bool is_first(struct dalcs_builder *builder, const struct dalcs_card *card,
-                     const struct dalcs_token **first) {
+bool dalcs_analysis_is_first(struct dalcs_builder *builder, const struct dalcs_card *card,
+                             const struct dalcs_token **first) {
     if (*first == NULL) {
         *first = card->token;
         return true;
@@ -69,7 +68,7 @@ static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *trans
 void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_transient *transient = &builder->circuit->transient;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, TRAN_USAGE);
-    if (!is_first(builder, card, &builder->tran)) {
+    if (!dalcs_analysis_is_first(builder, card, &builder->tran)) {
         return;
     }
     transient->where = dalcs_builder_keep_location(builder, card->token);
@@ -108,7 +107,7 @@ void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs
 
 void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, ".op takes no values");
-    if (is_first(builder, card, &builder->op)) {
+    if (dalcs_analysis_is_first(builder, card, &builder->op)) {
         builder->circuit->operating_point = dalcs_reader_end(&reader);
     }
 }

@@ -35,6 +35,14 @@ void dalcs_builder_error(struct dalcs_builder *builder, const struct dalcs_token
     builder->failed = true;
 }
 
+void dalcs_builder_warn_at(struct dalcs_builder *builder, const struct dalcs_location *where,
+                           const char *hint, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    dalcs_diag_add_list(builder->diag, DALCS_WARNING, where, hint, format, arguments);
+    va_end(arguments);
+}
+
 void dalcs_builder_warn(struct dalcs_builder *builder, const struct dalcs_token *token,
                         const char *hint, const char *format, ...) {
     const struct dalcs_location where = dalcs_token_location(token);

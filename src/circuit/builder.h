@@ -79,6 +79,7 @@ struct dalcs_builder {
 
     const struct dalcs_token *tran; /* the first .tran and .op, NULL before */
     const struct dalcs_token *op;
+    const struct dalcs_token *dc, *ac;       /* the same of these */
     const struct dalcs_token *initial_state; /* the first IC= or .ic i(...), NULL before */
 
     struct dalcs_names initial_pairs; /* "0 4": index of the condition on nodes 0 and 4 */
@@ -120,6 +121,9 @@ void dalcs_builder_error(struct dalcs_builder *builder, const struct dalcs_token
     __attribute__((format(printf, 4, 5)));
 void dalcs_builder_error_at(struct dalcs_builder *builder, const struct dalcs_location *where,
                             const char *hint, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+void dalcs_builder_warn_at(struct dalcs_builder *builder, const struct dalcs_location *where,
+                           const char *hint, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 void dalcs_builder_warn(struct dalcs_builder *builder, const struct dalcs_token *token,
                         const char *hint, const char *format, ...)
@@ -350,8 +354,18 @@ int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *na
                      enum dalcs_model_kind kind);
 void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* A second card of an analysis is an error. */
+bool dalcs_analysis_is_first(struct dalcs_builder *builder, const struct dalcs_card *card,
+                             const struct dalcs_token **first);
+/* .dc, .ac and .step, when elements and models are known; then what they need of the whole. */
+void dalcs_sweep_parse_dc(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_sweep_parse_step(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_sweep_check(struct dalcs_builder *builder);
 void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_initial_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* .nodeset: the same form, without an effect */
+void dalcs_initial_parse_nodeset(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* A note about initial conditions that do not count without uic. */
 void dalcs_initial_check(struct dalcs_builder *builder);
 /* .save, .print, .plot and .probe */

@@ -30,6 +30,12 @@ static const struct dot_card DOT_CARDS[] = {
     {".model", DALCS_CARD_MODEL, NULL, NULL, NOTHING, NULL},
     {".tran", DALCS_CARD_TRAN, NULL, NULL, NOTHING, NULL},
     {".op", DALCS_CARD_OP, NULL, NULL, NOTHING, NULL},
+    {".dc", DALCS_CARD_DC, NULL, NULL, NOTHING, NULL},
+    {".ac", DALCS_CARD_AC, NULL, NULL, NOTHING, NULL},
+    {".step", DALCS_CARD_STEP, NULL, NULL, NOTHING, NULL},
+    {".nodeset", DALCS_CARD_NODESET, NULL, NULL, NOTHING, NULL},
+    {".control", DALCS_CARD_NONE, NULL, NULL, NOTHING, NULL},
+    {".endc", DALCS_CARD_NONE, NULL, NULL, NOTHING, NULL},
     {".options", DALCS_CARD_OPTIONS, NULL, NULL, NOTHING, NULL},
     {".option", DALCS_CARD_OPTIONS, NULL, NULL, NOTHING, NULL},
     {".opt", DALCS_CARD_OPTIONS, NULL, NULL, NOTHING, NULL},
@@ -44,17 +50,9 @@ static const struct dot_card DOT_CARDS[] = {
     {".fourier", DALCS_CARD_FOURIER, NULL, NULL, NOTHING, NULL},
     {".backanno", DALCS_CARD_NONE, NULL, NULL, NOTHING, NULL},
 
-    {".control", DALCS_CARD_NONE, "control blocks",
-     "write the analysis as a card, such as: .tran 10u 20m", ANALYSES, NULL},
-    {".endc", DALCS_CARD_NONE, "control blocks", NULL, NOTHING, NULL},
-    {".step", DALCS_CARD_NONE, "parameter sweeps", "write a netlist for each value", NOTHING, NULL},
     {".data", DALCS_CARD_NONE, "parameter sweeps", "write a netlist for each value", NOTHING,
      ".enddata"},
     {".enddata", DALCS_CARD_NONE, "parameter sweeps", NULL, NOTHING, NULL},
-    {".dc", DALCS_CARD_NONE, "DC sweeps", "write .op for one operating point", ANALYSES, NULL},
-    {".ac", DALCS_CARD_NONE, "AC analyses", "write .tran with a sinusoidal source", ANALYSES, NULL},
-    {".nodeset", DALCS_CARD_NONE, "node sets",
-     "the operating point needs no guess; .ic sets a start", NOTHING, NULL},
     {".wave", DALCS_CARD_NONE, "sound files", NULL, NOTHING, NULL},
     {".alter", DALCS_CARD_NONE, "altered runs", "write a netlist for each run", NOTHING, NULL},
 };
@@ -102,7 +100,8 @@ static const char *hint_of_element(char letter) {
     }
 }
 
-static const char CARDS[] = "the cards are: .model .ic .tran .op .options .save .print .end";
+static const char CARDS[] =
+    "the cards are: .model .ic .tran .op .dc .ac .step .options .save .print .end";
 
 static void report_unknown(struct dalcs_builder *builder, const struct dalcs_token *name) {
     const char *names[sizeof DOT_CARDS / sizeof DOT_CARDS[0]];
@@ -137,7 +136,7 @@ static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
         dalcs_builder_note(builder, name, NULL, "%s has no meaning here and is ignored",
                            name->text);
     } else if (dalcs_builder_is_one_of(name->text, NEVER, sizeof NEVER / sizeof NEVER[0])) {
-        dalcs_builder_error(builder, name, "use .tran or .op",
+        dalcs_builder_error(builder, name, "use .tran, .op, .dc or .ac",
                             "%s is not an analysis of ideal-diode circuits", name->text);
         builder->hidden |= DALCS_HIDDEN_ANALYSES;
     } else {

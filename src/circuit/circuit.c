@@ -4,7 +4,8 @@
  *     options    .options: what models may ask for
  *     models     .model, .tran, .op: what elements refer to
  *     elements   devices and nodes
- *     references K, F, H, .ic, .save, .meas, .four: what refers to elements
+ *     references K, F, H, .ic, .save, .dc, .ac, .step: what refers to elements
+ *     measures   .meas, .four: what refers to analyses
  *     checks     of the whole
  *
  * Every pass goes on after an error, so that a person sees all of them. */
@@ -98,7 +99,7 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
 }
 
 /* What a card means in a pass; cards of other passes are left alone. */
-enum pass { OPTIONS, MODELS, ELEMENTS, REFERENCES };
+enum pass { OPTIONS, MODELS, ELEMENTS, REFERENCES, MEASURES };
 
 static void read_card(struct dalcs_builder *builder, const struct dalcs_card *card,
                       enum dalcs_card_class c, enum pass pass) {
@@ -118,21 +119,31 @@ static void read_card(struct dalcs_builder *builder, const struct dalcs_card *ca
         if (c == DALCS_CARD_ELEMENT) {
             read_element(builder, card);
         }
+    } else if (pass == MEASURES) {
+        if (c == DALCS_CARD_MEASURE) {
+            dalcs_measure_parse(builder, card);
+        } else if (c == DALCS_CARD_FOURIER) {
+            dalcs_fourier_parse(builder, card);
+        }
     } else if (c == DALCS_CARD_COUPLING) {
         dalcs_coupling_parse(builder, card);
     } else if (c == DALCS_CARD_IC) {
         dalcs_initial_parse(builder, card);
     } else if (c == DALCS_CARD_SIGNALS) {
         dalcs_signals_parse(builder, card);
-    } else if (c == DALCS_CARD_MEASURE) {
-        dalcs_measure_parse(builder, card);
-    } else if (c == DALCS_CARD_FOURIER) {
-        dalcs_fourier_parse(builder, card);
+    } else if (c == DALCS_CARD_NODESET) {
+        dalcs_initial_parse_nodeset(builder, card);
+    } else if (c == DALCS_CARD_DC) {
+        dalcs_sweep_parse_dc(builder, card);
+    } else if (c == DALCS_CARD_AC) {
+        dalcs_sweep_parse_ac(builder, card);
+    } else if (c == DALCS_CARD_STEP) {
+        dalcs_sweep_parse_step(builder, card);
     }
 }
 
 static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigned char *class_of) {
-    for (enum pass pass = OPTIONS; pass <= REFERENCES; pass++) {
+    for (enum pass pass = OPTIONS; pass <= MEASURES; pass++) {
         for (size_t k = 0; k < builder->deck->n_cards; k++) {
             read_card(builder, &builder->deck->card[k], (enum dalcs_card_class)class_of[k], pass);
             if (builder->out_of_memory) {
@@ -158,10 +169,11 @@ static void check_presence(struct dalcs_builder *builder) {
         dalcs_builder_error_at(builder, &where, "the first line is the title, never an element",
                                "the netlist has no elements");
     }
-    if (builder->tran == NULL && builder->op == NULL &&
-        (builder->hidden & DALCS_HIDDEN_ANALYSES) == 0) {
+    const bool asks = builder->tran != NULL || builder->op != NULL || builder->dc != NULL ||
+                      builder->ac != NULL || builder->netlist->n_script_lines > 0;
+    if (!asks && (builder->hidden & DALCS_HIDDEN_ANALYSES) == 0) {
         dalcs_builder_error_at(builder, &where, "add a line such as: .tran 10u 20m",
-                               "the netlist asks for nothing: no .tran and no .op");
+                               "the netlist asks for nothing: no .tran, .op, .dc or .ac");
     }
 }
 
@@ -257,6 +269,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
         dalcs_source_check(builder);
         dalcs_topology_check(builder);
         dalcs_initial_check(builder);
+        dalcs_sweep_check(builder);
     }
     return builder->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
 }
@@ -264,7 +277,14 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
 enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
                                       const struct dalcs_netlist *netlist,
                                       struct dalcs_diag *diag) {
-    struct dalcs_deck deck = {0};
+    return dalcs_circuit_build_with(circuit, netlist, NULL, 0, diag);
+}
+
+enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
+                                           const struct dalcs_netlist *netlist,
+                                           const struct dalcs_override *override,
+                                           size_t n_overrides, struct dalcs_diag *diag) {
+    struct dalcs_deck deck = {.override = override, .n_overrides = n_overrides};
     struct dalcs_builder builder = {.circuit = circuit,
                                     .netlist = netlist,
                                     .deck = &deck,

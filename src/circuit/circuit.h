@@ -8,6 +8,7 @@
 #include "diag.h"
 #include "measurement.h"
 #include "stimulus.h"
+#include "sweep.h"
 
 enum dalcs_device_kind {
     DALCS_RESISTOR,  /* R a b value; value 0 is a short */
@@ -124,6 +125,8 @@ struct dalcs_transient {
     struct dalcs_location where;
 };
 
+enum { DALCS_MOST_DC = 2 };
+
 struct dalcs_circuit {
     const char *title;
     int n_nodes; /* ground included */
@@ -152,6 +155,11 @@ struct dalcs_circuit {
     struct dalcs_transient transient;
     bool operating_point; /* .op */
     bool prints;          /* .print or .plot */
+    int n_dc;             /* of .dc, the innermost first; 0: there is none */
+    struct dalcs_sweep dc[DALCS_MOST_DC];
+    struct dalcs_sweep ac; /* frequencies of .ac in Hz; n is 0 without one */
+    int n_steps;           /* of .step, the innermost first */
+    struct dalcs_sweep *step;
 
     struct dalcs_circuit_options {
         double reltol, abstol, vntol;          /* 0: not given; the last two in A, V */
@@ -168,6 +176,7 @@ struct dalcs_circuit {
 };
 
 struct dalcs_netlist;
+struct dalcs_override;
 
 /* Builds *circuit from the netlist. Every user error goes to diag; then the result is
  * DALCS_E_NETLIST and *circuit is zeroed: nothing to free. The circuit is self-contained: the
@@ -175,6 +184,13 @@ struct dalcs_netlist;
 enum dalcs_status dalcs_circuit_build(struct dalcs_circuit *circuit,
                                       const struct dalcs_netlist *netlist,
                                       struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
+/* The same with other values for what the overrides name (language/override.h). */
+enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
+                                           const struct dalcs_netlist *netlist,
+                                           const struct dalcs_override *override,
+                                           size_t n_overrides,
+                                           struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
 void dalcs_circuit_finish(struct dalcs_circuit *circuit);
 

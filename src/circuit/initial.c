@@ -129,6 +129,36 @@ void dalcs_initial_parse(struct dalcs_builder *builder, const struct dalcs_card 
     }
 }
 
+void dalcs_initial_parse_nodeset(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct dalcs_reader reader =
+        dalcs_reader_start(builder, card, ".nodeset v(node)=volts v(node)=volts ...");
+    double value;
+    while (!dalcs_reader_at_end(&reader)) {
+        const struct dalcs_token *node;
+        if (!dalcs_reader_take_word(&reader, "v")) {
+            dalcs_reader_missing(&reader, "v(node)");
+            return;
+        }
+        if (!dalcs_reader_take(&reader, DALCS_TOKEN_OPEN)) {
+            dalcs_reader_missing(&reader, "'('");
+            return;
+        }
+        if (!dalcs_reader_name(&reader, "a node", &node)) {
+            return;
+        }
+        if (!dalcs_reader_take(&reader, DALCS_TOKEN_CLOSE)) {
+            dalcs_reader_missing(&reader, "')'");
+            return;
+        }
+        (void)dalcs_builder_find_node(builder, node);
+        if (!read_value(&reader, DALCS_VOLTAGE, &value)) {
+            return;
+        }
+    }
+    dalcs_builder_note(builder, card->token, NULL,
+                       ".nodeset has no effect: an operating point is computed without a guess");
+}
+
 void dalcs_initial_check(struct dalcs_builder *builder) {
     const struct dalcs_transient *transient = &builder->circuit->transient;
     if (transient->present && transient->use_initial_conditions) {

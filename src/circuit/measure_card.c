@@ -373,8 +373,16 @@ static enum dalcs_measured_analysis read_analysis(struct reading *r) {
 }
 
 static bool is_run(const struct dalcs_builder *builder, enum dalcs_measured_analysis analysis) {
-    return analysis == DALCS_MEASURED_TRAN ? builder->tran != NULL
-                                           : analysis == DALCS_MEASURED_OP && builder->op != NULL;
+    switch (analysis) {
+    case DALCS_MEASURED_TRAN:
+        return builder->tran != NULL;
+    case DALCS_MEASURED_OP:
+        return builder->op != NULL;
+    case DALCS_MEASURED_DC:
+        return builder->dc != NULL;
+    default:
+        return builder->ac != NULL;
+    }
 }
 
 void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {

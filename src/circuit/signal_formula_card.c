@@ -266,8 +266,7 @@ static int degree_of(const struct dalcs_signal_formula_step *step, int n) {
     for (int k = 0; k < n; k++) {
         const enum dalcs_operation_code code = step[k].code;
         if (step[k].push != DALCS_PUT_NOTHING) {
-            const bool varies =
-                step[k].push == DALCS_PUT_TIME || step[k].push == DALCS_PUT_SIGNAL;
+            const bool varies = step[k].push == DALCS_PUT_TIME || step[k].push == DALCS_PUT_SIGNAL;
             degree[top++] = varies ? (step[k].part == DALCS_PART_PLAIN ? 1 : 2) : 0;
         } else if (code == DALCS_CALL) {
             unsigned char most = 0;

@@ -145,6 +145,19 @@ static bool read_plain_node(struct dalcs_reader *reader) {
     return false;
 }
 
+/* v and i, or a part of one of .ac: vm, vp, vr, vi, vdb. The whole is recorded. */
+static bool is_part(const char *word) {
+    static const char *const suffix[] = {"", "m", "p", "r", "i", "db"};
+    return (word[0] == 'v' || word[0] == 'i') &&
+           dalcs_builder_is_one_of(word + 1, suffix, sizeof suffix / sizeof suffix[0]);
+}
+
+/* The same around a signal: db(v(out)). */
+static bool is_function(const char *word) {
+    static const char *const name[] = {"db", "mag", "ph", "phase", "re", "real", "imag", "abs"};
+    return dalcs_builder_is_one_of(word, name, sizeof name / sizeof name[0]);
+}
+
 static bool read_signal(struct dalcs_reader *reader) {
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
@@ -160,16 +173,33 @@ static bool read_signal(struct dalcs_reader *reader) {
         }
         return read_plain_node(reader);
     }
-    if (strcmp(token->text, "v") == 0 || strcmp(token->text, "i") == 0) {
+    if (is_part(token->text)) {
         reader->at += 2;
         return token->text[0] == 'v' ? read_voltage(reader) : read_current(reader);
+    }
+    if (is_function(token->text)) {
+        reader->at += 2;
+        const struct dalcs_token *inner = dalcs_reader_peek(reader, 0);
+        if (inner == NULL || !is_part(inner->text)) {
+            dalcs_reader_missing(reader, "v(node) or i(element)");
+            return false;
+        }
+        if (!read_signal(reader)) {
+            return false;
+        }
+        if (!dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+            dalcs_reader_missing(reader, "')'");
+            return false;
+        }
+        return true;
     }
     dalcs_builder_error(builder, token, USAGE, "'%s(...)' is not a signal", token->text);
     return false;
 }
 
 void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    static const char *const other[] = {"ac", "dc", "noise", "sens", "hb", "four"};
+    static const char *const ours[] = {"tran", "op", "dc", "ac"};
+    static const char *const other[] = {"noise", "sens", "hb", "four"};
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     const struct dalcs_token *type = dalcs_reader_peek(&reader, 0);
     builder->names_signals = true;
@@ -184,8 +214,9 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
             return;
         }
     }
-    if (is_print && !dalcs_reader_take_word(&reader, "tran")) {
-        dalcs_reader_take_word(&reader, "op");
+    bool takes_type = is_print;
+    for (size_t k = 0; k < sizeof ours / sizeof ours[0] && takes_type; k++) {
+        takes_type = !dalcs_reader_take_word(&reader, ours[k]);
     }
     if (dalcs_reader_at_end(&reader)) {
         /* A bare .probe records everything, as in PSpice. */

@@ -1,6 +1,6 @@
 /* source.c - independent sources V and I: a DC value and at most one function of time.
  *
- * AC magnitude and phase are read and ignored. Checks that need .tran (the frequency that a SIN may
+ * Besides, AC magnitude and phase for .ac. Checks that need .tran (the frequency that a SIN may
  * leave out is 1/tstop, as in SPICE) are made when all cards are read. */
 #include "builder.h"
 
@@ -10,18 +10,25 @@
 static const char USAGE[] =
     "a source is: Vname node node [DC value] [SIN, PULSE, PWL, EXP, AM or SFFM(...)]";
 
-static void skip_ac(struct dalcs_reader *reader) {
-    double ignored;
-    dalcs_builder_note(reader->builder, dalcs_reader_previous(reader), NULL,
-                       "there is no AC analysis: AC values are ignored");
+/* AC [magnitude [phase in degrees]]; 1 and 0 when left out. False when an error was reported. */
+static bool read_ac(struct dalcs_reader *reader, enum dalcs_quantity quantity,
+                    struct dalcs_stimulus *stimulus) {
+    static const double degree = 3.14159265358979323846 / 180.0;
+    double value[2] = {1.0, 0.0};
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
     for (int k = 0; k < 2; k++) {
         const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
-        if (next == NULL || !dalcs_reader_is_number(next) ||
-            !dalcs_reader_list_number(reader, DALCS_PLAIN, "a number", &ignored)) {
-            return;
+        if (next == NULL || !dalcs_reader_is_number(next)) {
+            break;
+        }
+        if (!dalcs_reader_list_number(reader, k == 0 ? quantity : DALCS_PLAIN, "a number",
+                                      &value[k])) {
+            return false;
         }
     }
+    stimulus->ac_real = value[0] * cos(value[1] * degree);
+    stimulus->ac_imaginary = value[0] * sin(value[1] * degree);
+    return true;
 }
 
 static bool read_dc(struct dalcs_reader *reader, enum dalcs_quantity quantity,
@@ -65,6 +72,7 @@ static bool takes_parasitic(struct dalcs_reader *reader, enum dalcs_quantity qua
 static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantity,
                         struct dalcs_stimulus *stimulus, struct dalcs_parasitics *parasitics) {
     bool has_function = false;
+    bool has_ac = false;
     const struct dalcs_token *token;
     while ((token = dalcs_reader_peek(reader, 0)) != NULL) {
         if (dalcs_reader_take_word(reader, "dc")) {
@@ -77,7 +85,10 @@ static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantit
                 return;
             }
         } else if (dalcs_reader_take_word(reader, "ac")) {
-            skip_ac(reader);
+            if (!read_ac(reader, quantity, stimulus)) {
+                return;
+            }
+            has_ac = true;
         } else if (token->kind == DALCS_TOKEN_WORD && dalcs_waveform_card_is_name(token->text)) {
             if (has_function) {
                 dalcs_builder_error(reader->builder, token, NULL, "a second source function");
@@ -101,6 +112,9 @@ static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantit
     }
     if (!stimulus->has_dc && !has_function) {
         stimulus->has_dc = true;
+        if (has_ac) {
+            return; /* a source for .ac: 0 is meant */
+        }
         dalcs_builder_warn(reader->builder, reader->card->token, NULL,
                            "source '%s' has no value: it is 0", reader->card->token->text);
     }

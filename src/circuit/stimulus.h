@@ -32,6 +32,7 @@ struct dalcs_stimulus {
     enum dalcs_stimulus_kind kind;
     double dc; /* the card's DC value; see has_dc */
     bool has_dc;
+    double ac_real, ac_imaginary; /* of the card's AC magnitude and phase; V or A */
 
     union {
         /* offset + amplitude exp(-damping (t - delay)) sin(2 pi frequency (t - delay) + phase);

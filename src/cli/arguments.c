@@ -22,7 +22,8 @@ enum {
     DUMP,
     ALL_SIGNALS,
     ENERGY,
-    ASCII
+    ASCII,
+    SPLIT_STEPS
 };
 
 static const struct option option[] = {
@@ -39,6 +40,7 @@ static const struct option option[] = {
     {"all-signals", no_argument, NULL, ALL_SIGNALS},
     {"energy", no_argument, NULL, ENERGY},
     {"ascii", no_argument, NULL, ASCII},
+    {"split-steps", no_argument, NULL, SPLIT_STEPS},
     {"quiet", no_argument, NULL, 'q'},
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
@@ -190,6 +192,9 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return DALCS_OK;
     case ASCII:
         arguments->ascii = true;
+        return DALCS_OK;
+    case SPLIT_STEPS:
+        arguments->split_steps = true;
         return DALCS_OK;
     case 'q':
         arguments->quiet = true;

@@ -21,8 +21,9 @@ struct dalcs_arguments {
     bool ascii; /* raw files as text */
     bool batch; /* as ngspice -b: outputs are raw files whatever their names, tables are printed
                         when there is none */
-    const char *log; /* of -b: where what is printed goes, or NULL */
-    bool help;       /* asked for: nothing else is set */
+    const char *log;  /* of -b: where what is printed goes, or NULL */
+    bool split_steps; /* of .step into several plots of a raw file */
+    bool help;        /* asked for: nothing else is set */
 };
 
 /* DALCS_E_OPTION when the command line makes no sense. Messages go to cli->err. */

@@ -2,6 +2,7 @@
 #include "measurements.h"
 
 #include <math.h>
+#include <string.h>
 
 static void write_measurement(FILE *out, const struct dalcs_measurement *m) {
     if (!m->found) {
@@ -32,14 +33,26 @@ static void write_fourier(FILE *out, const struct dalcs_fourier *f) {
     }
 }
 
+/* A line before the first of each step. */
+static const char *write_step(FILE *out, const char *step, const char *last) {
+    if (step != NULL && (last == NULL || strcmp(step, last) != 0)) {
+        fprintf(out, "step %s\n", step);
+    }
+    return step;
+}
+
 void dalcs_measurements_write(FILE *out, const struct dalcs_report *report) {
+    const char *step = NULL;
     if (report->n_measurements > 0) {
         fputc('\n', out);
     }
     for (size_t k = 0; k < report->n_measurements; k++) {
+        step = write_step(out, report->measurement[k].step, step);
         write_measurement(out, &report->measurement[k]);
     }
+    step = NULL;
     for (size_t k = 0; k < report->n_fourier; k++) {
+        step = write_step(out, report->fourier[k].step, step);
         write_fourier(out, &report->fourier[k]);
     }
 }

@@ -4,26 +4,28 @@
 #include "memory.h"
 #include "report.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 static enum dalcs_status init_tables(struct dalcs_outputs *outputs,
-                                     const struct dalcs_arguments *arguments,
-                                     const struct dalcs_request *request) {
+                                     const struct dalcs_arguments *arguments, bool ascii,
+                                     enum dalcs_analysis main) {
     outputs->table = dalcs_alloc(arguments->n_outputs, sizeof *outputs->table);
     if (!outputs->table) {
         return DALCS_E_NOMEM;
     }
     for (size_t i = 0; i < arguments->n_outputs; i++) {
+        struct dalcs_table *table = &outputs->table[outputs->n_tables++];
         const char *path = arguments->output[i];
         const struct dalcs_table_format *format =
             arguments->batch ? &dalcs_raw_format : dalcs_table_find_format(path);
-        if (format == &dalcs_raw_format && (arguments->ascii || request->ascii)) {
+        if (format == &dalcs_raw_format && (arguments->ascii || ascii)) {
             format = &dalcs_raw_ascii_format;
         }
-        enum dalcs_status status = dalcs_table_init_as(&outputs->table[outputs->n_tables++], path,
-                                                       format, request->transient);
+        enum dalcs_status status = dalcs_table_init_as(table, path, format, main);
+        table->splits_steps = arguments->split_steps;
         if (status != DALCS_OK) {
             return status;
         }
@@ -32,16 +34,15 @@ static enum dalcs_status init_tables(struct dalcs_outputs *outputs,
 }
 
 enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
-                                     const struct dalcs_arguments *arguments,
-                                     const struct dalcs_request *request, double start,
-                                     double stop) {
+                                     const struct dalcs_arguments *arguments, bool ascii,
+                                     enum dalcs_analysis main, double start, double stop) {
     *outputs = (struct dalcs_outputs){.report_path = arguments->report};
-    enum dalcs_status status = init_tables(outputs, arguments, request);
+    enum dalcs_status status = init_tables(outputs, arguments, ascii, main);
     if (status != DALCS_OK) {
         dalcs_outputs_finish(outputs);
         return status;
     }
-    if (arguments->plot && request->transient) {
+    if (arguments->plot && main == DALCS_TRANSIENT && stop > start) {
         outputs->has_figure = true;
         dalcs_figure_init(&outputs->figure, arguments->plot, start, stop);
     }
@@ -57,7 +58,7 @@ enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs,
             return status;
         }
     }
-    if (outputs->has_figure) {
+    if (outputs->has_figure && plot->step == 0 && !outputs->figure.plot) {
         enum dalcs_status status = dalcs_figure_begin(&outputs->figure, plot);
         if (status != DALCS_OK) {
             return status;
@@ -69,14 +70,28 @@ enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs,
             return status;
         }
     }
+    if (plot->is_complex) {
+        free(outputs->magnitude);
+        outputs->magnitude = dalcs_alloc(plot->n_signals, sizeof(double));
+        if (!outputs->magnitude) {
+            return DALCS_E_NOMEM;
+        }
+    }
     return dalcs_measure_begin(&outputs->measure[plot->analysis], plot);
 }
 
 enum dalcs_status dalcs_outputs_row(struct dalcs_outputs *outputs, double time,
                                     const double *value) {
+    struct dalcs_measure *measure = &outputs->measure[outputs->analysis];
+    const struct dalcs_plot *plot = measure->plot;
     outputs->n_rows++;
-    dalcs_measure_row(&outputs->measure[outputs->analysis], time, value);
-    if (outputs->has_figure && outputs->analysis == DALCS_TRANSIENT) {
+    if (plot->is_complex) {
+        for (size_t i = 0; i < plot->n_signals; i++) {
+            outputs->magnitude[i] = hypot(value[2 * i], value[2 * i + 1]);
+        }
+    }
+    dalcs_measure_row(measure, time, plot->is_complex ? outputs->magnitude : value);
+    if (outputs->has_figure && outputs->figure.plot == plot) {
         dalcs_figure_row(&outputs->figure, time, value);
     }
     for (size_t i = 0; i < outputs->n_tables; i++) {
@@ -89,6 +104,11 @@ enum dalcs_status dalcs_outputs_row(struct dalcs_outputs *outputs, double time,
 }
 
 enum dalcs_status dalcs_outputs_end(struct dalcs_outputs *outputs) {
+    const enum dalcs_status lines =
+        dalcs_step_lines_add(&outputs->steps, &outputs->measure[outputs->analysis]);
+    if (lines != DALCS_OK) {
+        return lines;
+    }
     for (size_t i = 0; i < outputs->n_tables; i++) {
         enum dalcs_status status = dalcs_table_end(&outputs->table[i]);
         if (status != DALCS_OK) {
@@ -167,6 +187,12 @@ enum dalcs_status dalcs_outputs_close(struct dalcs_outputs *outputs, const struc
     enum dalcs_status worst = DALCS_OK;
     bool complete = run == DALCS_OK;
     for (size_t i = 0; i < outputs->n_tables; i++) {
+        if (outputs->table[i].n_left_out > 0) {
+            fprintf(cli->err,
+                    "dalcs: warning: '%s' has room for one result: %zu more left out; a .raw file "
+                    "holds all\n",
+                    outputs->table[i].path, outputs->table[i].n_left_out);
+        }
         enum dalcs_status status = close_table(&outputs->table[i], cli, out, complete);
         worst = status != DALCS_OK ? status : worst;
     }
@@ -190,7 +216,10 @@ void dalcs_outputs_finish(struct dalcs_outputs *outputs) {
         dalcs_figure_finish(&outputs->figure);
     }
     dalcs_atomic_file_discard(&outputs->report);
-    dalcs_measure_finish(&outputs->measure[0]);
-    dalcs_measure_finish(&outputs->measure[1]);
+    for (size_t i = 0; i < DALCS_N_ANALYSES; i++) {
+        dalcs_measure_finish(&outputs->measure[i]);
+    }
+    dalcs_step_lines_finish(&outputs->steps);
+    free(outputs->magnitude);
     *outputs = (struct dalcs_outputs){0};
 }

@@ -5,6 +5,7 @@
 #include "arguments.h"
 #include "figure.h"
 #include "measure.h"
+#include "step_lines.h"
 #include "table.h"
 
 struct dalcs_outputs {
@@ -14,15 +15,18 @@ struct dalcs_outputs {
     struct dalcs_figure figure;
     const char *report_path; /* NULL: none */
     struct dalcs_atomic_file report;
-    struct dalcs_measure measure[2]; /* by enum dalcs_analysis */
-    enum dalcs_analysis analysis;    /* of the plot being received */
+    struct dalcs_measure measure[DALCS_N_ANALYSES];
+    struct dalcs_step_lines steps; /* of .step */
+    enum dalcs_analysis analysis;  /* of the plot being received */
+    double *magnitude;             /* of complex signals; heap */
     size_t n_rows;
 };
 
-/* Touches no file. Times of the transient plot run from start to stop. */
+/* Touches no file. Times of the transient plot run from start to stop; main: the main analysis;
+ * ascii: the netlist wants raw files as text. */
 enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
-                                     const struct dalcs_arguments *arguments,
-                                     const struct dalcs_request *request, double start,
+                                     const struct dalcs_arguments *arguments, bool ascii,
+                                     enum dalcs_analysis main, double start,
                                      double stop) DALCS_MUST_CHECK;
 
 /* The callbacks of struct dalcs_sink. Begin opens all files, so that a path which cannot be

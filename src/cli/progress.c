@@ -43,9 +43,10 @@ void dalcs_progress_update(struct dalcs_progress *progress, double time, double 
     progress->shown = true;
     char done[DALCS_QUANTITY_SIZE], all[DALCS_QUANTITY_SIZE], speed[DALCS_QUANTITY_SIZE];
     double rate = time / elapsed;
+    const char *unit = progress->counts ? "points" : "s";
     fprintf(progress->stream, "\r%3.0f %%  %s of %s  %s  ", 100.0 * time / stop,
-            dalcs_quantity_write(done, time, "s", 3), dalcs_quantity_write(all, stop, "s", 3),
-            dalcs_quantity_write(speed, rate, "s/s", 3));
+            dalcs_quantity_write(done, time, unit, 3), dalcs_quantity_write(all, stop, unit, 3),
+            dalcs_quantity_write(speed, rate, progress->counts ? "points/s" : "s/s", 3));
     if (rate > 0.0) {
         write_left(progress->stream, (stop - time) / rate);
     }

@@ -9,12 +9,13 @@ struct dalcs_progress {
     FILE *stream;       /* borrowed; NULL: show nothing */
     double start, last; /* s on a monotonic clock */
     bool shown;
+    bool counts; /* points are reported, not times */
 };
 
 /* stream NULL shows nothing. */
 void dalcs_progress_init(struct dalcs_progress *progress, FILE *stream);
 
-/* Simulated time of stop, in s. Redraws at most five times a second. */
+/* Simulated time of stop, in s, or points of all. Redraws at most five times a second. */
 void dalcs_progress_update(struct dalcs_progress *progress, double time, double stop);
 
 /* Erases the line. */

@@ -8,6 +8,7 @@
 #include "print_table.h"
 #include "progress.h"
 #include "quantity.h"
+#include "script.h"
 #include "summary.h"
 #include "times.h"
 
@@ -20,14 +21,15 @@ struct run {
     struct dalcs_outputs outputs;
     struct dalcs_print_table printed;
     struct dalcs_progress progress;
-    double time; /* s, how far the run has come */
+    double time;     /* s, how far the run has come */
+    bool has_script; /* a .control block says what is run */
 };
 
 static const char help[] =
     "usage: dalcs run FILE [options]\n"
     "\n"
-    "Runs the .op and .tran of a SPICE netlist. Diodes and switches are ideal unless the netlist\n"
-    "says otherwise.\n"
+    "Runs the .op, .dc, .ac and .tran of a SPICE netlist, for each .step. Diodes and switches are\n"
+    "ideal unless the netlist says otherwise.\n"
     "\n"
     "  -o, --output FILE   write waveforms; the format is that of the name, .csv or .raw (may be\n"
     "                      repeated; without it FILE's name with .raw, in the current folder)\n"
@@ -48,6 +50,7 @@ static const char help[] =
     "      --all-signals   print the measurements of all signals, not of the first 24\n"
     "      --energy        print where the energy came from and where it went\n"
     "      --ascii         write raw files as text (default: .options filetype, else binary)\n"
+    "      --split-steps   in a raw file, make each step of .step a plot of its own\n"
     "  -q, --quiet         print nothing but warnings and errors\n"
     "  -h, --help          this text\n"
     "\n"
@@ -62,6 +65,7 @@ static enum dalcs_status check_interrupt(const struct run *run) {
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct run *run = user;
     dalcs_print_table_begin(&run->printed, plot);
+    run->progress.counts = plot->analysis != DALCS_TRANSIENT;
     return dalcs_outputs_begin(&run->outputs, plot);
 }
 
@@ -80,7 +84,7 @@ static enum dalcs_status end(void *user) {
 
 static enum dalcs_status progress(void *user, double time, double stop) {
     struct run *run = user;
-    run->time = time;
+    run->time = run->progress.counts ? run->time : time;
     dalcs_progress_update(&run->progress, time, stop);
     return check_interrupt(run);
 }
@@ -111,7 +115,7 @@ static void write_messages(const struct dalcs_cli *cli, const struct dalcs_sessi
 
 /* What was asked for on the command line and cannot apply to this netlist. */
 static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_arguments *arguments,
-                        const struct dalcs_request *request) {
+                        const struct dalcs_request *request, enum dalcs_analysis main) {
     const struct {
         const char *name;
         bool given;
@@ -121,11 +125,20 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
                   {"--energy", arguments->energy}};
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
-        if (option[i].given && !request->transient) {
+        const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
+        if (option[i].given && (is_plot ? !request->transient : main != DALCS_TRANSIENT)) {
             fprintf(cli->err, "dalcs: warning: the netlist has no .tran: %s has no effect\n",
                     option[i].name);
         }
     }
+}
+
+/* The one that a file with room for one result holds. */
+static enum dalcs_analysis main_analysis(const struct dalcs_request *request) {
+    return request->transient  ? DALCS_TRANSIENT
+           : request->ac       ? DALCS_AC
+           : request->dc_sweep ? DALCS_DC_SWEEP
+                               : DALCS_OPERATING_POINT;
 }
 
 /* ---- The run -------------------------------------------------------------------------------- */
@@ -142,16 +155,37 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
         fprintf(out, "  stopped   at %s: %s\n", dalcs_quantity_write(text, run->time, "s", 6),
                 dalcs_status_text(status));
     }
-    dalcs_summary_write_signals(out, &run->outputs.measure[DALCS_OPERATING_POINT],
-                                arguments->all_signals);
-    dalcs_summary_write_signals(out, &run->outputs.measure[DALCS_TRANSIENT],
-                                arguments->all_signals);
+    dalcs_summary_write_sides(out, report);
+
+    static const enum dalcs_analysis shown[] = {DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_AC,
+                                                DALCS_TRANSIENT};
+
+    for (size_t i = 0; i < DALCS_N_ANALYSES; i++) {
+        const struct dalcs_plot *plot = run->outputs.measure[shown[i]].plot;
+        if (plot != NULL && plot->n_steps > 1) {
+            dalcs_step_lines_write(out, &run->outputs.steps, shown[i]);
+        } else {
+            dalcs_summary_write_signals(out, &run->outputs.measure[shown[i]],
+                                        arguments->all_signals);
+        }
+    }
     dalcs_summary_write_jumps(out, report);
     if (arguments->energy) {
         dalcs_summary_write_energy(out, report);
     }
-    dalcs_measurements_write(out, report);
+    if (!run->has_script) {
+        dalcs_measurements_write(out, report);
+    }
     fputc('\n', out);
+}
+
+/* What a run of a script has measured: the next one has its own. */
+static void tell_measured(void *user, struct dalcs_session *session, enum dalcs_status status) {
+    const struct run *run = user;
+    const struct dalcs_report *report = dalcs_session_report(session);
+    if (status == DALCS_OK && report != NULL) {
+        dalcs_measurements_write(run->cli->out, report);
+    }
 }
 
 /* Runs a session that has read its netlist and ends all files. */
@@ -171,7 +205,14 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     options.energy = arguments->report || arguments->energy;
     const struct dalcs_sink sink = {run, begin, row, end, progress};
     dalcs_progress_init(&run->progress, run->cli->err_is_terminal ? run->cli->err : NULL);
-    enum dalcs_status status = dalcs_session_run(session, &options, &sink);
+    const struct dalcs_script_host host = {.session = session,
+                                           .options = &options,
+                                           .sink = &sink,
+                                           .out = run->cli->out,
+                                           .user = run,
+                                           .after_run = tell_measured};
+    enum dalcs_status status =
+        run->has_script ? dalcs_script_run(&host) : dalcs_session_run(session, &options, &sink);
     dalcs_progress_finish(&run->progress);
 
     size_t n_before = *n_written;
@@ -203,7 +244,14 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         return status;
     }
     const struct dalcs_request request = dalcs_session_request(session);
-    warn_unused(cli, arguments, &request);
+    enum dalcs_analysis main = main_analysis(&request);
+    struct run run = {.cli = cli};
+    status = dalcs_script_look(session, &run.has_script, &main);
+    if (status != DALCS_OK) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+        return status;
+    }
+    warn_unused(cli, arguments, &request, main);
     struct dalcs_times times = {0};
     if (arguments->at) {
         status = dalcs_times_read(&times, cli, arguments->at,
@@ -212,14 +260,13 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
             return status;
         }
     }
-    struct run run = {.cli = cli};
     if (arguments->batch && arguments->n_outputs == 0 && (request.prints || !request.transient)) {
         run.printed.out = cli->out;
     }
     bool at = times.n > 0;
-    status =
-        dalcs_outputs_init(&run.outputs, arguments, &request, at ? times.time[0] : request.start,
-                           at ? times.time[times.n - 1] : request.stop);
+    status = dalcs_outputs_init(&run.outputs, arguments, request.ascii, main,
+                                at ? times.time[0] : request.start,
+                                at ? times.time[times.n - 1] : request.stop);
     if (status == DALCS_OK) {
         status = run_session(&run, session, arguments, &times, &n_written);
         dalcs_outputs_finish(&run.outputs);

@@ -149,7 +149,10 @@ void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report) {
 }
 
 static const char *unit_name(enum dalcs_unit unit) {
-    return unit == DALCS_VOLT ? "V" : "A";
+    static const char *const name[] = {
+        [DALCS_VOLT] = "V",        [DALCS_AMPERE] = "A",     [DALCS_UNIT_SECOND] = "s",
+        [DALCS_UNIT_HERTZ] = "Hz", [DALCS_UNIT_OHM] = "ohm", [DALCS_UNIT_NONE] = ""};
+    return name[unit];
 }
 
 /* What is round-off beside the signal's own size is shown as 0. */
@@ -160,6 +163,45 @@ static void write_cell(FILE *out, const struct dalcs_measure_signal *signal, dou
         value = 0.0;
     }
     fprintf(out, " %11s", dalcs_quantity_write_column(text, value, unit_name(unit), DIGITS));
+}
+
+static void write_head(FILE *out, const struct dalcs_plot *plot, int width) {
+    static const char *const head[] = {
+        [DALCS_OPERATING_POINT] = "         op",
+        [DALCS_TRANSIENT] = "        min         max     average         rms       final",
+        [DALCS_DC_SWEEP] = "        min         max       final",
+        [DALCS_AC] = "      |min|       |max|     |final|"};
+    if (plot->analysis == DALCS_DC_SWEEP || plot->analysis == DALCS_AC) {
+        fprintf(out, "\n  %s over %s", plot->analysis == DALCS_AC ? ".ac" : ".dc", plot->scale);
+    }
+    fprintf(out, "\n  %-*s %s\n", width, "signal", head[plot->analysis]);
+}
+
+static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i) {
+    const struct dalcs_plot *plot = measure->plot;
+    const struct dalcs_measure_signal *signal = &measure->signal[i];
+    if (plot->analysis != DALCS_OPERATING_POINT) {
+        write_cell(out, signal, signal->min, plot->unit[i]);
+        write_cell(out, signal, signal->max, plot->unit[i]);
+    }
+    if (plot->analysis == DALCS_TRANSIENT) {
+        write_cell(out, signal, dalcs_measure_average(measure, i), plot->unit[i]);
+        write_cell(out, signal, dalcs_measure_rms(measure, i), plot->unit[i]);
+    }
+    write_cell(out, signal, signal->final, plot->unit[i]);
+}
+
+void dalcs_summary_write_sides(FILE *out, const struct dalcs_report *report) {
+    if (report->n_sides == 0) {
+        return;
+    }
+    fputs("  frozen    ", out);
+    for (size_t i = 0; i < report->n_sides && i < MAX_SIGNALS; i++) {
+        fprintf(out, "%s%s %s%s", i > 0 ? ", " : "", report->side[i].element,
+                report->side[i].on ? "on" : "off",
+                report->side[i].degenerate ? " (or the other way)" : "");
+    }
+    fputs(report->n_sides > MAX_SIGNALS ? ", ...\n" : "\n", out);
 }
 
 void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure, bool all) {
@@ -173,23 +215,10 @@ void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure,
         int length = (int)strlen(plot->name[i]);
         width = length > width ? length : width;
     }
-    bool transient = plot->analysis == DALCS_TRANSIENT;
-    if (transient) {
-        fprintf(out, "\n  %-*s %11s %11s %11s %11s %11s\n", width, "signal", "min", "max",
-                "average", "rms", "final");
-    } else {
-        fprintf(out, "\n  %-*s %11s\n", width, "signal", "op");
-    }
+    write_head(out, plot, width);
     for (size_t i = 0; i < n; i++) {
-        const struct dalcs_measure_signal *signal = &measure->signal[i];
         fprintf(out, "  %-*s", width, plot->name[i]);
-        if (transient) {
-            write_cell(out, signal, signal->min, plot->unit[i]);
-            write_cell(out, signal, signal->max, plot->unit[i]);
-            write_cell(out, signal, dalcs_measure_average(measure, i), plot->unit[i]);
-            write_cell(out, signal, dalcs_measure_rms(measure, i), plot->unit[i]);
-        }
-        write_cell(out, signal, signal->final, plot->unit[i]);
+        write_cells(out, measure, i);
         fputc('\n', out);
     }
     if (n < plot->n_signals) {

@@ -9,6 +9,9 @@
 /* Title, size, work, certificate; three or four lines. */
 void dalcs_summary_write_run(FILE *out, const struct dalcs_report *report);
 
+/* Where .ac keeps diodes and switches; nothing without .ac. */
+void dalcs_summary_write_sides(FILE *out, const struct dalcs_report *report);
+
 /* A table, of the first 24 signals or of all; nothing when there were no rows. */
 void dalcs_summary_write_signals(FILE *out, const struct dalcs_measure *measure, bool all);
 

@@ -536,7 +536,7 @@ static enum dalcs_status expand_scope(struct dalcs_language *language, struct da
 enum dalcs_status dalcs_deck_expand(struct dalcs_deck *deck, const struct dalcs_netlist *netlist,
                                     struct dalcs_diag *diag) {
     deck->hides_all = netlist->misses_file;
-    if (!netlist->has_language) {
+    if (!netlist->has_language && deck->n_overrides == 0) {
         deck->card = netlist->card;
         deck->n_cards = netlist->n_cards;
         return DALCS_OK;
@@ -555,7 +555,13 @@ enum dalcs_status dalcs_deck_expand(struct dalcs_deck *deck, const struct dalcs_
     if (language->top == NULL) {
         return DALCS_E_NOMEM;
     }
-    const enum dalcs_status status = expand_scope(language, language->top);
+    enum dalcs_status status = dalcs_override_parameters(language);
+    if (status == DALCS_OK) {
+        status = expand_scope(language, language->top);
+    }
+    if (status == DALCS_OK && deck->n_overrides > 0) {
+        status = dalcs_override_cards(language);
+    }
     deck->card = deck->own;
     return language->out_of_memory ? DALCS_E_NOMEM : status;
 }

@@ -11,9 +11,13 @@
 
 #include "names.h"
 #include "netlist.h"
+#include "override.h"
 
-/* Zero-initialise, expand, then finish. Borrows from the netlist. */
+/* Zero-initialise, set overrides if there are any, expand, then finish. Borrows from the netlist. */
 struct dalcs_deck {
+    const struct dalcs_override *override; /* [n_overrides], borrowed */
+    size_t n_overrides;
+
     const struct dalcs_card *card; /* those of the netlist when nothing was to be expanded */
     size_t n_cards;
     bool has_errors; /* some were reported; they may hide others: */
@@ -35,6 +39,11 @@ const char *dalcs_deck_port(const struct dalcs_deck *deck, const char *name);
 
 /* The value of one of the netlist's own parameters; false when there is none of that name. */
 bool dalcs_deck_parameter(const struct dalcs_deck *deck, const char *name, double *value);
+/* Is there a parameter of this name outside of subcircuits, does anything use it, and which is the one most like it (NULL:
+ * none)? */
+bool dalcs_deck_has_parameter(const struct dalcs_deck *deck, const char *name);
+bool dalcs_deck_uses_parameter(const struct dalcs_deck *deck, const char *name);
+const char *dalcs_deck_nearest_parameter(const struct dalcs_deck *deck, const char *name);
 
 void dalcs_deck_finish(struct dalcs_deck *deck);
 

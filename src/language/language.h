@@ -215,6 +215,14 @@ bool dalcs_scope_compile(struct dalcs_language *language, const struct dalcs_sco
                          const struct dalcs_token *token, int n,
                          const struct dalcs_names *arguments, struct dalcs_expression **expression);
 
+/* ---- override.c: other values than the text says ----------------------------------------------- */
+
+/* Those of parameters, of the top scope; also declares what .step steps and no .param sets. */
+enum dalcs_status dalcs_override_parameters(struct dalcs_language *language) DALCS_MUST_CHECK;
+
+/* Those of elements and models, in the deck's flat cards. */
+enum dalcs_status dalcs_override_cards(struct dalcs_language *language) DALCS_MUST_CHECK;
+
 /* ---- evaluate.c -------------------------------------------------------------------------------- */
 
 enum dalcs_outcome { DALCS_OUTCOME_VALUE, DALCS_OUTCOME_WAITS, DALCS_OUTCOME_WRONG };

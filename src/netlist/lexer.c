@@ -267,6 +267,16 @@ static enum dalcs_status continue_card(struct dalcs_lexer *lexer, size_t plus, s
     return DALCS_OK;
 }
 
+/* A line of .control ... .endc, for whoever runs it. */
+static enum dalcs_status add_script_line(struct dalcs_lexer *lexer, size_t begin) {
+    struct dalcs_netlist *netlist = lexer->netlist;
+    DALCS_TRY(dalcs_grow(&netlist->script, &netlist->script_capacity, netlist->n_script_lines + 1,
+                         sizeof *netlist->script));
+    netlist->script[netlist->n_script_lines++] = (struct dalcs_source_line){
+        .source = lexer->source, .text = lexer->raw + begin, .number = lexer->line_number};
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin, size_t end) {
     lexer->line_number++;
     lexer->line = NULL;
@@ -282,7 +292,7 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
     }
     if (lexer->in_control) {
         lexer->in_control = !dalcs_lexer_starts_with(lexer, p, ".endc");
-        return DALCS_OK;
+        return lexer->in_control ? add_script_line(lexer, begin) : DALCS_OK;
     }
     if (p == end || lexer->raw[p] == '*' || lexer->raw[p] == ';') {
         return DALCS_OK;
@@ -311,9 +321,9 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
 
 /* A card that is not of a flat netlist of numbers. */
 static bool is_language(const struct dalcs_token *name) {
-    static const char *const words[] = {".param", ".params", ".csparam", ".global_param",
-                                        ".func",  ".subckt", ".ends",    ".global",
-                                        ".if",    ".elseif", ".else",    ".endif"};
+    static const char *const words[] = {
+        ".param",  ".params", ".csparam", ".global_param", ".func",  ".subckt", ".ends",
+        ".global", ".if",     ".elseif",  ".else",         ".endif", ".step"};
     for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
         if (strcmp(name->text, words[k]) == 0) {
             return true;

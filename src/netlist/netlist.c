@@ -149,8 +149,36 @@ enum dalcs_status dalcs_netlist_read_file(struct dalcs_netlist *netlist, const c
 
 void dalcs_netlist_finish(struct dalcs_netlist *netlist) {
     free(netlist->card);
+    free(netlist->script);
     dalcs_arena_finish(&netlist->arena);
     *netlist = (struct dalcs_netlist){0};
+}
+
+enum dalcs_status dalcs_netlist_add_card(struct dalcs_netlist *netlist,
+                                         const struct dalcs_source_line *line, const char *text,
+                                         struct dalcs_diag *diag) {
+    struct dalcs_source *source = dalcs_arena_alloc(&netlist->arena, 1, sizeof *source);
+    if (source == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    *source = *line->source;
+    source->outer = line->source; /* its first line is no title */
+    const size_t length = strlen(text);
+    struct dalcs_lexer lexer = {.netlist = netlist,
+                                .source = source,
+                                .diag = diag,
+                                .line_number = line->number - 1,
+                                .length = length + 1};
+    lexer.raw = dalcs_arena_alloc(&netlist->arena, length + 2, 1);
+    lexer.low = dalcs_arena_alloc(&netlist->arena, length + 2, 1);
+    if (lexer.raw == NULL || lexer.low == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    lexer.raw[0] = '.';
+    memcpy(lexer.raw + 1, text, length);
+    const enum dalcs_status status = read_lines(&lexer, 0);
+    free(lexer.token);
+    return status;
 }
 
 /* Characters (UTF-8 code points) in text[0..bytes-1]. */

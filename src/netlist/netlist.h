@@ -73,6 +73,8 @@ struct dalcs_netlist {
     struct dalcs_card *card;
     size_t n_cards;
     size_t capacity;
+    struct dalcs_source_line *script; /* the lines between .control and .endc, as written */
+    size_t n_script_lines, script_capacity;
     bool has_errors;   /* of spelling: a circuit cannot be built, but may be looked at for more */
     bool misses_file;  /* one that it includes could not be read: much may be undefined */
     bool has_language; /* expressions, parameters, subcircuits or conditions: must be expanded */
@@ -91,6 +93,12 @@ enum dalcs_status dalcs_netlist_read_text(struct dalcs_netlist *netlist, const c
 /* The same from a file. DALCS_E_IO, with a message, when it cannot be read. */
 enum dalcs_status dalcs_netlist_read_file(struct dalcs_netlist *netlist, const char *path,
                                           struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
+/* Adds one more card, as if it stood on this line: text without its first dot, such as "tran 1u 1m".
+ * `line` is of this netlist. Errors as above. */
+enum dalcs_status dalcs_netlist_add_card(struct dalcs_netlist *netlist,
+                                         const struct dalcs_source_line *line, const char *text,
+                                         struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
 enum { DALCS_MOST_CARDS = 20000000 };
 

@@ -1,5 +1,6 @@
 /* csv.c - comma-separated values: one header line, then 17 significant digits, the decimal point a
- * point whatever the locale. An operating point alone is one row at time 0. */
+ * point whatever the locale. An operating point alone is one row at time 0. The values of a .step come
+ * first, then the scale; of complex signals the real and the imaginary part. */
 #include "decimal.h"
 #include "memory.h"
 #include "table.h"
@@ -9,8 +10,9 @@
 
 struct csv {
     struct dalcs_decimal decimal;
-    size_t n_signals;
-    char *line; /* room for one row */
+    size_t n_parameters, n_values; /* before and after the scale */
+    double *parameter;             /* [n_parameters] of this step */
+    char *line;                    /* room for one row */
 };
 
 /* Names with a comma or a quote, v(a,b), are quoted as RFC 4180 says. */
@@ -29,29 +31,67 @@ static void write_name(FILE *stream, const char *name) {
     fputc('"', stream);
 }
 
-static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plot *plot) {
-    struct csv *csv = state;
-    dalcs_decimal_init(&csv->decimal);
-    csv->n_signals = plot->n_signals;
-    free(csv->line);
-    csv->line = dalcs_alloc(plot->n_signals + 1, DALCS_DECIMAL_SIZE);
-    if (!csv->line) {
-        return DALCS_E_NOMEM;
+static void write_part(FILE *stream, const char *part, const char *name) {
+    const bool quotes = strpbrk(name, ",\"") != NULL;
+    fprintf(stream, quotes ? ",\"%s(" : ",%s(", part);
+    for (const char *c = name; *c; c++) {
+        fputs(*c == '"' ? "\"" : "", stream);
+        fputc(*c, stream);
     }
-    fputs("time", stream);
-    for (size_t i = 0; i < plot->n_signals; i++) {
+    fputs(quotes ? ")\"" : ")", stream);
+}
+
+static void write_header(FILE *stream, const struct dalcs_plot *plot) {
+    for (size_t i = 0; i < plot->n_parameters; i++) {
+        write_name(stream, plot->parameter[i]);
         fputc(',', stream);
-        write_name(stream, plot->name[i]);
+    }
+    write_name(stream, plot->scale);
+    for (size_t i = 0; i < plot->n_signals; i++) {
+        if (plot->is_complex) {
+            write_part(stream, "re", plot->name[i]);
+            write_part(stream, "im", plot->name[i]);
+        } else {
+            fputc(',', stream);
+            write_name(stream, plot->name[i]);
+        }
     }
     fputc('\n', stream);
+}
+
+/* The steps of .step follow one another below one header. */
+static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plot *plot) {
+    struct csv *csv = state;
+    const size_t n_values = plot->is_complex ? 2 * plot->n_signals : plot->n_signals;
+    const bool goes_on = plot->step > 0 && csv->n_values == n_values;
+    dalcs_decimal_init(&csv->decimal);
+    csv->n_values = n_values;
+    csv->n_parameters = plot->n_parameters;
+    free(csv->line);
+    free(csv->parameter);
+    csv->line = dalcs_alloc(plot->n_parameters + n_values + 1, DALCS_DECIMAL_SIZE);
+    csv->parameter = dalcs_alloc(plot->n_parameters, sizeof(double));
+    if (!csv->line || !csv->parameter) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t i = 0; i < plot->n_parameters; i++) {
+        csv->parameter[i] = plot->parameter_value[i];
+    }
+    if (!goes_on) {
+        write_header(stream, plot);
+    }
     return DALCS_OK;
 }
 
 static void row(void *state, FILE *stream, double time, const double *value) {
     const struct csv *csv = state;
     char *c = csv->line;
+    for (size_t i = 0; i < csv->n_parameters; i++) {
+        c += dalcs_decimal_write(&csv->decimal, csv->parameter[i], c);
+        *c++ = ',';
+    }
     c += dalcs_decimal_write(&csv->decimal, time, c);
-    for (size_t i = 0; i < csv->n_signals; i++) {
+    for (size_t i = 0; i < csv->n_values; i++) {
         *c++ = ',';
         c += dalcs_decimal_write(&csv->decimal, value[i], c);
     }
@@ -67,6 +107,7 @@ static void end(void *state, FILE *stream) {
 static void finish(void *state) {
     struct csv *csv = state;
     free(csv->line);
+    free(csv->parameter);
 }
 
 const struct dalcs_table_format dalcs_csv_format = {

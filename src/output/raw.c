@@ -17,9 +17,11 @@
 
 struct raw {
     size_t n_columns, n_points;
-    bool has_time, is_ascii;
-    off_t points_at; /* file position of the number of points */
-    double *point;   /* [n_columns], and at least 1 */
+    size_t n_signals, n_parameters;
+    bool has_scale, is_complex, is_ascii;
+    off_t points_at;  /* file position of the number of points */
+    double *point;    /* [n_columns], of pairs where it is complex; and at least 1 */
+    double *constant; /* [n_parameters] of this step */
     struct dalcs_decimal decimal;
 };
 
@@ -50,33 +52,77 @@ static void write_title(FILE *stream, const char *title) {
     fputc('\n', stream);
 }
 
-static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plot *plot) {
-    struct raw *raw = state;
-    raw->has_time = plot->analysis == DALCS_TRANSIENT;
-    raw->n_columns = plot->n_signals + (raw->has_time ? 1 : 0);
-    raw->n_points = 0;
-    free(raw->point);
-    raw->point = dalcs_alloc(plot->n_signals + 1, sizeof(double));
-    if (!raw->point) {
-        return DALCS_E_NOMEM;
+static const char *type_of(enum dalcs_unit unit) {
+    static const char *const type[] = {
+        [DALCS_VOLT] = "voltage",     [DALCS_AMPERE] = "current",
+        [DALCS_UNIT_SECOND] = "time", [DALCS_UNIT_HERTZ] = "frequency",
+        [DALCS_UNIT_OHM] = "notype",  [DALCS_UNIT_NONE] = "notype"};
+    return type[unit];
+}
+
+/* ngspice calls the scale of a sweep by its kind. */
+static const char *scale_name(const struct dalcs_plot *plot) {
+    if (plot->analysis != DALCS_DC_SWEEP) {
+        return plot->scale;
     }
+    return plot->scale_unit == DALCS_VOLT     ? "v-sweep"
+           : plot->scale_unit == DALCS_AMPERE ? "i-sweep"
+                                              : plot->scale;
+}
+
+static void write_header(struct raw *raw, FILE *stream, const struct dalcs_plot *plot) {
+    static const char *const name[] = {[DALCS_OPERATING_POINT] = "Operating Point",
+                                       [DALCS_TRANSIENT] = "Transient Analysis",
+                                       [DALCS_DC_SWEEP] = "DC transfer characteristic",
+                                       [DALCS_AC] = "AC Analysis"};
     write_title(stream, plot->title ? plot->title : "");
     write_date(stream);
-    fprintf(stream, "Plotname: %s\n", raw->has_time ? "Transient Analysis" : "Operating Point");
-    fputs("Flags: real\n", stream);
+    fprintf(stream, "Plotname: %s\n", name[plot->analysis]);
+    fprintf(stream, "Flags: %s%s\n", raw->is_complex ? "complex" : "real",
+            plot->n_steps > 1 ? " stepped" : "");
     fprintf(stream, "No. Variables: %zu\nNo. Points: ", raw->n_columns);
     raw->points_at = ftello(stream);
     fprintf(stream, POINTS_FIELD "\n", raw->n_points);
     fprintf(stream, "Command: * ngspice-compatible, dalcs %s\nVariables:\n", dalcs_version());
     size_t column = 0;
-    if (raw->has_time) {
-        fprintf(stream, "\t%zu\ttime\ttime\n", column++);
+    if (raw->has_scale) {
+        fprintf(stream, "\t%zu\t%s\t%s\n", column++, scale_name(plot), type_of(plot->scale_unit));
+    }
+    for (size_t i = 0; i < plot->n_parameters; i++) {
+        fprintf(stream, "\t%zu\t%s\tnotype\n", column++, plot->parameter[i]);
     }
     for (size_t i = 0; i < plot->n_signals; i++) {
-        fprintf(stream, "\t%zu\t%s\t%s\n", column++, plot->name[i],
-                plot->unit[i] == DALCS_VOLT ? "voltage" : "current");
+        fprintf(stream, "\t%zu\t%s\t%s\n", column++, plot->name[i], type_of(plot->unit[i]));
     }
     fputs(raw->is_ascii ? "Values:\n" : "Binary:\n", stream);
+}
+
+/* The steps of .step follow one another in one plot, whose scale starts again with each; the values of
+ * the step are columns of their own. */
+static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plot *plot) {
+    struct raw *raw = state;
+    const bool has_scale = plot->analysis != DALCS_OPERATING_POINT;
+    const size_t n_columns = plot->n_signals + plot->n_parameters + (has_scale ? 1 : 0);
+    const bool goes_on = plot->step > 0 && n_columns == raw->n_columns;
+    raw->has_scale = has_scale;
+    raw->is_complex = plot->is_complex;
+    raw->n_signals = plot->n_signals;
+    raw->n_parameters = plot->n_parameters;
+    raw->n_columns = n_columns;
+    free(raw->point);
+    free(raw->constant);
+    raw->point = dalcs_alloc(2 * (n_columns + 1), sizeof(double));
+    raw->constant = dalcs_alloc(plot->n_parameters, sizeof(double));
+    if (!raw->point || !raw->constant) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t i = 0; i < plot->n_parameters; i++) {
+        raw->constant[i] = plot->parameter_value[i];
+    }
+    if (!goes_on) {
+        raw->n_points = 0;
+        write_header(raw, stream, plot);
+    }
     return DALCS_OK;
 }
 
@@ -87,24 +133,48 @@ static enum dalcs_status begin_ascii(void *state, FILE *stream, const struct dal
     return begin(state, stream, plot);
 }
 
+/* A row as it stands in the file, into raw->point. */
+static void fill_point(struct raw *raw, double time, const double *value) {
+    const size_t width = raw->is_complex ? 2 : 1;
+    double *next = raw->point;
+    if (raw->has_scale) {
+        *next = time;
+        next += width;
+    }
+    for (size_t i = 0; i < raw->n_parameters; i++) {
+        *next = raw->constant[i];
+        next += width;
+    }
+    memcpy(next, value, width * raw->n_signals * sizeof(double));
+}
+
 static void row(void *state, FILE *stream, double time, const double *value) {
     struct raw *raw = state;
-    size_t n_before = raw->has_time ? 1 : 0;
-    raw->point[0] = time;
-    memcpy(raw->point + n_before, value, (raw->n_columns - n_before) * sizeof(double));
-    fwrite(raw->point, sizeof(double), raw->n_columns, stream);
+    fill_point(raw, time, value);
+    fwrite(raw->point, (raw->is_complex ? 2 : 1) * sizeof(double), raw->n_columns, stream);
     raw->n_points++;
 }
 
-/* " 12\t1e-06\n\t5\n\t0.1\n\n": the number of the point, then a value on each line. */
+static void write_number(struct raw *raw, FILE *stream, double number) {
+    char text[DALCS_DECIMAL_SIZE];
+    size_t n = dalcs_decimal_write(&raw->decimal, number, text);
+    fwrite(text, 1, n, stream);
+}
+
+/* " 12\t1e-06\n\t5\n\t0.1\n\n": the number of the point, then a value on each line, "re,im" of a complex
+ * one. */
 static void row_ascii(void *state, FILE *stream, double time, const double *value) {
     struct raw *raw = state;
+    fill_point(raw, time, value);
     fprintf(stream, " %zu", raw->n_points++);
     for (size_t i = 0; i < raw->n_columns; i++) {
-        char text[DALCS_DECIMAL_SIZE];
-        double number = raw->has_time ? (i == 0 ? time : value[i - 1]) : value[i];
-        size_t n = dalcs_decimal_write(&raw->decimal, number, text);
-        fprintf(stream, "\t%.*s\n", (int)n, text);
+        fputc('\t', stream);
+        write_number(raw, stream, raw->point[raw->is_complex ? 2 * i : i]);
+        if (raw->is_complex) {
+            fputc(',', stream);
+            write_number(raw, stream, raw->point[2 * i + 1]);
+        }
+        fputc('\n', stream);
     }
     fputc('\n', stream);
 }
@@ -120,6 +190,7 @@ static void end(void *state, FILE *stream) {
 static void finish(void *state) {
     struct raw *raw = state;
     free(raw->point);
+    free(raw->constant);
 }
 
 const struct dalcs_table_format dalcs_raw_format = {

@@ -173,12 +173,19 @@ static void write_infeasible(struct dalcs_json *json, const struct dalcs_report 
     dalcs_json_close(json, '}');
 }
 
+static void write_step(struct dalcs_json *json, const char *step) {
+    if (step != NULL) {
+        dalcs_json_string(json, "step", step);
+    }
+}
+
 static void write_measurements(struct dalcs_json *json, const struct dalcs_report *report) {
     dalcs_json_open(json, "measurements", '[', false);
     for (size_t i = 0; i < report->n_measurements; i++) {
         const struct dalcs_measurement *m = &report->measurement[i];
         dalcs_json_open(json, NULL, '{', true);
         dalcs_json_string(json, "name", m->name);
+        write_step(json, m->step);
         if (m->found) {
             dalcs_json_number(json, "value", m->value);
         } else {
@@ -202,6 +209,7 @@ static void write_fourier(struct dalcs_json *json, const struct dalcs_report *re
         const struct dalcs_fourier *f = &report->fourier[i];
         dalcs_json_open(json, NULL, '{', false);
         dalcs_json_string(json, "signal", f->signal);
+        write_step(json, f->step);
         dalcs_json_number(json, "frequency", f->frequency);
         dalcs_json_number(json, "from", f->from);
         dalcs_json_number(json, "to", f->to);

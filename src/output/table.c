@@ -20,11 +20,20 @@ const struct dalcs_table_format *dalcs_table_find_format(const char *path) {
     return NULL;
 }
 
+static int rank_of(enum dalcs_analysis analysis) {
+    static const int rank[] = {
+        [DALCS_OPERATING_POINT] = 0, [DALCS_DC_SWEEP] = 1, [DALCS_AC] = 2, [DALCS_TRANSIENT] = 3};
+    return rank[analysis];
+}
+
+enum dalcs_analysis dalcs_table_main_analysis(enum dalcs_analysis a, enum dalcs_analysis b) {
+    return rank_of(a) >= rank_of(b) ? a : b;
+}
+
 enum dalcs_status dalcs_table_init_as(struct dalcs_table *table, const char *path,
                                       const struct dalcs_table_format *format,
-                                      bool transient_expected) {
-    *table = (struct dalcs_table){
-        .format = format, .path = path, .transient_expected = transient_expected};
+                                      enum dalcs_analysis main) {
+    *table = (struct dalcs_table){.format = format, .path = path, .main = main};
     if (!table->format) {
         return DALCS_E_OPTION;
     }
@@ -33,8 +42,8 @@ enum dalcs_status dalcs_table_init_as(struct dalcs_table *table, const char *pat
 }
 
 enum dalcs_status dalcs_table_init(struct dalcs_table *table, const char *path,
-                                   bool transient_expected) {
-    return dalcs_table_init_as(table, path, dalcs_table_find_format(path), transient_expected);
+                                   enum dalcs_analysis main) {
+    return dalcs_table_init_as(table, path, dalcs_table_find_format(path), main);
 }
 
 static enum dalcs_status check_stream(struct dalcs_table *table) {
@@ -47,10 +56,32 @@ static enum dalcs_status check_stream(struct dalcs_table *table) {
     return DALCS_E_IO;
 }
 
+/* Has this file no room for the plot? */
+static bool is_left_out(struct dalcs_table *table, const struct dalcs_plot *plot) {
+    const bool is_main = rank_of(plot->analysis) >= rank_of(table->main);
+    const bool is_next = plot->step > 0;
+    table->skipping = false;
+    if (table->format->one_plot) {
+        const bool is_second = is_main && !is_next && table->has_plot;
+        table->n_left_out += is_second ? 1 : 0;
+        table->skipping = !is_main || is_second || (is_next && table->n_left_out > 0);
+        table->has_plot = table->has_plot || is_main;
+    }
+    return table->skipping;
+}
+
+/* "a buck converter: r = 100" */
+static const char *title_of_step(const struct dalcs_plot *plot, char *text, size_t size) {
+    size_t n = (size_t)snprintf(text, size, "%s:", plot->title ? plot->title : "");
+    for (size_t i = 0; i < plot->n_parameters && n < size; i++) {
+        n += (size_t)snprintf(text + n, size - n, " %s = %.9g", plot->parameter[i],
+                              plot->parameter_value[i]);
+    }
+    return text;
+}
+
 enum dalcs_status dalcs_table_begin(struct dalcs_table *table, const struct dalcs_plot *plot) {
-    table->skipping = table->format->one_plot && table->transient_expected &&
-                      plot->analysis == DALCS_OPERATING_POINT;
-    if (table->skipping) {
+    if (is_left_out(table, plot)) {
         return DALCS_OK;
     }
     if (!table->file.stream) {
@@ -60,6 +91,15 @@ enum dalcs_status dalcs_table_begin(struct dalcs_table *table, const struct dalc
         }
     }
     errno = 0;
+    char title[256];
+    struct dalcs_plot single;
+    if (table->splits_steps && plot->n_steps > 1) {
+        single = *plot;
+        single.step = 0;
+        single.n_steps = 1;
+        single.title = title_of_step(plot, title, sizeof title);
+        plot = &single;
+    }
     enum dalcs_status status = table->format->begin(table->state, table->file.stream, plot);
     table->in_plot = status == DALCS_OK;
     return status == DALCS_OK ? check_stream(table) : status;

@@ -9,7 +9,7 @@
 struct dalcs_table_format {
     const char *extension; /* ".csv" */
     size_t state_size;
-    bool one_plot; /* can hold a single table: the transient one when there are two */
+    bool one_plot; /* can hold a single table, that of the main analysis when there are several */
     enum dalcs_status (*begin)(void *state, FILE *stream, const struct dalcs_plot *plot);
     void (*row)(void *state, FILE *stream, double time, const double *value);
     /* Also called when the run was cut short, so that what is there can be read. */
@@ -29,21 +29,27 @@ struct dalcs_table {
     size_t n_rows; /* over all plots */
     bool in_plot;
     bool skipping; /* this plot is not for this file */
-    bool transient_expected;
+    enum dalcs_analysis main;
+    bool splits_steps; /* each step of .step is a plot of its own */
+    bool has_plot;     /* one of the main analysis was begun */
+    size_t n_left_out; /* plots of the main analysis with no room left */
 };
 
 /* The format for a file name, by its extension in any case; NULL when there is none. */
 const struct dalcs_table_format *dalcs_table_find_format(const char *path);
 
-/* Touches no file: that waits for the first row of results. transient_expected: a transient plot
- * will come, so a format with room for one plot leaves an operating point out. */
+/* The main one of two analyses: of .tran, .ac, .dc and .op the one that comes first in this order. */
+enum dalcs_analysis dalcs_table_main_analysis(enum dalcs_analysis a, enum dalcs_analysis b);
+
+/* Touches no file: that waits for the first row of results. main: the main analysis that will come; a
+ * format with room for one plot leaves the others out. */
 enum dalcs_status dalcs_table_init(struct dalcs_table *table, const char *path,
-                                   bool transient_expected) DALCS_MUST_CHECK;
+                                   enum dalcs_analysis main) DALCS_MUST_CHECK;
 
 /* The same in a format that the name does not tell; NULL is DALCS_E_OPTION. */
 enum dalcs_status dalcs_table_init_as(struct dalcs_table *table, const char *path,
                                       const struct dalcs_table_format *format,
-                                      bool transient_expected) DALCS_MUST_CHECK;
+                                      enum dalcs_analysis main) DALCS_MUST_CHECK;
 
 /* The callbacks of struct dalcs_sink. After DALCS_E_IO, table->file.error is the errno. */
 enum dalcs_status dalcs_table_begin(struct dalcs_table *table, const struct dalcs_plot *plot);

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* A result on its way into the report. */
 struct result {
@@ -224,8 +225,13 @@ static enum dalcs_status tell_harmonics(struct dalcs_measures *measures, struct 
             phase[i] = i == 0 ? 0.0 : 57.295779513082320877 * atan2(h->cosine[i], h->sine[i]);
             square += i >= 2 ? magnitude[i] * magnitude[i] : 0.0;
         }
+        const char *text = h->card->formula.text;
+        const char *signal = dalcs_arena_copy(&r->s->arena, text, strlen(text));
+        if (signal == NULL) {
+            return DALCS_E_NOMEM;
+        }
         fourier[r->s->report.n_fourier++] =
-            (struct dalcs_fourier){.signal = h->card->formula.text,
+            (struct dalcs_fourier){.signal = signal,
                                    .frequency = h->card->frequency,
                                    .from = h->from,
                                    .to = h->to,
@@ -265,7 +271,12 @@ enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct 
         if (card->analysis != m->analysis) {
             continue;
         }
-        *measurement = (struct dalcs_measurement){.name = card->name};
+        /* with .step the card goes before the report does */
+        const char *name = dalcs_arena_copy(&r->s->arena, card->name, strlen(card->name));
+        if (name == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        *measurement = (struct dalcs_measurement){.name = name};
         const struct dalcs_measure_card *source =
             card->kind == DALCS_MEASURE_PARAM ? failed_source(c, &card->formula, r->result) : NULL;
         if (status != DALCS_OK) {

@@ -228,3 +228,15 @@ void dalcs_measures_row(struct dalcs_measures *measures, double at, const double
     }
     dalcs_measuring_row(&measures->measuring, at, measures->now, NULL);
 }
+
+void dalcs_measures_complex_row(struct dalcs_measures *measures, double at, const double *value) {
+    const struct dalcs_circuit *c = measures->measuring.circuit;
+    if (!measures->wanted) {
+        return;
+    }
+    for (int k = 0; k < c->n_measured; k++) {
+        measures->now[k] = value[2 * c->measured[k]];
+        measures->before[k] = value[2 * c->measured[k] + 1]; /* which rows have no other use for */
+    }
+    dalcs_measuring_row(&measures->measuring, at, measures->now, measures->before);
+}

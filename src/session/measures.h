@@ -44,5 +44,7 @@ enum dalcs_status dalcs_measures_start_rows(struct dalcs_measures *measures, str
                                             double stop) DALCS_MUST_CHECK;
 void dalcs_measures_row(struct dalcs_measures *measures, double at,
                         const double *value /* [n_outputs] */);
+void dalcs_measures_complex_row(struct dalcs_measures *measures, double at,
+                                const double *value /* [n_outputs] pairs of real and imaginary */);
 
 #endif

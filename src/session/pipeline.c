@@ -7,9 +7,10 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
-static enum dalcs_status name_signals(struct dalcs_run *r) {
+enum dalcs_status dalcs_run_name_signals(struct dalcs_run *r, bool copies) {
     const struct dalcs_network *n = &r->s->network;
     const int n_shown = r->s->circuit.n_shown;
     r->name = dalcs_arena_alloc(&r->s->arena, (size_t)n_shown, sizeof(*r->name));
@@ -18,22 +19,45 @@ static enum dalcs_status name_signals(struct dalcs_run *r) {
         return DALCS_E_NOMEM;
     }
     for (int i = 0; i < n_shown; i++) {
-        r->name[i] = n->output[i].name;
+        const char *name = n->output[i].name;
+        r->name[i] = copies ? dalcs_arena_copy(&r->s->arena, name, strlen(name)) : name;
+        if (r->name[i] == NULL) {
+            return DALCS_E_NOMEM;
+        }
         r->unit[i] = n->output[i].is_current ? DALCS_AMPERE : DALCS_VOLT;
     }
     return DALCS_OK;
 }
 
 enum dalcs_status dalcs_run_begin_plot(struct dalcs_run *r, enum dalcs_analysis analysis) {
-    struct dalcs_plot *plot = dalcs_arena_alloc(&r->s->arena, 1, sizeof(*plot));
+    return dalcs_run_announce(r, &(struct dalcs_plot){.analysis = analysis,
+                                                      .scale = "time",
+                                                      .scale_unit = DALCS_UNIT_SECOND,
+                                                      .n_signals = (size_t)r->s->circuit.n_shown,
+                                                      .name = r->name,
+                                                      .unit = r->unit});
+}
+
+enum dalcs_status dalcs_run_announce(struct dalcs_run *r, const struct dalcs_plot *about) {
+    struct dalcs_arena *arena = &r->s->arena;
+    const char *title = r->s->circuit.title;
+    struct dalcs_plot *plot = dalcs_arena_alloc(arena, 1, sizeof(*plot));
     if (plot == NULL) {
         return DALCS_E_NOMEM;
     }
-    *plot = (struct dalcs_plot){.analysis = analysis,
-                                .title = r->s->circuit.title,
-                                .n_signals = (size_t)r->s->circuit.n_shown,
-                                .name = r->name,
-                                .unit = r->unit};
+    *plot = *about;
+    plot->title = r->s->has_netlist ? dalcs_arena_copy(arena, title, strlen(title)) : title;
+    plot->n_steps = 1;
+    if (plot->title == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    if (r->step != NULL) {
+        plot->step = r->step->step;
+        plot->n_steps = r->step->n_steps;
+        plot->n_parameters = r->step->n_parameters;
+        plot->parameter = r->step->parameter;
+        plot->parameter_value = r->step->parameter_value;
+    }
     return r->sink->begin(r->sink->user, plot);
 }
 
@@ -212,34 +236,40 @@ static enum dalcs_status ignore_progress(void *user, double time, double stop) {
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_session_run(struct dalcs_session *session,
-                                    const struct dalcs_run_options *options,
-                                    const struct dalcs_sink *sink) {
-    if (!session->has_network) {
-        return DALCS_E_NETLIST;
+static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis analysis) {
+    const struct dalcs_circuit *circuit = &r->s->circuit;
+    switch (analysis) {
+    case DALCS_OPERATING_POINT:
+        return circuit->operating_point ? run_operating_point(r) : DALCS_OK;
+    case DALCS_DC_SWEEP:
+        return circuit->n_dc > 0 ? dalcs_dc_sweep_run(r) : DALCS_OK;
+    case DALCS_AC:
+        return circuit->ac.n > 0 ? dalcs_small_signal_run(r) : DALCS_OK;
+    default:
+        if (!circuit->transient.present) {
+            return DALCS_OK;
+        }
+        return r->compress > 0.0 ? run_thinned(r) : dalcs_transient_run(r);
     }
+}
+
+/* These analyses of the session's circuit, one after the other. */
+static enum dalcs_status run_analyses(struct dalcs_session *session,
+                                      const struct dalcs_run_options *options,
+                                      const struct dalcs_sink *sink, const struct dalcs_plot *step,
+                                      const enum dalcs_analysis *analysis, size_t n) {
     dalcs_session_forget_run(session);
-    const struct dalcs_sink complete = {
-        .user = sink->user,
-        .begin = sink->begin != NULL ? sink->begin : ignore_begin,
-        .row = sink->row != NULL ? sink->row : ignore_row,
-        .end = sink->end != NULL ? sink->end : ignore_end,
-        .progress = sink->progress != NULL ? sink->progress : ignore_progress,
-    };
-    struct dalcs_run r = {.s = session, .options = options, .sink = &complete};
+    struct dalcs_run r = {.s = session, .options = options, .sink = sink, .step = step};
     double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     double wall = seconds(CLOCK_MONOTONIC);
     DALCS_TRY(prepare_report(&r));
     dalcs_undetermined_init(&r.undetermined, &session->circuit, &r, dalcs_nonunique_found);
     enum dalcs_status status = dalcs_run_choose(&r);
     if (status == DALCS_OK) {
-        status = name_signals(&r);
+        status = dalcs_run_name_signals(&r, session->has_netlist);
     }
-    if (status == DALCS_OK && session->circuit.operating_point) {
-        status = run_operating_point(&r);
-    }
-    if (status == DALCS_OK && session->circuit.transient.present) {
-        status = r.compress > 0.0 ? run_thinned(&r) : dalcs_transient_run(&r);
+    for (size_t k = 0; k < n && status == DALCS_OK; k++) {
+        status = run_analysis(&r, analysis[k]);
     }
     dalcs_names_finish(&r.interrupting);
     dalcs_undetermined_finish(&r.undetermined);
@@ -256,4 +286,156 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
     report->work.cpu_s = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
     report->work.wall_s = seconds(CLOCK_MONOTONIC) - wall;
     return status;
+}
+
+static const enum dalcs_analysis IN_ORDER[] = {DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_AC,
+                                               DALCS_TRANSIENT};
+
+enum { N_IN_ORDER = sizeof IN_ORDER / sizeof IN_ORDER[0] };
+
+static bool is_asked(const struct dalcs_circuit *circuit, enum dalcs_analysis analysis) {
+    const bool asked[] = {[DALCS_OPERATING_POINT] = circuit->operating_point,
+                          [DALCS_TRANSIENT] = circuit->transient.present,
+                          [DALCS_DC_SWEEP] = circuit->n_dc > 0,
+                          [DALCS_AC] = circuit->ac.n > 0};
+    return asked[analysis];
+}
+
+/* What a step cost on top of those before it. */
+static void add_work(struct dalcs_report *sum, const struct dalcs_report *one) {
+    sum->work.steps += one->work.steps;
+    sum->work.rejected += one->work.rejected;
+    sum->work.restarts += one->work.restarts;
+    sum->work.euler_steps += one->work.euler_steps;
+    sum->work.osnsp += one->work.osnsp;
+    sum->work.pivots += one->work.pivots;
+    sum->work.factorizations += one->work.factorizations;
+    sum->work.cache_hits += one->work.cache_hits;
+    sum->work.singular += one->work.singular;
+    sum->work.cpu_s += one->work.cpu_s;
+    sum->work.wall_s += one->work.wall_s;
+}
+
+/* "r = 500, c = 1e-06" */
+static const char *step_text(struct dalcs_session *s, const struct dalcs_plot *step) {
+    const char *values = "";
+    for (size_t k = 0; k < step->n_parameters && values != NULL; k++) {
+        values = dalcs_arena_printf(&s->arena, "%s%s%s = %.9g", values, k > 0 ? ", " : "",
+                                    step->parameter[k], step->parameter_value[k]);
+    }
+    return values;
+}
+
+/* Names the step that failed. */
+static void blame_step(struct dalcs_session *s, const struct dalcs_plot *step) {
+    const char *values = step_text(s, step);
+    dalcs_diag_add(&s->diag, DALCS_NOTE, NULL, NULL, "this was step %zu of %zu: %s", step->step + 1,
+                   step->n_steps, values != NULL ? values : "");
+}
+
+/* What was measured in all steps. */
+struct measured {
+    size_t n, capacity, n_fourier, fourier_capacity;
+    struct dalcs_measurement *measurement;
+    struct dalcs_fourier *fourier;
+};
+
+static enum dalcs_status collect_measured(struct measured *all, struct dalcs_session *s,
+                                          const struct dalcs_plot *step) {
+    const struct dalcs_report *one = &s->report;
+    if (one->n_measurements + one->n_fourier == 0) {
+        return DALCS_OK;
+    }
+    const char *text = step_text(s, step);
+    if (text == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_grow(&all->measurement, &all->capacity, all->n + one->n_measurements,
+                         sizeof *all->measurement));
+    DALCS_TRY(dalcs_grow(&all->fourier, &all->fourier_capacity, all->n_fourier + one->n_fourier,
+                         sizeof *all->fourier));
+    for (size_t k = 0; k < one->n_measurements; k++) {
+        all->measurement[all->n] = one->measurement[k];
+        all->measurement[all->n++].step = text;
+    }
+    for (size_t k = 0; k < one->n_fourier; k++) {
+        all->fourier[all->n_fourier] = one->fourier[k];
+        all->fourier[all->n_fourier++].step = text;
+    }
+    return DALCS_OK;
+}
+
+/* Into the report, where they live as long as it. */
+static enum dalcs_status report_measured(struct measured *all, struct dalcs_session *s) {
+    struct dalcs_measurement *m = dalcs_arena_alloc(&s->arena, all->n + 1, sizeof *m);
+    struct dalcs_fourier *f = dalcs_arena_alloc(&s->arena, all->n_fourier + 1, sizeof *f);
+    enum dalcs_status status = m == NULL || f == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    for (size_t k = 0; k < all->n && status == DALCS_OK; k++) {
+        m[k] = all->measurement[k];
+    }
+    for (size_t k = 0; k < all->n_fourier && status == DALCS_OK; k++) {
+        f[k] = all->fourier[k];
+    }
+    s->report.measurement = m;
+    s->report.n_measurements = status == DALCS_OK ? all->n : 0;
+    s->report.fourier = f;
+    s->report.n_fourier = status == DALCS_OK ? all->n_fourier : 0;
+    free(all->measurement);
+    free(all->fourier);
+    return status;
+}
+
+/* Each analysis in all steps before the next one. */
+static enum dalcs_status run_steps(struct dalcs_session *session,
+                                   const struct dalcs_run_options *options,
+                                   const struct dalcs_sink *sink) {
+    struct dalcs_report sum = {0};
+    struct measured measured = {0};
+    const size_t n_steps = dalcs_steps_count(&session->circuit);
+    bool asked[N_IN_ORDER];
+    for (size_t a = 0; a < N_IN_ORDER; a++) {
+        asked[a] = is_asked(&session->circuit, IN_ORDER[a]);
+    }
+    enum dalcs_status status = DALCS_OK;
+    for (size_t a = 0; a < N_IN_ORDER && status == DALCS_OK; a++) {
+        for (size_t k = 0; asked[a] && k < n_steps && status == DALCS_OK; k++) {
+            struct dalcs_plot step = {0};
+            status = dalcs_session_take_step(session, k, &step);
+            if (status == DALCS_OK) {
+                status = run_analyses(session, options, sink, &step, &IN_ORDER[a], 1);
+                add_work(&sum, &session->report);
+                const enum dalcs_status kept = collect_measured(&measured, session, &step);
+                status = status == DALCS_OK ? kept : status;
+            }
+            if (status > DALCS_OK || status == DALCS_E_NETLIST) {
+                blame_step(session, &step);
+            }
+        }
+    }
+    session->report.work = sum.work;
+    const enum dalcs_status told = report_measured(&measured, session);
+    return status == DALCS_OK ? told : status;
+}
+
+enum dalcs_status dalcs_session_run(struct dalcs_session *session,
+                                    const struct dalcs_run_options *options,
+                                    const struct dalcs_sink *sink) {
+    if (session->is_altered) {
+        session->is_altered = false;
+        DALCS_TRY(dalcs_session_rebuild(session, NULL, 0));
+    }
+    if (!session->has_network) {
+        return DALCS_E_NETLIST;
+    }
+    const struct dalcs_sink complete = {
+        .user = sink->user,
+        .begin = sink->begin != NULL ? sink->begin : ignore_begin,
+        .row = sink->row != NULL ? sink->row : ignore_row,
+        .end = sink->end != NULL ? sink->end : ignore_end,
+        .progress = sink->progress != NULL ? sink->progress : ignore_progress,
+    };
+    if (session->circuit.n_steps > 0) {
+        return run_steps(session, options, &complete);
+    }
+    return run_analyses(session, options, &complete, NULL, IN_ORDER, N_IN_ORDER);
 }

@@ -40,12 +40,27 @@ void dalcs_session_destroy(struct dalcs_session *session) {
     if (session->has_circuit) {
         dalcs_circuit_finish(&session->circuit);
     }
+    if (session->has_netlist) {
+        dalcs_netlist_finish(&session->netlist);
+    }
+    free(session->override);
     dalcs_diag_finish(&session->diag);
     dalcs_arena_finish(&session->arena);
     free(session);
 }
 
 /* ---- Reading ------------------------------------------------------------------------------- */
+
+/* Steps, sweeps of what is no source, and scripts want other circuits of the same netlist. */
+static bool is_built_again(const struct dalcs_circuit *circuit,
+                           const struct dalcs_netlist *netlist) {
+    bool again = circuit->n_steps > 0 || netlist->n_script_lines > 0;
+    for (int k = 0; k < circuit->n_dc; k++) {
+        const int device = circuit->dc[k].device;
+        again = again || device < 0 || circuit->device[device].stimulus < 0;
+    }
+    return again;
+}
 
 static enum dalcs_status read_netlist(struct dalcs_session *s, const char *path, const char *text,
                                       size_t length) {
@@ -64,7 +79,12 @@ static enum dalcs_status read_netlist(struct dalcs_session *s, const char *path,
         status = dalcs_circuit_build(&s->circuit, &netlist, &s->diag);
         s->has_circuit = status == DALCS_OK;
     }
-    dalcs_netlist_finish(&netlist);
+    if (status == DALCS_OK && is_built_again(&s->circuit, &netlist)) {
+        s->netlist = netlist;
+        s->has_netlist = true;
+    } else {
+        dalcs_netlist_finish(&netlist);
+    }
     if (status == DALCS_OK) {
         status = dalcs_source_conflicts(&s->circuit, &s->diag);
     }
@@ -108,6 +128,9 @@ struct dalcs_request dalcs_session_request(const struct dalcs_session *session) 
     const struct dalcs_transient *t = &session->circuit.transient;
     return (struct dalcs_request){.operating_point = session->circuit.operating_point,
                                   .transient = t->present,
+                                  .dc_sweep = session->circuit.n_dc > 0,
+                                  .ac = session->circuit.ac.n > 0,
+                                  .n_steps = dalcs_steps_count(&session->circuit),
                                   .step = t->step,
                                   .stop = t->stop,
                                   .start = t->start,

@@ -3,6 +3,8 @@
 #define DALCS_SESSION_INTERNAL_H
 
 #include "names.h"
+#include "netlist.h"
+#include "override.h"
 #include "recorder.h"
 #include "undetermined.h"
 
@@ -13,6 +15,11 @@ struct dalcs_session {
     bool has_circuit;
     struct dalcs_network network;
     bool has_network;
+    struct dalcs_netlist netlist; /* kept where the circuit may have to be built again */
+    bool has_netlist;
+    bool is_altered;                 /* the circuit is not the netlist's with what alter said */
+    struct dalcs_override *override; /* what alter said, then what this step is; heap */
+    size_t n_altered, override_capacity;
     struct dalcs_recorder recorder; /* owns the report's events and jumps */
     struct dalcs_report report;
     bool has_report;
@@ -43,6 +50,7 @@ struct dalcs_run {
 
     struct dalcs_measurement *measurement; /* [n_measures] of the report; NULL: none yet */
     double *result;                        /* [n_measures] NAN: could not be measured */
+    const struct dalcs_plot *step; /* its step and parameters; NULL without .step */
     const char **name;
     enum dalcs_unit *unit;
     struct dalcs_names interrupting; /* switches that a warning has named */
@@ -54,6 +62,37 @@ struct dalcs_run {
 /* Settles what the options of the run and of the netlist leave open; checks them. */
 enum dalcs_status dalcs_run_choose(struct dalcs_run *r) DALCS_MUST_CHECK;
 
+/* ---- steps.c: one circuit after the other ------------------------------------------------------ */
+
+/* How often .step has everything run; 1 without. */
+size_t dalcs_steps_count(const struct dalcs_circuit *circuit);
+
+/* A circuit and its network from the session's netlist, with what alter says and the overrides behind
+ * that. Messages that the session has not said yet go to it. On failure nothing is left to free. */
+enum dalcs_status dalcs_session_build(struct dalcs_session *session,
+                                      const struct dalcs_override *more, size_t n_more,
+                                      struct dalcs_circuit *circuit,
+                                      struct dalcs_network *network) DALCS_MUST_CHECK;
+
+/* Builds the session's circuit again that way. */
+enum dalcs_status dalcs_session_rebuild(struct dalcs_session *session,
+                                        const struct dalcs_override *more,
+                                        size_t n_more) DALCS_MUST_CHECK;
+
+/* The same with .step's values of step k, which *plot gets too; arrays are the session's. */
+enum dalcs_status dalcs_session_take_step(struct dalcs_session *session, size_t k,
+                                          struct dalcs_plot *plot) DALCS_MUST_CHECK;
+
+/* The override that a value of a sweep is; false for one of the temperature. */
+bool dalcs_override_of(const struct dalcs_sweep *sweep, double value,
+                       struct dalcs_override *override);
+
+/* Runs .dc into r->sink. */
+enum dalcs_status dalcs_dc_sweep_run(struct dalcs_run *r) DALCS_MUST_CHECK;
+
+/* Runs .ac into r->sink. */
+enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) DALCS_MUST_CHECK;
+
 /* Frees what the last run left. */
 void dalcs_session_forget_run(struct dalcs_session *session);
 
@@ -64,9 +103,16 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) DALCS_MUST_CHECK;
  */
 enum dalcs_status dalcs_note_jump(void *user, const struct dalcs_euler_jump *jump) DALCS_MUST_CHECK;
 
+/* Names and units of the signals into r; `copies`: they outlive the circuit. */
+enum dalcs_status dalcs_run_name_signals(struct dalcs_run *r, bool copies) DALCS_MUST_CHECK;
+
 /* Announces a plot to the sink. */
 enum dalcs_status dalcs_run_begin_plot(struct dalcs_run *r,
                                        enum dalcs_analysis analysis) DALCS_MUST_CHECK;
+
+/* The same of one that is not as usual: analysis, scale, signals and is_complex are filled in. */
+enum dalcs_status dalcs_run_announce(struct dalcs_run *r,
+                                     const struct dalcs_plot *plot) DALCS_MUST_CHECK;
 
 /* The counts of one engine run into the report. */
 void dalcs_run_add_work(struct dalcs_run *r, const struct dalcs_euler *e);

@@ -234,6 +234,55 @@ R2 n 0 {c + 1/0}
 .op
 .end
 """, 3),
+    "stepped": ("""Sweeps of everything, small signals, a step that has other nodes
+.param r=1k
+V1 in 0 DC 2 AC 1 45
+R1 in out {r}
+C1 out 0 1u
+D1 out lim dm
+V2 lim 0 1
+.model dm D
+.step param r list 1k 2k
+.nodeset v(out)=1
+.ac lin 1 10 10
+.dc R1 1k 2k 1k
+.save v(out) i(d1)
+.print ac vdb(out)
+.end
+""", 0),
+    "script": ("""A control block
+.param r=1k
+V1 in 0 DC 2 AC 1
+R1 in out {r}
+C1 out 0 1u
+.dc V1 0 1 1
+.control
+set wr_vecnames
+set list = ( 1k 2k )
+foreach x $list
+  alter r1 = $x
+  ac lin 2 10 20
+  wrdata w.txt v(out) mag(v(out))
+end
+save all @r1[i]
+alterparam r = {2*500}
+reset
+run
+write w.raw
+op
+let x = 2*v(out) - v(in,out)
+print x all
+repeat 2
+  let x = x + 1
+end
+while x > 100
+end
+if x > 1
+  echo $&x
+end
+.endc
+.end
+""", 0),
     "mistaken": ("""Several mistakes
 R1 1 0 1kk2
 C1 1 0

@@ -33,6 +33,8 @@ class Run:
 
     def column(self, name):
         """One signal over all rows; also v(a,b) and signed sums such as i(d1)-i(d3)."""
+        if name in self.names:
+            return self._plain(name)
         terms = re.findall(r"([+-]?)((?:time)|[vi]\([^()]*\))", name)
         if "".join(sign + signal for sign, signal in terms) != name:
             raise ValueError(f"cannot read the signal {name}")

@@ -18,7 +18,14 @@ static const enum dalcs_unit sample_unit[] = {DALCS_VOLT, DALCS_VOLT, DALCS_AMPE
 static const double sample_row[2][3] = {{1.0 / 3.0, -0.0, 5e-324}, {-2.385e300, 0.1, 1e-7}};
 
 static inline struct dalcs_plot sample_plot(enum dalcs_analysis analysis) {
-    return (struct dalcs_plot){analysis, "a title\twith a tab", 3, sample_name, sample_unit};
+    return (struct dalcs_plot){.analysis = analysis,
+                               .title = "a title\twith a tab",
+                               .scale = "time",
+                               .scale_unit = DALCS_UNIT_SECOND,
+                               .n_signals = 3,
+                               .name = sample_name,
+                               .unit = sample_unit,
+                               .n_steps = 1};
 }
 
 /* "folder/name"; the folder is new for each test and the current one. */

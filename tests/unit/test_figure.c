@@ -60,7 +60,14 @@ START_TEST(test_choice_of_signals) {
     for (int i = 0; i < N; i++) {
         unit[i] = name[i][0] == 'v' ? DALCS_VOLT : DALCS_AMPERE;
     }
-    const struct dalcs_plot plot = {DALCS_TRANSIENT, "t", N, name, unit};
+    const struct dalcs_plot plot = {.analysis = DALCS_TRANSIENT,
+                                    .title = "t",
+                                    .scale = "time",
+                                    .scale_unit = DALCS_UNIT_SECOND,
+                                    .n_signals = N,
+                                    .name = name,
+                                    .unit = unit,
+                                    .n_steps = 1};
     struct dalcs_figure figure;
     dalcs_figure_init(&figure, "a.svg", 0.0, 1.0);
     ck_assert_int_eq(dalcs_figure_begin(&figure, &plot), DALCS_OK);
@@ -92,7 +99,14 @@ static void run_figure(struct dalcs_figure *figure, const struct dalcs_plot *plo
 static const char *const two_names[] = {"v(n1)", "i(d1)"};
 
 static const enum dalcs_unit two_units[] = {DALCS_VOLT, DALCS_AMPERE};
-static const struct dalcs_plot two_signals = {DALCS_TRANSIENT, "t", 2, two_names, two_units};
+static const struct dalcs_plot two_signals = {.analysis = DALCS_TRANSIENT,
+                                              .title = "t",
+                                              .scale = "time",
+                                              .scale_unit = DALCS_UNIT_SECOND,
+                                              .n_signals = 2,
+                                              .name = two_names,
+                                              .unit = two_units,
+                                              .n_steps = 1};
 
 /* A few periods need no closer look; of many the last four are shown. */
 START_TEST(test_end_of_dense_run) {
@@ -154,7 +168,14 @@ END_TEST
 
 static char *write_script(const char *title, const char *signal) {
     const enum dalcs_unit unit = DALCS_AMPERE;
-    const struct dalcs_plot plot = {DALCS_TRANSIENT, title, 1, &signal, &unit};
+    const struct dalcs_plot plot = {.analysis = DALCS_TRANSIENT,
+                                    .title = title,
+                                    .scale = "time",
+                                    .scale_unit = DALCS_UNIT_SECOND,
+                                    .n_signals = 1,
+                                    .name = &signal,
+                                    .unit = &unit,
+                                    .n_steps = 1};
     struct dalcs_figure figure;
     dalcs_figure_init(&figure, "a.png", 0.0, 2e-5);
     ck_assert_int_eq(dalcs_figure_begin(&figure, &plot), DALCS_OK);

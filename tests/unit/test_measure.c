@@ -9,7 +9,14 @@ static struct dalcs_measure measure_rows(const double (*row)[2], size_t n) {
     static const char *const name[] = {"v(a)"};
 
     static const enum dalcs_unit unit[] = {DALCS_VOLT};
-    static const struct dalcs_plot plot = {DALCS_TRANSIENT, "t", 1, name, unit};
+    static const struct dalcs_plot plot = {.analysis = DALCS_TRANSIENT,
+                                           .title = "t",
+                                           .scale = "time",
+                                           .scale_unit = DALCS_UNIT_SECOND,
+                                           .n_signals = 1,
+                                           .name = name,
+                                           .unit = unit,
+                                           .n_steps = 1};
     struct dalcs_measure measure = {0};
     ck_assert_int_eq(dalcs_measure_begin(&measure, &plot), DALCS_OK);
     for (size_t i = 0; i < n; i++) {

@@ -1,0 +1,94 @@
+/* step_lines.c - the steps of .step as a table. */
+#include "step_lines.h"
+
+#include "memory.h"
+#include "quantity.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_LINES = 200, DIGITS = 4, LEAST_WIDTH = 11 };
+
+static size_t least(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+enum dalcs_status dalcs_step_lines_add(struct dalcs_step_lines *lines,
+                                       const struct dalcs_measure *measure) {
+    const struct dalcs_plot *plot = measure->plot;
+    if (plot->n_steps <= 1) {
+        return DALCS_OK;
+    }
+    enum dalcs_status status =
+        dalcs_grow(&lines->line, &lines->capacity, lines->n + 1, sizeof *lines->line);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    struct dalcs_step_line *line = &lines->line[lines->n++];
+    line->analysis = plot->analysis;
+    lines->plot[plot->analysis] = plot;
+    for (size_t i = 0; i < least(plot->n_parameters, DALCS_STEP_PARAMETERS); i++) {
+        line->parameter[i] = plot->parameter_value[i];
+    }
+    for (size_t i = 0; i < least(plot->n_signals, DALCS_STEP_SIGNALS); i++) {
+        line->value[i] = plot->analysis == DALCS_TRANSIENT ? dalcs_measure_average(measure, i)
+                         : plot->analysis == DALCS_AC      ? measure->signal[i].max
+                                                           : measure->signal[i].final;
+    }
+    return DALCS_OK;
+}
+
+static int width_of(const char *name) {
+    const int length = (int)strlen(name);
+    return length > LEAST_WIDTH ? length : LEAST_WIDTH;
+}
+
+static void write_line(FILE *out, const struct dalcs_plot *plot,
+                       const struct dalcs_step_line *line) {
+    char text[DALCS_QUANTITY_SIZE];
+    fputc(' ', out);
+    for (size_t i = 0; i < least(plot->n_parameters, DALCS_STEP_PARAMETERS); i++) {
+        fprintf(out, " %*.6g", width_of(plot->parameter[i]), line->parameter[i]);
+    }
+    for (size_t i = 0; i < least(plot->n_signals, DALCS_STEP_SIGNALS); i++) {
+        const char *unit = plot->unit[i] == DALCS_AMPERE ? "A" : "V";
+        fprintf(out, " %*s", width_of(plot->name[i]),
+                dalcs_quantity_write_column(text, line->value[i], unit, DIGITS));
+    }
+    fputc('\n', out);
+}
+
+void dalcs_step_lines_write(FILE *out, const struct dalcs_step_lines *lines,
+                            enum dalcs_analysis analysis) {
+    static const char *const what[] = {[DALCS_OPERATING_POINT] = "operating point",
+                                       [DALCS_TRANSIENT] = "average over .tran",
+                                       [DALCS_DC_SWEEP] = "last value of .dc",
+                                       [DALCS_AC] = "largest magnitude of .ac"};
+    const struct dalcs_plot *plot = lines->plot[analysis];
+    size_t n_written = 0;
+    if (!plot) {
+        return;
+    }
+    fprintf(out, "\n  %zu steps: %s\n ", plot->n_steps, what[analysis]);
+    for (size_t i = 0; i < least(plot->n_parameters, DALCS_STEP_PARAMETERS); i++) {
+        fprintf(out, " %*s", width_of(plot->parameter[i]), plot->parameter[i]);
+    }
+    for (size_t i = 0; i < least(plot->n_signals, DALCS_STEP_SIGNALS); i++) {
+        fprintf(out, " %*s", width_of(plot->name[i]), plot->name[i]);
+    }
+    fputc('\n', out);
+    for (size_t k = 0; k < lines->n && n_written < MOST_LINES; k++) {
+        if (lines->line[k].analysis == analysis) {
+            write_line(out, plot, &lines->line[k]);
+            n_written++;
+        }
+    }
+    if (n_written == MOST_LINES && plot->n_steps > MOST_LINES) {
+        fprintf(out, "  ... and %zu more\n", plot->n_steps - MOST_LINES);
+    }
+}
+
+void dalcs_step_lines_finish(struct dalcs_step_lines *lines) {
+    free(lines->line);
+    *lines = (struct dalcs_step_lines){0};
+}

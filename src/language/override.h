@@ -1,0 +1,21 @@
+/* override.h - other values for what a netlist says, without changing its text: what .step, .dc and
+ * alter do. They come in while cards are expanded, so everything that depends on them follows. */
+#ifndef DALCS_OVERRIDE_H
+#define DALCS_OVERRIDE_H
+
+#include <stddef.h>
+
+enum dalcs_override_kind {
+    DALCS_OVERRIDE_PARAMETER, /* of .param, outside of subcircuits */
+    DALCS_OVERRIDE_ELEMENT,   /* the value of R, L, C, V, I (DC) or the gain of E, F, G, H */
+    DALCS_OVERRIDE_MODEL      /* a parameter of a .model */
+};
+
+struct dalcs_override {
+    enum dalcs_override_kind kind;
+    const char *name;  /* flat, lower case: "x1.r1" */
+    const char *field; /* of a model: "vfwd"; else NULL */
+    double value;
+};
+
+#endif

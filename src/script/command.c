@@ -1,0 +1,407 @@
+/* command.c - statements that are no blocks. */
+#include "script_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Runs ------------------------------------------------------------------------------------------ */
+
+static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
+    struct dalcs_script *script = user;
+    const struct dalcs_sink *sink = script->host->sink;
+    enum dalcs_status status = dalcs_vectors_begin(&script->vectors, plot);
+    return status == DALCS_OK && sink->begin != NULL ? sink->begin(sink->user, plot) : status;
+}
+
+static enum dalcs_status row(void *user, double time, const double *value) {
+    struct dalcs_script *script = user;
+    const struct dalcs_sink *sink = script->host->sink;
+    enum dalcs_status status = dalcs_vectors_row(&script->vectors, time, value);
+    return status == DALCS_OK && sink->row != NULL ? sink->row(sink->user, time, value) : status;
+}
+
+static enum dalcs_status end(void *user) {
+    const struct dalcs_script *script = user;
+    const struct dalcs_sink *sink = script->host->sink;
+    return sink->end != NULL ? sink->end(sink->user) : DALCS_OK;
+}
+
+static enum dalcs_status progress(void *user, double time, double stop) {
+    const struct dalcs_script *script = user;
+    const struct dalcs_sink *sink = script->host->sink;
+    return sink->progress != NULL ? sink->progress(sink->user, time, stop) : DALCS_OK;
+}
+
+static enum dalcs_status add_card(struct dalcs_script *script, const struct dalcs_statement *s,
+                                  const char *word, const char *rest) {
+    enum dalcs_status status = dalcs_grow(&script->card, &script->card_capacity,
+                                          script->n_cards + 1, sizeof *script->card);
+    const char *text = dalcs_arena_printf(&script->kept, "%s %s", word, rest);
+    if (status != DALCS_OK || text == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    script->card[script->n_cards++] = (struct dalcs_extra_card){s->line, text};
+    return DALCS_OK;
+}
+
+/* Measurements that follow an analysis are made while it runs: their cards go with it. */
+static enum dalcs_status add_measurements(struct dalcs_script *script, size_t first) {
+    const struct dalcs_statements *all = &script->statements;
+    for (size_t k = first; k < all->n; k++) {
+        const struct dalcs_statement *s = &all->statement[k];
+        const bool ends = s->kind == DALCS_STATEMENT_ANALYSIS || s->kind == DALCS_STATEMENT_END ||
+                          s->kind == DALCS_STATEMENT_ELSE || s->kind == DALCS_STATEMENT_QUIT;
+        if (ends) {
+            return DALCS_OK;
+        }
+        if (s->kind == DALCS_STATEMENT_MEASURE) {
+            const char *rest;
+            enum dalcs_status status = dalcs_script_expand(script, s, &rest);
+            status = status == DALCS_OK ? add_card(script, s, "meas", rest) : status;
+            if (status != DALCS_OK) {
+                return status;
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status run_session(struct dalcs_script *script) {
+    const struct dalcs_script_host *host = script->host;
+    const struct dalcs_sink sink = {script, begin, row, end, progress};
+    const enum dalcs_status status =
+        dalcs_session_run_cards(host->session, script->card, script->n_cards, host->options, &sink);
+    if (host->after_run != NULL) {
+        host->after_run(host->user, host->session, status);
+    }
+    return status;
+}
+
+static enum dalcs_status run(struct dalcs_script *script, size_t index) {
+    const struct dalcs_statement *s = &script->statements.statement[index];
+    const size_t n_kept = script->n_cards;
+    const char *rest;
+    enum dalcs_status status = dalcs_script_expand(script, s, &rest);
+    if (strcmp(s->word, "run") != 0) {
+        status = status == DALCS_OK ? add_card(script, s, s->word, rest) : status;
+    } else if (status == DALCS_OK && !script->has_cards) {
+        return dalcs_script_refuse(script, s, "add a line before .control such as: .tran 10u 20m",
+                                   "run: the netlist has no analysis");
+    }
+    status = status == DALCS_OK ? add_measurements(script, index + 1) : status;
+    status = status == DALCS_OK ? run_session(script) : status;
+    script->n_cards = n_kept;
+    return status;
+}
+
+enum dalcs_status dalcs_script_run_cards(struct dalcs_script *script) {
+    enum dalcs_status status = script->has_cards ? add_measurements(script, 0) : DALCS_OK;
+    status = status == DALCS_OK && script->has_cards ? run_session(script) : status;
+    script->n_cards = 0;
+    return status;
+}
+
+/* `save @r1[i] v(out)`: other names for what .save calls i(r1). */
+static enum dalcs_status save(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const char *rest;
+    enum dalcs_status status = dalcs_script_expand_low(script, s, &rest);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    if (s->word[0] == 'o') {
+        return add_card(script, s, "options", rest);
+    }
+    const char *text = "";
+    for (const char *word; text != NULL && (word = dalcs_script_word(script, &rest)) != NULL;) {
+        size_t n = strlen(word);
+        const bool is_device = word[0] == '@' && n > 4 && strcmp(word + n - 3, "[i]") == 0;
+        text = is_device
+                   ? dalcs_arena_printf(&script->arena, "%s i(%.*s)", text, (int)n - 4, word + 1)
+                   : dalcs_arena_printf(&script->arena, "%s %s", text, word);
+    }
+    return text != NULL ? add_card(script, s, "save", text) : DALCS_E_NOMEM;
+}
+
+/* ---- Other values ---------------------------------------------------------------------------------- */
+
+/* "name = formula", "name field = formula", "@name[field] = formula". */
+static enum dalcs_status split_alter(struct dalcs_script *script, const struct dalcs_statement *s,
+                                     const char **name, const char **field, double *value) {
+    const char *text;
+    enum dalcs_status status = dalcs_script_expand_low(script, s, &text);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    const char *equal = strchr(text, '=');
+    if (equal == NULL) {
+        return dalcs_script_refuse(script, s,
+                                   "alter r1 = 5k; altermod dmod vfwd = 0.7; "
+                                   "alterparam rload = 10",
+                                   "'=' is missing");
+    }
+    const char *left = dalcs_arena_copy(&script->arena, text, (size_t)(equal - text));
+    if (left == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    *name = dalcs_script_word(script, &left);
+    *field = dalcs_script_word(script, &left);
+    const char *bracket = *name != NULL && (*name)[0] == '@' ? strchr(*name, '[') : NULL;
+    if (bracket != NULL) {
+        const size_t n = strcspn(bracket + 1, "]");
+        *field = dalcs_arena_copy(&script->arena, bracket + 1, n);
+        *name = dalcs_arena_copy(&script->arena, *name + 1, (size_t)(bracket - *name - 1));
+    }
+    if (*name == NULL) {
+        return dalcs_script_refuse(script, s, NULL, "a name before '=' is missing");
+    }
+    return dalcs_script_number(script, s, equal + 1, value);
+}
+
+/* The field of an element that is its value. */
+static bool is_value_field(const char *field) {
+    static const char *const known[] = {"dc",         "r",    "c",     "l",          "resistance",
+                                        "inductance", "gain", "value", "capacitance"};
+    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++) {
+        if (strcmp(known[k], field) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static enum dalcs_status alter(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const char *name = NULL;
+    const char *field = NULL;
+    const char *nearest = NULL;
+    char hint[120];
+    double value;
+    const bool is_parameter = s->kind == DALCS_STATEMENT_ALTER_PARAMETER;
+    enum dalcs_status status = split_alter(script, s, &name, &field, &value);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    const bool is_model = s->kind == DALCS_STATEMENT_ALTER_MODEL;
+    if (is_model && field == NULL) {
+        return dalcs_script_refuse(script, s, "altermod dmod vfwd = 0.7",
+                                   "the parameter of the model is missing");
+    }
+    if (!is_model && field != NULL && !is_value_field(field)) {
+        return dalcs_script_refuse(script, s, "write alter name = value",
+                                   "'%s' of an element cannot be altered here", field);
+    }
+    status = dalcs_session_alter(script->host->session, is_parameter, name, is_model ? field : NULL,
+                                 value, &nearest);
+    if (status == DALCS_E_OPTION) {
+        snprintf(hint, sizeof hint, "did you mean '%.80s'?", nearest != NULL ? nearest : "");
+        return dalcs_script_refuse(script, s, nearest != NULL ? hint : NULL, "there is no %s '%s'",
+                                   is_parameter ? "parameter"
+                                   : is_model   ? "model"
+                                                : "element",
+                                   name);
+    }
+    return status;
+}
+
+/* ---- Vectors ---------------------------------------------------------------------------------------- */
+
+static enum dalcs_status let(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const char *text;
+    enum dalcs_status status = dalcs_script_expand_low(script, s, &text);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    const size_t length = strcspn(text, "=");
+    const char *name = dalcs_arena_copy(&script->arena, text, length);
+    if (name == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    const char *rest = name;
+    const char *first = dalcs_script_word(script, &rest);
+    if (text[length] == '\0' || first == NULL || strpbrk(first, "[(") != NULL ||
+        dalcs_script_word(script, &rest) != NULL) {
+        return dalcs_script_refuse(script, s, "let name = formula", "a name and '=' are missing");
+    }
+    struct dalcs_vector_formula f = {
+        .vectors = &script->vectors, .text = text + length + 1, .arena = &script->arena};
+    const struct dalcs_vector *v = dalcs_vector_formula_next(&f);
+    if (v == NULL) {
+        return f.out_of_memory ? DALCS_E_NOMEM
+                               : dalcs_script_refuse(script, s, f.hint[0] != '\0' ? f.hint : NULL,
+                                                     "%s", f.message);
+    }
+    if (!dalcs_vector_formula_at_end(&f)) {
+        return dalcs_script_refuse(script, s, NULL, "did not expect '%s'", f.text + f.at);
+    }
+    return dalcs_vectors_let(&script->vectors, first, v);
+}
+
+static struct dalcs_writing writing(const struct dalcs_script *script) {
+    const struct dalcs_variables *set = &script->variables;
+    const char *digits = dalcs_variables_get(set, "numdgt");
+    const long n = digits != NULL ? strtol(digits, NULL, 10) : 0;
+    return (struct dalcs_writing){.digits = n >= 1 && n <= 17 ? (int)n : 0,
+                                  .single_scale =
+                                      dalcs_variables_get(set, "wr_singlescale") != NULL,
+                                  .with_names = dalcs_variables_get(set, "wr_vecnames") != NULL,
+                                  .appends = dalcs_variables_get(set, "appendwrite") != NULL};
+}
+
+static enum dalcs_status print(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const struct dalcs_vector **vector;
+    const struct dalcs_writing how = writing(script);
+    const char *text;
+    size_t n;
+    enum dalcs_status status = dalcs_script_expand_low(script, s, &text);
+    if (status == DALCS_OK && strncmp(text, "line ", 5) == 0) {
+        text += 5;
+    } else if (status == DALCS_OK && strncmp(text, "col ", 4) == 0) {
+        text += 4;
+    }
+    status = status == DALCS_OK ? dalcs_script_vectors(script, s, text, &vector, &n) : status;
+    if (status == DALCS_OK) {
+        const struct dalcs_plot_vectors *plot = &script->vectors.plot;
+        const bool is_point = plot->analysis == DALCS_OPERATING_POINT;
+        dalcs_writing_print(script->host->out, &how,
+                            is_point ? NULL : dalcs_vectors_scale(&script->vectors), vector, n);
+    }
+    return status;
+}
+
+static enum dalcs_status refuse_file(struct dalcs_script *script, const struct dalcs_statement *s,
+                                     const char *path, int error) {
+    (void)dalcs_script_refuse(script, s, NULL, "cannot write '%s': %s", path, strerror(error));
+    return DALCS_E_IO;
+}
+
+static enum dalcs_status write_file(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const struct dalcs_vector **vector;
+    const struct dalcs_writing how = writing(script);
+    const bool is_raw = s->kind == DALCS_STATEMENT_WRITE;
+    const char *text;
+    size_t n;
+    enum dalcs_status status = dalcs_script_expand(script, s, &text);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    const char *name = dalcs_script_word(script, &text);
+    name = name == NULL && is_raw ? "rawspice.raw" : name;
+    if (name == NULL) {
+        return dalcs_script_refuse(script, s, "wrdata file v(out) i(l1)",
+                                   "the name of the file is missing");
+    }
+    struct dalcs_statement rest = *s;
+    rest.rest = text;
+    status = dalcs_script_expand_low(script, &rest, &text);
+    status = status == DALCS_OK ? dalcs_script_vectors(script, s, text, &vector, &n) : status;
+    if (status != DALCS_OK) {
+        return status;
+    }
+    const struct dalcs_vector *scale = dalcs_vectors_scale(&script->vectors);
+    if (scale == NULL || n == 0) {
+        return dalcs_script_refuse(script, s, "tran, op, dc, ac or run must come before",
+                                   "there is nothing to write");
+    }
+    int error;
+    status = is_raw ? dalcs_writing_raw(name, &script->vectors.plot, scale, vector, n, &error)
+                    : dalcs_writing_data(name, &how, scale, vector, n, &error);
+    return status == DALCS_E_IO ? refuse_file(script, s, name, error) : status;
+}
+
+/* ---- set and echo ----------------------------------------------------------------------------------- */
+
+/* "name", "name = value", "name = ( a b c )". */
+static enum dalcs_status set(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const char *text;
+    enum dalcs_status status = dalcs_script_expand(script, s, &text);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    const size_t length = strcspn(text, "=");
+    const char *left = dalcs_arena_copy(&script->arena, text, length);
+    const char *name = left != NULL ? dalcs_script_word(script, &left) : NULL;
+    if (name == NULL) {
+        return dalcs_script_refuse(script, s, "set name=value", "a name is missing");
+    }
+    struct dalcs_statement lower = {.rest = name, .line = s->line, .column = s->column};
+    status = dalcs_script_expand_low(script, &lower, &name);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    const char *value = text[length] == '=' ? text + length + 1 : "";
+    value += strspn(value, " \t");
+    size_t n = strlen(value);
+    while (n > 0 && (value[n - 1] == ' ' || value[n - 1] == '\t')) {
+        n--;
+    }
+    const char first = value[0];
+    const bool wrapped =
+        n >= 2 && ((first == '(' && value[n - 1] == ')') || (first == '"' && value[n - 1] == '"'));
+    const char *own = wrapped ? dalcs_arena_copy(&script->arena, value + 1, n - 2)
+                              : dalcs_arena_copy(&script->arena, value, n);
+    return own != NULL ? dalcs_variables_set(&script->variables, name, own) : DALCS_E_NOMEM;
+}
+
+static enum dalcs_status unset(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const char *text;
+    enum dalcs_status status = dalcs_script_expand_low(script, s, &text);
+    for (const char *name;
+         status == DALCS_OK && (name = dalcs_script_word(script, &text)) != NULL;) {
+        dalcs_variables_unset(&script->variables, name);
+    }
+    return status;
+}
+
+static enum dalcs_status echo(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const char *text;
+    enum dalcs_status status = dalcs_script_expand(script, s, &text);
+    if (status == DALCS_OK) {
+        for (const char *c = text; *c != '\0'; c++) {
+            if (*c != '"') {
+                fputc(*c, script->host->out);
+            }
+        }
+        fputc('\n', script->host->out);
+    }
+    return status;
+}
+
+enum dalcs_status dalcs_script_command(struct dalcs_script *script, size_t index) {
+    const struct dalcs_statement *s = &script->statements.statement[index];
+    switch (s->kind) {
+    case DALCS_STATEMENT_ANALYSIS:
+        return run(script, index);
+    case DALCS_STATEMENT_PRINT:
+        return print(script, s);
+    case DALCS_STATEMENT_ECHO:
+        return echo(script, s);
+    case DALCS_STATEMENT_LET:
+        return let(script, s);
+    case DALCS_STATEMENT_SET:
+        return set(script, s);
+    case DALCS_STATEMENT_UNSET:
+        return unset(script, s);
+    case DALCS_STATEMENT_ALTER:
+    case DALCS_STATEMENT_ALTER_PARAMETER:
+    case DALCS_STATEMENT_ALTER_MODEL:
+        return alter(script, s);
+    case DALCS_STATEMENT_RESET:
+        dalcs_session_reset(script->host->session);
+        return DALCS_OK;
+    case DALCS_STATEMENT_SAVE:
+        return save(script, s);
+    case DALCS_STATEMENT_WRDATA:
+    case DALCS_STATEMENT_WRITE:
+        return write_file(script, s);
+    case DALCS_STATEMENT_BREAK:
+        script->breaks = true;
+        return DALCS_OK;
+    case DALCS_STATEMENT_CONTINUE:
+        script->continues = true;
+        return DALCS_OK;
+    case DALCS_STATEMENT_QUIT:
+        script->quits = true;
+        return DALCS_OK;
+    default: /* skipped, or done with the analysis before */
+        return DALCS_OK;
+    }
+}

@@ -1,0 +1,227 @@
+/* script.c - blocks and loops.
+ *
+ * dalcs_script_run at the end is the table of contents. */
+#include "script_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_ROUNDS = 1000000 };
+
+static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size_t end);
+
+/* The body of a loop once; *stops: it is over. */
+static enum dalcs_status execute_body(struct dalcs_script *script, size_t loop, bool *stops) {
+    const struct dalcs_statement *s = &script->statements.statement[loop];
+    const enum dalcs_status status = execute(script, loop + 1, s->end);
+    *stops = script->breaks || script->quits;
+    script->breaks = script->continues = false;
+    return status;
+}
+
+static enum dalcs_status execute_foreach(struct dalcs_script *script, size_t loop) {
+    const struct dalcs_statement *s = &script->statements.statement[loop];
+    struct dalcs_arena arena = {0}; /* lives longer than the statements of the body */
+    const char *text;
+    bool stops = false;
+    enum dalcs_status status = dalcs_script_expand(script, s, &text);
+    const char *list = status == DALCS_OK ? dalcs_arena_copy(&arena, text, strlen(text)) : NULL;
+    const char *word = list != NULL ? dalcs_script_word(script, &list) : NULL;
+    const char *name = word != NULL ? dalcs_arena_copy(&arena, word, strlen(word)) : NULL;
+    if (status == DALCS_OK && name == NULL) {
+        status = dalcs_script_refuse(script, s, "foreach name value value ...",
+                                     "the name of the variable is missing");
+    }
+    while (status == DALCS_OK && !stops && (word = dalcs_script_word(script, &list)) != NULL) {
+        if (strcmp(word, "(") == 0 || strcmp(word, ")") == 0) {
+            continue;
+        }
+        status = dalcs_variables_set(&script->variables, name, word);
+        if (status == DALCS_OK) {
+            status = execute_body(script, loop, &stops);
+        }
+    }
+    dalcs_arena_finish(&arena);
+    return status;
+}
+
+static enum dalcs_status refuse_endless(struct dalcs_script *script,
+                                        const struct dalcs_statement *s) {
+    return dalcs_script_refuse(script, s, NULL, "this loop has gone round %d times",
+                               (int)MOST_ROUNDS);
+}
+
+static enum dalcs_status execute_repeat(struct dalcs_script *script, size_t loop) {
+    const struct dalcs_statement *s = &script->statements.statement[loop];
+    const char *text;
+    double n = MOST_ROUNDS + 1.0; /* without a number: until break */
+    bool stops = false;
+    enum dalcs_status status = dalcs_script_expand_low(script, s, &text);
+    if (status == DALCS_OK && text[0] != '\0') {
+        status = dalcs_script_number(script, s, text, &n);
+    }
+    for (long k = 0; status == DALCS_OK && (double)k < n && !stops; k++) {
+        status = k < MOST_ROUNDS ? execute_body(script, loop, &stops) : refuse_endless(script, s);
+    }
+    return status;
+}
+
+static enum dalcs_status holds(struct dalcs_script *script, const struct dalcs_statement *s,
+                               bool *yes) {
+    const char *text;
+    double value = 0.0;
+    enum dalcs_status status = dalcs_script_expand_low(script, s, &text);
+    if (status == DALCS_OK) {
+        status = dalcs_script_number(script, s, text, &value);
+    }
+    *yes = value != 0.0;
+    return status;
+}
+
+static enum dalcs_status execute_while(struct dalcs_script *script, size_t loop) {
+    const struct dalcs_statement *s = &script->statements.statement[loop];
+    bool stops = false;
+    bool yes;
+    enum dalcs_status status = holds(script, s, &yes);
+    for (long k = 0; status == DALCS_OK && yes && !stops; k++) {
+        status = k < MOST_ROUNDS ? execute_body(script, loop, &stops) : refuse_endless(script, s);
+        if (status == DALCS_OK && !stops) {
+            status = holds(script, s, &yes);
+        }
+    }
+    return status;
+}
+
+/* The statement behind the last of an if and its else. */
+static size_t end_of(const struct dalcs_statements *all, size_t k) {
+    size_t end = all->statement[k].end;
+    return all->statement[end].kind == DALCS_STATEMENT_ELSE ? all->statement[end].end : end;
+}
+
+static enum dalcs_status execute_if(struct dalcs_script *script, size_t k) {
+    const struct dalcs_statements *all = &script->statements;
+    const struct dalcs_statement *s = &all->statement[k];
+    bool yes;
+    const enum dalcs_status status = holds(script, s, &yes);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    if (yes) {
+        return execute(script, k + 1, s->end);
+    }
+    const bool has_else = all->statement[s->end].kind == DALCS_STATEMENT_ELSE;
+    return has_else ? execute(script, s->end + 1, end_of(all, k)) : DALCS_OK;
+}
+
+static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size_t end) {
+    const struct dalcs_statements *all = &script->statements;
+    enum dalcs_status status = DALCS_OK;
+    for (size_t k = begin; k < end && status == DALCS_OK; k++) {
+        if (script->quits || script->breaks || script->continues) {
+            return DALCS_OK;
+        }
+        switch (all->statement[k].kind) {
+        case DALCS_STATEMENT_FOREACH:
+            status = execute_foreach(script, k);
+            k = all->statement[k].end;
+            break;
+        case DALCS_STATEMENT_REPEAT:
+            status = execute_repeat(script, k);
+            k = all->statement[k].end;
+            break;
+        case DALCS_STATEMENT_WHILE:
+            status = execute_while(script, k);
+            k = all->statement[k].end;
+            break;
+        case DALCS_STATEMENT_IF:
+            status = execute_if(script, k);
+            k = end_of(all, k);
+            break;
+        default:
+            status = dalcs_script_command(script, k);
+            dalcs_arena_finish(&script->arena);
+            break;
+        }
+    }
+    return status;
+}
+
+/* ---- From outside --------------------------------------------------------------------------------- */
+
+/* Is there a statement whose vectors are not named in the text of the script? */
+static bool keeps_all(const struct dalcs_statements *all) {
+    bool found = strstr(all->text, "($") != NULL || strstr(all->text, ",$") != NULL;
+    for (size_t k = 0; k < all->n && !found; k++) {
+        const struct dalcs_statement *s = &all->statement[k];
+        const char *rest = s->rest;
+        const bool writes = s->kind == DALCS_STATEMENT_WRITE || s->kind == DALCS_STATEMENT_WRDATA;
+        rest += writes ? strcspn(rest, " \t") : 0;
+        rest += strspn(rest, " \t");
+        const size_t n = strlen(rest);
+        found = (writes || s->kind == DALCS_STATEMENT_PRINT) &&
+                (n == 0 || (n >= 3 && strcmp(rest + n - 3, "all") == 0));
+    }
+    return found;
+}
+
+static bool asks(const struct dalcs_statements *all) {
+    bool found = false;
+    for (size_t k = 0; k < all->n && !found; k++) {
+        found = all->statement[k].kind == DALCS_STATEMENT_ANALYSIS;
+    }
+    return found;
+}
+
+enum dalcs_status dalcs_script_look(const struct dalcs_session *session, bool *is_there,
+                                    enum dalcs_analysis *main) {
+    static const struct {
+        const char *word;
+        enum dalcs_analysis analysis;
+    } ranked[] = {{"tran", DALCS_TRANSIENT},
+                  {"ac", DALCS_AC},
+                  {"dc", DALCS_DC_SWEEP},
+                  {"op", DALCS_OPERATING_POINT}};
+
+    struct dalcs_statements all = {0};
+    size_t best = sizeof ranked / sizeof ranked[0];
+    const enum dalcs_status status = dalcs_statements_read(&all, session);
+    for (size_t k = 0; k < all.n; k++) {
+        for (size_t i = 0; i < best; i++) {
+            best = strcmp(all.statement[k].word, ranked[i].word) == 0 ? i : best;
+        }
+    }
+    if (best < sizeof ranked / sizeof ranked[0]) {
+        *main = ranked[best].analysis;
+    }
+    *is_there = all.n > 0;
+    dalcs_statements_finish(&all);
+    return status;
+}
+
+enum dalcs_status dalcs_script_run(const struct dalcs_script_host *host) {
+    const struct dalcs_request asked = dalcs_session_request(host->session);
+    struct dalcs_script script = {.host = host,
+                                  .has_cards = asked.operating_point || asked.transient ||
+                                               asked.dc_sweep || asked.ac};
+    enum dalcs_status status = dalcs_statements_read(&script.statements, host->session);
+    if (status == DALCS_OK) {
+        status = dalcs_statements_check(&script.statements, host->session);
+    }
+    if (status == DALCS_OK) {
+        script.vectors.text = script.statements.text;
+        script.vectors.keeps_all = keeps_all(&script.statements);
+        if (!asks(&script.statements)) {
+            status = dalcs_script_run_cards(&script);
+        }
+        if (status == DALCS_OK) {
+            status = execute(&script, 0, script.statements.n);
+        }
+    }
+    dalcs_arena_finish(&script.arena);
+    dalcs_arena_finish(&script.kept);
+    dalcs_vectors_finish(&script.vectors);
+    dalcs_variables_finish(&script.variables);
+    dalcs_statements_finish(&script.statements);
+    free(script.card);
+    return status;
+}

@@ -1,0 +1,262 @@
+/* statement.c - words, comments and blocks of a .control block. */
+#include "statement.h"
+
+#include "names.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DEEPEST = 50 };
+
+static const struct {
+    const char *word;
+    enum dalcs_statement_kind kind;
+} WORDS[] = {
+    {"tran", DALCS_STATEMENT_ANALYSIS},
+    {"op", DALCS_STATEMENT_ANALYSIS},
+    {"dc", DALCS_STATEMENT_ANALYSIS},
+    {"ac", DALCS_STATEMENT_ANALYSIS},
+    {"run", DALCS_STATEMENT_ANALYSIS},
+    {"meas", DALCS_STATEMENT_MEASURE},
+    {"measure", DALCS_STATEMENT_MEASURE},
+    {"print", DALCS_STATEMENT_PRINT},
+    {"echo", DALCS_STATEMENT_ECHO},
+    {"let", DALCS_STATEMENT_LET},
+    {"set", DALCS_STATEMENT_SET},
+    {"unset", DALCS_STATEMENT_UNSET},
+    {"alter", DALCS_STATEMENT_ALTER},
+    {"alterparam", DALCS_STATEMENT_ALTER_PARAMETER},
+    {"altermod", DALCS_STATEMENT_ALTER_MODEL},
+    {"reset", DALCS_STATEMENT_RESET},
+    {"save", DALCS_STATEMENT_SAVE},
+    {"option", DALCS_STATEMENT_SAVE},
+    {"wrdata", DALCS_STATEMENT_WRDATA},
+    {"write", DALCS_STATEMENT_WRITE},
+    {"foreach", DALCS_STATEMENT_FOREACH},
+    {"repeat", DALCS_STATEMENT_REPEAT},
+    {"while", DALCS_STATEMENT_WHILE},
+    {"if", DALCS_STATEMENT_IF},
+    {"else", DALCS_STATEMENT_ELSE},
+    {"end", DALCS_STATEMENT_END},
+    {"break", DALCS_STATEMENT_BREAK},
+    {"continue", DALCS_STATEMENT_CONTINUE},
+    {"quit", DALCS_STATEMENT_QUIT},
+    {"exit", DALCS_STATEMENT_QUIT},
+};
+
+enum { N_WORDS = sizeof WORDS / sizeof WORDS[0] };
+
+/* Of ngspice; they show, ask or compute what dalcs does elsewhere or not at all. */
+static const char *const SKIPPED[] = {
+    "plot",       "display",  "setplot",   "gnuplot", "hardcopy", "asciiplot", "iplot",
+    "rusage",     "settype",  "setscale",  "destroy", "remcirc",  "source",    "listing",
+    "linearize",  "fourier",  "fft",       "psd",     "spec",     "noise",     "pz",
+    "sens",       "tf",       "disto",     "sp",      "pss",      "status",    "show",
+    "showmod",    "version",  "shell",     "history", "help",     "alias",     "unalias",
+    "define",     "undefine", "unlet",     "load",    "edit",     "resume",    "step",
+    "stop",       "trace",    "iplot",     "where",   "delete",   "bug",       "cd",
+    "circbyline", "compose",  "cross",     "deftype", "diff",     "dump",      "eprint",
+    "eprvcd",     "fopen",    "fread",     "fclose",  "getcwd",   "inventory", "jobs",
+    "mc_source",  "mdump",    "mrdump",    "optran",  "rehash",   "reshape",   "rspice",
+    "setcirc",    "setcs",    "setseed",   "shift",   "snload",   "snsave",    "state",
+    "strcmp",     "strslice", "strstr",    "sysinfo", "tutorial", "wrnodev",   "wrs2p",
+    "xgraph",     "aspice",   "codemodel", "devhelp", "unset",    "bltplot",   "pause",
+    "dowhile",    "label",    "goto",      "wrspice", "esave",    "cutout",    "pre_osdi",
+    "cdump"};
+
+static bool is_skipped(const char *word) {
+    for (size_t k = 0; k < sizeof SKIPPED / sizeof SKIPPED[0]; k++) {
+        if (strcmp(SKIPPED[k], word) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static enum dalcs_statement_kind kind_of(const char *word) {
+    for (size_t k = 0; k < N_WORDS; k++) {
+        if (strcmp(WORDS[k].word, word) == 0) {
+            return WORDS[k].kind;
+        }
+    }
+    return is_skipped(word) ? DALCS_STATEMENT_SKIPPED : DALCS_STATEMENT_UNKNOWN;
+}
+
+/* Where the text of a line ends: before a `;` or a `$` between blanks, and without blanks behind. */
+static size_t length_of(const char *line) {
+    size_t n = 0;
+    for (bool quoted = false; line[n] != '\0'; n++) {
+        quoted = line[n] == '"' ? !quoted : quoted;
+        bool starts = n == 0 || line[n - 1] == ' ' || line[n - 1] == '\t';
+        bool ends = line[n + 1] == '\0' || line[n + 1] == ' ' || line[n + 1] == '\t';
+        if (!quoted && (line[n] == ';' || (line[n] == '$' && starts && ends))) {
+            break;
+        }
+    }
+    while (n > 0 && (line[n - 1] == ' ' || line[n - 1] == '\t')) {
+        n--;
+    }
+    return n;
+}
+
+static enum dalcs_status add(struct dalcs_statements *s, size_t line, const char *text,
+                             size_t begin, size_t end) {
+    enum dalcs_status status =
+        dalcs_grow(&s->statement, &s->capacity, s->n + 1, sizeof *s->statement);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    size_t n = begin + strcspn(text + begin, " \t");
+    n = n < end ? n : end;
+    char *word = dalcs_arena_copy(&s->arena, text + begin, n - begin);
+    size_t rest = n + strspn(text + n, " \t");
+    char *tail = dalcs_arena_copy(&s->arena, text + rest, rest < end ? end - rest : 0);
+    if (word == NULL || tail == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (char *c = word; *c != '\0'; c++) {
+        *c = *c >= 'A' && *c <= 'Z' ? (char)(*c - 'A' + 'a') : *c;
+    }
+    s->statement[s->n++] = (struct dalcs_statement){
+        .kind = kind_of(word), .line = line, .column = begin + 1, .word = word, .rest = tail};
+    return DALCS_OK;
+}
+
+static enum dalcs_status read_line(struct dalcs_statements *s, size_t line, const char *text) {
+    size_t begin = strspn(text, " \t");
+    size_t end = length_of(text);
+    if (begin >= end || text[begin] == '*' || text[begin] == '#') {
+        return DALCS_OK;
+    }
+    if (text[begin] == '+' && s->n > 0) {
+        struct dalcs_statement *last = &s->statement[s->n - 1];
+        last->rest = dalcs_arena_printf(&s->arena, "%s %.*s", last->rest, (int)(end - begin - 1),
+                                        text + begin + 1);
+        return last->rest != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    }
+    return add(s, line, text, begin, end);
+}
+
+/* All of the script without blanks, lower case. */
+static enum dalcs_status squeeze(struct dalcs_statements *s) {
+    size_t length = 1;
+    for (size_t k = 0; k < s->n; k++) {
+        length += strlen(s->statement[k].rest) + 1;
+    }
+    s->text = dalcs_alloc(length, 1);
+    if (s->text == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    size_t n = 0;
+    for (size_t k = 0; k < s->n; k++) {
+        for (const char *c = s->statement[k].rest; *c != '\0'; c++) {
+            if (*c != ' ' && *c != '\t') {
+                s->text[n++] = *c >= 'A' && *c <= 'Z' ? (char)(*c - 'A' + 'a') : *c;
+            }
+        }
+        s->text[n++] = '\n';
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_statements_read(struct dalcs_statements *s,
+                                        const struct dalcs_session *session) {
+    size_t n = dalcs_session_n_script_lines(session);
+    enum dalcs_status status = DALCS_OK;
+    for (size_t k = 0; k < n && status == DALCS_OK; k++) {
+        status = read_line(s, k, dalcs_session_script_line(session, k));
+    }
+    return status == DALCS_OK ? squeeze(s) : status;
+}
+
+/* ---- Checks --------------------------------------------------------------------------------------- */
+
+static void say(struct dalcs_session *session, const struct dalcs_statement *s,
+                enum dalcs_level level, const char *hint, const char *text) {
+    dalcs_session_script_message(session, s->line, s->column, strlen(s->word), level, hint, text);
+}
+
+static void refuse_word(struct dalcs_session *session, const struct dalcs_statement *s) {
+    const char *name[N_WORDS];
+    char hint[80];
+    char text[120];
+    for (size_t k = 0; k < N_WORDS; k++) {
+        name[k] = WORDS[k].word;
+    }
+    const char *nearest = dalcs_names_nearest_of(name, N_WORDS, s->word);
+    if (nearest == NULL) {
+        nearest = dalcs_names_nearest_of(SKIPPED, sizeof SKIPPED / sizeof SKIPPED[0], s->word);
+    }
+    snprintf(hint, sizeof hint, "did you mean '%s'?", nearest != NULL ? nearest : "");
+    snprintf(text, sizeof text, "unknown command '%.60s'", s->word);
+    say(session, s, DALCS_LEVEL_ERROR, nearest != NULL ? hint : NULL, text);
+}
+
+/* Each skipped word once. */
+static void warn_of_skipped(struct dalcs_session *session, const struct dalcs_statements *all,
+                            size_t at) {
+    const struct dalcs_statement *s = &all->statement[at];
+    char text[120];
+    for (size_t k = 0; k < at; k++) {
+        if (strcmp(all->statement[k].word, s->word) == 0) {
+            return;
+        }
+    }
+    snprintf(text, sizeof text, "'%.60s' is not done here and skipped", s->word);
+    say(session, s, DALCS_LEVEL_WARNING, NULL, text);
+}
+
+static bool opens(enum dalcs_statement_kind kind) {
+    return kind == DALCS_STATEMENT_FOREACH || kind == DALCS_STATEMENT_REPEAT ||
+           kind == DALCS_STATEMENT_WHILE || kind == DALCS_STATEMENT_IF;
+}
+
+enum dalcs_status dalcs_statements_check(struct dalcs_statements *all,
+                                         struct dalcs_session *session) {
+    size_t open[DEEPEST];
+    size_t n_open = 0;
+    bool failed = false;
+    for (size_t k = 0; k < all->n; k++) {
+        struct dalcs_statement *s = &all->statement[k];
+        const bool is_else = s->kind == DALCS_STATEMENT_ELSE;
+        if (s->kind == DALCS_STATEMENT_UNKNOWN) {
+            refuse_word(session, s);
+            failed = true;
+        } else if (s->kind == DALCS_STATEMENT_SKIPPED) {
+            warn_of_skipped(session, all, k);
+        } else if (opens(s->kind)) {
+            if (n_open == DEEPEST) {
+                say(session, s, DALCS_LEVEL_ERROR, NULL, "blocks lie in each other too deep");
+                return DALCS_E_NETLIST;
+            }
+            open[n_open++] = k;
+        } else if (s->kind == DALCS_STATEMENT_END || is_else) {
+            const bool fits = n_open > 0 && (!is_else || all->statement[open[n_open - 1]].kind ==
+                                                             DALCS_STATEMENT_IF);
+            if (!fits) {
+                say(session, s, DALCS_LEVEL_ERROR, NULL,
+                    is_else ? "'else' without an 'if'" : "'end' without a block");
+                failed = true;
+                continue;
+            }
+            all->statement[open[--n_open]].end = k;
+            if (is_else) {
+                open[n_open++] = k;
+            }
+        }
+    }
+    while (n_open > 0) {
+        say(session, &all->statement[open[--n_open]], DALCS_LEVEL_ERROR, "add a line: end",
+            "this block is never closed");
+        failed = true;
+    }
+    return failed ? DALCS_E_NETLIST : DALCS_OK;
+}
+
+void dalcs_statements_finish(struct dalcs_statements *s) {
+    free(s->statement);
+    free(s->text);
+    dalcs_arena_finish(&s->arena);
+    *s = (struct dalcs_statements){0};
+}

@@ -1,0 +1,63 @@
+/* statement.h - the lines of a .control block as statements. */
+#ifndef DALCS_STATEMENT_H
+#define DALCS_STATEMENT_H
+
+#include "dalcs.h"
+#include "memory.h"
+
+enum dalcs_statement_kind {
+    DALCS_STATEMENT_ANALYSIS, /* tran, op, dc, ac, run */
+    DALCS_STATEMENT_MEASURE,  /* goes with the analysis before it */
+    DALCS_STATEMENT_PRINT,
+    DALCS_STATEMENT_ECHO,
+    DALCS_STATEMENT_LET,
+    DALCS_STATEMENT_SET,
+    DALCS_STATEMENT_UNSET,
+    DALCS_STATEMENT_ALTER,
+    DALCS_STATEMENT_ALTER_PARAMETER,
+    DALCS_STATEMENT_ALTER_MODEL,
+    DALCS_STATEMENT_RESET,
+    DALCS_STATEMENT_SAVE, /* save, option: cards of all later runs */
+    DALCS_STATEMENT_WRDATA,
+    DALCS_STATEMENT_WRITE,
+    DALCS_STATEMENT_FOREACH,
+    DALCS_STATEMENT_REPEAT,
+    DALCS_STATEMENT_WHILE,
+    DALCS_STATEMENT_IF,
+    DALCS_STATEMENT_ELSE,
+    DALCS_STATEMENT_END,
+    DALCS_STATEMENT_BREAK,
+    DALCS_STATEMENT_CONTINUE,
+    DALCS_STATEMENT_QUIT,
+    DALCS_STATEMENT_SKIPPED, /* known, but not done here */
+    DALCS_STATEMENT_UNKNOWN
+};
+
+struct dalcs_statement {
+    enum dalcs_statement_kind kind;
+    size_t line;      /* of the script */
+    size_t column;    /* of the word, from 1 */
+    const char *word; /* lower case */
+    const char *rest; /* what follows it, as written, continuation lines joined */
+    size_t end; /* of a block: the statement of its end; of if: of its else, if there is one */
+};
+
+struct dalcs_statements {
+    struct dalcs_statement *statement; /* heap */
+    size_t n, capacity;
+    char *text; /* all of it, lower case without blanks; heap */
+    struct dalcs_arena arena;
+};
+
+/* Zero-initialise. Touches no message. */
+enum dalcs_status dalcs_statements_read(struct dalcs_statements *statements,
+                                        const struct dalcs_session *session) DALCS_MUST_CHECK;
+
+/* Matches blocks with their ends; errors and warnings go to the session. DALCS_E_NETLIST: there were
+ * errors. */
+enum dalcs_status dalcs_statements_check(struct dalcs_statements *statements,
+                                         struct dalcs_session *session) DALCS_MUST_CHECK;
+
+void dalcs_statements_finish(struct dalcs_statements *statements);
+
+#endif

@@ -1,0 +1,305 @@
+/* dc_sweep.c - .dc: operating points, one after the other.
+ *
+ * Where sources alone are swept, one engine goes through all points: only its inputs change, and each
+ * point starts in the mode of the one before. For anything else the circuit is built again at each
+ * point, and the mode is handed on where the pairs are the same. */
+#include "measures.h"
+
+#include "quantity.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Operating points between calls of the sink's progress. */
+enum { PROGRESS_POINTS = 64 };
+
+struct sweep {
+    struct dalcs_run *run;
+    const struct dalcs_sweep *dc; /* [n_dc] */
+    int n_dc;
+    long n, k;                   /* points, the present one */
+    double value[DALCS_MOST_DC]; /* at the present point */
+    double *row;                 /* [n_dc - 1 + n_outputs] */
+    size_t n_outputs, n_shown;
+    struct dalcs_measures measures;
+    uint64_t **mode; /* [n_systems] of the last point, where the circuit is built again */
+    int *n_words, n_systems;
+};
+
+static enum dalcs_unit unit_of(const struct dalcs_circuit *circuit,
+                               const struct dalcs_sweep *sweep) {
+    switch (sweep->device < 0 ? '?' : circuit->device[sweep->device].letter) {
+    case 'v':
+        return DALCS_VOLT;
+    case 'i':
+        return DALCS_AMPERE;
+    case 'r':
+        return DALCS_UNIT_OHM;
+    default:
+        return DALCS_UNIT_NONE;
+    }
+}
+
+static enum dalcs_status begin_plot(const struct sweep *s) {
+    struct dalcs_session *session = s->run->s;
+    const size_t n_outer = (size_t)s->n_dc - 1;
+    const size_t n = n_outer + s->n_shown;
+    const char **name = dalcs_arena_alloc(&session->arena, n, sizeof *name);
+    enum dalcs_unit *unit = dalcs_arena_alloc(&session->arena, n, sizeof *unit);
+    const char *scale = dalcs_arena_copy(&session->arena, s->dc[0].label, strlen(s->dc[0].label));
+    if (name == NULL || unit == NULL || scale == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t i = 0; i < n_outer; i++) {
+        const char *label = s->dc[i + 1].label;
+        name[i] = dalcs_arena_copy(&session->arena, label, strlen(label));
+        unit[i] = unit_of(&session->circuit, &s->dc[i + 1]);
+        if (name[i] == NULL) {
+            return DALCS_E_NOMEM;
+        }
+    }
+    memcpy(name + n_outer, s->run->name, s->n_shown * sizeof *name);
+    memcpy(unit + n_outer, s->run->unit, s->n_shown * sizeof *unit);
+    return dalcs_run_announce(s->run,
+                              &(struct dalcs_plot){.analysis = DALCS_DC_SWEEP,
+                                                   .scale = scale,
+                                                   .scale_unit = unit_of(&session->circuit, s->dc),
+                                                   .n_signals = n,
+                                                   .name = name,
+                                                   .unit = unit});
+}
+
+static void take_point(struct sweep *s, long k) {
+    s->k = k;
+    for (int i = 0; i < s->n_dc; i++) {
+        s->value[i] = dalcs_sweep_value(&s->dc[i], (int)(k % s->dc[i].n));
+        k /= s->dc[i].n;
+    }
+}
+
+/* After a failure: at which point. */
+static void blame_point(const struct sweep *s) {
+    char text[DALCS_MOST_DC][DALCS_QUANTITY_SIZE];
+    const bool is_nested = s->n_dc > 1;
+    for (int i = 0; i < s->n_dc; i++) {
+        (void)dalcs_quantity_write(text[i], s->value[i], "", 9);
+    }
+    dalcs_diag_add(&s->run->s->diag, DALCS_NOTE, NULL, NULL, "this was .dc at %s = %s%s%s%s%s",
+                   s->dc[0].label, text[0], is_nested ? ", " : "", is_nested ? s->dc[1].label : "",
+                   is_nested ? " = " : "", is_nested ? text[1] : "");
+}
+
+/* The operating point of e, as a row. */
+static enum dalcs_status solve_point(struct sweep *s, struct dalcs_euler *e,
+                                     const struct dalcs_network *network) {
+    struct dalcs_run *r = s->run;
+    const size_t n_outer = (size_t)s->n_dc - 1;
+    const enum dalcs_status status = dalcs_euler_operating_point(e, false);
+    if (status != DALCS_OK) {
+        dalcs_explain_failure(r, e, status);
+        if (status > DALCS_OK) {
+            blame_point(s);
+        }
+        return status;
+    }
+    memcpy(s->row, s->value + 1, n_outer * sizeof(double));
+    dalcs_recorder_evaluate(network, e, s->row + n_outer);
+    dalcs_measures_row(&s->measures, s->value[0], s->row + n_outer);
+    DALCS_TRY(r->sink->row(r->sink->user, s->value[0], s->row));
+    if ((s->k + 1) % PROGRESS_POINTS == 0) {
+        DALCS_TRY(r->sink->progress(r->sink->user, (double)(s->k + 1), (double)s->n));
+    }
+    return DALCS_OK;
+}
+
+/* ---- Sources alone --------------------------------------------------------------------------- */
+
+static bool are_sources(const struct dalcs_circuit *circuit) {
+    bool all = true;
+    for (int i = 0; i < circuit->n_dc; i++) {
+        const int device = circuit->dc[i].device;
+        all = all && (circuit->dc[i].target == DALCS_SWEEP_TEMPERATURE ||
+                      (device >= 0 && circuit->device[device].stimulus >= 0));
+    }
+    return all;
+}
+
+static struct dalcs_stimulus *stimulus_of(struct dalcs_circuit *circuit,
+                                          const struct dalcs_sweep *sweep) {
+    return sweep->device < 0 ? NULL : &circuit->stimulus[circuit->device[sweep->device].stimulus];
+}
+
+static enum dalcs_status walk(struct sweep *s, struct dalcs_euler *e) {
+    struct dalcs_session *session = s->run->s;
+    for (long k = 0; k < s->n; k++) {
+        take_point(s, k);
+        for (int i = 0; i < s->n_dc; i++) {
+            struct dalcs_stimulus *source = stimulus_of(&session->circuit, &s->dc[i]);
+            if (source != NULL) {
+                source->dc = s->value[i];
+                source->has_dc = true;
+            }
+        }
+        DALCS_TRY(solve_point(s, e, &session->network));
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status run_sources(struct sweep *s) {
+    struct dalcs_run *r = s->run;
+    struct dalcs_circuit *circuit = &r->s->circuit;
+    struct dalcs_stimulus before[DALCS_MOST_DC];
+    struct dalcs_euler e;
+    DALCS_TRY(dalcs_euler_setup(&e, circuit, &r->s->network, &r->osnsp, 1.0, 1.0));
+    e.open_user = &r->undetermined;
+    e.on_open = dalcs_undetermined_at;
+    for (int i = 0; i < s->n_dc; i++) {
+        const struct dalcs_stimulus *source = stimulus_of(circuit, &s->dc[i]);
+        before[i] = source != NULL ? *source : (struct dalcs_stimulus){0};
+    }
+    const enum dalcs_status status = walk(s, &e);
+    for (int i = 0; i < s->n_dc; i++) {
+        struct dalcs_stimulus *source = stimulus_of(circuit, &s->dc[i]);
+        if (source != NULL) {
+            *source = before[i];
+        }
+    }
+    dalcs_run_add_work(r, &e);
+    dalcs_euler_finish(&e);
+    return status;
+}
+
+/* ---- Anything -------------------------------------------------------------------------------- */
+
+static void forget_modes(struct sweep *s) {
+    for (int i = 0; i < s->n_systems; i++) {
+        free(s->mode[i]);
+    }
+    free(s->mode);
+    free(s->n_words);
+    s->mode = NULL;
+    s->n_words = NULL;
+    s->n_systems = 0;
+}
+
+static enum dalcs_status keep_modes(struct sweep *s, const struct dalcs_euler *e) {
+    forget_modes(s);
+    s->mode = dalcs_alloc((size_t)e->n_components, sizeof *s->mode);
+    s->n_words = dalcs_alloc((size_t)e->n_components, sizeof *s->n_words);
+    if (s->mode == NULL || s->n_words == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < e->n_components; i++) {
+        const struct dalcs_osnsp *p = &e->component[i].osnsp;
+        s->mode[i] = dalcs_alloc((size_t)p->n_words, sizeof(uint64_t));
+        if (s->mode[i] == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        memcpy(s->mode[i], p->mode, (size_t)p->n_words * sizeof(uint64_t));
+        s->n_words[i] = p->system->n_pairs;
+        s->n_systems = i + 1;
+    }
+    return DALCS_OK;
+}
+
+/* A guess, no more: the answer is proved anew. Switches remember by it where they were. */
+static void hand_modes_on(const struct sweep *s, struct dalcs_euler *e) {
+    bool same = s->n_systems == e->n_components;
+    for (int i = 0; i < e->n_components && same; i++) {
+        same = s->n_words[i] == e->component[i].system->n_pairs;
+    }
+    for (int i = 0; i < e->n_components && same; i++) {
+        struct dalcs_osnsp *p = &e->component[i].osnsp;
+        memcpy(p->mode, s->mode[i], (size_t)p->n_words * sizeof(uint64_t));
+    }
+}
+
+static enum dalcs_status run_point(struct sweep *s) {
+    struct dalcs_run *r = s->run;
+    struct dalcs_override override[DALCS_MOST_DC];
+    size_t n_overrides = 0;
+    struct dalcs_circuit circuit;
+    struct dalcs_network network;
+    struct dalcs_euler e;
+    for (int i = 0; i < s->n_dc; i++) {
+        n_overrides += dalcs_override_of(&s->dc[i], s->value[i], &override[n_overrides]) ? 1 : 0;
+    }
+    enum dalcs_status status = dalcs_session_build(r->s, override, n_overrides, &circuit, &network);
+    if (status == DALCS_E_NETLIST) {
+        blame_point(s);
+    }
+    DALCS_TRY(status);
+    if ((size_t)network.n_outputs != s->n_outputs) {
+        dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, "sweep it with .step",
+                       "this .dc changes which elements and nodes there are");
+        blame_point(s);
+        status = DALCS_E_NETLIST;
+    } else {
+        status = dalcs_euler_setup(&e, &circuit, &network, &r->osnsp, 1.0, 1.0);
+        if (status == DALCS_OK) {
+            hand_modes_on(s, &e);
+            status = solve_point(s, &e, &network);
+            if (status == DALCS_OK) {
+                status = keep_modes(s, &e);
+            }
+            dalcs_run_add_work(r, &e);
+            dalcs_euler_finish(&e);
+        }
+    }
+    dalcs_network_finish(&network);
+    dalcs_circuit_finish(&circuit);
+    return status;
+}
+
+static enum dalcs_status run_circuits(struct sweep *s) {
+    enum dalcs_status status = DALCS_OK;
+    for (long k = 0; k < s->n && status == DALCS_OK; k++) {
+        take_point(s, k);
+        status = run_point(s);
+    }
+    forget_modes(s);
+    return status;
+}
+
+/* Over the scale, which has to rise. */
+static enum dalcs_status start_measures(struct sweep *s) {
+    const struct dalcs_sweep *scale = &s->dc[0];
+    const double first = dalcs_sweep_value(scale, 0);
+    const double last = dalcs_sweep_value(scale, scale->n - 1);
+    if (s->n_dc == 1 && first <= last) {
+        return dalcs_measures_start_rows(&s->measures, s->run, DALCS_MEASURED_DC, first, last);
+    }
+    if (dalcs_measuring_is_wanted(&s->run->s->circuit, DALCS_MEASURED_DC)) {
+        dalcs_diag_add(&s->run->s->diag, DALCS_WARNING, NULL, NULL,
+                       "nothing is measured in a .dc that is nested or falls");
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_dc_sweep_run(struct dalcs_run *r) {
+    const struct dalcs_circuit *circuit = &r->s->circuit;
+    struct sweep s = {.run = r,
+                      .dc = circuit->dc,
+                      .n_dc = circuit->n_dc,
+                      .n = 1,
+                      .n_outputs = (size_t)r->s->network.n_outputs,
+                      .n_shown = (size_t)circuit->n_shown};
+    for (int i = 0; i < s.n_dc; i++) {
+        s.n *= s.dc[i].n;
+    }
+    DALCS_TRY(begin_plot(&s));
+    s.row = dalcs_alloc((size_t)s.n_dc - 1 + s.n_outputs, sizeof *s.row);
+    if (s.row == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    enum dalcs_status status = start_measures(&s);
+    if (status == DALCS_OK) {
+        status = are_sources(circuit) ? run_sources(&s) : run_circuits(&s);
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_measures_report(&s.measures, r, DALCS_OK);
+    }
+    dalcs_measures_finish(&s.measures);
+    free(s.row);
+    return status == DALCS_OK ? r->sink->end(r->sink->user) : status;
+}

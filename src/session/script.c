@@ -1,0 +1,209 @@
+/* script.c - what a .control block needs of a session: its lines, runs with cards of its own, other
+ * values. The language of the block is not known here. */
+#include "session_internal.h"
+
+#include <string.h>
+
+size_t dalcs_session_n_script_lines(const struct dalcs_session *session) {
+    return session->has_netlist ? session->netlist.n_script_lines : 0;
+}
+
+const char *dalcs_session_script_line(const struct dalcs_session *session, size_t index) {
+    return index < dalcs_session_n_script_lines(session) ? session->netlist.script[index].text
+                                                         : NULL;
+}
+
+void dalcs_session_script_message(struct dalcs_session *session, size_t line, size_t column,
+                                  size_t length, enum dalcs_level level, const char *hint,
+                                  const char *text) {
+    static const enum dalcs_severity severity[] = {[DALCS_LEVEL_NOTE] = DALCS_NOTE,
+                                                   [DALCS_LEVEL_WARNING] = DALCS_WARNING,
+                                                   [DALCS_LEVEL_ERROR] = DALCS_ERROR};
+
+    if (line >= dalcs_session_n_script_lines(session)) {
+        dalcs_diag_add(&session->diag, severity[level], NULL, hint, "%s", text);
+        return;
+    }
+    const struct dalcs_token place = {
+        .line = &session->netlist.script[line], .offset = (int)column - 1, .length = (int)length};
+    const struct dalcs_location where = dalcs_token_location(&place);
+    dalcs_diag_add(&session->diag, severity[level], &where, hint, "%s", text);
+}
+
+/* ---- Runs with cards of their own ------------------------------------------------------------- */
+
+static bool is_analysis(const struct dalcs_card *card) {
+    static const char *const name[] = {".tran", ".op", ".dc", ".ac", ".step"};
+    for (size_t k = 0; k < sizeof name / sizeof name[0]; k++) {
+        if (strcmp(card->token->text, name[k]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Keeps the analyses among the last cards and drops those before; undone by `before`. */
+static enum dalcs_status use_own_analyses(struct dalcs_session *s, size_t first) {
+    struct dalcs_netlist *netlist = &s->netlist;
+    bool has_own = false;
+    for (size_t k = first; k < netlist->n_cards; k++) {
+        has_own = has_own || is_analysis(&netlist->card[k]);
+    }
+    size_t n = 0;
+    for (size_t k = 0; k < netlist->n_cards; k++) {
+        if (!has_own || k >= first || !is_analysis(&netlist->card[k])) {
+            netlist->card[n++] = netlist->card[k];
+        }
+    }
+    netlist->n_cards = n;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
+                                          const struct dalcs_extra_card *card, size_t n_cards,
+                                          const struct dalcs_run_options *options,
+                                          const struct dalcs_sink *sink) {
+    if (!session->has_netlist) {
+        return DALCS_E_OPTION;
+    }
+    struct dalcs_netlist *netlist = &session->netlist;
+    const struct dalcs_netlist before = *netlist;
+    struct dalcs_card *kept = dalcs_alloc(before.n_cards, sizeof *kept);
+    if (kept == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    memcpy(kept, before.card, before.n_cards * sizeof *kept);
+    enum dalcs_status status = DALCS_OK;
+    for (size_t k = 0; k < n_cards && status == DALCS_OK; k++) {
+        status = dalcs_netlist_add_card(netlist, &netlist->script[card[k].line], card[k].text,
+                                        &session->diag);
+    }
+    if (status == DALCS_OK) {
+        status = use_own_analyses(session, before.n_cards);
+    }
+    if (status == DALCS_OK) {
+        session->is_altered = true;
+        status = dalcs_session_run(session, options, sink);
+    }
+    memcpy(netlist->card, kept, before.n_cards * sizeof *kept);
+    netlist->n_cards = before.n_cards;
+    netlist->has_errors = before.has_errors;
+    netlist->has_language = before.has_language;
+    session->is_altered = true;
+    free(kept);
+    return status;
+}
+
+/* ---- Other values ------------------------------------------------------------------------------ */
+
+static enum dalcs_status keep_override(struct dalcs_session *s,
+                                       const struct dalcs_override *override) {
+    s->is_altered = true;
+    for (size_t k = 0; k < s->n_altered; k++) {
+        struct dalcs_override *known = &s->override[k];
+        const bool same_field =
+            (known->field == NULL) == (override->field == NULL) &&
+            (known->field == NULL || strcmp(known->field, override->field) == 0);
+        if (known->kind == override->kind && strcmp(known->name, override->name) == 0 &&
+            same_field) {
+            known->value = override->value;
+            return DALCS_OK;
+        }
+    }
+    DALCS_TRY(
+        dalcs_grow(&s->override, &s->override_capacity, s->n_altered + 1, sizeof *s->override));
+    struct dalcs_override own = *override;
+    own.name = dalcs_arena_copy(&s->arena, override->name, strlen(override->name));
+    if (override->field != NULL) {
+        own.field = dalcs_arena_copy(&s->arena, override->field, strlen(override->field));
+    }
+    if (own.name == NULL || (override->field != NULL && own.field == NULL)) {
+        return DALCS_E_NOMEM;
+    }
+    s->override[s->n_altered++] = own;
+    return DALCS_OK;
+}
+
+/* Is there a card whose word number `index` is the name, after a first word `head` (NULL: any)? */
+static bool has_card(const struct dalcs_netlist *netlist, const char *head, int index,
+                     const char *name, const char **nearest) {
+    for (size_t k = 0; k < netlist->n_cards; k++) {
+        const struct dalcs_card *card = &netlist->card[k];
+        if (index >= card->n || (head != NULL && strcmp(card->token->text, head) != 0)) {
+            continue;
+        }
+        const char *text = card->token[index].text;
+        if (strcmp(text, name) == 0) {
+            return true;
+        }
+        *nearest = *nearest != NULL ? *nearest : dalcs_names_nearest_of(&text, 1, name);
+    }
+    return false;
+}
+
+static bool has_device(const struct dalcs_circuit *circuit, const char *name,
+                       const char **nearest) {
+    for (int k = 0; k < circuit->n_devices; k++) {
+        const char *text = circuit->device[k].name;
+        if (strcmp(text, name) == 0) {
+            return true;
+        }
+        *nearest = *nearest != NULL ? *nearest : dalcs_names_nearest_of(&text, 1, name);
+    }
+    return false;
+}
+
+static bool has_parameter(const struct dalcs_netlist *netlist, const char *name,
+                          const char **nearest) {
+    for (size_t k = 0; k < netlist->n_cards; k++) {
+        const struct dalcs_card *card = &netlist->card[k];
+        const bool declares = strncmp(card->token->text, ".param", strlen(".param")) == 0 ||
+                              strcmp(card->token->text, ".csparam") == 0 ||
+                              strcmp(card->token->text, ".global_param") == 0;
+        for (int i = 1; declares && i + 1 < card->n; i++) {
+            const char *text = card->token[i].text;
+            if (card->token[i + 1].kind == DALCS_TOKEN_EQUAL) {
+                if (strcmp(text, name) == 0) {
+                    return true;
+                }
+                *nearest = *nearest != NULL ? *nearest : dalcs_names_nearest_of(&text, 1, name);
+            }
+        }
+    }
+    return false;
+}
+
+enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_parameter,
+                                      const char *name, const char *field, double value,
+                                      const char **nearest) {
+    const char *unused = NULL;
+    const char **like = nearest != NULL ? nearest : &unused;
+    struct dalcs_override override = {DALCS_OVERRIDE_ELEMENT, name, field, value};
+    bool found;
+    *like = NULL;
+    if (!session->has_netlist) {
+        return DALCS_E_OPTION;
+    }
+    if (is_parameter) {
+        override.kind = DALCS_OVERRIDE_PARAMETER;
+        found = has_parameter(&session->netlist, name, like);
+    } else if (field != NULL) {
+        override.kind = DALCS_OVERRIDE_MODEL;
+        found = has_card(&session->netlist, ".model", 1, name, like);
+    } else {
+        found = (session->has_circuit && has_device(&session->circuit, name, like)) ||
+                has_card(&session->netlist, NULL, 0, name, like);
+    }
+    return found ? keep_override(session, &override) : DALCS_E_OPTION;
+}
+
+void dalcs_session_reset(struct dalcs_session *session) {
+    size_t n = 0;
+    for (size_t k = 0; k < session->n_altered; k++) {
+        if (session->override[k].kind == DALCS_OVERRIDE_PARAMETER) {
+            session->override[n++] = session->override[k];
+        }
+    }
+    session->is_altered = session->is_altered || n < session->n_altered;
+    session->n_altered = n;
+}
