@@ -2,6 +2,7 @@
  * the run, then networks of systems, each with its cards and matrices.
  *
  * Read by jansson, which is optional. */
+#include "equations.h"
 #include "reading.h"
 
 #include <stdio.h>
@@ -55,8 +56,10 @@ static void write_matrix(struct conversion *c, const char *name, const json_t *m
         }
         c->failed = !json_is_integer(entry[0]) || !json_is_integer(entry[1]) ||
                     !json_is_number(entry[2]);
-        fprintf(c->out, "+ %lld %lld %.17g\n", (long long)json_integer_value(entry[0]),
-                (long long)json_integer_value(entry[1]), json_number_value(entry[2]));
+        fprintf(c->out, "+ %lld %lld ", (long long)json_integer_value(entry[0]),
+                (long long)json_integer_value(entry[1]));
+        dalcs_write_number(c->out, json_number_value(entry[2]));
+        fputc('\n', c->out);
     }
 }
 

@@ -258,12 +258,12 @@ static bool take_multiplier(struct dalcs_reading *r, struct dalcs_described_syst
     static const struct {
         const char *word, *usage;
     } cards[N_CARDS] = {[PAIR] = {"pair", "pair name"},
-                        [BREAKDOWN] = {"breakdown", "breakdown name"},
+                        [BREAKDOWN] = {"reverse", "reverse name"},
                         [SWITCH] = {"switch", "switch name on=value off=value [closed] [direct]"},
-                        [BOX] = {"box", "box name low high"},
+                        [BOX] = {"interval", "interval name low high"},
                         [FREE] = {"free", "free name"},
                         [CONTACT] = {"contact", "contact name"},
-                        [BILATERAL] = {"bilateral", "bilateral name"},
+                        [BILATERAL] = {"joint", "joint name"},
                         [FRICTION] = {"friction", "friction name limit"}};
     for (int k = 0; k < N_CARDS; k++) {
         if (strcmp(card->token->text, cards[k].word) != 0) {

@@ -381,8 +381,8 @@ static void take_system_card(struct dalcs_reading *r, const struct dalcs_card *c
     } else if (!dalcs_reading_take_column(r, s, card)) {
         static const char *const known[] = {
             "input",     "network", "system", "inputs",     "state",   "unknown",   "row",
-            "pair",      "switch",  "box",    "free",       "contact", "bilateral", "friction",
-            "breakdown", "matrix",  "output", "coordinate", "element", "monotone"};
+            "pair",      "switch",  "interval",    "free",       "contact", "joint", "friction",
+            "reverse", "matrix",  "output", "coordinate", "element", "monotone"};
         dalcs_builder_error(&r->builder, card->token,
                             dalcs_builder_suggest_of(&r->builder, known,
                                                      sizeof known / sizeof known[0], word,

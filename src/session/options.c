@@ -200,9 +200,6 @@ enum dalcs_status dalcs_run_choose(struct dalcs_run *r) {
     r->s->report.method = METHODS[r->method];
     DALCS_TRY(choose_accuracy(r));
     r->s->report.tolerance = r->method == DALCS_METHOD_EULER ? 0.0 : r->tolerance;
-    if (r->options->energy && r->s->circuit.n_devices == 0) {
-        return option_error(r->s, "a system file has no devices of which to keep a ledger of energies");
-    }
     DALCS_TRY(check_output_times(r->s, r->options));
     DALCS_TRY(choose_compression(r));
     DALCS_TRY(check_tolerances(r->s, r->options));

@@ -320,7 +320,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, r->h, stop));
-    e.detect_jumps = r->options->record || r->options->energy;
+    e.detect_jumps = r->options->record || dalcs_run_keeps_ledger(r);
     e.jump_user = r;
     e.on_jump = dalcs_note_jump;
     e.open_user = &r->undetermined;
@@ -338,14 +338,14 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
                                                     .stop = stop};
         status = dalcs_radau_setup(&radau, &e, &options, &r->osnsp);
     }
-    if (status == DALCS_OK && r->options->energy) {
+    if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {
         status = dalcs_energy_setup(&energy, &e, is_euler ? NULL : &radau);
         e.energy = &energy;
     }
     if (status == DALCS_OK) {
         status = walk(r, &e, is_euler ? NULL : &radau);
     }
-    if (status == DALCS_OK && r->options->energy) {
+    if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {
         status = close_ledger(r, &energy, &e, is_euler ? NULL : &radau);
     }
     dalcs_explain_failure(r, &e, status);
