@@ -116,8 +116,9 @@ struct dalcs_matrices {
     const double *C_I, *C_II, *D, *F, *constant_F;            /* n_lambda rows */
     const double *storage; /* [n_x][n_x] of the stored energy 1/2 x' storage x; NULL: P */
 };
-enum dalcs_status dalcs_session_read_matrices(struct dalcs_session *session, const char *name,
-                                              const struct dalcs_matrices *matrices) DALCS_MUST_CHECK;
+enum dalcs_status
+dalcs_session_read_matrices(struct dalcs_session *session, const char *name,
+                            const struct dalcs_matrices *matrices) DALCS_MUST_CHECK;
 
 enum dalcs_equations_format {
     DALCS_EQUATIONS_TEXT,
@@ -145,9 +146,9 @@ struct dalcs_equations_options {
 };
 
 /* Writes the equations of what was read. */
-enum dalcs_status dalcs_session_equations(struct dalcs_session *session,
-                                          const struct dalcs_equations_options *options)
-    DALCS_MUST_CHECK;
+enum dalcs_status
+dalcs_session_equations(struct dalcs_session *session,
+                        const struct dalcs_equations_options *options) DALCS_MUST_CHECK;
 
 /* ---- Running ------------------------------------------------------------------------------- */
 
@@ -205,7 +206,8 @@ struct dalcs_run_options {
                            and both sides of every event */
     size_t n_at;
     bool record; /* keep events and jumps for the report */
-    bool energy; /* keep the ledger of energies for the report; of a netlist, not of a system file */
+    bool
+        energy; /* keep the ledger of energies for the report; of a netlist, not of a system file */
 
     /* Tolerances of the certificate and of the OSNSP; see doc/methods.md. All dimensionless. */
     double certificate_tolerance; /* residual over its physical scale, 2e-13 */

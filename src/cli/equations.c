@@ -19,10 +19,12 @@ static const char help[] =
     "\n"
     "  -o, --output FILE   write to FILE instead of standard output\n"
     "      --format NAME   text, latex (a document), system (a system file: 'dalcs run' reads it\n"
-    "                      back to the bit, and so the next two), json, or matrix-market (FILE, and\n"
+    "                      back to the bit, and so the next two), json, or matrix-market (FILE, "
+    "and\n"
     "                      a FILE.NAME.mtx for each matrix); default: text\n"
     "      --form NAME     dalcs (x' = ..., 0 = ..., 0 <= lambda _|_ w >= 0), lcs (the algebraic\n"
-    "                      unknowns eliminated) or osnsp (the problem that a step of implicit Euler\n"
+    "                      unknowns eliminated) or osnsp (the problem that a step of implicit "
+    "Euler\n"
     "                      of length --step solves); default: dalcs\n"
     "      --step H        s, of --form osnsp; SPICE suffixes allowed\n"
     "  -h, --help          this text\n";
@@ -53,10 +55,11 @@ static const struct option option[] = {
     {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
 };
 
-static const char *const FORMATS[] = {
-    [DALCS_EQUATIONS_TEXT] = "text",     [DALCS_EQUATIONS_LATEX] = "latex",
-    [DALCS_EQUATIONS_SYSTEM] = "system", [DALCS_EQUATIONS_JSON] = "json",
-    [DALCS_EQUATIONS_MATRIX_MARKET] = "matrix-market"};
+static const char *const FORMATS[] = {[DALCS_EQUATIONS_TEXT] = "text",
+                                      [DALCS_EQUATIONS_LATEX] = "latex",
+                                      [DALCS_EQUATIONS_SYSTEM] = "system",
+                                      [DALCS_EQUATIONS_JSON] = "json",
+                                      [DALCS_EQUATIONS_MATRIX_MARKET] = "matrix-market"};
 static const char *const FORMS[] = {
     [DALCS_FORM_DALCS] = "dalcs", [DALCS_FORM_LCS] = "lcs", [DALCS_FORM_ONE_STEP] = "osnsp"};
 
@@ -103,8 +106,9 @@ static enum dalcs_status take(struct request *r, const struct dalcs_cli *cli, in
         r->help = true;
         return DALCS_OK;
     default:
-        dalcs_cli_error(cli, code == ':' ? "option '%s' needs a value; see 'dalcs equations --help'"
-                                         : "unknown option '%s'; see 'dalcs equations --help'",
+        dalcs_cli_error(cli,
+                        code == ':' ? "option '%s' needs a value; see 'dalcs equations --help'"
+                                    : "unknown option '%s'; see 'dalcs equations --help'",
                         argv[optind - 1]);
         return DALCS_E_OPTION;
     }
@@ -146,8 +150,7 @@ static enum dalcs_status parse(struct request *r, const struct dalcs_cli *cli, i
     *r = (struct request){0};
     optind = 0; /* glibc: start afresh */
     opterr = 0;
-    for (int code;
-         !r->help && (code = getopt_long(argc, argv, ":o:h", option, NULL)) != -1;) {
+    for (int code; !r->help && (code = getopt_long(argc, argv, ":o:h", option, NULL)) != -1;) {
         DALCS_TRY(take(r, cli, code, argv));
     }
     return r->help ? DALCS_OK : check(r, cli, argc, argv);

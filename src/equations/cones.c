@@ -4,7 +4,11 @@
  * lambda = low + lambda1,
  *     0 <= lambda1 _|_ w + mu >= 0,      0 <= mu _|_ high - low - lambda1 >= 0,
  * whose coupling is skew: where the one multiplier was monotone, the two are. A box with one bound is one
- * pair. */
+ * pair.
+ *
+ * The engine takes w to be made of columns, of which it knows how far they are to be trusted. An input that
+ * varies in time and enters w becomes one: as a voltage source does in a circuit, with
+ *     0 = i + F' lambda,      0 = s(t) - u,      w = ... + F u. */
 #include "reading.h"
 
 #include <lapacke.h>
@@ -24,10 +28,12 @@ struct assembly {
     const struct dalcs_described_system *from;
     struct dalcs_system *s;
     struct place *place; /* [n_multipliers] */
+    int *lifted;         /* [n_inputs] column u of an input, i behind it; -1: it stays an input */
+    int n_lifted;
     struct dalcs_triplets P, A, E, C, F, storage, control, direct_control;
 };
 
-static void count_pairs(struct assembly *a) {
+static void count_columns(const struct dalcs_reading *r, struct assembly *a) {
     const struct dalcs_described_system *from = a->from;
     struct dalcs_system *s = a->s;
     s->n_x = (int)from->n_states;
@@ -37,6 +43,22 @@ static void count_pairs(struct assembly *a) {
         s->n_z += from->multiplier[j].cone == DALCS_CONE_FREE ? 1 : 0;
     }
     int next_z = s->n_x + (int)from->n_unknowns;
+    int next_lifted = s->n_x + s->n_z;
+    for (size_t k = 0; k < from->n_inputs; k++) {
+        a->lifted[k] = -1;
+    }
+    const struct dalcs_triplets *F = &from->block[DALCS_BLOCK_F].entries;
+    for (size_t k = 0; k < F->n; k++) {
+        const struct dalcs_triplet *e = &F->entry[k];
+        bool varies = r->input[from->input[e->column]].kind != DALCS_STIMULUS_DC;
+        bool is_free = from->multiplier[e->row].cone == DALCS_CONE_FREE;
+        if (varies && !is_free && e->value != 0.0 && a->lifted[e->column] < 0) {
+            a->lifted[e->column] = next_lifted;
+            next_lifted += 2;
+            s->n_z += 2;
+            a->n_lifted++;
+        }
+    }
     for (size_t j = 0; j < from->n_multipliers; j++) {
         const struct dalcs_multiplier *m = &from->multiplier[j];
         struct place *p = &a->place[j];
@@ -94,6 +116,7 @@ static struct target target_of(struct assembly *a, const struct row_blocks *bloc
 static enum dalcs_status add_rows(struct assembly *a, const struct row_blocks *blocks) {
     const enum dalcs_block_name name[] = {blocks->x, blocks->z, blocks->multipliers, blocks->inputs,
                                           blocks->constant};
+
     for (int b = 0; b < 5; b++) {
         const struct dalcs_triplets *t = &a->from->block[name[b]].entries;
         for (size_t k = 0; k < t->n; k++) {
@@ -103,6 +126,10 @@ static enum dalcs_status add_rows(struct assembly *a, const struct row_blocks *b
             if (b < 2) {
                 int column = b == 0 ? e->column : a->s->n_x + e->column;
                 DALCS_TRY(dalcs_triplets_add(to.columns, to.row, column, value));
+            } else if (b == 3 && to.inputs == &a->F && a->lifted[e->column] >= 0) {
+                int u = a->lifted[e->column];
+                DALCS_TRY(dalcs_triplets_add(&a->C, to.row, u, value));
+                DALCS_TRY(dalcs_triplets_add(&a->A, u, a->place[e->row].column, value));
             } else if (b > 2) {
                 int input = b == 3 ? e->column + 1 : 0;
                 DALCS_TRY(dalcs_triplets_add(to.inputs, to.row, input, value));
@@ -114,6 +141,18 @@ static enum dalcs_status add_rows(struct assembly *a, const struct row_blocks *b
                     DALCS_TRY(dalcs_triplets_add(to.inputs, to.row, 0, p->offset * value));
                 }
             }
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status add_lifted(struct assembly *a) {
+    for (size_t k = 0; k < a->from->n_inputs; k++) {
+        int u = a->lifted[k];
+        if (u >= 0) {
+            DALCS_TRY(dalcs_triplets_add(&a->A, u, u + 1, 1.0));
+            DALCS_TRY(dalcs_triplets_add(&a->A, u + 1, u, -1.0));
+            DALCS_TRY(dalcs_triplets_add(&a->E, u + 1, (int)k + 1, 1.0));
         }
     }
     return DALCS_OK;
@@ -156,13 +195,14 @@ static enum dalcs_status add_controls(struct assembly *a) {
     t = &a->from->block[DALCS_BLOCK_DIRECT_CONTROL].entries;
     for (size_t k = 0; k < t->n; k++) {
         const struct dalcs_triplet *e = &t->entry[k];
-        DALCS_TRY(dalcs_triplets_add(&a->direct_control, a->place[e->row].row, e->column + 1,
-                                     e->value));
+        DALCS_TRY(
+            dalcs_triplets_add(&a->direct_control, a->place[e->row].row, e->column + 1, e->value));
     }
     return DALCS_OK;
 }
 
-static enum dalcs_status copy_entries(struct dalcs_triplets *to, const struct dalcs_triplets *from) {
+static enum dalcs_status copy_entries(struct dalcs_triplets *to,
+                                      const struct dalcs_triplets *from) {
     for (size_t k = 0; k < from->n; k++) {
         DALCS_TRY(dalcs_triplets_add(to, from->entry[k].row, from->entry[k].column,
                                      from->entry[k].value));
@@ -251,6 +291,27 @@ static void label_pairs(struct assembly *a) {
     }
 }
 
+static enum dalcs_status label_lifted(struct dalcs_reading *r, struct assembly *a) {
+    struct dalcs_system *s = a->s;
+    for (size_t k = 0; k < a->from->n_inputs; k++) {
+        int u = a->lifted[k];
+        if (u < 0) {
+            continue;
+        }
+        const char *name = r->input_name[a->from->input[k]];
+        const char *dual = dalcs_arena_printf(&r->builder.circuit->arena, "i(%s)", name);
+        if (dual == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        s->column[u] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
+        s->column[u + 1] = (struct dalcs_label){dual, DALCS_LABEL_BRANCH};
+        s->column_is_current[u + 1] = true;
+        s->forest_root[u] = u;
+        s->forest_root[u + 1] = u + 1;
+    }
+    return DALCS_OK;
+}
+
 /* A row without a card of its own has its column's name, and the unit whose product with that of the
  * column is a power. */
 static void label_rows(struct assembly *a) {
@@ -274,7 +335,7 @@ static void label_rows(struct assembly *a) {
 static bool check_labels(struct dalcs_reading *r, const struct assembly *a) {
     const struct dalcs_system *s = a->s;
     int n = dalcs_system_n_equations(s);
-    bool ok = a->from->n_rows == 0 || (int)a->from->n_rows == n;
+    bool ok = a->from->n_rows == 0 || (int)a->from->n_rows == n - 2 * a->n_lifted;
     bool *taken = dalcs_alloc((size_t)n, sizeof *taken);
     if (taken == NULL) {
         r->builder.out_of_memory = true;
@@ -403,7 +464,7 @@ static enum dalcs_status choose_inputs(struct dalcs_reading *r, struct assembly 
 }
 
 static enum dalcs_status build(struct dalcs_reading *r, struct assembly *a) {
-    count_pairs(a);
+    count_columns(r, a);
     DALCS_TRY(allocate(a->s));
     DALCS_TRY(choose_inputs(r, a));
     for (int x = 0; x < a->s->n_x; x++) {
@@ -413,12 +474,14 @@ static enum dalcs_status build(struct dalcs_reading *r, struct assembly *a) {
         label_column(a->s, a->s->n_x + z, &a->from->unknown[z]);
     }
     label_pairs(a);
+    DALCS_TRY(label_lifted(r, a));
     label_rows(a);
     DALCS_TRY(add_states(a));
     DALCS_TRY(add_rows(a, &ROWS_I));
     DALCS_TRY(add_rows(a, &ROWS_II));
     DALCS_TRY(add_rows(a, &ROWS_W));
     DALCS_TRY(add_boxes(a));
+    DALCS_TRY(add_lifted(a));
     DALCS_TRY(add_controls(a));
     DALCS_TRY(compress(a));
     if (!check_labels(r, a) || !check_P(r, a)) {
@@ -438,8 +501,9 @@ enum dalcs_status dalcs_system_of_description(struct dalcs_reading *r,
     struct assembly a = {.from = from, .s = system};
     enum dalcs_status status = DALCS_E_NOMEM;
     a.place = dalcs_alloc(from->n_multipliers, sizeof *a.place);
+    a.lifted = dalcs_alloc(from->n_inputs, sizeof *a.lifted);
     *initial = dalcs_alloc(from->n_states, sizeof **initial);
-    if (a.place != NULL && *initial != NULL) {
+    if (a.place != NULL && a.lifted != NULL && *initial != NULL) {
         for (size_t x = 0; x < from->n_states; x++) {
             (*initial)[x] = from->state[x].initial;
         }
@@ -451,6 +515,7 @@ enum dalcs_status dalcs_system_of_description(struct dalcs_reading *r,
         dalcs_triplets_finish(all[k]);
     }
     free(a.place);
+    free(a.lifted);
     if (status != DALCS_OK) {
         dalcs_system_finish(system);
         free(*initial);

@@ -31,10 +31,10 @@ void dalcs_write_number(FILE *f, double value);
 
 enum dalcs_machine_format { DALCS_AS_CARDS, DALCS_AS_JSON, DALCS_AS_MATRIX_MARKET };
 
-enum dalcs_status dalcs_equations_write_system(const struct dalcs_equations *equations,
-                                               enum dalcs_machine_format format,
-                                               const struct dalcs_equations_files *files)
-    DALCS_MUST_CHECK;
+enum dalcs_status
+dalcs_equations_write_system(const struct dalcs_equations *equations,
+                             enum dalcs_machine_format format,
+                             const struct dalcs_equations_files *files) DALCS_MUST_CHECK;
 
 /* The source function behind `input NAME`. */
 void dalcs_write_stimulus(FILE *f, const struct dalcs_stimulus *s);
@@ -53,8 +53,7 @@ void dalcs_equations_write_latex(FILE *f, const struct dalcs_equations *equation
 /* *reduced becomes the network with z eliminated from each system whose B_II is regular, and where that is
  * all of them *because is NULL; else *because (in arena) says which system keeps its z, and why. */
 enum dalcs_status dalcs_equations_reduce(const struct dalcs_network *network,
-                                         struct dalcs_network *reduced,
-                                         struct dalcs_arena *arena,
+                                         struct dalcs_network *reduced, struct dalcs_arena *arena,
                                          const char **because) DALCS_MUST_CHECK;
 
 /* ---- one_step.c ----------------------------------------------------------------------------- */
@@ -63,9 +62,9 @@ enum dalcs_status dalcs_equations_reduce(const struct dalcs_network *network,
 struct dalcs_one_step {
     const struct dalcs_system *system;
     double sigma;
-    double *M;    /* [n_pairs][n_pairs] */
-    double *of_x; /* [n_pairs][n_x] */
-    double *of_s; /* [n_pairs][n_inputs] */
+    double *M;        /* [n_pairs][n_pairs] */
+    double *of_x;     /* [n_pairs][n_x] */
+    double *of_s;     /* [n_pairs][n_inputs] */
     bool is_singular; /* x and z are not functions of lambda: nothing else is filled */
 };
 
@@ -78,8 +77,8 @@ void dalcs_one_step_write_latex(FILE *f, const struct dalcs_one_step *step);
 void dalcs_one_step_write_json(FILE *f, const struct dalcs_one_step *step);
 
 /* As Matrix Market: M, Qx and Qs in files of their own, named by `part` where that is not 0. */
-enum dalcs_status dalcs_one_step_write_market(const struct dalcs_one_step *step, int part,
-                                              const struct dalcs_equations_files *files)
-    DALCS_MUST_CHECK;
+enum dalcs_status
+dalcs_one_step_write_market(const struct dalcs_one_step *step, int part,
+                            const struct dalcs_equations_files *files) DALCS_MUST_CHECK;
 
 #endif

@@ -54,8 +54,8 @@ static void write_matrix(struct conversion *c, const char *name, const json_t *m
         for (int p = 0; p < 3; p++) {
             entry[p] = json_array_get(part[p], k);
         }
-        c->failed = !json_is_integer(entry[0]) || !json_is_integer(entry[1]) ||
-                    !json_is_number(entry[2]);
+        c->failed =
+            !json_is_integer(entry[0]) || !json_is_integer(entry[1]) || !json_is_number(entry[2]);
         fprintf(c->out, "+ %lld %lld ", (long long)json_integer_value(entry[0]),
                 (long long)json_integer_value(entry[1]));
         dalcs_write_number(c->out, json_number_value(entry[2]));

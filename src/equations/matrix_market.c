@@ -26,14 +26,15 @@ static const char *find_path(struct dalcs_builder *builder, const struct dalcs_t
     if (token->text[0] == '/' || slash == NULL) {
         return token->text;
     }
-    const char *path = dalcs_arena_printf(&builder->scratch, "%.*s%s", (int)(slash + 1 - base), base,
-                                          token->text);
+    const char *path =
+        dalcs_arena_printf(&builder->scratch, "%.*s%s", (int)(slash + 1 - base), base, token->text);
     builder->out_of_memory = builder->out_of_memory || path == NULL;
     return path;
 }
 
 static bool refuse(struct market *m, const char *expected) {
-    dalcs_builder_error(m->builder, m->token, NULL, "%s:%d: expected %s", m->path, m->line, expected);
+    dalcs_builder_error(m->builder, m->token, NULL, "%s:%d: expected %s", m->path, m->line,
+                        expected);
     return false;
 }
 
@@ -166,8 +167,7 @@ static bool read_coordinates(struct market *m, int n_rows, int n_columns, int n,
     return true;
 }
 
-static bool read_text(struct market *m, int n_rows, int n_columns,
-                      struct dalcs_triplets *entries) {
+static bool read_text(struct market *m, int n_rows, int n_columns, struct dalcs_triplets *entries) {
     int rows;
     int columns;
     int n = 0;
@@ -207,8 +207,7 @@ bool dalcs_matrix_market_read(struct dalcs_builder *builder, const struct dalcs_
     } else if (status != DALCS_OK) {
         builder->out_of_memory = true;
     } else {
-        struct market m = {
-            .builder = builder, .token = token, .path = path, .at = text, .line = 1};
+        struct market m = {.builder = builder, .token = token, .path = path, .at = text, .line = 1};
         ok = read_text(&m, n_rows, n_columns, entries);
     }
     dalcs_diag_finish(&said);

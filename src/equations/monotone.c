@@ -32,8 +32,8 @@ static enum dalcs_status find_least(double *m, size_t n, double *least) {
     /* A congruence by powers of 2 changes no sign, and makes farads and ohms comparable. */
     for (size_t i = 0; i < n; i++) {
         int power;
-        double scale = m[i * n + i] > 0.0 ? ldexp(1.0, -(frexp(m[i * n + i], &power), power / 2))
-                                          : 1.0;
+        double scale =
+            m[i * n + i] > 0.0 ? ldexp(1.0, -(frexp(m[i * n + i], &power), power / 2)) : 1.0;
         for (size_t j = 0; j < n; j++) {
             m[i * n + j] *= scale;
             m[j * n + i] *= scale;
@@ -42,8 +42,8 @@ static enum dalcs_status find_least(double *m, size_t n, double *least) {
     enum dalcs_status status = DALCS_OK;
     *least = 0.0;
     if (n > 0) {
-        lapack_int info = LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'L', (lapack_int)n, m,
-                                        (lapack_int)n, eigenvalue);
+        lapack_int info =
+            LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'L', (lapack_int)n, m, (lapack_int)n, eigenvalue);
         status = info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR
                      ? DALCS_E_NOMEM
                      : DALCS_OK;

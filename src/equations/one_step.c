@@ -171,7 +171,8 @@ static void write_row(FILE *f, const double *row, int n) {
 
 void dalcs_one_step_write_text(FILE *f, const struct dalcs_one_step *step) {
     const struct dalcs_system *s = step->system;
-    fprintf(f, "one step of h = %.10g s, sigma = %.10g 1/s: 0 <= lambda _|_ w = M lambda + q >= 0\n",
+    fprintf(f,
+            "one step of h = %.10g s, sigma = %.10g 1/s: 0 <= lambda _|_ w = M lambda + q >= 0\n",
             1.0 / step->sigma, step->sigma);
     if (step->is_singular) {
         fprintf(f, "  %s\n", SINGULAR);
@@ -194,8 +195,7 @@ void dalcs_one_step_write_text(FILE *f, const struct dalcs_one_step *step) {
     for (int k = 0; k < s->n_inputs; k++) {
         bool is_zero = true;
         for (int d = 0; d < s->n_pairs; d++) {
-            is_zero =
-                is_zero && step->of_s[(size_t)d * (size_t)s->n_inputs + (size_t)k] == 0.0;
+            is_zero = is_zero && step->of_s[(size_t)d * (size_t)s->n_inputs + (size_t)k] == 0.0;
         }
         if (is_zero) {
             continue;
@@ -236,17 +236,21 @@ static void write_latex_matrix(FILE *f, const char *name, const double *a, int n
 
 void dalcs_one_step_write_latex(FILE *f, const struct dalcs_one_step *step) {
     const struct dalcs_system *s = step->system;
-    fprintf(f, "\\[0\\le\\lambda\\perp M\\lambda+Q_x x_k+Q_s s\\ge 0,\\qquad h=%.7g\\,\\mathrm{s}\\]\n",
-            1.0 / step->sigma);
+    fprintf(
+        f, "\\[0\\le\\lambda\\perp M\\lambda+Q_x x_k+Q_s s\\ge 0,\\qquad h=%.7g\\,\\mathrm{s}\\]\n",
+        1.0 / step->sigma);
     if (step->is_singular) {
         fprintf(f, "%s.\n", SINGULAR);
         return;
     }
+
     const struct {
         const char *name;
         const double *a;
         int n_columns;
-    } part[] = {{"M", step->M, s->n_pairs}, {"Q_x", step->of_x, s->n_x}, {"Q_s", step->of_s, s->n_inputs}};
+    } part[] = {
+        {"M", step->M, s->n_pairs}, {"Q_x", step->of_x, s->n_x}, {"Q_s", step->of_s, s->n_inputs}};
+
     for (int k = 0; k < 3; k++) {
         if (part[k].n_columns > 0 && s->n_pairs > 0) {
             fputs("\\[", f);
@@ -309,6 +313,7 @@ void dalcs_one_step_write_json(FILE *f, const struct dalcs_one_step *step) {
 enum dalcs_status dalcs_one_step_write_market(const struct dalcs_one_step *step, int part,
                                               const struct dalcs_equations_files *files) {
     const struct dalcs_system *s = step->system;
+
     const struct {
         const char *name;
         const double *a;
@@ -333,7 +338,8 @@ enum dalcs_status dalcs_one_step_write_market(const struct dalcs_one_step *step,
                 matrix[k].n_columns);
         for (int j = 0; j < matrix[k].n_columns; j++) {
             for (int i = 0; i < s->n_pairs; i++) {
-                dalcs_write_number(f, matrix[k].a[(size_t)i * (size_t)matrix[k].n_columns + (size_t)j]);
+                dalcs_write_number(
+                    f, matrix[k].a[(size_t)i * (size_t)matrix[k].n_columns + (size_t)j]);
                 fputc('\n', f);
             }
         }

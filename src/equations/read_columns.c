@@ -7,8 +7,7 @@
 const char *dalcs_reading_name(struct dalcs_reader *reader, const char *what) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     struct dalcs_builder *builder = reader->builder;
-    if (token == NULL ||
-        (token->kind != DALCS_TOKEN_WORD && token->kind != DALCS_TOKEN_STRING)) {
+    if (token == NULL || (token->kind != DALCS_TOKEN_WORD && token->kind != DALCS_TOKEN_STRING)) {
         dalcs_reader_missing(reader, what);
         return NULL;
     }
@@ -100,12 +99,10 @@ static bool read_described(struct dalcs_reader *reader, bool is_state,
 static void take_described(struct dalcs_reading *r, const struct dalcs_card *card, bool is_state,
                            enum dalcs_label_kind kind, struct dalcs_described_column **array,
                            size_t *n, size_t *capacity) {
-    struct dalcs_reader reader =
-        dalcs_reader_start(&r->builder, card,
-                           is_state ? "state name [V|A] [initial value]" : "unknown name [V|A]");
+    struct dalcs_reader reader = dalcs_reader_start(
+        &r->builder, card, is_state ? "state name [V|A] [initial value]" : "unknown name [V|A]");
     struct dalcs_described_column c = {.kind = kind, .root = -1, .dual = -1};
-    if (read_described(&reader, is_state, &c) &&
-        grow(r, array, capacity, *n, sizeof **array)) {
+    if (read_described(&reader, is_state, &c) && grow(r, array, capacity, *n, sizeof **array)) {
         (*array)[(*n)++] = c;
     }
 }
@@ -122,8 +119,7 @@ static void take_coordinate(struct dalcs_reading *r, struct dalcs_described_syst
     c.has_initial = !dalcs_reader_at_end(&reader);
     v.has_initial = c.has_initial;
     if (c.name == NULL ||
-        (c.has_initial &&
-         !dalcs_reader_number(&reader, DALCS_PLAIN, "a position", &c.initial)) ||
+        (c.has_initial && !dalcs_reader_number(&reader, DALCS_PLAIN, "a position", &c.initial)) ||
         (!dalcs_reader_at_end(&reader) &&
          !dalcs_reader_number(&reader, DALCS_PLAIN, "a velocity", &v.initial)) ||
         !dalcs_reader_end(&reader)) {
@@ -265,6 +261,7 @@ static bool take_multiplier(struct dalcs_reading *r, struct dalcs_described_syst
                         [CONTACT] = {"contact", "contact name"},
                         [BILATERAL] = {"joint", "joint name"},
                         [FRICTION] = {"friction", "friction name limit"}};
+
     for (int k = 0; k < N_CARDS; k++) {
         if (strcmp(card->token->text, cards[k].word) != 0) {
             continue;
@@ -297,7 +294,8 @@ static void take_inputs(struct dalcs_reading *r, struct dalcs_described_system *
             return;
         }
         if (index < 0) {
-            dalcs_builder_error(&r->builder, token, "inputs come before the systems: input name ...",
+            dalcs_builder_error(&r->builder, token,
+                                "inputs come before the systems: input name ...",
                                 "no input is called '%s'", name);
             return;
         }

@@ -77,10 +77,10 @@ static int size_of(const struct dalcs_described_system *s, enum extent extent) {
 }
 
 static const char *what_of(enum extent extent) {
-    static const char *const what[] = {
-        [STATES] = "states",           [COORDINATES] = "coordinates", [UNKNOWNS] = "unknowns",
-        [MULTIPLIERS] = "multipliers", [COLUMNS] = "columns",         [INPUTS] = "inputs",
-        [ONE] = "column"};
+    static const char *const what[] = {[STATES] = "states",     [COORDINATES] = "coordinates",
+                                       [UNKNOWNS] = "unknowns", [MULTIPLIERS] = "multipliers",
+                                       [COLUMNS] = "columns",   [INPUTS] = "inputs",
+                                       [ONE] = "column"};
     return what[extent];
 }
 
@@ -140,8 +140,8 @@ static bool read_rows(struct dalcs_reader *reader, int n_rows, int n_columns,
     long n = reader->card->n - reader->at;
     if (n != (long)n_rows * n_columns) {
         dalcs_builder_error(reader->builder, &reader->card->token[1], USAGE,
-                            "the matrix is %d by %d, but %ld number%s follow%s", n_rows,
-                            n_columns, n, n == 1 ? "" : "s", n == 1 ? "s" : "");
+                            "the matrix is %d by %d, but %ld number%s follow%s", n_rows, n_columns,
+                            n, n == 1 ? "" : "s", n == 1 ? "s" : "");
         return false;
     }
     if (!check_lines(reader, n_columns)) {
@@ -234,9 +234,8 @@ enum dalcs_status dalcs_reading_fill_blocks(struct dalcs_reading *r,
         }
         if (is_mechanical(k) != (s->n_coordinates > 0)) {
             dalcs_builder_error(&r->builder, &card->token[1], NULL,
-                                s->n_coordinates > 0
-                                    ? "a system of coordinates has no matrix '%s'"
-                                    : "'%s' is a matrix of systems of coordinates",
+                                s->n_coordinates > 0 ? "a system of coordinates has no matrix '%s'"
+                                                     : "'%s' is a matrix of systems of coordinates",
                                 card->token[1].text);
             continue;
         }

@@ -21,15 +21,14 @@ static void terms_finish(struct terms *t) {
 }
 
 static enum dalcs_status add_column(struct terms *t, int column, double value) {
-    DALCS_TRY(dalcs_grow(&t->column, &t->column_capacity, (size_t)t->n_columns + 1,
-                         sizeof *t->column));
+    DALCS_TRY(
+        dalcs_grow(&t->column, &t->column_capacity, (size_t)t->n_columns + 1, sizeof *t->column));
     t->column[t->n_columns++] = (struct dalcs_probe_term){column, value};
     return DALCS_OK;
 }
 
 static enum dalcs_status add_input(struct terms *t, int input, double value) {
-    DALCS_TRY(
-        dalcs_grow(&t->input, &t->input_capacity, (size_t)t->n_inputs + 1, sizeof *t->input));
+    DALCS_TRY(dalcs_grow(&t->input, &t->input_capacity, (size_t)t->n_inputs + 1, sizeof *t->input));
     t->input[t->n_inputs++] = (struct dalcs_probe_term){input, value};
     return DALCS_OK;
 }
@@ -49,9 +48,8 @@ static enum dalcs_status add_w(struct terms *t, const struct dalcs_system *s, in
 static enum dalcs_status keep(struct dalcs_reading *r, struct dalcs_probe *probe, int system,
                               const struct terms *t) {
     int n = t->n_columns + t->n_inputs;
-    *probe = (struct dalcs_probe){.system = n > 0 ? system : -1,
-                                  .n_terms = t->n_columns,
-                                  .n_inputs = t->n_inputs};
+    *probe = (struct dalcs_probe){
+        .system = n > 0 ? system : -1, .n_terms = t->n_columns, .n_inputs = t->n_inputs};
     if (n == 0) {
         return DALCS_OK;
     }
@@ -109,8 +107,7 @@ static enum dalcs_status add_w_of(struct terms *t, const struct dalcs_system *s,
         return DALCS_OK;
     }
     DALCS_TRY(add_w(t, s, p->pair, factor * p->sign));
-    return p->bound < 0 ? DALCS_OK
-                        : add_column(t, dalcs_system_n_equations(s) + p->bound, -factor);
+    return p->bound < 0 ? DALCS_OK : add_column(t, dalcs_system_n_equations(s) + p->bound, -factor);
 }
 
 /* ---- Cards --------------------------------------------------------------------------------- */
@@ -130,9 +127,15 @@ static bool add_named(struct dalcs_reading *r, struct terms *t, int system, cons
     enum dalcs_status status = DALCS_OK;
     bool found = true;
     if (name[0] == '#') {
-        int column = number_of(name + 1, dalcs_system_n_columns(s));
+        int n_equations = (int)(d->n_states + d->n_unknowns);
+        int column = number_of(name + 1, n_equations + (int)d->n_multipliers);
         found = column > 0;
-        status = found ? add_column(t, column - 1, factor) : DALCS_OK;
+        if (found && column > n_equations) {
+            const struct place p = place_of(d, s, (size_t)(column - n_equations - 1));
+            status = add_lambda(t, &p, factor);
+        } else if (found) {
+            status = add_column(t, column - 1, factor);
+        }
     } else if (name[0] == '@') {
         int input = number_of(name + 1, s->n_inputs - 1);
         found = input > 0;
@@ -221,8 +224,7 @@ static enum dalcs_status add_output(struct dalcs_reading *r, const struct dalcs_
 }
 
 static enum dalcs_status add_element(struct dalcs_reading *r, const struct dalcs_state *state) {
-    DALCS_TRY(
-        dalcs_grow(&r->element, &r->element_capacity, r->n_elements + 1, sizeof *r->element));
+    DALCS_TRY(dalcs_grow(&r->element, &r->element_capacity, r->n_elements + 1, sizeof *r->element));
     r->element[r->n_elements++] = *state;
     return DALCS_OK;
 }
@@ -269,13 +271,12 @@ static enum dalcs_status add_everything(struct dalcs_reading *r, int system) {
         const struct place p = place_of(d, s, j);
         for (int is_w = 0; is_w < (p.pair < 0 ? 1 : 2); is_w++) {
             struct terms t = {0};
-            struct dalcs_output out = {
-                .name = dalcs_arena_printf(arena, is_w ? "w(%s)" : "lambda(%s)",
-                                           d->multiplier[j].pair.element),
-                .is_current = !is_w,
-                .minus = {.system = -1}};
-            enum dalcs_status status =
-                is_w ? add_w_of(&t, s, &p, 1.0) : add_lambda(&t, &p, 1.0);
+            struct dalcs_output out = {.name =
+                                           dalcs_arena_printf(arena, is_w ? "w(%s)" : "lambda(%s)",
+                                                              d->multiplier[j].pair.element),
+                                       .is_current = !is_w,
+                                       .minus = {.system = -1}};
+            enum dalcs_status status = is_w ? add_w_of(&t, s, &p, 1.0) : add_lambda(&t, &p, 1.0);
             status = status == DALCS_OK ? keep(r, &out.plus, system, &t) : status;
             terms_finish(&t);
             DALCS_TRY(status);

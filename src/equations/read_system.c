@@ -202,6 +202,7 @@ static enum dalcs_status list_inputs(struct dalcs_reading *r, struct dalcs_descr
 static enum dalcs_status drop_unused_inputs(struct dalcs_described_system *s) {
     static const enum dalcs_block_name of_inputs[] = {DALCS_BLOCK_E_I, DALCS_BLOCK_E_II,
                                                       DALCS_BLOCK_F, DALCS_BLOCK_DIRECT_CONTROL};
+
     const size_t n_blocks = sizeof of_inputs / sizeof of_inputs[0];
     int *index = dalcs_alloc(s->n_inputs, sizeof *index);
     if (index == NULL) {
@@ -380,9 +381,9 @@ static void take_system_card(struct dalcs_reading *r, const struct dalcs_card *c
         s->jumps_are_covered = true;
     } else if (!dalcs_reading_take_column(r, s, card)) {
         static const char *const known[] = {
-            "input",     "network", "system", "inputs",     "state",   "unknown",   "row",
-            "pair",      "switch",  "interval",    "free",       "contact", "joint", "friction",
-            "reverse", "matrix",  "output", "coordinate", "element", "monotone"};
+            "input",   "network", "system",   "inputs",     "state",   "unknown", "row",
+            "pair",    "switch",  "interval", "free",       "contact", "joint",   "friction",
+            "reverse", "matrix",  "output",   "coordinate", "element", "monotone"};
         dalcs_builder_error(&r->builder, card->token,
                             dalcs_builder_suggest_of(&r->builder, known,
                                                      sizeof known / sizeof known[0], word,
@@ -493,8 +494,8 @@ static bool check_request(struct dalcs_reading *r) {
 static bool has_values(const struct dalcs_deck *deck) {
     for (size_t k = 0; k < deck->n_cards; k++) {
         const struct dalcs_card *card = &deck->card[k];
-        bool is_state = strcmp(card->token->text, "state") == 0 ||
-                        strcmp(card->token->text, "coordinate") == 0;
+        bool is_state =
+            strcmp(card->token->text, "state") == 0 || strcmp(card->token->text, "coordinate") == 0;
         for (int i = 2; is_state && i < card->n; i++) {
             bool is_parameter = card->token[i - 1].kind == DALCS_TOKEN_EQUAL;
             if (!is_parameter && dalcs_reader_is_number(&card->token[i])) {

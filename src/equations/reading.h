@@ -101,8 +101,8 @@ struct dalcs_reading {
 
     struct dalcs_network *network; /* being filled */
     size_t n_systems, system_capacity;
-    struct dalcs_described_system *system;     /* of this network */
-    struct dalcs_output *output;               /* heap */
+    struct dalcs_described_system *system; /* of this network */
+    struct dalcs_output *output;           /* heap */
     size_t n_outputs, output_capacity;
     struct dalcs_state *element;
     size_t n_elements, element_capacity;
@@ -140,8 +140,9 @@ bool dalcs_matrix_market_read(struct dalcs_builder *builder, const struct dalcs_
 /* ---- mechanical.c, cones.c, monotone.c ------------------------------------------------------ */
 
 /* A mechanical system becomes one of first order: coordinates, then velocities. */
-enum dalcs_status dalcs_mechanical_to_first_order(struct dalcs_reading *r,
-                                                  struct dalcs_described_system *s) DALCS_MUST_CHECK;
+enum dalcs_status
+dalcs_mechanical_to_first_order(struct dalcs_reading *r,
+                                struct dalcs_described_system *s) DALCS_MUST_CHECK;
 
 /* Fills *system, and *initial[n_x], from what was described. Names are the circuit's. */
 enum dalcs_status dalcs_system_of_description(struct dalcs_reading *r,
@@ -166,6 +167,7 @@ enum dalcs_status dalcs_reading_default_outputs(struct dalcs_reading *r) DALCS_M
 
 /* The cards of the JSON form, as text that the caller frees. */
 enum dalcs_status dalcs_json_to_cards(const char *name, const char *text, size_t length,
-                                      char **cards, size_t *n, struct dalcs_diag *diag) DALCS_MUST_CHECK;
+                                      char **cards, size_t *n,
+                                      struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
 #endif

@@ -6,6 +6,7 @@
  *
  * Where it is singular, the null vector says which unknowns the equations II leave open. */
 #include "equations.h"
+#include "reading.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -70,8 +71,8 @@ static void fill_right(struct elimination *z, const double *row) {
 }
 
 /* The names that a null vector of B_II has. */
-static const char *name_open(const struct elimination *z, const double *null,
-                             const double *column, struct dalcs_arena *arena) {
+static const char *name_open(const struct elimination *z, const double *null, const double *column,
+                             struct dalcs_arena *arena) {
     const struct dalcs_system *s = z->from;
     const char *list = NULL;
     double largest = 0.0;
@@ -85,9 +86,9 @@ static const char *name_open(const struct elimination *z, const double *null,
             continue;
         }
         const char *what = s->column_is_current[c] ? "i" : "v";
-        list = list == NULL ? dalcs_arena_printf(arena, "%s(%s)", what, s->column[c].element)
-                            : dalcs_arena_printf(arena, "%s, %s(%s)", list, what,
-                                                 s->column[c].element);
+        list = list == NULL
+                   ? dalcs_arena_printf(arena, "%s(%s)", what, s->column[c].element)
+                   : dalcs_arena_printf(arena, "%s, %s(%s)", list, what, s->column[c].element);
         if (list == NULL) {
             return NULL;
         }
@@ -139,14 +140,14 @@ static enum dalcs_status solve_for_z(struct elimination *z, struct workspace *w,
     }
     balance(w->m, n, w->row, w->column);
     memcpy(w->copy, w->m, n * n * sizeof *w->m);
-    double norm = LAPACKE_dlange(LAPACK_ROW_MAJOR, '1', (lapack_int)n, (lapack_int)n, w->m,
-                                 (lapack_int)n);
+    double norm =
+        LAPACKE_dlange(LAPACK_ROW_MAJOR, '1', (lapack_int)n, (lapack_int)n, w->m, (lapack_int)n);
     double rcond = 0.0;
     lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, (lapack_int)n, (lapack_int)n, w->m,
                                      (lapack_int)n, w->pivot);
     if (info == 0) {
-        info = LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', (lapack_int)n, w->m, (lapack_int)n, norm,
-                              &rcond);
+        info =
+            LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', (lapack_int)n, w->m, (lapack_int)n, norm, &rcond);
     }
     if (info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR) {
         return DALCS_E_NOMEM;
@@ -174,8 +175,8 @@ static enum dalcs_status eliminate(struct elimination *z, const struct dalcs_sys
                               .n_z = (size_t)from->n_z,
                               .n_right = (size_t)(from->n_x + from->n_pairs + from->n_inputs)};
     if (from->n_z > MOST_UNKNOWNS) {
-        z->because = dalcs_arena_printf(arena, "more than %d unknowns are not eliminated",
-                                        MOST_UNKNOWNS);
+        z->because =
+            dalcs_arena_printf(arena, "more than %d unknowns are not eliminated", MOST_UNKNOWNS);
         return z->because == NULL ? DALCS_E_NOMEM : DALCS_OK;
     }
     const size_t n = z->n_z;
@@ -305,7 +306,7 @@ static enum dalcs_status copy_labels(struct dalcs_system *to, const struct dalcs
         return DALCS_E_NOMEM;
     }
     for (size_t i = 0; i < n && !is_whole; i++) {
-        to->dual[i] = (int)i; /* of another row than before, perhaps: nothing is proved */
+        to->dual[i] = (int)i; /* that of a voltage may have been among z */
         to->forest_root[i] = (int)i;
     }
     for (size_t d = 0; d < n_pairs; d++) {
@@ -314,22 +315,13 @@ static enum dalcs_status copy_labels(struct dalcs_system *to, const struct dalcs
     return DALCS_OK;
 }
 
-/* Do rows of states pair with states? Else an order of rows that keeps the OSNSP monotone is lost. */
-static bool keeps_duals(const struct dalcs_system *from) {
-    bool keeps = true;
-    for (int i = 0; i < from->n_x; i++) {
-        keeps = keeps && from->dual[i] < from->n_x;
-    }
-    return keeps;
-}
-
 static enum dalcs_status reduce_system(const struct elimination *z, struct dalcs_system *to) {
     const struct dalcs_system *s = z->from;
     *to = (struct dalcs_system){.n_x = s->n_x,
                                 .n_z = z->is_regular ? 0 : s->n_z,
                                 .n_pairs = s->n_pairs,
                                 .n_inputs = s->n_inputs,
-                                .monotone = s->monotone && (!z->is_regular || keeps_duals(s))};
+                                .monotone = s->monotone};
     DALCS_TRY(copy_labels(to, s));
     DALCS_TRY(copy_matrix(&to->P, &s->P));
     DALCS_TRY(copy_matrix(&to->storage, &s->storage));
@@ -341,12 +333,10 @@ static enum dalcs_status reduce_system(const struct elimination *z, struct dalcs
         DALCS_TRY(copy_matrix(&to->F, &s->F));
         return copy_matrix(&to->control, &s->control);
     }
-    if (keeps_duals(s)) {
-        memcpy(to->dual, s->dual, (size_t)s->n_x * sizeof *to->dual);
-    }
     DALCS_TRY(reduce_rows(z, &s->A, &s->E, s->n_x, &to->A, &to->E));
     DALCS_TRY(reduce_rows(z, &s->C, &s->F, s->n_pairs, &to->C, &to->F));
-    return reduce_rows(z, &s->control, NULL, s->n_pairs, &to->control, NULL);
+    DALCS_TRY(reduce_rows(z, &s->control, NULL, s->n_pairs, &to->control, NULL));
+    return dalcs_system_prove_monotone(to, DALCS_CLAIM_NOTHING);
 }
 
 /* ---- Probes -------------------------------------------------------------------------------- */
@@ -383,8 +373,8 @@ static enum dalcs_status reduce_probe(const struct elimination *all, const struc
     for (int j = 0; j < (int)z->n_right; j++) {
         bool is_input = j >= s->n_x + s->n_pairs;
         if (dense[j] != 0.0) {
-            to->term[to->n_terms + to->n_inputs] = (struct dalcs_probe_term){
-                is_input ? j - s->n_x - s->n_pairs : j, dense[j]};
+            to->term[to->n_terms + to->n_inputs] =
+                (struct dalcs_probe_term){is_input ? j - s->n_x - s->n_pairs : j, dense[j]};
             *(is_input ? &to->n_inputs : &to->n_terms) += 1;
         }
     }
@@ -440,8 +430,8 @@ static enum dalcs_status reduce_all(struct elimination *all, const struct dalcs_
 }
 
 enum dalcs_status dalcs_equations_reduce(const struct dalcs_network *network,
-                                         struct dalcs_network *reduced,
-                                         struct dalcs_arena *arena, const char **because) {
+                                         struct dalcs_network *reduced, struct dalcs_arena *arena,
+                                         const char **because) {
     size_t n = (size_t)network->n_systems;
     struct elimination *all = dalcs_alloc(n, sizeof *all);
     *reduced = (struct dalcs_network){.n_nodes = network->n_nodes};

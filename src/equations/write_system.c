@@ -171,9 +171,9 @@ void dalcs_write_stimulus(FILE *f, const struct dalcs_stimulus *s) {
         break;
     case DALCS_STIMULUS_SIN:
         write_function(f, "SIN",
-                       (const double[]){s->u.sine.offset, s->u.sine.amplitude,
-                                        s->u.sine.frequency, s->u.sine.delay, s->u.sine.damping,
-                                        s->u.sine.phase, s->u.sine.n_cycles},
+                       (const double[]){s->u.sine.offset, s->u.sine.amplitude, s->u.sine.frequency,
+                                        s->u.sine.delay, s->u.sine.damping, s->u.sine.phase,
+                                        s->u.sine.n_cycles},
                        7);
         break;
     case DALCS_STIMULUS_PULSE: {
@@ -317,6 +317,7 @@ static void put_matrices(struct writer *w, const struct dalcs_system *s) {
     const int z = s->n_z;
     const int m = s->n_pairs;
     const int u = s->n_inputs - 1;
+
     const struct {
         const char *name;
         struct view view;
@@ -341,6 +342,7 @@ static void put_matrices(struct writer *w, const struct dalcs_system *s) {
         {"control", {&s->control, 0, m, 0, x + z + m}},
         {"direct_control", {&s->direct_control, 0, m, 1, u}},
     };
+
     for (size_t k = 0; k < sizeof block / sizeof *block; k++) {
         put_matrix(w, block[k].name, &block[k].view);
     }
@@ -592,8 +594,8 @@ static void put_all(struct writer *w, const struct dalcs_equations *e) {
     const struct dalcs_network *n = e->network;
     put_head(w, e);
     put_network(w, "main", n, e->circuit->transient.use_initial_conditions, e->jumps_are_covered);
-    static const char *const name[] = {[DALCS_IMPULSE_CHARGE] = "charge",
-                                       [DALCS_IMPULSE_FLUX] = "flux"};
+    static const char *const name[] = {
+        [DALCS_IMPULSE_CHARGE] = "charge", [DALCS_IMPULSE_FLUX] = "flux"};
     for (int kind = 0; kind < DALCS_N_IMPULSES; kind++) {
         if (e->jump[kind] != NULL) {
             put_network(w, name[kind], e->jump[kind], false, NULL);

@@ -144,9 +144,10 @@ static enum dalcs_status write_steps(struct dalcs_session *s,
     const struct dalcs_network *n = &s->network;
     for (int k = 0; k < n->n_systems; k++) {
         if (dalcs_system_n_columns(&n->system[k]) > MOST_COLUMNS) {
-            dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, NULL,
-                           "the one-step problem of more than %d unknowns is not written: M is dense",
-                           MOST_COLUMNS);
+            dalcs_diag_add(
+                &s->diag, DALCS_ERROR, NULL, NULL,
+                "the one-step problem of more than %d unknowns is not written: M is dense",
+                MOST_COLUMNS);
             return DALCS_E_LIMIT;
         }
     }

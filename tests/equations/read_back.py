@@ -4,8 +4,9 @@
 usage: read_back.py DALCS FORMAT
 
 Each netlist of netlists/ runs by itself and from what `equations --format FORMAT` wrote, with the default
-method and with implicit Euler: the rows are equal to the bit, and so are status, events and jumps. With
-FORMAT lcs the unknowns z are eliminated and the rows agree to rounding."""
+method the rows are equal to the bit, and so are status, events and jumps; with implicit Euler they agree to
+rounding (looking for what is open asks the engine more often, and what it keeps has other last bits). With
+FORMAT lcs the unknowns z are eliminated, and the rows agree to the tolerance of the method."""
 
 import pathlib
 import subprocess
@@ -30,7 +31,7 @@ def write_system(program, netlist, folder, kind):
 
 def what_happened(run):
     report = run.report or {}
-    return ([(event["time"], event["element"], event["on"]) for event in report.get("events", [])],
+    return ([(event["time"], event["element"], event["state"]) for event in report.get("events", [])],
             [(jump["time"], jump["states"]) for jump in report.get("jumps", [])])
 
 
@@ -39,6 +40,21 @@ def compare_exactly(checker, name, found, wanted):
                   f"{name}: status {found.status}, not {wanted.status}: {found.stderr}")
     checker.check(found.output == wanted.output, f"{name}: other rows")
     checker.check(what_happened(found) == what_happened(wanted), f"{name}: other events or jumps")
+
+
+def compare_to_rounding(checker, name, found, wanted):
+    """The same rows, up to 1e-11 of the largest value of their unit."""
+    if not checker.check(found.status == wanted.status,
+                         f"{name}: status {found.status}, not {wanted.status}: {found.stderr}"):
+        return
+    checker.check(found.names == wanted.names and len(found.rows) == len(wanted.rows),
+                  f"{name}: other signals or times")
+    for k, signal in enumerate(wanted.names):
+        same = [name for name in wanted.names if name[0] == signal[0] and name != "time"]
+        scale = max((wanted.scale(f"{name[0]}(") for name in same), default=0.0)
+        allowed = 1e-11 * (scale if signal != "time" else max(wanted.time, default=0.0))
+        error = max((abs(a[k] - b[k]) for a, b in zip(found.rows, wanted.rows)), default=0.0)
+        checker.check(error <= allowed, f"{name}: {signal} off by {error:.2e}")
 
 
 def compare_roughly(checker, name, found, wanted):
@@ -52,21 +68,17 @@ def compare_roughly(checker, name, found, wanted):
     times = {row[0]: row for row in found.rows}
     scale = [max(abs(row[k]) for row in wanted.rows) for k in range(len(wanted.names))]
     common = [row for row in wanted.rows if row[0] in times]
-    checker.check(len(common) > 0.5 * len(wanted.rows), f"{name}: other times")
+    checker.check(len(common) > 0.2 * len(wanted.rows), f"{name}: other times")
     sides = {}
     for row in wanted.rows:
         sides[row[0]] = sides.get(row[0], 0) + 1
     units = {kind: max([scale[k] for k in range(1, len(scale)) if wanted.names[k][0] == kind],
                        default=0.0) for kind in "vi"}
-    for row in common:
-        if sides[row[0]] > 1:
-            continue
-        for k in range(1, len(row)):
-            error = abs(row[k] - times[row[0]][k])
-            allowed = 2e-5 * max(units.get(wanted.names[k][0], 0.0), 1e-30)
-            if not checker.check(error <= allowed,
-                                 f"{name}: {wanted.names[k]} off by {error:.2e} at {row[0]}"):
-                return
+    rows = [(row, times[row[0]]) for row in common if sides[row[0]] == 1]
+    for k in range(1, len(wanted.names)):
+        allowed = 2e-5 * max(units.get(wanted.names[k][0], 0.0), 1e-30)
+        error, where = max((abs(row[k] - other[k]), row[0]) for row, other in rows)
+        checker.check(error <= allowed, f"{name}: {wanted.names[k]} off by {error:.2e} at {where}")
 
 
 def main():
@@ -91,8 +103,8 @@ def main():
                                     dalcs_program.run(program, system, method=None), wanted)
                 continue
             compare_exactly(checker, name, dalcs_program.run(program, system, method=None), wanted)
-            compare_exactly(checker, f"{name} by euler", dalcs_program.run(program, system),
-                            dalcs_program.run(program, netlist))
+            compare_to_rounding(checker, f"{name} by euler", dalcs_program.run(program, system),
+                                dalcs_program.run(program, netlist))
     checker.check(read > 0.8 * len(netlists), f"only {read} of {len(netlists)} netlists")
     return checker.finish()
 
