@@ -2,7 +2,10 @@
  *
  * With its rows in the order of their duals, the problem's matrix is sigma (P 0; 0 0) + N, where N is
  * (-A; C). Where the symmetric parts of P and N are positive semidefinite, it is monotone for every
- * sigma >= 0: solvable if and only if feasible (Cottle, Pang and Stone 1992, thm 3.1.2). */
+ * sigma >= 0: solvable if and only if feasible (Cottle, Pang and Stone 1992, thm 3.1.2). That is not
+ * necessary: a circuit of passive elements is monotone although its rows, of which some stand for whole
+ * trees of capacitors, need not show it. What a file says of itself is believed; it decides how a step
+ * is solved, and what is certified of an answer does not depend on it. */
 #include "reading.h"
 
 #include <lapacke.h>
@@ -12,9 +15,8 @@
 /* Columns up to which eigenvalues are worked out. */
 enum { MOST_COLUMNS = 500 };
 
-/* A least eigenvalue above minus this part of the largest is 0; it may be where the file says so, for
- * whoever wrote that may have had a better proof: a circuit is passive by its elements. */
-static const double rounding = 1e-13, rounding_of_claims = 1e-7;
+/* A least eigenvalue above minus this part of the largest is 0. */
+static const double rounding = 1e-13;
 
 /* The least eigenvalue of the symmetric part of m[n][n], row by row, over the largest; m is
  * overwritten. */
@@ -65,14 +67,13 @@ enum dalcs_status dalcs_system_prove_monotone(struct dalcs_system *s, enum dalcs
     size_t n = (size_t)dalcs_system_n_columns(s);
     int n_equations = dalcs_system_n_equations(s);
     s->monotone = claim == DALCS_CLAIM_YES;
-    if (n > MOST_COLUMNS || claim == DALCS_CLAIM_NO) {
+    if (n > MOST_COLUMNS || claim != DALCS_CLAIM_NOTHING) {
         return DALCS_OK;
     }
     double *N = dalcs_alloc(n * n, sizeof *N);
     double *P = dalcs_alloc(n * n, sizeof *P);
     enum dalcs_status status = N == NULL || P == NULL ? DALCS_E_NOMEM : DALCS_OK;
     double least[2] = {-1.0, -1.0};
-    const double slack = claim == DALCS_CLAIM_YES ? rounding_of_claims : rounding;
     if (status == DALCS_OK) {
         for (int r = 0; r < n_equations; r++) {
             add_row(N, n, s->dual[r], &s->A, r, -1.0);
@@ -88,7 +89,7 @@ enum dalcs_status dalcs_system_prove_monotone(struct dalcs_system *s, enum dalcs
     if (status == DALCS_OK) {
         status = find_least(N, n, &least[1]);
     }
-    s->monotone = least[0] >= -slack && least[1] >= -slack;
+    s->monotone = least[0] >= -rounding && least[1] >= -rounding;
     free(N);
     free(P);
     return status;

@@ -150,8 +150,8 @@ enum dalcs_status dalcs_system_of_description(struct dalcs_reading *r,
                                               struct dalcs_system *system,
                                               double **initial) DALCS_MUST_CHECK;
 
-/* Sets system->monotone if the OSNSP is monotone for every step, as eigenvalues show; a claim decides
- * where the system is too large for these or rounding decides. */
+/* Sets system->monotone: as the claim says, else if eigenvalues show that the OSNSP is monotone for every
+ * step. */
 enum dalcs_status dalcs_system_prove_monotone(struct dalcs_system *system,
                                               enum dalcs_claim claim) DALCS_MUST_CHECK;
 
