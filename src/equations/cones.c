@@ -1,10 +1,9 @@
 /* cones.c - from a described system to the one that the engine runs, whose multipliers are pairs.
  *
- * A free multiplier is an unknown and its w = 0 an equation. A box [low, high] is two pairs: with
- * lambda = low + lambda1,
- *     0 <= lambda1 _|_ w + mu >= 0,      0 <= mu _|_ high - low - lambda1 >= 0,
- * whose coupling is skew: where the one multiplier was monotone, the two are. A box with one bound is one
- * pair.
+ * A free multiplier is an unknown and its w = 0 an equation. So is one in a box [low, high], with two pairs:
+ *     w = up - down,      0 <= up _|_ lambda - low >= 0,      0 <= down _|_ high - lambda >= 0,
+ * as two antiparallel diodes with thresholds carry a current. Their coupling is skew: where the multiplier
+ * was monotone, all are. A box with one bound is one pair.
  *
  * The engine takes w to be made of columns, of which it knows how far they are to be trusted. An input that
  * varies in time and enters w becomes one: as a voltage source does in a circuit, with
@@ -18,11 +17,16 @@
 /* Where multiplier j of the file went: lambda = offset + sign * column, and w = sign * row. */
 struct place {
     int column;
-    int row; /* of C, or, of a free one, of A */
-    bool is_free;
+    int row;      /* of C, or, of a free one, of A */
+    bool is_free; /* an unknown */
     double sign, offset;
-    int bound; /* the pair of mu, -1: none */
+    int bound; /* the pairs of a box: up, then down; -1: none */
 };
+
+bool dalcs_multiplier_is_unknown(const struct dalcs_multiplier *m) {
+    return m->cone == DALCS_CONE_FREE ||
+           (m->cone == DALCS_CONE_BOX && isfinite(m->low) && isfinite(m->high));
+}
 
 struct assembly {
     const struct dalcs_described_system *from;
@@ -40,7 +44,7 @@ static void count_columns(const struct dalcs_reading *r, struct assembly *a) {
     s->n_z = (int)from->n_unknowns;
     s->n_inputs = (int)from->n_inputs + 1;
     for (size_t j = 0; j < from->n_multipliers; j++) {
-        s->n_z += from->multiplier[j].cone == DALCS_CONE_FREE ? 1 : 0;
+        s->n_z += dalcs_multiplier_is_unknown(&from->multiplier[j]) ? 1 : 0;
     }
     int next_z = s->n_x + (int)from->n_unknowns;
     int next_lifted = s->n_x + s->n_z;
@@ -51,7 +55,7 @@ static void count_columns(const struct dalcs_reading *r, struct assembly *a) {
     for (size_t k = 0; k < F->n; k++) {
         const struct dalcs_triplet *e = &F->entry[k];
         bool varies = r->input[from->input[e->column]].kind != DALCS_STIMULUS_DC;
-        bool is_free = from->multiplier[e->row].cone == DALCS_CONE_FREE;
+        bool is_free = dalcs_multiplier_is_unknown(&from->multiplier[e->row]);
         if (varies && !is_free && e->value != 0.0 && a->lifted[e->column] < 0) {
             a->lifted[e->column] = next_lifted;
             next_lifted += 2;
@@ -63,10 +67,12 @@ static void count_columns(const struct dalcs_reading *r, struct assembly *a) {
         const struct dalcs_multiplier *m = &from->multiplier[j];
         struct place *p = &a->place[j];
         *p = (struct place){.sign = 1.0, .bound = -1};
-        if (m->cone == DALCS_CONE_FREE) {
+        if (dalcs_multiplier_is_unknown(m)) {
             p->is_free = true;
             p->column = p->row = next_z++;
             p->sign = -1.0; /* of the row: 0 = -w, dual to lambda */
+            p->bound = m->cone == DALCS_CONE_BOX ? s->n_pairs : -1;
+            s->n_pairs += m->cone == DALCS_CONE_BOX ? 2 : 0;
             continue;
         }
         if (m->cone == DALCS_CONE_BOX) {
@@ -75,9 +81,6 @@ static void count_columns(const struct dalcs_reading *r, struct assembly *a) {
         }
         p->row = s->n_pairs++;
         p->column = dalcs_system_n_equations(s) + p->row;
-        if (m->cone == DALCS_CONE_BOX && isfinite(m->low) && isfinite(m->high)) {
-            p->bound = s->n_pairs++;
-        }
     }
 }
 
@@ -163,10 +166,13 @@ static enum dalcs_status add_boxes(struct assembly *a) {
         const struct place *p = &a->place[j];
         const struct dalcs_multiplier *m = &a->from->multiplier[j];
         if (p->bound >= 0) {
-            int mu = dalcs_system_n_equations(a->s) + p->bound;
-            DALCS_TRY(dalcs_triplets_add(&a->C, p->row, mu, 1.0));
-            DALCS_TRY(dalcs_triplets_add(&a->C, p->bound, p->column, -1.0));
-            DALCS_TRY(dalcs_triplets_add(&a->F, p->bound, 0, m->high - m->low));
+            int up = dalcs_system_n_equations(a->s) + p->bound;
+            DALCS_TRY(dalcs_triplets_add(&a->A, p->row, up, 1.0));
+            DALCS_TRY(dalcs_triplets_add(&a->A, p->row, up + 1, -1.0));
+            DALCS_TRY(dalcs_triplets_add(&a->C, p->bound, p->column, 1.0));
+            DALCS_TRY(dalcs_triplets_add(&a->F, p->bound, 0, -m->low));
+            DALCS_TRY(dalcs_triplets_add(&a->C, p->bound + 1, p->column, -1.0));
+            DALCS_TRY(dalcs_triplets_add(&a->F, p->bound + 1, 0, m->high));
         }
     }
     return DALCS_OK;
@@ -277,14 +283,14 @@ static void label_pairs(struct assembly *a) {
         const struct place *p = &a->place[j];
         if (p->is_free) {
             s->column[p->column] = (struct dalcs_label){m->pair.element, DALCS_LABEL_BRANCH};
-            s->column_is_current[p->column] = true;
+            s->column_is_current[p->column] = p->bound < 0;
             s->forest_root[p->column] = p->column;
+            for (int d = p->bound; p->bound >= 0 && d < p->bound + 2; d++) {
+                s->pair[d] = m->pair;
+            }
             continue;
         }
         s->pair[p->row] = m->pair;
-        if (p->bound >= 0) {
-            s->pair[p->bound] = m->pair;
-        }
     }
     for (int d = 0; d < s->n_pairs; d++) {
         s->column_is_current[n_equations + d] = true;

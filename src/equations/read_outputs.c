@@ -70,7 +70,7 @@ static enum dalcs_status keep(struct dalcs_reading *r, struct dalcs_probe *probe
 
 /* lambda of multiplier j: as cones.c placed it. */
 struct place {
-    int pair, bound; /* -1: free, no second pair */
+    int pair, bound; /* -1: an unknown; no box of two bounds */
     int column;
     double sign, offset;
 };
@@ -82,15 +82,15 @@ static struct place place_of(const struct dalcs_described_system *d, const struc
     int next_pair = 0;
     for (size_t k = 0; k <= j; k++) {
         const struct dalcs_multiplier *m = &d->multiplier[k];
+        bool is_unknown = dalcs_multiplier_is_unknown(m);
         bool is_box = m->cone == DALCS_CONE_BOX;
-        bool is_double = is_box && isfinite(m->low) && isfinite(m->high);
-        p.pair = m->cone == DALCS_CONE_FREE ? -1 : next_pair;
-        p.column = m->cone == DALCS_CONE_FREE ? next_z : dalcs_system_n_equations(s) + next_pair;
-        p.bound = is_double ? next_pair + 1 : -1;
-        p.sign = is_box && !isfinite(m->low) ? -1.0 : 1.0;
-        p.offset = !is_box ? 0.0 : isfinite(m->low) ? m->low : m->high;
-        next_z += m->cone == DALCS_CONE_FREE ? 1 : 0;
-        next_pair += m->cone == DALCS_CONE_FREE ? 0 : is_double ? 2 : 1;
+        p.pair = is_unknown ? -1 : next_pair;
+        p.column = is_unknown ? next_z : dalcs_system_n_equations(s) + next_pair;
+        p.bound = is_unknown && is_box ? next_pair : -1;
+        p.sign = is_box && !is_unknown && !isfinite(m->low) ? -1.0 : 1.0;
+        p.offset = !is_box || is_unknown ? 0.0 : isfinite(m->low) ? m->low : m->high;
+        next_z += is_unknown ? 1 : 0;
+        next_pair += !is_unknown ? 1 : is_box ? 2 : 0;
     }
     return p;
 }
@@ -100,14 +100,15 @@ static enum dalcs_status add_lambda(struct terms *t, const struct place *p, doub
     return p->offset != 0.0 ? add_input(t, 0, factor * p->offset) : DALCS_OK;
 }
 
-/* w = sign (w of the pair - mu); of a free one it is 0 */
+/* w = sign times w of the pair; of a box, up minus down; of a free one 0 */
 static enum dalcs_status add_w_of(struct terms *t, const struct dalcs_system *s,
                                   const struct place *p, double factor) {
-    if (p->pair < 0) {
-        return DALCS_OK;
+    if (p->bound >= 0) {
+        int up = dalcs_system_n_equations(s) + p->bound;
+        DALCS_TRY(add_column(t, up, factor));
+        return add_column(t, up + 1, -factor);
     }
-    DALCS_TRY(add_w(t, s, p->pair, factor * p->sign));
-    return p->bound < 0 ? DALCS_OK : add_column(t, dalcs_system_n_equations(s) + p->bound, -factor);
+    return p->pair < 0 ? DALCS_OK : add_w(t, s, p->pair, factor * p->sign);
 }
 
 /* ---- Cards --------------------------------------------------------------------------------- */
@@ -269,7 +270,7 @@ static enum dalcs_status add_everything(struct dalcs_reading *r, int system) {
     }
     for (size_t j = 0; j < d->n_multipliers; j++) {
         const struct place p = place_of(d, s, j);
-        for (int is_w = 0; is_w < (p.pair < 0 ? 1 : 2); is_w++) {
+        for (int is_w = 0; is_w < (p.pair < 0 && p.bound < 0 ? 1 : 2); is_w++) {
             struct terms t = {0};
             struct dalcs_output out = {.name =
                                            dalcs_arena_printf(arena, is_w ? "w(%s)" : "lambda(%s)",

@@ -66,6 +66,9 @@ enum dalcs_block_name {
     DALCS_N_BLOCKS
 };
 
+/* Free, or between two bounds: an unknown of the engine, whose multipliers are pairs. */
+bool dalcs_multiplier_is_unknown(const struct dalcs_multiplier *multiplier);
+
 /* What a file says of its OSNSP. */
 enum dalcs_claim { DALCS_CLAIM_NOTHING, DALCS_CLAIM_YES, DALCS_CLAIM_NO };
 
