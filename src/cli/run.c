@@ -24,7 +24,7 @@ static const char help[] =
     "usage: dalcs run FILE [options]\n"
     "\n"
     "Runs the .op and .tran of a SPICE netlist. Diodes and switches are ideal unless the netlist\n"
-    "says otherwise.\n"
+    "says otherwise. FILE may also be a system given by its matrices: 'dalcs equations --help'.\n"
     "\n"
     "  -o, --output FILE   write waveforms; the format is that of the name, .csv or .raw (may be\n"
     "                      repeated; without it FILE's name with .raw, in the current folder)\n"
