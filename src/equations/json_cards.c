@@ -112,7 +112,7 @@ enum dalcs_status dalcs_json_to_cards(const char *name, const char *text, size_t
     if (status == DALCS_OK) {
         write_all(&c, root);
         bool lost = ferror(c.out) != 0;
-        lost = fclose(c.out) != 0 || lost;
+        lost = fclose(c.out) != 0 || lost || *cards == NULL;
         status = lost ? DALCS_E_NOMEM : c.failed ? DALCS_E_NETLIST : DALCS_OK;
     }
     if (status == DALCS_E_NETLIST) {

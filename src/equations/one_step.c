@@ -344,7 +344,7 @@ enum dalcs_status dalcs_one_step_write_market(const struct dalcs_one_step *step,
             }
         }
         bool lost = ferror(f) != 0;
-        lost = fclose(f) != 0 || lost;
+        lost = fclose(f) != 0 || lost || text == NULL;
         status = lost ? DALCS_E_NOMEM : files->file(files->user, suffix, text, length);
         free(text);
     }

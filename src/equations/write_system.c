@@ -36,9 +36,12 @@ void dalcs_write_number(FILE *f, double value) {
     fputs(text, f);
 }
 
+static bool is_plain(const char *name) {
+    return name[0] != '\0' && strpbrk(name, " \t,=();$'{}") == NULL && name[0] != '"';
+}
+
 void dalcs_write_name(FILE *f, const char *name) {
-    bool is_plain = name[0] != '\0' && strpbrk(name, " \t,=();$'{}") == NULL && name[0] != '"';
-    fprintf(f, is_plain ? "%s" : "\"%s\"", name);
+    fprintf(f, is_plain(name) ? "%s" : "\"%s\"", name);
 }
 
 /* ---- Cards --------------------------------------------------------------------------------- */
@@ -73,20 +76,11 @@ static void put_word(struct writer *w, const char *word) {
 }
 
 static void put_name(struct writer *w, const char *name) {
-    char *text = NULL;
-    size_t length;
-    FILE *f = open_memstream(&text, &length);
-    if (f == NULL) {
-        w->status = DALCS_E_NOMEM;
-        return;
-    }
-    dalcs_write_name(f, name);
-    if (fclose(f) != 0) {
-        w->status = DALCS_E_NOMEM;
-    } else {
-        put_word(w, text);
-    }
-    free(text);
+    bool quoted = !is_plain(name);
+    between(w);
+    put_raw(w, quoted ? "\"" : "");
+    put_raw(w, name);
+    put_raw(w, quoted ? "\"" : "");
 }
 
 static void put_number(struct writer *w, double value) {
@@ -284,7 +278,7 @@ static void put_market(struct writer *w, const char *name, const struct view *v,
             v->n_columns, n);
     list_entries(f, v, "", "\n");
     bool lost = ferror(f) != 0;
-    lost = fclose(f) != 0 || lost;
+    lost = fclose(f) != 0 || lost || text == NULL;
     if (lost) {
         w->status = DALCS_E_NOMEM;
     } else if (w->status == DALCS_OK) {
@@ -619,7 +613,7 @@ enum dalcs_status dalcs_equations_write_system(const struct dalcs_equations *equ
     }
     put_all(&w, equations);
     bool lost = ferror(w.out) != 0;
-    lost = fclose(w.out) != 0 || lost;
+    lost = fclose(w.out) != 0 || lost || text == NULL;
     w.status = w.status == DALCS_OK && lost ? DALCS_E_NOMEM : w.status;
     if (w.status == DALCS_OK) {
         w.status = files->file(files->user, "", text, length);

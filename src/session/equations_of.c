@@ -87,7 +87,7 @@ static enum dalcs_status open_document(struct document *d) {
 static enum dalcs_status close_document(struct document *d, enum dalcs_status status,
                                         const struct dalcs_equations_files *files) {
     bool lost = ferror(d->f) != 0;
-    lost = fclose(d->f) != 0 || lost;
+    lost = fclose(d->f) != 0 || lost || d->text == NULL;
     if (status == DALCS_OK) {
         status = lost ? DALCS_E_NOMEM : files->file(files->user, "", d->text, d->length);
     }

@@ -89,7 +89,7 @@ enum dalcs_status dalcs_session_read_matrices(struct dalcs_session *session, con
     }
     write_all(f, matrices);
     bool lost = ferror(f) != 0;
-    lost = fclose(f) != 0 || lost;
+    lost = fclose(f) != 0 || lost || text == NULL;
     enum dalcs_status status =
         lost ? DALCS_E_NOMEM : dalcs_session_read_text(session, name, text, length);
     free(text);
