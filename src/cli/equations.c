@@ -233,6 +233,7 @@ static enum dalcs_status write_equations(const struct request *r, const struct d
     size_t length = stem_length(base);
     char *stem = dalcs_alloc(length + 1, 1);
     if (stem == NULL) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         return DALCS_E_NOMEM;
     }
     memcpy(stem, base, length);
@@ -245,7 +246,8 @@ static enum dalcs_status write_equations(const struct request *r, const struct d
     enum dalcs_status status = dalcs_session_equations(session, &options);
     size_t n_before = *n_written;
     dalcs_cli_write_messages(cli, session, n_written, false);
-    if (status != DALCS_OK && status != DALCS_E_IO && *n_written == n_before) {
+    if (status == DALCS_E_NOMEM ||
+        (status != DALCS_OK && status != DALCS_E_IO && *n_written == n_before)) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
     }
     status = close_files(&files, status);
@@ -270,7 +272,7 @@ enum dalcs_exit dalcs_cli_equations(const struct dalcs_cli *cli, int argc, char 
         status = dalcs_session_read_file(session, request.netlist);
         dalcs_cli_write_messages(cli, session, &n_written, false);
     }
-    if (status != DALCS_OK && n_written == 0) {
+    if (status == DALCS_E_NOMEM || (status != DALCS_OK && n_written == 0)) {
         dalcs_cli_error(cli, "%s: %s", request.netlist, dalcs_status_text(status));
     }
     if (status == DALCS_OK) {
