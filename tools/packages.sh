@@ -7,7 +7,7 @@
 packages_of() {
     case $1 in
         build) echo gcc libc6-dev meson ninja-build pkg-config libsuitesparse-dev liblapacke-dev \
-            libgfortran-12-dev libglpk-dev libltdl-dev uthash-dev ;;
+            libgfortran-12-dev libglpk-dev libjansson-dev libltdl-dev uthash-dev ;;
         test) echo check g++ python3 python3-jsonschema ;;
         plot) echo gnuplot-nox ;;
         crosscheck) echo ngspice python3 ;;

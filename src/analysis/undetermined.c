@@ -120,7 +120,8 @@ enum dalcs_status dalcs_undetermined_at(void *user, const struct dalcs_open_inst
                                         bool *vanishes) {
     struct dalcs_undetermined *u = user;
     *vanishes = false;
-    if (!at->engine->network->system[at->system].monotone) {
+    bool has_graph = u->circuit->n_devices > 0; /* a system file has none */
+    if (!at->engine->network->system[at->system].monotone || !has_graph) {
         return DALCS_OK;
     }
     uint64_t name = name_of(at);

@@ -1,5 +1,6 @@
 /* builder.h - what the parsers of all device families share while a circuit is being built: names,
- * messages, and a reader that walks over one card. Private to this folder. */
+ * messages, and a reader that walks over one card. Private to this folder and to equations/, whose
+ * system files are made of the same cards. */
 #ifndef DALCS_BUILDER_H
 #define DALCS_BUILDER_H
 
@@ -289,6 +290,8 @@ void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *
                         enum dalcs_device_kind kind);
 /* What needs .tran: a missing frequency, periods too short to resolve. */
 void dalcs_source_check(struct dalcs_builder *builder);
+void dalcs_stimulus_check(struct dalcs_builder *builder, const struct dalcs_token *name,
+                          struct dalcs_stimulus *stimulus);
 /* PULSE, SIN, ...: the function whose name is the next token, into *stimulus; false when an error
  * was reported. */
 bool dalcs_waveform_card_is_name(const char *word);

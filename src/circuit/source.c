@@ -159,27 +159,29 @@ static void check_pulse(struct dalcs_builder *builder, const struct dalcs_token 
     check_period(builder, name, period);
 }
 
+void dalcs_stimulus_check(struct dalcs_builder *builder, const struct dalcs_token *name,
+                          struct dalcs_stimulus *s) {
+    const struct dalcs_transient *transient = &builder->circuit->transient;
+    if (s->kind == DALCS_STIMULUS_SIN && s->u.sine.frequency == 0 && transient->present) {
+        s->u.sine.frequency = 1 / transient->stop;
+        dalcs_builder_note(builder, name, NULL, "SIN without a frequency: it is 1/tstop = %g Hz",
+                           s->u.sine.frequency);
+    }
+    if (s->kind == DALCS_STIMULUS_PULSE) {
+        check_pulse(builder, name, s);
+    }
+    if (s->kind == DALCS_STIMULUS_PWL && s->u.pwl.repeats) {
+        check_period(builder, name, s->u.pwl.t[s->u.pwl.n - 1] - s->u.pwl.repeat_from);
+    }
+}
+
 void dalcs_source_check(struct dalcs_builder *builder) {
     const struct dalcs_circuit *circuit = builder->circuit;
     for (int k = 0; k < circuit->n_devices; k++) {
         const struct dalcs_device *device = &circuit->device[k];
-        if (device->stimulus < 0) {
-            continue;
-        }
-        struct dalcs_stimulus *s = &circuit->stimulus[device->stimulus];
-        if (s->kind == DALCS_STIMULUS_SIN && s->u.sine.frequency == 0 &&
-            circuit->transient.present) {
-            s->u.sine.frequency = 1 / circuit->transient.stop;
-            dalcs_builder_note(builder, builder->device_token[k], NULL,
-                               "SIN without a frequency: it is 1/tstop = %g Hz",
-                               s->u.sine.frequency);
-        }
-        if (s->kind == DALCS_STIMULUS_PULSE) {
-            check_pulse(builder, builder->device_token[k], s);
-        }
-        if (s->kind == DALCS_STIMULUS_PWL && s->u.pwl.repeats) {
-            check_period(builder, builder->device_token[k],
-                         s->u.pwl.t[s->u.pwl.n - 1] - s->u.pwl.repeat_from);
+        if (device->stimulus >= 0) {
+            dalcs_stimulus_check(builder, builder->device_token[k],
+                                 &circuit->stimulus[device->stimulus]);
         }
     }
 }

@@ -13,6 +13,7 @@ static const struct {
     enum dalcs_exit (*function)(const struct dalcs_cli *cli, int argc, char **argv);
 } verb[] = {
     {"run", "simulate a netlist and write its waveforms", dalcs_cli_run},
+    {"equations", "write the complementarity system of a netlist", dalcs_cli_equations},
 };
 
 enum { N_VERBS = sizeof verb / sizeof verb[0] };

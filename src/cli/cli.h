@@ -32,7 +32,12 @@ enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **arg
 void dalcs_cli_error(const struct dalcs_cli *cli, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/* Prints the session's messages that came since the last call; notes are not for `quiet`. */
+void dalcs_cli_write_messages(const struct dalcs_cli *cli, const struct dalcs_session *session,
+                              size_t *n_written, bool quiet);
+
 /* One verb each; argv[0] is the verb. */
 enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv);
+enum dalcs_exit dalcs_cli_equations(const struct dalcs_cli *cli, int argc, char **argv);
 
 #endif

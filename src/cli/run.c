@@ -29,7 +29,8 @@ static const char help[] =
     "usage: dalcs run FILE [options]\n"
     "\n"
     "Runs the .op, .dc, .ac and .tran of a SPICE netlist, for each .step. Diodes and switches are\n"
-    "ideal unless the netlist says otherwise.\n"
+    "ideal unless the netlist says otherwise. FILE may also be a system given by its matrices: 'dalcs\n"
+    "equations --help'.\n"
     "\n"
     "  -o, --output FILE   write waveforms; the format is that of the name, .csv or .raw (may be\n"
     "                      repeated; without it FILE's name with .raw, in the current folder)\n"
@@ -90,28 +91,6 @@ static enum dalcs_status progress(void *user, double time, double stop) {
 }
 
 /* ---- Before the run ------------------------------------------------------------------------- */
-
-/* A message without a place in a file starts with what it is; the program's name goes before it. */
-static bool has_place(const char *text) {
-    static const char *const label[] = {"error: ", "warning: ", "note: "};
-    bool bare = false;
-    for (size_t i = 0; i < sizeof label / sizeof label[0] && !bare; i++) {
-        bare = strncmp(text, label[i], strlen(label[i])) == 0;
-    }
-    return !bare;
-}
-
-/* Prints the messages that came since the last call; notes are not for --quiet. */
-static void write_messages(const struct dalcs_cli *cli, const struct dalcs_session *session,
-                           size_t *n_written, bool quiet) {
-    for (size_t n = dalcs_session_n_messages(session); *n_written < n; ++*n_written) {
-        enum dalcs_level level = DALCS_LEVEL_NOTE;
-        const char *text = dalcs_session_message(session, *n_written, &level);
-        if (!quiet || level != DALCS_LEVEL_NOTE) {
-            fprintf(cli->err, "%s%s\n", has_place(text) ? "" : "dalcs: ", text);
-        }
-    }
-}
 
 /* What was asked for on the command line and cannot apply to this netlist. */
 static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_arguments *arguments,
@@ -216,7 +195,7 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     dalcs_progress_finish(&run->progress);
 
     size_t n_before = *n_written;
-    write_messages(run->cli, session, n_written, arguments->quiet);
+    dalcs_cli_write_messages(run->cli, session, n_written, arguments->quiet);
     if (status == DALCS_E_CANCELLED) {
         char text[DALCS_QUANTITY_SIZE];
         fprintf(run->cli->err, "dalcs: interrupted at t = %s\n",
@@ -236,7 +215,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
                                      struct dalcs_session *session) {
     size_t n_written = 0;
     enum dalcs_status status = dalcs_session_read_file(session, arguments->netlist);
-    write_messages(cli, session, &n_written, arguments->quiet);
+    dalcs_cli_write_messages(cli, session, &n_written, arguments->quiet);
     if (status != DALCS_OK) {
         if (n_written == 0) {
             dalcs_cli_error(cli, "%s: %s", arguments->netlist, dalcs_status_text(status));

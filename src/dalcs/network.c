@@ -426,6 +426,14 @@ void dalcs_network_finish(struct dalcs_network *network) {
     }
     free(network->system);
     free(network->initial);
+    free(network->jumps_are_covered);
+    struct dalcs_network *of_file[] = {network->held, network->jump[0], network->jump[1]};
+    for (size_t k = 0; k < sizeof of_file / sizeof *of_file; k++) {
+        if (of_file[k] != NULL) {
+            dalcs_network_finish(of_file[k]);
+            free(of_file[k]);
+        }
+    }
     dalcs_arena_finish(&network->arena);
     *network = (struct dalcs_network){0};
 }

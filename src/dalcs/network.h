@@ -44,6 +44,11 @@ struct dalcs_network {
     double **initial;          /* [n_systems][n_x] x(0-) for uic: IC=, else .ic, else 0 */
     int n_nodes;               /* without ground */
     struct dalcs_arena arena;
+
+    /* Of a system file, which has no circuit to build them from; else NULL. Owned. */
+    struct dalcs_network *held;    /* with the voltages of .ic held: the start of a .tran */
+    struct dalcs_network *jump[2]; /* by enum dalcs_impulse_kind */
+    bool *jumps_are_covered;       /* [n_systems] by these */
 };
 
 /* Options that choose what the network is for. */

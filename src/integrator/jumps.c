@@ -98,10 +98,10 @@ static int look_up(const struct places *p, const char *name, int *owner) {
 }
 
 static enum dalcs_status part_setup(struct dalcs_jump_part *part,
-                                    const struct dalcs_impulse_network *impulse, int k,
+                                    const struct dalcs_network *impulse, int k,
                                     const struct places *places,
                                     const struct dalcs_osnsp_options *options) {
-    const struct dalcs_system *s = &impulse->network.system[k];
+    const struct dalcs_system *s = &impulse->system[k];
     DALCS_TRY(dalcs_osnsp_setup(&part->osnsp, s, options));
     part->osnsp.refines = true;
     part->u = dalcs_alloc((size_t)(s->n_x + s->n_inputs), sizeof(double));
@@ -155,8 +155,7 @@ static enum dalcs_status leave_out_dependent_coils(struct dalcs_jumps *j,
 static enum dalcs_status add_parts(struct dalcs_jumps *j, enum dalcs_impulse_kind kind,
                                    const struct places *places,
                                    const struct dalcs_osnsp_options *options) {
-    const struct dalcs_impulse_network *impulse = &j->impulse[kind];
-    const struct dalcs_network *network = &impulse->network;
+    const struct dalcs_network *network = j->network[kind];
     int *part_of = dalcs_alloc((size_t)network->n_systems, sizeof(*part_of));
     enum dalcs_status status = part_of == NULL ? DALCS_E_NOMEM : DALCS_OK;
     for (int k = 0; status == DALCS_OK && k < network->n_systems; k++) {
@@ -165,7 +164,7 @@ static enum dalcs_status add_parts(struct dalcs_jumps *j, enum dalcs_impulse_kin
             struct dalcs_jump_part *part = &j->part[j->n_parts];
             part_of[k] = j->n_parts++;
             part->kind = kind;
-            status = part_setup(part, impulse, k, places, options);
+            status = part_setup(part, network, k, places, options);
             part->next = j->first_part[part->owner];
             j->first_part[part->owner] = part_of[k];
         }
@@ -190,7 +189,7 @@ static enum dalcs_status find_parts(struct dalcs_jumps *j, const struct dalcs_ci
     struct places places = {0};
     size_t n = 0;
     for (int kind = 0; kind < DALCS_N_IMPULSES; kind++) {
-        n += (size_t)j->impulse[kind].network.n_systems;
+        n += (size_t)j->network[kind]->n_systems;
     }
     j->n_systems = network->n_systems;
     j->part = dalcs_alloc(n, sizeof(*j->part));
@@ -203,7 +202,8 @@ static enum dalcs_status find_parts(struct dalcs_jumps *j, const struct dalcs_ci
     if (status == DALCS_OK) {
         for (int k = 0; k < j->n_systems; k++) {
             j->first_part[k] = -1;
-            j->is_covered[k] = network->system[k].monotone;
+            j->is_covered[k] = network->jumps_are_covered != NULL ? network->jumps_are_covered[k]
+                                                                  : network->system[k].monotone;
         }
         status = leave_out_dependent_coils(j, circuit, &places);
     }
@@ -214,14 +214,25 @@ static enum dalcs_status find_parts(struct dalcs_jumps *j, const struct dalcs_ci
     return status;
 }
 
-static enum dalcs_status build_all(struct dalcs_jumps *j, const struct dalcs_circuit *circuit,
-                                   const struct dalcs_network *network,
-                                   const struct dalcs_osnsp_options *options) {
+/* The two networks: of a circuit, or those that a system file came with. */
+static enum dalcs_status find_networks(struct dalcs_jumps *j, const struct dalcs_circuit *circuit,
+                                       const struct dalcs_network *network) {
     enum dalcs_status status = DALCS_OK;
     for (int kind = 0; kind < DALCS_N_IMPULSES && status == DALCS_OK; kind++) {
-        status =
-            dalcs_impulse_network_build(&j->impulse[kind], circuit, (enum dalcs_impulse_kind)kind);
+        j->network[kind] = network->jump[kind];
+        if (network->jump[kind] == NULL) {
+            status = dalcs_impulse_network_build(&j->impulse[kind], circuit,
+                                                 (enum dalcs_impulse_kind)kind);
+            j->network[kind] = &j->impulse[kind].network;
+        }
     }
+    return status;
+}
+
+enum dalcs_status dalcs_jumps_build(struct dalcs_jumps *j, const struct dalcs_circuit *circuit,
+                                    const struct dalcs_network *network,
+                                    const struct dalcs_osnsp_options *options) {
+    enum dalcs_status status = find_networks(j, circuit, network);
     if (status == DALCS_OK) {
         status = find_parts(j, circuit, network, options);
     }
@@ -292,7 +303,7 @@ enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *j, const struct dalcs_ci
                                     const uint64_t *mode, const double *x, const double *inputs,
                                     struct dalcs_jump_answer *answer) {
     if (!j->is_built) {
-        DALCS_TRY(build_all(j, circuit, network, options));
+        DALCS_TRY(dalcs_jumps_build(j, circuit, network, options));
     }
     const struct dalcs_system *s = &network->system[k];
     answer->is_known = j->is_covered[k];

@@ -12,7 +12,8 @@
 
 struct dalcs_jumps {
     bool is_built;
-    struct dalcs_impulse_network impulse[DALCS_N_IMPULSES];
+    struct dalcs_impulse_network impulse[DALCS_N_IMPULSES]; /* of a circuit */
+    const struct dalcs_network *network[DALCS_N_IMPULSES];  /* theirs, or those of a system file */
     int n_parts;
     struct dalcs_jump_part *part; /* systems of the two networks that hold states */
     int n_systems;
@@ -29,6 +30,11 @@ struct dalcs_jump_answer {
     bool is_known;      /* false: this component's jumps are not covered, nothing else is filled */
     bool moves;         /* some state jumps by more than rounding */
 };
+
+/* Builds what is_covered tells of; dalcs_jumps_solve does so when needed. */
+enum dalcs_status dalcs_jumps_build(struct dalcs_jumps *jumps, const struct dalcs_circuit *circuit,
+                                    const struct dalcs_network *network,
+                                    const struct dalcs_osnsp_options *options) DALCS_MUST_CHECK;
 
 /* The jump of system k of `network` from x[n_x] with inputs[n_inputs] just after it; mode[(n_pairs +
  * 63) / 64] commands the switches and is a first guess for the diodes. */

@@ -528,6 +528,17 @@ static void say_part(struct dalcs_refusal *r) {
     r->because = explain_part(r, &part);
 }
 
+/* Of a system file, which has no elements but names. */
+static const char *explain_system(const struct dalcs_refusal *r) {
+    static const char *const why[] = {
+        [DALCS_WITNESS_LOOP] = "no multipliers and unknowns of these names fulfil the equations",
+        [DALCS_WITNESS_CUTSET] = "no values of these names fulfil the equations",
+        [DALCS_WITNESS_MODE] = "no combination of w = 0 and lambda = 0 fits",
+    };
+    return r->kind == DALCS_WITNESS_DERIVATIVE ? explain_derivative(r)
+                                               : plain_list(r, why[r->kind]);
+}
+
 void dalcs_refusal_explain(struct dalcs_refusal *r) {
     const struct dalcs_circuit *c = r->circuit;
     for (int i = 0; i < c->n_devices; i++) {
@@ -540,7 +551,9 @@ void dalcs_refusal_explain(struct dalcs_refusal *r) {
             r->shown[d->stimulus] = r->value[d->stimulus];
         }
     }
-    if (r->kind == DALCS_WITNESS_LOOP) {
+    if (c->n_devices == 0) {
+        r->because = explain_system(r);
+    } else if (r->kind == DALCS_WITNESS_LOOP) {
         say_loop(r);
     } else if (r->kind == DALCS_WITNESS_CUTSET) {
         say_part(r);

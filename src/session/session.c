@@ -1,6 +1,7 @@
 /* session.c - the life of a session: made, fed a netlist, asked for messages and the report. */
 #include "session_internal.h"
 
+#include "description.h"
 #include "netlist.h"
 #include "number.h"
 #include "source_conflicts.h"
@@ -62,6 +63,19 @@ static bool is_built_again(const struct dalcs_circuit *circuit,
     return again;
 }
 
+static enum dalcs_status read_system(struct dalcs_session *s, const char *path, const char *text,
+                                     size_t length) {
+    struct dalcs_description d;
+    DALCS_TRY(text == NULL ? dalcs_description_read_file(&d, path, &s->diag)
+                           : dalcs_description_read_text(&d, path, text, length, &s->diag));
+    s->circuit = d.circuit;
+    s->network = d.network;
+    s->circuit.n_shown = d.network.n_outputs;
+    s->has_circuit = true;
+    s->has_network = true;
+    return DALCS_OK;
+}
+
 static enum dalcs_status read_netlist(struct dalcs_session *s, const char *path, const char *text,
                                       size_t length) {
     if (s->name != NULL) {
@@ -70,6 +84,9 @@ static enum dalcs_status read_netlist(struct dalcs_session *s, const char *path,
     s->name = dalcs_arena_copy(&s->arena, path, strlen(path));
     if (s->name == NULL) {
         return DALCS_E_NOMEM;
+    }
+    if (text == NULL ? dalcs_description_is_file(path) : dalcs_description_is_text(text, length)) {
+        return read_system(s, path, text, length);
     }
     struct dalcs_netlist netlist = {0};
     enum dalcs_status status =

@@ -59,6 +59,11 @@ struct dalcs_run {
     long n_untold, n_unreported; /* signals of which there is no warning, no entry in the report */
 };
 
+/* Does the run keep a ledger of energies? A system file has no devices to keep it of. */
+static inline bool dalcs_run_keeps_ledger(const struct dalcs_run *r) {
+    return r->options->energy && r->s->circuit.n_devices > 0;
+}
+
 /* Settles what the options of the run and of the netlist leave open; checks them. */
 enum dalcs_status dalcs_run_choose(struct dalcs_run *r) DALCS_MUST_CHECK;
 

@@ -41,25 +41,19 @@ static enum dalcs_status start_at(struct dalcs_euler *e, struct dalcs_radau *rad
     return radau != NULL ? dalcs_radau_start(radau, initial) : dalcs_euler_start(e, initial);
 }
 
-/* The operating point with .ic held, by a network of its own; its states start the transient. */
-static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_euler *e,
-                                           struct dalcs_radau *radau) {
+/* The operating point of `clamped`, in which .ic are held; its states start the transient. */
+static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
+                                    struct dalcs_radau *radau,
+                                    const struct dalcs_network *clamped) {
     struct dalcs_session *s = r->s;
-    struct dalcs_network clamped;
     struct dalcs_euler held;
-    DALCS_TRY(dalcs_network_build(&clamped, &s->circuit,
-                                  &(struct dalcs_network_options){.clamp_initial_conditions = true},
-                                  &s->diag));
-    enum dalcs_status status = dalcs_euler_setup(&held, &s->circuit, &clamped, &r->osnsp, 1.0, 1.0);
-    if (status != DALCS_OK) {
-        dalcs_network_finish(&clamped);
-        return status;
-    }
-    r->undetermined.clamped = &clamped;
+    DALCS_TRY(dalcs_euler_setup(&held, &s->circuit, clamped, &r->osnsp, 1.0, 1.0));
+    r->undetermined.clamped = clamped;
     held.open_user = &r->undetermined;
     held.on_open = dalcs_undetermined_at;
     double **initial = dalcs_alloc((size_t)held.n_components, sizeof(*initial));
-    status = initial == NULL ? DALCS_E_NOMEM : dalcs_euler_operating_point(&held, true);
+    enum dalcs_status status =
+        initial == NULL ? DALCS_E_NOMEM : dalcs_euler_operating_point(&held, true);
     dalcs_explain_failure(r, &held, status);
     dalcs_run_add_work(r, &held);
     if (status == DALCS_OK) {
@@ -70,6 +64,18 @@ static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_eul
     }
     free(initial);
     dalcs_euler_finish(&held);
+    return status;
+}
+
+/* By a network of its own. */
+static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_euler *e,
+                                           struct dalcs_radau *radau) {
+    struct dalcs_session *s = r->s;
+    struct dalcs_network clamped;
+    DALCS_TRY(dalcs_network_build(&clamped, &s->circuit,
+                                  &(struct dalcs_network_options){.clamp_initial_conditions = true},
+                                  &s->diag));
+    enum dalcs_status status = start_from(r, e, radau, &clamped);
     dalcs_network_finish(&clamped);
     return status;
 }
@@ -79,6 +85,9 @@ static enum dalcs_status start_transient(struct dalcs_run *r, struct dalcs_euler
     const struct dalcs_circuit *c = &r->s->circuit;
     if (c->transient.use_initial_conditions) {
         return start_at(e, radau, r->s->network.initial);
+    }
+    if (r->s->network.held != NULL) {
+        return start_from(r, e, radau, r->s->network.held);
     }
     if (c->n_initial_conditions > 0) {
         return start_from_clamps(r, e, radau);
@@ -322,7 +331,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, r->h, stop));
-    e.detect_jumps = r->options->record || r->options->energy;
+    e.detect_jumps = r->options->record || dalcs_run_keeps_ledger(r);
     e.jump_user = r;
     e.on_jump = dalcs_note_jump;
     e.open_user = &r->undetermined;
@@ -340,7 +349,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
                                                     .stop = stop};
         status = dalcs_radau_setup(&radau, &e, &options, &r->osnsp);
     }
-    if (status == DALCS_OK && r->options->energy) {
+    if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {
         status = dalcs_energy_setup(&energy, &e, is_euler ? NULL : &radau);
         e.energy = &energy;
     }
@@ -349,7 +358,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
         enum dalcs_status reported = dalcs_measures_report(&measures, r, status);
         status = status == DALCS_OK ? reported : status;
     }
-    if (status == DALCS_OK && r->options->energy) {
+    if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {
         status = close_ledger(r, &energy, &e, is_euler ? NULL : &radau);
     }
     dalcs_explain_failure(r, &e, status);

@@ -112,8 +112,8 @@ static enum dalcs_status emit(struct dalcs_recorder *r, double time, const doubl
 static bool is_told(const struct dalcs_recorder *r, const struct dalcs_pair *pair, double t,
                     bool on) {
     const struct dalcs_event *last = r->n_events > 0 ? &r->event[r->n_events - 1] : NULL;
-    return pair->is_formula && last != NULL && last->element == pair->element && last->time == t &&
-           last->on == on;
+    return pair->is_formula && last != NULL && strcmp(last->element, pair->element) == 0 &&
+           last->time == t && last->on == on;
 }
 
 static enum dalcs_status note_events(struct dalcs_recorder *r, const struct dalcs_euler *e,

@@ -17,6 +17,70 @@ from dalcs_program import Checker  # noqa: E402
 from preload import run_preloaded  # noqa: E402
 
 CASES = {  # netlist and status without a failure
+    "system": ("""dalcs-system 2 Everything that a system file may have
+.param k=2
+input u SIN(0 1 1)
+input g PULSE(0 1 0.1 0 0 0.2 0.5)
+system
+state x1 V 1
+state x2 A
+unknown z
+pair d
+interval r {-k} {k}
+free b
+switch s on=0.5 off=0.5 direct
+matrix A_I
++ -1 0
++ 0 -1
+matrix Bbar_I sparse
++ 1 1 1 2 2 1 2 4 1
+matrix A_II
++ 1 0
+matrix B_II
++ -1
+matrix C_I
++ 1 0
++ 0 1
++ 0 0
++ 0 1
+matrix D sparse
++ 3 3 1 4 4 1
+matrix F
++ -1 0
++ 0 0
++ 0 0
++ 0 0
+matrix direct_control
++ 0 0
++ 0 0
++ 0 0
++ 0 1
+matrix storage
++ 1 0
++ 0 1
+output y x1 1 z 2 w(r) 1 minus x2 1
+system
+coordinate q 1 0
+contact floor
+matrix G
++ 1
+matrix constant_force
++ -1
+.tran 0.1 0.5
+.end
+""", 0),
+    "equations": ("""What equations writes of a circuit with jumps, held voltages and a switch
+V1 in 0 PULSE(0 5 1m 0 0 1m 2m)
+R1 in a 1k
+D1 a b
+C1 b 0 1u
+L1 b c 1m
+S1 c 0 in 0 sm
+.model sm SW(Vt=2)
+.ic v(b)=1
+.tran 10u 1m
+.end
+""", 0),
     "start": ("""Two capacitors and a diode: a jump at t = 0
 C1 1 0 1u ic=10
 C2 2 0 3u ic=2
@@ -312,6 +376,9 @@ class Case:
         self.output = self.folder / "out.csv"
         self.command = [program, "run", "circuit.cir", "--method", method, "-o", "out.csv",
                         "--report", "report.json"]
+        if name == "equations":  # the method is a format
+            self.command = [program, "equations", "circuit.cir", "--form", "lcs", "--format", method,
+                            "-o", "out.csv"]
         self.checker = Checker(f"{name} with {method}")
 
     def run(self, **variables):

@@ -1,0 +1,531 @@
+/* cones.c - from a described system to the one that the engine runs, whose multipliers are pairs.
+ *
+ * A free multiplier is an unknown and its w = 0 an equation. So is one in a box [low, high], with two pairs:
+ *     w = up - down,      0 <= up _|_ lambda - low >= 0,      0 <= down _|_ high - lambda >= 0,
+ * as two antiparallel diodes with thresholds carry a current. Their coupling is skew: where the multiplier
+ * was monotone, all are. A box with one bound is one pair.
+ *
+ * The engine takes w to be made of columns, of which it knows how far they are to be trusted. An input that
+ * varies in time and enters w becomes one: as a voltage source does in a circuit, with
+ *     0 = i + F' lambda,      0 = s(t) - u,      w = ... + F u. */
+#include "reading.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Where multiplier j of the file went: lambda = offset + sign * column, and w = sign * row. */
+struct place {
+    int column;
+    int row;      /* of C, or, of a free one, of A */
+    bool is_free; /* an unknown */
+    double sign, offset;
+    int bound; /* the pairs of a box: up, then down; -1: none */
+};
+
+bool dalcs_multiplier_is_unknown(const struct dalcs_multiplier *m) {
+    return m->cone == DALCS_CONE_FREE ||
+           (m->cone == DALCS_CONE_BOX && isfinite(m->low) && isfinite(m->high));
+}
+
+struct assembly {
+    const struct dalcs_described_system *from;
+    struct dalcs_system *s;
+    struct place *place; /* [n_multipliers] */
+    int *lifted;         /* [n_inputs] column u of an input, i behind it; -1: it stays an input */
+    int n_lifted;
+    struct dalcs_triplets P, A, E, C, F, storage, control, direct_control;
+};
+
+static void count_columns(const struct dalcs_reading *r, struct assembly *a) {
+    const struct dalcs_described_system *from = a->from;
+    struct dalcs_system *s = a->s;
+    s->n_x = (int)from->n_states;
+    s->n_z = (int)from->n_unknowns;
+    s->n_inputs = (int)from->n_inputs + 1;
+    for (size_t j = 0; j < from->n_multipliers; j++) {
+        s->n_z += dalcs_multiplier_is_unknown(&from->multiplier[j]) ? 1 : 0;
+    }
+    int next_z = s->n_x + (int)from->n_unknowns;
+    int next_lifted = s->n_x + s->n_z;
+    for (size_t k = 0; k < from->n_inputs; k++) {
+        a->lifted[k] = -1;
+    }
+    const struct dalcs_triplets *F = &from->block[DALCS_BLOCK_F].entries;
+    for (size_t k = 0; k < F->n; k++) {
+        const struct dalcs_triplet *e = &F->entry[k];
+        bool varies = r->input[from->input[e->column]].kind != DALCS_STIMULUS_DC;
+        bool is_free = dalcs_multiplier_is_unknown(&from->multiplier[e->row]);
+        if (varies && !is_free && e->value != 0.0 && a->lifted[e->column] < 0) {
+            a->lifted[e->column] = next_lifted;
+            next_lifted += 2;
+            s->n_z += 2;
+            a->n_lifted++;
+        }
+    }
+    for (size_t j = 0; j < from->n_multipliers; j++) {
+        const struct dalcs_multiplier *m = &from->multiplier[j];
+        struct place *p = &a->place[j];
+        *p = (struct place){.sign = 1.0, .bound = -1};
+        if (dalcs_multiplier_is_unknown(m)) {
+            p->is_free = true;
+            p->column = p->row = next_z++;
+            p->sign = -1.0; /* of the row: 0 = -w, dual to lambda */
+            p->bound = m->cone == DALCS_CONE_BOX ? s->n_pairs : -1;
+            s->n_pairs += m->cone == DALCS_CONE_BOX ? 2 : 0;
+            continue;
+        }
+        if (m->cone == DALCS_CONE_BOX) {
+            p->sign = isfinite(m->low) ? 1.0 : -1.0;
+            p->offset = isfinite(m->low) ? m->low : m->high;
+        }
+        p->row = s->n_pairs++;
+        p->column = dalcs_system_n_equations(s) + p->row;
+    }
+}
+
+/* ---- Entries ------------------------------------------------------------------------------- */
+
+/* The blocks of one kind of rows: of x, z, multipliers, inputs and the constant. */
+struct row_blocks {
+    enum dalcs_block_name x, z, multipliers, inputs, constant;
+};
+
+static const struct row_blocks ROWS_I = {DALCS_BLOCK_A_I, DALCS_BLOCK_B_I, DALCS_BLOCK_BBAR_I,
+                                         DALCS_BLOCK_E_I, DALCS_BLOCK_CONSTANT_I};
+static const struct row_blocks ROWS_II = {DALCS_BLOCK_A_II, DALCS_BLOCK_B_II, DALCS_BLOCK_BBAR_II,
+                                          DALCS_BLOCK_E_II, DALCS_BLOCK_CONSTANT_II};
+static const struct row_blocks ROWS_W = {DALCS_BLOCK_C_I, DALCS_BLOCK_C_II, DALCS_BLOCK_D,
+                                         DALCS_BLOCK_F, DALCS_BLOCK_CONSTANT_F};
+
+/* Where row i of these blocks goes. */
+struct target {
+    struct dalcs_triplets *columns, *inputs;
+    int row;
+    double factor;
+};
+
+static struct target target_of(struct assembly *a, const struct row_blocks *blocks, int i) {
+    if (blocks == &ROWS_I) {
+        return (struct target){&a->A, &a->E, i, 1.0};
+    }
+    if (blocks == &ROWS_II) {
+        return (struct target){&a->A, &a->E, a->s->n_x + i, 1.0};
+    }
+    const struct place *p = &a->place[i];
+    return (struct target){p->is_free ? &a->A : &a->C, p->is_free ? &a->E : &a->F, p->row, p->sign};
+}
+
+static enum dalcs_status add_rows(struct assembly *a, const struct row_blocks *blocks) {
+    const enum dalcs_block_name name[] = {blocks->x, blocks->z, blocks->multipliers, blocks->inputs,
+                                          blocks->constant};
+
+    for (int b = 0; b < 5; b++) {
+        const struct dalcs_triplets *t = &a->from->block[name[b]].entries;
+        for (size_t k = 0; k < t->n; k++) {
+            const struct dalcs_triplet *e = &t->entry[k];
+            const struct target to = target_of(a, blocks, e->row);
+            double value = to.factor * e->value;
+            if (b < 2) {
+                int column = b == 0 ? e->column : a->s->n_x + e->column;
+                DALCS_TRY(dalcs_triplets_add(to.columns, to.row, column, value));
+            } else if (b == 3 && to.inputs == &a->F && a->lifted[e->column] >= 0) {
+                int u = a->lifted[e->column];
+                DALCS_TRY(dalcs_triplets_add(&a->C, to.row, u, value));
+                DALCS_TRY(dalcs_triplets_add(&a->A, u, a->place[e->row].column, value));
+            } else if (b > 2) {
+                int input = b == 3 ? e->column + 1 : 0;
+                DALCS_TRY(dalcs_triplets_add(to.inputs, to.row, input, value));
+            } else {
+                const struct place *p = &a->place[e->column];
+                double sign = p->is_free ? 1.0 : p->sign;
+                DALCS_TRY(dalcs_triplets_add(to.columns, to.row, p->column, sign * value));
+                if (p->offset != 0.0) {
+                    DALCS_TRY(dalcs_triplets_add(to.inputs, to.row, 0, p->offset * value));
+                }
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status add_lifted(struct assembly *a) {
+    for (size_t k = 0; k < a->from->n_inputs; k++) {
+        int u = a->lifted[k];
+        if (u >= 0) {
+            DALCS_TRY(dalcs_triplets_add(&a->A, u, u + 1, 1.0));
+            DALCS_TRY(dalcs_triplets_add(&a->A, u + 1, u, -1.0));
+            DALCS_TRY(dalcs_triplets_add(&a->E, u + 1, (int)k + 1, 1.0));
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status add_boxes(struct assembly *a) {
+    for (size_t j = 0; j < a->from->n_multipliers; j++) {
+        const struct place *p = &a->place[j];
+        const struct dalcs_multiplier *m = &a->from->multiplier[j];
+        if (p->bound >= 0) {
+            int up = dalcs_system_n_equations(a->s) + p->bound;
+            DALCS_TRY(dalcs_triplets_add(&a->A, p->row, up, 1.0));
+            DALCS_TRY(dalcs_triplets_add(&a->A, p->row, up + 1, -1.0));
+            DALCS_TRY(dalcs_triplets_add(&a->C, p->bound, p->column, 1.0));
+            DALCS_TRY(dalcs_triplets_add(&a->F, p->bound, 0, -m->low));
+            DALCS_TRY(dalcs_triplets_add(&a->C, p->bound + 1, p->column, -1.0));
+            DALCS_TRY(dalcs_triplets_add(&a->F, p->bound + 1, 0, m->high));
+        }
+    }
+    return DALCS_OK;
+}
+
+/* What commands the switches; a constant part of it moves their thresholds. */
+static enum dalcs_status add_controls(struct assembly *a) {
+    const struct dalcs_triplets *t = &a->from->block[DALCS_BLOCK_CONTROL].entries;
+    int n_equations = a->s->n_x + (int)a->from->n_unknowns;
+    for (size_t k = 0; k < t->n; k++) {
+        const struct dalcs_triplet *e = &t->entry[k];
+        const struct place *row = &a->place[e->row];
+        if (a->from->multiplier[e->row].pair.kind != DALCS_PAIR_SWITCH) {
+            continue;
+        }
+        if (e->column < n_equations) {
+            DALCS_TRY(dalcs_triplets_add(&a->control, row->row, e->column, e->value));
+        } else {
+            const struct place *p = &a->place[e->column - n_equations];
+            double sign = p->is_free ? 1.0 : p->sign;
+            DALCS_TRY(dalcs_triplets_add(&a->control, row->row, p->column, sign * e->value));
+            a->s->pair[row->row].turn_on -= p->offset * e->value;
+            a->s->pair[row->row].turn_off -= p->offset * e->value;
+        }
+    }
+    t = &a->from->block[DALCS_BLOCK_DIRECT_CONTROL].entries;
+    for (size_t k = 0; k < t->n; k++) {
+        const struct dalcs_triplet *e = &t->entry[k];
+        DALCS_TRY(
+            dalcs_triplets_add(&a->direct_control, a->place[e->row].row, e->column + 1, e->value));
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status copy_entries(struct dalcs_triplets *to,
+                                      const struct dalcs_triplets *from) {
+    for (size_t k = 0; k < from->n; k++) {
+        DALCS_TRY(dalcs_triplets_add(to, from->entry[k].row, from->entry[k].column,
+                                     from->entry[k].value));
+    }
+    return DALCS_OK;
+}
+
+/* P, the identity where it is not given; the storage, P where it is symmetric, else the identity. */
+static enum dalcs_status add_states(struct assembly *a) {
+    const struct dalcs_block *block = a->from->block;
+    bool has_P = block[DALCS_BLOCK_P].card != NULL || a->from->n_coordinates > 0;
+    bool has_storage = block[DALCS_BLOCK_STORAGE].card != NULL || a->from->n_coordinates > 0;
+    DALCS_TRY(copy_entries(&a->P, &block[DALCS_BLOCK_P].entries));
+    DALCS_TRY(copy_entries(&a->storage, &block[DALCS_BLOCK_STORAGE].entries));
+    for (int x = 0; x < a->s->n_x && !has_P; x++) {
+        DALCS_TRY(dalcs_triplets_add(&a->P, x, x, 1.0));
+    }
+    if (has_storage) {
+        return DALCS_OK;
+    }
+    bool symmetric = true;
+    for (size_t k = 0; k < a->P.n && symmetric; k++) {
+        bool found = a->P.entry[k].row == a->P.entry[k].column;
+        for (size_t i = 0; i < a->P.n && !found; i++) {
+            found = a->P.entry[i].row == a->P.entry[k].column &&
+                    a->P.entry[i].column == a->P.entry[k].row &&
+                    a->P.entry[i].value == a->P.entry[k].value;
+        }
+        symmetric = found;
+    }
+    if (symmetric) {
+        return copy_entries(&a->storage, &a->P);
+    }
+    for (int x = 0; x < a->s->n_x; x++) {
+        DALCS_TRY(dalcs_triplets_add(&a->storage, x, x, 1.0));
+    }
+    return DALCS_OK;
+}
+
+/* ---- Labels -------------------------------------------------------------------------------- */
+
+static enum dalcs_status allocate(struct dalcs_system *s) {
+    size_t n_equations = (size_t)dalcs_system_n_equations(s);
+    size_t n_pairs = (size_t)s->n_pairs;
+    size_t n_inputs = (size_t)s->n_inputs;
+    s->dual = dalcs_alloc(n_equations, sizeof *s->dual);
+    s->forest_root = dalcs_alloc(n_equations, sizeof *s->forest_root);
+    s->column_is_current = dalcs_alloc(n_equations + n_pairs, sizeof *s->column_is_current);
+    s->row_is_current = dalcs_alloc(n_equations, sizeof *s->row_is_current);
+    s->row = dalcs_alloc(n_equations, sizeof *s->row);
+    s->column = dalcs_alloc(n_equations, sizeof *s->column);
+    s->pair = dalcs_alloc(n_pairs, sizeof *s->pair);
+    s->stimulus = dalcs_alloc(n_inputs, sizeof *s->stimulus);
+    s->input_element = dalcs_alloc(n_inputs, sizeof *s->input_element);
+    bool complete = s->dual != NULL && s->forest_root != NULL && s->column_is_current != NULL &&
+                    s->row_is_current != NULL && s->row != NULL && s->column != NULL &&
+                    s->pair != NULL && s->stimulus != NULL && s->input_element != NULL;
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+static void label_column(struct dalcs_system *s, int c, const struct dalcs_described_column *d) {
+    s->column[c] = (struct dalcs_label){d->name, d->kind};
+    s->column_is_current[c] = d->is_current;
+    s->forest_root[c] = d->root < 0 ? c : d->root;
+}
+
+static void label_pairs(struct assembly *a) {
+    struct dalcs_system *s = a->s;
+    int n_equations = dalcs_system_n_equations(s);
+    for (size_t j = 0; j < a->from->n_multipliers; j++) {
+        const struct dalcs_multiplier *m = &a->from->multiplier[j];
+        const struct place *p = &a->place[j];
+        if (p->is_free) {
+            s->column[p->column] = (struct dalcs_label){m->pair.element, DALCS_LABEL_BRANCH};
+            s->column_is_current[p->column] = p->bound < 0;
+            s->forest_root[p->column] = p->column;
+            for (int d = p->bound; p->bound >= 0 && d < p->bound + 2; d++) {
+                s->pair[d] = m->pair;
+            }
+            continue;
+        }
+        s->pair[p->row] = m->pair;
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        s->column_is_current[n_equations + d] = true;
+    }
+}
+
+static enum dalcs_status label_lifted(struct dalcs_reading *r, struct assembly *a) {
+    struct dalcs_system *s = a->s;
+    for (size_t k = 0; k < a->from->n_inputs; k++) {
+        int u = a->lifted[k];
+        if (u < 0) {
+            continue;
+        }
+        const char *name = r->input_name[a->from->input[k]];
+        const char *dual = dalcs_arena_printf(&r->builder.circuit->arena, "i(%s)", name);
+        if (dual == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        s->column[u] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
+        s->column[u + 1] = (struct dalcs_label){dual, DALCS_LABEL_BRANCH};
+        s->column_is_current[u + 1] = true;
+        s->forest_root[u] = u;
+        s->forest_root[u + 1] = u + 1;
+    }
+    return DALCS_OK;
+}
+
+/* A row without a card of its own has its column's name, and the unit whose product with that of the
+ * column is a power. */
+static void label_rows(struct assembly *a) {
+    struct dalcs_system *s = a->s;
+    for (int i = 0; i < dalcs_system_n_equations(s); i++) {
+        s->dual[i] = i;
+        s->row[i] = s->column[i];
+        s->row_is_current[i] = !s->column_is_current[i];
+        if ((size_t)i < a->from->n_rows) {
+            const struct dalcs_described_column *d = &a->from->row[i];
+            s->dual[i] = d->dual < 0 ? i : d->dual;
+            s->row[i] = (struct dalcs_label){d->name, d->kind};
+            s->row_is_current[i] = d->is_current;
+        }
+    }
+}
+
+/* ---- Checks -------------------------------------------------------------------------------- */
+
+/* Numbers of columns that rows and trees name. */
+static bool check_labels(struct dalcs_reading *r, const struct assembly *a) {
+    const struct dalcs_system *s = a->s;
+    int n = dalcs_system_n_equations(s);
+    bool ok = a->from->n_rows == 0 || (int)a->from->n_rows == n - 2 * a->n_lifted;
+    bool *taken = dalcs_alloc((size_t)n, sizeof *taken);
+    if (taken == NULL) {
+        r->builder.out_of_memory = true;
+        return false;
+    }
+    for (int i = 0; i < n && ok; i++) {
+        ok = s->dual[i] < n && !taken[s->dual[i]] && s->forest_root[i] < n;
+        if (ok) {
+            taken[s->dual[i]] = true;
+            ok = (s->row[i].kind == DALCS_LABEL_REFERENCE) ==
+                     (s->column[s->dual[i]].kind == DALCS_LABEL_REFERENCE) &&
+                 (s->forest_root[i] == i || (i >= s->n_x && s->forest_root[i] >= s->n_x));
+        }
+    }
+    free(taken);
+    if (!ok) {
+        dalcs_builder_error(&r->builder, a->from->token, NULL,
+                            "rows and columns do not fit: there must be a row for each state and "
+                            "unknown, each paired (dual=) with a column of its own, references "
+                            "with references");
+    }
+    return ok;
+}
+
+/* Systems up to this size are looked at densely. */
+enum { DENSE = 500 };
+
+/* P must be nonsingular. */
+static bool check_P(struct dalcs_reading *r, const struct assembly *a) {
+    const struct dalcs_csr *P = &a->s->P;
+    size_t n = (size_t)a->s->n_x;
+    if (n == 0 || n > DENSE) {
+        return true;
+    }
+    double *dense = dalcs_alloc(n * n, sizeof *dense);
+    lapack_int *pivot = dalcs_alloc(n, sizeof *pivot);
+    bool ok = false;
+    if (dense == NULL || pivot == NULL) {
+        r->builder.out_of_memory = true;
+    } else {
+        for (size_t i = 0; i < n; i++) {
+            for (int k = P->p[i]; k < P->p[i + 1]; k++) {
+                dense[i * n + (size_t)P->j[k]] = P->x[k];
+            }
+        }
+        ok = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, (lapack_int)n, (lapack_int)n, dense, (lapack_int)n,
+                            pivot) == 0;
+        if (!ok) {
+            dalcs_builder_error(&r->builder, a->from->token,
+                                "what has no derivative is an unknown of its own",
+                                "the matrix P (of a mechanical system: the mass) is singular");
+        }
+    }
+    free(dense);
+    free(pivot);
+    return ok;
+}
+
+/* ---- All together -------------------------------------------------------------------------- */
+
+static enum dalcs_status compress(struct assembly *a) {
+    struct dalcs_system *s = a->s;
+    int n_equations = dalcs_system_n_equations(s);
+    int n_columns = dalcs_system_n_columns(s);
+    DALCS_TRY(dalcs_csr_compress(&s->P, s->n_x, s->n_x, &a->P));
+    DALCS_TRY(dalcs_csr_compress(&s->A, n_equations, n_columns, &a->A));
+    DALCS_TRY(dalcs_csr_compress(&s->E, n_equations, s->n_inputs, &a->E));
+    DALCS_TRY(dalcs_csr_compress(&s->C, s->n_pairs, n_columns, &a->C));
+    DALCS_TRY(dalcs_csr_compress(&s->F, s->n_pairs, s->n_inputs, &a->F));
+    DALCS_TRY(dalcs_csr_compress(&s->storage, s->n_x, s->n_x, &a->storage));
+    DALCS_TRY(dalcs_csr_compress(&s->control, s->n_pairs, n_columns, &a->control));
+    return dalcs_csr_compress(&s->direct_control, s->n_pairs, s->n_inputs, &a->direct_control);
+}
+
+static enum dalcs_status multiply(struct dalcs_csr *a, const struct dalcs_csr *S) {
+    struct dalcs_triplets t = {0};
+    enum dalcs_status status = DALCS_OK;
+    for (int i = 0; i < a->n_rows && status == DALCS_OK; i++) {
+        if (i >= S->n_rows) {
+            for (int k = a->p[i]; k < a->p[i + 1] && status == DALCS_OK; k++) {
+                status = dalcs_triplets_add(&t, i, a->j[k], a->x[k]);
+            }
+            continue;
+        }
+        for (int e = S->p[i]; e < S->p[i + 1]; e++) {
+            int from = S->j[e];
+            for (int k = a->p[from]; k < a->p[from + 1] && status == DALCS_OK; k++) {
+                status = dalcs_triplets_add(&t, i, a->j[k], S->x[e] * a->x[k]);
+            }
+        }
+    }
+    struct dalcs_csr product = {0};
+    if (status == DALCS_OK) {
+        status = dalcs_csr_compress(&product, a->n_rows, a->n_columns, &t);
+    }
+    if (status == DALCS_OK) {
+        dalcs_csr_finish(a);
+        *a = product;
+    }
+    dalcs_triplets_finish(&t);
+    return status;
+}
+
+/* Of x' = A x + B lambda with a storage of its own: S x' = S A x + S B lambda, the form in which
+ * S B = C' shows as skewness. */
+static enum dalcs_status scale_by_storage(struct assembly *a) {
+    const struct dalcs_block *block = a->from->block;
+    struct dalcs_system *s = a->s;
+    if (block[DALCS_BLOCK_P].card != NULL || block[DALCS_BLOCK_STORAGE].card == NULL ||
+        a->from->n_coordinates > 0) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(multiply(&s->A, &s->storage));
+    DALCS_TRY(multiply(&s->E, &s->storage));
+    return multiply(&s->P, &s->storage);
+}
+
+static enum dalcs_status choose_inputs(struct dalcs_reading *r, struct assembly *a) {
+    struct dalcs_system *s = a->s;
+    s->stimulus[0] = -1;
+    for (int k = 1; k < s->n_inputs; k++) {
+        s->stimulus[k] = a->from->input[k - 1];
+        s->input_element[k] = r->input_name[s->stimulus[k]];
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status build(struct dalcs_reading *r, struct assembly *a) {
+    count_columns(r, a);
+    DALCS_TRY(allocate(a->s));
+    DALCS_TRY(choose_inputs(r, a));
+    for (int x = 0; x < a->s->n_x; x++) {
+        label_column(a->s, x, &a->from->state[x]);
+    }
+    for (int z = 0; z < (int)a->from->n_unknowns; z++) {
+        label_column(a->s, a->s->n_x + z, &a->from->unknown[z]);
+    }
+    label_pairs(a);
+    DALCS_TRY(label_lifted(r, a));
+    label_rows(a);
+    DALCS_TRY(add_states(a));
+    DALCS_TRY(add_rows(a, &ROWS_I));
+    DALCS_TRY(add_rows(a, &ROWS_II));
+    DALCS_TRY(add_rows(a, &ROWS_W));
+    DALCS_TRY(add_boxes(a));
+    DALCS_TRY(add_lifted(a));
+    DALCS_TRY(add_controls(a));
+    DALCS_TRY(compress(a));
+    if (!check_labels(r, a) || !check_P(r, a)) {
+        return r->builder.out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
+    }
+    DALCS_TRY(scale_by_storage(a));
+    if (!check_P(r, a)) {
+        return r->builder.out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
+    }
+    return dalcs_system_prove_monotone(a->s, a->from->monotone);
+}
+
+enum dalcs_status dalcs_system_of_description(struct dalcs_reading *r,
+                                              struct dalcs_described_system *from,
+                                              struct dalcs_system *system, double **initial) {
+    *system = (struct dalcs_system){0};
+    struct assembly a = {.from = from, .s = system};
+    enum dalcs_status status = DALCS_E_NOMEM;
+    a.place = dalcs_alloc(from->n_multipliers, sizeof *a.place);
+    a.lifted = dalcs_alloc(from->n_inputs, sizeof *a.lifted);
+    *initial = dalcs_alloc(from->n_states, sizeof **initial);
+    if (a.place != NULL && a.lifted != NULL && *initial != NULL) {
+        for (size_t x = 0; x < from->n_states; x++) {
+            (*initial)[x] = from->state[x].initial;
+        }
+        status = build(r, &a);
+    }
+    struct dalcs_triplets *all[] = {&a.P, &a.A,       &a.E,       &a.C,
+                                    &a.F, &a.storage, &a.control, &a.direct_control};
+    for (size_t k = 0; k < sizeof all / sizeof all[0]; k++) {
+        dalcs_triplets_finish(all[k]);
+    }
+    free(a.place);
+    free(a.lifted);
+    if (status != DALCS_OK) {
+        dalcs_system_finish(system);
+        free(*initial);
+        *initial = NULL;
+    }
+    return status;
+}

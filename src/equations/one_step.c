@@ -1,0 +1,352 @@
+/* one_step.c - the one-step problem of implicit Euler for given h, reduced to lambda: with sigma = 1/h and
+ *
+ *     N(sigma) = [sigma P - A_I  -B_I; -A_II  -B_II],
+ *     w = M lambda + q,   M(sigma) = D + (C_I C_II) N(sigma)^-1 (Bbar_I; Bbar_II),
+ *     q = F s + (C_I C_II) N(sigma)^-1 (sigma P x_k + E_I s; E_II s)
+ *
+ * (Brogliato 2022, eq. (3.2); Heemels, Schumacher and Weiland 1999, whose M(s) this is at s = 1/h). */
+#include "equations.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double least_rcond = 1e-16;
+
+struct work {
+    double *N, *right; /* [n][n], [n][n_pairs + n_x + n_inputs] */
+    double *row, *column;
+    lapack_int *pivot;
+};
+
+static void fill(const struct dalcs_system *s, double sigma, struct work *w, size_t n,
+                 size_t n_right) {
+    for (size_t i = 0; i < n; i++) {
+        int r = (int)i;
+        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
+            size_t c = (size_t)s->A.j[k];
+            if (c < n) {
+                w->N[i * n + c] -= s->A.x[k];
+            } else {
+                w->right[i * n_right + (c - n)] += s->A.x[k];
+            }
+        }
+        for (int k = r < s->n_x ? s->P.p[r] : 0; r < s->n_x && k < s->P.p[r + 1]; k++) {
+            w->N[i * n + (size_t)s->P.j[k]] += sigma * s->P.x[k];
+            w->right[i * n_right + (size_t)(s->n_pairs + s->P.j[k])] += sigma * s->P.x[k];
+        }
+        for (int k = s->E.p[r]; k < s->E.p[r + 1]; k++) {
+            w->right[i * n_right + (size_t)(s->n_pairs + s->n_x + s->E.j[k])] += s->E.x[k];
+        }
+    }
+}
+
+/* By powers of 2, rows then columns. */
+static void balance(struct work *w, size_t n, size_t n_right) {
+    for (int by_column = 0; by_column < 2; by_column++) {
+        for (size_t i = 0; i < n; i++) {
+            double largest = 0.0;
+            for (size_t j = 0; j < n; j++) {
+                largest = fmax(largest, fabs(w->N[by_column ? j * n + i : i * n + j]));
+            }
+            int power = 0;
+            (void)frexp(largest, &power);
+            double scale = largest > 0.0 ? ldexp(1.0, -power) : 1.0;
+            (by_column ? w->column : w->row)[i] = scale;
+            for (size_t j = 0; j < n; j++) {
+                w->N[by_column ? j * n + i : i * n + j] *= scale;
+            }
+            for (size_t j = 0; j < n_right && !by_column; j++) {
+                w->right[i * n_right + j] *= scale;
+            }
+        }
+    }
+}
+
+/* right becomes N^-1 right; false when N is singular. */
+static enum dalcs_status solve(struct work *w, size_t n, size_t n_right, bool *is_singular) {
+    lapack_int order = (lapack_int)n;
+    double rcond = 0.0;
+    double norm = LAPACKE_dlange(LAPACK_ROW_MAJOR, '1', order, order, w->N, order);
+    lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, order, order, w->N, order, w->pivot);
+    if (info == 0) {
+        info = LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', order, w->N, order, norm, &rcond);
+    }
+    if (info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR) {
+        return DALCS_E_NOMEM;
+    }
+    *is_singular = info != 0 || rcond < least_rcond;
+    if (*is_singular) {
+        return DALCS_OK;
+    }
+    info = LAPACKE_dgetrs(LAPACK_ROW_MAJOR, 'N', order, (lapack_int)n_right, w->N, order, w->pivot,
+                          w->right, (lapack_int)n_right);
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < n_right; j++) {
+            w->right[i * n_right + j] *= w->column[i];
+        }
+    }
+    return info == 0 ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+static void read_off(struct dalcs_one_step *step, const struct work *w, size_t n, size_t n_right) {
+    const struct dalcs_system *s = step->system;
+    for (int d = 0; d < s->n_pairs; d++) {
+        double *const target[] = {step->M + (size_t)d * (size_t)s->n_pairs,
+                                  step->of_x + (size_t)d * (size_t)s->n_x,
+                                  step->of_s + (size_t)d * (size_t)s->n_inputs};
+        const int width[] = {s->n_pairs, s->n_x, s->n_inputs};
+        for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
+            size_t c = (size_t)s->C.j[k];
+            if (c >= n) {
+                target[0][c - n] += s->C.x[k];
+                continue;
+            }
+            const double *from = w->right + c * n_right;
+            for (int part = 0; part < 3; part++) {
+                for (int j = 0; j < width[part]; j++) {
+                    target[part][j] += s->C.x[k] * *from++;
+                }
+            }
+        }
+        for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
+            target[2][s->F.j[k]] += s->F.x[k];
+        }
+    }
+}
+
+enum dalcs_status dalcs_one_step_of(struct dalcs_one_step *step, const struct dalcs_system *s,
+                                    double h) {
+    size_t n = (size_t)dalcs_system_n_equations(s);
+    size_t n_pairs = (size_t)s->n_pairs;
+    size_t n_right = n_pairs + (size_t)s->n_x + (size_t)s->n_inputs;
+    *step = (struct dalcs_one_step){.system = s, .sigma = 1.0 / h};
+    step->M = dalcs_alloc(n_pairs * n_pairs, sizeof *step->M);
+    step->of_x = dalcs_alloc(n_pairs * (size_t)s->n_x, sizeof *step->of_x);
+    step->of_s = dalcs_alloc(n_pairs * (size_t)s->n_inputs, sizeof *step->of_s);
+    struct work w = {.N = dalcs_alloc(n * n, sizeof *w.N),
+                     .right = dalcs_alloc(n * n_right, sizeof *w.right),
+                     .row = dalcs_alloc(n, sizeof *w.row),
+                     .column = dalcs_alloc(n, sizeof *w.column),
+                     .pivot = dalcs_alloc(n, sizeof *w.pivot)};
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (step->M != NULL && step->of_x != NULL && step->of_s != NULL && w.N != NULL &&
+        w.right != NULL && w.row != NULL && w.column != NULL && w.pivot != NULL) {
+        fill(s, step->sigma, &w, n, n_right);
+        balance(&w, n, n_right);
+        status = n == 0 ? DALCS_OK : solve(&w, n, n_right, &step->is_singular);
+        if (status == DALCS_OK && !step->is_singular) {
+            read_off(step, &w, n, n_right);
+        }
+    }
+    free(w.N);
+    free(w.right);
+    free(w.row);
+    free(w.column);
+    free(w.pivot);
+    if (status != DALCS_OK) {
+        dalcs_one_step_finish(step);
+    }
+    return status;
+}
+
+void dalcs_one_step_finish(struct dalcs_one_step *step) {
+    free(step->M);
+    free(step->of_x);
+    free(step->of_s);
+    *step = (struct dalcs_one_step){0};
+}
+
+/* ---- Writing ------------------------------------------------------------------------------- */
+
+static const char SINGULAR[] = "N(sigma) is singular: without complementarity the step leaves "
+                               "something open, and lambda alone does not tell x and z";
+
+static void write_row(FILE *f, const double *row, int n) {
+    for (int j = 0; j < n; j++) {
+        fprintf(f, " %14.7g", row[j]);
+    }
+}
+
+void dalcs_one_step_write_text(FILE *f, const struct dalcs_one_step *step) {
+    const struct dalcs_system *s = step->system;
+    fprintf(f,
+            "one step of h = %.10g s, sigma = %.10g 1/s: 0 <= lambda _|_ w = M lambda + q >= 0\n",
+            1.0 / step->sigma, step->sigma);
+    if (step->is_singular) {
+        fprintf(f, "  %s\n", SINGULAR);
+        return;
+    }
+    fputs("  M(sigma) = D + (C_I C_II) N(sigma)^-1 (Bbar_I; Bbar_II), rows and columns:\n", f);
+    for (int d = 0; d < s->n_pairs; d++) {
+        fprintf(f, "  %-10s", s->pair[d].element);
+        write_row(f, step->M + (size_t)d * (size_t)s->n_pairs, s->n_pairs);
+        fputc('\n', f);
+    }
+    fputs("  q = what the reverse voltages w were with all multipliers 0: the sum of\n", f);
+    for (int x = 0; x < s->n_x; x++) {
+        fprintf(f, "    %s before the step times", s->column[x].element);
+        for (int d = 0; d < s->n_pairs; d++) {
+            fprintf(f, " %.7g", step->of_x[(size_t)d * (size_t)s->n_x + (size_t)x]);
+        }
+        fputc('\n', f);
+    }
+    for (int k = 0; k < s->n_inputs; k++) {
+        bool is_zero = true;
+        for (int d = 0; d < s->n_pairs; d++) {
+            is_zero = is_zero && step->of_s[(size_t)d * (size_t)s->n_inputs + (size_t)k] == 0.0;
+        }
+        if (is_zero) {
+            continue;
+        }
+        fprintf(f, k == 0 ? "    the constant" : "    %s at the end of the step times",
+                k == 0 ? "" : s->input_element[k]);
+        for (int d = 0; d < s->n_pairs; d++) {
+            fprintf(f, " %.7g", step->of_s[(size_t)d * (size_t)s->n_inputs + (size_t)k]);
+        }
+        fputc('\n', f);
+    }
+}
+
+static void write_latex_matrix(FILE *f, const char *name, const double *a, int n_rows,
+                               int n_columns) {
+    fprintf(f, "%s=\\left(\\begin{array}{", name);
+    for (int j = 0; j < n_columns; j++) {
+        fputc('r', f);
+    }
+    fputs("}\n", f);
+    for (int i = 0; i < n_rows; i++) {
+        for (int j = 0; j < n_columns; j++) {
+            char text[40];
+            snprintf(text, sizeof text, "%.7g", a[(size_t)i * (size_t)n_columns + (size_t)j]);
+            const char *exponent = strchr(text, 'e');
+            fputs(j > 0 ? " & " : "", f);
+            if (exponent == NULL) {
+                fputs(text, f);
+            } else {
+                fprintf(f, "%.*s\\cdot 10^{%ld}", (int)(exponent - text), text,
+                        strtol(exponent + 1, NULL, 10));
+            }
+        }
+        fputs("\\\\\n", f);
+    }
+    fputs("\\end{array}\\right)", f);
+}
+
+void dalcs_one_step_write_latex(FILE *f, const struct dalcs_one_step *step) {
+    const struct dalcs_system *s = step->system;
+    fprintf(
+        f, "\\[0\\le\\lambda\\perp M\\lambda+Q_x x_k+Q_s s\\ge 0,\\qquad h=%.7g\\,\\mathrm{s}\\]\n",
+        1.0 / step->sigma);
+    if (step->is_singular) {
+        fprintf(f, "%s.\n", SINGULAR);
+        return;
+    }
+
+    const struct {
+        const char *name;
+        const double *a;
+        int n_columns;
+    } part[] = {
+        {"M", step->M, s->n_pairs}, {"Q_x", step->of_x, s->n_x}, {"Q_s", step->of_s, s->n_inputs}};
+
+    for (int k = 0; k < 3; k++) {
+        if (part[k].n_columns > 0 && s->n_pairs > 0) {
+            fputs("\\[", f);
+            write_latex_matrix(f, part[k].name, part[k].a, s->n_pairs, part[k].n_columns);
+            fputs("\\]\n", f);
+        }
+    }
+}
+
+static void write_json_matrix(FILE *f, const char *name, const double *a, int n_rows,
+                              int n_columns) {
+    fprintf(f, ",\n\"%s\": [", name);
+    for (int i = 0; i < n_rows; i++) {
+        fputs(i > 0 ? ",\n[" : "[", f);
+        for (int j = 0; j < n_columns; j++) {
+            fputs(j > 0 ? ", " : "", f);
+            dalcs_write_number(f, a[(size_t)i * (size_t)n_columns + (size_t)j]);
+        }
+        fputc(']', f);
+    }
+    fputc(']', f);
+}
+
+static void write_json_name(FILE *f, const char *name) {
+    fputc('"', f);
+    for (const char *p = name; *p != '\0'; p++) {
+        fprintf(f, *p == '"' || *p == '\\' ? "\\%c" : "%c", *p);
+    }
+    fputc('"', f);
+}
+
+void dalcs_one_step_write_json(FILE *f, const struct dalcs_one_step *step) {
+    const struct dalcs_system *s = step->system;
+    fputs("{\"sigma\": ", f);
+    dalcs_write_number(f, step->sigma);
+    for (int part = 0; part < 3; part++) {
+        static const char *const key[] = {"lambda", "x", "s"};
+        int n = part == 0 ? s->n_pairs : part == 1 ? s->n_x : s->n_inputs;
+        fprintf(f, ", \"%s\": [", key[part]);
+        for (int k = 0; k < n; k++) {
+            const char *name = part == 0   ? s->pair[k].element
+                               : part == 1 ? s->column[k].element
+                               : k == 0    ? "1"
+                                           : s->input_element[k];
+            fputs(k > 0 ? ", " : "", f);
+            write_json_name(f, name);
+        }
+        fputc(']', f);
+    }
+    if (step->is_singular) {
+        fputs(", \"singular\": true", f);
+    } else {
+        write_json_matrix(f, "M", step->M, s->n_pairs, s->n_pairs);
+        write_json_matrix(f, "Qx", step->of_x, s->n_pairs, s->n_x);
+        write_json_matrix(f, "Qs", step->of_s, s->n_pairs, s->n_inputs);
+    }
+    fputs("}", f);
+}
+
+enum dalcs_status dalcs_one_step_write_market(const struct dalcs_one_step *step, int part,
+                                              const struct dalcs_equations_files *files) {
+    const struct dalcs_system *s = step->system;
+
+    const struct {
+        const char *name;
+        const double *a;
+        int n_columns;
+    } matrix[] = {
+        {"M", step->M, s->n_pairs}, {"Qx", step->of_x, s->n_x}, {"Qs", step->of_s, s->n_inputs}};
+    enum dalcs_status status = DALCS_OK;
+    for (int k = 0; k < 3 && status == DALCS_OK && !step->is_singular; k++) {
+        char suffix[40];
+        char *text = NULL;
+        size_t length;
+        if (part == 0) {
+            snprintf(suffix, sizeof suffix, ".%s.mtx", matrix[k].name);
+        } else {
+            snprintf(suffix, sizeof suffix, ".%d.%s.mtx", part, matrix[k].name);
+        }
+        FILE *f = open_memstream(&text, &length);
+        if (f == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        fprintf(f, "%%%%MatrixMarket matrix array real general\n%d %d\n", s->n_pairs,
+                matrix[k].n_columns);
+        for (int j = 0; j < matrix[k].n_columns; j++) {
+            for (int i = 0; i < s->n_pairs; i++) {
+                dalcs_write_number(
+                    f, matrix[k].a[(size_t)i * (size_t)matrix[k].n_columns + (size_t)j]);
+                fputc('\n', f);
+            }
+        }
+        bool lost = ferror(f) != 0;
+        lost = fclose(f) != 0 || lost || text == NULL;
+        status = lost ? DALCS_E_NOMEM : files->file(files->user, suffix, text, length);
+        free(text);
+    }
+    return status;
+}

@@ -1,0 +1,453 @@
+/* reduce.c - z eliminated: where B_II is regular, z = -B_II^-1 (A_II x + Bbar_II lambda + E_II) and the
+ * DALCS is an LCS (Brogliato 2022, remark 5.13):
+ *
+ *     P x' = (A_I - B_I R A_II) x + (Bbar_I - B_I R Bbar_II) lambda + ...,    R = B_II^-1,
+ *        w = (C_I - C_II R A_II) x + (D - C_II R Bbar_II) lambda + ...
+ *
+ * Where it is singular, the null vector says which unknowns the equations II leave open. */
+#include "equations.h"
+#include "reading.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Unknowns up to which z is eliminated densely. */
+enum { MOST_UNKNOWNS = 1000 };
+
+/* A B_II, balanced, whose reciprocal condition is smaller is singular. */
+static const double least_rcond = 1e-14;
+
+/* An entry of R A_II that is this part of what it is summed from is rounding. */
+static const double rounding = 1e-15;
+
+/* z = Z (x, lambda, s): dense, row by row. */
+struct elimination {
+    const struct dalcs_system *from;
+    size_t n_z, n_right; /* columns: x, lambda, inputs */
+    double *Z;           /* [n_z][n_right] */
+    bool is_regular;
+    const char *because;
+};
+
+/* ---- Solving for z ------------------------------------------------------------------------- */
+
+/* Powers of 2 that make rows and then columns of m[n][n] of size 1. */
+static void balance(double *m, size_t n, double *row, double *column) {
+    for (int by_column = 0; by_column < 2; by_column++) {
+        for (size_t i = 0; i < n; i++) {
+            double largest = 0.0;
+            for (size_t j = 0; j < n; j++) {
+                largest = fmax(largest, fabs(m[by_column ? j * n + i : i * n + j]));
+            }
+            int power = 0;
+            (void)frexp(largest, &power);
+            double scale = largest > 0.0 ? ldexp(1.0, -power) : 1.0;
+            (by_column ? column : row)[i] = scale;
+            for (size_t j = 0; j < n; j++) {
+                m[by_column ? j * n + i : i * n + j] *= scale;
+            }
+        }
+    }
+}
+
+/* The right side -(A_II, Bbar_II, E_II), scaled as the rows. */
+static void fill_right(struct elimination *z, const double *row) {
+    const struct dalcs_system *s = z->from;
+    for (size_t i = 0; i < z->n_z; i++) {
+        int r = s->n_x + (int)i;
+        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
+            int c = s->A.j[k];
+            if (c < s->n_x || c >= dalcs_system_n_equations(s)) {
+                size_t to = (size_t)(c < s->n_x ? c : c - s->n_z);
+                z->Z[i * z->n_right + to] = -row[i] * s->A.x[k];
+            }
+        }
+        for (int k = s->E.p[r]; k < s->E.p[r + 1]; k++) {
+            z->Z[i * z->n_right + (size_t)(s->n_x + s->n_pairs + s->E.j[k])] = -row[i] * s->E.x[k];
+        }
+    }
+}
+
+/* The names that a null vector of B_II has. */
+static const char *name_open(const struct elimination *z, const double *null, const double *column,
+                             struct dalcs_arena *arena) {
+    const struct dalcs_system *s = z->from;
+    const char *list = NULL;
+    double largest = 0.0;
+    int n = 0;
+    for (size_t i = 0; i < z->n_z; i++) {
+        largest = fmax(largest, fabs(null[i] * column[i]));
+    }
+    for (size_t i = 0; i < z->n_z; i++) {
+        int c = s->n_x + (int)i;
+        if (fabs(null[i] * column[i]) < 1e-6 * largest || ++n > 6) {
+            continue;
+        }
+        const char *what = s->column_is_current[c] ? "i" : "v";
+        list = list == NULL
+                   ? dalcs_arena_printf(arena, "%s(%s)", what, s->column[c].element)
+                   : dalcs_arena_printf(arena, "%s, %s(%s)", list, what, s->column[c].element);
+        if (list == NULL) {
+            return NULL;
+        }
+    }
+    return n > 6 ? dalcs_arena_printf(arena, "%s and %d more", list, n - 6) : list;
+}
+
+static enum dalcs_status explain_singular(struct elimination *z, double *m, const double *column,
+                                          struct dalcs_arena *arena) {
+    size_t n = z->n_z;
+    double *value = dalcs_alloc(n, sizeof *value);
+    double *vt = dalcs_alloc(n * n, sizeof *vt);
+    double *work = dalcs_alloc(n, sizeof *work);
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (value != NULL && vt != NULL && work != NULL) {
+        double unused;
+        lapack_int info =
+            LAPACKE_dgesvd(LAPACK_ROW_MAJOR, 'N', 'A', (lapack_int)n, (lapack_int)n, m,
+                           (lapack_int)n, value, &unused, 1, vt, (lapack_int)n, work);
+        const char *names = info == 0 ? name_open(z, vt + (n - 1) * n, column, arena) : NULL;
+        z->because = dalcs_arena_printf(
+            arena, "B_II is singular: the equations without complementarity leave %s open",
+            names == NULL ? "something" : names);
+        status = z->because == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    }
+    free(value);
+    free(vt);
+    free(work);
+    return status;
+}
+
+struct workspace {
+    double *m, *copy, *row, *column;
+    lapack_int *pivot;
+};
+
+static enum dalcs_status solve_for_z(struct elimination *z, struct workspace *w,
+                                     struct dalcs_arena *arena) {
+    const struct dalcs_system *s = z->from;
+    const size_t n = z->n_z;
+    for (size_t i = 0; i < n; i++) {
+        int r = s->n_x + (int)i;
+        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
+            int c = s->A.j[k] - s->n_x;
+            if (c >= 0 && c < s->n_z) {
+                w->m[i * n + (size_t)c] = s->A.x[k];
+            }
+        }
+    }
+    balance(w->m, n, w->row, w->column);
+    memcpy(w->copy, w->m, n * n * sizeof *w->m);
+    double norm =
+        LAPACKE_dlange(LAPACK_ROW_MAJOR, '1', (lapack_int)n, (lapack_int)n, w->m, (lapack_int)n);
+    double rcond = 0.0;
+    lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, (lapack_int)n, (lapack_int)n, w->m,
+                                     (lapack_int)n, w->pivot);
+    if (info == 0) {
+        info =
+            LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', (lapack_int)n, w->m, (lapack_int)n, norm, &rcond);
+    }
+    if (info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR) {
+        return DALCS_E_NOMEM;
+    }
+    if (info != 0 || rcond < least_rcond) {
+        return explain_singular(z, w->copy, w->column, arena);
+    }
+    fill_right(z, w->row);
+    if (LAPACKE_dgetrs(LAPACK_ROW_MAJOR, 'N', (lapack_int)n, (lapack_int)z->n_right, w->m,
+                       (lapack_int)n, w->pivot, z->Z, (lapack_int)z->n_right) != 0) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < z->n_right; j++) {
+            z->Z[i * z->n_right + j] *= w->column[i];
+        }
+    }
+    z->is_regular = true;
+    return DALCS_OK;
+}
+
+static enum dalcs_status eliminate(struct elimination *z, const struct dalcs_system *from,
+                                   struct dalcs_arena *arena) {
+    *z = (struct elimination){.from = from,
+                              .n_z = (size_t)from->n_z,
+                              .n_right = (size_t)(from->n_x + from->n_pairs + from->n_inputs)};
+    if (from->n_z > MOST_UNKNOWNS) {
+        z->because =
+            dalcs_arena_printf(arena, "more than %d unknowns are not eliminated", MOST_UNKNOWNS);
+        return z->because == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    }
+    const size_t n = z->n_z;
+    struct workspace w = {.m = dalcs_alloc(n * n, sizeof *w.m),
+                          .copy = dalcs_alloc(n * n, sizeof *w.copy),
+                          .row = dalcs_alloc(n, sizeof *w.row),
+                          .column = dalcs_alloc(n, sizeof *w.column),
+                          .pivot = dalcs_alloc(n, sizeof *w.pivot)};
+    z->Z = dalcs_alloc(n * z->n_right, sizeof *z->Z);
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (w.m != NULL && w.copy != NULL && w.row != NULL && w.column != NULL && w.pivot != NULL &&
+        z->Z != NULL) {
+        z->is_regular = n == 0;
+        status = n == 0 ? DALCS_OK : solve_for_z(z, &w, arena);
+    }
+    free(w.m);
+    free(w.copy);
+    free(w.row);
+    free(w.column);
+    free(w.pivot);
+    return status;
+}
+
+/* ---- The reduced system -------------------------------------------------------------------- */
+
+/* A row of which columns are those of `from`, added to one of the reduced system. */
+static void add_row(const struct elimination *z, const struct dalcs_csr *a, int i,
+                    const struct dalcs_csr *of_inputs, double *dense, double *size) {
+    const struct dalcs_system *s = z->from;
+    for (size_t j = 0; j < z->n_right; j++) {
+        dense[j] = size[j] = 0.0;
+    }
+    for (int k = a->p[i]; k < a->p[i + 1]; k++) {
+        int c = a->j[k];
+        if (c < s->n_x || c >= dalcs_system_n_equations(s)) {
+            size_t to = (size_t)(c < s->n_x ? c : c - s->n_z);
+            dense[to] += a->x[k];
+            size[to] = fmax(size[to], fabs(a->x[k]));
+            continue;
+        }
+        for (size_t j = 0; j < z->n_right; j++) {
+            double term = a->x[k] * z->Z[(size_t)(c - s->n_x) * z->n_right + j];
+            dense[j] += term;
+            size[j] = fmax(size[j], fabs(term));
+        }
+    }
+    for (int k = of_inputs == NULL ? 0 : of_inputs->p[i];
+         of_inputs != NULL && k < of_inputs->p[i + 1]; k++) {
+        size_t to = (size_t)(s->n_x + s->n_pairs + of_inputs->j[k]);
+        dense[to] += of_inputs->x[k];
+        size[to] = fmax(size[to], fabs(of_inputs->x[k]));
+    }
+    for (size_t j = 0; j < z->n_right; j++) {
+        dense[j] = fabs(dense[j]) <= rounding * size[j] ? 0.0 : dense[j];
+    }
+}
+
+/* Rows of (a, of_inputs) without z, as two new matrices. */
+static enum dalcs_status reduce_rows(const struct elimination *z, const struct dalcs_csr *a,
+                                     const struct dalcs_csr *of_inputs, int n_rows,
+                                     struct dalcs_csr *columns, struct dalcs_csr *inputs) {
+    const struct dalcs_system *s = z->from;
+    int n_columns = s->n_x + s->n_pairs;
+    struct dalcs_triplets t = {0};
+    struct dalcs_triplets u = {0};
+    double *dense = dalcs_alloc(2 * z->n_right, sizeof *dense);
+    enum dalcs_status status = dense == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    for (int i = 0; i < n_rows && status == DALCS_OK; i++) {
+        add_row(z, a, i, of_inputs, dense, dense + z->n_right);
+        for (int j = 0; j < (int)z->n_right && status == DALCS_OK; j++) {
+            if (dense[j] != 0.0) {
+                status = j < n_columns ? dalcs_triplets_add(&t, i, j, dense[j])
+                                       : dalcs_triplets_add(&u, i, j - n_columns, dense[j]);
+            }
+        }
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_csr_compress(columns, n_rows, n_columns, &t);
+    }
+    if (status == DALCS_OK && inputs != NULL) {
+        status = dalcs_csr_compress(inputs, n_rows, s->n_inputs, &u);
+    }
+    free(dense);
+    dalcs_triplets_finish(&t);
+    dalcs_triplets_finish(&u);
+    return status;
+}
+
+static enum dalcs_status copy_matrix(struct dalcs_csr *to, const struct dalcs_csr *from) {
+    struct dalcs_triplets t = {0};
+    enum dalcs_status status = DALCS_OK;
+    for (int i = 0; i < from->n_rows && status == DALCS_OK; i++) {
+        for (int k = from->p[i]; k < from->p[i + 1] && status == DALCS_OK; k++) {
+            status = dalcs_triplets_add(&t, i, from->j[k], from->x[k]);
+        }
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_csr_compress(to, from->n_rows, from->n_columns, &t);
+    }
+    dalcs_triplets_finish(&t);
+    return status;
+}
+
+static void *copy_array(const void *from, size_t n, size_t size) {
+    void *to = dalcs_alloc(n, size);
+    return to == NULL || n == 0 ? to : memcpy(to, from, n * size);
+}
+
+/* Labels: those of the states, and of all where nothing is eliminated. */
+static enum dalcs_status copy_labels(struct dalcs_system *to, const struct dalcs_system *from) {
+    size_t n = (size_t)dalcs_system_n_equations(to);
+    size_t n_pairs = (size_t)to->n_pairs;
+    size_t n_inputs = (size_t)to->n_inputs;
+    bool is_whole = to->n_z == from->n_z;
+    to->dual = copy_array(from->dual, n, sizeof *to->dual);
+    to->forest_root = copy_array(from->forest_root, n, sizeof *to->forest_root);
+    to->column_is_current = copy_array(from->column_is_current, n + n_pairs, sizeof(bool));
+    to->row_is_current = copy_array(from->row_is_current, n, sizeof(bool));
+    to->row = copy_array(from->row, n, sizeof *to->row);
+    to->column = copy_array(from->column, n, sizeof *to->column);
+    to->pair = copy_array(from->pair, n_pairs, sizeof *to->pair);
+    to->stimulus = copy_array(from->stimulus, n_inputs, sizeof *to->stimulus);
+    to->input_element = copy_array(from->input_element, n_inputs, sizeof *to->input_element);
+    if (to->dual == NULL || to->forest_root == NULL || to->column_is_current == NULL ||
+        to->row_is_current == NULL || to->row == NULL || to->column == NULL || to->pair == NULL ||
+        to->stimulus == NULL || to->input_element == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t i = 0; i < n && !is_whole; i++) {
+        to->dual[i] = (int)i; /* that of a voltage may have been among z */
+        to->forest_root[i] = (int)i;
+    }
+    for (size_t d = 0; d < n_pairs; d++) {
+        to->column_is_current[n + d] = true;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status reduce_system(const struct elimination *z, struct dalcs_system *to) {
+    const struct dalcs_system *s = z->from;
+    *to = (struct dalcs_system){.n_x = s->n_x,
+                                .n_z = z->is_regular ? 0 : s->n_z,
+                                .n_pairs = s->n_pairs,
+                                .n_inputs = s->n_inputs,
+                                .monotone = s->monotone};
+    DALCS_TRY(copy_labels(to, s));
+    DALCS_TRY(copy_matrix(&to->P, &s->P));
+    DALCS_TRY(copy_matrix(&to->storage, &s->storage));
+    DALCS_TRY(copy_matrix(&to->direct_control, &s->direct_control));
+    if (!z->is_regular) {
+        DALCS_TRY(copy_matrix(&to->A, &s->A));
+        DALCS_TRY(copy_matrix(&to->E, &s->E));
+        DALCS_TRY(copy_matrix(&to->C, &s->C));
+        DALCS_TRY(copy_matrix(&to->F, &s->F));
+        return copy_matrix(&to->control, &s->control);
+    }
+    DALCS_TRY(reduce_rows(z, &s->A, &s->E, s->n_x, &to->A, &to->E));
+    DALCS_TRY(reduce_rows(z, &s->C, &s->F, s->n_pairs, &to->C, &to->F));
+    DALCS_TRY(reduce_rows(z, &s->control, NULL, s->n_pairs, &to->control, NULL));
+    return dalcs_system_prove_monotone(to, DALCS_CLAIM_NOTHING);
+}
+
+/* ---- Probes -------------------------------------------------------------------------------- */
+
+static enum dalcs_status reduce_probe(const struct elimination *all, const struct dalcs_probe *from,
+                                      struct dalcs_network *network, struct dalcs_probe *to) {
+    *to = *from;
+    if (from->system < 0 || !all[from->system].is_regular) {
+        return DALCS_OK;
+    }
+    const struct elimination *z = &all[from->system];
+    const struct dalcs_system *s = z->from;
+    double *dense = dalcs_alloc(z->n_right, sizeof *dense);
+    to->term = dalcs_arena_alloc(&network->arena, z->n_right, sizeof *to->term);
+    if (dense == NULL || to->term == NULL) {
+        free(dense);
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < from->n_terms + from->n_inputs; k++) {
+        int c = from->term[k].index;
+        double factor = from->term[k].coefficient;
+        if (k >= from->n_terms) {
+            dense[s->n_x + s->n_pairs + c] += factor;
+        } else if (c < s->n_x || c >= dalcs_system_n_equations(s)) {
+            dense[c < s->n_x ? c : c - s->n_z] += factor;
+        } else {
+            for (size_t j = 0; j < z->n_right; j++) {
+                dense[j] += factor * z->Z[(size_t)(c - s->n_x) * z->n_right + j];
+            }
+        }
+    }
+    to->n_terms = 0;
+    to->n_inputs = 0;
+    for (int j = 0; j < (int)z->n_right; j++) {
+        bool is_input = j >= s->n_x + s->n_pairs;
+        if (dense[j] != 0.0) {
+            to->term[to->n_terms + to->n_inputs] =
+                (struct dalcs_probe_term){is_input ? j - s->n_x - s->n_pairs : j, dense[j]};
+            *(is_input ? &to->n_inputs : &to->n_terms) += 1;
+        }
+    }
+    free(dense);
+    to->system = to->n_terms + to->n_inputs > 0 ? from->system : -1;
+    return DALCS_OK;
+}
+
+static enum dalcs_status reduce_outputs(const struct elimination *all,
+                                        const struct dalcs_network *from,
+                                        struct dalcs_network *to) {
+    to->output = dalcs_arena_alloc(&to->arena, (size_t)from->n_outputs, sizeof *to->output);
+    to->state = dalcs_arena_alloc(&to->arena, (size_t)from->n_states, sizeof *to->state);
+    if (to->output == NULL || to->state == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    to->n_outputs = from->n_outputs;
+    to->n_states = from->n_states;
+    for (int i = 0; i < from->n_outputs; i++) {
+        to->output[i] = from->output[i];
+        DALCS_TRY(reduce_probe(all, &from->output[i].plus, to, &to->output[i].plus));
+        DALCS_TRY(reduce_probe(all, &from->output[i].minus, to, &to->output[i].minus));
+    }
+    for (int i = 0; i < from->n_states; i++) {
+        to->state[i] = from->state[i];
+        DALCS_TRY(reduce_probe(all, &from->state[i].probe, to, &to->state[i].probe));
+    }
+    return DALCS_OK;
+}
+
+/* ---- All together -------------------------------------------------------------------------- */
+
+static enum dalcs_status reduce_all(struct elimination *all, const struct dalcs_network *network,
+                                    struct dalcs_network *reduced, struct dalcs_arena *arena,
+                                    const char **because) {
+    int n = network->n_systems;
+    for (int k = 0; k < n; k++) {
+        DALCS_TRY(eliminate(&all[k], &network->system[k], arena));
+        enum dalcs_status status = reduce_system(&all[k], &reduced->system[k]);
+        reduced->n_systems = k + 1;
+        DALCS_TRY(status);
+        size_t n_x = (size_t)network->system[k].n_x;
+        reduced->initial[k] = copy_array(network->initial[k], n_x, sizeof(double));
+        if (reduced->initial[k] == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        if (!all[k].is_regular && *because == NULL) {
+            *because = n == 1 ? all[k].because
+                              : dalcs_arena_printf(arena, "part %d: %s", k + 1, all[k].because);
+        }
+    }
+    return reduce_outputs(all, network, reduced);
+}
+
+enum dalcs_status dalcs_equations_reduce(const struct dalcs_network *network,
+                                         struct dalcs_network *reduced, struct dalcs_arena *arena,
+                                         const char **because) {
+    size_t n = (size_t)network->n_systems;
+    struct elimination *all = dalcs_alloc(n, sizeof *all);
+    *reduced = (struct dalcs_network){.n_nodes = network->n_nodes};
+    reduced->system = dalcs_alloc(n, sizeof *reduced->system);
+    reduced->initial = dalcs_alloc(n, sizeof *reduced->initial);
+    *because = NULL;
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (all != NULL && reduced->system != NULL && reduced->initial != NULL) {
+        status = reduce_all(all, network, reduced, arena, because);
+    }
+    for (size_t k = 0; all != NULL && k < n; k++) {
+        free(all[k].Z);
+    }
+    free(all);
+    if (status != DALCS_OK) {
+        dalcs_network_finish(reduced);
+    }
+    return status;
+}

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""`dalcs equations` of every netlist, read back as a system, gives the waveforms of the netlist.
+
+usage: read_back.py DALCS FORMAT
+
+Each netlist of netlists/ runs by itself and from what `equations --format FORMAT` wrote, with the default
+method the rows are equal to the bit, and so are status, events and jumps; with implicit Euler they agree to
+rounding (looking for what is open asks the engine more often, and what it keeps has other last bits). With
+FORMAT lcs the unknowns z are eliminated, and the rows agree to the tolerance of the method."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+import dalcs_program  # noqa: E402
+
+ENDING = {"json": "json"}
+
+
+def write_system(program, netlist, folder, kind):
+    """The file that `equations` wrote, or None where it refused."""
+    target = pathlib.Path(folder) / f"system.{ENDING.get(kind, 'dalcs')}"
+    options = ["--form", "lcs", "--format", "system"] if kind == "lcs" else ["--format", kind]
+    done = subprocess.run([program, "equations", str(netlist), "-o", str(target)] + options,
+                          capture_output=True, text=True, check=False)
+    return (target if done.returncode == 0 else None), done
+
+
+def what_happened(run):
+    report = run.report or {}
+    return ([(event["time"], event["element"], event["state"]) for event in report.get("events", [])],
+            [(jump["time"], jump["states"]) for jump in report.get("jumps", [])])
+
+
+def compare_exactly(checker, name, found, wanted):
+    checker.check(found.status == wanted.status,
+                  f"{name}: status {found.status}, not {wanted.status}: {found.stderr}")
+    checker.check(found.output == wanted.output, f"{name}: other rows")
+    checker.check(what_happened(found) == what_happened(wanted), f"{name}: other events or jumps")
+
+
+def compare_to_rounding(checker, name, found, wanted):
+    """The same rows, up to 1e-11 of the largest value of their unit."""
+    if not checker.check(found.status == wanted.status,
+                         f"{name}: status {found.status}, not {wanted.status}: {found.stderr}"):
+        return
+    checker.check(found.names == wanted.names and len(found.rows) == len(wanted.rows),
+                  f"{name}: other signals or times")
+    for k, signal in enumerate(wanted.names):
+        same = [name for name in wanted.names if name[0] == signal[0] and name != "time"]
+        scale = max((wanted.scale(f"{name[0]}(") for name in same), default=0.0)
+        allowed = 1e-11 * (scale if signal != "time" else max(wanted.time, default=0.0))
+        error = max((abs(a[k] - b[k]) for a, b in zip(found.rows, wanted.rows)), default=0.0)
+        checker.check(error <= allowed, f"{name}: {signal} off by {error:.2e}")
+
+
+def compare_roughly(checker, name, found, wanted):
+    """Another arithmetic, the same answers: within the tolerance of the method."""
+    if not checker.check(found.status == wanted.status,
+                         f"{name}: status {found.status}, not {wanted.status}: {found.stderr}"):
+        return
+    if wanted.status != 0:
+        return
+    checker.check(found.names == wanted.names, f"{name}: other signals")
+    times = {row[0]: row for row in found.rows}
+    scale = [max(abs(row[k]) for row in wanted.rows) for k in range(len(wanted.names))]
+    common = [row for row in wanted.rows if row[0] in times]
+    checker.check(len(common) > 0.2 * len(wanted.rows), f"{name}: other times")
+    sides = {}
+    for row in wanted.rows:
+        sides[row[0]] = sides.get(row[0], 0) + 1
+    units = {kind: max([scale[k] for k in range(1, len(scale)) if wanted.names[k][0] == kind],
+                       default=0.0) for kind in "vi"}
+    rows = [(row, times[row[0]]) for row in common if sides[row[0]] == 1]
+    for k in range(1, len(wanted.names)):
+        # a circuit that falls to rest has no current but what voltages near 0 make
+        allowed = 2e-5 * max(units.get(wanted.names[k][0], 0.0), 1e-3 * max(units.values()), 1e-30)
+        error, where = max((abs(row[k] - other[k]), row[0]) for row, other in rows)
+        checker.check(error <= allowed, f"{name}: {wanted.names[k]} off by {error:.2e} at {where}")
+
+
+def main():
+    program, kind = sys.argv[1:]
+    checker = dalcs_program.Checker(f"read_back {kind}")
+    netlists = sorted(dalcs_program.NETLISTS.rglob("*.cir"))
+    read = 0
+    for netlist in netlists:
+        name = netlist.stem
+        with tempfile.TemporaryDirectory() as folder:
+            system, done = write_system(program, netlist, folder, kind)
+            wanted = dalcs_program.run(program, netlist, method=None)
+            if wanted.status == 3:  # refused when it is read: there are no equations
+                checker.check(done.returncode == 3, f"{name}: {done.stderr}")
+                continue
+            if not checker.check(system is not None, f"{name}: {done.stderr}"):
+                continue
+            read += 1
+            if kind == "lcs":
+                if "cannot be eliminated" not in done.stderr:
+                    compare_roughly(checker, name,
+                                    dalcs_program.run(program, system, method=None), wanted)
+                continue
+            compare_exactly(checker, name, dalcs_program.run(program, system, method=None), wanted)
+            compare_to_rounding(checker, f"{name} by euler", dalcs_program.run(program, system),
+                                dalcs_program.run(program, netlist))
+    checker.check(read > 0.8 * len(netlists), f"only {read} of {len(netlists)} netlists")
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
