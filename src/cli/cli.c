@@ -12,6 +12,7 @@ static const struct {
     enum dalcs_exit (*function)(const struct dalcs_cli *cli, int argc, char **argv);
 } verb[] = {
     {"run", "simulate a netlist and write its waveforms", dalcs_cli_run},
+    {"check", "what theory says of a netlist before it runs", dalcs_cli_check},
 };
 
 enum { N_VERBS = sizeof verb / sizeof verb[0] };
