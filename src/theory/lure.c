@@ -186,6 +186,37 @@ static enum dalcs_status check_semidefinite(struct check *c) {
                                      : "all three hold");
 }
 
+/* Sources beside C x can be moved into x when they are C times something: then y does not depend on
+ * time but through x, as the theorems on Lur'e systems want it. Constants do no harm. */
+static enum dalcs_status find_shift(struct check *c) {
+    const struct dalcs_lcs *l = c->l;
+    const struct dalcs_system *s = l->blocks->system;
+    struct dalcs_matrix both;
+    int rank[2];
+    DALCS_TRY(dalcs_matrix_new(&both, c->f->work, l->m, l->n + 2 * l->k));
+    for (int i = 0; i < l->m; i++) {
+        for (int j = 0; j < l->n; j++) {
+            *dalcs_at(&both, i, j) = *dalcs_at(&l->C, i, j);
+        }
+    }
+    double size = dalcs_matrix_largest(&both);
+    for (int j = 0; j < 2 * l->k; j++) {
+        double largest = 0.0;
+        bool counts = s->input_element[j % l->k] != NULL;
+        for (int i = 0; i < l->m; i++) {
+            largest = fmax(largest, fabs(*dalcs_at(&l->F, i, j)));
+        }
+        for (int i = 0; counts && largest > 0.0 && i < l->m; i++) {
+            *dalcs_at(&both, i, l->n + j) =
+                *dalcs_at(&l->F, i, j) / largest * (size > 0.0 ? size : 1.0);
+        }
+    }
+    DALCS_TRY(dalcs_matrix_rank(&both, &rank[1], NULL, c->f->work));
+    DALCS_TRY(dalcs_matrix_rank(&l->C, &rank[0], NULL, c->f->work));
+    c->found->can_shift = rank[0] == rank[1];
+    return DALCS_OK;
+}
+
 /* ---- Kernel --------------------------------------------------------------------------------- */
 
 /* Two solutions with one x differ by d with B d = 0 and (D + D') d = 0. */
@@ -344,6 +375,7 @@ enum dalcs_status dalcs_lure_check(struct dalcs_findings *f, const struct dalcs_
         cones->is_solved
             ? cones->is_qualified ? "a point is found" : "a combination of diodes has none"
             : "needs a linear program (GLPK)"));
+    DALCS_TRY(find_shift(&c));
     DALCS_TRY(try_metric(&c, &l->storage, true));
     if (found->is_coupled) {
         DALCS_TRY(try_metric(&c, &P, false));

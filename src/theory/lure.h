@@ -18,6 +18,7 @@ struct dalcs_lure {
     double rate;          /* 1/s: differences of motions fall as exp(-rate t) in the metric */
     int lossless;         /* dimension of what never dissipates; -1: not known */
     double omega;         /* 1/s: 1/2 lambda_max(PA + A'P, P) */
+    bool can_shift;       /* sources beside C x are C times something */
     int n_kernel;         /* dimension of what multipliers may change without a trace */
     bool *in_kernel;      /* [m] */
     bool value_is_unique; /* B lambda is, by proposition 3 (corrected) */

@@ -5,6 +5,7 @@
 
 #define HSW99 "Heemels, Schumacher and Weiland 1999, "
 #define BG09  "Brogliato and Goeleven 2009, "
+#define BG13  "Brogliato and Goeleven 2013, "
 #define BT10  "Brogliato and Thibault 2010, "
 
 /* ---- Passive -------------------------------------------------------------------------------- */
@@ -34,8 +35,10 @@ static enum dalcs_status not_passive_by_port(struct dalcs_facts *facts) {
     } else if (g->s[0] == 0.0) {
         DALCS_TRY(dalcs_findings_verdict(
             facts->f, "passive", DALCS_NO, "H(j omega) + H(j omega)* has a negative eigenvalue",
-            "no: it gives energy to %s at its diodes of %.4g rad/s",
-            g->s[1] == 0.0 ? "constant currents or voltages" : "sines", fabs(g->s[1])));
+            g->s[1] == 0.0 ? "no: it gives energy to constant currents or voltages at its diodes "
+                             "(s = %.1g)"
+                           : "no: it gives energy to sines of %.4g rad/s at its diodes",
+            fabs(g->s[1])));
     } else {
         DALCS_TRY(dalcs_findings_verdict(facts->f, "passive", DALCS_NO,
                                          "H(s) + H(s)* has a negative eigenvalue, Re s > 0",
@@ -374,12 +377,12 @@ static enum dalcs_status unique_multipliers(struct dalcs_facts *facts) {
                                       "yes: currents and voltages of all diodes");
     }
     const char *list = dalcs_join_names(facts->f->result, n, name);
-    DALCS_TRY(list == NULL ? DALCS_E_NOMEM
-                           : dalcs_findings_verdict(facts->f, "multipliers", DALCS_NO,
-                                                    BG09 "remarks 3 and 4 (K13)",
-                                                    "not always: %s may differ while the states "
-                                                    "agree",
-                                                    list));
+    DALCS_TRY(list == NULL
+                  ? DALCS_E_NOMEM
+                  : dalcs_findings_verdict(
+                        facts->f, "multipliers", DALCS_CONDITIONAL,
+                        BG09 "remarks 3 and 4 (K13): a sufficient condition",
+                        "not shown of %s: the states do not see some combination of them", list));
     facts->f->verdict[facts->f->n_verdicts - 1].element = name;
     facts->f->verdict[facts->f->n_verdicts - 1].n_elements = n;
     return DALCS_OK;
@@ -443,10 +446,11 @@ static enum dalcs_status converges(struct dalcs_facts *facts) {
                                       "Brogliato 2022, proposition 5.2",
                                       "implicit Euler converges (proposition 5.2)");
     }
-    if (facts->has_lcs && lure->is_coupled && lure->D_is_semidefinite && facts->cones.is_solved &&
-        facts->cones.is_qualified) {
+    if (facts->has_lcs && lure->is_coupled && lure->D_is_semidefinite && lure->can_shift &&
+        facts->cones.is_solved && facts->cones.is_qualified) {
         return dalcs_findings_verdict(
-            facts->f, "convergence", DALCS_YES, BG09 "theorem 2 and remark 7",
+            facts->f, "convergence", DALCS_YES,
+            BG09 "theorem 2 and remark 7; sources beside C x are moved into x",
             "implicit Euler converges with order 1 while the states do not jump (proposition 5.2 "
             "does not apply)");
     }

@@ -37,24 +37,26 @@ static enum dalcs_status describe_causes(struct dalcs_facts *facts) {
     DALCS_TRY(list_causes(facts, name, n));
     const char *jumping = dalcs_join_names(facts->f->result, n[0], name[0]);
     const char *still = dalcs_join_names(facts->f->result, n[1], name[1]);
-    const char *switches = facts->n_switches > 0 ? ", and perhaps where a switch moves" : "";
+    bool moves = facts->n_switches > 0;
     if (jumping == NULL || still == NULL) {
         return DALCS_E_NOMEM;
     }
     const char *source = BT10 "theorem 3.5, remark 3.6, (24)-(26)";
     if (n[0] > 0) {
-        DALCS_TRY(dalcs_findings_verdict(facts->f, "jumps", DALCS_CONDITIONAL, source,
-                                         "states may jump where %s step%s%s", jumping,
-                                         n[0] == 1 ? "s" : "", switches));
+        DALCS_TRY(dalcs_findings_verdict(
+            facts->f, "jumps", DALCS_CONDITIONAL, source, "states may jump where %s step%s%s",
+            jumping, n[0] == 1 ? "s" : "", moves ? " and where a switch moves" : ""));
     } else if (n[1] > 0) {
         DALCS_TRY(dalcs_findings_verdict(
-            facts->f, "jumps", facts->n_switches > 0 ? DALCS_CONDITIONAL : DALCS_YES, source,
-            "states never jump after the start%s: only a step of %s could make them, and %s",
-            switches, still, n[1] == 1 ? "it has none" : "they have none"));
+            facts->f, "jumps", moves ? DALCS_CONDITIONAL : DALCS_YES, source,
+            "states never jump after the start%s: a step of %s could make them, but %s none",
+            moves ? " but where a switch moves" : "", still, n[1] == 1 ? "it has" : "they have"));
     } else {
-        DALCS_TRY(dalcs_findings_verdict(
-            facts->f, "jumps", facts->n_switches > 0 ? DALCS_CONDITIONAL : DALCS_YES, source,
-            "states never jump after the start%s: no source bounds them", switches));
+        DALCS_TRY(dalcs_findings_verdict(facts->f, "jumps", moves ? DALCS_CONDITIONAL : DALCS_YES,
+                                         source,
+                                         "states never jump after the start%s: no source "
+                                         "bounds them",
+                                         moves ? " but where a switch moves" : ""));
     }
     facts->f->verdict[facts->f->n_verdicts - 1].element = name[0];
     facts->f->verdict[facts->f->n_verdicts - 1].n_elements = n[0];
@@ -152,7 +154,8 @@ static enum dalcs_status judge_contraction(struct dalcs_facts *facts) {
             facts->f, "contracting", facts->has_lcs ? DALCS_UNDECIDED : DALCS_NOT_CHECKED,
             BG09 "definition 2",
             !facts->has_lcs ? "not checked: no reduced system"
-            : applies && lure->lossless == 0
+            : !applies      ? "not shown: no P was found in whose norm trajectories stay together"
+            : lure->lossless == 0
                 ? "trajectories meet, at a rate that the stored energy alone does not give"
                 : "not shown: the stored energy has motions that lose nothing (another P would "
                   "need "
