@@ -122,7 +122,7 @@ static enum dalcs_status check_coupling(struct check *c, const char *id, const c
                                        !*holds    ? why
                                        : is_empty ? "trivially: both sides are 0"
                                                   : "X = C'(CB)^+ C + a projector"));
-    if (*holds && c->b->p <= 40) {
+    if (*holds && c->b->p > 0 && c->b->p <= 40) {
         struct dalcs_evidence w;
         DALCS_TRY(dalcs_evidence_matrix(&w, c->f, "X", X, c->z_name));
         DALCS_TRY(dalcs_findings_witness(c->f, false, &w));
@@ -176,7 +176,7 @@ static enum dalcs_status check_passive(struct check *c, const char *id, const ch
             : "the best X tried leaves the eigenvalue %.3g (scaled); deciding needs a semidefinite "
               "program",
         p->margin));
-    if (p->is_passive && c->b->p <= 40) {
+    if (p->is_passive && c->b->p > 0 && c->b->p <= 40) {
         struct dalcs_evidence w;
         DALCS_TRY(dalcs_evidence_matrix(&w, c->f, "X", &p->X, c->z_name));
         DALCS_TRY(dalcs_findings_witness(c->f, false, &w));

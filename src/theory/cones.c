@@ -42,23 +42,30 @@ static void scale(glp_prob *lp) {
 
 /* ---- A point that qualifies ----------------------------------------------------------------- */
 
+static bool is_free_pair(const struct programs *p, int column) {
+    return column >= p->n && p->hold[column - p->n] == DALCS_NOT_HELD;
+}
+
+/* Row i of a, over x, z and lambda - t, so that t stands for its lambdas; and -t in it if `less`. */
 static void set_row(const struct programs *p, glp_prob *lp, int row, const struct dalcs_csr *a,
-                    int i, int extra) {
+                    int i, bool less) {
     int n = 0;
+    double t = less ? -1.0 : 0.0;
     for (int q = a->p[i]; q < a->p[i + 1]; q++) {
         n++;
         p->index[n] = a->j[q] + 1;
         p->value[n] = a->x[q];
+        t += is_free_pair(p, a->j[q]) ? a->x[q] : 0.0;
     }
-    if (extra > 0) {
+    if (t != 0.0) {
         n++;
-        p->index[n] = extra;
-        p->value[n] = -1.0;
+        p->index[n] = dalcs_system_n_columns(p->s) + 1;
+        p->value[n] = t;
     }
     glp_set_mat_row(lp, row, n, p->index, p->value);
 }
 
-/* max t: rows II are 0, every w is at least t <= 1. */
+/* max t: rows II are 0, every w and every lambda is at least t <= 1. */
 static glp_prob *make_point_program(const struct programs *p) {
     const struct dalcs_system *s = p->s;
     int n_columns = dalcs_system_n_columns(s);
@@ -72,13 +79,13 @@ static glp_prob *make_point_program(const struct programs *p) {
     }
     glp_set_col_bnds(lp, n_columns + 1, GLP_UP, 0.0, 1.0);
     for (int r = 0; r < s->n_z; r++) {
-        set_row(p, lp, r + 1, &s->A, s->n_x + r, 0);
+        set_row(p, lp, r + 1, &s->A, s->n_x + r, false);
         glp_set_row_bnds(lp, r + 1, GLP_FX, 0.0, 0.0);
     }
     for (int i = 0; i < s->n_pairs; i++) {
         int row = s->n_z + i + 1;
         bool is_free = p->hold[i] == DALCS_NOT_HELD;
-        set_row(p, lp, row, &s->C, i, is_free ? n_columns + 1 : 0);
+        set_row(p, lp, row, &s->C, i, is_free);
         glp_set_row_bnds(lp, row,
                          is_free                           ? GLP_LO
                          : p->hold[i] == DALCS_HELD_CLOSED ? GLP_FX
@@ -98,7 +105,8 @@ static void find_point(struct programs *p) {
     p->cones->is_qualified = p->cones->is_solved && glp_get_obj_val(lp) > 0.5;
     p->cones->point = dalcs_arena_alloc(p->arena, (size_t)n_columns + 1, sizeof(double));
     for (int c = 0; p->cones->point != NULL && c < n_columns; c++) {
-        p->cones->point[c] = glp_get_col_prim(lp, c + 1);
+        p->cones->point[c] =
+            glp_get_col_prim(lp, c + 1) + (is_free_pair(p, c) ? glp_get_obj_val(lp) : 0.0);
     }
     glp_delete_prob(lp);
 }
@@ -164,11 +172,17 @@ static double *read_member(struct programs *p, glp_prob *lp) {
     return member;
 }
 
-/* The most of the sum of nu. */
+/* The most of the sum of nu and of what their columns leave, -(L_II' mu + D' nu). */
 static bool has_diodes(struct programs *p, glp_prob *lp, double **ray) {
     glp_set_obj_dir(lp, GLP_MAX);
-    for (int i = 0; i < p->s->n_pairs; i++) {
-        glp_set_obj_coef(lp, p->s->n_z + i + 1, p->hold[i] == DALCS_NOT_HELD ? 1.0 : 0.0);
+    for (int k = 0; k < p->s->n_z + p->s->n_pairs; k++) {
+        const struct dalcs_csr *a = k < p->s->n_z ? &p->s->A : &p->s->C;
+        int row = k < p->s->n_z ? p->s->n_x + k : k - p->s->n_z;
+        double value = k >= p->s->n_z && p->hold[row] == DALCS_NOT_HELD ? 1.0 : 0.0;
+        for (int q = a->p[row]; q < a->p[row + 1]; q++) {
+            value -= is_free_pair(p, a->j[q]) ? a->x[q] : 0.0;
+        }
+        glp_set_obj_coef(lp, k + 1, value);
     }
     bool is_solved = solve(lp);
     p->cones->is_solved = p->cones->is_solved && is_solved;

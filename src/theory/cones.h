@@ -7,9 +7,10 @@
  *     nu >= 0,   B_II' mu + C_II' nu = 0,   L_II' mu + D' nu <= 0.
  * Its members bound the states: a source that one of them contains can make states jump. Members in
  * which no state remains, A_II' mu + C_I' nu = 0, bound the sources themselves: loops of diodes and
- * voltages, cutsets of diodes and currents. Where there are none, condition (22) of Brogliato and
- * Thibault 2010 holds with its D: some x and lambda >= 0 make C x + D lambda > 0 (corrected condition
- * of theorem 2 of Brogliato and Goeleven 2009 and 5.6 of 2013). GLPK solves the programs. */
+ * voltages, cutsets of diodes and currents. Where there are none,
+ * some x, z and lambda > 0 make every w > 0: condition (22) of Brogliato and Thibault 2010 with a D, and
+ * the corrected condition of theorem 2 of Brogliato and Goeleven 2009 and 5.6 of 2013, whichever
+ * variable of each pair is called lambda. GLPK solves the programs. */
 #ifndef DALCS_CONES_H
 #define DALCS_CONES_H
 
@@ -28,9 +29,10 @@ enum dalcs_cone { DALCS_CONE_SOURCES, DALCS_CONE_STATES, DALCS_N_CONES };
 struct dalcs_cones {
     bool is_solved; /* false: built without GLPK, or GLPK gave none */
     bool is_qualified;
-    double *point; /* [n_columns] x, z and lambda at which every w is at least 1, when qualified */
-    double *ray;   /* [n_x + n_z + n_pairs] a member without states, when not */
-    bool has_constraints;                          /* a member with a diode in it */
+    double *point;        /* [n_columns] x, z and lambda at which every w and every lambda is at
+                      least 1, when qualified */
+    double *ray;          /* [n_x + n_z + n_pairs] a member without states, when not */
+    bool has_constraints; /* a member that bounds a diode */
     struct dalcs_cone_range *range[DALCS_N_CONES]; /* [n_inputs] */
 };
 

@@ -37,7 +37,7 @@ enum dalcs_status dalcs_lure_metric_witness(struct dalcs_findings *f, const stru
     const struct check c = {.f = f, .l = l};
     const char **names;
     struct dalcs_evidence w;
-    if (l->n > MOST_WITNESS) {
+    if (l->n == 0 || l->n > MOST_WITNESS) {
         return DALCS_OK;
     }
     DALCS_TRY(name_states(&c, &names));
