@@ -15,17 +15,17 @@ struct visit {
     struct dalcs_arena *arena;
     const struct dalcs_blocks *b;
     enum dalcs_hold *hold; /* [n_pairs] of the mode */
+    bool *is_on;           /* [m] the same */
 };
 
-static void keep(const struct visit *v, struct dalcs_mode *mode, uint32_t on,
-                 const struct dalcs_lcs *lcs, const struct dalcs_matrix *vector, const double *re,
-                 const double *im, int which) {
-    for (int i = 0; i < v->b->m; i++) {
-        mode->is_on[i] = (on >> i & 1) != 0;
-    }
+/* The eigenvalue `which` of lcs with u = 0, and all that its motion makes flow. */
+static void keep(const struct visit *v, struct dalcs_mode *mode, const struct dalcs_lcs *lcs,
+                 const struct dalcs_matrix *vector, const double *re, const double *im, int which) {
+    const struct dalcs_system *s = v->b->system;
+    int n_equations = dalcs_system_n_equations(s);
     mode->value[0] = re[which];
     mode->value[1] = im[which];
-    memset(mode->y, 0, 2 * (size_t)dalcs_system_n_columns(v->b->system) * sizeof(double));
+    memset(mode->y, 0, 2 * (size_t)dalcs_system_n_columns(s) * sizeof(double));
     for (int j = 0; j < lcs->n; j++) {
         /* a complex pair is two columns: real part, imaginary part, of the one with im > 0 */
         bool second = im[which] < 0.0;
@@ -41,17 +41,50 @@ static void keep(const struct visit *v, struct dalcs_mode *mode, uint32_t on,
                 mode->y[2 * lcs->blocks->z_column[k] + q] +=
                     *dalcs_at(&lcs->full_z, k, j) * part[q];
             }
+            for (int i = 0; i < lcs->m; i++) {
+                mode->y[2 * (n_equations + lcs->blocks->pair[i]) + q] +=
+                    lcs->is_swapped[i] ? *dalcs_at(&lcs->C, i, j) * part[q] : 0.0;
+            }
         }
     }
+}
+
+/* Looks at the motions of lcs with u = 0, a mode with these pairs on. */
+static enum dalcs_status look(const struct visit *v, const struct dalcs_lcs *lcs, const bool *is_on,
+                              struct dalcs_arena *work) {
+    struct dalcs_modes *modes = v->modes;
+    struct dalcs_matrix vector;
+    double *re = dalcs_arena_alloc(work, (size_t)lcs->n + 1, sizeof(double));
+    double *im = dalcs_arena_alloc(work, (size_t)lcs->n + 1, sizeof(double));
+    if (re == NULL || im == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_matrix_eigen(&lcs->A, re, im, &vector, work));
+    double fastest = 0.0;
+    for (int i = 0; i < lcs->n; i++) {
+        fastest = fmax(fastest, hypot(re[i], im[i]));
+    }
+    for (int i = 0; i < lcs->n; i++) {
+        bool is_zero = re[i] <= noise * fastest;
+        modes->slowest = fmax(modes->slowest, is_zero && re[i] > -noise * fastest ? 0.0 : re[i]);
+        struct dalcs_mode *mode[2] = {&modes->growing, im[i] == 0.0 ? &modes->fastest : NULL};
+        for (int k = 0; k < 2; k++) {
+            if (!is_zero && mode[k] != NULL && re[i] > mode[k]->value[0]) {
+                keep(v, mode[k], lcs, &vector, re, im, i);
+                memcpy(mode[k]->is_on, is_on, (size_t)v->b->m * sizeof(bool));
+            }
+        }
+    }
+    return DALCS_OK;
 }
 
 static enum dalcs_status visit(struct visit *v, uint32_t on, struct dalcs_arena *work) {
     struct dalcs_modes *modes = v->modes;
     struct dalcs_blocks blocks;
     struct dalcs_lcs lcs;
-    struct dalcs_matrix vector;
     for (int i = 0; i < v->b->m; i++) {
-        v->hold[v->b->pair[i]] = on >> i & 1 ? DALCS_HELD_CLOSED : DALCS_HELD_OPEN;
+        v->is_on[i] = (on >> i & 1) != 0;
+        v->hold[v->b->pair[i]] = v->is_on[i] ? DALCS_HELD_CLOSED : DALCS_HELD_OPEN;
     }
     DALCS_TRY(dalcs_blocks_build(&blocks, work, v->b->system, v->hold));
     DALCS_TRY(dalcs_lcs_build(&lcs, work, &blocks));
@@ -59,36 +92,7 @@ static enum dalcs_status visit(struct visit *v, uint32_t on, struct dalcs_arena 
         modes->n_singular++;
         return DALCS_OK;
     }
-    for (int k = 0; k < blocks.p; k++) {
-        if (lcs.z_is_free[k]) {
-            modes->n_singular++;
-            break;
-        }
-    }
-    if (lcs.index_steps > modes->impulse_order) {
-        modes->impulse_order = lcs.index_steps;
-    }
-    double *re = dalcs_arena_alloc(work, (size_t)lcs.n + 1, sizeof(double));
-    double *im = dalcs_arena_alloc(work, (size_t)lcs.n + 1, sizeof(double));
-    if (re == NULL || im == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    DALCS_TRY(dalcs_matrix_eigen(&lcs.A, re, im, &vector, work));
-    double fastest = 0.0;
-    for (int i = 0; i < lcs.n; i++) {
-        fastest = fmax(fastest, hypot(re[i], im[i]));
-    }
-    for (int i = 0; i < lcs.n; i++) {
-        bool is_zero = re[i] <= noise * fastest;
-        modes->slowest = fmax(modes->slowest, is_zero && re[i] > -noise * fastest ? 0.0 : re[i]);
-        if (!is_zero && re[i] > modes->growing.value[0]) {
-            keep(v, &modes->growing, on, &lcs, &vector, re, im, i);
-        }
-        if (!is_zero && im[i] == 0.0 && re[i] > modes->fastest.value[0]) {
-            keep(v, &modes->fastest, on, &lcs, &vector, re, im, i);
-        }
-    }
-    return DALCS_OK;
+    return look(v, &lcs, v->is_on, work);
 }
 
 /* ---- Principal minors ----------------------------------------------------------------------- */
@@ -191,14 +195,15 @@ static enum dalcs_status allocate(struct visit *v) {
     size_t n = 2 * (size_t)dalcs_system_n_columns(v->b->system) + 1;
     size_t n_pairs = (size_t)v->b->system->n_pairs + 1;
     v->hold = dalcs_arena_alloc(v->arena, n_pairs, sizeof(*v->hold));
+    v->is_on = dalcs_arena_alloc(v->arena, m, sizeof(bool));
     modes->bad = dalcs_arena_alloc(v->arena, m, sizeof(bool));
     modes->fastest.is_on = dalcs_arena_alloc(v->arena, m, sizeof(bool));
     modes->fastest.y = dalcs_arena_alloc(v->arena, n, sizeof(double));
     modes->growing.is_on = dalcs_arena_alloc(v->arena, m, sizeof(bool));
     modes->growing.y = dalcs_arena_alloc(v->arena, n, sizeof(double));
-    return v->hold == NULL || modes->bad == NULL || modes->fastest.is_on == NULL ||
-                   modes->fastest.y == NULL || modes->growing.is_on == NULL ||
-                   modes->growing.y == NULL
+    return v->hold == NULL || v->is_on == NULL || modes->bad == NULL ||
+                   modes->fastest.is_on == NULL || modes->fastest.y == NULL ||
+                   modes->growing.is_on == NULL || modes->growing.y == NULL
                ? DALCS_E_NOMEM
                : DALCS_OK;
 }
@@ -209,10 +214,10 @@ enum dalcs_status dalcs_modes_find(struct dalcs_modes *modes, struct dalcs_arena
     *modes = (struct dalcs_modes){.slowest = -INFINITY};
     struct visit v = {.modes = modes, .arena = arena, .b = b};
     double size = b->n + b->p + b->m + 1;
-    if (b->m > 20 || ldexp(size * size * size, b->m) > most_work) {
-        return DALCS_OK;
-    }
     DALCS_TRY(allocate(&v));
+    if (b->m > 20 || ldexp(size * size * size, b->m) > most_work) {
+        return l->obstacle == NULL ? look(&v, l, l->is_swapped, arena) : DALCS_OK;
+    }
     for (int i = 0; i < b->system->n_pairs; i++) {
         v.hold[i] = b->hold[i];
     }

@@ -38,7 +38,6 @@ struct dalcs_modes {
     bool *bad;                 /* [m] a principal minor that is not positive */
     double bad_minor;          /* over the product of its columns' norms */
     double bad_sigma;          /* 1/s, where it was taken */
-    int impulse_order;         /* the most states that a mode ties: 0: none */
 };
 
 /* What is kept is in the arena. lcs may have an obstacle: then minors are unknown. */

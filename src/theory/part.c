@@ -3,6 +3,8 @@
 
 #include "facts.h"
 
+#include "rcp.h"
+
 #include <math.h>
 
 static enum dalcs_status hold_switches(struct dalcs_facts *facts) {
@@ -55,6 +57,10 @@ static enum dalcs_status check_dense(struct dalcs_facts *facts) {
     }
     if (!facts->system->monotone || facts->n_diodes == 0) {
         DALCS_TRY(dalcs_modes_find(&facts->modes, work, &facts->lcs));
+    }
+    if (facts->has_lcs) {
+        DALCS_TRY(dalcs_rcp_check(facts->f, &facts->lcs, &facts->modes, facts->h,
+                                  facts->system->monotone || facts->lure.is_dissipative));
     }
     return facts->has_lcs && !facts->system->monotone && !facts->lure.is_dissipative &&
                    facts->modes.growing.value[0] <= 0.0

@@ -126,7 +126,7 @@ static enum dalcs_status judge_stability(struct dalcs_facts *facts) {
                 : "yes: two trajectories never part, in the norm of the stored energy");
     }
     const struct dalcs_mode *mode = &facts->modes.growing;
-    if (facts->is_dense && facts->modes.is_checked && mode->value[0] > 0.0) {
+    if (facts->is_dense && mode->value[0] > 0.0) {
         const char *text = dalcs_mode_text(&facts->blocks, mode->is_on, facts->f->result);
         return text == NULL ? DALCS_E_NOMEM
                             : dalcs_findings_verdict(

@@ -336,6 +336,20 @@ START_TEST(p_matrices) {
 
 END_TEST
 
+/* A mass above the floor, q'' = u, 0 <= u _|_ q >= 0: relative degree 2. */
+START_TEST(relative_degree_2) {
+    const double A[] = {0, 1, 0, /* */ 0, 0, 1};
+    const double C[] = {1, 0, 0};
+    check(&(struct dense_system){.n = 2, .m = 1, .A = A, .C = C}, 0.01);
+    HOLDS("impulse", DALCS_NO);
+    HOLDS("P", DALCS_YES);
+    SAYS("step", DALCS_YES);
+    SAYS("passive", DALCS_NO);
+    finish();
+}
+
+END_TEST
+
 /* Example 5.18: B = [1 -1; 1 -1]: a negative minor of d2. Example 5.11, B = [1 1; 1 1]: no minor is
  * negative and one is 0. */
 START_TEST(minors) {
@@ -362,9 +376,10 @@ END_TEST
 RUN_TESTS("part", example_1, example_2_first_feedback, example_2_second_feedback, example_3_first,
           example_3_second, example_4, example_5, two_diodes_corrected, two_diodes_as_printed,
           bridge_over_a_tank, bridge_with_capacitor, misprinted_21, qualification, p_matrices,
-          minors)
+          relative_degree_2, minors)
 #else
 RUN_TESTS("part", example_1, example_2_first_feedback, example_2_second_feedback, example_3_first,
           example_3_second, example_4, example_5, two_diodes_corrected, two_diodes_as_printed,
-          bridge_over_a_tank, bridge_with_capacitor, misprinted_21, p_matrices, minors)
+          bridge_over_a_tank, bridge_with_capacitor, misprinted_21, p_matrices, relative_degree_2,
+          minors)
 #endif
