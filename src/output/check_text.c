@@ -52,6 +52,16 @@ static void write_witnesses(FILE *stream, size_t n, const struct dalcs_evidence 
     }
 }
 
+/* The answer stands before the sentence already. */
+static const char *without_answer(const struct dalcs_verdict *v) {
+    const char *answer = dalcs_answer_text(v->answer);
+    size_t n = strlen(answer);
+    if (strncmp(v->sentence, answer, n) != 0) {
+        return v->sentence;
+    }
+    return v->sentence[n] == '\0' ? "" : v->sentence[n] == ':' ? v->sentence + n + 2 : v->sentence;
+}
+
 static void write_part(FILE *stream, const struct dalcs_checked_part *part, bool all) {
     fprintf(stream, "  ");
     write_wrapped(stream, 2, 2, part->summary);
@@ -59,7 +69,7 @@ static void write_part(FILE *stream, const struct dalcs_checked_part *part, bool
     for (size_t i = 0; i < part->n_verdicts; i++) {
         const struct dalcs_verdict *v = &part->verdict[i];
         fprintf(stream, "  %-12s %-11s ", v->question, dalcs_answer_text(v->answer));
-        write_wrapped(stream, 27, 27, v->sentence);
+        write_wrapped(stream, 27, 27, without_answer(v));
         fprintf(stream, "%27s[", "");
         fprintf(stream, "%s]\n", v->source);
         if (all) {

@@ -185,7 +185,7 @@ static enum dalcs_status check_passive(struct check *c, const char *id, const ch
 }
 
 /* The same X for the steps h, h/10, ... and 0. */
-static enum dalcs_status check_uniform(struct check *c, bool *holds) {
+static enum dalcs_status check_uniform(struct check *c, bool *holds, enum dalcs_answer *answer) {
     double least = c->passive_model.margin;
     *holds = c->passive_model.is_strict;
     for (int k = 0; k < 6 && *holds; k++) {
@@ -204,15 +204,15 @@ static enum dalcs_status check_uniform(struct check *c, bool *holds) {
     }
     double D_least;
     DALCS_TRY(dalcs_symmetric_part_least(&c->b->D, &D_least, c->f->work));
-    enum dalcs_answer answer = *holds                      ? DALCS_YES
-                               : D_least <= dalcs_definite ? DALCS_NO
-                               : c->passive_model.is_strict
-                                   ? DALCS_NO
-                                   : passive_answer(&c->passive_model, false);
+    *answer = *holds                       ? DALCS_YES
+              : D_least <= dalcs_definite  ? DALCS_NO
+              : c->passive_model.is_strict ? DALCS_NO
+                                           : passive_answer(&c->passive_model, false);
     DALCS_TRY(dalcs_findings_condition(
         c->f, "L4.1", SOURCE("lemma 4.1 item 1"),
         "(B_II, Bbar_II, C_II, D) strictly passive, so the step is for small h",
-        passive_answer(&c->passive_model, c->passive_model.is_strict),
+        D_least <= dalcs_definite ? DALCS_NO
+                                  : passive_answer(&c->passive_model, c->passive_model.is_strict),
         c->passive_model.is_strict
             ? *holds ? "with one X for all h from 0 to the step: least eigenvalue %.3g (scaled)"
                      : "for small h; at the step the least eigenvalue is %.3g (scaled)"
@@ -221,7 +221,7 @@ static enum dalcs_status check_uniform(struct check *c, bool *holds) {
         c->passive_model.is_strict ? least : D_least));
     return dalcs_findings_condition(
         c->f, "A10", SOURCE("assumption 10"),
-        "(At, Bt, Ct, Dt) strictly passive uniformly in h >= 0", answer,
+        "(At, Bt, Ct, Dt) strictly passive uniformly in h >= 0", *answer,
         D_least <= dalcs_definite
             ? "D + D' > 0 fails, so Dt + Dt' does as h -> 0: least eigenvalue %.3g (scaled)"
             : "least eigenvalue %.3g (scaled) over h from 0 to the step",
@@ -229,6 +229,44 @@ static enum dalcs_status check_uniform(struct check *c, bool *holds) {
 }
 
 /* ---- The propositions ------------------------------------------------------------------------ */
+
+/* Item 1: its range condition holds when Dt + Dt' > 0, or when Bt is square and regular. */
+static enum dalcs_status check_431(struct check *c, bool is_definite) {
+    int rank;
+    DALCS_TRY(dalcs_matrix_rank(&c->step.B, &rank, NULL, c->f->work));
+    bool is_regular = c->b->m > 0 && c->b->m == c->b->p && rank == c->b->p;
+    bool passive = c->passive_step.is_passive;
+    return dalcs_findings_condition(
+        c->f, "P4.3.1", SOURCE("proposition 4.3 item 1"),
+        "A4 and a range condition: z -> -At z + Bt (..)^-1 Ct z is maximal monotone",
+        !passive                    ? passive_answer(&c->passive_step, false)
+        : is_definite || is_regular ? DALCS_YES
+                                    : DALCS_NOT_CHECKED,
+        "%s",
+        !passive      ? "assumption 4 is not shown"
+        : is_definite ? "Dt + Dt' > 0"
+        : is_regular  ? "Bt is square and regular"
+                      : "the range condition depends on x and the sources");
+}
+
+/* Item 3: the set S of (4.6) is {0} when -At is positive definite in the metric of X. */
+static enum dalcs_status check_433(struct check *c, bool coupled, const struct dalcs_matrix *X) {
+    bool is_zero = dalcs_matrix_largest(&c->step.D) == 0.0;
+    double strength = NAN;
+    if (is_zero && coupled) {
+        DALCS_TRY(index_strength(&c->step.A, X, &strength, c->f->work));
+    }
+    double rounding = 1e-12 * dalcs_matrix_largest(&c->step.A);
+    return dalcs_findings_condition(
+        c->f, "P4.3.3", SOURCE("proposition 4.3 item 3"),
+        "Dt = 0, A2, -R At R^-1 >= 0, S of (4.6) is {0}: the step has a solution",
+        !is_zero || !coupled || strength < -rounding ? DALCS_NO
+        : strength > rounding                        ? DALCS_YES
+                                                     : DALCS_NOT_CHECKED,
+        isnan(strength) ? "the largest element of Dt is %.3g: Dt = 0 or assumption 2 fails"
+                        : "the least eigenvalue of -R At R^-1 is %.3g",
+        isnan(strength) ? dalcs_matrix_largest(&c->step.D) : strength);
+}
 
 static enum dalcs_status check_43(struct check *c) {
     double least;
@@ -243,13 +281,16 @@ static enum dalcs_status check_43(struct check *c) {
         definite ? "Lipschitz constant 2/lambda_min(Dt + Dt') = %.6g"
                  : "the least eigenvalue of Dt + Dt' is %.3g (scaled)",
         definite ? 2.0 / smallest : least));
+    DALCS_TRY(check_431(c, definite));
     bool strict = c->passive_step.is_strict;
     c->found->step_unique = strict;
     return dalcs_findings_condition(
         c->f, "C4.6.3", SOURCE("corollary 4.6 item 3"),
         "(At, Bt, Ct, Dt) strictly passive: one (z, lambda), so one step",
-        passive_answer(&c->passive_step, strict), "least eigenvalue %.3g (scaled)",
-        c->passive_step.margin);
+        definite ? passive_answer(&c->passive_step, strict) : DALCS_NO,
+        definite ? "least eigenvalue %.3g (scaled)"
+                 : "Dt + Dt' > 0 fails: its least eigenvalue is %.3g (scaled)",
+        definite ? c->passive_step.margin : least);
 }
 
 /* Propositions 4.4 (q of the step) and 4.8 (q of the model). */
@@ -351,19 +392,21 @@ static enum dalcs_status check_47(struct check *c, bool D_is_zero, bool coupled,
                                     strength);
 }
 
-static enum dalcs_status check_convergence(struct check *c, bool uniform, bool contracts,
-                                           bool blocks, bool coupled, double strength) {
-    c->found->converges_52 = uniform && contracts;
+static enum dalcs_status check_convergence(struct check *c, enum dalcs_answer uniform,
+                                           bool contracts, bool blocks, bool coupled,
+                                           double strength) {
+    c->found->converges_52 = uniform == DALCS_YES && contracts;
     DALCS_TRY(dalcs_findings_condition(
         c->f, "P5.2", SOURCE("proposition 5.2"),
         "A10, A11, Lipschitz sources: implicit Euler converges to a continuous solution",
-        c->found->converges_52                                             ? DALCS_YES
-        : !uniform && passive_answer(&c->passive_model, false) != DALCS_NO ? DALCS_UNDECIDED
-                                                                           : DALCS_NO,
+        c->found->converges_52 ? DALCS_YES
+        : !contracts           ? DALCS_NO
+                               : uniform,
         "%s",
         c->found->converges_52 ? "for every Lipschitz source"
-        : !uniform             ? "assumption 10 is not shown"
-                               : "assumption 11 fails"));
+        : !contracts           ? "assumption 11 fails"
+        : uniform == DALCS_NO  ? "assumption 10 fails"
+                               : "assumption 10 is not shown"));
     bool all = blocks && coupled;
     if (all) { /* A12: for every h, 0 included */
         struct dalcs_quadruple q;
@@ -429,7 +472,8 @@ enum dalcs_status dalcs_brogliato_check(struct dalcs_findings *f, const struct d
     struct check c = {.f = f, .b = b, .h = h, .found = found};
     struct dalcs_matrix X;
     bool contracts;
-    bool uniform;
+    bool is_uniform;
+    enum dalcs_answer uniform;
     bool coupled[4];
     bool blocks[2];
     double strength[2];
@@ -447,6 +491,7 @@ enum dalcs_status dalcs_brogliato_check(struct dalcs_findings *f, const struct d
     bool D_is_zero = dalcs_matrix_largest(&b->D) == 0.0;
     DALCS_TRY(check_coupling(&c, "A2", SOURCE("assumption 2"), "some X > 0 has X Bt = Ct'", &c.step,
                              NULL, &coupled[0], &X));
+    DALCS_TRY(check_433(&c, coupled[0], &X));
     DALCS_TRY(check_coupling(&c, "A3", SOURCE("assumption 3"), "some X > 0 has X Bbar_II = C_II'",
                              &c.model, NULL, &coupled[1], &X));
     DALCS_TRY(check_47(&c, D_is_zero, coupled[1], &X));
@@ -458,7 +503,7 @@ enum dalcs_status dalcs_brogliato_check(struct dalcs_findings *f, const struct d
     DALCS_TRY(check_blocks(&c, true, &blocks[0], &coupled[2], &strength[0]));
     DALCS_TRY(check_blocks(&c, false, &blocks[1], &coupled[3], &strength[1]));
     DALCS_TRY(check_qualification(&c));
-    DALCS_TRY(check_uniform(&c, &uniform));
+    DALCS_TRY(check_uniform(&c, &is_uniform, &uniform));
     DALCS_TRY(check_contraction(&c, &contracts));
     return check_convergence(&c, uniform, contracts, blocks[0], coupled[2], strength[0]);
 }

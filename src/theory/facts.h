@@ -37,6 +37,11 @@ struct dalcs_facts {
     enum dalcs_answer passive;
 };
 
+/* Is there a mode that bounds the step? */
+static inline bool dalcs_has_limit(const struct dalcs_facts *facts) {
+    return facts->modes.is_checked && facts->modes.fastest.value[0] > 0.0;
+}
+
 /* Each adds one verdict or two. */
 enum dalcs_status dalcs_verdict_passive(struct dalcs_facts *facts) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_verdict_exists(struct dalcs_facts *facts) DALCS_MUST_CHECK;
