@@ -19,7 +19,7 @@ struct dalcs_session {
     double *start, *final;
     struct dalcs_nonunique *nonunique; /* of the report */
     size_t n_nonunique, nonunique_capacity;
-    struct dalcs_arena arena; /* names of the report and of the plots */
+    struct dalcs_arena arena;   /* names of the report and of the plots */
     struct dalcs_arena checked; /* the last check */
 };
 

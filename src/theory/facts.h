@@ -24,7 +24,8 @@ struct dalcs_facts {
     int n_diodes, n_switches;
     bool has_fed_back_switch; /* one that the circuit itself commands */
     struct dalcs_cones cones;
-    bool is_dense; /* what follows is there */
+    const char *obstacle; /* why matrices are not looked at, when they are not */
+    bool is_dense;        /* what follows is there */
     struct dalcs_blocks blocks;
     struct dalcs_lcs lcs;
     bool has_lcs; /* no obstacle */

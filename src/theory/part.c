@@ -29,11 +29,7 @@ static enum dalcs_status hold_switches(struct dalcs_facts *facts) {
 static enum dalcs_status check_dense(struct dalcs_facts *facts) {
     struct dalcs_arena *work = facts->f->work;
     DALCS_TRY(dalcs_blocks_build(&facts->blocks, work, facts->system, facts->hold));
-    enum dalcs_status status = dalcs_lcs_build(&facts->lcs, work, &facts->blocks);
-    if (status == DALCS_SINGULAR) {
-        return DALCS_OK; /* P is singular to rounding */
-    }
-    DALCS_TRY(status);
+    DALCS_TRY(dalcs_lcs_build(&facts->lcs, work, &facts->blocks));
     facts->is_dense = true;
     facts->has_lcs = facts->lcs.obstacle == NULL;
     if (!facts->has_lcs) {
@@ -72,14 +68,22 @@ static enum dalcs_status check(struct dalcs_facts *facts) {
     const struct dalcs_system *s = facts->system;
     DALCS_TRY(hold_switches(facts));
     DALCS_TRY(dalcs_cones_find(&facts->cones, facts->f->work, s, facts->hold));
+    facts->obstacle = "too large";
     if (dalcs_system_n_columns(s) <= DALCS_MOST_DENSE) {
-        DALCS_TRY(check_dense(facts));
-    } else {
-        DALCS_TRY(dalcs_findings_condition(facts->f, "dense", "all conditions on matrices",
-                                           "eigenvalues, ranks, P B = C', assumptions 1 to 13",
-                                           DALCS_NOT_CHECKED,
-                                           "too large: %d equations and pairs, the limit is %d",
-                                           dalcs_system_n_columns(s), DALCS_MOST_DENSE));
+        enum dalcs_status status = check_dense(facts);
+        if (status == DALCS_SINGULAR) { /* numbers that LAPACK finds no answer to */
+            facts->obstacle = "its numbers are too far apart";
+            facts->is_dense = facts->has_lcs = facts->has_brogliato = false;
+        } else {
+            DALCS_TRY(status);
+        }
+    }
+    if (!facts->is_dense) {
+        DALCS_TRY(dalcs_findings_condition(
+            facts->f, "dense", "all conditions on matrices",
+            "eigenvalues, ranks, P B = C', assumptions 1 to 13", DALCS_NOT_CHECKED,
+            "%s: %d equations and pairs; the limit is %d", facts->obstacle,
+            dalcs_system_n_columns(s), DALCS_MOST_DENSE));
     }
     DALCS_TRY(dalcs_verdict_passive(facts));
     DALCS_TRY(dalcs_verdict_exists(facts));
@@ -137,5 +141,5 @@ enum dalcs_status dalcs_part_check(struct dalcs_checked_part *part, struct dalcs
     }
     dalcs_findings_finish(&f);
     dalcs_arena_finish(&work);
-    return status == DALCS_SINGULAR ? DALCS_E_INTERNAL : status;
+    return status;
 }

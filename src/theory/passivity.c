@@ -167,7 +167,7 @@ enum dalcs_status dalcs_passivity_rate(const struct dalcs_lcs *l, const struct d
         double middle = step == 0 ? high : *eps > 0.0 ? sqrt(*eps * high) : 0.1 * high;
         struct dalcs_arena work = {0};
         bool is_positive = false;
-        if (middle < 1e-9 * start) {
+        if (middle < 1e-6 * start) {
             break;
         }
         struct dalcs_matrix Q;

@@ -91,12 +91,14 @@ enum dalcs_status dalcs_verdict_passive(struct dalcs_facts *facts) {
         return name_givers(facts);
     }
     facts->passive = facts->is_dense ? DALCS_UNDECIDED : DALCS_NOT_CHECKED;
-    return dalcs_findings_verdict(
-        facts->f, "passive", facts->passive, BG09 "definition 1",
-        facts->is_dense
-            ? "undecided: neither the stored energy proves it nor does a motion refute it; all P "
-              "would need a semidefinite program"
-            : "not checked: too large, and not passive by its elements alone");
+    return facts->is_dense
+               ? dalcs_findings_verdict(
+                     facts->f, "passive", facts->passive, BG09 "definition 1",
+                     "undecided: neither the stored energy proves it nor does a motion refute it; "
+                     "all P would need a semidefinite program")
+               : dalcs_findings_verdict(facts->f, "passive", facts->passive, BG09 "definition 1",
+                                        "not checked: %s, and not passive by its elements alone",
+                                        facts->obstacle);
 }
 
 /* ---- Steps ---------------------------------------------------------------------------------- */

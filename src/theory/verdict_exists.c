@@ -182,6 +182,10 @@ enum dalcs_status dalcs_verdict_exists(struct dalcs_facts *facts) {
         return exists_if_feasible(facts);
     }
     const struct dalcs_lure *lure = &facts->lure;
+    if (facts->has_lcs && facts->lcs.m == 0) {
+        return dalcs_findings_verdict(facts->f, "exists", DALCS_YES, "linear equations",
+                                      "yes: it is linear, for every start and source");
+    }
     if (facts->has_lcs && lure->D_is_P) {
         return dalcs_findings_verdict(
             facts->f, "exists", DALCS_YES, BT10 "appendix A.4 (K6)",
@@ -255,7 +259,7 @@ static enum dalcs_status unique_multipliers(struct dalcs_facts *facts) {
     if (!facts->has_lcs) {
         return dalcs_findings_verdict(facts->f, "multipliers", DALCS_NOT_CHECKED, "K13",
                                       "not checked: %s",
-                                      facts->is_dense ? facts->lcs.obstacle : "too large");
+                                      facts->is_dense ? facts->lcs.obstacle : facts->obstacle);
     }
     const struct dalcs_lcs *l = &facts->lcs;
     const char **name =

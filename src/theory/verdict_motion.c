@@ -210,9 +210,10 @@ const char *dalcs_facts_summary(const struct dalcs_facts *facts) {
         : v[1]->answer == DALCS_NO
             ? "For some starts and sources there is no trajectory, or more than one"
             : "Whether a trajectory exists and is unique is not shown";
+    const char *given = facts->has_fed_back_switch ? " (for given positions of its switches)" : "";
     return first == NULL
                ? NULL
-               : dalcs_arena_printf(arena, "%s; %s; %s; %s.%s%s%s", first,
+               : dalcs_arena_printf(arena, "%s%s; %s; %s; %s.%s%s%s", first, given,
                                     v[2]->answer == DALCS_UNDECIDED
                                         ? "whether states jump is not shown"
                                         : v[2]->sentence,
