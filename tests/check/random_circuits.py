@@ -223,6 +223,12 @@ def proves(circuit, verdict, planted):
              for name, nodes, _ in part if name[0] == "g"}
     if not any(given.get(name, 0.0) > 0.0 and name in verdict["elements"] for name in planted):
         return f"{planted} give {[given.get(name) for name in planted]}, named are {verdict['elements']}"
+    powers = {entry["name"]: number(entry["re"]) for witness in verdict["witnesses"]
+              if witness["kind"] == "powers" for entry in witness["entries"]}
+    most = max(map(abs, given.values()))
+    if sorted(powers) != sorted(verdict["elements"]) or \
+            any(abs(given.get(name, 0.0) - power) > NEAR * most for name, power in powers.items()):
+        return f"powers {powers}, not {given}"
     return ""
 
 
