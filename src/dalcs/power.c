@@ -161,6 +161,7 @@ enum dalcs_status dalcs_power_build(struct dalcs_network *network, const struct 
             put_device(l, &network->system[k], i, &t);
             for (int n = 0; n < t.n && round == 1; n++) {
                 power->term[power->n + n] = t.term[n];
+                power->term[power->n + n].element = c->device[i].name;
             }
             power->n += t.n;
         }

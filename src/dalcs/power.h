@@ -25,6 +25,7 @@ struct dalcs_power_term {
         DALCS_POWER_INPUT /* second is an input */
     } factor;
 
+    const char *element; /* the device */
     double coefficient;
     int first[2], second[2]; /* columns */
     int input;

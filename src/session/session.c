@@ -47,6 +47,7 @@ void dalcs_session_destroy(struct dalcs_session *session) {
     free(session->override);
     dalcs_diag_finish(&session->diag);
     dalcs_arena_finish(&session->arena);
+    dalcs_arena_finish(&session->checked);
     free(session);
 }
 

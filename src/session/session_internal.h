@@ -26,7 +26,8 @@ struct dalcs_session {
     double *start, *final;
     struct dalcs_nonunique *nonunique; /* of the report */
     size_t n_nonunique, nonunique_capacity;
-    struct dalcs_arena arena; /* names of the report and of the plots */
+    struct dalcs_arena arena;   /* names of the report and of the plots */
+    struct dalcs_arena checked; /* the last check */
 };
 
 /* In the order of dalcs_method_name. */

@@ -1,0 +1,156 @@
+/* check.c - `dalcs check`: what theory says of a netlist before it runs. */
+#include "cli.h"
+
+#include "check_text.h"
+#include "names.h"
+
+#include <getopt.h>
+#include <string.h>
+
+static const char help[] =
+    "usage: dalcs check FILE [options]\n"
+    "\n"
+    "Says, without running it, what theory knows of a netlist: does a trajectory exist, is it the\n"
+    "only one, can it jump and because of which source, for which steps is implicit Euler "
+    "solvable,\n"
+    "does it converge, is the circuit stable and passive, and if not, who gives the energy. Each\n"
+    "claim has its source and numbers that prove it; what was not checked is said.\n"
+    "\n"
+    "      --step H    the step in s of the conditions that speak of one step (default: .options\n"
+    "                  step, else that of .tran, else 1u)\n"
+    "      --all       every condition with its numbers and witnesses\n"
+    "      --json      all of it as JSON, by doc/check.schema.json\n"
+    "  -h, --help      this text\n"
+    "\n"
+    "exit status: 0 checked, whatever the answers; 1 the check failed, 2 usage, 3 error in the\n"
+    "netlist, 4 input/output\n";
+
+enum { STEP = 256, ALL, JSON };
+
+static const struct option option[] = {
+    {"step", required_argument, NULL, STEP},
+    {"all", no_argument, NULL, ALL},
+    {"json", no_argument, NULL, JSON},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
+};
+
+enum { N_OPTIONS = sizeof option / sizeof option[0] - 1 };
+
+struct arguments {
+    const char *netlist;
+    double step;
+    bool all, json, help;
+};
+
+static enum dalcs_status refuse(const struct dalcs_cli *cli, int code, char **argv) {
+    const char *word = argv[optind - 1];
+    if (code == ':') {
+        dalcs_cli_error(cli, "option '%s' needs a value; see 'dalcs check --help'", word);
+        return DALCS_E_OPTION;
+    }
+    const char *name[N_OPTIONS];
+    for (int i = 0; i < N_OPTIONS; i++) {
+        name[i] = option[i].name;
+    }
+    const char *nearest =
+        strncmp(word, "--", 2) == 0 ? dalcs_names_nearest_of(name, N_OPTIONS, word + 2) : NULL;
+    dalcs_cli_error(cli, "unknown option '%s'%s%s%s", word, nearest ? "; did you mean '--" : "",
+                    nearest ? nearest : "", nearest ? "'?" : "; see 'dalcs check --help'");
+    return DALCS_E_OPTION;
+}
+
+static enum dalcs_status parse(struct arguments *arguments, const struct dalcs_cli *cli, int argc,
+                               char **argv) {
+    *arguments = (struct arguments){0};
+    optind = 0; /* glibc: start afresh */
+    opterr = 0;
+    for (int code; (code = getopt_long(argc, argv, ":h", option, NULL)) != -1;) {
+        switch (code) {
+        case STEP:
+            if (dalcs_parse_number(optarg, &arguments->step) != DALCS_OK ||
+                !(arguments->step > 0.0)) {
+                dalcs_cli_error(cli, "--step: '%s' is not a positive number", optarg);
+                return DALCS_E_OPTION;
+            }
+            break;
+        case ALL:
+            arguments->all = true;
+            break;
+        case JSON:
+            arguments->json = true;
+            break;
+        case 'h':
+            arguments->help = true;
+            return DALCS_OK;
+        default:
+            return refuse(cli, code, argv);
+        }
+    }
+    if (optind + 1 != argc) {
+        dalcs_cli_error(cli, optind >= argc ? "no netlist; see 'dalcs check --help'"
+                                            : "one netlist at a time; see 'dalcs check --help'");
+        return DALCS_E_OPTION;
+    }
+    arguments->netlist = argv[optind];
+    return DALCS_OK;
+}
+
+/* Notes speak of runs; errors and warnings of the netlist. */
+static size_t write_messages(const struct dalcs_cli *cli, const struct dalcs_session *session) {
+    size_t n_written = 0;
+    for (size_t i = 0; i < dalcs_session_n_messages(session); i++) {
+        enum dalcs_level level = DALCS_LEVEL_NOTE;
+        const char *text = dalcs_session_message(session, i, &level);
+        if (level != DALCS_LEVEL_NOTE) {
+            fprintf(cli->err, "%s\n", text);
+            n_written++;
+        }
+    }
+    return n_written;
+}
+
+static enum dalcs_status check_netlist(const struct dalcs_cli *cli,
+                                       const struct arguments *arguments,
+                                       struct dalcs_session *session) {
+    const struct dalcs_check *check = NULL;
+    enum dalcs_status status = dalcs_session_read_file(session, arguments->netlist);
+    if (status == DALCS_OK) {
+        status = dalcs_session_check(session, arguments->step, &check);
+    }
+    size_t n_messages = write_messages(cli, session);
+    if (status != DALCS_OK) {
+        if (n_messages == 0) {
+            dalcs_cli_error(cli, "%s: %s", arguments->netlist, dalcs_status_text(status));
+        }
+        return status;
+    }
+    if (arguments->json) {
+        dalcs_check_write_json(cli->out, check);
+    } else {
+        dalcs_check_write_text(cli->out, check, arguments->all);
+    }
+    if (fflush(cli->out) != 0) {
+        dalcs_cli_error(cli, "cannot write the results");
+        return DALCS_E_IO;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_exit dalcs_cli_check(const struct dalcs_cli *cli, int argc, char **argv) {
+    struct arguments arguments;
+    enum dalcs_status status = parse(&arguments, cli, argc, argv);
+    if (status == DALCS_OK && arguments.help) {
+        fputs(help, cli->out);
+    } else if (status == DALCS_OK) {
+        struct dalcs_session *session = NULL;
+        status = dalcs_session_create(&session);
+        if (status == DALCS_OK) {
+            status = check_netlist(cli, &arguments, session);
+        } else {
+            dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+        }
+        dalcs_session_destroy(session);
+    }
+    return dalcs_cli_exit(status);
+}

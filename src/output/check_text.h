@@ -1,0 +1,16 @@
+/* check_text.h - what theory says of a netlist, for a person and for a program. */
+#ifndef DALCS_CHECK_TEXT_H
+#define DALCS_CHECK_TEXT_H
+
+#include "dalcs.h"
+
+#include <stdio.h>
+
+/* The summary in plain words, then the verdicts with their sources; with `all` every condition and
+ * every witness too. Errors stay in the stream. */
+void dalcs_check_write_text(FILE *stream, const struct dalcs_check *check, bool all);
+
+/* The whole as JSON, by doc/check.schema.json. */
+void dalcs_check_write_json(FILE *stream, const struct dalcs_check *check);
+
+#endif

@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+"""`dalcs check` of every netlist of the tree, held to doc/check.schema.json, and what it must say of some.
+
+usage: cases.py PROGRAM SOURCE_ROOT glpk|no_glpk"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import jsonschema
+
+DI = ".model di D(Ron=0 Vfwd=0)\n"
+
+# netlist of netlists/: what each question is answered, or the elements that are named. With GLPK.
+KNOWN = {
+    "hard/hc01a": {"exists": "yes", "unique": "yes", "passive": "yes", "step": "yes"},
+    "hard/hc06": {"exists": "yes", "multipliers": "depends"},
+    "hard/hc07": {"multipliers": "depends"},
+    "hard/hc11a": {"exists": "depends", "passive": "yes"},
+    "hard/hc11b": {"exists": "depends"},
+    "hard/hc11c": {"exists": "depends"},
+    "hard/hc28b": {"unique": "no", "passive": "no"},
+    "hard/hc30": {"unique": "no", "passive": "no", "step": "no"},
+    "hard/hc36": {"unique": "yes", "passive": "no", "step": "depends"},
+    "rectifiers/half_wave_rc": {"exists": "yes", "contracting": "yes", "periodic": "yes"},
+    "rectifiers/full_bridge": {"passive": "yes", "step": "yes"},
+}
+
+MADE = {
+    # a step of v1 drags c1 along; the one of v2 goes through r2 only
+    "jump": ("steps\nV1 a 0 PWL(0 0 1m 0 1m 5 2m 5)\nC1 b 0 1u\nD1 a b di\nV2 c 0 PWL(0 0 1m 0 1m 5)\n"
+             "R2 c b 1k\n" + DI + ".tran 10u 2m\n.end\n",
+             {"jumps": ("depends", ["v1"])}),
+    # the same source without its step
+    "ramp": ("ramp\nV1 a 0 PWL(0 0 1m 0 1.1m 5 2m 5)\nC1 b 0 1u\nD1 a b di\nR1 b 0 1k\n" + DI +
+             ".tran 10u 2m\n.end\n", {"jumps": ("yes", [])}),
+    # who gives: the amplifier, not the resistors
+    "amplifier": ("gain\nD1 0 a di\nR1 a 0 1\nD2 0 b di\nR2 b 0 1\nG1 b 0 a 0 10\n" + DI +
+                  ".op\n.end\n", {"passive": ("no", ["g1"])}),
+    # of 1 ohm and 1 F: rate 1/2 of eps = 2/(RC)
+    "rate": ("rate\nV1 a 0 SIN(0 1 1)\nD1 a b di\nR1 b 0 2\nC1 b 0 3\n" + DI + ".tran 1 9\n.end\n",
+             {"contracting": ("yes", [])}),
+    # no state with losses of its own, and all the same all trajectories meet
+    "filter": ("filter\nV1 a 0 SIN(0 1 1)\nD1 a b di\nL1 b c 1\nC1 c 0 1\nR1 c 0 1\nD2 0 b di\n" + DI +
+               ".tran 1 9\n.end\n", {"periodic": ("yes", []), "contracting": ("undecided", [])}),
+    "tank": ("tank\nV1 a 0 SIN(0 1 1)\nD1 a b di\nL1 b 0 1\nC1 b 0 1\n" + DI + ".tran 1 9\n.end\n",
+             {"periodic": ("undecided", [])}),
+    "linear": ("linear\nV1 a 0 SIN(0 1 1)\nR1 a b 1\nC1 b 0 0.25\n.tran 1 9\n.end\n",
+               {"contracting": ("yes", []), "jumps": ("yes", []), "stable": ("yes", [])}),
+}
+
+
+def ladder(n):
+    """n diodes and n capacitors."""
+    lines = ["a ladder", "V1 n0 0 SIN(0 1 1k)"]
+    for k in range(1, n + 1):
+        lines += [f"R{k} n{k - 1} m{k} 1", f"D{k} m{k} n{k} di", f"C{k} n{k} 0 1u"]
+    return "\n".join(lines + [f"Rl n{n} 0 1k", DI, ".tran 1u 1m", ".end", ""])
+
+
+def check(program, netlist, *options):
+    return subprocess.run([program, "check", str(netlist), *options], capture_output=True, text=True,
+                          timeout=600)
+
+
+class Cases:
+    def __init__(self, program, schema):
+        self.program, self.schema = program, schema
+        self.n = self.failures = 0
+
+    def fail(self, name, why):
+        self.failures += 1
+        print(f"FAILED {name}: {why}")
+
+    def read(self, name, netlist):
+        self.n += 1
+        done = check(self.program, netlist, "--json")
+        if done.returncode != 0:
+            self.fail(name, f"status {done.returncode}: {done.stderr}")
+            return None
+        result = json.loads(done.stdout)
+        try:
+            jsonschema.validate(result, self.schema)
+        except jsonschema.ValidationError as error:
+            self.fail(name, error.message[:300])
+        text = check(self.program, netlist)
+        if text.returncode != 0 or result["parts"] and "passive" not in text.stdout:
+            self.fail(name, "no text")
+        return result
+
+    def answers(self, name, result, expected):
+        for question, wanted in expected.items():
+            verdict = result["parts"][0]["verdicts"][question]
+            answer, elements = wanted if isinstance(wanted, tuple) else (wanted, None)
+            if verdict["answer"] != answer:
+                self.fail(name, f"{question}: {verdict['answer']}, not {answer}: {verdict['sentence']}")
+            if elements is not None and verdict["elements"] != elements:
+                self.fail(name, f"{question} names {verdict['elements']}, not {elements}")
+
+
+def main(program, root, has_glpk):
+    root = pathlib.Path(root)
+    cases = Cases(program, json.loads((root / "doc" / "check.schema.json").read_text()))
+    for netlist in sorted(root.glob("netlists/*/*.cir")):
+        name = str(netlist.relative_to(root / "netlists").with_suffix(""))
+        result = cases.read(name, netlist)
+        if result is not None and has_glpk:
+            cases.answers(name, result, KNOWN.get(name, {}))
+    with tempfile.TemporaryDirectory() as folder:
+        for name, (text, expected) in MADE.items():
+            netlist = pathlib.Path(folder) / f"{name}.cir"
+            netlist.write_text(text)
+            result = cases.read(name, netlist)
+            if result is not None and has_glpk:
+                cases.answers(name, result, expected)
+            if result is not None and name == "rate":
+                rate = result["parts"][0]["verdicts"]["contracting"]["value"]
+                if abs(rate - 1.0 / 6.0) > 1e-3 / 6.0:
+                    cases.fail(name, f"rate {rate}")
+        many = pathlib.Path(folder) / "many.cir"
+        many.write_text("equal parts\n" + "".join(
+            f"V{k} a{k} 0 SIN(0 1 1)\nD{k} a{k} b{k} di\nR{k} b{k} 0 1\nC{k} b{k} 0 1\n"
+            for k in range(20)) + DI + ".tran 1 9\n.end\n")
+        result = cases.read("many", many)
+        if result is not None and [part["equal"] for part in result["parts"]] != [20]:
+            cases.fail("many", "equal parts are not told once")
+        for n in (60, 3000):  # small, and beyond all matrices
+            netlist = pathlib.Path(folder) / f"ladder{n}.cir"
+            netlist.write_text(ladder(n))
+            result = cases.read(f"ladder of {n}", netlist)
+            if result is not None:
+                cases.answers(f"ladder of {n}", result, {"passive": "yes", "step": "yes", "unique": "yes"})
+                skipped = [c["because"] for c in result["parts"][0]["conditions"]
+                           if c["holds"] == "not checked"]
+                if n > 1000 and not any("too large" in (because or "") for because in skipped):
+                    cases.fail(f"ladder of {n}", "does not say what was not checked")
+        broken = pathlib.Path(folder) / "broken.cir"
+        broken.write_text("broken\nR1 a\n.end\n")
+        for arguments, status in (([str(broken)], 3), ([], 2), ([str(many), "--stop", "1"], 2),
+                                  ([str(many), "--step", "-1"], 2), (["none.cir"], 4),
+                                  (["--help"], 0)):
+            cases.n += 1
+            found = check(program, *arguments) if arguments else subprocess.run(
+                [program, "check"], capture_output=True, text=True)
+            if found.returncode != status or (status and not found.stderr):
+                cases.fail(f"check {arguments}", f"status {found.returncode}, {found.stderr!r}")
+    print(f"{cases.n} checks, {cases.failures} failed")
+    return 1 if cases.failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], sys.argv[2], sys.argv[3] == "glpk"))
