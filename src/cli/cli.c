@@ -12,6 +12,7 @@ static const struct {
     enum dalcs_exit (*function)(const struct dalcs_cli *cli, int argc, char **argv);
 } verb[] = {
     {"run", "simulate a netlist and write its waveforms", dalcs_cli_run},
+    {"plot", "draw the waveforms of a file", dalcs_cli_plot},
 };
 
 enum { N_VERBS = sizeof verb / sizeof verb[0] };

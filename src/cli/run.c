@@ -39,7 +39,7 @@ static const char help[] =
     "                      a signal's largest value\n"
     "      --at FILE       print at exactly the times in FILE, one a line\n"
     "      --report FILE   write what the run did as JSON\n"
-    "      --plot FILE     draw the waveforms with gnuplot, .svg or .png\n"
+    "      --plot FILE     draw the waveforms with gnuplot, .svg, .png or .pdf\n"
     "      --dump FILE     where to leave a one-step problem that could not be solved (default:\n"
     "                      beside the output, out.failed.dalcs for out.csv)\n"
     "      --all-signals   print the measurements of all signals, not of the first 24\n"

@@ -28,7 +28,9 @@ enum dalcs_status dalcs_curve_init(struct dalcs_curve *curve, double start, doub
 }
 
 int dalcs_curve_find_column(const struct dalcs_curve *curve, double time) {
-    double position = (time - curve->start) / (curve->stop - curve->start) * DALCS_CURVE_COLUMNS;
+    double part = curve->logarithmic ? log(time / curve->start) / log(curve->stop / curve->start)
+                                     : (time - curve->start) / (curve->stop - curve->start);
+    double position = part * DALCS_CURVE_COLUMNS;
     return position > 0.0 ? (int)fmin(position, DALCS_CURVE_COLUMNS - 1) : 0;
 }
 

@@ -136,7 +136,7 @@ class Usage(Case):
                           self.refused("run", "a.cir", "--compress", value))
         self.assertIn("choose one", self.refused("run", "a.cir", "--compress", "1m", "--at", "x"))
         self.assertIn(".csv or .raw", self.refused("run", "a.cir", "-o", "out.txt"))
-        self.assertIn(".svg or .png", self.refused("run", "a.cir", "--plot", "p.pdf"))
+        self.assertIn(".svg, .png or .pdf", self.refused("run", "a.cir", "--plot", "p.gif"))
         self.assertIn("no netlist", self.refused("run"))
         self.assertIn("one too many", self.refused("run", "a.cir", "a.cir"))
         self.assertIn("two results", self.refused("run", "a.cir", "-o", "x.csv", "-o", "x.csv"))
