@@ -1,4 +1,5 @@
 /* conduction.c - lists of changes, and the shades that bars have where changes crowd. */
+#define _GNU_SOURCE /* strverscmp */
 #include "conduction.h"
 
 #include <math.h>
@@ -73,6 +74,18 @@ enum dalcs_status dalcs_conduction_add_report(struct dalcs_conduction *conductio
         DALCS_TRY(dalcs_conduction_add_jump(conduction, report->jump[i].time));
     }
     return DALCS_OK;
+}
+
+static int compare_elements(const void *a, const void *b) {
+    const struct dalcs_conduction_element *p = a, *q = b;
+    return strverscmp(p->name, q->name);
+}
+
+void dalcs_conduction_sort(struct dalcs_conduction *conduction) {
+    if (conduction->n > 0) {
+        qsort(conduction->element, conduction->n, sizeof *conduction->element, compare_elements);
+    }
+    dalcs_names_finish(&conduction->names);
 }
 
 /* Adds the times from `from` to `to` to the parts that they lie in. */

@@ -44,6 +44,9 @@ enum dalcs_status dalcs_conduction_add_jump(struct dalcs_conduction *conduction,
 enum dalcs_status dalcs_conduction_add_report(struct dalcs_conduction *conduction,
                                               const struct dalcs_report *report) DALCS_MUST_CHECK;
 
+/* Sorts the elements by their names, d2 before d10. Nothing can be added afterwards. */
+void dalcs_conduction_sort(struct dalcs_conduction *conduction);
+
 /* fraction[n]: the part of the time in which the element conducts, of n equal parts of
  * [start, stop]. */
 void dalcs_conduction_fractions(const struct dalcs_conduction_element *element, double start,

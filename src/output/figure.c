@@ -255,10 +255,20 @@ enum dalcs_status dalcs_figure_draw(struct dalcs_figure *figure, const struct da
     if (!figure->name || figure->n_rows == 0) {
         return DALCS_OK;
     }
+    struct dalcs_conduction conduction = {0};
     enum dalcs_status status = dalcs_figure_compose(figure, report);
+    /* Where events were dropped nobody knows who conducts at the end. */
+    if (status == DALCS_OK && report && !figure->conduction && report->n_events_dropped == 0) {
+        status = dalcs_conduction_add_report(&conduction, report);
+        dalcs_conduction_sort(&conduction);
+        figure->conduction = &conduction;
+        figure->bars = true;
+    }
     if (status == DALCS_OK) {
         status = dalcs_gnuplot_draw(figure);
     }
+    figure->conduction = figure->conduction == &conduction ? NULL : figure->conduction;
+    dalcs_conduction_finish(&conduction);
     if (status != DALCS_OK) {
         return status;
     }

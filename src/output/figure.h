@@ -79,7 +79,8 @@ void dalcs_figure_choose(struct dalcs_figure_panel *panel, const char *const *na
 enum dalcs_status dalcs_figure_compose(struct dalcs_figure *figure,
                                        const struct dalcs_report *report) DALCS_MUST_CHECK;
 
-/* Composes and draws with gnuplot. `left_at` is NULL for a complete run, which gets the file's name;
+/* Composes and draws with gnuplot; bars show what `report` knows where figure->conduction is NULL.
+ * `left_at` is NULL for a complete run, which gets the file's name;
  * else see dalcs_atomic_file_keep. */
 enum dalcs_status dalcs_figure_draw(struct dalcs_figure *figure, const struct dalcs_report *report,
                                     char **left_at) DALCS_MUST_CHECK;

@@ -1,12 +1,15 @@
 /* gnuplot_bars.c - what diodes and switches do: bars below the panels, lines at events.
  *
- * A bar is drawn column by column. Where an element changes sides more than once in a column the
- * bar's shade there is the part of the time in which it conducts. */
+ * A bar is drawn column by column. Where an element changes sides within a column the bar's shade
+ * there tells the part of the time in which it conducts. */
 #include "gnuplot_page.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define FAINTEST 0.25
+#define NOTHING  1e-9 /* of a column: rounding */
 
 enum { COLUMNS = DALCS_CURVE_COLUMNS, MAX_MARKS = 120, LABEL = 200, LABEL_CHARACTER = 7 };
 
@@ -17,12 +20,12 @@ static int channel(const char *color, int k) {
     return (int)strtol(digits, NULL, 16);
 }
 
-/* From the background, for 0, to the bars' colour. */
+/* From a colour that is just seen, for next to nothing, to the bars' colour. */
 static long shade(const struct dalcs_theme *theme, double fraction) {
     long color = 0;
     for (int k = 0; k < 3; k++) {
         double from = channel(theme->background, k), to = channel(theme->bar, k);
-        color = 256 * color + lround(from + (to - from) * fraction);
+        color = 256 * color + lround(from + (to - from) * (FAINTEST + (1.0 - FAINTEST) * fraction));
     }
     return color;
 }
@@ -34,10 +37,13 @@ static void write_boxes(FILE *stream, const struct dalcs_figure *figure, int v, 
     double fraction[COLUMNS], width = (view->stop - view->start) / COLUMNS;
     dalcs_conduction_fractions(element, view->start, view->stop, COLUMNS, fraction);
     for (int i = 0, end; i < COLUMNS; i = end) {
+        bool conducts = fraction[i] > NOTHING;
         long color = shade(figure->theme, fraction[i]);
-        for (end = i + 1; end < COLUMNS && shade(figure->theme, fraction[end]) == color; end++) {
+        for (end = i + 1; end < COLUMNS && (fraction[end] > NOTHING) == conducts &&
+                          shade(figure->theme, fraction[end]) == color;
+             end++) {
         }
-        if (fraction[i] > 0.0) {
+        if (conducts) {
             double from = (view->start + i * width) / time_scale;
             double to = (view->start + end * width) / time_scale;
             fprintf(stream, "%.12g %zu %.12g %.12g %g %g %ld\n", 0.5 * (from + to), row, from, to,

@@ -21,7 +21,7 @@ enum {
     CHARACTER = 10
 };
 
-enum { MAX_BARS = 16 };
+enum { MAX_BARS = 16, TICS = 5 };
 
 static int panel_height(int n_panels) {
     return n_panels == 1 ? 598 : n_panels == 2 ? 281 : 220;
@@ -48,9 +48,49 @@ static int longest_name(const struct dalcs_figure *figure) {
     return longest;
 }
 
-/* Names of bars stand where the numbers of the axes do. */
+/* Decimals that tell the numbers of an axis apart. */
+static int count_decimals(double range) {
+    return (int)fmax(0.0, -floor(log10(range / TICS)));
+}
+
+static int count_whole_digits(double largest) {
+    return (int)fmax(1.0, floor(log10(fmax(largest, 1.0))) + 1.0);
+}
+
+int dalcs_gnuplot_count_digits(double low, double high) {
+    double largest = fmax(fabs(low), fabs(high));
+    int n = count_whole_digits(largest) + count_decimals(high - low);
+    return n < 6 ? 6 : n > 15 ? 15 : n;
+}
+
+/* Of the numbers on the axis of a panel, in characters. */
+static int number_length(const struct dalcs_figure_view *view, int p, double scale) {
+    double low = view->low[p] / scale, high = view->high[p] / scale;
+    double largest = fmax(fabs(low), fabs(high));
+    if (largest < 1e-4 || largest >= 1e6) {
+        return 9; /* -1.5e-23 */
+    }
+    int decimals = count_decimals(high - low);
+    return count_whole_digits(largest) + (decimals > 0 ? decimals + 1 : 0) + (low < 0.0 ? 1 : 0);
+}
+
+double dalcs_gnuplot_panel_scale(const struct dalcs_figure *figure, int v, int p) {
+    const char *unit = figure->panel[p].unit;
+    bool plain = unit[0] == '\0' || strpbrk(unit, "^ ") || strcmp(unit, "\302\260") == 0;
+    return plain ? 1.0 : dalcs_quantity_scale(figure->view[v].largest[p]);
+}
+
+/* Numbers of the axes and names of bars stand there. */
 static double left_margin(const struct dalcs_figure *figure, size_t n_bars) {
     int margin = MARGIN;
+    for (int v = 0; v < figure->n_views; v++) {
+        for (int p = 0; p < figure->n_panels; p++) {
+            double scale = dalcs_gnuplot_panel_scale(figure, v, p);
+            int needed =
+                figure->panel[p].n == 0 ? 0 : 42 + 9 * number_length(&figure->view[v], p, scale);
+            margin = needed > margin ? needed : margin;
+        }
+    }
     for (size_t i = 0; i < n_bars; i++) {
         int needed = 16 + CHARACTER * limited_length(figure->conduction->element[i].name);
         margin = needed > margin ? needed : margin;
@@ -62,10 +102,11 @@ static void lay_out_columns(struct dalcs_gnuplot_page *page, const struct dalcs_
     double left = left_margin(figure, page->n_bars);
     double right = 0.945 - 0.0082 * longest_name(figure);
     double middle = 0.5 * (left + right);
+    double gap = left + 0.025;
     bool two = figure->n_views > 1;
     page->place[0] =
-        (struct dalcs_gnuplot_place){left, two ? middle - 0.02 : right, figure->n_views == 1};
-    page->place[1] = (struct dalcs_gnuplot_place){middle + 0.05, right, true};
+        (struct dalcs_gnuplot_place){left, two ? middle - 0.5 * gap : right, figure->n_views == 1};
+    page->place[1] = (struct dalcs_gnuplot_place){middle + 0.5 * gap, right, true};
 }
 
 struct dalcs_gnuplot_page dalcs_gnuplot_lay_out(const struct dalcs_figure *figure) {
@@ -139,5 +180,11 @@ void dalcs_gnuplot_write_axis(FILE *stream, const struct dalcs_figure *figure,
              v == 1 ? ", the end of the run" : "");
     dalcs_gnuplot_write_quoted(stream, text, (int)sizeof text);
     fprintf(stream, " offset 0,0.2 textcolor rgb '%s'\n", figure->theme->text);
-    fputs(figure->axis.logarithmic ? "set format x '%.0s%c'\n" : "set format x '%g'\n", stream);
+    if (figure->axis.logarithmic) {
+        fputs("set format x '%.0s%c'\n", stream);
+    } else {
+        fprintf(stream, "set format x '%%.%dg'\n",
+                dalcs_gnuplot_count_digits(figure->view[v].start / page->time_scale,
+                                           figure->view[v].stop / page->time_scale));
+    }
 }

@@ -33,6 +33,13 @@ struct dalcs_gnuplot_page dalcs_gnuplot_lay_out(const struct dalcs_figure *figur
  * characters, then an ellipsis; what is not printable UTF-8 becomes a question mark. */
 void dalcs_gnuplot_write_quoted(FILE *stream, const char *text, int max_length);
 
+/* The power of 1000 that the axis of a panel is in: 1 for numbers, degrees and squares of units, which
+ * have no prefix. */
+double dalcs_gnuplot_panel_scale(const struct dalcs_figure *figure, int v, int p);
+
+/* Significant digits that the numbers of an axis need. */
+int dalcs_gnuplot_count_digits(double low, double high);
+
 /* Margins of what lies between `bottom` and `top` in view v. */
 void dalcs_gnuplot_write_margins(FILE *stream, const struct dalcs_gnuplot_page *page, int v,
                                  double bottom, double top);

@@ -22,24 +22,18 @@ static const char *unit_prefix(double scale) {
     return strcmp(prefix, "u") == 0 ? "\302\265" : prefix;
 }
 
-/* Numbers, degrees and squares of units have no prefix. */
-static double panel_scale(const struct dalcs_figure *figure, int v, int p) {
-    const char *unit = figure->panel[p].unit;
-    bool plain = unit[0] == '\0' || strpbrk(unit, "^ ") || strcmp(unit, "\302\260") == 0;
-    return plain ? 1.0 : dalcs_quantity_scale(figure->view[v].largest[p]);
-}
-
 static void write_data(FILE *stream, const struct dalcs_figure *figure, int v, int p,
                        double time_scale) {
     const struct dalcs_figure_view *view = &figure->view[v];
-    double scale = panel_scale(figure, v, p);
+    double scale = dalcs_gnuplot_panel_scale(figure, v, p);
     for (int i = 0; i < figure->panel[p].n; i++) {
         fprintf(stream, "$v%dp%dc%d << end_of_data\n", v, p, i);
         for (int column = 0; column < DALCS_CURVE_COLUMNS; column++) {
             struct dalcs_curve_point point[4];
             int n = dalcs_curve_column_points(&view->curve[p][i].column[column], point);
             for (int k = 0; k < n; k++) {
-                fprintf(stream, "%.12g %.7g\n", point[k].time / time_scale, point[k].value / scale);
+                fprintf(stream, "%.15g %.12g\n", point[k].time / time_scale,
+                        point[k].value / scale);
             }
         }
         if (view->curve[p][i].lowest > view->curve[p][i].highest) {
@@ -119,9 +113,11 @@ static void write_panel(FILE *stream, const struct dalcs_figure *figure,
     const int p = page->panel[k];
     const struct dalcs_figure_view *view = &figure->view[v];
     const struct dalcs_figure_panel *panel = &figure->panel[p];
-    double scale = panel_scale(figure, v, p);
+    double scale = dalcs_gnuplot_panel_scale(figure, v, p);
     dalcs_gnuplot_write_margins(stream, page, v, page->bottom[k], page->top[k]);
-    fprintf(stream, "set yrange [%.9g:%.9g]\n", view->low[p] / scale, view->high[p] / scale);
+    fprintf(stream, "set yrange [%.12g:%.12g]\nset format y '%%.%dg'\n", view->low[p] / scale,
+            view->high[p] / scale,
+            dalcs_gnuplot_count_digits(view->low[p] / scale, view->high[p] / scale));
     fprintf(stream, "set ylabel '%s", panel->quantity);
     if (panel->unit[0]) {
         fprintf(stream, " (%s%s)", unit_prefix(scale), panel->unit);
@@ -165,7 +161,7 @@ void dalcs_gnuplot_write(FILE *stream, const struct dalcs_figure *figure) {
     fputs("set multiplot\n", stream);
     write_title(stream, figure, &page);
     for (int v = 0; v < figure->n_views; v++) {
-        fprintf(stream, "set xrange [%.12g:%.12g]\n", figure->view[v].start / page.time_scale,
+        fprintf(stream, "set xrange [%.15g:%.15g]\n", figure->view[v].start / page.time_scale,
                 figure->view[v].stop / page.time_scale);
         if (v == 1) {
             double range = figure->view[v].stop - figure->view[v].start;

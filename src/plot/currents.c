@@ -66,5 +66,6 @@ enum dalcs_status dalcs_selection_add_conduction(const struct dalcs_selection *s
             DALCS_TRY(follow(waveforms, c, name, conduction));
         }
     }
+    dalcs_conduction_sort(conduction);
     return DALCS_OK;
 }

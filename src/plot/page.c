@@ -12,7 +12,7 @@
 #include "embedded.h"
 
 /* A browser holds a string of half a gigabyte; that many values take a quarter of it. */
-enum { MAX_VALUES = 24000000, MAX_EXACT = 4000000 };
+enum { MAX_VALUES = 24000000, MAX_EXACT = 1000000 };
 
 /* The table, column after column: the axis, then the signals. */
 struct columns {

@@ -3,7 +3,7 @@
  * a graph is given few: of each pixel column the first, the last, and the lowest and highest of each
  * signal. */
 const BLOCK = 256;  // rows whose extremes are known beforehand
-const MAX_MARKS = 300;
+const MAX_MARKS = 100;
 const PREFIX = ["a", "f", "p", "n", "\u00b5", "m", "", "k", "M", "G", "T"];
 const PALETTE = {
   light: ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a52a3", "#5f6368"],
@@ -63,15 +63,16 @@ for (const signal of run.signals) {
   signal.values = null;
 }
 
-/* The first row at or behind a time. */
-function rowOf(time) {
-  let low = 0, high = at.length;
+/* The first of ascending times at or behind one. */
+function firstFrom(times, time) {
+  let low = 0, high = times.length;
   while (low < high) {
     const middle = (low + high) >> 1;
-    if (at[middle] < time) low = middle + 1; else high = middle;
+    if (times[middle] < time) low = middle + 1; else high = middle;
   }
   return low;
 }
+const rowOf = (time) => firstFrom(at, time);
 
 /* Adds the rows of the lowest and highest value among [from, end). */
 function addExtremes(rows, signal, from, end) {
@@ -214,19 +215,24 @@ function drawUnderlay(context, area) {
   context.restore();
 }
 
-/* The time that a bar's element conducts before `time`. */
-function conducted(bar, time) {
-  let sum = 0, since = start, on = bar.on;
-  for (const change of bar.times) {
-    if (change >= time) break;
-    if (on) sum += change - since;
-    since = change;
-    on = !on;
-  }
-  return on ? sum + time - since : sum;
+/* The time that a bar's element conducts before each of its changes. */
+for (const bar of run.bars) {
+  let sum = 0, since = start;
+  bar.sums = bar.times.map((time, k) => {
+    if (bar.on === (k % 2 === 0)) sum += time - since;
+    since = time;
+    return sum;
+  });
 }
 
-/* Where changes crowd, a bar's shade is the part of the time in which the element conducts. */
+/* The same before any time. */
+function conducted(bar, time) {
+  const k = firstFrom(bar.times, time);
+  const on = bar.on === (k % 2 === 0), since = k > 0 ? bar.times[k - 1] : start;
+  return (k > 0 ? bar.sums[k - 1] : 0) + (on ? time - since : 0);
+}
+
+/* Where changes crowd, a bar's shade tells the part of the time in which the element conducts. */
 function drawBars(panel) {
   const canvas = by("bars");
   canvas.hidden = run.bars.length === 0 || !panel;
@@ -249,8 +255,9 @@ function drawBars(panel) {
     let before = conducted(bar, view.from), time = view.from;
     for (let x = 0; x < area.w; x++) {
       const next = place(view.from, view.to, (x + 1) / area.w), sum = conducted(bar, next);
-      context.globalAlpha = Math.min(1, Math.max(0, (sum - before) / (next - time)));
-      if (context.globalAlpha > 0) context.fillRect(area.x + x, height * k + 3, 1, height - 6);
+      const part = Math.min(1, (sum - before) / (next - time));
+      context.globalAlpha = 0.25 + 0.75 * Math.max(0, part);
+      if (part > 1e-9) context.fillRect(area.x + x, height * k + 3, 1, height - 6);
       before = sum;
       time = next;
     }
@@ -288,7 +295,6 @@ function writeTable() {
   const {a, b} = view.cursor, table = by("cursors"), unit = run.axis.unit;
   const both = a !== null && b !== null && a !== b;
   table.replaceChildren();
-  by("help").hidden = a !== null;
   if (a === null) return;
   const head = table.insertRow();
   cell(head, run.axis.name, "th");

@@ -62,6 +62,11 @@ enum dalcs_status dalcs_report_reader_read(const char *path, struct dalcs_conduc
     if (status == DALCS_OK) {
         status = add_jumps(json_object_get(report, "jumps"), conduction);
     }
+    if (status == DALCS_OK && json_object_get(report, "events_dropped")) {
+        dalcs_diag_add(diag, DALCS_WARNING, NULL, NULL,
+                       "'%s' does not have all events: after its last one bars show nothing new",
+                       path);
+    }
     json_decref(report);
     return status;
 }

@@ -252,6 +252,21 @@ static void interpolate(const struct dalcs_selection *selection, size_t row, dou
     }
 }
 
+/* A discontinuity where a range begins or ends has one side in it. */
+static bool is_within(const struct dalcs_selection *selection, size_t row) {
+    double at = *row_of(selection, row);
+    bool cut_before = selection->start > *row_of(selection, 0);
+    size_t n = selection->waveforms->n_rows;
+    bool cut_behind = selection->stop < *row_of(selection, n - 1);
+    if (cut_before && at == selection->start) {
+        return row + 1 == n || *row_of(selection, row + 1) > at;
+    }
+    if (cut_behind && at == selection->stop) {
+        return row == 0 || *row_of(selection, row - 1) < at;
+    }
+    return at >= selection->start && at <= selection->stop;
+}
+
 enum dalcs_status dalcs_selection_each_row(const struct dalcs_selection *selection,
                                            enum dalcs_status (*row)(void *user, double at,
                                                                     const double *value),
@@ -264,7 +279,7 @@ enum dalcs_status dalcs_selection_each_row(const struct dalcs_selection *selecti
             interpolate(selection, k - 1, selection->start, value, value + selection->n);
             status = row(user, selection->start, value);
         }
-        if (status == DALCS_OK && at >= selection->start && at <= selection->stop) {
+        if (status == DALCS_OK && is_within(selection, k)) {
             evaluate_row(selection, k, value);
             status = row(user, at, value);
         }

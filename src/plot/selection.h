@@ -36,8 +36,8 @@ enum dalcs_status dalcs_selection_each_row(const struct dalcs_selection *selecti
 /* Rows within the range. */
 size_t dalcs_selection_count_rows(const struct dalcs_selection *selection);
 
-/* Adds the elements whose currents are in the file, but not those that are there already. One
- * conducts where its current is more than 1e-6 of its largest. */
+/* Adds the elements whose currents are in the file, but not those that are there already, and sorts
+ * them all. One conducts where its current is more than 1e-6 of its largest. */
 enum dalcs_status
 dalcs_selection_add_conduction(const struct dalcs_selection *selection,
                                struct dalcs_conduction *conduction) DALCS_MUST_CHECK;

@@ -83,6 +83,13 @@ static void set_color(FILE *stream, const struct canvas *canvas, const char *cod
     }
 }
 
+/* A name out of a file must not command the terminal. */
+static void write_text(FILE *stream, const char *text) {
+    for (const char *c = text; *c; c++) {
+        fputc((unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c, stream);
+    }
+}
+
 static void write_strip(FILE *stream, const struct dalcs_figure *figure, struct canvas *canvas,
                         int p, int i) {
     const struct dalcs_curve *curve = &figure->view[0].curve[p][i];
@@ -90,7 +97,9 @@ static void write_strip(FILE *stream, const struct dalcs_figure *figure, struct 
     char text[DALCS_QUANTITY_SIZE];
     double low = curve->lowest, high = curve->highest;
     set_color(stream, canvas, "1");
-    fprintf(stream, "%*s  %s\n", LABEL - 2, "", figure->name[figure->panel[p].signal[i]]);
+    fprintf(stream, "%*s", LABEL, "");
+    write_text(stream, figure->name[figure->panel[p].signal[i]]);
+    fputc('\n', stream);
     set_color(stream, canvas, "0");
     if (low > high) {
         fprintf(stream, "%*s  no values\n", LABEL - 2, "");
@@ -166,7 +175,8 @@ enum dalcs_status dalcs_text_plot_write(FILE *stream, const struct dalcs_figure 
     if (!canvas.dot) {
         return DALCS_E_NOMEM;
     }
-    fprintf(stream, "%s\n\n", figure->title + strspn(figure->title, "* "));
+    write_text(stream, figure->title + strspn(figure->title, "* "));
+    fputs("\n\n", stream);
     size_t n_left_out = 0;
     for (int p = 0; p < figure->n_panels; p++) {
         n_left_out += figure->panel[p].n_left_out;

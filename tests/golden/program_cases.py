@@ -620,7 +620,8 @@ class Plot(Case):
         self.dalcs("run", self.write(RECTIFIER), "-q", "--plot", "p.PNG")
         data = self.path("p.PNG").read_bytes()
         self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
-        self.assertEqual(struct.unpack(">II", data[16:24]), (1200, 720))
+        # Two panels and the bar of a diode.
+        self.assertEqual(struct.unpack(">II", data[16:24]), (1200, 772))
 
     def test_without_gnuplot(self):
         done = self.dalcs("run", self.write(RECTIFIER), "-o", "out.csv", "--plot", "p.svg",
