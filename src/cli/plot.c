@@ -171,6 +171,12 @@ static enum dalcs_status draw_page(struct drawing *drawing) {
                                   drawing->title + strspn(drawing->title, "* "), arguments->theme,
                                   arguments->marks, &drawing->diag);
     }
+    if (status == DALCS_OK && ferror(file.stream)) {
+        int error = errno != 0 ? errno : EIO;
+        dalcs_atomic_file_discard(&file);
+        file.error = error;
+        status = DALCS_E_IO;
+    }
     if (status == DALCS_OK) {
         status = dalcs_atomic_file_commit(&file);
     }

@@ -148,13 +148,22 @@ static const char *next_word(const char **at, const char *end, size_t *length) {
     return *length > 0 ? word : NULL;
 }
 
+static bool is_printable(const char *text, size_t length) {
+    for (size_t i = 0; i < length; i++) {
+        if ((unsigned char)text[i] < 0x20 || text[i] == 0x7f) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* "index name type": the name and dimension of column c, and of its phase behind it. */
 static enum dalcs_status read_variable(struct dalcs_waveforms *waveforms, const char *line,
                                        size_t length, size_t c, bool with_phase) {
     const char *at = line, *end = line + length;
     size_t n = 0, n_type = 0;
     const char *name = next_word(&at, end, &n) ? next_word(&at, end, &n) : NULL;
-    if (!name) {
+    if (!name || !is_printable(name, n)) {
         return DALCS_E_OPTION;
     }
     const char *type = next_word(&at, end, &n_type);
