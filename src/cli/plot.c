@@ -251,8 +251,8 @@ static enum dalcs_status draw(const struct dalcs_cli *cli,
                                           : draw_picture(&drawing);
             write_messages(&drawing);
         }
-        if (status == DALCS_E_NOMEM) {
-            dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+        if (status == DALCS_E_NOMEM || drawing.diag.out_of_memory) {
+            dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         }
     }
     if (status == DALCS_OK && arguments->output && !arguments->quiet) {

@@ -52,7 +52,13 @@ void dalcs_curve_add(struct dalcs_curve *curve, double time, double value) {
     column->last = point;
     curve->lowest = fmin(curve->lowest, value);
     curve->highest = fmax(curve->highest, value);
-    dalcs_turns_add(&curve->turns, value, SWING * (curve->highest - curve->lowest));
+    /* What looked like a swing before the signal really moved may have been rounding. */
+    double range = curve->highest - curve->lowest;
+    if (range > 2.0 * curve->turns_range) {
+        curve->turns.n = 0;
+        curve->turns_range = range;
+    }
+    dalcs_turns_add(&curve->turns, value, SWING * range);
 }
 
 void dalcs_curve_widen_range(const struct dalcs_curve *curve, const bool *skip, double *low,

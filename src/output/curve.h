@@ -32,6 +32,7 @@ struct dalcs_curve {
     long n_rows;
     double lowest, highest; /* of the finite values; lowest > highest when there are none */
     struct dalcs_turns turns;
+    double turns_range;                /* of the values, when turns were first counted */
     struct dalcs_curve_column *column; /* [DALCS_CURVE_COLUMNS] */
 };
 

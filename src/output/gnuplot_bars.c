@@ -156,7 +156,7 @@ static void write_marks(FILE *stream, const struct dalcs_figure *figure,
                         size_t n) {
     const struct dalcs_figure_view *view = &figure->view[v];
     const struct dalcs_gnuplot_place *place = &page->place[v];
-    double width = place->right - place->left, free_from = place->left;
+    double width = place->right - place->left, free_from = place->left - 0.03;
     for (size_t i = 0; i < n; i++) {
         fprintf(stream,
                 "set arrow %zu from first %.12g, graph 0 to first %.12g, graph 1 nohead "
@@ -166,7 +166,8 @@ static void write_marks(FILE *stream, const struct dalcs_figure *figure,
         /* A label stands where there is room for it. */
         double at = place->left + width * (mark[i].time - view->start) / (view->stop - view->start);
         double half = 0.5 * LABEL_CHARACTER * (double)strlen(mark[i].label) / DALCS_GNUPLOT_WIDTH;
-        if (at - half < free_from || at + half > place->right + 0.05) {
+        at = fmin(fmax(at, place->left - 0.02 + half), place->right + 0.05 - half);
+        if (at - half < free_from) {
             continue;
         }
         free_from = at + 1.1 * half;

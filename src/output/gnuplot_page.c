@@ -76,7 +76,8 @@ static int number_length(const struct dalcs_figure_view *view, int p, double sca
 
 double dalcs_gnuplot_panel_scale(const struct dalcs_figure *figure, int v, int p) {
     const char *unit = figure->panel[p].unit;
-    bool plain = unit[0] == '\0' || strpbrk(unit, "^ ") || strcmp(unit, "\302\260") == 0;
+    bool plain = unit[0] == '\0' || strpbrk(unit, "^ ") || strcmp(unit, "\302\260") == 0 ||
+                 strcmp(unit, "dB") == 0;
     return plain ? 1.0 : dalcs_quantity_scale(figure->view[v].largest[p]);
 }
 

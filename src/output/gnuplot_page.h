@@ -33,7 +33,7 @@ struct dalcs_gnuplot_page dalcs_gnuplot_lay_out(const struct dalcs_figure *figur
  * characters, then an ellipsis; what is not printable UTF-8 becomes a question mark. */
 void dalcs_gnuplot_write_quoted(FILE *stream, const char *text, int max_length);
 
-/* The power of 1000 that the axis of a panel is in: 1 for numbers, degrees and squares of units, which
+/* The power of 1000 that the axis of a panel is in: 1 for numbers, degrees, decibels and squares of units, which
  * have no prefix. */
 double dalcs_gnuplot_panel_scale(const struct dalcs_figure *figure, int v, int p);
 

@@ -12,18 +12,26 @@ static const struct {
     struct dalcs_dimension dimension;
     const char *unit, *quantity;
 } known[] = {
-    {{1, 0, 0, false}, "V", "voltage"},      {{0, 1, 0, false}, "A", "current"},
-    {{1, 1, 0, false}, "W", "power"},        {{0, 0, 1, false}, "s", "time"},
-    {{0, 0, -1, false}, "Hz", "frequency"},  {{1, -1, 0, false}, "\316\251", "resistance"},
-    {{-1, 1, 0, false}, "S", "conductance"}, {{1, 1, 1, false}, "J", "energy"},
-    {{0, 1, 1, false}, "C", "charge"},       {{1, 0, 1, false}, "Wb", "flux"},
-    {{0, 0, 0, true}, "\302\260", "phase"},  {{0, 0, 0, false}, "", "value"},
+    {{.volt = 1}, "V", "voltage"},
+    {{.ampere = 1}, "A", "current"},
+    {{.volt = 1, .ampere = 1}, "W", "power"},
+    {{.second = 1}, "s", "time"},
+    {{.second = -1}, "Hz", "frequency"},
+    {{.volt = 1, .ampere = -1}, "\316\251", "resistance"},
+    {{.volt = -1, .ampere = 1}, "S", "conductance"},
+    {{.volt = 1, .ampere = 1, .second = 1}, "J", "energy"},
+    {{.ampere = 1, .second = 1}, "C", "charge"},
+    {{.volt = 1, .second = 1}, "Wb", "flux"},
+    {{.degree = true}, "\302\260", "phase"},
+    {{.decibel = true}, "dB", "magnitude"},
+    {{.volt = 0}, "", "value"},
 };
 
 enum { N_KNOWN = sizeof known / sizeof known[0] };
 
 bool dalcs_dimension_equal(struct dalcs_dimension a, struct dalcs_dimension b) {
-    return a.volt == b.volt && a.ampere == b.ampere && a.second == b.second && a.degree == b.degree;
+    return a.volt == b.volt && a.ampere == b.ampere && a.second == b.second &&
+           a.degree == b.degree && a.decibel == b.decibel;
 }
 
 struct dalcs_dimension dalcs_dimension_multiply(struct dalcs_dimension a, struct dalcs_dimension b,
@@ -35,8 +43,9 @@ struct dalcs_dimension dalcs_dimension_multiply(struct dalcs_dimension a, struct
             return (struct dalcs_dimension){0};
         }
     }
-    return (struct dalcs_dimension){(signed char)exponent[0], (signed char)exponent[1],
-                                    (signed char)exponent[2], false};
+    return (struct dalcs_dimension){.volt = (signed char)exponent[0],
+                                    .ampere = (signed char)exponent[1],
+                                    .second = (signed char)exponent[2]};
 }
 
 static int find_known(struct dalcs_dimension dimension) {
@@ -77,7 +86,7 @@ struct dalcs_dimension dalcs_dimension_of_name(const char *name) {
     static const struct {
         const char *word;
         struct dalcs_dimension dimension;
-    } of_word[] = {{"time", {0, 0, 1, false}}, {"frequency", {0, 0, -1, false}}};
+    } of_word[] = {{"time", {.second = 1}}, {"frequency", {.second = -1}}};
 
     for (size_t i = 0; i < sizeof of_word / sizeof of_word[0]; i++) {
         if (strcasecmp(name, of_word[i].word) == 0) {

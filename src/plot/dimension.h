@@ -7,7 +7,7 @@
 /* V^volt A^ampere s^second; all 0: a number. */
 struct dalcs_dimension {
     signed char volt, ampere, second;
-    bool degree; /* an angle; a number otherwise */
+    bool degree, decibel; /* an angle, a level; a number otherwise */
 };
 
 enum { DALCS_DIMENSION_TEXT = 24 };

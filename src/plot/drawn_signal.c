@@ -129,6 +129,8 @@ static enum dalcs_status combine(struct parser *parser, enum operation operation
                                                    operation == MULTIPLY ? 1 : -1);
     } else if (operation == NEGATE || operation == ABS) {
         value.dimension = left->dimension;
+    } else if (operation == DB) {
+        value.dimension.decibel = true;
     }
     return make(parser, &value, node);
 }

@@ -1,8 +1,6 @@
 /* page.c - fills page.html: data as JSON, numbers in it as base64 of their bytes, lowest first. */
 #include "page.h"
 
-#include "json.h"
-
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -70,27 +68,17 @@ static void write_column(FILE *stream, const double *value, size_t n, bool exact
 
 /* ---- JSON ----------------------------------------------------------------------------------- */
 
-/* The JSON writer's text, but no "<" that could end a script. */
+/* No "<" that could end the script. */
 static void write_string(FILE *stream, const char *text) {
-    char *quoted = NULL;
-    size_t length = 0;
-    FILE *memory = open_memstream(&quoted, &length);
-    if (!memory) {
-        fputs("\"\"", stream);
-        return;
-    }
-    struct dalcs_json json;
-    dalcs_json_init(&json, memory);
-    dalcs_json_string(&json, NULL, text);
-    fclose(memory);
-    for (size_t i = 0; quoted && i < length; i++) {
-        if (quoted[i] == '<') {
-            fputs("\\u003c", stream);
+    fputc('"', stream);
+    for (const char *c = text; *c; c++) {
+        if ((unsigned char)*c < 0x20 || *c == '"' || *c == '\\' || *c == '<') {
+            fprintf(stream, "\\u%04x", (unsigned char)*c);
         } else {
-            fputc(quoted[i], stream);
+            fputc(*c, stream);
         }
     }
-    free(quoted);
+    fputc('"', stream);
 }
 
 static void write_number(FILE *stream, double value) {

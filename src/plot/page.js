@@ -17,7 +17,7 @@ const css = (name) => getComputedStyle(document.documentElement).getPropertyValu
 
 function quantity(value, unit, digits = 5) {
   if (!Number.isFinite(value)) return "\u2013";
-  const plain = unit === "" || unit === "\u00b0" || /[\^ ]/.test(unit);
+  const plain = unit === "" || unit === "\u00b0" || unit === "dB" || /[\^ ]/.test(unit);
   const power = value === 0 || plain ? 0 : Math.floor(Math.log10(Math.abs(value) * (1 + 1e-12)) / 3);
   if (power < -6 || power > 4) return `${Number(value.toPrecision(digits))} ${unit}`;
   const mantissa = Number((value / 1000 ** power).toPrecision(digits));

@@ -50,6 +50,9 @@ enum dalcs_status dalcs_report_reader_read(const char *path, struct dalcs_conduc
     json_error_t error;
     json_t *report = json_loadf(file, 0, &error);
     fclose(file);
+    if (!report && json_error_code(&error) == json_error_out_of_memory) {
+        return DALCS_E_NOMEM;
+    }
     if (!report) {
         dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "'%s' is no report of dalcs run: line %d: %s",
                        path, error.line, error.text);

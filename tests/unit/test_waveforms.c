@@ -247,7 +247,7 @@ START_TEST(test_expressions) {
     check_signal("v(a)+i(r1)", 5.0, "");
     check_signal("v(a)+1.5k", 1501.0, "V");
     check_signal("abs(-v(b))", 2.0, "V");
-    check_signal("db(10*v(a))", 20.0, "");
+    check_signal("db(10*v(a))", 20.0, "dB");
     check_signal("sqrt(i(r1))", 2.0, "");
     check_signal("i(d1)", 5.0, "A");
     check_signal("i(v1)", 6.0, "A");
