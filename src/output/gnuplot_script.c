@@ -26,13 +26,15 @@ static void write_data(FILE *stream, const struct dalcs_figure *figure, int v, i
                        double time_scale) {
     const struct dalcs_figure_view *view = &figure->view[v];
     double scale = dalcs_gnuplot_panel_scale(figure, v, p);
+    /* A hundredth of what the numbers of the axis tell apart. */
+    const int digits = 2 + dalcs_gnuplot_count_digits(view->low[p] / scale, view->high[p] / scale);
     for (int i = 0; i < figure->panel[p].n; i++) {
         fprintf(stream, "$v%dp%dc%d << end_of_data\n", v, p, i);
         for (int column = 0; column < DALCS_CURVE_COLUMNS; column++) {
             struct dalcs_curve_point point[4];
             int n = dalcs_curve_column_points(&view->curve[p][i].column[column], point);
             for (int k = 0; k < n; k++) {
-                fprintf(stream, "%.15g %.12g\n", point[k].time / time_scale,
+                fprintf(stream, "%.15g %.*g\n", point[k].time / time_scale, digits,
                         point[k].value / scale);
             }
         }
