@@ -176,8 +176,8 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     case PLOT:
         arguments->plot = optarg;
         if (!dalcs_figure_can_write(optarg)) {
-            dalcs_cli_error(cli, "--plot: cannot tell the format of '%s': name it .svg or .png",
-                            optarg);
+            dalcs_cli_error(
+                cli, "--plot: cannot tell the format of '%s': name it .svg, .png or .pdf", optarg);
             return DALCS_E_OPTION;
         }
         return DALCS_OK;

@@ -15,6 +15,7 @@ static const struct {
     {"run", "simulate a netlist and write its waveforms", dalcs_cli_run},
     {"equations", "write the complementarity system of a netlist", dalcs_cli_equations},
     {"check", "what theory says of a netlist before it runs", dalcs_cli_check},
+    {"plot", "draw the waveforms of a file", dalcs_cli_plot},
 };
 
 enum { N_VERBS = sizeof verb / sizeof verb[0] };

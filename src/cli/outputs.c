@@ -58,8 +58,9 @@ enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs,
             return status;
         }
     }
-    if (outputs->has_figure && plot->step == 0 && !outputs->figure.plot) {
+    if (outputs->has_figure && plot->analysis == DALCS_TRANSIENT && !outputs->drawn) {
         enum dalcs_status status = dalcs_figure_begin(&outputs->figure, plot);
+        outputs->drawn = plot;
         if (status != DALCS_OK) {
             return status;
         }
@@ -91,7 +92,7 @@ enum dalcs_status dalcs_outputs_row(struct dalcs_outputs *outputs, double time,
         }
     }
     dalcs_measure_row(measure, time, plot->is_complex ? outputs->magnitude : value);
-    if (outputs->has_figure && outputs->figure.plot == plot) {
+    if (outputs->drawn == plot) {
         dalcs_figure_row(&outputs->figure, time, value);
     }
     for (size_t i = 0; i < outputs->n_tables; i++) {

@@ -13,7 +13,8 @@ struct dalcs_outputs {
     size_t n_tables;
     bool has_figure;
     struct dalcs_figure figure;
-    const char *report_path; /* NULL: none */
+    const struct dalcs_plot *drawn; /* in the figure: the first transient; NULL: not yet */
+    const char *report_path;        /* NULL: none */
     struct dalcs_atomic_file report;
     struct dalcs_measure measure[DALCS_N_ANALYSES];
     struct dalcs_step_lines steps; /* of .step */

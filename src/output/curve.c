@@ -28,7 +28,9 @@ enum dalcs_status dalcs_curve_init(struct dalcs_curve *curve, double start, doub
 }
 
 int dalcs_curve_find_column(const struct dalcs_curve *curve, double time) {
-    double position = (time - curve->start) / (curve->stop - curve->start) * DALCS_CURVE_COLUMNS;
+    double part = curve->logarithmic ? log(time / curve->start) / log(curve->stop / curve->start)
+                                     : (time - curve->start) / (curve->stop - curve->start);
+    double position = part * DALCS_CURVE_COLUMNS;
     return position > 0.0 ? (int)fmin(position, DALCS_CURVE_COLUMNS - 1) : 0;
 }
 
@@ -50,7 +52,13 @@ void dalcs_curve_add(struct dalcs_curve *curve, double time, double value) {
     column->last = point;
     curve->lowest = fmin(curve->lowest, value);
     curve->highest = fmax(curve->highest, value);
-    dalcs_turns_add(&curve->turns, value, SWING * (curve->highest - curve->lowest));
+    /* What looked like a swing before the signal really moved may have been rounding. */
+    double range = curve->highest - curve->lowest;
+    if (range > 2.0 * curve->turns_range) {
+        curve->turns.n = 0;
+        curve->turns_range = range;
+    }
+    dalcs_turns_add(&curve->turns, value, SWING * range);
 }
 
 void dalcs_curve_widen_range(const struct dalcs_curve *curve, const bool *skip, double *low,

@@ -28,9 +28,11 @@ void dalcs_turns_add(struct dalcs_turns *turns, double value, double swing);
 
 struct dalcs_curve {
     double start, stop;
+    bool logarithmic; /* columns are as wide as each other on a logarithmic axis */
     long n_rows;
     double lowest, highest; /* of the finite values; lowest > highest when there are none */
     struct dalcs_turns turns;
+    double turns_range;                /* of the values, when turns were first counted */
     struct dalcs_curve_column *column; /* [DALCS_CURVE_COLUMNS] */
 };
 

@@ -2,8 +2,10 @@
 #include "figure.h"
 
 #include "gnuplot.h"
+#include "memory.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -18,13 +20,15 @@ enum { MAX_TURNS = 120, TURNS_AT_END = 8 };
 
 bool dalcs_figure_can_write(const char *path) {
     const char *dot = strrchr(path, '.');
-    return dot && (strcasecmp(dot, ".svg") == 0 || strcasecmp(dot, ".png") == 0);
+    return dot && (strcasecmp(dot, ".svg") == 0 || strcasecmp(dot, ".png") == 0 ||
+                   strcasecmp(dot, ".pdf") == 0);
 }
 
 void dalcs_figure_init(struct dalcs_figure *figure, const char *path, double start, double stop) {
-    *figure = (struct dalcs_figure){.path = path, .view[0] = {.start = start, .stop = stop}};
-    figure->panel[0].unit = DALCS_VOLT;
-    figure->panel[1].unit = DALCS_AMPERE;
+    *figure = (struct dalcs_figure){.path = path,
+                                    .axis = {"time", "s", false},
+                                    .theme = &dalcs_theme_light,
+                                    .view[0] = {.start = start, .stop = stop}};
 }
 
 /* Where there are too many signals, outputs come first, then inductor and diode currents. */
@@ -38,13 +42,14 @@ static int rank_signal(const char *name) {
     return 1;
 }
 
-static void choose_signals(struct dalcs_figure_panel *panel, const struct dalcs_plot *plot) {
+void dalcs_figure_choose(struct dalcs_figure_panel *panel, const char *const *name,
+                         const int *group, size_t n, int wanted) {
     enum { N_RANKS = 3 };
 
     size_t n_of_rank[N_RANKS] = {0};
     size_t room[N_RANKS];
-    for (size_t i = 0; i < plot->n_signals; i++) {
-        n_of_rank[rank_signal(plot->name[i])] += plot->unit[i] == panel->unit ? 1 : 0;
+    for (size_t i = 0; i < n; i++) {
+        n_of_rank[rank_signal(name[i])] += group[i] == wanted ? 1 : 0;
     }
     size_t left = DALCS_FIGURE_MAX_CURVES;
     for (int rank = 0; rank < N_RANKS; rank++) {
@@ -52,9 +57,9 @@ static void choose_signals(struct dalcs_figure_panel *panel, const struct dalcs_
         left -= room[rank];
         panel->n_left_out += n_of_rank[rank] - room[rank];
     }
-    for (size_t i = 0; i < plot->n_signals; i++) {
-        int rank = rank_signal(plot->name[i]);
-        if (plot->unit[i] == panel->unit && room[rank] > 0) {
+    for (size_t i = 0; i < n; i++) {
+        int rank = rank_signal(name[i]);
+        if (group[i] == wanted && room[rank] > 0) {
             room[rank]--;
             panel->signal[panel->n++] = i;
         }
@@ -64,48 +69,67 @@ static void choose_signals(struct dalcs_figure_panel *panel, const struct dalcs_
 static enum dalcs_status init_view(struct dalcs_figure *figure, double start, double stop) {
     struct dalcs_figure_view *view = &figure->view[figure->n_views++];
     *view = (struct dalcs_figure_view){.start = start, .stop = stop};
-    for (int p = 0; p < 2; p++) {
+    for (int p = 0; p < figure->n_panels; p++) {
         for (int i = 0; i < figure->panel[p].n; i++) {
-            enum dalcs_status status = dalcs_curve_init(&view->curve[p][i], start, stop);
-            if (status != DALCS_OK) {
-                return status;
-            }
+            DALCS_TRY(dalcs_curve_init(&view->curve[p][i], start, stop));
+            view->curve[p][i].logarithmic = figure->axis.logarithmic;
         }
     }
     return DALCS_OK;
 }
 
-/* value[] are those of panel 0's curves, then of panel 1's. */
+/* value[] are those of panel 0's curves, then of the next ones'. */
 static void add_to_view(struct dalcs_figure *figure, int v, double time, const double *value) {
-    for (int p = 0; p < 2; p++) {
+    for (int p = 0; p < figure->n_panels; p++) {
         for (int i = 0; i < figure->panel[p].n; i++) {
             dalcs_curve_add(&figure->view[v].curve[p][i], time, *value++);
         }
     }
 }
 
+enum dalcs_status dalcs_figure_begin_panels(struct dalcs_figure *figure, const char *title,
+                                            const char *const *name,
+                                            const struct dalcs_figure_panel *panel, int n_panels) {
+    size_t n = 0;
+    figure->title = title ? title : "";
+    figure->name = name;
+    figure->n_panels = n_panels;
+    for (int p = 0; p < n_panels; p++) {
+        figure->panel[p] = panel[p];
+        n += (size_t)panel[p].n;
+    }
+    DALCS_TRY(init_view(figure, figure->view[0].start, figure->view[0].stop));
+    DALCS_TRY(dalcs_tail_init(&figure->tail, n));
+    return figure->path ? dalcs_atomic_file_open(&figure->file, figure->path) : DALCS_OK;
+}
+
 enum dalcs_status dalcs_figure_begin(struct dalcs_figure *figure, const struct dalcs_plot *plot) {
     if (plot->analysis != DALCS_TRANSIENT || plot->n_signals == 0) {
         return DALCS_OK;
     }
-    figure->plot = plot;
-    choose_signals(&figure->panel[0], plot);
-    choose_signals(&figure->panel[1], plot);
-    enum dalcs_status status = init_view(figure, figure->view[0].start, figure->view[0].stop);
-    if (status == DALCS_OK) {
-        status = dalcs_tail_init(&figure->tail, (size_t)(figure->panel[0].n + figure->panel[1].n));
+    struct dalcs_figure_panel panel[2] = {{.quantity = "voltage", .unit = "V"},
+                                          {.quantity = "current", .unit = "A"}};
+    int *group = dalcs_alloc(plot->n_signals, sizeof *group);
+    if (!group) {
+        return DALCS_E_NOMEM;
     }
-    return status == DALCS_OK ? dalcs_atomic_file_open(&figure->file, figure->path) : status;
+    for (size_t i = 0; i < plot->n_signals; i++) {
+        group[i] = plot->unit[i] == DALCS_VOLT ? 0 : 1;
+    }
+    dalcs_figure_choose(&panel[0], plot->name, group, plot->n_signals, 0);
+    dalcs_figure_choose(&panel[1], plot->name, group, plot->n_signals, 1);
+    free(group);
+    return dalcs_figure_begin_panels(figure, plot->title, plot->name, panel, 2);
 }
 
 void dalcs_figure_row(struct dalcs_figure *figure, double time, const double *value) {
-    if (!figure->plot) {
+    if (!figure->name) {
         return;
     }
     figure->n_rows++;
-    double chosen[2 * DALCS_FIGURE_MAX_CURVES];
+    double chosen[DALCS_FIGURE_MAX_PANELS * DALCS_FIGURE_MAX_CURVES];
     int n = 0;
-    for (int p = 0; p < 2; p++) {
+    for (int p = 0; p < figure->n_panels; p++) {
         for (int i = 0; i < figure->panel[p].n; i++) {
             chosen[n++] = value[figure->panel[p].signal[i]];
         }
@@ -119,7 +143,7 @@ static size_t find_densest(const struct dalcs_figure *figure, long *n_turns) {
     const struct dalcs_figure_view *view = &figure->view[0];
     size_t densest = 0, column = 0;
     *n_turns = 0;
-    for (int p = 0; p < 2; p++) {
+    for (int p = 0; p < figure->n_panels; p++) {
         double visible = VISIBLE * (view->high[p] - view->low[p]);
         for (int i = 0; i < figure->panel[p].n; i++) {
             const struct dalcs_curve *curve = &view->curve[p][i];
@@ -176,7 +200,11 @@ static void find_ranges(const struct dalcs_figure *figure, struct dalcs_figure_v
                         const struct dalcs_report *report) {
     static const bool none[DALCS_CURVE_COLUMNS];
     bool impulsive[DALCS_CURVE_COLUMNS] = {false};
-    const struct dalcs_curve *any = &view->curve[figure->panel[0].n > 0 ? 0 : 1][0];
+    int drawn = 0;
+    while (drawn + 1 < figure->n_panels && figure->panel[drawn].n == 0) {
+        drawn++;
+    }
+    const struct dalcs_curve *any = &view->curve[drawn][0];
     for (size_t j = 0; report && j < report->n_jumps; j++) {
         double time = report->jump[j].time;
         if (time >= view->start && time <= view->stop) {
@@ -186,7 +214,7 @@ static void find_ranges(const struct dalcs_figure *figure, struct dalcs_figure_v
             }
         }
     }
-    for (int p = 0; p < 2; p++) {
+    for (int p = 0; p < figure->n_panels; p++) {
         double low = INFINITY, high = -INFINITY, all_low = INFINITY, all_high = -INFINITY;
         for (int i = 0; i < figure->panel[p].n; i++) {
             dalcs_curve_widen_range(&view->curve[p][i], none, &all_low, &all_high);
@@ -224,13 +252,23 @@ enum dalcs_status dalcs_figure_draw(struct dalcs_figure *figure, const struct da
     if (left_at) {
         *left_at = NULL;
     }
-    if (!figure->plot || figure->n_rows == 0) {
+    if (!figure->name || figure->n_rows == 0) {
         return DALCS_OK;
     }
+    struct dalcs_conduction conduction = {0};
     enum dalcs_status status = dalcs_figure_compose(figure, report);
+    /* Where events were dropped nobody knows who conducts at the end. */
+    if (status == DALCS_OK && report && !figure->conduction && report->n_events_dropped == 0) {
+        status = dalcs_conduction_add_report(&conduction, report);
+        dalcs_conduction_sort(&conduction);
+        figure->conduction = &conduction;
+        figure->bars = true;
+    }
     if (status == DALCS_OK) {
         status = dalcs_gnuplot_draw(figure);
     }
+    figure->conduction = figure->conduction == &conduction ? NULL : figure->conduction;
+    dalcs_conduction_finish(&conduction);
     if (status != DALCS_OK) {
         return status;
     }
@@ -240,7 +278,7 @@ enum dalcs_status dalcs_figure_draw(struct dalcs_figure *figure, const struct da
 
 void dalcs_figure_finish(struct dalcs_figure *figure) {
     for (int v = 0; v < figure->n_views; v++) {
-        for (int p = 0; p < 2; p++) {
+        for (int p = 0; p < figure->n_panels; p++) {
             for (int i = 0; i < figure->panel[p].n; i++) {
                 dalcs_curve_finish(&figure->view[v].curve[p][i]);
             }

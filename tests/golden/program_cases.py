@@ -136,7 +136,7 @@ class Usage(Case):
                           self.refused("run", "a.cir", "--compress", value))
         self.assertIn("choose one", self.refused("run", "a.cir", "--compress", "1m", "--at", "x"))
         self.assertIn(".csv or .raw", self.refused("run", "a.cir", "-o", "out.txt"))
-        self.assertIn(".svg or .png", self.refused("run", "a.cir", "--plot", "p.pdf"))
+        self.assertIn(".svg, .png or .pdf", self.refused("run", "a.cir", "--plot", "p.gif"))
         self.assertIn("no netlist", self.refused("run"))
         self.assertIn("one too many", self.refused("run", "a.cir", "a.cir"))
         self.assertIn("two results", self.refused("run", "a.cir", "-o", "x.csv", "-o", "x.csv"))
@@ -620,7 +620,8 @@ class Plot(Case):
         self.dalcs("run", self.write(RECTIFIER), "-q", "--plot", "p.PNG")
         data = self.path("p.PNG").read_bytes()
         self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
-        self.assertEqual(struct.unpack(">II", data[16:24]), (1200, 720))
+        # Two panels and the bar of a diode.
+        self.assertEqual(struct.unpack(">II", data[16:24]), (1200, 772))
 
     def test_without_gnuplot(self):
         done = self.dalcs("run", self.write(RECTIFIER), "-o", "out.csv", "--plot", "p.svg",

@@ -166,6 +166,23 @@ START_TEST(test_noise_is_constant) {
 
 END_TEST
 
+/* Nor does noise make one of a signal that moves later. */
+START_TEST(test_noise_before_a_step) {
+    struct dalcs_figure figure;
+    dalcs_figure_init(&figure, "a.svg", 0.0, 1.0);
+    ck_assert_int_eq(dalcs_figure_begin(&figure, &two_signals), DALCS_OK);
+    for (int i = 0; i <= 1000; i++) {
+        double noise = i % 2 == 0 ? 0.0 : 2e-16;
+        const double value[] = {i < 500 ? 4.0 + 4.0 * noise : 6.0, i < 500 ? noise : 1.0};
+        dalcs_figure_row(&figure, 1e-3 * i, value);
+    }
+    ck_assert_int_eq(dalcs_figure_compose(&figure, NULL), DALCS_OK);
+    ck_assert_int_eq(figure.n_views, 1);
+    dalcs_figure_finish(&figure);
+}
+
+END_TEST
+
 static char *write_script(const char *title, const char *signal) {
     const enum dalcs_unit unit = DALCS_AMPERE;
     const struct dalcs_plot plot = {.analysis = DALCS_TRANSIENT,
@@ -218,5 +235,5 @@ START_TEST(test_units) {
 END_TEST
 
 RUN_SUITE("figure", test_curve_keeps_extremes, test_curve_keeps_order, test_choice_of_signals,
-          test_end_of_dense_run, test_impulse_leaves_scale, test_noise_is_constant, test_quoting,
-          test_units)
+          test_end_of_dense_run, test_impulse_leaves_scale, test_noise_is_constant,
+          test_noise_before_a_step, test_quoting, test_units)

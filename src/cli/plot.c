@@ -1,0 +1,281 @@
+/* plot.c - `dalcs plot`: read a file of waveforms, choose, draw. */
+#include "cli.h"
+
+#include "page.h"
+#include "plot_arguments.h"
+#include "report_reader.h"
+#include "text_plot.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char help[] =
+    "usage: dalcs plot FILE [options]\n"
+    "\n"
+    "Draws the waveforms of a .raw or .csv file, of dalcs or of another SPICE: a panel for each\n"
+    "unit, and below them when diodes and switches conduct. Without -o it draws on the terminal.\n"
+    "\n"
+    "  -o, --output FILE   what is drawn, by its name: .svg, .png or .pdf with gnuplot, .html for\n"
+    "                      a page with zoom, cursors and a list of the signals\n"
+    "  -s, --signals LIST  signals and expressions of them, separated by commas:\n"
+    "                      'v(out),v(a,b)' 'v(out)*i(r1)' 'db(v(out))'; may be repeated: each\n"
+    "                      list gets panels of its own (default: all, the most telling first)\n"
+    "      --from T, --to T  the range of the time axis, SPICE suffixes allowed: 1m\n"
+    "      --report FILE   take the events from what dalcs run --report wrote; without it\n"
+    "                      conduction is read off the currents i(d1), i(s1) in FILE\n"
+    "      --events        mark events and jumps with lines\n"
+    "      --no-bars       leave out when diodes and switches conduct\n"
+    "      --theme NAME    light (default) or dark\n"
+    "      --plot N        which plot of a .raw file with several (default: the last with rows)\n"
+    "      --run N         which run of a sweep, where the axis starts again (default: 1)\n"
+    "  -q, --quiet         print nothing but warnings and errors\n"
+    "  -h, --help          this text\n"
+    "\n"
+    "examples:\n"
+    "  dalcs plot buck.raw\n"
+    "  dalcs plot buck.raw -s 'v(sw),v(out)' -s 'i(l1)' --from 0.9m -o buck.svg\n"
+    "  dalcs plot buck.raw --report buck.json --events --from 0.97m -o buck.png\n"
+    "  dalcs plot buck.raw -o buck.html\n"
+    "\n"
+    "exit status: 0 ok, 2 usage, or the file holds no such waveforms, 4 input/output\n";
+
+/* What a drawing is made of. */
+struct drawing {
+    const struct dalcs_cli *cli;
+    const struct dalcs_plot_arguments *arguments;
+    struct dalcs_diag diag;
+    size_t n_written; /* messages */
+    struct dalcs_waveforms waveforms;
+    struct dalcs_selection selection;
+    struct dalcs_conduction conduction;
+    const char *title;
+};
+
+static void write_messages(struct drawing *drawing) {
+    for (; drawing->n_written < drawing->diag.n; drawing->n_written++) {
+        const struct dalcs_diagnostic *item = &drawing->diag.item[drawing->n_written];
+        if (item->severity != DALCS_NOTE || !drawing->arguments->quiet) {
+            fprintf(drawing->cli->err, "dalcs: %s\n", item->text);
+        }
+    }
+}
+
+/* ---- The file ------------------------------------------------------------------------------- */
+
+/* Where a sweep or several starts follow one another, one of them. */
+static enum dalcs_status choose_run(struct drawing *drawing) {
+    struct dalcs_waveforms *waveforms = &drawing->waveforms;
+    size_t first = 0, end = 0, run = drawing->arguments->run > 0 ? drawing->arguments->run : 1;
+    size_t n = dalcs_waveforms_find_run(waveforms, run, &first, &end);
+    if (waveforms->n_rows > 0 && run > n) {
+        dalcs_diag_add(&drawing->diag, DALCS_ERROR, NULL, NULL,
+                       "'%s' has %zu run%s: there is no run %zu", drawing->arguments->file, n,
+                       n == 1 ? "" : "s", run);
+        return DALCS_E_OPTION;
+    }
+    if (n > 1 && drawing->arguments->run == 0) {
+        dalcs_diag_add(&drawing->diag, DALCS_NOTE, NULL, NULL,
+                       "%s starts again: this is the first of %zu runs; --run N draws another",
+                       waveforms->name[0], n);
+    }
+    dalcs_waveforms_keep_rows(waveforms, first, end);
+    return DALCS_OK;
+}
+
+static enum dalcs_status read_file(struct drawing *drawing) {
+    const struct dalcs_plot_arguments *arguments = drawing->arguments;
+    struct dalcs_waveforms *waveforms = &drawing->waveforms;
+    DALCS_TRY(
+        dalcs_waveforms_read_file(waveforms, arguments->file, arguments->plot, &drawing->diag));
+    if (waveforms->n_plots > 1 && arguments->plot == 0) {
+        dalcs_diag_add(&drawing->diag, DALCS_NOTE, NULL, NULL,
+                       "this is plot %zu of %zu, %s; --plot N draws another", waveforms->plot,
+                       waveforms->n_plots, waveforms->plot_name);
+    }
+    DALCS_TRY(choose_run(drawing));
+    const char *slash = strrchr(arguments->file, '/');
+    drawing->title = waveforms->title[strspn(waveforms->title, "* ")] ? waveforms->title
+                     : slash                                          ? slash + 1
+                                                                      : arguments->file;
+    DALCS_TRY(dalcs_selection_make(&drawing->selection, waveforms, arguments->group,
+                                   arguments->n_groups, arguments->from, arguments->to,
+                                   &drawing->diag));
+    if (arguments->report) {
+        DALCS_TRY(
+            dalcs_report_reader_read(arguments->report, &drawing->conduction, &drawing->diag));
+    }
+    return dalcs_selection_add_conduction(&drawing->selection, &drawing->conduction);
+}
+
+/* ---- Drawing -------------------------------------------------------------------------------- */
+
+static enum dalcs_status add_row(void *user, double at, const double *value) {
+    dalcs_figure_row(user, at, value);
+    return DALCS_OK;
+}
+
+static enum dalcs_status compose(struct drawing *drawing, struct dalcs_figure *figure) {
+    const struct dalcs_selection *selection = &drawing->selection;
+    const struct dalcs_plot_arguments *arguments = drawing->arguments;
+    dalcs_figure_init(figure, arguments->output, selection->start, selection->stop);
+    figure->axis = selection->axis;
+    figure->theme = arguments->theme;
+    figure->conduction = &drawing->conduction;
+    figure->bars = !arguments->no_bars;
+    figure->marks = arguments->marks;
+    DALCS_TRY(dalcs_figure_begin_panels(figure, drawing->title, selection->name, selection->panel,
+                                        selection->n_panels));
+    return dalcs_selection_each_row(selection, add_row, figure);
+}
+
+static enum dalcs_status refuse_output(const struct drawing *drawing, int error) {
+    dalcs_cli_error(drawing->cli, "cannot write '%s': %s", drawing->arguments->output,
+                    strerror(error));
+    return DALCS_E_IO;
+}
+
+static enum dalcs_status draw_picture(struct drawing *drawing) {
+    struct dalcs_figure figure;
+    enum dalcs_status status = compose(drawing, &figure);
+    if (status == DALCS_OK) {
+        status = dalcs_figure_draw(&figure, NULL, NULL);
+    }
+    if (figure.message[0]) {
+        dalcs_cli_error(drawing->cli, "cannot draw '%s': %s", figure.path, figure.message);
+    } else if (figure.file.error != 0) {
+        status = refuse_output(drawing, figure.file.error);
+    }
+    dalcs_figure_finish(&figure);
+    return status;
+}
+
+static enum dalcs_status draw_page(struct drawing *drawing) {
+    const struct dalcs_plot_arguments *arguments = drawing->arguments;
+    static const struct dalcs_conduction none;
+    struct dalcs_atomic_file file = {0};
+    if (!dalcs_page_is_available()) {
+        dalcs_diag_add(&drawing->diag, DALCS_ERROR, NULL,
+                       "install it (on Debian: apt-get install libjs-dygraphs) and build again",
+                       "cannot write '%s': this dalcs was built without the library dygraphs",
+                       arguments->output);
+        return DALCS_E_OPTION;
+    }
+    enum dalcs_status status = dalcs_atomic_file_open(&file, arguments->output);
+    if (status == DALCS_OK) {
+        status = dalcs_page_write(file.stream, &drawing->selection,
+                                  arguments->no_bars ? &none : &drawing->conduction,
+                                  drawing->title + strspn(drawing->title, "* "), arguments->theme,
+                                  arguments->marks, &drawing->diag);
+    }
+    if (status == DALCS_OK && ferror(file.stream)) {
+        int error = errno != 0 ? errno : EIO;
+        dalcs_atomic_file_discard(&file);
+        file.error = error;
+        status = DALCS_E_IO;
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_atomic_file_commit(&file);
+    }
+    if (file.error != 0) {
+        status = refuse_output(drawing, file.error);
+    }
+    dalcs_atomic_file_discard(&file);
+    return status;
+}
+
+static int terminal_width(FILE *stream) {
+    struct winsize size;
+    const char *columns = getenv("COLUMNS");
+    if (columns && atoi(columns) > 0) {
+        return atoi(columns);
+    }
+    bool known = ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    return known ? size.ws_col : 80;
+}
+
+/* What the locale says that the terminal shows. */
+static bool shows_unicode(void) {
+    static const char *const variable[] = {"LC_ALL", "LC_CTYPE", "LANG"};
+    for (size_t i = 0; i < sizeof variable / sizeof variable[0]; i++) {
+        const char *value = getenv(variable[i]);
+        if (value && *value) {
+            return strstr(value, "UTF-8") || strstr(value, "utf8") || strstr(value, "UTF8");
+        }
+    }
+    return false;
+}
+
+static enum dalcs_status draw_text(struct drawing *drawing) {
+    FILE *out = drawing->cli->out;
+    bool colors = isatty(fileno(out)) == 1 && !getenv("NO_COLOR");
+    const struct dalcs_text_plot_options options = {terminal_width(out), shows_unicode(), colors};
+    struct dalcs_figure figure;
+    enum dalcs_status status = compose(drawing, &figure);
+    if (status == DALCS_OK) {
+        status = dalcs_text_plot_write(out, &figure, &options);
+    }
+    dalcs_figure_finish(&figure);
+    return status;
+}
+
+/* The output must not take the place of what was read. */
+static enum dalcs_status check_paths(const struct dalcs_cli *cli,
+                                     const struct dalcs_plot_arguments *arguments) {
+    const char *const input[] = {arguments->file, arguments->report};
+    struct stat a, b;
+    for (size_t i = 0; i < 2 && arguments->output; i++) {
+        if (input[i] && stat(input[i], &a) == 0 && stat(arguments->output, &b) == 0 &&
+            a.st_dev == b.st_dev && a.st_ino == b.st_ino) {
+            dalcs_cli_error(cli, "'%s' is what is read: give another name with -o",
+                            arguments->output);
+            return DALCS_E_OPTION;
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status draw(const struct dalcs_cli *cli,
+                              const struct dalcs_plot_arguments *arguments) {
+    struct drawing drawing = {.cli = cli, .arguments = arguments};
+    enum dalcs_status status = check_paths(cli, arguments);
+    if (status == DALCS_OK) {
+        status = read_file(&drawing);
+        write_messages(&drawing);
+        if (status == DALCS_OK) {
+            status = !arguments->output   ? draw_text(&drawing)
+                     : arguments->is_page ? draw_page(&drawing)
+                                          : draw_picture(&drawing);
+            write_messages(&drawing);
+        }
+        if (status == DALCS_E_NOMEM || drawing.diag.out_of_memory) {
+            dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
+        }
+    }
+    if (status == DALCS_OK && arguments->output && !arguments->quiet) {
+        fprintf(cli->out, "wrote %s\n", arguments->output);
+    }
+    dalcs_conduction_finish(&drawing.conduction);
+    dalcs_selection_finish(&drawing.selection);
+    dalcs_waveforms_finish(&drawing.waveforms);
+    dalcs_diag_finish(&drawing.diag);
+    return status;
+}
+
+enum dalcs_exit dalcs_cli_plot(const struct dalcs_cli *cli, int argc, char **argv) {
+    struct dalcs_plot_arguments arguments;
+    enum dalcs_status status = dalcs_plot_arguments_parse(&arguments, cli, argc, argv);
+    if (status != DALCS_OK) {
+        return dalcs_cli_exit(status);
+    }
+    if (arguments.help) {
+        fputs(help, cli->out);
+    } else {
+        status = draw(cli, &arguments);
+    }
+    dalcs_plot_arguments_finish(&arguments);
+    return dalcs_cli_exit(status);
+}

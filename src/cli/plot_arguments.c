@@ -1,0 +1,169 @@
+/* plot_arguments.c - getopt_long, then checks that need no file. */
+#include "plot_arguments.h"
+
+#include "figure.h"
+#include "memory.h"
+#include "names.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { FROM = 256, TO, REPORT, EVENTS, NO_BARS, THEME, PLOT, RUN };
+
+static const struct option option[] = {{"signals", required_argument, NULL, 's'},
+                                       {"from", required_argument, NULL, FROM},
+                                       {"to", required_argument, NULL, TO},
+                                       {"output", required_argument, NULL, 'o'},
+                                       {"report", required_argument, NULL, REPORT},
+                                       {"events", no_argument, NULL, EVENTS},
+                                       {"no-bars", no_argument, NULL, NO_BARS},
+                                       {"theme", required_argument, NULL, THEME},
+                                       {"plot", required_argument, NULL, PLOT},
+                                       {"run", required_argument, NULL, RUN},
+                                       {"quiet", no_argument, NULL, 'q'},
+                                       {"help", no_argument, NULL, 'h'},
+                                       {NULL, 0, NULL, 0}};
+
+enum { N_OPTIONS = sizeof option / sizeof option[0] - 1 };
+
+static enum dalcs_status refuse(const struct dalcs_cli *cli, int code, char **argv) {
+    const char *word = argv[optind - 1];
+    bool is_long = strncmp(word, "--", 2) == 0;
+    if (code == ':') {
+        dalcs_cli_error(cli, "option '%s' needs a value; see 'dalcs plot --help'", word);
+    } else if (is_long && strchr(word, '=') && optopt != 0) {
+        dalcs_cli_error(cli, "option '%.*s' takes no value", (int)strcspn(word, "="), word);
+    } else if (is_long) {
+        const char *name[N_OPTIONS];
+        for (int i = 0; i < N_OPTIONS; i++) {
+            name[i] = option[i].name;
+        }
+        char typed[64];
+        snprintf(typed, sizeof typed, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+        const char *nearest = dalcs_names_nearest_of(name, N_OPTIONS, typed);
+        dalcs_cli_error(cli, "unknown option '--%s'%s%s%s", typed,
+                        nearest ? "; did you mean '--" : "", nearest ? nearest : "",
+                        nearest ? "'?" : "; see 'dalcs plot --help'");
+    } else {
+        dalcs_cli_error(cli, "unknown option '-%c'; see 'dalcs plot --help'", optopt);
+    }
+    return DALCS_E_OPTION;
+}
+
+static enum dalcs_status parse_number(const struct dalcs_cli *cli, const char *name,
+                                      const char *text, double *value) {
+    if (dalcs_parse_number(text, value) != DALCS_OK || !isfinite(*value)) {
+        dalcs_cli_error(cli, "%s: '%s' is not a number; write 1m or 1e-3", name, text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status parse_count(const struct dalcs_cli *cli, const char *name,
+                                     const char *text, size_t *count) {
+    char *rest = NULL;
+    long value = strtol(text, &rest, 10);
+    if (rest == text || *rest != '\0' || value < 1) {
+        dalcs_cli_error(cli, "%s: '%s' is not a number from 1 on", name, text);
+        return DALCS_E_OPTION;
+    }
+    *count = (size_t)value;
+    return DALCS_OK;
+}
+
+static enum dalcs_status parse_output(struct dalcs_plot_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *path) {
+    const char *dot = strrchr(path, '.');
+    arguments->output = path;
+    arguments->is_page = dot && (strcasecmp(dot, ".html") == 0 || strcasecmp(dot, ".htm") == 0);
+    if (!arguments->is_page && !dalcs_figure_can_write(path)) {
+        dalcs_cli_error(cli, "cannot tell the format of '%s': name it .svg, .png, .pdf or .html",
+                        path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status take(struct dalcs_plot_arguments *arguments, const struct dalcs_cli *cli,
+                              int code, char **argv) {
+    switch (code) {
+    case 's':
+        arguments->group[arguments->n_groups++] = optarg;
+        return DALCS_OK;
+    case FROM:
+        return parse_number(cli, "--from", optarg, &arguments->from);
+    case TO:
+        return parse_number(cli, "--to", optarg, &arguments->to);
+    case 'o':
+        return parse_output(arguments, cli, optarg);
+    case REPORT:
+        arguments->report = optarg;
+        return DALCS_OK;
+    case EVENTS:
+        arguments->marks = true;
+        return DALCS_OK;
+    case NO_BARS:
+        arguments->no_bars = true;
+        return DALCS_OK;
+    case THEME:
+        arguments->theme = dalcs_theme_find(optarg);
+        if (!arguments->theme) {
+            dalcs_cli_error(cli, "--theme: '%s' is neither light nor dark", optarg);
+            return DALCS_E_OPTION;
+        }
+        return DALCS_OK;
+    case PLOT:
+        return parse_count(cli, "--plot", optarg, &arguments->plot);
+    case RUN:
+        return parse_count(cli, "--run", optarg, &arguments->run);
+    case 'q':
+        arguments->quiet = true;
+        return DALCS_OK;
+    case 'h':
+        arguments->help = true;
+        return DALCS_OK;
+    default:
+        return refuse(cli, code, argv);
+    }
+}
+
+enum dalcs_status dalcs_plot_arguments_parse(struct dalcs_plot_arguments *arguments,
+                                             const struct dalcs_cli *cli, int argc, char **argv) {
+    *arguments = (struct dalcs_plot_arguments){.from = NAN, .to = NAN, .theme = &dalcs_theme_light};
+    arguments->group = dalcs_alloc((size_t)argc, sizeof *arguments->group);
+    if (!arguments->group) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
+        return DALCS_E_NOMEM;
+    }
+    optind = 0; /* glibc: start afresh */
+    enum dalcs_status status = DALCS_OK;
+    for (int code = 0; status == DALCS_OK && !arguments->help;) {
+        code = getopt_long(argc, argv, ":s:o:qh", option, NULL);
+        if (code < 0) {
+            break;
+        }
+        status = take(arguments, cli, code, argv);
+    }
+    if (status == DALCS_OK && !arguments->help && optind + 1 != argc) {
+        if (optind == argc) {
+            dalcs_cli_error(cli, "no file given; see 'dalcs plot --help'");
+        } else {
+            dalcs_cli_error(cli, "one file at a time: '%s' is one too many", argv[argc - 1]);
+        }
+        status = DALCS_E_OPTION;
+    }
+    if (status != DALCS_OK) {
+        dalcs_plot_arguments_finish(arguments);
+        return status;
+    }
+    arguments->file = arguments->help ? NULL : argv[optind];
+    return DALCS_OK;
+}
+
+void dalcs_plot_arguments_finish(struct dalcs_plot_arguments *arguments) {
+    free(arguments->group);
+    arguments->group = NULL;
+}

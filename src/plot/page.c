@@ -1,0 +1,277 @@
+/* page.c - fills page.html: data as JSON, numbers in it as base64 of their bytes, lowest first. */
+#include "page.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef DALCS_WITH_DYGRAPHS
+#include "embedded.h"
+
+/* A browser holds a string of half a gigabyte; that many values take a quarter of it. */
+enum { MAX_VALUES = 24000000, MAX_EXACT = 1000000 };
+
+/* The table, column after column: the axis, then the signals. */
+struct columns {
+    size_t n_signals, n_rows, room;
+    double *value; /* [(1 + n_signals) * room] */
+};
+
+/* ---- Bytes ---------------------------------------------------------------------------------- */
+
+struct base64 {
+    FILE *stream;
+    unsigned char byte[3];
+    int n;
+};
+
+static void flush_base64(struct base64 *base64) {
+    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const unsigned char *b = base64->byte;
+    if (base64->n == 0) {
+        return;
+    }
+    fputc(digit[b[0] >> 2], base64->stream);
+    fputc(digit[(b[0] & 3) << 4 | b[1] >> 4], base64->stream);
+    fputc(base64->n > 1 ? digit[(b[1] & 15) << 2 | b[2] >> 6] : '=', base64->stream);
+    fputc(base64->n > 2 ? digit[b[2] & 63] : '=', base64->stream);
+    base64->n = 0;
+    memset(base64->byte, 0, sizeof base64->byte);
+}
+
+static void write_bytes(struct base64 *base64, uint64_t bits, int n_bytes) {
+    for (int i = 0; i < n_bytes; i++) {
+        base64->byte[base64->n++] = (unsigned char)(bits >> (8 * i) & 0xff);
+        if (base64->n == 3) {
+            flush_base64(base64);
+        }
+    }
+}
+
+static void write_column(FILE *stream, const double *value, size_t n, bool exact) {
+    struct base64 base64 = {.stream = stream};
+    for (size_t i = 0; i < n; i++) {
+        if (exact) {
+            uint64_t bits = 0;
+            memcpy(&bits, &value[i], sizeof bits);
+            write_bytes(&base64, bits, 8);
+        } else {
+            float rounded = (float)value[i];
+            uint32_t bits = 0;
+            memcpy(&bits, &rounded, sizeof bits);
+            write_bytes(&base64, bits, 4);
+        }
+    }
+    flush_base64(&base64);
+}
+
+/* ---- JSON ----------------------------------------------------------------------------------- */
+
+/* No "<" that could end the script. */
+static void write_string(FILE *stream, const char *text) {
+    fputc('"', stream);
+    for (const char *c = text; *c; c++) {
+        if ((unsigned char)*c < 0x20 || *c == '"' || *c == '\\' || *c == '<') {
+            fprintf(stream, "\\u%04x", (unsigned char)*c);
+        } else {
+            fputc(*c, stream);
+        }
+    }
+    fputc('"', stream);
+}
+
+static void write_number(FILE *stream, double value) {
+    fprintf(stream, isfinite(value) ? "%.17g" : "null", value);
+}
+
+/* The panel of signal i; those that no panel shows belong to the one of their unit. */
+static int panel_of(const struct dalcs_selection *selection, size_t i, bool *shown) {
+    *shown = false;
+    for (int p = 0; p < selection->n_panels; p++) {
+        for (int k = 0; k < selection->panel[p].n; k++) {
+            if (selection->panel[p].signal[k] == i) {
+                *shown = true;
+                return p;
+            }
+        }
+    }
+    char text[DALCS_DIMENSION_TEXT];
+    const char *unit = dalcs_dimension_unit(text, selection->signal[i].dimension);
+    for (int p = 0; p < selection->n_panels; p++) {
+        if (strcmp(selection->panel[p].unit, unit) == 0) {
+            return p;
+        }
+    }
+    return -1;
+}
+
+static void write_signals(FILE *stream, const struct dalcs_selection *selection,
+                          const struct columns *columns, bool exact) {
+    bool first = true;
+    fputs(",\n\"signals\": [", stream);
+    for (size_t i = 0; i < selection->n; i++) {
+        bool shown = false;
+        int panel = panel_of(selection, i, &shown);
+        if (panel < 0) {
+            continue;
+        }
+        fputs(first ? "\n{\"name\": " : ",\n{\"name\": ", stream);
+        write_string(stream, selection->name[i]);
+        fprintf(stream, ", \"panel\": %d, \"shown\": %s, \"values\": \"", panel,
+                shown ? "true" : "false");
+        write_column(stream, columns->value + (1 + i) * columns->room, columns->n_rows, exact);
+        fputs("\"}", stream);
+        first = false;
+    }
+    fputs("]", stream);
+}
+
+static void write_panels(FILE *stream, const struct dalcs_selection *selection) {
+    fputs(",\n\"panels\": [", stream);
+    for (int p = 0; p < selection->n_panels; p++) {
+        fputs(p > 0 ? ", {\"quantity\": " : "{\"quantity\": ", stream);
+        write_string(stream, selection->panel[p].quantity);
+        fputs(", \"unit\": ", stream);
+        write_string(stream, selection->panel[p].unit);
+        fputs("}", stream);
+    }
+    fputs("]", stream);
+}
+
+static void write_conduction(FILE *stream, const struct dalcs_conduction *conduction) {
+    fputs(",\n\"bars\": [", stream);
+    for (size_t k = 0; k < conduction->n; k++) {
+        const struct dalcs_conduction_element *element = &conduction->element[k];
+        fputs(k > 0 ? ",\n{\"name\": " : "\n{\"name\": ", stream);
+        write_string(stream, element->name);
+        fprintf(stream, ", \"on\": %s, \"times\": [", element->on_before ? "true" : "false");
+        for (size_t i = 0; i < element->n; i++) {
+            fputs(i > 0 ? "," : "", stream);
+            write_number(stream, element->change[i].time);
+        }
+        fputs("]}", stream);
+    }
+    fputs("],\n\"jumps\": [", stream);
+    for (size_t i = 0; i < conduction->n_jumps; i++) {
+        fputs(i > 0 ? "," : "", stream);
+        write_number(stream, conduction->jump[i]);
+    }
+    fputs("]", stream);
+}
+
+static void write_run(FILE *stream, const struct dalcs_selection *selection,
+                      const struct columns *columns, const struct dalcs_conduction *conduction,
+                      bool marks) {
+    bool exact = columns->n_signals * columns->n_rows <= MAX_EXACT;
+    fputs("{\"axis\": {\"name\": ", stream);
+    write_string(stream, selection->axis.quantity);
+    fputs(", \"unit\": ", stream);
+    write_string(stream, selection->axis.unit);
+    fprintf(stream, ", \"log\": %s},\n\"marks\": %s, \"bits\": %d,\n\"at\": \"",
+            selection->axis.logarithmic ? "true" : "false", marks ? "true" : "false",
+            exact ? 64 : 32);
+    write_column(stream, columns->value, columns->n_rows, true);
+    fputs("\"", stream);
+    write_panels(stream, selection);
+    write_signals(stream, selection, columns, exact);
+    write_conduction(stream, conduction);
+    fputs("}", stream);
+}
+
+/* ---- The page ------------------------------------------------------------------------------- */
+
+static void write_text(FILE *stream, const char *text) {
+    for (const char *c = text; *c; c++) {
+        if (*c == '<' || *c == '&' || *c == '>' || *c == '"') {
+            fprintf(stream, "&#%d;", *c);
+        } else {
+            fputc((unsigned char)*c < 0x20 ? ' ' : *c, stream);
+        }
+    }
+}
+
+static enum dalcs_status add_row(void *user, double at, const double *value) {
+    struct columns *columns = user;
+    if (columns->n_rows == columns->room) {
+        return DALCS_E_INTERNAL;
+    }
+    size_t row = columns->n_rows++;
+    columns->value[row] = at;
+    for (size_t i = 0; i < columns->n_signals; i++) {
+        columns->value[(1 + i) * columns->room + row] = value[i];
+    }
+    return DALCS_OK;
+}
+
+bool dalcs_page_is_available(void) {
+    return true;
+}
+
+enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *selection,
+                                   const struct dalcs_conduction *conduction, const char *title,
+                                   const struct dalcs_theme *theme, bool marks,
+                                   struct dalcs_diag *diag) {
+    struct columns columns = {.n_signals = selection->n,
+                              .room = dalcs_selection_count_rows(selection) + 2};
+    if (columns.room > MAX_VALUES / (columns.n_signals + 1)) {
+        dalcs_diag_add(diag, DALCS_ERROR, NULL, "choose signals with -s, or a range",
+                       "%zu rows of %zu signals are too much for a page", columns.room,
+                       columns.n_signals);
+        return DALCS_E_LIMIT;
+    }
+    columns.value = dalcs_alloc((1 + columns.n_signals) * columns.room, sizeof *columns.value);
+    if (!columns.value) {
+        return DALCS_E_NOMEM;
+    }
+    enum dalcs_status status = dalcs_selection_each_row(selection, add_row, &columns);
+    for (const char *c = dalcs_embedded_page_html; status == DALCS_OK && *c;) {
+        const char *mark = strchr(c, '@');
+        fwrite(c, 1, mark ? (size_t)(mark - c) : strlen(c), stream);
+        if (!mark) {
+            break;
+        }
+        const char *name = mark + 1, *end = strchr(name, '@');
+        size_t length = (size_t)(end - name);
+        if (strncmp(name, "theme", length) == 0) {
+            fputs(theme->name, stream);
+        } else if (strncmp(name, "title", length) == 0) {
+            write_text(stream, title);
+        } else if (strncmp(name, "run", length) == 0) {
+            write_run(stream, selection, &columns, conduction, marks);
+        } else if (strncmp(name, "page.css", length) == 0) {
+            fputs(dalcs_embedded_page_css, stream);
+        } else if (strncmp(name, "page.js", length) == 0) {
+            fputs(dalcs_embedded_page_js, stream);
+        } else if (strncmp(name, "library.css", length) == 0) {
+            fputs(dalcs_embedded_library_css, stream);
+        } else {
+            fputs(dalcs_embedded_library_js, stream);
+        }
+        c = end + 1;
+    }
+    free(columns.value);
+    return status;
+}
+
+#else
+
+bool dalcs_page_is_available(void) {
+    return false;
+}
+
+enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *selection,
+                                   const struct dalcs_conduction *conduction, const char *title,
+                                   const struct dalcs_theme *theme, bool marks,
+                                   struct dalcs_diag *diag) {
+    (void)stream;
+    (void)selection;
+    (void)conduction;
+    (void)title;
+    (void)theme;
+    (void)marks;
+    dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "this dalcs was built without dygraphs");
+    return DALCS_E_OPTION;
+}
+
+#endif

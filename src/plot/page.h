@@ -1,0 +1,20 @@
+/* page.h - waveforms as one HTML file to look around in: zoom, cursors, a list of signals. It loads
+ * nothing from anywhere. */
+#ifndef DALCS_PAGE_H
+#define DALCS_PAGE_H
+
+#include "selection.h"
+
+#include <stdio.h>
+
+/* False where the program was built without dygraphs. */
+bool dalcs_page_is_available(void);
+
+/* All signals of the selection are in the page; those of its panels are shown at first. Errors of the
+ * stream stay there. DALCS_E_LIMIT comes with a message: too many values for one page. */
+enum dalcs_status dalcs_page_write(FILE *stream, const struct dalcs_selection *selection,
+                                   const struct dalcs_conduction *conduction, const char *title,
+                                   const struct dalcs_theme *theme, bool marks,
+                                   struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
+#endif

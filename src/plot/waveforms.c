@@ -1,0 +1,108 @@
+/* waveforms.c - the table itself; raw_reader.c and csv_reader.c fill it. */
+#include "waveforms.h"
+
+#include "text_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* More than a run of an hour writes, and less than what makes a machine swap for long. */
+static const size_t most_bytes = (size_t)4 << 30;
+
+enum dalcs_status dalcs_waveforms_read_text(struct dalcs_waveforms *waveforms, const char *path,
+                                            const char *text, size_t length, size_t plot,
+                                            struct dalcs_diag *diag) {
+    *waveforms = (struct dalcs_waveforms){.title = "", .plot_name = ""};
+    enum dalcs_status status =
+        dalcs_waveforms_is_raw(text, length)
+            ? dalcs_waveforms_read_raw(waveforms, path, text, length, plot, diag)
+            : dalcs_waveforms_read_csv(waveforms, path, text, length, diag);
+    if (status != DALCS_OK) {
+        dalcs_waveforms_finish(waveforms);
+    }
+    return status;
+}
+
+enum dalcs_status dalcs_waveforms_read_file(struct dalcs_waveforms *waveforms, const char *path,
+                                            size_t plot, struct dalcs_diag *diag) {
+    char *text = NULL;
+    size_t length = 0;
+    *waveforms = (struct dalcs_waveforms){0};
+    DALCS_TRY(dalcs_text_file_read(path, most_bytes, &text, &length, NULL, diag));
+    if (length > most_bytes) {
+        dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL, "'%s' is larger than 4 GiB", path);
+        free(text);
+        return DALCS_E_LIMIT;
+    }
+    char *ended = realloc(text, length + 1);
+    if (!ended) {
+        free(text);
+        return DALCS_E_NOMEM;
+    }
+    ended[length] = '\0';
+    enum dalcs_status status =
+        dalcs_waveforms_read_text(waveforms, path, ended, length, plot, diag);
+    free(ended);
+    return status;
+}
+
+enum dalcs_status dalcs_waveforms_set_columns(struct dalcs_waveforms *waveforms, size_t n_columns) {
+    waveforms->name = dalcs_arena_alloc(&waveforms->arena, n_columns, sizeof *waveforms->name);
+    waveforms->dimension =
+        dalcs_arena_alloc(&waveforms->arena, n_columns, sizeof *waveforms->dimension);
+    waveforms->n_columns = n_columns;
+    return waveforms->name && waveforms->dimension ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+static double axis_at(const struct dalcs_waveforms *waveforms, size_t row) {
+    return waveforms->value[row * waveforms->n_columns];
+}
+
+size_t dalcs_waveforms_find_run(const struct dalcs_waveforms *waveforms, size_t run, size_t *first,
+                                size_t *end) {
+    size_t n = 0, start = 0;
+    int direction = 0; /* not known where all rows so far have one place */
+    *first = *end = 0;
+    for (size_t row = 1; row <= waveforms->n_rows; row++) {
+        bool last = row == waveforms->n_rows;
+        double step = last ? 0.0 : axis_at(waveforms, row) - axis_at(waveforms, row - 1);
+        if (last || step * direction < 0.0) {
+            n++;
+            if (n == run) {
+                *first = start;
+                *end = row;
+            }
+            start = row;
+            direction = 0;
+        } else if (direction == 0) {
+            direction = step > 0.0 ? 1 : step < 0.0 ? -1 : 0;
+        }
+    }
+    return n;
+}
+
+static void swap_rows(double *a, double *b, size_t n) {
+    for (size_t i = 0; i < n; i++) {
+        double kept = a[i];
+        a[i] = b[i];
+        b[i] = kept;
+    }
+}
+
+void dalcs_waveforms_keep_rows(struct dalcs_waveforms *waveforms, size_t first, size_t end) {
+    size_t n = waveforms->n_columns;
+    memmove(waveforms->value, waveforms->value + first * n, (end - first) * n * sizeof(double));
+    waveforms->n_rows = end - first;
+    if (end - first < 2 || axis_at(waveforms, 0) <= axis_at(waveforms, end - first - 1)) {
+        return;
+    }
+    for (size_t i = 0, j = waveforms->n_rows - 1; i < j; i++, j--) {
+        swap_rows(waveforms->value + i * n, waveforms->value + j * n, n);
+    }
+}
+
+void dalcs_waveforms_finish(struct dalcs_waveforms *waveforms) {
+    free(waveforms->value);
+    dalcs_arena_finish(&waveforms->arena);
+    *waveforms = (struct dalcs_waveforms){0};
+}

@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+"""Draws with each allocation failing in turn: the program must end with a message and leave no file.
+
+usage: allocations.py DALCS FAIL_MALLOC
+"""
+
+import pathlib
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "alloc"))
+sys.path.insert(0, str(ROOT / "tests" / "support"))
+
+import dalcs_program  # noqa: E402
+import preload  # noqa: E402
+
+TABLE = "time,v(a),\"v(a,b)\",i(d1)\n" + "".join(f"{k},{k % 3},1,{k % 2}\n" for k in range(40))
+REPORT = '{"events": [{"time": 3, "element": "d9", "state": "on"}], "jumps": [{"time": 4}]}'
+DRAWINGS = {
+    "terminal": ["-s", "v(a)*i(d1),v(a)-v(a,b)", "--from", "2.5"],
+    "page": ["-o", "a.html"],
+    "report": ["-o", "a.html", "--report", "a.json", "--events"],
+    "mistake": ["-s", "v(aa)"],
+}
+
+
+def main(program, library):
+    checker = dalcs_program.Checker("allocations of dalcs plot")
+    for name, options in DRAWINGS.items():
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            (folder / "a.csv").write_text(TABLE)
+            (folder / "a.json").write_text(REPORT)
+            command = [program, "plot", "a.csv", *options]
+            done, tally = preload.run_preloaded(library, command, folder)
+            if b"without the library" in done.stderr:
+                continue
+            expected = done.returncode
+            for at in range(1, tally.calls + 1):
+                (folder / "a.html").unlink(missing_ok=True)
+                done, _ = preload.run_preloaded(library, command, folder, DALCS_FAIL_AT=at)
+                where = f"{name}, allocation {at} of {tally.calls}"
+                checker.check(done.returncode >= 0, f"{where}: signal {-done.returncode}")
+                left = sorted(path.name for path in folder.iterdir())
+                if done.returncode == 0:
+                    checker.check(expected == 0, f"{where}: nothing was refused")
+                else:
+                    checker.check(done.stderr.startswith(b"dalcs: "), f"{where}: no message")
+                    checker.check(left == ["a.csv", "a.json", "tally"], f"{where}: left {left}")
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:3]))

@@ -1,0 +1,213 @@
+#!/usr/bin/env python3
+"""dalcs plot from outside: every format, what is refused and how, and that a file that could not be
+finished is not there.
+
+usage: program.py DALCS
+"""
+
+import os
+import pathlib
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.dom.minidom
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUCK = ROOT / "netlists" / "converters" / "buck.cir"
+OK, RUN_FAILED, USAGE, NETLIST, INPUT_OUTPUT = range(5)
+DALCS = ""
+
+
+class Plot(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.holder = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.holder.name)
+        cls.run_program("run", BUCK, "-o", "buck.raw", "-o", "buck.csv", "--report", "buck.json",
+                        "-q")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.holder.cleanup()
+
+    @classmethod
+    def run_program(cls, *arguments, **environment):
+        return subprocess.run([DALCS, *map(str, arguments)], cwd=cls.folder, capture_output=True,
+                              text=True, check=False, stdin=subprocess.DEVNULL,
+                              env={**os.environ, "LC_ALL": "C.UTF-8", **environment})
+
+    def plot(self, *arguments, status=OK, **environment):
+        done = self.run_program("plot", *arguments, **environment)
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        return done
+
+    def refused(self, *arguments, status=USAGE):
+        """The message; no file may be left."""
+        before = sorted(os.listdir(self.folder))
+        done = self.plot(*arguments, status=status)
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+        self.assertEqual(done.stdout, "")
+        return done.stderr
+
+    def texts(self, path):
+        """What is written in an SVG."""
+        document = xml.dom.minidom.parse(str(self.folder / path))
+        found = []
+        for node in document.getElementsByTagName("text"):
+            parts = []
+            stack = [node]
+            while stack:
+                top = stack.pop(0)
+                if top.nodeType == top.TEXT_NODE:
+                    parts.append(top.data)
+                stack = list(top.childNodes) + stack
+            found.append("".join(parts).strip())
+        return found
+
+    def need_gnuplot(self):
+        if not shutil.which("gnuplot"):
+            self.skipTest("gnuplot is not installed")
+
+    def test_panels_by_units(self):
+        self.need_gnuplot()
+        done = self.plot("buck.raw", "-s", "v(out),v(out)*i(l1)", "-s", "i(l1)", "--from", "0.95m",
+                         "-o", "a.svg")
+        self.assertEqual(done.stdout, "wrote a.svg\n")
+        texts = self.texts("a.svg")
+        for text in ["Buck converter in continuous conduction", "voltage (V)", "power (W)",
+                     "current (A)", "time (ms)", "v(out)*i(l1)", "s1", "d1", "conducts"]:
+            self.assertIn(text, texts)
+        self.assertNotIn("v(sw)", texts)
+        self.assertNotIn("d1 off, s1 on", texts)
+        again = self.plot("buck.raw", "-s", "v(out),v(out)*i(l1)", "-s", "i(l1)", "--from", "0.95m",
+                          "-o", "b.svg", "-q")
+        self.assertEqual(again.stdout, "")
+        self.assertEqual((self.folder / "a.svg").read_bytes(), (self.folder / "b.svg").read_bytes())
+
+    def test_events_of_a_report(self):
+        self.need_gnuplot()
+        if "without the library" in self.run_program("plot", "buck.csv", "--report",
+                                                     "buck.json").stderr:
+            self.skipTest("built without jansson")
+        self.plot("buck.csv", "--report", "buck.json", "--events", "--from", "0.985m", "-o", "c.svg")
+        texts = self.texts("c.svg")
+        self.assertIn("d1 off, s1 on", texts)
+        self.assertIn("buck.csv", texts)  # a table has no title
+        self.plot("buck.csv", "--events", "--no-bars", "-o", "d.svg")
+        texts = self.texts("d.svg")
+        self.assertTrue(any(text.endswith("events: too many to mark") for text in texts), texts)
+        self.assertNotIn("conducts", texts)
+
+    def test_formats(self):
+        self.need_gnuplot()
+        for name, start in [("e.PNG", b"\x89PNG\r\n\x1a\n"), ("e.pdf", b"%PDF-")]:
+            self.plot("buck.raw", "-o", name, "--theme", "dark")
+            self.assertTrue((self.folder / name).read_bytes().startswith(start))
+        self.plot("buck.raw", "--theme", "dark", "-o", "e.svg")
+        self.assertTrue('fill="#16181c"' in (self.folder / "e.svg").read_text())
+
+    def test_peaks_of_many_rows(self):
+        """Of a million rows each peak is in the picture, which stays small."""
+        self.need_gnuplot()
+        n = 1_000_000
+        header = (f"Title: many\nPlotname: Transient Analysis\nFlags: real\nNo. Variables: 2\n"
+                  f"No. Points: {n}\nVariables:\n\t0\ttime\ttime\n\t1\tv(a)\tvoltage\nBinary:\n")
+        rows = bytearray(struct.pack("=2d", 0.0, 1.0) * n)
+        for k in range(n):
+            struct.pack_into("=d", rows, 16 * k, k * 1e-9)
+        struct.pack_into("=d", rows, 16 * 123_456 + 8, 5.0)
+        (self.folder / "many.raw").write_bytes(header.encode() + rows)
+        self.plot("many.raw", "-o", "many.svg")
+        svg = (self.folder / "many.svg").read_text()
+        self.assertLess(len(svg), 200_000)
+        self.assertIn("5", self.texts("many.svg"))
+        shown = self.plot("many.raw")
+        self.assertIn("5 V", shown.stdout)
+
+    def test_terminal(self):
+        shown = self.plot("buck.raw", COLUMNS="60").stdout
+        lines = shown.splitlines()
+        self.assertEqual(lines[0], "Buck converter in continuous conduction")
+        self.assertTrue(all(len(line) <= 60 for line in lines))
+        self.assertIn("6.061 V", shown)
+        self.assertIn("\u28ff", shown)
+        self.assertNotIn("\033", shown)
+        plain = self.plot("buck.raw", LC_ALL="C").stdout
+        self.assertTrue(plain.isascii())
+
+    def test_several_plots_and_runs(self):
+        two = ("Title: t\nPlotname: {}\nFlags: real\nNo. Variables: 2\nNo. Points: 3\nVariables:\n"
+               "\t0\tv1\tvoltage\n\t1\ti(r1)\tcurrent\nValues:\n")
+        values = "0 0\n 7\n1 1\n 8\n2 {}\n 9\n"
+        (self.folder / "two.raw").write_text(two.format("first") + values.format(2)
+                                             + two.format("second") + values.format(0))
+        done = self.plot("two.raw")
+        self.assertIn("this is plot 2 of 2, second; --plot N draws another", done.stderr)
+        self.assertIn("v1 starts again: this is the first of 2 runs; --run N", done.stderr)
+        self.assertEqual(self.plot("two.raw", "--plot", "1").stderr, "")
+        self.assertIn("one row", self.refused("two.raw", "--run", "2"))
+        self.assertIn("has 2 runs: there is no run 3", self.refused("two.raw", "--run", "3"))
+        self.assertIn("there is no plot 3", self.refused("two.raw", "--plot", "3"))
+
+    def test_refusals(self):
+        for arguments, status, message in [
+                (["buck.raw", "-s", "v(ot)"], USAGE, "no signal 'v(ot)'; did you mean 'v(out)'?"),
+                (["buck.raw", "-s", "v(out"], USAGE, "')' is missing"),
+                (["buck.raw", "--from", "2m"], USAGE, "the file goes from 0 s to 1 ms"),
+                (["buck.raw", "--from", "2u", "--to", "1u"], USAGE, "the range is empty"),
+                (["buck.raw", "--from", "x"], USAGE, "--from: 'x' is not a number"),
+                (["buck.raw", "-o", "a.gif"], USAGE, "name it .svg, .png, .pdf or .html"),
+                (["buck.raw", "--theme", "red"], USAGE, "neither light nor dark"),
+                (["buck.raw", "--run", "0"], USAGE, "--run: '0' is not a number from 1 on"),
+                (["buck.raw", "--sinals", "a"], USAGE, "did you mean '--signals'?"),
+                (["buck.raw", "-s"], USAGE, "option '-s' needs a value"),
+                (["buck.raw", "b.raw"], USAGE, "'b.raw' is one too many"),
+                ([], USAGE, "no file given"),
+                ([BUCK], USAGE, "holds no waveforms"),
+                (["buck.raw", "--report", BUCK], USAGE, "is no report of dalcs run"),
+                (["buck.raw", "--report", "no.json"], INPUT_OUTPUT, "cannot read 'no.json'"),
+                (["no.raw"], INPUT_OUTPUT, "cannot read 'no.raw': No such file"),
+                (["buck.raw", "-o", "no/a.png"], INPUT_OUTPUT, "cannot write 'no/a.png'"),
+                (["buck.raw", "-o", "no/a.html"], INPUT_OUTPUT, "cannot write 'no/a.html'")]:
+            with self.subTest(arguments=arguments):
+                if "--report" in arguments and "jansson" in self.refused(
+                        "buck.raw", "--report", BUCK):
+                    continue
+                self.assertIn(message, self.refused(*arguments, status=status))
+
+    def test_without_gnuplot(self):
+        done = self.plot("buck.raw", "-o", "g.png", status=INPUT_OUTPUT, PATH="/nowhere")
+        self.assertIn("gnuplot is not installed (on Debian: apt-get install gnuplot-nox)",
+                      done.stderr)
+        self.assertFalse((self.folder / "g.png").exists())
+
+    def test_full_disk(self):
+        """What does not fit leaves nothing and keeps what was there."""
+        (self.folder / "old.html").write_text("old")
+        before = sorted(os.listdir(self.folder))
+        done = subprocess.run(["bash", "-c", 'ulimit -f 100; exec "$0" plot buck.raw -o old.html',
+                               DALCS], cwd=self.folder, capture_output=True, text=True, check=False)
+        if "without the library" in done.stderr:
+            self.skipTest("built without dygraphs")
+        self.assertEqual(done.returncode, INPUT_OUTPUT, done.stderr)
+        self.assertIn("cannot write 'old.html': File too large", done.stderr)
+        self.assertEqual((self.folder / "old.html").read_text(), "old")
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    def test_input_is_not_overwritten(self):
+        shutil.copy(self.folder / "buck.csv", self.folder / "in.svg")
+        self.assertIn("'./in.svg' is what is read", self.refused("in.svg", "-o", "./in.svg"))
+
+    def test_help(self):
+        text = self.plot("--help").stdout
+        for name in ["--signals", "--from", "--to", "--report", "--events", "--no-bars", "--theme",
+                     "--plot", "--run", "--output", "--quiet"]:
+            self.assertIn(name, text)
+
+
+if __name__ == "__main__":
+    DALCS = str(pathlib.Path(sys.argv[1]).resolve())
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

@@ -1,0 +1,449 @@
+/* test_waveforms.c - files of waveforms, whole and broken; what is chosen of them. */
+#include "sample_plot.h"
+#include "selection.h"
+#include "table.h"
+#include "text_plot.h"
+
+#include <math.h>
+
+static struct dalcs_diag diag;
+
+static const char *message(void) {
+    return diag.n > 0 ? diag.item[diag.n - 1].text : "";
+}
+
+static void read_text(struct dalcs_waveforms *w, const char *text, size_t plot) {
+    enum dalcs_status status = dalcs_waveforms_read_text(w, "a", text, strlen(text), plot, &diag);
+    ck_assert_msg(status == DALCS_OK, "%s", message());
+}
+
+static void refuse_text(const char *text, size_t plot, const char *why) {
+    struct dalcs_waveforms w;
+    ck_assert_int_eq(dalcs_waveforms_read_text(&w, "a", text, strlen(text), plot, &diag),
+                     DALCS_E_OPTION);
+    ck_assert_msg(strstr(message(), why) != NULL, "%s", message());
+    ck_assert_ptr_null(w.value);
+}
+
+/* What the program's own writers write is read back bit by bit. */
+START_TEST(test_own_files) {
+    static const char *const path[] = {"a.raw", "a.csv"};
+    for (int f = 0; f < 2; f++) {
+        struct dalcs_table table;
+        const struct dalcs_plot plot = sample_plot(DALCS_TRANSIENT);
+        ck_assert_int_eq(dalcs_table_init(&table, path[f], true), DALCS_OK);
+        ck_assert_int_eq(dalcs_table_begin(&table, &plot), DALCS_OK);
+        for (int i = 0; i < 2; i++) {
+            ck_assert_int_eq(dalcs_table_row(&table, 0.1 * i, sample_row[i]), DALCS_OK);
+        }
+        ck_assert_int_eq(dalcs_table_end(&table), DALCS_OK);
+        ck_assert_int_eq(dalcs_table_commit(&table), DALCS_OK);
+        dalcs_table_finish(&table);
+
+        struct dalcs_waveforms w;
+        ck_assert_int_eq(dalcs_waveforms_read_file(&w, path[f], 0, &diag), DALCS_OK);
+        ck_assert_uint_eq(w.n_columns, 4);
+        ck_assert_uint_eq(w.n_rows, 2);
+        ck_assert_str_eq(w.name[0], "time");
+        for (int c = 0; c < 3; c++) {
+            ck_assert_str_eq(w.name[1 + c], sample_name[c]);
+            ck_assert_int_eq(w.dimension[1 + c].volt, sample_unit[c] == DALCS_VOLT);
+            ck_assert_int_eq(w.dimension[1 + c].ampere, sample_unit[c] == DALCS_AMPERE);
+            for (int i = 0; i < 2; i++) {
+                ck_assert_int_eq(memcmp(&w.value[4 * i + 1 + c], &sample_row[i][c], sizeof(double)),
+                                 0);
+            }
+        }
+        ck_assert_double_eq(w.value[4], 0.1);
+        ck_assert_str_eq(w.title, f == 0 ? "a title with a tab" : "");
+        dalcs_waveforms_finish(&w);
+    }
+    struct dalcs_waveforms w;
+    ck_assert_int_eq(dalcs_waveforms_read_file(&w, "nothing.raw", 0, &diag), DALCS_E_IO);
+    ck_assert_ptr_nonnull(strstr(message(), "cannot read 'nothing.raw'"));
+}
+
+END_TEST
+
+static const char two_plots[] = "Title: two\n"
+                                "Plotname: Operating Point\n"
+                                "Flags: real\n"
+                                "No. Variables: 1\n"
+                                "No. Points: 1\n"
+                                "Variables:\n"
+                                "\t0\tv(a)\tvoltage\n"
+                                "Values:\n"
+                                " 0\t5\n"
+                                "\n"
+                                "Title: two\n"
+                                "Date: today\n"
+                                "Plotname: AC Analysis\n"
+                                "Flags: complex\n"
+                                "No. Variables: 2\n"
+                                "No. Points: 2\n"
+                                "Variables:\n"
+                                "\t0\tfrequency\tfrequency\tgrid=3\n"
+                                "\t1\tv(a)\tvoltage\n"
+                                "Values:\n"
+                                " 0\t1,0\n\t3,4\n\n"
+                                " 1\t10,0\n\t0,-2\n\n";
+
+START_TEST(test_text_and_complex) {
+    struct dalcs_waveforms w;
+    read_text(&w, two_plots, 0);
+    ck_assert_uint_eq(w.n_plots, 2);
+    ck_assert_uint_eq(w.plot, 2);
+    ck_assert_str_eq(w.plot_name, "AC Analysis");
+    ck_assert_uint_eq(w.n_columns, 3);
+    ck_assert_str_eq(w.name[2], "phase(v(a))");
+    ck_assert(w.dimension[2].degree);
+    ck_assert_int_eq(w.dimension[0].second, -1);
+    const double expected[] = {1.0, 5.0, atan2(4.0, 3.0) * 180.0 / acos(-1.0), 10.0, 2.0, -90.0};
+    ck_assert_uint_eq(w.n_rows, 2);
+    for (int i = 0; i < 6; i++) {
+        ck_assert_double_eq_tol(w.value[i], expected[i], 1e-12);
+    }
+    dalcs_waveforms_finish(&w);
+    read_text(&w, two_plots, 1);
+    ck_assert_uint_eq(w.n_rows, 1);
+    ck_assert_double_eq(w.value[0], 5.0);
+    dalcs_waveforms_finish(&w);
+    refuse_text(two_plots, 3, "'a' has 2 plots: there is no plot 3");
+}
+
+END_TEST
+
+/* Points that an interrupted writer left, whatever it counted. */
+START_TEST(test_cut_short) {
+    char text[512];
+    for (int claimed = 0; claimed < 10; claimed += 9) {
+        int n = snprintf(text, sizeof text,
+                         "Title: t\nPlotname: x\nFlags: real\nNo. Variables: 2\nNo. Points: %d\n"
+                         "Variables:\n\t0\ttime\ttime\n\t1\tv(a)\tvoltage\nBinary:\n",
+                         claimed);
+        const double value[] = {0.0, 1.0, 2.0, 3.0, 4.0};
+        memcpy(text + n, value, sizeof value);
+        struct dalcs_waveforms w;
+        text[(size_t)n + sizeof value] = '\0';
+        ck_assert_int_eq(
+            dalcs_waveforms_read_text(&w, "a", text, (size_t)n + sizeof value, 0, &diag), DALCS_OK);
+        ck_assert_uint_eq(w.n_rows, 2);
+        ck_assert_double_eq(w.value[3], 3.0);
+        dalcs_waveforms_finish(&w);
+    }
+    struct dalcs_waveforms w;
+    read_text(&w, "time,v(a)\n0,1\n1,2\n2,", 0); /* the last line has no end */
+    ck_assert_uint_eq(w.n_rows, 3);
+    dalcs_waveforms_finish(&w);
+    read_text(&w, "time,v(a)\n0,1\n1,2\n2", 0);
+    ck_assert_uint_eq(w.n_rows, 2);
+    dalcs_waveforms_finish(&w);
+}
+
+END_TEST
+
+START_TEST(test_broken_files) {
+    refuse_text("", 0, "holds no waveforms: line 1");
+    refuse_text("hello\nworld\n", 0, "holds no waveforms: line 2");
+    refuse_text("0,1\n2,3\n", 0, "holds no waveforms: line 1");
+    refuse_text("time,v(a)\n0,1\n1\n2,3\n", 0, "holds no waveforms: line 3");
+    refuse_text("time,v(a)\n0,1,2\n", 0, "holds no waveforms: line 2");
+    refuse_text("Title: t\nPlotname: x\n", 0, "no 'Binary:' or 'Values:'");
+    refuse_text("Title: t\nFlags: real\nBinary:\n", 0, "does not list its variables");
+    refuse_text("Title: t\nNo. Variables: 99999999999999999999\nNo. Points: 5\nVariables:\n"
+                "\t0\ttime\ttime\nBinary:\n",
+                0, "no 'Binary:' or 'Values:'");
+    refuse_text("Title: t\nNo. Variables: 2\nNo. Points: 5\nVariables:\n\t0\ttime\ttime\n"
+                "\t1\nBinary:\n",
+                0, "does not list its variables");
+    struct dalcs_waveforms w;
+    read_text(&w,
+              "Title: t\nNo. Variables: 1\nNo. Points: 18446744073709551615\nVariables:\n"
+              "\t0\ttime\ttime\nBinary:\n",
+              0);
+    ck_assert_uint_eq(w.n_rows, 0);
+    dalcs_waveforms_finish(&w);
+}
+
+END_TEST
+
+START_TEST(test_tables_of_others) {
+    struct dalcs_waveforms w;
+    read_text(&w, "\357\273\277time;\"v(a,b)\";I(L1)\r\n0;1;2\r\n1;;4\r\n\r\n", 0);
+    ck_assert_str_eq(w.name[0], "time");
+    ck_assert_str_eq(w.name[1], "v(a,b)");
+    ck_assert_int_eq(w.dimension[2].ampere, 1);
+    ck_assert_uint_eq(w.n_rows, 2);
+    ck_assert(isnan(w.value[4]));
+    dalcs_waveforms_finish(&w);
+    read_text(&w, " time v(a)\n 0 1\n 1e-3   2\n", 0); /* as wrdata of ngspice */
+    ck_assert_uint_eq(w.n_columns, 2);
+    ck_assert_double_eq(w.value[2], 1e-3);
+    dalcs_waveforms_finish(&w);
+    read_text(&w, "time,v(a,b),\"a \"\"b\"\"\"\n0,1,2\n", 0);
+    ck_assert_uint_eq(w.n_columns, 3);
+    ck_assert_str_eq(w.name[1], "v(a,b)");
+    ck_assert_str_eq(w.name[2], "a \"b\"");
+    dalcs_waveforms_finish(&w);
+}
+
+END_TEST
+
+START_TEST(test_runs) {
+    struct dalcs_waveforms w;
+    size_t first = 0, end = 0;
+    read_text(&w, "v1,i(d1)\n0,1\n1,2\n2,3\n0,4\n1,5\n5,9\n4,8\n3,7\n", 0);
+    ck_assert_uint_eq(dalcs_waveforms_find_run(&w, 2, &first, &end), 3);
+    ck_assert_uint_eq(first, 3);
+    ck_assert_uint_eq(end, 6);
+    ck_assert_uint_eq(dalcs_waveforms_find_run(&w, 4, &first, &end), 3);
+    ck_assert_uint_eq(end, 0);
+    dalcs_waveforms_finish(&w);
+    read_text(&w, "v1,i(d1)\n5,9\n4,8\n3,7\n", 0);
+    ck_assert_uint_eq(dalcs_waveforms_find_run(&w, 1, &first, &end), 1);
+    dalcs_waveforms_keep_rows(&w, first, end);
+    const double ascending[] = {3.0, 7.0, 4.0, 8.0, 5.0, 9.0};
+    ck_assert_int_eq(memcmp(w.value, ascending, sizeof ascending), 0);
+    dalcs_waveforms_finish(&w);
+}
+
+END_TEST
+
+/* ---- Signals -------------------------------------------------------------------------------- */
+
+static const char table[] = "time,v(a),v(b),V(Out),i(r1),@d1[id],v1#branch\n"
+                            "0,1,2,3,4,5,6\n"
+                            "1,10,20,30,40,50,60\n";
+
+static void check_signal(const char *text, double expected, const char *unit) {
+    struct dalcs_waveforms w;
+    struct dalcs_signal s;
+    struct dalcs_arena arena = {0};
+    char space[DALCS_DIMENSION_TEXT];
+    read_text(&w, table, 0);
+    enum dalcs_status status = dalcs_signal_parse(&s, &w, text, &arena, &diag);
+    ck_assert_msg(status == DALCS_OK, "%s: %s", text, message());
+    ck_assert_double_eq_tol(dalcs_signal_value(&s, w.value), expected, 1e-12);
+    ck_assert_str_eq(dalcs_dimension_unit(space, s.dimension), unit);
+    dalcs_arena_finish(&arena);
+    dalcs_waveforms_finish(&w);
+}
+
+START_TEST(test_expressions) {
+    check_signal("v(a)", 1.0, "V");
+    check_signal("v(out)", 3.0, "V");
+    check_signal(" v( a , b ) ", -1.0, "V");
+    check_signal("v(b,0)", 2.0, "V");
+    check_signal("V(GND,B)", -2.0, "V");
+    check_signal("v(out)*i(r1)", 12.0, "W");
+    check_signal("v(out)/i(r1)", 0.75, "\316\251");
+    check_signal("i(r1)/v(out)", 4.0 / 3.0, "S");
+    check_signal("-v(a)+2*v(b)-v(out)/3", 2.0, "V");
+    check_signal("v(out)-(v(a)-v(b))", 4.0, "V");
+    check_signal("v(a)-v(b)-v(out)", -4.0, "V");
+    check_signal("v(out)/v(b)/v(b)", 0.75, "V^-1");
+    check_signal("v(a)*v(b)", 2.0, "V^2");
+    check_signal("v(a)*i(r1)*time", 0.0, "J");
+    check_signal("v(a)+i(r1)", 5.0, "");
+    check_signal("v(a)+1.5k", 1501.0, "V");
+    check_signal("abs(-v(b))", 2.0, "V");
+    check_signal("db(10*v(a))", 20.0, "dB");
+    check_signal("sqrt(i(r1))", 2.0, "");
+    check_signal("i(d1)", 5.0, "A");
+    check_signal("i(v1)", 6.0, "A");
+    check_signal("1e-3*v(a)", 1e-3, "V");
+}
+
+END_TEST
+
+static void refuse_signal(const char *text, const char *why) {
+    struct dalcs_waveforms w;
+    struct dalcs_signal s;
+    struct dalcs_arena arena = {0};
+    read_text(&w, table, 0);
+    ck_assert_int_eq(dalcs_signal_parse(&s, &w, text, &arena, &diag), DALCS_E_OPTION);
+    ck_assert_msg(strstr(message(), why) != NULL, "%s: %s", text, message());
+    dalcs_arena_finish(&arena);
+    dalcs_waveforms_finish(&w);
+}
+
+START_TEST(test_wrong_expressions) {
+    refuse_signal("i(rr1)", "there is no signal 'i(rr1)'; did you mean 'i(r1)'?");
+    refuse_signal("v(a,x)", "there is no signal 'v(x)'");
+    refuse_signal("i(q9)", "it has time, v(a), v(b), V(Out), i(r1), @d1[id], v1#branch");
+    refuse_signal("", "expected a signal at the end");
+    refuse_signal("v(a)*", "expected a signal at the end");
+    refuse_signal("v(a", "')' is missing at the end");
+    refuse_signal("(v(a)", "')' is missing at the end");
+    refuse_signal("v(a))", "expected an operator at ')'");
+    refuse_signal("2..*v(a)", "expected a number at '2..*v(a)'");
+    char deep[5000];
+    memset(deep, '(', sizeof deep - 1);
+    deep[sizeof deep - 1] = '\0';
+    refuse_signal(deep, "more than 4000 characters");
+    refuse_signal(deep + 2000, "too many parentheses");
+}
+
+END_TEST
+
+/* ---- Selections ------------------------------------------------------------------------------ */
+
+static enum dalcs_status add_up(void *user, double at, const double *value) {
+    double *sum = user;
+    sum[0] += 1.0;
+    sum[1] += at;
+    sum[2] += value[0];
+    return DALCS_OK;
+}
+
+START_TEST(test_panels) {
+    struct dalcs_waveforms w;
+    struct dalcs_selection s;
+    read_text(&w, table, 0);
+    ck_assert_int_eq(dalcs_selection_make(&s, &w, NULL, 0, NAN, NAN, &diag), DALCS_OK);
+    ck_assert_int_eq(s.n_panels, 2);
+    ck_assert_int_eq(s.panel[0].n, 3);
+    ck_assert_str_eq(s.panel[1].unit, "A");
+    dalcs_selection_finish(&s);
+
+    const char *const group[] = {"v(a),i(r1),v(a,b),v(b)*i(r1)", "v(out)"};
+    ck_assert_int_eq(dalcs_selection_make(&s, &w, group, 2, NAN, NAN, &diag), DALCS_OK);
+    ck_assert_int_eq(s.n_panels, 4);
+    ck_assert_str_eq(s.panel[0].quantity, "voltage");
+    ck_assert_int_eq(s.panel[0].n, 2);
+    ck_assert_uint_eq(s.panel[0].signal[1], 2);
+    ck_assert_str_eq(s.name[2], "v(a,b)");
+    ck_assert_str_eq(s.panel[1].unit, "A");
+    ck_assert_str_eq(s.panel[2].unit, "W");
+    ck_assert_uint_eq(s.panel[3].signal[0], 4);
+    dalcs_selection_finish(&s);
+
+    const char *const many[] = {"v(a),v(a),v(a),v(a),v(a),v(a),v(a),v(a),v(b)"};
+    ck_assert_int_eq(dalcs_selection_make(&s, &w, many, 1, NAN, NAN, &diag), DALCS_OK);
+    ck_assert_int_eq(s.n_panels, 2);
+    ck_assert_uint_eq(s.panel[1].signal[0], 8);
+    dalcs_selection_finish(&s);
+
+    const char *const nine[] = {"v(a)", "v(a)", "v(a)", "v(a)", "v(a)",
+                                "v(a)", "v(a)", "v(a)", "v(a)"};
+    ck_assert_int_eq(dalcs_selection_make(&s, &w, nine, 9, NAN, NAN, &diag), DALCS_E_OPTION);
+    ck_assert_ptr_nonnull(strstr(message(), "more than 8 panels"));
+    dalcs_waveforms_finish(&w);
+}
+
+END_TEST
+
+/* A range that ends between rows ends there; of a discontinuity at its end one side is in it. */
+START_TEST(test_ranges) {
+    struct dalcs_waveforms w;
+    struct dalcs_selection s;
+    double sum[3] = {0.0};
+    read_text(&w, "time,v(a)\n0,0\n1,0\n1,8\n2,8\n2,2\n4,2\n", 0);
+    ck_assert_int_eq(dalcs_selection_make(&s, &w, NULL, 0, 1.0, 3.0, &diag), DALCS_OK);
+    ck_assert_int_eq(dalcs_selection_each_row(&s, add_up, sum), DALCS_OK);
+    ck_assert_double_eq(sum[0], 4.0);
+    ck_assert_double_eq(sum[1], 1.0 + 2.0 + 2.0 + 3.0);
+    ck_assert_double_eq(sum[2], 8.0 + 8.0 + 2.0 + 2.0);
+    dalcs_selection_finish(&s);
+    memset(sum, 0, sizeof sum);
+    ck_assert_int_eq(dalcs_selection_make(&s, &w, NULL, 0, 0.5, 2.0, &diag), DALCS_OK);
+    ck_assert_int_eq(dalcs_selection_each_row(&s, add_up, sum), DALCS_OK);
+    ck_assert_double_eq(sum[0], 4.0);
+    ck_assert_double_eq(sum[2], 0.0 + 0.0 + 8.0 + 8.0);
+    dalcs_selection_finish(&s);
+    ck_assert_int_eq(dalcs_selection_make(&s, &w, NULL, 0, 3.0, 1.0, &diag), DALCS_E_OPTION);
+    ck_assert_ptr_nonnull(strstr(message(), "the range is empty: from 3 s to 1 s"));
+    ck_assert_int_eq(dalcs_selection_make(&s, &w, NULL, 0, 5.0, NAN, &diag), DALCS_E_OPTION);
+    ck_assert_ptr_nonnull(strstr(message(), "the file goes from 0 s to 4 s"));
+    dalcs_waveforms_finish(&w);
+    read_text(&w, "time,v(a)\n0,0\n", 0);
+    ck_assert_int_eq(dalcs_selection_make(&s, &w, NULL, 0, NAN, NAN, &diag), DALCS_E_OPTION);
+    ck_assert_ptr_nonnull(strstr(message(), "one row, which is no curve"));
+    dalcs_waveforms_finish(&w);
+}
+
+END_TEST
+
+START_TEST(test_conduction_by_currents) {
+    struct dalcs_waveforms w;
+    struct dalcs_selection s;
+    struct dalcs_conduction c = {0};
+    read_text(&w,
+              "time,i(d10),i(x1.D2),i(l1),i(r1),i(dx.l1),i(s1)\n0,0,5,1,1,1,0\n1,0,5,1,1,1,1e-9\n"
+              "2,3,0,1,1,1,2\n3,0,0,1,1,1,2\n",
+              0);
+    ck_assert_int_eq(dalcs_selection_make(&s, &w, NULL, 0, NAN, NAN, &diag), DALCS_OK);
+    ck_assert_int_eq(dalcs_conduction_add(&c, "s1", 0.25, true), DALCS_OK); /* known better */
+    ck_assert_int_eq(dalcs_selection_add_conduction(&s, &c), DALCS_OK);
+    ck_assert_uint_eq(c.n, 3);
+    ck_assert_str_eq(c.element[0].name, "d10");
+    ck_assert_uint_eq(c.element[0].n, 2);
+    ck_assert_double_eq(c.element[0].change[0].time, 1.0);
+    ck_assert_double_eq(c.element[0].change[1].time, 3.0);
+    ck_assert_str_eq(c.element[1].name, "s1");
+    ck_assert_double_eq(c.element[1].change[0].time, 0.25);
+    ck_assert_str_eq(c.element[2].name, "x1.d2");
+    ck_assert(c.element[2].on_before);
+    double fraction[6];
+    dalcs_conduction_fractions(&c.element[0], 0.0, 3.0, 6, fraction);
+    const double expected[6] = {0.0, 0.0, 1.0, 1.0, 1.0, 1.0};
+    for (int i = 0; i < 6; i++) {
+        ck_assert_double_eq_tol(fraction[i], expected[i], 1e-12);
+    }
+    dalcs_conduction_fractions(&c.element[1], 0.1, 0.4, 1, fraction);
+    ck_assert_double_eq_tol(fraction[0], 0.5, 1e-12);
+    dalcs_conduction_fractions(&c.element[2], 1.5, 2.5, 2, fraction);
+    ck_assert_double_eq_tol(fraction[0], 1.0, 1e-12);
+    ck_assert_double_eq_tol(fraction[1], 0.0, 1e-12);
+    dalcs_conduction_finish(&c);
+    dalcs_selection_finish(&s);
+    dalcs_waveforms_finish(&w);
+}
+
+END_TEST
+
+/* ---- On a terminal -------------------------------------------------------------------------- */
+
+START_TEST(test_text_plot) {
+    const char *const name[] = {"v(a\033[2J)"};
+    const struct dalcs_figure_panel panel = {
+        .quantity = "voltage", .unit = "V", .n = 1, .signal = {0}};
+    const struct dalcs_text_plot_options options = {.width = 53};
+    struct dalcs_figure figure;
+    struct dalcs_conduction c = {0};
+    ck_assert_int_eq(dalcs_conduction_add(&c, "d1", 0.5, true), DALCS_OK);
+    dalcs_figure_init(&figure, NULL, 0.0, 1.0);
+    figure.conduction = &c;
+    figure.bars = true;
+    ck_assert_int_eq(dalcs_figure_begin_panels(&figure, "a ramp", name, &panel, 1), DALCS_OK);
+    for (int i = 0; i <= 100; i++) {
+        double value = -3.0 + 0.12 * i;
+        dalcs_figure_row(&figure, 0.01 * i, &value);
+    }
+    char *text = NULL;
+    size_t length = 0;
+    FILE *stream = open_memstream(&text, &length);
+    ck_assert_ptr_nonnull(stream);
+    ck_assert_int_eq(dalcs_text_plot_write(stream, &figure, &options), DALCS_OK);
+    ck_assert_int_eq(fclose(stream), 0);
+    ck_assert_str_eq(text, "a ramp\n"
+                           "\n"
+                           "            v(a?[2J)\n"
+                           "        9 V                                   ...:''\n"
+                           "                                       ...:''''     \n"
+                           "                                ...:''''            \n"
+                           "                        ....:''''                   \n"
+                           "                 ....:'''                           \n"
+                           "       -3 V ..:'''                                  \n"
+                           "         d1                     ####################\n"
+                           "            0 s               time               1 s\n");
+    free(text);
+    dalcs_figure_finish(&figure);
+    dalcs_conduction_finish(&c);
+}
+
+END_TEST
+
+RUN_SUITE("waveforms", test_own_files, test_text_and_complex, test_cut_short, test_broken_files,
+          test_tables_of_others, test_runs, test_expressions, test_wrong_expressions, test_panels,
+          test_ranges, test_conduction_by_currents, test_text_plot)
