@@ -12,6 +12,8 @@ static const struct {
     enum dalcs_exit (*function)(const struct dalcs_cli *cli, int argc, char **argv);
 } verb[] = {
     {"run", "simulate a netlist and write its waveforms", dalcs_cli_run},
+    {"compare", "run a netlist here and in ngspice: errors, times, waveforms", dalcs_cli_compare},
+    {"converge", "errors and orders of fixed steps", dalcs_cli_converge},
 };
 
 enum { N_VERBS = sizeof verb / sizeof verb[0] };

@@ -34,5 +34,7 @@ void dalcs_cli_error(const struct dalcs_cli *cli, const char *format, ...)
 
 /* One verb each; argv[0] is the verb. */
 enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv);
+enum dalcs_exit dalcs_cli_compare(const struct dalcs_cli *cli, int argc, char **argv);
+enum dalcs_exit dalcs_cli_converge(const struct dalcs_cli *cli, int argc, char **argv);
 
 #endif

@@ -40,6 +40,7 @@ void dalcs_session_destroy(struct dalcs_session *session) {
     if (session->has_circuit) {
         dalcs_circuit_finish(&session->circuit);
     }
+    dalcs_spice_names_finish(&session->spice);
     dalcs_diag_finish(&session->diag);
     dalcs_arena_finish(&session->arena);
     free(session);

@@ -4,6 +4,7 @@
 
 #include "names.h"
 #include "recorder.h"
+#include "spice.h"
 #include "undetermined.h"
 
 struct dalcs_session {
@@ -19,7 +20,8 @@ struct dalcs_session {
     double *start, *final;
     struct dalcs_nonunique *nonunique; /* of the report */
     size_t n_nonunique, nonunique_capacity;
-    struct dalcs_arena arena; /* names of the report and of the plots */
+    struct dalcs_spice_names spice; /* made when first asked for */
+    struct dalcs_arena arena;       /* names of the report and of the plots */
 };
 
 /* In the order of dalcs_method_name. */
