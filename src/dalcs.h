@@ -310,6 +310,7 @@ enum dalcs_spice_diode {
 struct dalcs_spice_options {
     enum dalcs_spice_diode diode;
     double emission;           /* N of the exponential, > 0 */
+    double series;             /* ohm; of an exponential where the netlist's diode has none */
     double on, off;            /* ohm; of switches that are a wire and a cut, and of sidiodes */
     double edge;               /* s; the longest ramp that an edge of no width may become, > 0 */
     double max_step;           /* s; tmax and tstep of .tran, 0: the netlist's */

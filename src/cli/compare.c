@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LIMIT 5.0 /* s of CPU time, of each run of ngspice */
-
 static const char help[] =
     "usage: dalcs compare FILE [options]\n"
     "\n"
@@ -27,7 +25,7 @@ static const char help[] =
     "figures\n"
     "                        need gnuplot\n"
     "      --limit S         give up on a run of ngspice after that many seconds of CPU time\n"
-    "                        (default: 5)\n"
+    "                        (default: 2, or 100 times what dalcs takes)\n"
     "      --within X        fail (status 1) unless a setting of ngspice comes as near as that to "
     "the\n"
     "                        reference, and dalcs as well\n"
@@ -56,7 +54,7 @@ struct arguments {
     const char *netlist, *with, *output;
     const char *method[DALCS_MAX_METHODS];
     size_t n_methods;
-    double limit, within; /* s; 0: not asked */
+    double limit, within; /* s, and over a signal's scale; 0: not asked */
     bool quiet, help;
 };
 
@@ -128,8 +126,7 @@ static enum dalcs_status take(struct arguments *a, const struct dalcs_cli *cli, 
 static enum dalcs_status parse(struct arguments *a, const struct dalcs_cli *cli, int argc,
                                char **argv) {
     static const char *const ending[] = {".html", NULL};
-    *a = (struct arguments){
-        .with = "ngspice", .method = {"auto", "euler"}, .n_methods = 2, .limit = LIMIT};
+    *a = (struct arguments){.with = "ngspice", .method = {"auto", "euler"}, .n_methods = 2};
     enum dalcs_status status = DALCS_OK;
     optind = 0; /* glibc: start afresh */
     opterr = 0;

@@ -218,7 +218,7 @@ static void write_diode_model(const struct writer *w, int k) {
         for (int back = 0; back < (isfinite(model->vrev) ? 2 : 1); back++) {
             fprintf(w->stream, ".model m%s__%d d(is=1e-14", back ? "b" : "", k);
             write_value(w, " n=", o->emission);
-            write_value(w, " rs=", back ? model->rrev : model->ron);
+            write_value(w, " rs=", fmax(back ? model->rrev : model->ron, o->series));
             fputs(")\n", w->stream);
         }
         break;

@@ -84,22 +84,23 @@ static const char *write_pulse(FILE *stream, const struct dalcs_stimulus *s, dou
     return NULL;
 }
 
-/* Where a jump's first point goes: half an edge before it, but not before what came before. */
+/* A jump's points lie on either side of it; but where the repeated part begins with it, its second
+ * point stays, so that the period is exact. */
 static void write_points(FILE *stream, const struct dalcs_stimulus *s, double edge) {
     int n = s->u.pwl.n;
     const double *t = s->u.pwl.t, *v = s->u.pwl.v;
-    double before = -INFINITY;
     for (int i = 0; i < n; i++) {
         bool jumps_next = i + 1 < n && t[i + 1] == t[i], jumped = i > 0 && t[i - 1] == t[i];
-        double gap = jumps_next ? (i > 0 ? t[i] - t[i - 1] : t[i])
-                                : (i + 1 < n ? t[i + 1] - t[i] : INFINITY);
-        double half = fmin(0.5 * edge, 0.1 * gap);
-        double time = jumps_next && !jumped ? t[i] - half : jumped ? t[i] + half : t[i];
+        double before = i > 0 ? t[i] - t[i - 1] : t[i];
+        double after = i + 1 < n ? t[i + 1] - t[i] : INFINITY;
+        double half = fmin(0.5 * edge, 0.1 * (jumps_next ? before : after));
+        bool stays = s->u.pwl.repeats && t[i] == s->u.pwl.repeat_from;
+        double time = jumps_next ? t[i] - (stays ? 2.0 * half : half)
+                                 : t[i] + (jumped && !stays ? half : 0.0);
         fputs(i == 0 ? "(" : i % 8 == 0 ? "\n+ " : " ", stream);
-        dalcs_spice_write_number(stream, fmax(time, before));
+        dalcs_spice_write_number(stream, time);
         fputc(' ', stream);
         dalcs_spice_write_number(stream, v[i]);
-        before = time;
     }
     fputc(')', stream);
 }

@@ -11,7 +11,9 @@
 /* Where there are more breaks than the first number, drawings show the time of the last few. */
 enum { MAX_BREAKS_SEEN = 60, BREAKS_AT_END = 24, N_VIEW = 900 };
 
-#define MAX_STEPS 4e6 /* of one run of euler */
+#define MAX_STEPS    4e6   /* of one run of euler */
+#define LEAST_LIMIT  2.0   /* s of CPU time, of a run of ngspice when no limit was asked for */
+#define LIMIT_FACTOR 100.0 /* times what dalcs takes, if that is more */
 
 static const double tolerance[] = {1e-3, 1e-4, 1e-5, 1e-7, 1e-8};
 static const double finer[] = {0.25, 1.0 / 16.0};
@@ -124,6 +126,9 @@ enum dalcs_status dalcs_comparison_make(struct dalcs_comparison *c, const char *
     }
     const struct dalcs_request request = dalcs_session_request(c->session);
     const struct dalcs_report *report = dalcs_session_report(c->session);
+    if (c->ngspice.limit == 0.0) {
+        c->ngspice.limit = fmax(LEAST_LIMIT, LIMIT_FACTOR * c->row[0].cost.cpu_s);
+    }
     c->search.ngspice = &c->ngspice;
     c->search.reference = &c->reference;
     c->search.step = request.max_step > 0.0 ? request.max_step : request.step;

@@ -29,7 +29,7 @@ struct dalcs_comparison {
     struct dalcs_ngspice_search search;
 };
 
-/* Makes the comparison with ngspice already open. `method` are names of dalcs's methods. The session's
+/* Makes the comparison with ngspice already open; without a limit it gets one. `method` are names of dalcs's methods. The session's
  * messages say why dalcs failed. */
 enum dalcs_status dalcs_comparison_make(struct dalcs_comparison *comparison,
                                         const char *const *method, int n_methods) DALCS_MUST_CHECK;

@@ -157,8 +157,8 @@ static enum dalcs_status write_figures(FILE *page, const struct dalcs_comparison
     if (status == DALCS_OK) {
         status =
             add_figure(page, c, "errors", 360, dalcs_comparison_draw_errors,
-                       "The error of the one in which it errs most over its scale, at the times "
-                       "that were measured.",
+                       "Error of the signal in which ngspice's most exact setting errs most, over "
+                       "the signal's scale, at the times that were measured.",
                        message);
     }
     if (status != DALCS_OK) {

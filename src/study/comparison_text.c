@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#define ROUNDING 1e-13 /* over the scale; nobody is nearer than that */
+
 enum { MAX_GIVEN_UP = 3, MAX_NAMED = 6, SETTING_SIZE = 128 };
 
 static const char *trial_text(const struct dalcs_comparison *c, int k, char text[SETTING_SIZE]) {
@@ -106,7 +108,8 @@ static void write_better_signals(FILE *stream, const struct dalcs_comparison *c,
     const struct dalcs_deviation *theirs = &c->search.trial[c->search.best].deviation;
     int n = 0;
     for (size_t s = 0; s < c->reference.n_signals; s++) {
-        if (!c->reference.is_open[s] && theirs->rms[s] < ours->rms[s]) {
+        double known = fmax(c->reference.doubt[s], ROUNDING);
+        if (!c->reference.is_open[s] && theirs->rms[s] < ours->rms[s] && ours->rms[s] > known) {
             if (n == 0) {
                 fprintf(stream,
                         "%sngspice's most exact setting is nearer to the reference than "

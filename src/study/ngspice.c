@@ -162,7 +162,9 @@ static void read_reason(struct dalcs_ngspice_run *r, FILE *log) {
         }
         for (size_t i = 0; i < sizeof word / sizeof word[0]; i++) {
             if (strstr(low, word[i])) {
-                snprintf(r->reason, sizeof r->reason, "%s", line + strspn(line, " \t"));
+                const char *analysis = strstr(line, "TRAN: ");
+                const char *text = analysis ? analysis + strlen("TRAN: ") : line;
+                snprintf(r->reason, sizeof r->reason, "%s", text + strspn(text, " \t"));
                 return;
             }
         }

@@ -26,15 +26,19 @@ static const struct {
 
 static const char *const method[] = {"trap", "gear"};
 
-/* What gets it through where it gives up; the second adds a capacitor to each node. */
-static const char *const rescue[] = {"gmin=1e-9 rshunt=1e12", "cshunt=1e-12"};
+/* What gets it through where it gives up: a resistance in series with a diode, conductances from nodes
+ * to ground, or capacitors. */
+static const struct {
+    bool has_series;
+    const char *options;
+} rescue[] = {{true, NULL}, {false, "gmin=1e-9 rshunt=1e12"}, {false, "cshunt=1e-12"}};
 
 /* Around the most exact ones. */
 static const struct {
     double reltol, step; /* times the netlist's step */
 } refinement[] = {
-    {1e-4, 1.0},  {1e-5, 0.5},  {1e-6, 0.2},  {1e-7, 0.05},
-    {1e-6, 10.0}, {1e-4, 10.0}, {1e-3, 20.0}, {1e-3, 100.0},
+    {1e-4, 1.0},  {1e-5, 0.5},  {1e-6, 0.2},  {1e-7, 0.05}, {1e-3, 0.25},
+    {1e-3, 0.05}, {1e-6, 10.0}, {1e-4, 10.0}, {1e-3, 20.0}, {1e-3, 100.0},
 };
 
 enum {
@@ -157,7 +161,11 @@ static enum dalcs_status try_hard(struct dalcs_ngspice_search *search,
     for (int i = 0; i < N_RESCUES && status == DALCS_OK && gave_up(search, *k) &&
                     !search->trial[*k].is_too_slow;
          i++) {
-        options.extra_options = rescue[i];
+        if (rescue[i].has_series && options.diode != DALCS_SPICE_EXPONENTIAL) {
+            continue;
+        }
+        options.series = rescue[i].has_series ? options.on : 0.0;
+        options.extra_options = rescue[i].options;
         status = try_options(search, &options, k);
     }
     return status;
@@ -286,7 +294,7 @@ enum dalcs_status dalcs_ngspice_search_run(struct dalcs_ngspice_search *search) 
 
 void dalcs_trial_write(FILE *stream, const struct dalcs_ngspice_search *search,
                        const struct dalcs_spice_options *options) {
-    char text[2][DALCS_QUANTITY_SIZE];
+    char text[2][DALCS_QUANTITY_SIZE], series[DALCS_QUANTITY_SIZE];
     const char *on = dalcs_quantity_write(text[0], options->on, "ohm", 3);
     const char *off = dalcs_quantity_write(text[1], options->off, "ohm", 3);
     if (search->has_diodes) {
@@ -295,7 +303,11 @@ void dalcs_trial_write(FILE *stream, const struct dalcs_ngspice_search *search,
             fputs("D stock; ", stream);
             break;
         case DALCS_SPICE_EXPONENTIAL:
-            fprintf(stream, "D N=%g; ", options->emission);
+            fprintf(stream, "D N=%g", options->emission);
+            if (options->series > 0.0) {
+                fprintf(stream, ", Rs %s", dalcs_quantity_write(series, options->series, "ohm", 3));
+            }
+            fputs("; ", stream);
             break;
         case DALCS_SPICE_LINES:
             fprintf(stream, "sidiode Ron %s, Roff %s; ", on, off);

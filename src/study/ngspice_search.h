@@ -6,7 +6,7 @@
 #include "deviation.h"
 #include "ngspice.h"
 
-enum { DALCS_MAX_TRIALS = 64 };
+enum { DALCS_MAX_TRIALS = 128 };
 
 struct dalcs_trial {
     struct dalcs_spice_options options;

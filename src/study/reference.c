@@ -55,7 +55,7 @@ enum dalcs_status dalcs_reference_begin(struct dalcs_reference *r, struct dalcs_
                                   .stages = 7,
                                   .second_stages = 5,
                                   .tolerance = 1e-11,
-                                  .second_tolerance = 1e-10};
+                                  .second_tolerance = 1e-9};
     r->jump_window = JUMP_STEPS * (request.max_step > 0.0 ? request.max_step : request.step);
     const struct dalcs_run_options options = tight(r, false);
     enum dalcs_status status =
