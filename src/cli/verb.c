@@ -20,7 +20,7 @@ enum dalcs_status dalcs_verb_refuse(const struct dalcs_cli *cli, const char *ver
     } else if (is_long) {
         const char *name[MOST_OPTIONS];
         size_t n = 0;
-        for (; option[n].name && n < MOST_OPTIONS; n++) {
+        for (; n < MOST_OPTIONS && option[n].name; n++) {
             name[n] = option[n].name;
         }
         char typed[64];

@@ -113,21 +113,24 @@ void dalcs_comparison_draw_work(FILE *script, const struct dalcs_comparison *c) 
     fputc('\n', script);
 }
 
-/* The signals with the largest errors of ngspice's most exact setting, or the first ones; in the
- * netlist's order. */
+/* How many signals have larger errors; of equal ones the first counts as the larger. */
+static int rank_of(const struct dalcs_comparison *c, const double *rms, size_t signal) {
+    int rank = 0;
+    for (size_t s = 0; s < c->reference.n_signals; s++) {
+        bool is_larger = rms[s] > rms[signal] || (rms[s] == rms[signal] && s < signal);
+        rank += !c->reference.is_open[s] && is_larger ? 1 : 0;
+    }
+    return rank;
+}
+
+/* The signals with the largest errors of ngspice's most exact setting, else of dalcs; in the netlist's
+ * order. */
 static int choose_signals(const struct dalcs_comparison *c, size_t chosen[MAX_PANELS]) {
-    const struct dalcs_reference *r = &c->reference;
+    const double *rms = c->search.best >= 0 ? c->search.trial[c->search.best].deviation.rms
+                                            : c->row[0].deviation.rms;
     int n = 0;
-    for (size_t s = 0; s < r->n_signals; s++) {
-        int before = 0;
-        for (size_t other = 0; other < r->n_signals && c->search.best >= 0; other++) {
-            const double *rms = c->search.trial[c->search.best].deviation.rms;
-            before +=
-                !r->is_open[other] && (rms[other] > rms[s] || (rms[other] == rms[s] && other < s))
-                    ? 1
-                    : 0;
-        }
-        if (!r->is_open[s] && before < MAX_PANELS && n < MAX_PANELS) {
+    for (size_t s = 0; s < c->reference.n_signals; s++) {
+        if (!c->reference.is_open[s] && n < MAX_PANELS && rank_of(c, rms, s) < MAX_PANELS) {
             chosen[n++] = s;
         }
     }

@@ -111,7 +111,7 @@ static int compare_numbers(const void *a, const void *b) {
 double dalcs_convergence_order(const struct dalcs_convergence *c, size_t first) {
     enum { MOST = 64 };
 
-    double order[MOST];
+    double order[MOST] = {0};
     size_t n = 0, n_rows = dalcs_convergence_group(c, first);
     for (size_t k = 0; k < n_rows && n < MOST; k++) {
         if (!isnan(c->row[first + k].order)) {

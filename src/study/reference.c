@@ -11,6 +11,7 @@
 #define NEAR_BREAK   1e-5 /* of the run: what counts as next to a break */
 #define NEAR_GAP     0.05 /* of the median time between breaks: no more than that */
 #define JUMP_STEPS   2.0  /* of the netlist: what counts as next to a jump */
+#define WIDER        1e-9 /* tolerance of the second answer where its own is too tight */
 #define GOLDEN       0.382 /* part of the grid's spacing that it starts with: no multiple of any period */
 
 enum { N_SPREAD = 2000, MAX_ALIGNED = 4000 };
@@ -55,7 +56,7 @@ enum dalcs_status dalcs_reference_begin(struct dalcs_reference *r, struct dalcs_
                                   .stages = 7,
                                   .second_stages = 5,
                                   .tolerance = 1e-11,
-                                  .second_tolerance = 1e-9};
+                                  .second_tolerance = 1e-10};
     r->jump_window = JUMP_STEPS * (request.max_step > 0.0 ? request.max_step : request.step);
     const struct dalcs_run_options options = tight(r, false);
     enum dalcs_status status =
@@ -183,6 +184,20 @@ static void compare_answers(struct dalcs_reference *r, const double *second) {
     }
 }
 
+/* Five stages cannot hold 1e-10 at every event. Where they take Euler's steps instead, their answer is
+ * worse than that of a wider tolerance. */
+static enum dalcs_status solve_again(struct dalcs_reference *r, struct dalcs_samples *second) {
+    struct dalcs_run_options options = tight(r, true);
+    enum dalcs_status status = dalcs_samples_run(second, r->session, &options, r->interrupted);
+    if (status == DALCS_OK && dalcs_session_report(r->session)->work.euler_steps > 0) {
+        dalcs_samples_finish(second);
+        r->second_tolerance = WIDER;
+        options = tight(r, true);
+        status = dalcs_samples_run(second, r->session, &options, r->interrupted);
+    }
+    return status;
+}
+
 enum dalcs_status dalcs_reference_solve(struct dalcs_reference *r) {
     struct dalcs_run_options options = tight(r, false);
     enum dalcs_status status = dalcs_samples_run(&r->samples, r->session, &options, r->interrupted);
@@ -199,8 +214,7 @@ enum dalcs_status dalcs_reference_solve(struct dalcs_reference *r) {
     find_scales(r);
     find_open(r);
     struct dalcs_samples second;
-    options = tight(r, true);
-    status = dalcs_samples_run(&second, r->session, &options, r->interrupted);
+    status = solve_again(r, &second);
     if (status == DALCS_OK) {
         compare_answers(r, second.value);
         dalcs_samples_finish(&second);
