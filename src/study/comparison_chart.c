@@ -117,7 +117,7 @@ void dalcs_comparison_draw_work(FILE *script, const struct dalcs_comparison *c) 
 static int rank_of(const struct dalcs_comparison *c, const double *rms, size_t signal) {
     int rank = 0;
     for (size_t s = 0; s < c->reference.n_signals; s++) {
-        bool is_larger = rms[s] > rms[signal] || (rms[s] == rms[signal] && s < signal);
+        bool is_larger = rms[s] > rms[signal] || (s < signal && rms[s] == rms[signal]);
         rank += !c->reference.is_open[s] && is_larger ? 1 : 0;
     }
     return rank;

@@ -66,10 +66,11 @@ void dalcs_convergence_write_text(FILE *stream, const struct dalcs_convergence *
 }
 
 static void write_number(FILE *stream, const struct dalcs_decimal *decimal, double value) {
-    char text[DALCS_DECIMAL_SIZE];
+    char text[DALCS_DECIMAL_SIZE] = "";
     fputc(',', stream);
     if (!isnan(value)) {
-        fwrite(text, 1, dalcs_decimal_write(decimal, value, text), stream);
+        size_t length = dalcs_decimal_write(decimal, value, text);
+        fwrite(text, 1, length, stream);
     }
 }
 

@@ -75,7 +75,7 @@ enum dalcs_status dalcs_ngspice_open(struct dalcs_ngspice *ng, const char *progr
                                      char message[DALCS_NGSPICE_TEXT_SIZE]) {
     *ng = (struct dalcs_ngspice){.program = program, .limit = limit, .interrupted = interrupted};
     const char *const argument[] = {program, "--version", NULL};
-    struct dalcs_process process;
+    struct dalcs_process process = {0};
     FILE *log = NULL;
     enum dalcs_status status = run(ng, argument, &process, &log);
     if (status == DALCS_OK) {
@@ -156,7 +156,7 @@ static void read_reason(struct dalcs_ngspice_run *r, FILE *log) {
     char line[DALCS_NGSPICE_TEXT_SIZE - 64] = "";
     while (fgets(line, sizeof line, log)) {
         line[strcspn(line, "\n")] = '\0';
-        char low[sizeof line];
+        char low[sizeof line] = "";
         for (size_t i = 0; i < sizeof line; i++) {
             low[i] = (char)tolower((unsigned char)line[i]);
         }
