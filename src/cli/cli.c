@@ -16,6 +16,8 @@ static const struct {
     {"equations", "write the complementarity system of a netlist", dalcs_cli_equations},
     {"check", "what theory says of a netlist before it runs", dalcs_cli_check},
     {"plot", "draw the waveforms of a file", dalcs_cli_plot},
+    {"compare", "run a netlist here and in ngspice: errors, times, waveforms", dalcs_cli_compare},
+    {"converge", "errors and orders of fixed steps", dalcs_cli_converge},
 };
 
 enum { N_VERBS = sizeof verb / sizeof verb[0] };

@@ -45,6 +45,7 @@ void dalcs_session_destroy(struct dalcs_session *session) {
         dalcs_netlist_finish(&session->netlist);
     }
     free(session->override);
+    dalcs_spice_names_finish(&session->spice);
     dalcs_diag_finish(&session->diag);
     dalcs_arena_finish(&session->arena);
     dalcs_arena_finish(&session->checked);

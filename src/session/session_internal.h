@@ -6,6 +6,7 @@
 #include "netlist.h"
 #include "override.h"
 #include "recorder.h"
+#include "spice.h"
 #include "undetermined.h"
 
 struct dalcs_session {
@@ -26,6 +27,7 @@ struct dalcs_session {
     double *start, *final;
     struct dalcs_nonunique *nonunique; /* of the report */
     size_t n_nonunique, nonunique_capacity;
+    struct dalcs_spice_names spice; /* made when first asked for */
     struct dalcs_arena arena;   /* names of the report and of the plots */
     struct dalcs_arena checked; /* the last check */
 };

@@ -1,0 +1,165 @@
+/* verb.c - refusals, the netlist, the output file. */
+#include "verb.h"
+
+#include "names.h"
+
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+enum { MOST_OPTIONS = 32 };
+
+enum dalcs_status dalcs_verb_refuse(const struct dalcs_cli *cli, const char *verb,
+                                    const struct option *option, int code, char **argv) {
+    const char *word = argv[optind - 1];
+    bool is_long = strncmp(word, "--", 2) == 0;
+    if (code == ':') {
+        dalcs_cli_error(cli, "option '%s' needs a value; see 'dalcs %s --help'", word, verb);
+    } else if (is_long && strchr(word, '=') && optopt != 0) {
+        dalcs_cli_error(cli, "option '%.*s' takes no value", (int)strcspn(word, "="), word);
+    } else if (is_long) {
+        const char *name[MOST_OPTIONS];
+        size_t n = 0;
+        for (; n < MOST_OPTIONS && option[n].name; n++) {
+            name[n] = option[n].name;
+        }
+        char typed[64];
+        snprintf(typed, sizeof typed, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+        const char *nearest = dalcs_names_nearest_of(name, n, typed);
+        if (nearest) {
+            dalcs_cli_error(cli, "unknown option '--%s'; did you mean '--%s'?", typed, nearest);
+        } else {
+            dalcs_cli_error(cli, "unknown option '--%s'; see 'dalcs %s --help'", typed, verb);
+        }
+    } else {
+        dalcs_cli_error(cli, "unknown option '-%c'; see 'dalcs %s --help'", optopt, verb);
+    }
+    return DALCS_E_OPTION;
+}
+
+enum dalcs_status dalcs_verb_take_netlist(const struct dalcs_cli *cli, const char *verb, int argc,
+                                          char **argv, const char **netlist) {
+    if (optind == argc) {
+        dalcs_cli_error(cli, "no netlist given; see 'dalcs %s --help'", verb);
+        return DALCS_E_OPTION;
+    }
+    if (optind != argc - 1) {
+        dalcs_cli_error(cli, "one netlist at a time: '%s' is one too many", argv[argc - 1]);
+        return DALCS_E_OPTION;
+    }
+    *netlist = argv[optind];
+    return DALCS_OK;
+}
+
+static bool is_same_file(const char *a, const char *b) {
+    struct stat first, second;
+    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
+}
+
+enum dalcs_status dalcs_verb_check_output(const struct dalcs_cli *cli, const char *path,
+                                          const char *const *ending, const char *netlist) {
+    const char *dot = strrchr(path, '.');
+    bool known = false;
+    for (size_t i = 0; ending[i]; i++) {
+        known = known || (dot && strcasecmp(dot, ending[i]) == 0);
+    }
+    if (!known) {
+        dalcs_cli_error(cli, "cannot tell the format of '%s': name it %s%s%s", path, ending[0],
+                        ending[1] ? " or " : "", ending[1] ? ending[1] : "");
+        return DALCS_E_OPTION;
+    }
+    if (is_same_file(path, netlist)) {
+        dalcs_cli_error(cli, "'%s' is the netlist: it would be overwritten", path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_verb_split(char *list, const char **part, size_t most, size_t *n) {
+    *n = 0;
+    for (char *c = list;;) {
+        size_t length = strcspn(c, ",");
+        bool is_last = c[length] == '\0';
+        if (length == 0 || *n == most) {
+            return DALCS_E_OPTION;
+        }
+        c[length] = '\0';
+        part[(*n)++] = c;
+        if (is_last) {
+            return DALCS_OK;
+        }
+        c += length + 1;
+    }
+}
+
+/* A message without a place in a file starts with what it is; the program's name goes before it. */
+static void write_message(const struct dalcs_cli *cli, const char *text) {
+    bool bare = strncmp(text, "error: ", 7) == 0 || strncmp(text, "warning: ", 9) == 0;
+    fprintf(cli->err, "%s%s\n", bare ? "dalcs: " : "", text);
+}
+
+enum dalcs_status dalcs_verb_open(const struct dalcs_cli *cli, const char *netlist,
+                                  struct dalcs_session **session, size_t *n_messages) {
+    enum dalcs_status status = dalcs_session_create(session);
+    if (status != DALCS_OK) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+        return status;
+    }
+    status = dalcs_session_read_file(*session, netlist);
+    *n_messages = dalcs_session_n_messages(*session);
+    for (size_t i = 0; i < *n_messages; i++) {
+        enum dalcs_level level = DALCS_LEVEL_NOTE;
+        const char *text = dalcs_session_message(*session, i, &level);
+        if (level != DALCS_LEVEL_NOTE) {
+            write_message(cli, text);
+        }
+    }
+    if (status == DALCS_OK && !dalcs_session_request(*session).transient) {
+        dalcs_cli_error(cli, "%s has no .tran: there are no waveforms to compare", netlist);
+        status = DALCS_E_NETLIST;
+    } else if (status != DALCS_OK && *n_messages == 0) {
+        dalcs_cli_error(cli, "%s: %s", netlist, dalcs_status_text(status));
+    }
+    return status;
+}
+
+void dalcs_verb_explain(const struct dalcs_cli *cli, const struct dalcs_session *session,
+                        size_t n_messages, enum dalcs_status status) {
+    bool said = false;
+    for (size_t i = n_messages; i < dalcs_session_n_messages(session); i++) {
+        enum dalcs_level level = DALCS_LEVEL_NOTE;
+        const char *text = dalcs_session_message(session, i, &level);
+        if (level == DALCS_LEVEL_ERROR) {
+            write_message(cli, text);
+            said = true;
+        }
+    }
+    if (status == DALCS_E_CANCELLED) {
+        fputs("dalcs: interrupted\n", cli->err);
+    } else if (!said) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+    }
+}
+
+static enum dalcs_status complain(const struct dalcs_cli *cli, const char *path,
+                                  const struct dalcs_atomic_file *file) {
+    dalcs_cli_error(cli, "cannot write '%s': %s", path, strerror(file->error));
+    return DALCS_E_IO;
+}
+
+enum dalcs_status dalcs_verb_begin_output(const struct dalcs_cli *cli,
+                                          struct dalcs_atomic_file *file, const char *path) {
+    *file = (struct dalcs_atomic_file){0};
+    return !path || dalcs_atomic_file_open(file, path) == DALCS_OK ? DALCS_OK
+                                                                   : complain(cli, path, file);
+}
+
+enum dalcs_status dalcs_verb_end_output(const struct dalcs_cli *cli, struct dalcs_atomic_file *file,
+                                        const char *path, enum dalcs_status so_far) {
+    if (so_far != DALCS_OK || !path) {
+        dalcs_atomic_file_discard(file);
+        return so_far;
+    }
+    return dalcs_atomic_file_commit(file) == DALCS_OK ? DALCS_OK : complain(cli, path, file);
+}
