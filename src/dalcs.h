@@ -174,6 +174,10 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) DALCS_MUST_CHECK;
 
+/* Events of diodes and switches since the run at hand began, or of the last one; 0 where the options
+ * say not to record them. May be asked for in a callback. */
+size_t dalcs_session_n_events(const struct dalcs_session *session);
+
 /* ---- The report ---------------------------------------------------------------------------- */
 
 /* A diode or switch changed sides. */

@@ -12,9 +12,13 @@
 #include <math.h>
 #include <string.h>
 
+/* Events and jumps kept where no report and no figure wants them; the summary shows a few. */
+enum { SHOWN_EVENTS = 100 };
+
 /* The state behind the sink. */
 struct run {
     const struct dalcs_cli *cli;
+    const struct dalcs_session *session; /* which runs */
     struct dalcs_outputs outputs;
     struct dalcs_progress progress;
     double time; /* s, how far the run has come */
@@ -29,7 +33,8 @@ static const char help[] =
     "  -o, --output FILE   write waveforms; the format is that of the name, .csv or .raw (may be\n"
     "                      repeated; without it FILE's name with .raw, in the current folder)\n"
     "      --method auto|radau|euler\n"
-    "                      how to integrate: radau is Radau IIA, euler implicit Euler with a fixed\n"
+    "                      how to integrate: radau is Radau IIA, euler implicit Euler with a "
+    "fixed\n"
     "                      step; auto chooses for each part (default: the netlist's, else auto)\n"
     "      --tol X         how far a waveform may be wrong, over its largest value; 1e-13 to 0.1\n"
     "                      (default: .options reltol, else 1e-6)\n"
@@ -86,7 +91,7 @@ static enum dalcs_status end(void *user) {
 static enum dalcs_status progress(void *user, double time, double stop) {
     struct run *run = user;
     run->time = time;
-    dalcs_progress_update(&run->progress, time, stop);
+    dalcs_progress_update(&run->progress, time, stop, dalcs_session_n_events(run->session));
     return check_interrupt(run);
 }
 
@@ -172,8 +177,12 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     options.n_at = times->n;
     options.dump_path = arguments->dump;
     options.record = arguments->report || arguments->plot || !arguments->quiet;
+    if (!arguments->report && !arguments->plot) {
+        options.max_events = SHOWN_EVENTS;
+    }
     options.energy = arguments->report || arguments->energy;
     const struct dalcs_sink sink = {run, begin, row, end, progress};
+    run->session = session;
     dalcs_progress_init(&run->progress, run->cli->err_is_terminal ? run->cli->err : NULL);
     enum dalcs_status status = dalcs_session_run(session, &options, &sink);
     dalcs_progress_finish(&run->progress);
@@ -182,8 +191,9 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     write_messages(run->cli, session, n_written, arguments->quiet);
     if (status == DALCS_E_CANCELLED) {
         char text[DALCS_QUANTITY_SIZE];
-        fprintf(run->cli->err, "dalcs: interrupted at t = %s\n",
-                dalcs_quantity_write(text, run->time, "s", 6));
+        fprintf(run->cli->err, "dalcs: interrupted at t = %s, after %zu row%s\n",
+                dalcs_quantity_write(text, run->time, "s", 6), run->outputs.n_rows,
+                run->outputs.n_rows == 1 ? "" : "s");
     } else if (status != DALCS_OK && status != DALCS_E_IO && *n_written == n_before) {
         dalcs_cli_error(run->cli, "%s", dalcs_status_text(status));
     }

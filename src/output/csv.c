@@ -6,11 +6,13 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 struct csv {
     struct dalcs_decimal decimal;
     size_t n_signals;
-    char *line; /* room for one row */
+    off_t rows_at; /* file position of the first row */
+    char *line;    /* room for one row */
 };
 
 /* Names with a comma or a quote, v(a,b), are quoted as RFC 4180 says. */
@@ -44,6 +46,7 @@ static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plo
         write_name(stream, plot->name[i]);
     }
     fputc('\n', stream);
+    csv->rows_at = ftello(stream);
     return DALCS_OK;
 }
 
@@ -64,6 +67,25 @@ static void end(void *state, FILE *stream) {
     (void)stream;
 }
 
+/* Up to the last newline but that of the header. */
+static off_t recover(const void *state, int descriptor, off_t size) {
+    const struct csv *csv = state;
+    char block[4096];
+    while (size > csv->rows_at) {
+        off_t start =
+            size > csv->rows_at + (off_t)sizeof block ? size - (off_t)sizeof block : csv->rows_at;
+        if (pread(descriptor, block, (size_t)(size - start), start) != size - start) {
+            return 0;
+        }
+        for (; size > start; size--) {
+            if (block[size - start - 1] == '\n') {
+                return size;
+            }
+        }
+    }
+    return 0;
+}
+
 static void finish(void *state) {
     struct csv *csv = state;
     free(csv->line);
@@ -76,5 +98,6 @@ const struct dalcs_table_format dalcs_csv_format = {
     .begin = begin,
     .row = row,
     .end = end,
+    .recover = recover,
     .finish = finish,
 };

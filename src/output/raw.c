@@ -11,14 +11,15 @@
 #include <string.h>
 #include <sys/types.h>
 #include <time.h>
+#include <unistd.h>
 
 #define POINTS_FIELD "%-20zu"
 
 struct raw {
     size_t n_columns, n_points;
     bool has_time;
-    off_t points_at; /* file position of the number of points */
-    double *point;   /* [n_columns], and at least 1 */
+    off_t plot_at, points_at, rows_at; /* file positions: of the plot, of its number of points */
+    double *point;                     /* [n_columns], and at least 1 */
 };
 
 /* SOURCE_DATE_EPOCH, where set, makes two runs give the same bytes. */
@@ -58,6 +59,7 @@ static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plo
     if (!raw->point) {
         return DALCS_E_NOMEM;
     }
+    raw->plot_at = ftello(stream);
     write_title(stream, plot->title ? plot->title : "");
     write_date(stream);
     fprintf(stream, "Plotname: %s\n", raw->has_time ? "Transient Analysis" : "Operating Point");
@@ -75,6 +77,7 @@ static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plo
                 plot->unit[i] == DALCS_VOLT ? "voltage" : "current");
     }
     fputs("Binary:\n", stream);
+    raw->rows_at = ftello(stream);
     return DALCS_OK;
 }
 
@@ -95,6 +98,20 @@ static void end(void *state, FILE *stream) {
     }
 }
 
+/* Without a whole row of the last plot, the plots before it. */
+static off_t recover(const void *state, int descriptor, off_t size) {
+    const struct raw *raw = state;
+    const off_t row_bytes = (off_t)(raw->n_columns * sizeof(double));
+    if (size < raw->rows_at + row_bytes) {
+        return raw->plot_at <= size ? raw->plot_at : 0;
+    }
+    char text[32];
+    off_t n_points = (size - raw->rows_at) / row_bytes;
+    int length = snprintf(text, sizeof text, POINTS_FIELD, (size_t)n_points);
+    bool written = pwrite(descriptor, text, (size_t)length, raw->points_at) == length;
+    return written ? raw->rows_at + n_points * row_bytes : 0;
+}
+
 static void finish(void *state) {
     struct raw *raw = state;
     free(raw->point);
@@ -106,5 +123,6 @@ const struct dalcs_table_format dalcs_raw_format = {
     .begin = begin,
     .row = row,
     .end = end,
+    .recover = recover,
     .finish = finish,
 };
