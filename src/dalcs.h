@@ -20,6 +20,10 @@ extern "C" {
 #pragma GCC visibility push(default) /* all else in the library is hidden */
 #endif
 
+/* The number of this interface, and of the library's file: libdalcs.so.0. It is raised when a program
+ * that was built with an older header could not go on with a newer library. */
+#define DALCS_ABI 0
+
 /* 0 is success, > 0 a numerical failure that a smaller step may cure, < 0 is final. */
 #define DALCS_STATUS_LIST(ENTRY)                                                                   \
     ENTRY(DALCS_OK, 0, "ok")                                                                       \
