@@ -1,8 +1,9 @@
 /* dalcs.h - the public interface of libdalcs.
  *
  * A session holds one netlist: read it, run it, ask for results. Nothing is global: two sessions
- * may live in two threads. Every call that can fail returns an enum dalcs_status; what a person
- * should read about a failure is in the session's diagnostics.
+ * may live in two threads, one session belongs to one thread at a time. Every call that can fail
+ * returns an enum dalcs_status; what a person should read about a failure is in the session's
+ * messages.
  *
  * Units are SI throughout: seconds, volts, amperes, coulombs, webers.
  */
@@ -54,7 +55,7 @@ enum dalcs_status {
 /* A short English phrase for a status; never NULL, do not free it. */
 const char *dalcs_status_text(enum dalcs_status status);
 
-/* "0.1.0" */
+/* "0.1.0", never NULL, do not free it. */
 const char *dalcs_version(void);
 
 /* A number as SPICE writes it, "1u", "2.5meg", "10kOhm". DALCS_E_OPTION when text is something else
@@ -101,6 +102,7 @@ struct dalcs_request dalcs_session_request(const struct dalcs_session *session);
 
 enum dalcs_analysis { DALCS_OPERATING_POINT, DALCS_TRANSIENT };
 
+/* What a signal's values are in. */
 enum dalcs_unit { DALCS_VOLT, DALCS_AMPERE };
 
 /* One table of results. Borrowed: valid until the session is destroyed. */
@@ -123,8 +125,9 @@ struct dalcs_sink {
      * left out (compress) the newest is held back: it may come after progress said to stop. */
     enum dalcs_status (*row)(void *user, double time, const double *value /* [n_signals] */);
     enum dalcs_status (*end)(void *user);
-    /* Called now and then, not more than every few thousand steps. Return DALCS_OK to
-     * go on, DALCS_E_CANCELLED to stop. */
+    /* Called every few thousand steps, of a large circuit more often, also while no row is due; not
+     * within a step. time and stop in s. Return DALCS_OK to go on, DALCS_E_CANCELLED to stop: because
+     * of a flag that another thread or a signal handler has set, for example. */
     enum dalcs_status (*progress)(void *user, double time, double stop);
 };
 
@@ -169,10 +172,13 @@ struct dalcs_run_options {
     const char *dump_path; /* where to write an OSNSP that failed; NULL: nowhere */
 };
 
+/* The values named above, all else 0. Owns nothing. */
 struct dalcs_run_options dalcs_run_options_default(void);
 
-/* Runs .op, then .tran, whichever the netlist has. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the
- * messages name the time and the elements; rows already handed to the sink stay true. A second run
+/* Runs .op, then .tran, whichever the netlist has, with options and a sink that are read during the
+ * call only. DALCS_E_NETLIST: no netlist was read. DALCS_E_OPTION: a message says which. What a
+ * callback returned, where that ended the run. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the messages
+ * name the time and the elements; rows already handed to the sink stay true. A second run
  * replaces the report of the first. */
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
