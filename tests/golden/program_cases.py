@@ -515,6 +515,12 @@ class Failures(Case):
     def test_disk_full_at_the_end(self):
         """A run of so few rows that the last ones go to the disk when it is over."""
         text = RECTIFIER.replace(".tran 100u", ".tran 50u")
+        for name in "csv", "raw":
+            done = self.dalcs("run", self.write(text), "-q", "-o", f"out.{name}",
+                              expect=INPUT_OUTPUT, preexec_fn=self.small_files)
+            self.assertEqual(done.stderr, f"dalcs: error: cannot write 'out.{name}': File too "
+                             f"large\ndalcs: what was computed is in 'out.partial.{name}'\n")
+        self.check_partial_files()
         done = self.dalcs("run", self.write(text), "-q", "-o", "out.csv", "-o", "out.raw",
                           expect=INPUT_OUTPUT, preexec_fn=self.small_files)
         for name in "out.csv", "out.raw":
@@ -616,7 +622,7 @@ class Terminal(Case):
                               stdout=subprocess.PIPE, stderr=slave, text=True) as process:
             os.close(slave)
             shown = b""
-            while not re.search(rb"s left\x1b", shown):
+            while not re.search(rb" left\x1b", shown):
                 shown += os.read(master, 4096)
             process.send_signal(signal.SIGINT)
             try:
