@@ -1,8 +1,9 @@
 /* dalcs.h - the public interface of libdalcs.
  *
  * A session holds one netlist: read it, run it, ask for results. Nothing is global: two sessions
- * may live in two threads. Every call that can fail returns an enum dalcs_status; what a person
- * should read about a failure is in the session's diagnostics.
+ * may live in two threads, one session belongs to one thread at a time. Every call that can fail
+ * returns an enum dalcs_status; what a person should read about a failure is in the session's
+ * messages.
  *
  * Units are SI throughout: seconds, volts, amperes, coulombs, webers.
  */
@@ -20,6 +21,10 @@ extern "C" {
 #if defined(__GNUC__)
 #pragma GCC visibility push(default) /* all else in the library is hidden */
 #endif
+
+/* The number of this interface, and of the library's file: libdalcs.so.0. It is raised when a program
+ * that was built with an older header could not go on with a newer library. */
+#define DALCS_ABI 0
 
 /* 0 is success, > 0 a numerical failure that a smaller step may cure, < 0 is final. */
 #define DALCS_STATUS_LIST(ENTRY)                                                                   \
@@ -51,7 +56,7 @@ enum dalcs_status {
 /* A short English phrase for a status; never NULL, do not free it. */
 const char *dalcs_status_text(enum dalcs_status status);
 
-/* "0.1.0" */
+/* "0.1.0", never NULL, do not free it. */
 const char *dalcs_version(void);
 
 /* A number as SPICE writes it, "1u", "2.5meg", "10kOhm". DALCS_E_OPTION when text is something else
@@ -166,6 +171,7 @@ enum dalcs_analysis {
     DALCS_N_ANALYSES
 };
 
+/* What a signal's values are in. */
 enum dalcs_unit {
     DALCS_VOLT,
     DALCS_AMPERE,
@@ -205,8 +211,9 @@ struct dalcs_sink {
      * left out (compress) the newest is held back: it may come after progress said to stop. */
     enum dalcs_status (*row)(void *user, double time, const double *value /* [n_signals] */);
     enum dalcs_status (*end)(void *user);
-    /* Simulated time of the stop time in s; of .dc and .ac points of all. Called now and then, not more than every few thousand steps. Return DALCS_OK to
-     * go on, DALCS_E_CANCELLED to stop. */
+    /* Called every few thousand steps, of a large circuit more often, also while no row is due; not
+     * within a step. Simulated time and stop in s; of .dc and .ac points. Return DALCS_OK to go on, DALCS_E_CANCELLED to stop: because
+     * of a flag that another thread or a signal handler has set, for example. */
     enum dalcs_status (*progress)(void *user, double time, double stop);
 };
 
@@ -252,15 +259,22 @@ struct dalcs_run_options {
     const char *dump_path; /* where to write an OSNSP that failed; NULL: nowhere */
 };
 
+/* The values named above, all else 0. Owns nothing. */
 struct dalcs_run_options dalcs_run_options_default(void);
 
-/* Runs .op, .dc, .ac and .tran, whichever the netlist has, for each .step. DALCS_NOT_CONVERGED,
- * DALCS_INFEASIBLE: the messages name the time and the elements; rows already handed to the sink stay
- * true. A second run replaces the report of the first. With .step the report is that of the last step
- * that was run, but for its work, which is of all. */
+/* Runs .op, .dc, .ac and .tran, whichever the netlist has, for each .step, with options and a sink that
+ * are read during the call only. DALCS_E_NETLIST: no netlist was read. DALCS_E_OPTION: a message says
+ * which. What a callback returned, where that ended the run. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the
+ * messages name the time and the elements; rows already handed to the sink stay true. A second run
+ * replaces the report of the first. With .step the report is that of the last step that was run, but for
+ * its work and measurements, which are of all. */
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) DALCS_MUST_CHECK;
+
+/* Events of diodes and switches since the run at hand began, or of the last one; 0 where the options
+ * say not to record them. May be asked for in a callback. */
+size_t dalcs_session_n_events(const struct dalcs_session *session);
 
 /* ---- Runs of other kinds --------------------------------------------------------------------- */
 
@@ -359,7 +373,7 @@ struct dalcs_measurement {
  * phase[k]) over the periods from `from` to `to`. */
 struct dalcs_fourier {
     const char *signal;
-    const char *step; /* as of a measurement */
+    const char *step;   /* as of a measurement */
     double frequency;   /* Hz */
     double from, to;    /* s */
     double thd;         /* harmonics from the second on over the first; not finite without that */
@@ -544,6 +558,7 @@ struct dalcs_check {
  * one step, in s; 0: .options step, else the tmax or tstep of .tran, else 1e-6. */
 enum dalcs_status dalcs_session_check(struct dalcs_session *session, double step,
                                       const struct dalcs_check **check) DALCS_MUST_CHECK;
+
 /* ---- In ngspice's language ------------------------------------------------------------------ */
 
 /* What stands for a diode. */

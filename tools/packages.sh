@@ -8,11 +8,11 @@ packages_of() {
     case $1 in
         build) echo gcc libc6-dev meson ninja-build pkg-config libsuitesparse-dev liblapacke-dev \
             libgfortran-12-dev libglpk-dev libjansson-dev libjs-dygraphs libltdl-dev uthash-dev ;;
-        test) echo check g++ python3 python3-jsonschema ;;
+        test) echo check g++ mandoc python3 python3-jsonschema ;;
         plot) echo gnuplot-nox ;;
         browser) echo chromium chromium-driver python3-selenium ;;
         crosscheck) echo ngspice python3 ;;
-        ci) echo clang libclang-rt-14-dev llvm valgrind clang-format cppcheck shellcheck ;;
+        ci) echo clang libclang-rt-14-dev llvm valgrind clang-format cppcheck shellcheck fish zsh ;;
         *)
             echo "packages.sh: no package group '$1'" >&2
             return 1

@@ -56,9 +56,14 @@ static void write_help(FILE *stream) {
         fprintf(stream, "  %-10s %s\n", verb[i].name, verb[i].purpose);
     }
     fputs("\n"
-          "  dalcs VERB --help    the options of a verb\n"
-          "  dalcs -b --help      ngspice's command line\n"
-          "  dalcs --version\n"
+          "  -h, --help     this text; after a verb its options and examples\n"
+          "      --version  the version\n"
+          "  -b             as ngspice is called: dalcs -b --help\n"
+          "\n"
+          "examples:\n"
+          "  dalcs run bridge.cir\n"
+          "  dalcs run --help\n"
+          "  dalcs -b -r out.raw -o log bridge.cir\n"
           "\n"
           "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n",
           stream);

@@ -124,7 +124,7 @@ static enum dalcs_status tell(const struct dalcs_cli *cli, FILE *out, const char
                               enum dalcs_status status, bool complete, const char *left_at) {
     if (error != 0) {
         dalcs_cli_error(cli, "cannot write '%s': %s", path, strerror(error));
-        return DALCS_E_IO;
+        status = DALCS_E_IO;
     }
     if (left_at) {
         fprintf(cli->err, "dalcs: what was computed is in '%s'", left_at);
@@ -139,6 +139,7 @@ static enum dalcs_status close_table(struct dalcs_table *table, const struct dal
                                      FILE *out, bool complete) {
     char *left_at = NULL;
     bool written = table->file.stream != NULL;
+    complete = complete && dalcs_table_flush(table) == DALCS_OK;
     enum dalcs_status status =
         complete ? dalcs_table_commit(table) : dalcs_table_keep(table, &left_at);
     status = tell(cli, out, table->path, table->file.error, status, complete && written, left_at);

@@ -1,4 +1,4 @@
-/* progress.c - "42 %  4.2 ms of 10 ms  1.3 ms/s  5 s left", rewritten in place. Short runs never
+/* progress.c - "42 %  4.2 ms of 10 ms  1.3 ms/s  840 events  5 s left", rewritten in place. Short runs never
  * show it. */
 #include "progress.h"
 
@@ -31,7 +31,8 @@ static void write_left(FILE *stream, double seconds) {
     }
 }
 
-void dalcs_progress_update(struct dalcs_progress *progress, double time, double stop) {
+void dalcs_progress_update(struct dalcs_progress *progress, double time, double stop,
+                           size_t n_events) {
     if (!progress->stream || !(stop > 0.0)) {
         return;
     }
@@ -47,6 +48,9 @@ void dalcs_progress_update(struct dalcs_progress *progress, double time, double 
     fprintf(progress->stream, "\r%3.0f %%  %s of %s  %s  ", 100.0 * time / stop,
             dalcs_quantity_write(done, time, unit, 3), dalcs_quantity_write(all, stop, unit, 3),
             dalcs_quantity_write(speed, rate, progress->counts ? "points/s" : "s/s", 3));
+    if (n_events > 0) {
+        fprintf(progress->stream, "%zu event%s  ", n_events, n_events == 1 ? "" : "s");
+    }
     if (rate > 0.0) {
         write_left(progress->stream, (stop - time) / rate);
     }

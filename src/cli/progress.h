@@ -3,6 +3,7 @@
 #define DALCS_PROGRESS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 
 struct dalcs_progress {
@@ -15,8 +16,10 @@ struct dalcs_progress {
 /* stream NULL shows nothing. */
 void dalcs_progress_init(struct dalcs_progress *progress, FILE *stream);
 
-/* Simulated time of stop, in s, or points of all. Redraws at most five times a second. */
-void dalcs_progress_update(struct dalcs_progress *progress, double time, double stop);
+/* Simulated time of stop, in s, or points of all; events of diodes and switches so far. Redraws at most
+ * five times a second. */
+void dalcs_progress_update(struct dalcs_progress *progress, double time, double stop,
+                           size_t n_events);
 
 /* Erases the line. */
 void dalcs_progress_finish(struct dalcs_progress *progress);

@@ -15,9 +15,13 @@
 #include <math.h>
 #include <string.h>
 
+/* Events and jumps kept where no report and no figure wants them; the summary shows a few. */
+enum { SHOWN_EVENTS = 100 };
+
 /* The state behind the sink. */
 struct run {
     const struct dalcs_cli *cli;
+    const struct dalcs_session *session; /* which runs */
     struct dalcs_outputs outputs;
     struct dalcs_print_table printed;
     struct dalcs_progress progress;
@@ -35,11 +39,14 @@ static const char help[] =
     "\n"
     "  -o, --output FILE   write waveforms; the format is that of the name, .csv or .raw (may be\n"
     "                      repeated; without it FILE's name with .raw, in the current folder)\n"
-    "      --method NAME   auto, radau (Radau IIA) or euler (implicit Euler with a fixed step);\n"
-    "                      default: the netlist's, else auto, which chooses for each part\n"
+    "      --method auto|radau|euler\n"
+    "                      how to integrate: radau is Radau IIA, euler implicit Euler with a "
+    "fixed\n"
+    "                      step; auto chooses for each part (default: the netlist's, else auto)\n"
     "      --tol X         how far a waveform may be wrong, over its largest value; 1e-13 to 0.1\n"
     "                      (default: .options reltol, else 1e-6)\n"
-    "      --stages N      of radau: 1, 3, 5 or 7 (default: by size and tolerance)\n"
+    "      --stages 1|3|5|7\n"
+    "                      stages of radau (default: by size and tolerance)\n"
     "      --step H        time step in s, SPICE suffixes allowed: 1u. The largest one with auto,\n"
     "                      fixed with radau and euler (default: from .tran)\n"
     "      --compress X    leave out rows that straight lines between others give, up to X times\n"
@@ -55,6 +62,15 @@ static const char help[] =
     "      --split-steps   in a raw file, make each step of .step a plot of its own\n"
     "  -q, --quiet         print nothing but warnings and errors\n"
     "  -h, --help          this text\n"
+    "\n"
+    "Ctrl-C, SIGTERM and a full disk end a run early: its rows so far are then in out.partial.csv\n"
+    "(for -o out.csv), and an out.csv of an earlier run stays as it is.\n"
+    "\n"
+    "examples:\n"
+    "  dalcs run bridge.cir\n"
+    "  dalcs run bridge.cir -o bridge.csv --plot bridge.svg\n"
+    "  dalcs run bridge.cir --tol 1e-9 --report bridge.json -q\n"
+    "  dalcs run bridge.cir --method euler --step 1u\n"
     "\n"
     "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n";
 
@@ -87,7 +103,7 @@ static enum dalcs_status end(void *user) {
 static enum dalcs_status progress(void *user, double time, double stop) {
     struct run *run = user;
     run->time = run->progress.counts ? run->time : time;
-    dalcs_progress_update(&run->progress, time, stop);
+    dalcs_progress_update(&run->progress, time, stop, dalcs_session_n_events(run->session));
     return check_interrupt(run);
 }
 
@@ -182,8 +198,12 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     options.n_at = times->n;
     options.dump_path = arguments->dump;
     options.record = arguments->report || arguments->plot || !arguments->quiet;
+    if (!arguments->report && !arguments->plot) {
+        options.max_events = SHOWN_EVENTS;
+    }
     options.energy = arguments->report || arguments->energy;
     const struct dalcs_sink sink = {run, begin, row, end, progress};
+    run->session = session;
     dalcs_progress_init(&run->progress, run->cli->err_is_terminal ? run->cli->err : NULL);
     const struct dalcs_script_host host = {.session = session,
                                            .options = &options,
@@ -199,8 +219,9 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     dalcs_cli_write_messages(run->cli, session, n_written, arguments->quiet);
     if (status == DALCS_E_CANCELLED) {
         char text[DALCS_QUANTITY_SIZE];
-        fprintf(run->cli->err, "dalcs: interrupted at t = %s\n",
-                dalcs_quantity_write(text, run->time, "s", 6));
+        fprintf(run->cli->err, "dalcs: interrupted at t = %s, after %zu row%s\n",
+                dalcs_quantity_write(text, run->time, "s", 6), run->outputs.n_rows,
+                run->outputs.n_rows == 1 ? "" : "s");
     } else if (status != DALCS_OK && status != DALCS_E_IO && *n_written == n_before) {
         dalcs_cli_error(run->cli, "%s", dalcs_status_text(status));
     }

@@ -181,6 +181,29 @@ enum dalcs_status dalcs_atomic_file_keep(struct dalcs_atomic_file *file, char **
     return DALCS_OK;
 }
 
+/* A stream that failed once is of no use: what it could not write is lost in its buffer. */
+enum dalcs_status dalcs_atomic_file_recover(struct dalcs_atomic_file *file, int *descriptor,
+                                            off_t *size) {
+    struct stat status;
+    *descriptor = dup(fileno(file->stream));
+    if (*descriptor < 0 || fstat(*descriptor, &status) != 0) {
+        int error = errno;
+        if (*descriptor >= 0) {
+            close(*descriptor);
+        }
+        return fail(file, error);
+    }
+    *size = status.st_size;
+    fclose(file->stream);
+    file->stream = fdopen(*descriptor, "r+b");
+    if (!file->stream) {
+        int error = errno;
+        close(*descriptor);
+        return fail(file, error);
+    }
+    return DALCS_OK;
+}
+
 void dalcs_atomic_file_discard(struct dalcs_atomic_file *file) {
     if (file->stream) {
         fclose(file->stream);

@@ -5,6 +5,7 @@
 #include "dalcs.h"
 
 #include <stdio.h>
+#include <sys/types.h>
 
 /* Zero-initialise. After a failure `error` is the errno and `path` (if not NULL) the file meant. */
 struct dalcs_atomic_file {
@@ -28,6 +29,11 @@ enum dalcs_status dalcs_atomic_file_commit(struct dalcs_atomic_file *file) DALCS
  * says where; NULL on failure, and then nothing is left. */
 enum dalcs_status dalcs_atomic_file_keep(struct dalcs_atomic_file *file,
                                          char **left_at) DALCS_MUST_CHECK;
+
+/* After a write that failed: what the system took of the stream so far, and no more, is at `descriptor`
+ * (the file's own), `size` bytes from its start. */
+enum dalcs_status dalcs_atomic_file_recover(struct dalcs_atomic_file *file, int *descriptor,
+                                            off_t *size) DALCS_MUST_CHECK;
 
 /* Removes what was written, if anything. Accepts a zeroed file and leaves one; `error` is kept. */
 void dalcs_atomic_file_discard(struct dalcs_atomic_file *file);

@@ -7,12 +7,14 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 struct csv {
     struct dalcs_decimal decimal;
     size_t n_parameters, n_values; /* before and after the scale */
     double *parameter;             /* [n_parameters] of this step */
     char *line;                    /* room for one row */
+    off_t rows_at;                 /* file position of the first row */
 };
 
 /* Names with a comma or a quote, v(a,b), are quoted as RFC 4180 says. */
@@ -79,6 +81,7 @@ static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plo
     }
     if (!goes_on) {
         write_header(stream, plot);
+        csv->rows_at = ftello(stream);
     }
     return DALCS_OK;
 }
@@ -104,6 +107,25 @@ static void end(void *state, FILE *stream) {
     (void)stream;
 }
 
+/* Up to the last newline but that of the header. */
+static off_t recover(const void *state, int descriptor, off_t size) {
+    const struct csv *csv = state;
+    char block[4096];
+    while (size > csv->rows_at) {
+        off_t start =
+            size > csv->rows_at + (off_t)sizeof block ? size - (off_t)sizeof block : csv->rows_at;
+        if (pread(descriptor, block, (size_t)(size - start), start) != size - start) {
+            return 0;
+        }
+        for (; size > start; size--) {
+            if (block[size - start - 1] == '\n') {
+                return size;
+            }
+        }
+    }
+    return 0;
+}
+
 static void finish(void *state) {
     struct csv *csv = state;
     free(csv->line);
@@ -117,5 +139,6 @@ const struct dalcs_table_format dalcs_csv_format = {
     .begin = begin,
     .row = row,
     .end = end,
+    .recover = recover,
     .finish = finish,
 };

@@ -12,6 +12,7 @@
 #include <string.h>
 #include <sys/types.h>
 #include <time.h>
+#include <unistd.h>
 
 #define POINTS_FIELD "%-20zu"
 
@@ -19,7 +20,7 @@ struct raw {
     size_t n_columns, n_points;
     size_t n_signals, n_parameters;
     bool has_scale, is_complex, is_ascii;
-    off_t points_at;  /* file position of the number of points */
+    off_t plot_at, points_at, rows_at; /* file positions: of the plot, of its number of points */
     double *point;    /* [n_columns], of pairs where it is complex; and at least 1 */
     double *constant; /* [n_parameters] of this step */
     struct dalcs_decimal decimal;
@@ -75,6 +76,7 @@ static void write_header(struct raw *raw, FILE *stream, const struct dalcs_plot 
                                        [DALCS_TRANSIENT] = "Transient Analysis",
                                        [DALCS_DC_SWEEP] = "DC transfer characteristic",
                                        [DALCS_AC] = "AC Analysis"};
+    raw->plot_at = ftello(stream);
     write_title(stream, plot->title ? plot->title : "");
     write_date(stream);
     fprintf(stream, "Plotname: %s\n", name[plot->analysis]);
@@ -95,6 +97,7 @@ static void write_header(struct raw *raw, FILE *stream, const struct dalcs_plot 
         fprintf(stream, "\t%zu\t%s\t%s\n", column++, plot->name[i], type_of(plot->unit[i]));
     }
     fputs(raw->is_ascii ? "Values:\n" : "Binary:\n", stream);
+    raw->rows_at = ftello(stream);
 }
 
 /* The steps of .step follow one another in one plot, whose scale starts again with each; the values of
@@ -187,6 +190,51 @@ static void end(void *state, FILE *stream) {
     }
 }
 
+static bool write_points(const struct raw *raw, int descriptor, size_t n_points) {
+    char text[32];
+    const int length = snprintf(text, sizeof text, POINTS_FIELD, n_points);
+    return pwrite(descriptor, text, (size_t)length, raw->points_at) == length;
+}
+
+/* Without a whole row of the last plot, the plots before it. */
+static off_t recover(const void *state, int descriptor, off_t size) {
+    const struct raw *raw = state;
+    const off_t row_bytes = (off_t)((raw->is_complex ? 2 : 1) * raw->n_columns * sizeof(double));
+    if (size < raw->rows_at + row_bytes) {
+        return raw->plot_at <= size ? raw->plot_at : 0;
+    }
+    const off_t n_points = (size - raw->rows_at) / row_bytes;
+    const bool written = write_points(raw, descriptor, (size_t)n_points);
+    return written ? raw->rows_at + n_points * row_bytes : 0;
+}
+
+/* A point ends with an empty line. */
+static off_t recover_ascii(const void *state, int descriptor, off_t size) {
+    const struct raw *raw = state;
+    char block[4096];
+    char last = '\n';
+    size_t n_points = 0;
+    off_t whole = 0;
+    for (off_t at = raw->rows_at; at < size;) {
+        const ssize_t n = pread(descriptor, block, sizeof block, at);
+        if (n <= 0) {
+            return 0;
+        }
+        for (ssize_t i = 0; i < n && at + i < size; i++) {
+            if (block[i] == '\n' && last == '\n' && at + i > raw->rows_at) {
+                n_points++;
+                whole = at + i + 1;
+            }
+            last = block[i];
+        }
+        at += n;
+    }
+    if (n_points == 0) {
+        return raw->plot_at <= size ? raw->plot_at : 0;
+    }
+    return write_points(raw, descriptor, n_points) ? whole : 0;
+}
+
 static void finish(void *state) {
     struct raw *raw = state;
     free(raw->point);
@@ -199,6 +247,7 @@ const struct dalcs_table_format dalcs_raw_format = {
     .begin = begin,
     .row = row,
     .end = end,
+    .recover = recover,
     .finish = finish,
 };
 
@@ -208,5 +257,6 @@ const struct dalcs_table_format dalcs_raw_ascii_format = {
     .begin = begin_ascii,
     .row = row_ascii,
     .end = end,
+    .recover = recover_ascii,
     .finish = finish,
 };

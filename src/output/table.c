@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 const struct dalcs_table_format *dalcs_table_find_format(const char *path) {
     static const struct dalcs_table_format *const all[] = {&dalcs_csv_format, &dalcs_raw_format};
@@ -50,9 +51,9 @@ static enum dalcs_status check_stream(struct dalcs_table *table) {
     if (!ferror(table->file.stream)) {
         return DALCS_OK;
     }
-    int error = errno != 0 ? errno : EIO;
-    dalcs_atomic_file_discard(&table->file);
-    table->file.error = error;
+    if (table->file.error == 0) {
+        table->file.error = errno != 0 ? errno : EIO;
+    }
     return DALCS_E_IO;
 }
 
@@ -123,8 +124,30 @@ enum dalcs_status dalcs_table_end(struct dalcs_table *table) {
     return check_stream(table);
 }
 
+enum dalcs_status dalcs_table_flush(struct dalcs_table *table) {
+    if (!table->file.stream) {
+        return DALCS_OK;
+    }
+    errno = 0;
+    fflush(table->file.stream);
+    return check_stream(table);
+}
+
 enum dalcs_status dalcs_table_commit(struct dalcs_table *table) {
     return table->file.stream ? dalcs_atomic_file_commit(&table->file) : DALCS_OK;
+}
+
+/* What is on a disk that took no more, cut after its last whole row. */
+static enum dalcs_status keep_whole_rows(struct dalcs_table *table, char **left_at) {
+    int descriptor = -1;
+    off_t size = 0;
+    DALCS_TRY(dalcs_atomic_file_recover(&table->file, &descriptor, &size));
+    off_t whole = table->format->recover(table->state, descriptor, size);
+    if (whole == 0 || ftruncate(descriptor, whole) != 0) {
+        dalcs_atomic_file_discard(&table->file);
+        return DALCS_E_IO;
+    }
+    return dalcs_atomic_file_keep(&table->file, left_at);
 }
 
 enum dalcs_status dalcs_table_keep(struct dalcs_table *table, char **left_at) {
@@ -132,8 +155,11 @@ enum dalcs_status dalcs_table_keep(struct dalcs_table *table, char **left_at) {
     if (!table->file.stream || table->n_rows == 0) {
         return DALCS_OK;
     }
-    enum dalcs_status status = dalcs_table_end(table);
-    return status == DALCS_OK ? dalcs_atomic_file_keep(&table->file, left_at) : status;
+    if (table->file.error == 0 && dalcs_table_end(table) == DALCS_OK &&
+        dalcs_table_flush(table) == DALCS_OK) {
+        return dalcs_atomic_file_keep(&table->file, left_at);
+    }
+    return keep_whole_rows(table, left_at);
 }
 
 void dalcs_table_finish(struct dalcs_table *table) {

@@ -14,6 +14,9 @@ struct dalcs_table_format {
     void (*row)(void *state, FILE *stream, double time, const double *value);
     /* Also called when the run was cut short, so that what is there can be read. */
     void (*end)(void *state, FILE *stream);
+    /* How many of the file's first `size` bytes, all that the disk took, are whole rows and what they
+     * need to be read; 0: none. Puts right what `end` would have. */
+    off_t (*recover)(const void *state, int descriptor, off_t size);
     void (*finish)(void *state);
 };
 
@@ -56,11 +59,14 @@ enum dalcs_status dalcs_table_begin(struct dalcs_table *table, const struct dalc
 enum dalcs_status dalcs_table_row(struct dalcs_table *table, double time, const double *value);
 enum dalcs_status dalcs_table_end(struct dalcs_table *table);
 
+/* All rows are with the system. */
+enum dalcs_status dalcs_table_flush(struct dalcs_table *table) DALCS_MUST_CHECK;
+
 /* Gives the complete file its name. */
 enum dalcs_status dalcs_table_commit(struct dalcs_table *table) DALCS_MUST_CHECK;
 
-/* Leaves what an interrupted run had under a name that says so; *left_at (free() it) is NULL when
- * there was nothing or it could not be written. */
+/* Leaves what an interrupted run had, or what went onto a disk before it was full, under a name that
+ * says so; *left_at (free() it) is NULL when there was nothing or it could not be written. */
 enum dalcs_status dalcs_table_keep(struct dalcs_table *table, char **left_at) DALCS_MUST_CHECK;
 
 /* Accepts a zeroed table. A file neither committed nor kept is removed. */

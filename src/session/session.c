@@ -128,6 +128,10 @@ size_t dalcs_session_n_messages(const struct dalcs_session *session) {
     return session->diag.n;
 }
 
+size_t dalcs_session_n_events(const struct dalcs_session *session) {
+    return session->recorder.n_events + session->recorder.n_events_dropped;
+}
+
 const char *dalcs_session_message(const struct dalcs_session *session, size_t index,
                                   enum dalcs_level *level) {
     static const enum dalcs_level level_of[] = {[DALCS_NOTE] = DALCS_LEVEL_NOTE,

@@ -8,6 +8,8 @@ import csv
 import json
 import os
 import pathlib
+import pty
+import re
 import resource
 import shutil
 import signal
@@ -480,14 +482,66 @@ class Failures(Case):
         """Noticed when it happens, not at the end of a run of hours."""
         self.write("old", "out.csv")
 
-        def small_files():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+        for name, other in ("csv", "raw"), ("raw", "csv"):
+            done = self.dalcs("run", self.write(LONG), "-o", f"out.{name}", "-o", f"out.{other}",
+                              expect=INPUT_OUTPUT, preexec_fn=self.small_files)
+            self.assertIn(f"cannot write 'out.{name}': File too large", done.stderr)
+            self.assertIn("what was computed is in 'out.partial.csv'; 'out.csv' is of an earlier "
+                          "run\n", done.stderr)
+            self.assertIn("what was computed is in 'out.partial.raw'\n", done.stderr)
+            self.assertEqual(self.files(), ["a.cir", "out.csv", "out.partial.csv",
+                                            "out.partial.raw"])
+            self.assertEqual(self.path("out.csv").read_text(), "old")
+            self.check_partial_files()
 
-        done = self.dalcs("run", self.write(LONG), "-o", "out.csv", expect=INPUT_OUTPUT,
-                          preexec_fn=small_files)
-        self.assertIn("cannot write 'out.csv': File too large", done.stderr)
-        self.assertEqual(self.files(), ["a.cir", "out.csv"])
-        self.assertEqual(self.path("out.csv").read_text(), "old")
+    LIMIT = 20000
+
+    def small_files(self):
+        resource.setrlimit(resource.RLIMIT_FSIZE, (self.LIMIT, self.LIMIT))
+
+    def check_partial_files(self):
+        """They hold whole rows, as many as went onto the disk."""
+        header, rows = self.table("out.partial.csv")
+        self.assertTrue(all(len(row) == len(header) for row in rows))
+        size = self.path("out.partial.csv").stat().st_size
+        self.assertGreater(size, self.LIMIT - 200)
+        self.assertLessEqual(size, self.LIMIT)
+        (names, points), = Ngspice.plots(self.path("out.partial.raw").read_bytes())
+        self.assertEqual(names, header)
+        self.assertGreater((len(points) + 1) * len(names) * 8, self.LIMIT - 1000)
+        n = min(len(rows), len(points))
+        self.assertEqual([list(row) for row in points[:n]], rows[:n])
+
+    def test_disk_full_at_the_end(self):
+        """A run of so few rows that the last ones go to the disk when it is over."""
+        text = RECTIFIER.replace(".tran 100u", ".tran 50u")
+        for name in "csv", "raw":
+            done = self.dalcs("run", self.write(text), "-q", "-o", f"out.{name}",
+                              expect=INPUT_OUTPUT, preexec_fn=self.small_files)
+            self.assertEqual(done.stderr, f"dalcs: error: cannot write 'out.{name}': File too "
+                             f"large\ndalcs: what was computed is in 'out.partial.{name}'\n")
+        self.check_partial_files()
+        done = self.dalcs("run", self.write(text), "-q", "-o", "out.csv", "-o", "out.raw",
+                          expect=INPUT_OUTPUT, preexec_fn=self.small_files)
+        for name in "out.csv", "out.raw":
+            self.assertIn(f"cannot write '{name}': File too large", done.stderr)
+        self.assertEqual(self.files(), ["a.cir", "out.partial.csv", "out.partial.raw"])
+        self.check_partial_files()
+
+    def test_disk_full_in_the_second_plot(self):
+        """The operating point is whole and stays."""
+        self.write(BOTH)
+        self.dalcs("run", "a.cir", "-q", "-o", "out.raw")
+        whole = self.path("out.raw").read_bytes()
+        second = whole.index(b"Title:", 1)
+        rows = whole.index(b"Binary:", second) + len("Binary:\n")
+        for size, lengths in (second, [1]), (rows + 39, [1]), (rows + 239, [1, 5]):
+            self.LIMIT = size
+            self.dalcs("run", "a.cir", "-q", "-o", "out.raw", expect=INPUT_OUTPUT,
+                       preexec_fn=self.small_files)
+            found = list(Ngspice.plots(self.path("out.partial.raw").read_bytes()))
+            self.assertEqual([len(points) for _, points in found], lengths)
+            self.assertEqual(self.path("out.raw").read_bytes(), whole)
 
     def test_infeasible(self):
         self.write("old", "out.csv")
@@ -538,7 +592,8 @@ class Interrupt(Case):
             process.send_signal(number)
             _, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, -number, errors)
-        self.assertIn("interrupted at t = ", errors)
+        told = re.search(r"^dalcs: interrupted at t = \S+ \S?s, after (\d+) rows$", errors,
+                         re.MULTILINE)
         self.assertIn("'out.partial.csv'", errors)
         self.assertEqual(self.files(), ["a.cir", "out.csv", "out.partial.csv", "out.partial.raw",
                                         "r.json"])
@@ -546,6 +601,7 @@ class Interrupt(Case):
         self.assertEqual(json.loads(self.path("r.json").read_text())["status"], "cancelled")
         header, rows = self.table("out.partial.csv")
         self.assertTrue(all(len(row) == len(header) for row in rows))
+        self.assertEqual(int(told[1]), len(rows))
         raw = self.path("out.partial.raw").read_bytes()
         self.assertIn(f"No. Points: {len(rows)} ".encode(), raw)
 
@@ -554,6 +610,34 @@ class Interrupt(Case):
 
     def test_terminate(self):
         self.interrupt(signal.SIGTERM)
+
+
+class Terminal(Case):
+    """A run whose messages go to a terminal says how far it is, and nothing of it elsewhere."""
+
+    def test_progress(self):
+        self.write(LONG.replace("SIN(0 10 50)", "SIN(0 10 50k)"))
+        master, slave = pty.openpty()
+        with subprocess.Popen([DALCS, "run", "a.cir", "-o", "out.csv"], cwd=self.folder,
+                              stdout=subprocess.PIPE, stderr=slave, text=True) as process:
+            os.close(slave)
+            shown = b""
+            while not re.search(rb" left\x1b", shown):
+                shown += os.read(master, 4096)
+            process.send_signal(signal.SIGINT)
+            try:
+                while True:
+                    shown += os.read(master, 4096)
+            except OSError:  # the terminal has no other end any more
+                os.close(master)
+            printed = process.communicate()[0]
+        self.assertEqual(process.returncode, -signal.SIGINT)
+        self.assertRegex(shown, rb"^\r +\d+ %  \S+ .?s of 1 ks  \S+ .?s/s  \d+ events  "
+                         rb"(\d+ h )?(\d+ min )?(\d+ s )?left\x1b\[K")
+        # erased before the next message
+        self.assertRegex(shown, rb"\r\x1b\[Kdalcs: interrupted at t = ")
+        self.assertNotIn("\r", printed)
+        self.assertIn("stopped   at ", printed)
 
 
 class Ngspice(Case):

@@ -7,6 +7,8 @@
 #include <malloc.h>
 #include <math.h>
 #include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -396,7 +398,58 @@ START_TEST(test_threads) {
 
 END_TEST
 
+/* What a thread and the one that stops it share. */
+struct endless {
+    atomic_bool stop;
+    atomic_size_t n_asked, n_events; /* so far */
+    struct dalcs_session *session;
+    enum dalcs_status status;
+};
+
+static enum dalcs_status ask(void *user, double time, double stop) {
+    struct endless *e = user;
+    ck_assert(time > 0.0 && time < stop);
+    atomic_store(&e->n_events, dalcs_session_n_events(e->session));
+    atomic_fetch_add(&e->n_asked, 1);
+    return atomic_load(&e->stop) ? DALCS_E_CANCELLED : DALCS_OK;
+}
+
+static void *run_endlessly(void *user) {
+    struct endless *e = user;
+    struct dalcs_run_options options = dalcs_run_options_default();
+    options.record = true;
+    options.max_events = 10;
+    const struct dalcs_sink sink = {.user = e, .progress = ask};
+    e->status = dalcs_session_run(e->session, &options, &sink);
+    return NULL;
+}
+
+/* Two runs that would take years, stopped one after the other; neither is stopped by the other's flag. */
+START_TEST(test_cancel_from_another_thread) {
+    struct endless e[2] = {{.status = DALCS_OK}, {.status = DALCS_OK}};
+    pthread_t thread[2];
+    for (int k = 0; k < 2; k++) {
+        e[k].session = read_good("rectifier\nV1 a 0 SIN(0 1 50k)\nD1 a b\nC1 b 0 1u\nR1 b 0 1k\n"
+                                 ".tran 1u 1e6\n");
+        ck_assert_int_eq(pthread_create(&thread[k], NULL, run_endlessly, &e[k]), 0);
+    }
+    for (int k = 0; k < 2; k++) {
+        while (atomic_load(&e[k].n_asked) < 2) {
+            sched_yield();
+        }
+        ck_assert_uint_gt(atomic_load(&e[k].n_events), 100);
+        ck_assert(!atomic_load(&e[k].stop));
+        atomic_store(&e[k].stop, true);
+        ck_assert_int_eq(pthread_join(thread[k], NULL), 0);
+        ck_assert_int_eq(e[k].status, DALCS_E_CANCELLED);
+        ck_assert_int_eq(dalcs_session_report(e[k].session)->n_events, 10);
+        dalcs_session_destroy(e[k].session);
+    }
+}
+
+END_TEST
+
 RUN_TESTS("session", test_wrong_options, test_method_and_tolerance, test_step_without_states,
           test_cancel, test_memory_of_jumps, test_bounded_events, test_initial_across_parts,
           test_initial_beside_short, test_initial_of_floating_part, test_certificate_of_held_point,
-          test_shorts_in_a_loop, test_threads)
+          test_shorts_in_a_loop, test_threads, test_cancel_from_another_thread)
