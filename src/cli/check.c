@@ -22,8 +22,14 @@ static const char help[] =
     "      --json      all of it as JSON, by doc/check.schema.json\n"
     "  -h, --help      this text\n"
     "\n"
-    "exit status: 0 checked, whatever the answers; 1 the check failed, 2 usage, 3 error in the\n"
-    "netlist, 4 input/output\n";
+    "examples:\n"
+    "  dalcs check bridge.cir\n"
+    "  dalcs check bridge.cir --all\n"
+    "  dalcs check bridge.cir --json\n"
+    "\n"
+    "exit status: 0 ok, whatever the answers, 1 the check failed, 2 usage, 3 error in the netlist, "
+    "4\n"
+    "input/output\n";
 
 enum { STEP = 256, ALL, JSON };
 

@@ -32,7 +32,10 @@ static const char help[] =
     "  -q, --quiet           print nothing but warnings and errors\n"
     "  -h, --help            this text\n"
     "\n"
-    "example: dalcs compare netlists/converters/buck.cir -o buck.html\n"
+    "examples:\n"
+    "  dalcs compare buck.cir\n"
+    "  dalcs compare buck.cir --methods auto,radau,euler -o buck.html\n"
+    "  dalcs compare buck.cir --quiet --within 1e-2\n"
     "\n"
     "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output, no "
     "ngspice\n";

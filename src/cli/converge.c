@@ -33,7 +33,9 @@ static const char help[] =
     "  -q, --quiet           print nothing but warnings and errors\n"
     "  -h, --help            this text\n"
     "\n"
-    "example: dalcs converge netlists/rectifiers/full_bridge_rl.cir --steps 100u..1u -o rl.html\n"
+    "examples:\n"
+    "  dalcs converge bridge.cir --steps 100u..1u\n"
+    "  dalcs converge bridge.cir --steps 100u,50u,10u --methods euler -o bridge.html\n"
     "\n"
     "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n";
 

@@ -27,7 +27,15 @@ static const char help[] =
     "Euler\n"
     "                      of length --step solves); default: dalcs\n"
     "      --step H        s, of --form osnsp; SPICE suffixes allowed\n"
-    "  -h, --help          this text\n";
+    "  -h, --help          this text\n"
+    "\n"
+    "examples:\n"
+    "  dalcs equations bridge.cir\n"
+    "  dalcs equations bridge.cir --format latex -o bridge.tex\n"
+    "  dalcs equations bridge.cir --form osnsp --step 1u\n"
+    "  dalcs equations bridge.cir --format system -o bridge.dalcs\n"
+    "\n"
+    "exit status: 0 ok, 1 it failed, 2 usage, 3 error in the netlist, 4 input/output\n";
 
 struct request {
     const char *netlist, *output;

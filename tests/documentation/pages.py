@@ -67,7 +67,7 @@ class Place:
         self.environment = {
             **os.environ, "PKG_CONFIG_PATH": str(package), "PKG_CONFIG_SYSROOT_DIR": str(root),
             "LD_LIBRARY_PATH": str(package.parent),
-            "DESTDIR": str(folder / "other"), "HOME": str(folder), "LC_ALL": "C.UTF-8",
+            "DESTDIR": str(folder / "other"), "HOME": str(folder), "LC_ALL": "C.UTF-8", "COLUMNS": "72",
             "PATH": f"{helpers}:{next(root.rglob('bin/dalcs')).parent}:{os.environ['PATH']}"}
 
     def write_helper(self, name, text):
