@@ -44,7 +44,7 @@ START_TEST(test_everything) {
         .component = component,
         .step = 1e-6,
         .stop = 0.5,
-        .size = {1, 2, 3, 4, 5, 2},
+        .size = {1, 2, 3, 4, 5, 2, 0},
         .work = {11, 12, 13, 14, 15, 16, 17, 18, 19, 0.5, 0.75},
         .certificate = {1e-15, 0.125, "KCL at out", 0.0625},
         .n_states = 2,
