@@ -47,7 +47,7 @@ struct dalcs_stages {
     uint64_t *key; /* [n_words + 1] */
     long factorizations, cache_hits;
     klu_common klu, klu_complex;
-    struct dalcs_stage_plan *plan; /* what sparse factors share; NULL until there are any */
+    struct dalcs_stage_plan *plan;         /* what sparse factors share; NULL until there are any */
     struct dalcs_stage_workshop *workshop; /* what makes dense maps; NULL until there are any */
 };
 

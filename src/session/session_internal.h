@@ -28,8 +28,8 @@ struct dalcs_session {
     struct dalcs_nonunique *nonunique; /* of the report */
     size_t n_nonunique, nonunique_capacity;
     struct dalcs_spice_names spice; /* made when first asked for */
-    struct dalcs_arena arena;   /* names of the report and of the plots */
-    struct dalcs_arena checked; /* the last check */
+    struct dalcs_arena arena;       /* names of the report and of the plots */
+    struct dalcs_arena checked;     /* the last check */
 };
 
 /* In the order of dalcs_method_name. */
@@ -53,7 +53,7 @@ struct dalcs_run {
 
     struct dalcs_measurement *measurement; /* [n_measures] of the report; NULL: none yet */
     double *result;                        /* [n_measures] NAN: could not be measured */
-    const struct dalcs_plot *step; /* its step and parameters; NULL without .step */
+    const struct dalcs_plot *step;         /* its step and parameters; NULL without .step */
     const char **name;
     enum dalcs_unit *unit;
     struct dalcs_names interrupting; /* switches that a warning has named */

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """`dalcs equations` of every netlist, read back as a system, gives the waveforms of the netlist.
 
-usage: read_back.py DALCS FORMAT
+usage: read_back.py DALCS FORMAT [FOLDER]
 
-Each netlist of netlists/ runs by itself and from what `equations --format FORMAT` wrote, with the default
+Each netlist of netlists/, or of its FOLDER, runs by itself and from what `equations --format FORMAT` wrote, with the default
 method the rows are equal to the bit, and so are status, events and jumps; with implicit Euler they agree to
 rounding (looking for what is open asks the engine more often, and what it keeps has other last bits). With
 FORMAT lcs the unknowns z are eliminated, and the rows agree to the tolerance of the method."""
@@ -83,9 +83,9 @@ def compare_roughly(checker, name, found, wanted):
 
 
 def main():
-    program, kind = sys.argv[1:]
+    program, kind = sys.argv[1:3]
     checker = dalcs_program.Checker(f"read_back {kind}")
-    netlists = sorted(dalcs_program.NETLISTS.rglob("*.cir"))
+    netlists = sorted(dalcs_program.NETLISTS.joinpath(*sys.argv[3:]).rglob("*.cir"))
     read = 0
     for netlist in netlists:
         name = netlist.stem
