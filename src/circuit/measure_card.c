@@ -51,12 +51,23 @@ static bool is_one_of(const struct dalcs_token *token, const char *const *list, 
     return token->kind == DALCS_TOKEN_WORD && dalcs_builder_is_one_of(token->text, list, n);
 }
 
+/* "from 1m to 2m", as LTspice also has it. */
+static bool is_bound(const struct dalcs_card *card, int k) {
+    static const char *const bounds[] = {"from", "to"};
+    return k + 1 < card->n && is_one_of(&card->token[k], bounds, 2) &&
+           card->token[k + 1].kind != DALCS_TOKEN_EQUAL &&
+           dalcs_reader_is_number(&card->token[k + 1]);
+}
+
 /* Does a keyword stand at token k, which ends a formula before it? */
 static bool is_keyword(const struct dalcs_card *card, int k) {
     static const char *const alone[] = {"when", "trig", "targ"};
     static const char *const with_value[] = {"from", "to",  "td",   "rise",   "fall",   "cross",
                                              "at",   "val", "goal", "minval", "weight", "print"};
     if (is_one_of(&card->token[k], alone, sizeof alone / sizeof alone[0])) {
+        return true;
+    }
+    if (is_bound(card, k)) {
         return true;
     }
     return k + 1 < card->n && card->token[k + 1].kind == DALCS_TOKEN_EQUAL &&
@@ -137,11 +148,12 @@ static bool read_count(struct reading *r, int *count) {
 /* Takes a keyword and its equal sign, if this one comes next. */
 static bool take(struct reading *r, const char *word) {
     const struct dalcs_token *next = dalcs_reader_peek(&r->reader, 1);
-    if (next == NULL || next->kind != DALCS_TOKEN_EQUAL) {
+    const bool has_equal = next != NULL && next->kind == DALCS_TOKEN_EQUAL;
+    if (!has_equal && !is_bound(r->card, r->reader.at)) {
         return false;
     }
     const bool taken = dalcs_reader_take_word(&r->reader, word);
-    r->reader.at += taken;
+    r->reader.at += taken && has_equal;
     return taken;
 }
 

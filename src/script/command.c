@@ -66,6 +66,20 @@ static enum dalcs_status add_measurements(struct dalcs_script *script, size_t fi
     return DALCS_OK;
 }
 
+/* As in ngspice, what was measured is a vector of the run. */
+static enum dalcs_status keep_measured(struct dalcs_script *script) {
+    const struct dalcs_report *report = dalcs_session_report(script->host->session);
+    for (size_t k = 0; report != NULL && k < report->n_measurements; k++) {
+        double complex value = report->measurement[k].value;
+        const struct dalcs_vector v = {
+            .name = "", .unit = DALCS_UNIT_NONE, .n = 1, .value = &value};
+        if (report->measurement[k].found) {
+            DALCS_TRY(dalcs_vectors_let(&script->vectors, report->measurement[k].name, &v));
+        }
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status run_session(struct dalcs_script *script) {
     const struct dalcs_script_host *host = script->host;
     const struct dalcs_sink sink = {script, begin, row, end, progress};
@@ -74,7 +88,7 @@ static enum dalcs_status run_session(struct dalcs_script *script) {
     if (host->after_run != NULL) {
         host->after_run(host->user, host->session, status);
     }
-    return status;
+    return status == DALCS_OK ? keep_measured(script) : status;
 }
 
 static enum dalcs_status run(struct dalcs_script *script, size_t index) {
