@@ -32,6 +32,8 @@ static bool solve(glp_prob *lp) {
     glp_init_smcp(&parameters);
     parameters.msg_lev = GLP_MSG_OFF;
     parameters.tol_bnd = parameters.tol_dj = tolerance;
+    /* with values far apart it may go round for ever; what is not solved is said not to be checked */
+    parameters.it_lim = 1000 + 20 * (glp_get_num_rows(lp) + glp_get_num_cols(lp));
     return glp_simplex(lp, &parameters) == 0 && glp_get_status(lp) == GLP_OPT;
 }
 
