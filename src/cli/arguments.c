@@ -3,8 +3,8 @@
 
 #include "figure.h"
 #include "memory.h"
-#include "names.h"
 #include "table.h"
+#include "verb.h"
 
 #include <getopt.h>
 #include <stdlib.h>
@@ -45,33 +45,6 @@ static const struct option option[] = {
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
 };
-
-enum { N_OPTIONS = sizeof option / sizeof option[0] - 1 };
-
-/* What getopt_long stumbled over: argv[optind - 1], or a letter in optopt. */
-static enum dalcs_status refuse(const struct dalcs_cli *cli, int code, char **argv) {
-    const char *word = argv[optind - 1];
-    bool is_long = strncmp(word, "--", 2) == 0;
-    if (code == ':') {
-        dalcs_cli_error(cli, "option '%s' needs a value; see 'dalcs run --help'", word);
-    } else if (is_long && strchr(word, '=') && optopt != 0) {
-        dalcs_cli_error(cli, "option '%.*s' takes no value", (int)strcspn(word, "="), word);
-    } else if (is_long) {
-        const char *name[N_OPTIONS];
-        for (int i = 0; i < N_OPTIONS; i++) {
-            name[i] = option[i].name;
-        }
-        char typed[64];
-        snprintf(typed, sizeof typed, "%.*s", (int)strcspn(word + 2, "="), word + 2);
-        const char *nearest = dalcs_names_nearest_of(name, N_OPTIONS, typed);
-        dalcs_cli_error(cli, "unknown option '--%s'%s%s%s", typed,
-                        nearest ? "; did you mean '--" : "", nearest ? nearest : "",
-                        nearest ? "'?" : "; see 'dalcs run --help'");
-    } else {
-        dalcs_cli_error(cli, "unknown option '-%c'; see 'dalcs run --help'", optopt);
-    }
-    return DALCS_E_OPTION;
-}
 
 static enum dalcs_status add_output(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                                     const char *path) {
@@ -203,7 +176,7 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         arguments->help = true;
         return DALCS_OK;
     default:
-        return refuse(cli, code, argv);
+        return dalcs_verb_refuse(cli, "run", option, code, argv);
     }
 }
 

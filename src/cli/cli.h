@@ -32,6 +32,9 @@ enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **arg
 void dalcs_cli_error(const struct dalcs_cli *cli, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/* Prints a message of a session; the program's name goes before one that has no place in a file. */
+void dalcs_cli_write_message(const struct dalcs_cli *cli, const char *text);
+
 /* Prints the session's messages that came since the last call; notes are not for `quiet`. */
 void dalcs_cli_write_messages(const struct dalcs_cli *cli, const struct dalcs_session *session,
                               size_t *n_written, bool quiet);

@@ -13,13 +13,17 @@ static bool has_place(const char *text) {
     return !bare;
 }
 
+void dalcs_cli_write_message(const struct dalcs_cli *cli, const char *text) {
+    fprintf(cli->err, "%s%s\n", has_place(text) ? "" : "dalcs: ", text);
+}
+
 void dalcs_cli_write_messages(const struct dalcs_cli *cli, const struct dalcs_session *session,
                               size_t *n_written, bool quiet) {
     for (size_t n = dalcs_session_n_messages(session); *n_written < n; ++*n_written) {
         enum dalcs_level level = DALCS_LEVEL_NOTE;
         const char *text = dalcs_session_message(session, *n_written, &level);
         if (!quiet || level != DALCS_LEVEL_NOTE) {
-            fprintf(cli->err, "%s%s\n", has_place(text) ? "" : "dalcs: ", text);
+            dalcs_cli_write_message(cli, text);
         }
     }
 }

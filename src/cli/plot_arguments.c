@@ -3,7 +3,7 @@
 
 #include "figure.h"
 #include "memory.h"
-#include "names.h"
+#include "verb.h"
 
 #include <getopt.h>
 #include <math.h>
@@ -26,32 +26,6 @@ static const struct option option[] = {{"signals", required_argument, NULL, 's'}
                                        {"quiet", no_argument, NULL, 'q'},
                                        {"help", no_argument, NULL, 'h'},
                                        {NULL, 0, NULL, 0}};
-
-enum { N_OPTIONS = sizeof option / sizeof option[0] - 1 };
-
-static enum dalcs_status refuse(const struct dalcs_cli *cli, int code, char **argv) {
-    const char *word = argv[optind - 1];
-    bool is_long = strncmp(word, "--", 2) == 0;
-    if (code == ':') {
-        dalcs_cli_error(cli, "option '%s' needs a value; see 'dalcs plot --help'", word);
-    } else if (is_long && strchr(word, '=') && optopt != 0) {
-        dalcs_cli_error(cli, "option '%.*s' takes no value", (int)strcspn(word, "="), word);
-    } else if (is_long) {
-        const char *name[N_OPTIONS];
-        for (int i = 0; i < N_OPTIONS; i++) {
-            name[i] = option[i].name;
-        }
-        char typed[64];
-        snprintf(typed, sizeof typed, "%.*s", (int)strcspn(word + 2, "="), word + 2);
-        const char *nearest = dalcs_names_nearest_of(name, N_OPTIONS, typed);
-        dalcs_cli_error(cli, "unknown option '--%s'%s%s%s", typed,
-                        nearest ? "; did you mean '--" : "", nearest ? nearest : "",
-                        nearest ? "'?" : "; see 'dalcs plot --help'");
-    } else {
-        dalcs_cli_error(cli, "unknown option '-%c'; see 'dalcs plot --help'", optopt);
-    }
-    return DALCS_E_OPTION;
-}
 
 static enum dalcs_status parse_number(const struct dalcs_cli *cli, const char *name,
                                       const char *text, double *value) {
@@ -126,7 +100,7 @@ static enum dalcs_status take(struct dalcs_plot_arguments *arguments, const stru
         arguments->help = true;
         return DALCS_OK;
     default:
-        return refuse(cli, code, argv);
+        return dalcs_verb_refuse(cli, "plot", option, code, argv);
     }
 }
 

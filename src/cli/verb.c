@@ -93,12 +93,6 @@ enum dalcs_status dalcs_verb_split(char *list, const char **part, size_t most, s
     }
 }
 
-/* A message without a place in a file starts with what it is; the program's name goes before it. */
-static void write_message(const struct dalcs_cli *cli, const char *text) {
-    bool bare = strncmp(text, "error: ", 7) == 0 || strncmp(text, "warning: ", 9) == 0;
-    fprintf(cli->err, "%s%s\n", bare ? "dalcs: " : "", text);
-}
-
 enum dalcs_status dalcs_verb_open(const struct dalcs_cli *cli, const char *netlist,
                                   struct dalcs_session **session, size_t *n_messages) {
     enum dalcs_status status = dalcs_session_create(session);
@@ -107,14 +101,8 @@ enum dalcs_status dalcs_verb_open(const struct dalcs_cli *cli, const char *netli
         return status;
     }
     status = dalcs_session_read_file(*session, netlist);
-    *n_messages = dalcs_session_n_messages(*session);
-    for (size_t i = 0; i < *n_messages; i++) {
-        enum dalcs_level level = DALCS_LEVEL_NOTE;
-        const char *text = dalcs_session_message(*session, i, &level);
-        if (level != DALCS_LEVEL_NOTE) {
-            write_message(cli, text);
-        }
-    }
+    *n_messages = 0;
+    dalcs_cli_write_messages(cli, *session, n_messages, true);
     if (status == DALCS_OK && !dalcs_session_request(*session).transient) {
         dalcs_cli_error(cli, "%s has no .tran: there are no waveforms to compare", netlist);
         status = DALCS_E_NETLIST;
@@ -131,7 +119,7 @@ void dalcs_verb_explain(const struct dalcs_cli *cli, const struct dalcs_session 
         enum dalcs_level level = DALCS_LEVEL_NOTE;
         const char *text = dalcs_session_message(session, i, &level);
         if (level == DALCS_LEVEL_ERROR) {
-            write_message(cli, text);
+            dalcs_cli_write_message(cli, text);
             said = true;
         }
     }
