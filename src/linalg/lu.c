@@ -294,17 +294,40 @@ enum dalcs_status dalcs_lu_factor_analyzed(struct dalcs_lu *lu, klu_common *comm
     return status;
 }
 
+/* btf_maxtrans matches a column to its first entry whose row is still free. */
+static void list_matched_rows_first(int n, const int *p, int *i, double *x,
+                                    const int *row_of_column) {
+    for (int c = 0; c < n; c++) {
+        for (int k = p[c]; k < p[c + 1]; k++) {
+            if (i[k] == row_of_column[c]) {
+                double value = x[k];
+                i[k] = i[p[c]];
+                x[k] = x[p[c]];
+                i[p[c]] = row_of_column[c];
+                x[p[c]] = value;
+                break;
+            }
+        }
+    }
+}
+
 enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n, int *p, int *i,
-                                  double *x, double rcond_min) {
+                                  double *x, int *row_of_column, double rcond_min) {
     *lu = (struct dalcs_lu){.n = n};
     if (n == 0) {
         return DALCS_OK;
+    }
+    if (row_of_column != NULL) {
+        list_matched_rows_first(n, p, i, x, row_of_column);
     }
     klu_symbolic *symbolic;
     enum dalcs_status status = dalcs_lu_analyze(&symbolic, common, n, p, i);
     if (status != DALCS_OK) {
         dalcs_lu_finish(lu);
         return status;
+    }
+    for (int k = 0; row_of_column != NULL && k < n; k++) {
+        row_of_column[symbolic->Q[k]] = symbolic->P[k];
     }
     status = dalcs_lu_factor_analyzed(lu, common, symbolic, NULL, false, p, i, x, rcond_min);
     klu_free_symbolic(&symbolic, common);

@@ -40,9 +40,14 @@ void dalcs_lu_keep_diagonal(klu_common *common, bool keep);
 /* Factors the matrix of order n whose columns are (p[n+1], i[], x[]). DALCS_SINGULAR when KLU meets
  * a zero pivot, or when its cheap estimate of the reciprocal condition is below rcond_min and a pivot
  * may be what rounding left of its column: the caller balances rows and columns, so that this means
- * something. On any failure *lu is zeroed: nothing to free. */
+ * something. On any failure *lu is zeroed: nothing to free.
+ *
+ * row_of_column may be NULL. Otherwise it has for each column the row that a matrix much like this
+ * one was found to match to it, -1 where there is none, and gets the rows found for this one. The
+ * search for a full diagonal, which is quadratic in a long chain of capacitors, then finds all but a
+ * few rows at once; for that, entries change places within their columns. */
 enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n, int *p, int *i,
-                                  double *x, double rcond_min) DALCS_MUST_CHECK;
+                                  double *x, int *row_of_column, double rcond_min) DALCS_MUST_CHECK;
 
 /* What depends on the pattern alone: good for all values, real or complex. DALCS_SINGULAR when no
  * values can make the matrix regular. Free it with klu_free_symbolic. */

@@ -103,14 +103,9 @@ enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) {
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_modes_matrix(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *e,
-                                     struct dalcs_columns *a) {
-    const struct dalcs_step_form *f = p->form[0];
-    *a = (struct dalcs_columns){.n = f->n + e->n_on};
-    int *slot = dalcs_alloc((size_t)(f->n + f->n_pairs), sizeof(*slot));
-    if (slot == NULL) {
-        return DALCS_E_NOMEM;
-    }
+/* Where the equations and pairs of the form are in the mode's matrix; -1: nowhere. */
+static void find_slots(const struct dalcs_step_form *f, const struct dalcs_mode_entry *e,
+                       int *slot) {
     for (int i = 0; i < f->n; i++) {
         slot[i] = i;
     }
@@ -120,6 +115,23 @@ enum dalcs_status dalcs_modes_matrix(const struct dalcs_osnsp *p, const struct d
     for (int k = 0; k < e->n_on; k++) {
         slot[f->n + e->on[k]] = f->n + k;
     }
+}
+
+/* The other way round. */
+static int index_of_slot(const struct dalcs_step_form *f, const struct dalcs_mode_entry *e,
+                         int slot) {
+    return slot < f->n ? slot : f->n + e->on[slot - f->n];
+}
+
+enum dalcs_status dalcs_modes_matrix(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *e,
+                                     struct dalcs_columns *a) {
+    const struct dalcs_step_form *f = p->form[0];
+    *a = (struct dalcs_columns){.n = f->n + e->n_on};
+    int *slot = dalcs_alloc((size_t)(f->n + f->n_pairs), sizeof(*slot));
+    if (slot == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    find_slots(f, e, slot);
     size_t n_entries = 0;
     for (int c = 0; c < f->n + f->n_pairs; c++) {
         n_entries += slot[c] >= 0 ? (size_t)(f->K.p[c + 1] - f->K.p[c]) : 0;
@@ -168,21 +180,59 @@ static enum dalcs_status order_rows(const struct dalcs_osnsp *p, struct dalcs_mo
     }
     int n_equations = dalcs_system_n_equations(p->system);
     for (int i = 0; i < e->lu.n; i++) {
-        int row = e->lu.from[i];
         int unknown = e->lu.to[i];
-        e->row_of[i] = row < f->n ? row : f->n + e->on[row - f->n];
-        int reduced = unknown < f->n ? unknown : f->n + e->on[unknown - f->n];
+        int reduced = index_of_slot(f, e, unknown);
+        e->row_of[i] = index_of_slot(f, e, e->lu.from[i]);
         e->column_of[i] = unknown < f->n ? f->column_of[unknown] : n_equations + reduced - f->n;
         e->scale_of[i] = f->scale[reduced];
     }
     return DALCS_OK;
 }
 
+/* A new mode differs from an earlier one in a few diodes, and so do the rows that can stand on the
+ * diagonal. Small modes do without: there the search costs next to nothing. */
+enum { LARGE_MODE = 128 };
+
+static enum dalcs_status factor_large(struct dalcs_osnsp *p, struct dalcs_mode_entry *e,
+                                      struct dalcs_columns *a) {
+    const struct dalcs_step_form *f = p->form[0];
+    int n_all = f->n + f->n_pairs;
+    if (p->n_matched != n_all) { /* the forms of other sigma may be condensed otherwise */
+        int *rows = realloc(p->matched_row, (size_t)n_all * sizeof(*rows));
+        if (rows == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        memset(rows, -1, (size_t)n_all * sizeof(*rows));
+        p->matched_row = rows;
+        p->n_matched = n_all;
+    }
+    int *slot = dalcs_alloc((size_t)n_all, sizeof(*slot));
+    int *row_of_column = dalcs_alloc((size_t)a->n, sizeof(*row_of_column));
+    enum dalcs_status status = slot != NULL && row_of_column != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    if (status == DALCS_OK) {
+        find_slots(f, e, slot);
+        for (int c = 0; c < a->n; c++) {
+            int row = p->matched_row[index_of_slot(f, e, c)];
+            row_of_column[c] = row >= 0 ? slot[row] : -1;
+        }
+        status = dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, row_of_column,
+                                 p->options.rcond_min);
+        for (int c = 0; c < a->n; c++) {
+            int row = row_of_column[c];
+            p->matched_row[index_of_slot(f, e, c)] = row >= 0 ? index_of_slot(f, e, row) : -1;
+        }
+    }
+    free(slot);
+    free(row_of_column);
+    return status;
+}
+
 static enum dalcs_status factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
     struct dalcs_columns a;
     DALCS_TRY(dalcs_modes_matrix(p, e, &a));
-    enum dalcs_status status =
-        dalcs_lu_factor(&e->lu, &p->klu, a.n, a.p, a.i, a.x, p->options.rcond_min);
+    enum dalcs_status status = a.n >= LARGE_MODE ? factor_large(p, e, &a)
+                                                 : dalcs_lu_factor(&e->lu, &p->klu, a.n, a.p, a.i,
+                                                                   a.x, NULL, p->options.rcond_min);
     dalcs_columns_finish(&a);
     return status == DALCS_OK ? order_rows(p, e) : status;
 }
@@ -277,4 +327,7 @@ void dalcs_modes_finish(struct dalcs_osnsp *p) {
         free(p->form[k]);
     }
     p->n_forms = 0;
+    free(p->matched_row);
+    p->matched_row = NULL;
+    p->n_matched = 0;
 }

@@ -80,6 +80,10 @@ struct dalcs_osnsp {
     struct dalcs_mode_entry *entries; /* uthash */
     struct dalcs_mode_entry *newest, *oldest;
     size_t entry_bytes;
+    int *
+        matched_row; /* [n_matched] of the columns (equations, pairs) in the large modes so far, or -1;
+                         NULL without any */
+    int n_matched;
 
     int *pair_rows_p, *pair_rows; /* rows of A that hold lambda_d */
     int n_references;             /* columns that must vanish, and their rows */

@@ -5,6 +5,7 @@
 
 #include <float.h>
 #include <stdlib.h>
+#include <string.h>
 
 static klu_common klu;
 
@@ -32,11 +33,13 @@ static struct columns compress(int n, const double *dense) {
 static enum dalcs_status factor(struct dalcs_lu *lu, int n, const double *dense, double rcond_min) {
     struct columns a = compress(n, dense);
     dalcs_lu_common_init(&klu);
-    return dalcs_lu_factor(lu, &klu, n, a.p, a.i, a.x, rcond_min);
+    return dalcs_lu_factor(lu, &klu, n, a.p, a.i, a.x, NULL, rcond_min);
 }
 
-/* Backward stable: the residual is some roundings of |A| |x|, n of them at most. */
-static void check_solution(int n, const double *dense, const double *x, const double *b) {
+/* Backward stable: the residual is some roundings of |A| |x|, n of them at most, times the growth of
+ * the elements. */
+static void check_solution(int n, const double *dense, const double *x, const double *b,
+                           double growth) {
     for (int r = 0; r < n; r++) {
         double sum = -b[r];
         double size = fabs(b[r]);
@@ -44,7 +47,7 @@ static void check_solution(int n, const double *dense, const double *x, const do
             sum += dense[r * n + c] * x[c];
             size += fabs(dense[r * n + c] * x[c]);
         }
-        ck_assert_double_le(fabs(sum), n * DBL_EPSILON * size);
+        ck_assert_double_le(fabs(sum), growth * n * DBL_EPSILON * size);
     }
 }
 
@@ -60,7 +63,7 @@ static void check_solves(int n, const double *dense, uint64_t random) {
         x[r] = b[r];
     }
     dalcs_lu_solve(&lu, x);
-    check_solution(n, dense, x, b);
+    check_solution(n, dense, x, b, 1.0);
     for (int k = 0; k < n; k++) {
         lu.work[k] = b[lu.from[k]];
     }
@@ -125,6 +128,68 @@ START_TEST(test_zero_diagonal) {
 
 END_TEST
 
+enum { MATCHED = 24 };
+
+/* Solves with the rows proposed, checks the answer and that each column has a row of its own. A pivot
+ * on the diagonal may be klu.tol of its column. */
+static void check_matched(const double *dense, int *row_of_column) {
+    struct columns a = compress(MATCHED, dense);
+    struct dalcs_lu lu;
+    dalcs_lu_common_init(&klu);
+    ck_assert_int_eq(dalcs_lu_factor(&lu, &klu, MATCHED, a.p, a.i, a.x, row_of_column, 1e-14),
+                     DALCS_OK);
+    bool is_taken[MATCHED] = {false};
+    double b[MATCHED];
+    double x[MATCHED];
+    for (int c = 0; c < MATCHED; c++) {
+        ck_assert_double_ne(dense[row_of_column[c] * MATCHED + c], 0.0);
+        ck_assert(!is_taken[row_of_column[c]]);
+        is_taken[row_of_column[c]] = true;
+        b[c] = 1.0 + c;
+        x[c] = b[c];
+    }
+    dalcs_lu_solve(&lu, x);
+    check_solution(MATCHED, dense, x, b, 1.0 / klu.tol);
+    dalcs_lu_finish(&lu);
+}
+
+/* Rows of a former matrix are proposed: they stay where they still can, and no proposal is wrong. */
+START_TEST(test_matched_rows) {
+    double dense[MATCHED * MATCHED] = {0.0};
+    uint64_t random = 5;
+    for (int c = 0; c < MATCHED; c++) {
+        for (int k = 0; k < 4; k++) {
+            dense[(5 * c + 3 + k * k) % MATCHED * MATCHED + c] =
+
+                1.0 + 0.1 * next_random(&random) + 3 * (k == 3);
+        }
+    }
+    int free[MATCHED];
+    int row_of_column[MATCHED];
+    for (int c = 0; c < MATCHED; c++) {
+        free[c] = -1;
+        row_of_column[c] = (5 * c + 3 + 9) % MATCHED; /* all last in their columns or before it */
+    }
+    check_matched(dense, free);
+    int wanted[MATCHED];
+    memcpy(wanted, row_of_column, sizeof(wanted));
+    check_matched(dense, row_of_column);
+    ck_assert_mem_eq(row_of_column, wanted, sizeof(wanted));
+    ck_assert_mem_ne(free, wanted, sizeof(wanted));
+    /* One of them is no longer there. */
+    dense[wanted[7] * MATCHED + 7] = 0.0;
+    check_matched(dense, row_of_column);
+    int n_kept = 0;
+    for (int c = 0; c < MATCHED; c++) {
+        n_kept += row_of_column[c] == wanted[c] ? 1 : 0;
+        wanted[c] = 0;
+    }
+    ck_assert_int_ge(n_kept, MATCHED / 2);
+    check_matched(dense, wanted); /* the same row for all */
+}
+
+END_TEST
+
 START_TEST(test_singular) {
     struct dalcs_lu lu;
     const double empty_row[] = {1.0, 2.0, 0.0, 0.0};
@@ -157,4 +222,5 @@ START_TEST(test_nothing) {
 
 END_TEST
 
-RUN_TESTS("lu", test_random, test_blocks, test_zero_diagonal, test_singular, test_nothing)
+RUN_TESTS("lu", test_random, test_blocks, test_zero_diagonal, test_matched_rows, test_singular,
+          test_nothing)
