@@ -1,7 +1,7 @@
 /* energy.c - the powers of all devices over steps, segments and jumps. */
 #include "energy.h"
 
-#include "source_products.h"
+#include "decided_energy.h"
 #include "stage_rule.h"
 #include "step_error.h"
 
@@ -96,7 +96,8 @@ void dalcs_energy_finish(struct dalcs_energy *energy) {
 
 /* ---- Entries ------------------------------------------------------------------------------- */
 
-static void enter(struct dalcs_energy *energy, enum dalcs_power_account account, double joule) {
+void dalcs_energy_enter(struct dalcs_energy *energy, enum dalcs_power_account account,
+                        double joule) {
     energy->account[account] += joule;
     energy->turnover += fabs(joule);
 }
@@ -152,7 +153,7 @@ void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, cons
                        const double *inputs, double h) {
     struct dalcs_energy_part *part = &energy->part[k];
     for (int i = 0; i < part->n_stepped; i++) {
-        enter(energy, part->term[i].account, h * power_of(&part->term[i], y, inputs));
+        dalcs_energy_enter(energy, part->term[i].account, h * power_of(&part->term[i], y, inputs));
     }
     double loss = enter_swing(energy, part, x, y, y);
     if (part->is_coupled) {
@@ -194,8 +195,8 @@ void dalcs_energy_jump(struct dalcs_energy *energy, const struct dalcs_euler_jum
             in_thresholds += term->coefficient * jump->charge[term->pair];
         }
     }
-    enter(energy, DALCS_POWER_DIODES, in_thresholds);
-    enter(energy, DALCS_POWER_SOURCES, jump->source_work);
+    dalcs_energy_enter(energy, DALCS_POWER_DIODES, in_thresholds);
+    dalcs_energy_enter(energy, DALCS_POWER_SOURCES, jump->source_work);
     energy->jumps += jump->energy_lost;
     energy->turnover += jump->energy_lost;
     enter_swing(energy, part, jump->before, jump->after, jump->after);
@@ -316,7 +317,7 @@ void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_
     for (int i = 0; i < ledger->n_stepped; i++) {
         const struct dalcs_power_term *term = &ledger->term[i];
         if (term->pair < 0 || dalcs_osnsp_is_on(&part->component->osnsp, term->pair)) {
-            enter(energy, term->account, part->h * integral_of(part, &rule, term));
+            dalcs_energy_enter(energy, term->account, part->h * integral_of(part, &rule, term));
         }
     }
     double loss = loss_of(ledger, part, &rule, start);
@@ -325,191 +326,6 @@ void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_
     energy->turnover += fabs(loss);
     enter_swing(energy, ledger, start, part->x,
                 part->out + part->stages.method->s * part->stages.layout.stride);
-}
-
-/* ---- What needs no steps ------------------------------------------------------------------- */
-
-/* Columns as sums of the waves of sources: the constant 1, then each input that varies. */
-struct waves {
-    int n;
-    const struct dalcs_stimulus **stimulus; /* [n] */
-    int *of_input;                          /* [n_inputs] */
-    double *gain;                           /* [n_columns][n] */
-    double *first, *second;                 /* [n] work */
-    double *power;                          /* [n_accounts][n][n] */
-};
-
-static const struct dalcs_stimulus ONE = {.kind = DALCS_STIMULUS_DC, .dc = 1.0};
-
-static const struct dalcs_stimulus *stimulus_of(const struct dalcs_component *c, int input) {
-    return input > 0 ? &c->circuit->stimulus[c->system->stimulus[input]] : &ONE;
-}
-
-/* The inputs of one wave alone. */
-static void unit_inputs(const struct dalcs_component *c, const struct waves *w, int wave,
-                        double *inputs) {
-    for (int k = 0; k < c->system->n_inputs; k++) {
-        bool varies = w->of_input[k] > 0;
-        double constant = k > 0 ? stimulus_of(c, k)->dc : 1.0;
-        inputs[k] = w->of_input[k] == wave ? (varies ? 1.0 : constant) : 0.0;
-    }
-}
-
-/* Bystanders' gains are known; other columns are answers to each wave alone. */
-static enum dalcs_status find_gains(struct dalcs_component *c, const struct dalcs_bystanders *b,
-                                    struct waves *w) {
-    const struct dalcs_system *s = c->system;
-    bool all = s->n_x == 0 && s->n_pairs == 0 && b->n < dalcs_system_n_equations(s);
-    for (int k = 0; k < w->n; k++) {
-        double *inputs = c->probe_u + s->n_x;
-        unit_inputs(c, w, k, inputs);
-        if (all) {
-            DALCS_TRY(dalcs_component_solve(c, 0.0, c->probe_u, c->scratch));
-            for (int i = 0; i < dalcs_system_n_columns(s); i++) {
-                w->gain[i * w->n + k] = c->scratch[i];
-            }
-        }
-        for (int i = 0; i < b->n && !all; i++) {
-            double sum = 0.0;
-            for (int j = 0; j < s->n_inputs; j++) {
-                sum += b->gain[i * s->n_inputs + j] * inputs[j];
-            }
-            w->gain[b->column[i] * w->n + k] = sum;
-        }
-    }
-    return DALCS_OK;
-}
-
-static void gain_of(const struct waves *w, const int *column, double *gain) {
-    for (int k = 0; k < w->n; k++) {
-        gain[k] = (column[0] >= 0 ? w->gain[column[0] * w->n + k] : 0.0) -
-                  (column[1] >= 0 ? w->gain[column[1] * w->n + k] : 0.0);
-    }
-}
-
-static void add_power(struct waves *w, const struct dalcs_power_term *term) {
-    double *power = w->power + term->account * w->n * w->n;
-    gain_of(w, term->first, w->first);
-    switch (term->factor) {
-    case DALCS_POWER_CONSTANT:
-        memset(w->second, 0, (size_t)w->n * sizeof(double));
-        w->second[0] = 1.0;
-        break;
-    case DALCS_POWER_SQUARE:
-        memcpy(w->second, w->first, (size_t)w->n * sizeof(double));
-        break;
-    case DALCS_POWER_PRODUCT:
-        gain_of(w, term->second, w->second);
-        break;
-    case DALCS_POWER_INPUT:
-        memset(w->second, 0, (size_t)w->n * sizeof(double));
-        w->second[w->of_input[term->input]] = 1.0;
-        break;
-    }
-    for (int i = 0; i < w->n; i++) {
-        for (int j = 0; j < w->n; j++) {
-            power[i * w->n + j] += term->coefficient * w->first[i] * w->second[j];
-        }
-    }
-}
-
-/* Leaves out the waves whose sources give nothing, such as those of gates: their edges are many. */
-static void drop_idle(struct waves *w) {
-    int n = w->n;
-    int kept = 0;
-    for (int k = 0; k < n; k++) {
-        bool used = false;
-        for (int i = 0; i < DALCS_N_POWER_ACCOUNTS * n; i++) {
-            used =
-                used || w->power[i * n + k] != 0.0 || w->power[(i / n * n + k) * n + i % n] != 0.0;
-        }
-        if (used) {
-            w->stimulus[kept] = w->stimulus[k];
-            w->of_input[kept++] = k; /* of no more use for inputs */
-        }
-    }
-    for (int a = 0; a < DALCS_N_POWER_ACCOUNTS; a++) {
-        for (int i = 0; i < kept; i++) {
-            for (int j = 0; j < kept; j++) {
-                w->power[(a * kept + i) * kept + j] =
-                    w->power[(a * n + w->of_input[i]) * n + w->of_input[j]];
-            }
-        }
-    }
-    w->n = kept;
-}
-
-static enum dalcs_status integrate(struct dalcs_energy *energy, struct waves *w, double stop) {
-    size_t n = (size_t)w->n;
-    size_t n_terms = 0;
-    for (size_t i = 0; i < n; i++) {
-        n_terms += (size_t)dalcs_stimulus_n_terms(w->stimulus[i]);
-    }
-    struct dalcs_stimulus_piece *piece = dalcs_alloc(n, sizeof(*piece));
-    struct dalcs_stimulus_term *term = dalcs_alloc(n_terms, sizeof(*term));
-    double *integral = dalcs_alloc(n * n, sizeof(*integral));
-    enum dalcs_status status =
-        piece == NULL || term == NULL || integral == NULL ? DALCS_E_NOMEM : DALCS_OK;
-    for (size_t i = 0, first = 0; i < n && status == DALCS_OK; i++) {
-        piece[i].term = term + first;
-        first += (size_t)dalcs_stimulus_n_terms(w->stimulus[i]);
-    }
-    if (status == DALCS_OK && n > 0) {
-        dalcs_source_products(w->n, w->stimulus, stop, piece, integral);
-        for (int a = 0; a < DALCS_N_POWER_ACCOUNTS; a++) {
-            double sum = 0.0;
-            for (size_t i = 0; i < n * n; i++) {
-                sum += w->power[(size_t)a * n * n + i] * integral[i];
-            }
-            enter(energy, (enum dalcs_power_account)a, sum);
-        }
-    }
-    free(piece);
-    free(term);
-    free(integral);
-    return status;
-}
-
-static enum dalcs_status enter_decided(struct dalcs_energy *energy,
-                                       const struct dalcs_energy_part *part,
-                                       struct dalcs_component *c, const struct dalcs_bystanders *b,
-                                       double stop) {
-    const struct dalcs_system *s = c->system;
-    if (part->n_terms == part->n_stepped) {
-        return DALCS_OK;
-    }
-    struct waves w = {.n = c->n_varying + 1};
-    size_t n = (size_t)w.n;
-    w.stimulus = dalcs_alloc(n, sizeof(const struct dalcs_stimulus *));
-    w.of_input = dalcs_alloc((size_t)s->n_inputs, sizeof(*w.of_input));
-    w.gain = dalcs_alloc((size_t)dalcs_system_n_columns(s) * n, sizeof(*w.gain));
-    w.first = dalcs_alloc(n, sizeof(*w.first));
-    w.second = dalcs_alloc(n, sizeof(*w.second));
-    w.power = dalcs_alloc(DALCS_N_POWER_ACCOUNTS * n * n, sizeof(*w.power));
-    enum dalcs_status status = DALCS_E_NOMEM;
-    if (w.stimulus != NULL && w.of_input != NULL && w.gain != NULL && w.first != NULL &&
-        w.second != NULL && w.power != NULL) {
-        w.stimulus[0] = &ONE;
-        for (int i = 0; i < c->n_varying; i++) {
-            w.stimulus[i + 1] = stimulus_of(c, c->varying[i]);
-            w.of_input[c->varying[i]] = i + 1;
-        }
-        status = find_gains(c, b, &w);
-    }
-    if (status == DALCS_OK) {
-        for (int i = part->n_stepped; i < part->n_terms; i++) {
-            add_power(&w, &part->term[i]);
-        }
-        drop_idle(&w);
-        status = integrate(energy, &w, stop);
-    }
-    free(w.stimulus);
-    free(w.of_input);
-    free(w.gain);
-    free(w.first);
-    free(w.second);
-    free(w.power);
-    return status;
 }
 
 /* ---- The end ------------------------------------------------------------------------------- */
@@ -554,7 +370,8 @@ static enum dalcs_status close_radau(struct dalcs_energy *energy, struct dalcs_r
         largest[0] = radau->unit_scale[0];
         largest[1] = radau->unit_scale[1];
     }
-    return enter_decided(energy, part, radau->component, &radau->excitation.bystanders, stop);
+    return dalcs_energy_enter_decided(energy, part, radau->component, &radau->excitation.bystanders,
+                                      stop);
 }
 
 static void close_euler(struct dalcs_energy *energy, int k, const struct dalcs_component *c,

@@ -1,0 +1,15 @@
+/* stamp_device.h - the equations of single devices. Private to src/dalcs. */
+#ifndef DALCS_STAMP_DEVICE_H
+#define DALCS_STAMP_DEVICE_H
+
+#include "stamp.h"
+
+/* What the device writes where nothing but its own nodes and columns is needed. next_forest counts the
+ * capacitors of the forest. */
+enum dalcs_status dalcs_stamp_device(struct stamps *b, int device,
+                                     int *next_forest) DALCS_MUST_CHECK;
+
+/* -1 for a switch that closes when its control falls. */
+double dalcs_stamp_control_sign(const struct dalcs_switch_model *m);
+
+#endif
