@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK = 1 << 16 };
+enum { CHUNK = 1 << 12 }; /* what a netlist by hand takes */
 
 static enum dalcs_status read_stream(FILE *file, size_t limit, char **text, size_t *length) {
     size_t capacity = 0;

@@ -103,14 +103,27 @@ void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double
     }
     double weight[DALCS_MAX_NODES];
     dalcs_collocation_weights(part->stages.method, theta, weight);
-    for (int c = 0; c < l->stride; c++) {
-        value[c] = 0.0;
-    }
-    for (int k = 0; k < l->n_nodes; k++) {
-        const double *y = part->out + k * l->stride;
-        for (int c = 0; c < l->stride; c++) {
-            value[c] += weight[k] * y[c];
+
+    /* Sums stay in registers; each is made in the same order, whatever the width. */
+    enum { WIDTH = 4 };
+
+    int c = 0;
+    for (; c + WIDTH <= l->stride; c += WIDTH) {
+        double sum[WIDTH] = {0.0};
+        for (int k = 0; k < l->n_nodes; k++) {
+            const double *y = part->out + k * l->stride + c;
+            for (int j = 0; j < WIDTH; j++) {
+                sum[j] += weight[k] * y[j];
+            }
         }
+        memcpy(value + c, sum, sizeof(sum));
+    }
+    for (; c < l->stride; c++) {
+        double sum = 0.0;
+        for (int k = 0; k < l->n_nodes; k++) {
+            sum += weight[k] * part->out[k * l->stride + c];
+        }
+        value[c] = sum;
     }
 }
 
