@@ -180,15 +180,6 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     }
 }
 
-static enum dalcs_status refuse_count(const struct dalcs_cli *cli, int argc, char **argv) {
-    if (optind == argc) {
-        dalcs_cli_error(cli, "no netlist given; see 'dalcs run --help'");
-    } else {
-        dalcs_cli_error(cli, "one netlist at a time: '%s' is one too many", argv[argc - 1]);
-    }
-    return DALCS_E_OPTION;
-}
-
 static const char *base_of(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;
@@ -246,12 +237,8 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
         status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && !arguments->help) {
-        if (optind != argc - 1) {
-            status = refuse_count(cli, argc, argv);
-        } else {
-            arguments->netlist = argv[optind];
-            status = add_defaults(arguments, cli);
-        }
+        status = dalcs_verb_take_netlist(cli, "run", argc, argv, &arguments->netlist);
+        status = status == DALCS_OK ? add_defaults(arguments, cli) : status;
     }
     if (status != DALCS_OK) {
         dalcs_arguments_finish(arguments);

@@ -2,10 +2,8 @@
 #include "cli.h"
 
 #include "check_text.h"
-#include "names.h"
-
-#include <getopt.h>
-#include <string.h>
+#include "memory.h"
+#include "verb.h"
 
 static const char help[] =
     "usage: dalcs check FILE [options]\n"
@@ -41,30 +39,11 @@ static const struct option option[] = {
     {NULL, 0, NULL, 0},
 };
 
-enum { N_OPTIONS = sizeof option / sizeof option[0] - 1 };
-
 struct arguments {
     const char *netlist;
     double step;
     bool all, json, help;
 };
-
-static enum dalcs_status refuse(const struct dalcs_cli *cli, int code, char **argv) {
-    const char *word = argv[optind - 1];
-    if (code == ':') {
-        dalcs_cli_error(cli, "option '%s' needs a value; see 'dalcs check --help'", word);
-        return DALCS_E_OPTION;
-    }
-    const char *name[N_OPTIONS];
-    for (int i = 0; i < N_OPTIONS; i++) {
-        name[i] = option[i].name;
-    }
-    const char *nearest =
-        strncmp(word, "--", 2) == 0 ? dalcs_names_nearest_of(name, N_OPTIONS, word + 2) : NULL;
-    dalcs_cli_error(cli, "unknown option '%s'%s%s%s", word, nearest ? "; did you mean '--" : "",
-                    nearest ? nearest : "", nearest ? "'?" : "; see 'dalcs check --help'");
-    return DALCS_E_OPTION;
-}
 
 static enum dalcs_status parse(struct arguments *arguments, const struct dalcs_cli *cli, int argc,
                                char **argv) {
@@ -74,11 +53,7 @@ static enum dalcs_status parse(struct arguments *arguments, const struct dalcs_c
     for (int code; (code = getopt_long(argc, argv, ":h", option, NULL)) != -1;) {
         switch (code) {
         case STEP:
-            if (dalcs_parse_number(optarg, &arguments->step) != DALCS_OK ||
-                !(arguments->step > 0.0)) {
-                dalcs_cli_error(cli, "--step: '%s' is not a positive number", optarg);
-                return DALCS_E_OPTION;
-            }
+            DALCS_TRY(dalcs_verb_take_positive(cli, "--step", optarg, &arguments->step));
             break;
         case ALL:
             arguments->all = true;
@@ -90,16 +65,10 @@ static enum dalcs_status parse(struct arguments *arguments, const struct dalcs_c
             arguments->help = true;
             return DALCS_OK;
         default:
-            return refuse(cli, code, argv);
+            return dalcs_verb_refuse(cli, "check", option, code, argv);
         }
     }
-    if (optind + 1 != argc) {
-        dalcs_cli_error(cli, optind >= argc ? "no netlist; see 'dalcs check --help'"
-                                            : "one netlist at a time; see 'dalcs check --help'");
-        return DALCS_E_OPTION;
-    }
-    arguments->netlist = argv[optind];
-    return DALCS_OK;
+    return dalcs_verb_take_netlist(cli, "check", argc, argv, &arguments->netlist);
 }
 
 /* Notes speak of runs; errors and warnings of the netlist. */

@@ -82,15 +82,6 @@ static enum dalcs_status take_methods(struct arguments *a, const struct dalcs_cl
     return DALCS_OK;
 }
 
-static enum dalcs_status take_positive(const struct dalcs_cli *cli, const char *name,
-                                       const char *text, double *value) {
-    if (dalcs_parse_number(text, value) != DALCS_OK || !(*value > 0.0)) {
-        dalcs_cli_error(cli, "%s: '%s' is not a number greater than 0", name, text);
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
-}
-
 static enum dalcs_status take_with(struct arguments *a, const struct dalcs_cli *cli,
                                    const char *text) {
     if (strcmp(text, "ngspice") != 0 && !strchr(text, '/')) {
@@ -109,9 +100,9 @@ static enum dalcs_status take(struct arguments *a, const struct dalcs_cli *cli, 
     case METHODS:
         return take_methods(a, cli, optarg);
     case LIMIT_OPTION:
-        return take_positive(cli, "--limit", optarg, &a->limit);
+        return dalcs_verb_take_positive(cli, "--limit", optarg, &a->limit);
     case WITHIN:
-        return take_positive(cli, "--within", optarg, &a->within);
+        return dalcs_verb_take_positive(cli, "--within", optarg, &a->within);
     case 'o':
         a->output = optarg;
         return DALCS_OK;

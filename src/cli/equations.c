@@ -2,12 +2,11 @@
  * and for other programs. */
 #include "cli.h"
 
-#include "atomic_file.h"
 #include "memory.h"
 #include "names.h"
+#include "verb.h"
 
 #include <errno.h>
-#include <getopt.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -105,31 +104,18 @@ static enum dalcs_status take(struct request *r, const struct dalcs_cli *cli, in
         r->form = (enum dalcs_equations_form)index;
         return DALCS_OK;
     case STEP:
-        if (dalcs_parse_number(optarg, &r->step) != DALCS_OK || !(r->step > 0.0)) {
-            dalcs_cli_error(cli, "--step: '%s' is not a positive number; write 1u or 1e-6", optarg);
-            return DALCS_E_OPTION;
-        }
-        return DALCS_OK;
+        return dalcs_verb_take_positive(cli, "--step", optarg, &r->step);
     case 'h':
         r->help = true;
         return DALCS_OK;
     default:
-        dalcs_cli_error(cli,
-                        code == ':' ? "option '%s' needs a value; see 'dalcs equations --help'"
-                                    : "unknown option '%s'; see 'dalcs equations --help'",
-                        argv[optind - 1]);
-        return DALCS_E_OPTION;
+        return dalcs_verb_refuse(cli, "equations", option, code, argv);
     }
 }
 
 static enum dalcs_status check(struct request *r, const struct dalcs_cli *cli, int argc,
                                char **argv) {
-    if (optind != argc - 1) {
-        dalcs_cli_error(cli, optind == argc ? "no netlist given; see 'dalcs equations --help'"
-                                            : "one netlist at a time");
-        return DALCS_E_OPTION;
-    }
-    r->netlist = argv[optind];
+    DALCS_TRY(dalcs_verb_take_netlist(cli, "equations", argc, argv, &r->netlist));
     if (r->form == DALCS_FORM_ONE_STEP && r->step == 0.0) {
         dalcs_cli_error(cli, "--form osnsp is the problem of one step: give its length, --step H");
         return DALCS_E_OPTION;

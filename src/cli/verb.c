@@ -51,6 +51,15 @@ enum dalcs_status dalcs_verb_take_netlist(const struct dalcs_cli *cli, const cha
     return DALCS_OK;
 }
 
+enum dalcs_status dalcs_verb_take_positive(const struct dalcs_cli *cli, const char *name,
+                                           const char *text, double *value) {
+    if (dalcs_parse_number(text, value) != DALCS_OK || !(*value > 0.0)) {
+        dalcs_cli_error(cli, "%s: '%s' is not a number greater than 0", name, text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 static bool is_same_file(const char *a, const char *b) {
     struct stat first, second;
     return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&

@@ -15,6 +15,10 @@ enum dalcs_status dalcs_verb_refuse(const struct dalcs_cli *cli, const char *ver
 enum dalcs_status dalcs_verb_take_netlist(const struct dalcs_cli *cli, const char *verb, int argc,
                                           char **argv, const char **netlist) DALCS_MUST_CHECK;
 
+/* The value of option `name`, a number greater than 0 in the spelling of netlists, or a message. */
+enum dalcs_status dalcs_verb_take_positive(const struct dalcs_cli *cli, const char *name,
+                                           const char *text, double *value) DALCS_MUST_CHECK;
+
 /* An output named `path` must have one of these endings, NULL at the end, and must not be the
  * netlist. */
 enum dalcs_status dalcs_verb_check_output(const struct dalcs_cli *cli, const char *path,
