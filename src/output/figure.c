@@ -108,19 +108,24 @@ enum dalcs_status dalcs_figure_begin(struct dalcs_figure *figure, const struct d
     if (plot->analysis != DALCS_TRANSIENT || plot->n_signals == 0) {
         return DALCS_OK;
     }
-    struct dalcs_figure_panel panel[2] = {{.quantity = "voltage", .unit = "V"},
-                                          {.quantity = "current", .unit = "A"}};
+
+    enum { N_PANELS = 3 };
+
+    struct dalcs_figure_panel panel[N_PANELS] = {{.quantity = "voltage", .unit = "V"},
+                                                 {.quantity = "current", .unit = "A"},
+                                                 {.quantity = "value", .unit = ""}};
     int *group = dalcs_alloc(plot->n_signals, sizeof *group);
     if (!group) {
         return DALCS_E_NOMEM;
     }
     for (size_t i = 0; i < plot->n_signals; i++) {
-        group[i] = plot->unit[i] == DALCS_VOLT ? 0 : 1;
+        group[i] = plot->unit[i] == DALCS_VOLT ? 0 : plot->unit[i] == DALCS_AMPERE ? 1 : 2;
     }
-    dalcs_figure_choose(&panel[0], plot->name, group, plot->n_signals, 0);
-    dalcs_figure_choose(&panel[1], plot->name, group, plot->n_signals, 1);
+    for (int p = 0; p < N_PANELS; p++) {
+        dalcs_figure_choose(&panel[p], plot->name, group, plot->n_signals, p);
+    }
     free(group);
-    return dalcs_figure_begin_panels(figure, plot->title, plot->name, panel, 2);
+    return dalcs_figure_begin_panels(figure, plot->title, plot->name, panel, N_PANELS);
 }
 
 void dalcs_figure_row(struct dalcs_figure *figure, double time, const double *value) {

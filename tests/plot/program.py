@@ -149,6 +149,20 @@ class Plot(unittest.TestCase):
         self.assertIn("voltage (V)", texts)
         self.assertIn("0.4", texts)
 
+    def test_system_without_units(self):
+        """A position is no voltage; a file that names units keeps them."""
+        for name, quantity in [("hsw99_unilateral", "value"), ("units", "voltage (V)")]:
+            system = pathlib.Path(BUCK).parents[1] / "papers" / "hsw99_unilateral.dalcs"
+            if name == "units":
+                system = self.folder / "units.dalcs"
+                system.write_text("dalcs-system 2 x\nstate x V 1\nmatrix A\n+ -1\n.tran 10m 1\n")
+            subprocess.run([DALCS, "run", system, "-o", "system.raw", "--plot", "run.svg", "-q"],
+                           cwd=self.folder, check=True)
+            self.plot("system.raw", "-o", "later.svg")
+            for picture in "run.svg", "later.svg":
+                self.assertIn(quantity, self.texts(picture))
+                self.assertEqual("voltage (V)" in self.texts(picture), name == "units")
+
     def test_terminal(self):
         shown = self.plot("buck.raw", COLUMNS="60").stdout
         lines = shown.splitlines()
