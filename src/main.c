@@ -54,8 +54,10 @@ int main(int argc, char **argv) {
     errno = 0;
     int result = dalcs_cli_eval(&cli, argc, argv);
     if (fflush(stdout) != 0 || ferror(stdout)) {
-        dalcs_cli_error(&cli, "cannot write to standard output: %s",
-                        strerror(errno != 0 ? errno : EIO));
+        if (errno != EPIPE) { /* who pipes into head has seen enough */
+            dalcs_cli_error(&cli, "cannot write to standard output: %s",
+                            strerror(errno != 0 ? errno : EIO));
+        }
         result = result == DALCS_EXIT_OK ? DALCS_EXIT_IO : result;
     }
     if (interrupted && result == DALCS_EXIT_RUN) {

@@ -29,7 +29,7 @@ static const char help[] =
     "                      conduction is read off the currents i(d1), i(s1) in FILE\n"
     "      --events        mark events and jumps with lines\n"
     "      --no-bars       leave out when diodes and switches conduct\n"
-    "      --theme NAME    light (default) or dark\n"
+    "      --theme NAME    light (default), dark, or print: greys and patterns\n"
     "      --plot N        which plot of a .raw file with several (default: the last with rows)\n"
     "      --run N         which run of a sweep, where the axis starts again (default: 1)\n"
     "  -q, --quiet         print nothing but warnings and errors\n"

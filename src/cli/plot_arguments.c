@@ -85,7 +85,7 @@ static enum dalcs_status take(struct dalcs_plot_arguments *arguments, const stru
     case THEME:
         arguments->theme = dalcs_theme_find(optarg);
         if (!arguments->theme) {
-            dalcs_cli_error(cli, "--theme: '%s' is neither light nor dark", optarg);
+            dalcs_cli_error(cli, "--theme: '%s' is not light, dark or print", optarg);
             return DALCS_E_OPTION;
         }
         return DALCS_OK;
@@ -127,6 +127,10 @@ enum dalcs_status dalcs_plot_arguments_parse(struct dalcs_plot_arguments *argume
         } else {
             dalcs_cli_error(cli, "one file at a time: '%s' is one too many", argv[argc - 1]);
         }
+        status = DALCS_E_OPTION;
+    }
+    if (status == DALCS_OK && arguments->is_page && arguments->theme == &dalcs_theme_print) {
+        dalcs_cli_error(cli, "--theme print is for pictures: a page is light or dark");
         status = DALCS_E_OPTION;
     }
     if (status != DALCS_OK) {

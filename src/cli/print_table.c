@@ -25,7 +25,7 @@ static void write_operating_point(const struct dalcs_print_table *table, const d
         fprintf(table->out, "\n\t%-32s %s\n\t%-32s -------\n", is_voltage ? "Node" : "Source",
                 is_voltage ? "Voltage" : "Current", is_voltage ? "----" : "------");
         for (size_t i = 0; i < plot->n_signals; i++) {
-            if ((int)plot->unit[i] == unit) {
+            if ((int)plot->unit[i] == unit || (is_voltage && plot->unit[i] == DALCS_UNIT_NONE)) {
                 fprintf(table->out, "\t%-32s %.6e\n", plot->name[i], value[i]);
             }
         }

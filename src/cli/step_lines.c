@@ -51,7 +51,9 @@ static void write_line(FILE *out, const struct dalcs_plot *plot,
         fprintf(out, " %*.6g", width_of(plot->parameter[i]), line->parameter[i]);
     }
     for (size_t i = 0; i < least(plot->n_signals, DALCS_STEP_SIGNALS); i++) {
-        const char *unit = plot->unit[i] == DALCS_AMPERE ? "A" : "V";
+        const char *unit = plot->unit[i] == DALCS_AMPERE ? "A"
+                           : plot->unit[i] == DALCS_VOLT ? "V"
+                                                         : "";
         fprintf(out, " %*s", width_of(plot->name[i]),
                 dalcs_quantity_write_column(text, line->value[i], unit, DIGITS));
     }

@@ -32,6 +32,7 @@ struct dalcs_network {
     struct dalcs_system *system;
     int n_outputs;
     struct dalcs_output *output; /* the circuit's signals, in its order */
+    bool is_without_units;       /* of a system file that names none: its signals are numbers */
     int n_states;
 
     struct dalcs_state {

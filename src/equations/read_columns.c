@@ -17,11 +17,14 @@ const char *dalcs_reading_name(struct dalcs_reader *reader, const char *what) {
     return name;
 }
 
-void dalcs_reading_take_unit(struct dalcs_reader *reader, bool *is_current) {
+void dalcs_reading_take_unit(struct dalcs_reading *r, struct dalcs_reader *reader,
+                             bool *is_current) {
     if (dalcs_reader_take_word(reader, "a")) {
         *is_current = true;
+        r->has_units = true;
     } else if (dalcs_reader_take_word(reader, "v")) {
         *is_current = false;
+        r->has_units = true;
     }
 }
 
@@ -64,13 +67,13 @@ static bool read_number_of_column(struct dalcs_reader *reader, int *column) {
 }
 
 /* name [V|A] [value] [kind=...] [root=N] [dual=N] */
-static bool read_described(struct dalcs_reader *reader, bool is_state,
+static bool read_described(struct dalcs_reading *r, struct dalcs_reader *reader, bool is_state,
                            struct dalcs_described_column *c) {
     c->name = dalcs_reading_name(reader, "a name");
     if (c->name == NULL) {
         return false;
     }
-    dalcs_reading_take_unit(reader, &c->is_current);
+    dalcs_reading_take_unit(r, reader, &c->is_current);
     const struct dalcs_token *token;
     while ((token = dalcs_reader_peek(reader, 0)) != NULL) {
         const struct dalcs_token *parameter = dalcs_reader_take_parameter(reader);
@@ -102,7 +105,7 @@ static void take_described(struct dalcs_reading *r, const struct dalcs_card *car
     struct dalcs_reader reader = dalcs_reader_start(
         &r->builder, card, is_state ? "state name [V|A] [initial value]" : "unknown name [V|A]");
     struct dalcs_described_column c = {.kind = kind, .root = -1, .dual = -1};
-    if (read_described(&reader, is_state, &c) && grow(r, array, capacity, *n, sizeof **array)) {
+    if (read_described(r, &reader, is_state, &c) && grow(r, array, capacity, *n, sizeof **array)) {
         (*array)[(*n)++] = c;
     }
 }

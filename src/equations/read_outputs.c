@@ -239,7 +239,7 @@ void dalcs_reading_take_output(struct dalcs_reading *r, const struct dalcs_card 
     if (out.name == NULL) {
         return;
     }
-    dalcs_reading_take_unit(&reader, &out.is_current);
+    dalcs_reading_take_unit(r, &reader, &out.is_current);
     if (!read_terms(r, &reader, &out.plus) ||
         (is_output && dalcs_reader_take_word(&reader, "minus") &&
          !read_terms(r, &reader, &out.minus)) ||

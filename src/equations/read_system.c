@@ -296,6 +296,7 @@ static enum dalcs_status keep_outputs(struct dalcs_reading *r) {
         n->state[k] = r->element[k];
     }
     n->n_outputs = (int)r->n_outputs;
+    n->is_without_units = !r->has_units;
     n->n_states = (int)r->n_elements;
     r->n_outputs = 0;
     r->n_elements = 0;

@@ -109,6 +109,7 @@ struct dalcs_reading {
     size_t n_outputs, output_capacity;
     struct dalcs_state *element;
     size_t n_elements, element_capacity;
+    bool has_units; /* V or A stands on some card */
 };
 
 /* ---- read_columns.c: cards that name columns ------------------------------------------------- */
@@ -121,7 +122,8 @@ bool dalcs_reading_take_column(struct dalcs_reading *r, struct dalcs_described_s
 const char *dalcs_reading_name(struct dalcs_reader *reader, const char *what);
 
 /* V or A, else as it was. */
-void dalcs_reading_take_unit(struct dalcs_reader *reader, bool *is_current);
+void dalcs_reading_take_unit(struct dalcs_reading *r, struct dalcs_reader *reader,
+                             bool *is_current);
 
 /* ---- read_matrices.c ------------------------------------------------------------------------ */
 

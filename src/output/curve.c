@@ -73,15 +73,24 @@ void dalcs_curve_widen_range(const struct dalcs_curve *curve, const bool *skip, 
 
 double dalcs_curve_overlap(const struct dalcs_curve *a, const struct dalcs_curve *b,
                            double tolerance) {
-    int n = 0;
+    int n = 0, joined = -1; /* the column that straight lines on each other may come from */
+    bool was_away = false;
     for (int i = 0; i < DALCS_CURVE_COLUMNS; i++) {
         const struct dalcs_curve_column *p = &a->column[i], *q = &b->column[i];
+        if (!p->used && !q->used) {
+            continue;
+        }
         bool away = fmax(p->highest.value, -p->lowest.value) > tolerance;
         bool same = fabs(p->first.value - q->first.value) <= tolerance &&
                     fabs(p->lowest.value - q->lowest.value) <= tolerance &&
                     fabs(p->highest.value - q->highest.value) <= tolerance &&
                     fabs(p->last.value - q->last.value) <= tolerance;
-        n += p->used && q->used && away && same ? 1 : 0;
+        bool both = p->used && q->used;
+        bool arrives = both && joined >= 0 && fabs(p->first.value - q->first.value) <= tolerance;
+        n += arrives && (away || was_away) ? i - joined - 1 : 0;
+        n += both && away && same ? 1 : 0;
+        joined = both && fabs(p->last.value - q->last.value) <= tolerance ? i : -1;
+        was_away = away;
     }
     return (double)n / DALCS_CURVE_COLUMNS;
 }

@@ -9,10 +9,11 @@
 #include <string.h>
 #include <strings.h>
 
-#define CLIP     3.0  /* an impulse that stretches a panel by less is left in */
-#define SWING    0.2  /* of a signal's range: smaller ripple is no turn */
-#define VISIBLE  0.01 /* of a panel's range */
-#define ROUNDING 1e-7 /* of a panel's largest value: all in so small a range is constant */
+#define CLIP     3.0   /* an impulse that stretches a panel by less is left in */
+#define SWING    0.2   /* of a signal's range: smaller ripple is no turn */
+#define VISIBLE  0.01  /* of a panel's range */
+#define ROUNDING 1e-7  /* of a panel's largest value: all in so small a range is constant */
+#define NOTHING  1e-15 /* V, A: what rounding leaves of a 0 */
 
 /* Turns of the densest signal: beyond the first number nobody sees a single period; the second is
  * what the end of the run then shows. */
@@ -107,19 +108,24 @@ enum dalcs_status dalcs_figure_begin(struct dalcs_figure *figure, const struct d
     if (plot->analysis != DALCS_TRANSIENT || plot->n_signals == 0) {
         return DALCS_OK;
     }
-    struct dalcs_figure_panel panel[2] = {{.quantity = "voltage", .unit = "V"},
-                                          {.quantity = "current", .unit = "A"}};
+
+    enum { N_PANELS = 3 };
+
+    struct dalcs_figure_panel panel[N_PANELS] = {{.quantity = "voltage", .unit = "V"},
+                                                 {.quantity = "current", .unit = "A"},
+                                                 {.quantity = "value", .unit = ""}};
     int *group = dalcs_alloc(plot->n_signals, sizeof *group);
     if (!group) {
         return DALCS_E_NOMEM;
     }
     for (size_t i = 0; i < plot->n_signals; i++) {
-        group[i] = plot->unit[i] == DALCS_VOLT ? 0 : 1;
+        group[i] = plot->unit[i] == DALCS_VOLT ? 0 : plot->unit[i] == DALCS_AMPERE ? 1 : 2;
     }
-    dalcs_figure_choose(&panel[0], plot->name, group, plot->n_signals, 0);
-    dalcs_figure_choose(&panel[1], plot->name, group, plot->n_signals, 1);
+    for (int p = 0; p < N_PANELS; p++) {
+        dalcs_figure_choose(&panel[p], plot->name, group, plot->n_signals, p);
+    }
     free(group);
-    return dalcs_figure_begin_panels(figure, plot->title, plot->name, panel, 2);
+    return dalcs_figure_begin_panels(figure, plot->title, plot->name, panel, N_PANELS);
 }
 
 void dalcs_figure_row(struct dalcs_figure *figure, double time, const double *value) {
@@ -227,6 +233,9 @@ static void find_ranges(const struct dalcs_figure *figure, struct dalcs_figure_v
             view->low[p] = view->high[p] = 0.0;
         }
         double largest = fmax(fabs(view->low[p]), fabs(view->high[p]));
+        if (largest < NOTHING) {
+            largest = view->low[p] = view->high[p] = 0.0;
+        }
         view->largest[p] = largest;
         double margin = 0.05 * (view->high[p] - view->low[p]);
         if (margin <= ROUNDING * largest) { /* a constant; 0 in a range of 1 */

@@ -68,7 +68,7 @@ void dalcs_gnuplot_write_bars(FILE *stream, const struct dalcs_figure *figure,
     }
     fputs("end_of_data\n", stream);
     dalcs_gnuplot_write_margins(stream, page, v, page->bars_bottom, page->bars_top);
-    fprintf(stream, "set yrange [0.4:%zu.6]\nunset ylabel\nunset xzeroaxis\nset ytics (", n);
+    fprintf(stream, "set yrange [0.4:%zu.6]\nunset xzeroaxis\nset ytics (", n);
     for (size_t i = 0; i < n; i++) {
         fputs(i > 0 ? ", " : "", stream);
         dalcs_gnuplot_write_quoted(stream, conduction->element[i].name, DALCS_GNUPLOT_MAX_NAME);

@@ -18,6 +18,7 @@ enum {
     BAR = 22,
     BARS_GAP = 30,
     MARGIN = 78,
+    LABEL = 16, /* of the margin, to the middle of the text */
     CHARACTER = 10
 };
 
@@ -81,8 +82,8 @@ double dalcs_gnuplot_panel_scale(const struct dalcs_figure *figure, int v, int p
     return plain ? 1.0 : dalcs_quantity_scale(figure->view[v].largest[p]);
 }
 
-/* Numbers of the axes and names of bars stand there. */
-static double left_margin(const struct dalcs_figure *figure, size_t n_bars) {
+/* What the numbers of the axes and their labels need, in pixels. */
+static int axis_margin(const struct dalcs_figure *figure) {
     int margin = MARGIN;
     for (int v = 0; v < figure->n_views; v++) {
         for (int p = 0; p < figure->n_panels; p++) {
@@ -92,22 +93,34 @@ static double left_margin(const struct dalcs_figure *figure, size_t n_bars) {
             margin = needed > margin ? needed : margin;
         }
     }
+    return margin;
+}
+
+/* The names of bars stand there as well. */
+static int left_margin(const struct dalcs_figure *figure, size_t n_bars) {
+    int margin = axis_margin(figure);
     for (size_t i = 0; i < n_bars; i++) {
         int needed = 16 + CHARACTER * limited_length(figure->conduction->element[i].name);
         margin = needed > margin ? needed : margin;
     }
-    return (double)margin / DALCS_GNUPLOT_WIDTH;
+    return margin;
 }
 
 static void lay_out_columns(struct dalcs_gnuplot_page *page, const struct dalcs_figure *figure) {
-    double left = left_margin(figure, page->n_bars);
+    double left = (double)left_margin(figure, page->n_bars) / DALCS_GNUPLOT_WIDTH;
     double right = 0.945 - 0.0082 * longest_name(figure);
     double middle = 0.5 * (left + right);
     double gap = left + 0.025;
     bool two = figure->n_views > 1;
-    page->place[0] =
-        (struct dalcs_gnuplot_place){left, two ? middle - 0.5 * gap : right, figure->n_views == 1};
-    page->place[1] = (struct dalcs_gnuplot_place){middle + 0.5 * gap, right, true};
+    double label = (double)(LABEL - axis_margin(figure)) / DALCS_GNUPLOT_WIDTH;
+    page->place[0] = (struct dalcs_gnuplot_place){.left = left,
+                                                  .right = two ? middle - 0.5 * gap : right,
+                                                  .label = left + label,
+                                                  .legend = !two};
+    page->place[1] = (struct dalcs_gnuplot_place){.left = middle + 0.5 * gap,
+                                                  .right = right,
+                                                  .label = middle + 0.5 * gap + label,
+                                                  .legend = true};
 }
 
 struct dalcs_gnuplot_page dalcs_gnuplot_lay_out(const struct dalcs_figure *figure) {

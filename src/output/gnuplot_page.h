@@ -8,6 +8,7 @@
 /* Where a column of panels is on the page, 0 to 1. */
 struct dalcs_gnuplot_place {
     double left, right;
+    double label; /* the middle of the vertical axes' labels */
     bool legend;
 };
 

@@ -120,11 +120,12 @@ static void write_panel(FILE *stream, const struct dalcs_figure *figure,
     fprintf(stream, "set yrange [%.12g:%.12g]\nset format y '%%.%dg'\n", view->low[p] / scale,
             view->high[p] / scale,
             dalcs_gnuplot_count_digits(view->low[p] / scale, view->high[p] / scale));
-    fprintf(stream, "set ylabel '%s", panel->quantity);
+    fprintf(stream, "set label 4 '%s", panel->quantity);
     if (panel->unit[0]) {
         fprintf(stream, " (%s%s)", unit_prefix(scale), panel->unit);
     }
-    fprintf(stream, "' offset 0.5,0 textcolor rgb '%s'\n", figure->theme->text);
+    fprintf(stream, "' at screen %.4f, screen %.4f center rotate textcolor rgb '%s'\n",
+            page->place[v].label, 0.5 * (page->bottom[k] + page->top[k]), figure->theme->text);
     if (k == page->n_panels - 1 && page->n_bars == 0) {
         dalcs_gnuplot_write_axis(stream, figure, page, v);
     } else {
@@ -140,6 +141,9 @@ static void write_panel(FILE *stream, const struct dalcs_figure *figure,
         fprintf(stream, "%s $v%dp%dc%d using 1:2 with lines lw %.1f lc rgb '%s' ",
                 i == 0 ? "plot" : ",", v, p, i, choose_width(figure, view, p, i),
                 figure->theme->curve[i]);
+        if (figure->theme->dash[i]) {
+            fprintf(stream, "dt %s ", figure->theme->dash[i]);
+        }
         if (page->place[v].legend) {
             fputs("title ", stream);
             dalcs_gnuplot_write_quoted(stream, figure->name[panel->signal[i]],

@@ -32,8 +32,24 @@ const struct dalcs_theme dalcs_theme_dark = {
               "#bdc1c6"},
 };
 
+/* For a printer without colours: two greys, and patterns that tell the curves apart. */
+const struct dalcs_theme dalcs_theme_print = {
+    .name = "print",
+    .background = "#ffffff",
+    .text = "#000000",
+    .quiet_text = "#404040",
+    .border = "#606060",
+    .grid = "#e0e0e0",
+    .bar = "#404040",
+    .mark = "#909090",
+    .curve = {"#000000", "#808080", "#000000", "#606060", "#000000", "#808080", "#000000",
+              "#606060"},
+    .dash = {NULL, NULL, "(12,8)", "(12,8)", "(2,6)", "(2,6)", "(12,6,2,6)", "(12,6,2,6)"},
+};
+
 const struct dalcs_theme *dalcs_theme_find(const char *name) {
-    static const struct dalcs_theme *const all[] = {&dalcs_theme_light, &dalcs_theme_dark};
+    static const struct dalcs_theme *const all[] = {&dalcs_theme_light, &dalcs_theme_dark,
+                                                    &dalcs_theme_print};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         if (strcmp(all[i]->name, name) == 0) {
             return all[i];

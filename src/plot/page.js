@@ -138,11 +138,44 @@ function rowsOf(panel) {
   return data;
 }
 
+/* The part of the axis where two columns lie on each other away from 0. */
+function overlap(data, i, k, tolerance) {
+  let sum = 0, before = false;
+  data.forEach((row, r) => {
+    const now = Math.abs(row[i] - row[k]) <= tolerance;
+    const away = Math.max(Math.abs(row[i]), Math.abs((data[r - 1] ?? row)[i])) > tolerance;
+    if (before && now && away) sum += row[0] - data[r - 1][0];
+    before = now;
+  });
+  return sum / (view.to - view.from);
+}
+
+/* A curve that others lie on later is wider, so that its colour shows beside theirs. */
+function widthsOf(data, n) {
+  let low = Infinity, high = -Infinity;
+  for (const row of data) {
+    for (let i = 1; i <= n; i++) {
+      if (row[i] < low) low = row[i];
+      if (row[i] > high) high = row[i];
+    }
+  }
+  return Array.from({length: n}, (_, i) => {
+    let width = 1.5;
+    for (let k = i + 2; k <= n && width < 4; k++) {
+      if (overlap(data, i + 1, k, 1e-3 * (high - low)) > 0.02) width += 1.5;
+    }
+    return width;
+  });
+}
+
 function optionsOf(panel) {
-  const shown = shownOf(panel);
+  const shown = shownOf(panel), data = rowsOf(panel);
+  const labels = shown.map((signal, k) => `${k} ${signal.name}`);
+  const widths = widthsOf(data, shown.length);
   return {
-    file: rowsOf(panel),
-    labels: [run.axis.name, ...shown.map((signal, k) => `${k} ${signal.name}`)],
+    file: data,
+    labels: [run.axis.name, ...labels],
+    series: Object.fromEntries(labels.map((label, k) => [label, {strokeWidth: widths[k]}])),
     colors: shown.map((signal) => PALETTE[theme()][signal.color]),
     dateWindow: [view.from, view.to],
     gridLineColor: css("--grid"),
@@ -326,8 +359,8 @@ function makeGraph(panel) {
     labels: [run.axis.name, "-"],
     legend: "never",
     interactionModel: model,
-    strokeWidth: 1.5,
     highlightCircleSize: 0,
+    yRangePad: 8,
     axes: {
       x: {
         logscale: run.axis.log,

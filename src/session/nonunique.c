@@ -8,7 +8,7 @@
 enum { MOST_WARNINGS = 50, MOST_NAMED = 12, MOST_TOLD = 3, MOST_REPORTED = 1000 };
 
 static const char *unit_of(const struct dalcs_run *r, int output) {
-    return r->unit[output] == DALCS_AMPERE ? "A" : "V";
+    return r->s->network.output[output].is_current ? "A" : "V";
 }
 
 /* "i(d1) may be anything from 0 A to 0.005 A, and 0.0025 A is taken" */

@@ -24,7 +24,9 @@ enum dalcs_status dalcs_run_name_signals(struct dalcs_run *r, bool copies) {
         if (r->name[i] == NULL) {
             return DALCS_E_NOMEM;
         }
-        r->unit[i] = n->output[i].is_current ? DALCS_AMPERE : DALCS_VOLT;
+        r->unit[i] = n->is_without_units       ? DALCS_UNIT_NONE
+                     : n->output[i].is_current ? DALCS_AMPERE
+                                               : DALCS_VOLT;
     }
     return DALCS_OK;
 }

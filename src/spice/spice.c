@@ -61,6 +61,13 @@ static void write_passive(const struct writer *w, int i) {
     fputc('\n', w->stream);
 }
 
+static enum dalcs_status refuse(const struct writer *w, const struct dalcs_device *device,
+                                const char *trouble) {
+    dalcs_diag_add(w->diag, DALCS_ERROR, &device->where, NULL, "%s: ngspice has no %s",
+                   device->name, trouble);
+    return DALCS_E_NETLIST;
+}
+
 static enum dalcs_status write_source(const struct writer *w, int i) {
     const struct dalcs_device *device = &w->circuit->device[i];
     const struct dalcs_stimulus *stimulus = &w->circuit->stimulus[device->stimulus];
@@ -83,12 +90,7 @@ static enum dalcs_status write_source(const struct writer *w, int i) {
     const char *trouble =
         dalcs_spice_write_source(w->stream, stimulus, w->options->edge, w->circuit->transient.stop);
     fputc('\n', w->stream);
-    if (trouble != NULL) {
-        dalcs_diag_add(w->diag, DALCS_ERROR, &device->where, NULL, "%s: ngspice has no %s",
-                       device->name, trouble);
-        return DALCS_E_NETLIST;
-    }
-    return DALCS_OK;
+    return trouble == NULL ? DALCS_OK : refuse(w, device, trouble);
 }
 
 static void write_controlled(const struct writer *w, int i) {
@@ -176,14 +178,27 @@ static void write_switch(const struct writer *w, int i) {
     fputc('\n', w->stream);
 }
 
+/* With the functions of time that no device before it had. */
+static enum dalcs_status write_formula(const struct writer *w, int i) {
+    const struct dalcs_device *device = &w->circuit->device[i];
+    char buffer[32];
+    write_sense(w, i);
+    dalcs_spice_write_formula(w->names, w->options, w->stream, i, first_node(w, i, buffer));
+    const char *trouble = NULL;
+    for (int k = 0; k < w->circuit->n_stimuli && trouble == NULL; k++) {
+        if (dalcs_spice_takes_stimulus(w->circuit, i, k)) {
+            trouble = dalcs_spice_write_stimulus(w->circuit, w->stream, k, w->options->edge);
+        }
+    }
+    return trouble == NULL ? DALCS_OK : refuse(w, device, trouble);
+}
+
 static enum dalcs_status write_device(const struct writer *w, int i) {
     const struct dalcs_device *device = &w->circuit->device[i];
     if (device->behaviour != NULL) {
-        dalcs_diag_add(w->diag, DALCS_ERROR, &device->where, NULL,
-                       "%s: a source with a formula is not written for ngspice yet", device->name);
-        return DALCS_E_NETLIST;
+        return write_formula(w, i);
     }
-    switch (w->circuit->device[i].kind) {
+    switch (device->kind) {
     case DALCS_RESISTOR:
     case DALCS_INDUCTOR:
     case DALCS_CAPACITOR:

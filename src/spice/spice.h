@@ -43,4 +43,15 @@ const char *dalcs_spice_write_source(FILE *stream, const struct dalcs_stimulus *
                                      double edge, double stop);
 void dalcs_spice_write_expression(FILE *stream, const struct dalcs_stimulus *stimulus);
 
+/* The B source of device i, which has a behaviour, and those of its lambdas. */
+void dalcs_spice_write_formula(const struct dalcs_spice_names *names,
+                               const struct dalcs_spice_options *options, FILE *stream, int i,
+                               const char *first_node);
+
+/* Does the formula of device i ask for stimulus k? No two formulas share one. The source that gives it:
+ * NULL, or why ngspice cannot be told. */
+bool dalcs_spice_takes_stimulus(const struct dalcs_circuit *circuit, int i, int k);
+const char *dalcs_spice_write_stimulus(const struct dalcs_circuit *circuit, FILE *stream, int k,
+                                       double edge);
+
 #endif

@@ -47,7 +47,9 @@ static char letter_of(const struct dalcs_device *device) {
         [DALCS_VSOURCE] = 'v',  [DALCS_ISOURCE] = 'i',  [DALCS_VCVS] = 'e',
         [DALCS_CCCS] = 'f',     [DALCS_VCCS] = 'g',     [DALCS_CCVS] = 'h',
         [DALCS_DIODE] = 'd',    [DALCS_SWITCH] = 's'};
-    return device->kind == DALCS_SWITCH && device->control >= 0 ? 'w' : letter[device->kind];
+    return device->behaviour != NULL                              ? 'b'
+           : device->kind == DALCS_SWITCH && device->control >= 0 ? 'w'
+                                                                  : letter[device->kind];
 }
 
 static enum dalcs_status name_nodes(struct dalcs_spice_names *names) {
@@ -78,9 +80,9 @@ static enum dalcs_status name_devices(struct dalcs_spice_names *names) {
 }
 
 /* ngspice gives the currents of V, L, E and H by itself. */
-static bool gives_current(enum dalcs_device_kind kind) {
-    return kind == DALCS_VSOURCE || kind == DALCS_INDUCTOR || kind == DALCS_VCVS ||
-           kind == DALCS_CCVS;
+static bool gives_current(const struct dalcs_device *device) {
+    return device->kind == DALCS_VSOURCE || device->kind == DALCS_INDUCTOR ||
+           device->kind == DALCS_CCVS || (device->kind == DALCS_VCVS && device->behaviour == NULL);
 }
 
 static void join_shorts(struct dalcs_spice_names *names) {
@@ -137,7 +139,7 @@ static enum dalcs_status choose_all(struct dalcs_spice_names *names) {
     DALCS_TRY(name_devices(names));
     dalcs_circuit_mark_wanted_currents(circuit, names->is_sensed);
     for (int i = 0; i < circuit->n_devices; i++) {
-        names->is_sensed[i] = names->is_sensed[i] && !gives_current(circuit->device[i].kind);
+        names->is_sensed[i] = names->is_sensed[i] && !gives_current(&circuit->device[i]);
     }
     join_shorts(names);
     return name_columns(names);

@@ -49,6 +49,11 @@ MADE = {
              {"periodic": ("undecided", [])}),
     "linear": ("linear\nV1 a 0 SIN(0 1 1)\nR1 a b 1\nC1 b 0 0.25\n.tran 1 9\n.end\n",
                {"contracting": ("yes", []), "jumps": ("yes", []), "stable": ("yes", [])}),
+    # of matrices: nobody is blamed, and the second system grows
+    "two_systems": ("dalcs-system 2 two\nstate x 1\npair d\nmatrix A\n+ -1\nmatrix B\n+ 1\n"
+                    "matrix C\n+ 1\nsystem\nstate y 2\npair e\nmatrix A\n+ 3\nmatrix B\n+ 1\n"
+                    "matrix C\n+ 2\n.tran 10m 1\n.end\n", {"passive": ("yes", []),
+                                                            "stable": ("yes", [])}),
 }
 
 

@@ -408,6 +408,15 @@ class Summary(Case):
         self.assertEqual(done.returncode, INPUT_OUTPUT)
         self.assertIn("standard output: No space left", done.stderr)
 
+    def test_reader_that_left(self):
+        """As head does: nobody is told off for it, but the status says that not all was read."""
+        reader, writer = os.pipe()
+        os.close(reader)
+        done = subprocess.run([DALCS, "run", self.write(RECTIFIER)], cwd=self.folder,
+                              stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+        os.close(writer)
+        self.assertEqual((done.returncode, done.stderr), (INPUT_OUTPUT, ""))
+
 
 class Failures(Case):
     """A run that fails leaves what was there, and says what it leaves."""

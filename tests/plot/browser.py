@@ -215,6 +215,29 @@ class Page(unittest.TestCase):
         self.assertTrue(self.box.is_displayed())
         self.assertEqual(max(self.drawn()), 42.0)
 
+    def test_what_is_hidden_is_wider(self):
+        """Where two signals lie on each other the first is wider; one alone has its plain width."""
+        widths = "return widthsOf(arguments[0], 2);"
+        same = [[self.script("return start;"), 1, 1], [self.script("return stop;"), 2, 2]]
+        self.assertGreater(self.script(widths, same)[0], self.script(widths, same)[1])
+        apart = [[row[0], row[1], -row[2]] for row in same]
+        self.assertEqual(*self.script(widths, apart))
+
+    def test_nothing_on_the_edge(self):
+        """The least value of i(d1), 0, is above the lower end of its axis."""
+        self.assertLess(self.script("return panels[1].graph.yAxisRange()[0];"), 0)
+
+    def test_narrow(self):
+        self.driver.set_window_size(500, 900)
+        try:
+            self.wait("panels[0].box.clientWidth < 500 && "
+                      "panels[0].graph.getArea().w > panels[0].box.clientWidth - 120")
+            self.assertLessEqual(*self.script("return [document.documentElement.scrollWidth,"
+                                              "document.documentElement.clientWidth];"))
+            self.assertGreater(self.script("return panels[0].box.clientWidth;"), 420)
+        finally:
+            self.driver.set_window_size(1400, 900)
+
     def test_bars_and_themes(self):
         self.assertEqual(self.script("return run.bars.map((bar) => bar.name);"), ["d1"])
         # The current conducts half of the time: half of the bar is dark.

@@ -7,6 +7,7 @@ usage: program.py DALCS
 
 import os
 import pathlib
+import re
 import shutil
 import struct
 import subprocess
@@ -127,6 +128,41 @@ class Plot(unittest.TestCase):
         shown = self.plot("many.raw")
         self.assertIn("5 V", shown.stdout)
 
+    def test_theme_for_paper(self):
+        """No colour is in it, and lines have patterns."""
+        self.plot("buck.raw", "-s", "v(sw),v(out),i(l1),v(sw)-v(out)", "--theme", "print", "-o",
+                  "paper.svg")
+        svg = (self.folder / "paper.svg").read_text()
+        colours = set(re.findall(r"rgb\( *(\d+), *(\d+), *(\d+)\)", svg))
+        colours |= {tuple(str(int(word[k:k + 2], 16)) for k in (0, 2, 4))
+                    for word in re.findall(r"#([0-9a-f]{6})", svg)}
+        self.assertTrue(colours)
+        self.assertTrue(all(max(map(int, c)) - min(map(int, c)) <= 10 for c in colours), colours)
+        self.assertIn("stroke-dasharray", svg)
+
+    def test_rounding_is_not_magnified(self):
+        """Less than a femtovolt is drawn as 0."""
+        rows = "".join(f"{k * 1e-3},{(-1) ** k * 8e-17}\n" for k in range(100))
+        (self.folder / "nothing.csv").write_text("time,v(a)\n" + rows)
+        self.plot("nothing.csv", "-o", "nothing.svg")
+        texts = self.texts("nothing.svg")
+        self.assertIn("voltage (V)", texts)
+        self.assertIn("0.4", texts)
+
+    def test_system_without_units(self):
+        """A position is no voltage; a file that names units keeps them."""
+        for name, quantity in [("hsw99_unilateral", "value"), ("units", "voltage (V)")]:
+            system = pathlib.Path(BUCK).parents[1] / "papers" / "hsw99_unilateral.dalcs"
+            if name == "units":
+                system = self.folder / "units.dalcs"
+                system.write_text("dalcs-system 2 x\nstate x V 1\nmatrix A\n+ -1\n.tran 10m 1\n")
+            subprocess.run([DALCS, "run", system, "-o", "system.raw", "--plot", "run.svg", "-q"],
+                           cwd=self.folder, check=True)
+            self.plot("system.raw", "-o", "later.svg")
+            for picture in "run.svg", "later.svg":
+                self.assertIn(quantity, self.texts(picture))
+                self.assertEqual("voltage (V)" in self.texts(picture), name == "units")
+
     def test_terminal(self):
         shown = self.plot("buck.raw", COLUMNS="60").stdout
         lines = shown.splitlines()
@@ -160,7 +196,8 @@ class Plot(unittest.TestCase):
                 (["buck.raw", "--from", "2u", "--to", "1u"], USAGE, "the range is empty"),
                 (["buck.raw", "--from", "x"], USAGE, "--from: 'x' is not a number"),
                 (["buck.raw", "-o", "a.gif"], USAGE, "name it .svg, .png, .pdf or .html"),
-                (["buck.raw", "--theme", "red"], USAGE, "neither light nor dark"),
+                (["buck.raw", "--theme", "red"], USAGE, "not light, dark or print"),
+                (["buck.raw", "--theme", "print", "-o", "a.html"], USAGE, "a page is light or dark"),
                 (["buck.raw", "--run", "0"], USAGE, "--run: '0' is not a number from 1 on"),
                 (["buck.raw", "--sinals", "a"], USAGE, "did you mean '--signals'?"),
                 (["buck.raw", "-s"], USAGE, "option '-s' needs a value"),

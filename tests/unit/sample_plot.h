@@ -77,6 +77,7 @@ static inline void check_contents(const char *path, const char *expected) {
 static inline int run_suite(const char *name, const TTest *const *test, size_t n) {
     Suite *suite = suite_create(name);
     TCase *tests = tcase_create(name);
+    tcase_set_timeout(tests, 60); /* s; of a busy machine, for what takes less than one */
     tcase_add_checked_fixture(tests, enter_folder, leave_folder);
     for (size_t i = 0; i < n; i++) {
         tcase_add_test(tests, test[i]);

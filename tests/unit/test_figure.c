@@ -51,6 +51,25 @@ START_TEST(test_curve_keeps_order) {
 
 END_TEST
 
+/* Lines on each other between rows that are far apart count over the whole way. */
+START_TEST(test_overlap_of_few_rows) {
+    struct dalcs_curve a, b;
+    ck_assert_int_eq(dalcs_curve_init(&a, 0.0, 1.0), DALCS_OK);
+    ck_assert_int_eq(dalcs_curve_init(&b, 0.0, 1.0), DALCS_OK);
+    const double time[4] = {0.0, 0.3, 0.5, 1.0};
+    const double first[4] = {0.0, 3.0, 3.0, 3.0}, second[4] = {0.0, 3.0, 4.0, 3.0};
+    for (int i = 0; i < 4; i++) {
+        dalcs_curve_add(&a, time[i], first[i]);
+        dalcs_curve_add(&b, time[i], second[i]);
+    }
+    ck_assert_double_eq_tol(dalcs_curve_overlap(&a, &b, 1e-3), 0.3, 0.005);
+    ck_assert_double_eq_tol(dalcs_curve_overlap(&a, &a, 1e-3), 1.0, 0.005);
+    dalcs_curve_finish(&a);
+    dalcs_curve_finish(&b);
+}
+
+END_TEST
+
 START_TEST(test_choice_of_signals) {
     static const char *const name[] = {"v(n1)", "v(n2)", "i(v1)", "v(n3)", "v(n4)", "v(n5)",
                                        "v(n6)", "v(n7)", "i(l1)", "v(n8)", "v(out)"};
@@ -234,6 +253,6 @@ START_TEST(test_units) {
 
 END_TEST
 
-RUN_SUITE("figure", test_curve_keeps_extremes, test_curve_keeps_order, test_choice_of_signals,
-          test_end_of_dense_run, test_impulse_leaves_scale, test_noise_is_constant,
-          test_noise_before_a_step, test_quoting, test_units)
+RUN_SUITE("figure", test_curve_keeps_extremes, test_curve_keeps_order, test_overlap_of_few_rows,
+          test_choice_of_signals, test_end_of_dense_run, test_impulse_leaves_scale,
+          test_noise_is_constant, test_noise_before_a_step, test_quoting, test_units)
