@@ -8,7 +8,7 @@ WAY says how ngspice takes the file, and is not chosen here: a file that ngspice
   lt, ps   as it is, in ngspice's own mode for files of LTspice or PSpice
   flat     as dalcs tells it to ngspice: what is in the way is another dialect (see the list in meson.build)
 After a comma, `free` means that no clock ties the two together, and `tmax=10n` is ngspice's longest step, where
-its comparator is not to wait for the netlist's.
+its comparator is not to wait for the netlist's; `reltol=1e-3` is for where its steps get too small with less.
 
 Compared are the signals that dalcs records and ngspice has too, or those that are named, over the whole run:
   the mean of each of 20 windows,
@@ -67,12 +67,12 @@ def run_ngspice(text, mode, folder):
     return table, None
 
 
-def simulate_as_is(netlist, way, largest, signals, folder):
+def simulate_as_is(netlist, way, settings, signals, folder):
     """ngspice's waveforms of the signals that it has, or why there are none."""
     text = netlist.read_text(encoding="utf-8")
-    text = re.sub(r"(?mi)^\.end$", f".options reltol={RELTOL}\n.end", text)
-    if largest:
-        text = re.sub(r"(?mi)^\.tran (\S+ \S+ \S+) \S+", rf".tran \1 {largest}", text)
+    text = re.sub(r"(?mi)^\.end$", f".options reltol={settings['reltol']}\n.end", text)
+    if settings["tmax"]:
+        text = re.sub(r"(?mi)^\.tran (\S+ \S+ \S+) \S+", rf".tran \1 {settings['tmax']}", text)
     table, reason = run_ngspice(text, MODES[way], folder)
     if table is None:
         return None, reason
@@ -144,7 +144,7 @@ def compare(checker, name, ours, theirs, scale, free):
 def main():
     program, writer, netlist = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[4])
     way, *words = sys.argv[5].split(",")
-    largest = next((word[5:] for word in words if word.startswith("tmax=")), None)
+    settings = {"tmax": None, "reltol": RELTOL, **dict(word.split("=") for word in words if "=" in word)}
     checker = Checker(netlist.stem)
     ours = run(program, netlist, method=None, report=False)
     if not checker.check(ours.status == 0, ours.stderr):
@@ -154,7 +154,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         try:
             theirs, reason = (simulate_flat(netlist, writer, signals, pathlib.Path(folder)) if way == "flat" else
-                              simulate_as_is(netlist, way, largest, signals, pathlib.Path(folder)))
+                              simulate_as_is(netlist, way, settings, signals, pathlib.Path(folder)))
         except FileNotFoundError:
             print("ngspice is not installed")
             return SKIPPED
