@@ -58,12 +58,12 @@ static const struct dot_card DOT_CARDS[] = {
 };
 
 /* Without a meaning for ideal elements; accepted. */
-static const char *const IGNORED[] = {".temp", ".width", ".prot", ".unprot"};
+static const char *const IGNORED[] = {".temp", ".width", ".prot", ".unprot", ".preprocess"};
 
 /* Analyses that this simulator will not have. */
-static const char *const NEVER[] = {
-    ".noise", ".pz", ".disto", ".tf",      ".sens", ".sp",     ".pss",      ".hb",
-    ".net",   ".mc", ".wcase", ".machine", ".stab", ".ferret", ".sampling", ".preprocess"};
+static const char *const NEVER[] = {".noise", ".pz",      ".disto", ".tf",     ".sens",
+                                    ".sp",    ".pss",     ".hb",    ".net",    ".mc",
+                                    ".wcase", ".machine", ".stab",  ".ferret", ".sampling"};
 
 /* Elements by letter that are not supported. */
 static const char *refused_element(char letter) {

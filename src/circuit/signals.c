@@ -197,6 +197,23 @@ static bool read_signal(struct dalcs_reader *reader) {
     return false;
 }
 
+/* Xyce's `format=csv`, `file=name` and the like on .print: how a file looks is said when dalcs is called. */
+static void skip_print_options(struct dalcs_reader *reader) {
+    static const char *const name[] = {"format",    "file",   "width",          "precision",
+                                       "delimiter", "filter", "timescalefactor"};
+    for (;;) {
+        const struct dalcs_token *option = dalcs_reader_peek(reader, 0);
+        if (option == NULL ||
+            !dalcs_builder_is_one_of(option->text, name, sizeof name / sizeof name[0]) ||
+            dalcs_reader_take_parameter(reader) == NULL) {
+            return;
+        }
+        dalcs_builder_note(reader->builder, option, "files and formats are options: -o out.csv",
+                           "%s= on .print is ignored", option->text);
+        reader->at += dalcs_reader_at_end(reader) ? 0 : 1;
+    }
+}
+
 void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     static const char *const ours[] = {"tran", "op", "dc", "ac"};
     static const char *const other[] = {"noise", "sens", "hb", "four"};
@@ -207,6 +224,7 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
                                strcmp(card->token->text, ".print") == 0 ||
                                strcmp(card->token->text, ".plot") == 0;
     const bool is_print = strcmp(card->token->text, ".save") != 0;
+    const bool takes_options = strcmp(card->token->text, ".print") == 0;
     for (size_t k = 0; is_print && k < sizeof other / sizeof other[0]; k++) {
         if (dalcs_reader_take_word(&reader, other[k])) {
             dalcs_builder_note(builder, type, NULL, "there is no %s analysis: this is ignored",
@@ -217,6 +235,9 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
     bool takes_type = is_print;
     for (size_t k = 0; k < sizeof ours / sizeof ours[0] && takes_type; k++) {
         takes_type = !dalcs_reader_take_word(&reader, ours[k]);
+    }
+    if (takes_options) {
+        skip_print_options(&reader);
     }
     if (dalcs_reader_at_end(&reader)) {
         /* A bare .probe records everything, as in PSpice. */
@@ -230,6 +251,9 @@ void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card 
     while (!dalcs_reader_at_end(&reader)) {
         if (!read_signal(&reader)) {
             return;
+        }
+        if (takes_options) {
+            skip_print_options(&reader);
         }
     }
 }

@@ -7,7 +7,8 @@
  *
  * The engine takes w to be made of columns, of which it knows how far they are to be trusted. An input that
  * varies in time and enters w becomes one: as a voltage source does in a circuit, with
- *     0 = i + F' lambda,      0 = s(t) - u,      w = ... + F u. */
+ *     0 = i + F' lambda,      0 = s(t) - u,      w = ... + F u.
+ * So does each input that commands a switch together with columns. */
 #include "reading.h"
 
 #include <lapacke.h>
@@ -37,6 +38,20 @@ struct assembly {
     struct dalcs_triplets P, A, E, C, F, storage, control, direct_control;
 };
 
+static void lift(struct assembly *a, int input, int *next) {
+    if (a->lifted[input] < 0) {
+        a->lifted[input] = *next;
+        *next += 2;
+        a->s->n_z += 2;
+        a->n_lifted++;
+    }
+}
+
+/* Is this switch commanded by columns, its inputs being a part of the sum? */
+static bool follows_columns(const struct dalcs_multiplier *m) {
+    return m->pair.kind == DALCS_PAIR_SWITCH && !m->pair.is_direct;
+}
+
 static void count_columns(const struct dalcs_reading *r, struct assembly *a) {
     const struct dalcs_described_system *from = a->from;
     struct dalcs_system *s = a->s;
@@ -56,11 +71,14 @@ static void count_columns(const struct dalcs_reading *r, struct assembly *a) {
         const struct dalcs_triplet *e = &F->entry[k];
         bool varies = r->input[from->input[e->column]].kind != DALCS_STIMULUS_DC;
         bool is_free = dalcs_multiplier_is_unknown(&from->multiplier[e->row]);
-        if (varies && !is_free && e->value != 0.0 && a->lifted[e->column] < 0) {
-            a->lifted[e->column] = next_lifted;
-            next_lifted += 2;
-            s->n_z += 2;
-            a->n_lifted++;
+        if (varies && !is_free && e->value != 0.0) {
+            lift(a, e->column, &next_lifted);
+        }
+    }
+    const struct dalcs_triplets *direct = &from->block[DALCS_BLOCK_DIRECT_CONTROL].entries;
+    for (size_t k = 0; k < direct->n; k++) {
+        if (follows_columns(&from->multiplier[direct->entry[k].row])) {
+            lift(a, direct->entry[k].column, &next_lifted);
         }
     }
     for (size_t j = 0; j < from->n_multipliers; j++) {
@@ -201,8 +219,13 @@ static enum dalcs_status add_controls(struct assembly *a) {
     t = &a->from->block[DALCS_BLOCK_DIRECT_CONTROL].entries;
     for (size_t k = 0; k < t->n; k++) {
         const struct dalcs_triplet *e = &t->entry[k];
-        DALCS_TRY(
-            dalcs_triplets_add(&a->direct_control, a->place[e->row].row, e->column + 1, e->value));
+        int row = a->place[e->row].row;
+        if (a->from->multiplier[e->row].pair.kind != DALCS_PAIR_SWITCH) {
+            continue;
+        }
+        DALCS_TRY(follows_columns(&a->from->multiplier[e->row])
+                      ? dalcs_triplets_add(&a->control, row, a->lifted[e->column], e->value)
+                      : dalcs_triplets_add(&a->direct_control, row, e->column + 1, e->value));
     }
     return DALCS_OK;
 }

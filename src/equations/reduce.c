@@ -315,6 +315,33 @@ static enum dalcs_status copy_labels(struct dalcs_system *to, const struct dalcs
     return DALCS_OK;
 }
 
+/* What commands the switches. z has sources in it: where they were commanded by columns alone, now inputs
+ * are a part of the sum, and the constant moves the thresholds. */
+static enum dalcs_status reduce_controls(const struct elimination *z, struct dalcs_system *to) {
+    const struct dalcs_system *s = z->from;
+    struct dalcs_csr inputs = {0};
+    struct dalcs_triplets t = {0};
+    enum dalcs_status status = reduce_rows(z, &s->control, NULL, s->n_pairs, &to->control, &inputs);
+    for (int d = 0; d < s->n_pairs && status == DALCS_OK; d++) {
+        struct dalcs_pair *pair = &to->pair[d];
+        const struct dalcs_csr *from = pair->is_direct ? &s->direct_control : &inputs;
+        for (int k = from->p[d]; k < from->p[d + 1] && status == DALCS_OK; k++) {
+            if (from->j[k] == 0 && !pair->is_direct) {
+                pair->turn_on -= from->x[k];
+                pair->turn_off -= from->x[k];
+                continue;
+            }
+            status = dalcs_triplets_add(&t, d, from->j[k], from->x[k]);
+        }
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_csr_compress(&to->direct_control, s->n_pairs, s->n_inputs, &t);
+    }
+    dalcs_csr_finish(&inputs);
+    dalcs_triplets_finish(&t);
+    return status;
+}
+
 static enum dalcs_status reduce_system(const struct elimination *z, struct dalcs_system *to) {
     const struct dalcs_system *s = z->from;
     *to = (struct dalcs_system){.n_x = s->n_x,
@@ -325,8 +352,8 @@ static enum dalcs_status reduce_system(const struct elimination *z, struct dalcs
     DALCS_TRY(copy_labels(to, s));
     DALCS_TRY(copy_matrix(&to->P, &s->P));
     DALCS_TRY(copy_matrix(&to->storage, &s->storage));
-    DALCS_TRY(copy_matrix(&to->direct_control, &s->direct_control));
     if (!z->is_regular) {
+        DALCS_TRY(copy_matrix(&to->direct_control, &s->direct_control));
         DALCS_TRY(copy_matrix(&to->A, &s->A));
         DALCS_TRY(copy_matrix(&to->E, &s->E));
         DALCS_TRY(copy_matrix(&to->C, &s->C));
@@ -335,7 +362,7 @@ static enum dalcs_status reduce_system(const struct elimination *z, struct dalcs
     }
     DALCS_TRY(reduce_rows(z, &s->A, &s->E, s->n_x, &to->A, &to->E));
     DALCS_TRY(reduce_rows(z, &s->C, &s->F, s->n_pairs, &to->C, &to->F));
-    DALCS_TRY(reduce_rows(z, &s->control, NULL, s->n_pairs, &to->control, NULL));
+    DALCS_TRY(reduce_controls(z, to));
     return dalcs_system_prove_monotone(to, DALCS_CLAIM_NOTHING);
 }
 

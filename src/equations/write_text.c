@@ -224,11 +224,10 @@ static void put_switch(struct printer *p, const struct dalcs_system *s, int d) {
         put_number(p, pair->turn_off);
         fputs("$, $", p->out);
     }
-    if (pair->is_direct) {
-        put_inputs(p, s, &s->direct_control, d);
-    } else {
+    if (!pair->is_direct) {
         put_columns(p, s, &s->control, d);
     }
+    put_inputs(p, s, &s->direct_control, d);
     end_sum(p);
     if (p->latex) {
         fputs("$)}\\\\\n", p->out);
