@@ -3,10 +3,11 @@
 
 usage: read_back.py DALCS FORMAT [FOLDER]
 
-Each netlist of netlists/, or of its FOLDER, runs by itself and from what `equations --format FORMAT` wrote, with the default
-method the rows are equal to the bit, and so are status, events and jumps; with implicit Euler they agree to
-rounding (looking for what is open asks the engine more often, and what it keeps has other last bits). With
-FORMAT lcs the unknowns z are eliminated, and the rows agree to the tolerance of the method."""
+Each netlist and system file of netlists/, or of its FOLDER, and the netlists beside this test run by themselves
+and from what `equations --format FORMAT` wrote. With the default method the rows are equal to the bit, and so are
+status, events and jumps; with implicit Euler they agree to rounding (looking for what is open asks the engine more
+often, and what it keeps has other last bits). With FORMAT lcs the unknowns z are eliminated, and the rows agree to
+the tolerance of the method."""
 
 import pathlib
 import subprocess
@@ -65,19 +66,20 @@ def compare_roughly(checker, name, found, wanted):
     if wanted.status != 0:
         return
     checker.check(found.names == wanted.names, f"{name}: other signals")
-    times = {row[0]: row for row in found.rows}
+    tick = 1e-10 * max(wanted.time, default=0.0) or 1.0  # events are found to rounding
+    times = {round(row[0] / tick): row for row in found.rows}
     scale = [max(abs(row[k]) for row in wanted.rows) for k in range(len(wanted.names))]
-    common = [row for row in wanted.rows if row[0] in times]
+    common = [row for row in wanted.rows if round(row[0] / tick) in times]
     checker.check(len(common) > 0.2 * len(wanted.rows), f"{name}: other times")
     sides = {}
     for row in wanted.rows:
         sides[row[0]] = sides.get(row[0], 0) + 1
-    units = {kind: max([scale[k] for k in range(1, len(scale)) if wanted.names[k][0] == kind],
-                       default=0.0) for kind in "vi"}
-    rows = [(row, times[row[0]]) for row in common if sides[row[0]] == 1]
+    units = {kind: max(scale[k] for k in range(1, len(scale)) if wanted.names[k][0] == kind)
+             for kind in {name[0] for name in wanted.names[1:]}}
+    rows = [(row, times[round(row[0] / tick)]) for row in common if sides[row[0]] == 1]
     for k in range(1, len(wanted.names)):
         # a circuit that falls to rest has no current but what voltages near 0 make
-        allowed = 2e-5 * max(units.get(wanted.names[k][0], 0.0), 1e-3 * max(units.values()), 1e-30)
+        allowed = 2e-5 * max(units[wanted.names[k][0]], 1e-3 * max(units.values()), 1e-30)
         error, where = max((abs(row[k] - other[k]), row[0]) for row, other in rows)
         checker.check(error <= allowed, f"{name}: {wanted.names[k]} off by {error:.2e} at {where}")
 
@@ -85,10 +87,12 @@ def compare_roughly(checker, name, found, wanted):
 def main():
     program, kind = sys.argv[1:3]
     checker = dalcs_program.Checker(f"read_back {kind}")
-    netlists = sorted(dalcs_program.NETLISTS.joinpath(*sys.argv[3:]).rglob("*.cir"))
+    netlists = [path for path in sorted(dalcs_program.NETLISTS.joinpath(*sys.argv[3:]).rglob("*"))
+                if path.suffix in (".cir", ".dalcs")]
+    netlists += [] if sys.argv[3:] else sorted(pathlib.Path(__file__).parent.glob("*.cir"))
     read = 0
     for netlist in netlists:
-        name = netlist.stem
+        name = netlist.name
         with tempfile.TemporaryDirectory() as folder:
             system, done = write_system(program, netlist, folder, kind)
             wanted = dalcs_program.run(program, netlist, method=None)
