@@ -131,7 +131,7 @@ class Comparison:
         largest = max(size.values(), default=0)
         for column in set(found) | set(wanted):
             error = abs(found.get(column, 0) - wanted.get(column, 0))
-            self.checker.check(error <= self.tolerance * size.get(column, 0) or error <= 1e-20 * largest,
+            self.checker.check(error <= self.tolerance * size.get(column, 0) or error <= 1e-15 * largest,
                                f"{self.what}, {what}: column {column} is {float(found.get(column, 0))!r}, "
                                f"not {float(wanted.get(column, 0))!r}")
 
