@@ -79,7 +79,7 @@ def compare_roughly(checker, name, found, wanted):
     rows = [(row, times[round(row[0] / tick)]) for row in common if sides[row[0]] == 1]
     for k in range(1, len(wanted.names)):
         # a circuit that falls to rest has no current but what voltages near 0 make
-        allowed = 2e-5 * max(units[wanted.names[k][0]], 1e-3 * max(units.values()), 1e-30)
+        allowed = 2e-5 * max(units[wanted.names[k][0]], 1e-3 * max(units.values()), 1e-10)
         error, where = max((abs(row[k] - other[k]), row[0]) for row, other in rows)
         checker.check(error <= allowed, f"{name}: {wanted.names[k]} off by {error:.2e} at {where}")
 
