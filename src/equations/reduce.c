@@ -128,6 +128,19 @@ struct workspace {
     lapack_int *pivot;
 };
 
+/* LAPACKE_dlange allocates, and does not say when that failed. */
+static double one_norm(const double *m, size_t n) {
+    double norm = 0.0;
+    for (size_t j = 0; j < n; j++) {
+        double sum = 0.0;
+        for (size_t i = 0; i < n; i++) {
+            sum += fabs(m[i * n + j]);
+        }
+        norm = fmax(norm, sum);
+    }
+    return norm;
+}
+
 static enum dalcs_status solve_for_z(struct elimination *z, struct workspace *w,
                                      struct dalcs_arena *arena) {
     const struct dalcs_system *s = z->from;
@@ -143,8 +156,7 @@ static enum dalcs_status solve_for_z(struct elimination *z, struct workspace *w,
     }
     balance(w->m, n, w->row, w->column);
     memcpy(w->copy, w->m, n * n * sizeof *w->m);
-    double norm =
-        LAPACKE_dlange(LAPACK_ROW_MAJOR, '1', (lapack_int)n, (lapack_int)n, w->m, (lapack_int)n);
+    double norm = one_norm(w->m, n);
     double rcond = 0.0;
     lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, (lapack_int)n, (lapack_int)n, w->m,
                                      (lapack_int)n, w->pivot);
