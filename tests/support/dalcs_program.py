@@ -23,7 +23,7 @@ class Run:
         self.rows = []
         self.names = []
         if output is not None:
-            lines = csv.reader(output.decode("ascii").splitlines())
+            lines = csv.reader(output.decode("utf-8").splitlines())
             self.names = next(lines)
             self.rows = [[float(field) for field in line] for line in lines]
 
