@@ -131,6 +131,25 @@ enum dalcs_status
 dalcs_session_read_matrices(struct dalcs_session *session, const char *name,
                             const struct dalcs_matrices *matrices) DALCS_MUST_CHECK;
 
+/* A mechanical system, mass q'' + damping q' + stiffness q = force s(t) + constant_force + G' lambda. The rows
+ * of G and constant_G are those of the contacts (0 <= lambda _|_ G q + c >= 0, impacts are inelastic), then of
+ * the joints (0 = G q + c), then of the frictions (|lambda| <= limit against G q' + c). Row by row and dense,
+ * NULL where all 0; units are the caller's. Copied. */
+struct dalcs_mechanics {
+    const char *title;
+    const char *cards; /* as above */
+    size_t n_q, n_inputs, n_contacts, n_joints, n_frictions;
+    const char *const *q_name; /* [n_q]; NULL: q1, q2, ...; velocities are d(NAME) */
+    const double *q0, *v0;     /* [n_q]; both NULL: .tran starts from its operating point */
+    const double *mass, *damping, *stiffness; /* [n_q][n_q]; NULL: of mass the identity */
+    const double *force, *constant_force;     /* [n_q][n_inputs], [n_q] */
+    const double *G, *constant_G;             /* n_contacts + n_joints + n_frictions rows */
+    const double *friction_limit;             /* [n_frictions] */
+};
+enum dalcs_status
+dalcs_session_read_mechanics(struct dalcs_session *session, const char *name,
+                             const struct dalcs_mechanics *mechanics) DALCS_MUST_CHECK;
+
 enum dalcs_equations_format {
     DALCS_EQUATIONS_TEXT,
     DALCS_EQUATIONS_LATEX,

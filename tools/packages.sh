@@ -10,6 +10,7 @@ packages_of() {
             libgfortran-12-dev libglpk-dev libjansson-dev libjs-dygraphs libltdl-dev uthash-dev ;;
         test) echo check g++ mandoc python3 python3-jsonschema ;;
         plot) echo gnuplot-nox ;;
+        latex) echo texlive-latex-base ;;
         browser) echo chromium chromium-driver python3-selenium ;;
         crosscheck) echo ngspice python3 ;;
         ci) echo clang libclang-rt-14-dev llvm valgrind clang-format cppcheck shellcheck fish zsh ;;

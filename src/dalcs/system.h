@@ -60,8 +60,7 @@ struct dalcs_system {
         control; /* [n_pairs][n_columns] controlling voltage or current of a switch; else
                                  empty */
     struct dalcs_csr direct_control; /* [n_pairs][n_inputs] the same as a sum of sources, where V
-                                        sources alone fix it; without z, what sources add to
-                                        `control` */
+                                        sources alone fix it */
 
     /* dual[row] is the column that a row is paired with, so that with rows in this order the matrix
      * of (sigma P - A, C) has a positive semidefinite symmetric part when the circuit is passive:

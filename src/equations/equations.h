@@ -73,7 +73,9 @@ enum dalcs_status dalcs_one_step_of(struct dalcs_one_step *step, const struct da
 void dalcs_one_step_finish(struct dalcs_one_step *step);
 
 void dalcs_one_step_write_text(FILE *f, const struct dalcs_one_step *step);
-void dalcs_one_step_write_latex(FILE *f, const struct dalcs_one_step *step);
+void dalcs_one_step_begin_latex(FILE *f, const struct dalcs_circuit *circuit);
+void dalcs_one_step_write_latex(FILE *f, const struct dalcs_circuit *circuit,
+                                const struct dalcs_one_step *step);
 void dalcs_one_step_write_json(FILE *f, const struct dalcs_one_step *step);
 
 /* As Matrix Market: M, Qx and Qs in files of their own, named by `part` where that is not 0. */

@@ -6,6 +6,7 @@
  *
  * (Brogliato 2022, eq. (3.2); Heemels, Schumacher and Weiland 1999, whose M(s) this is at s = 1/h). */
 #include "equations.h"
+#include "printer.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -64,11 +65,24 @@ static void balance(struct work *w, size_t n, size_t n_right) {
     }
 }
 
+/* LAPACKE_dlange allocates, and does not say when that failed. */
+static double one_norm(const double *m, size_t n) {
+    double norm = 0.0;
+    for (size_t j = 0; j < n; j++) {
+        double sum = 0.0;
+        for (size_t i = 0; i < n; i++) {
+            sum += fabs(m[i * n + j]);
+        }
+        norm = fmax(norm, sum);
+    }
+    return norm;
+}
+
 /* right becomes N^-1 right; false when N is singular. */
 static enum dalcs_status solve(struct work *w, size_t n, size_t n_right, bool *is_singular) {
     lapack_int order = (lapack_int)n;
     double rcond = 0.0;
-    double norm = LAPACKE_dlange(LAPACK_ROW_MAJOR, '1', order, order, w->N, order);
+    double norm = one_norm(w->N, n);
     lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, order, order, w->N, order, w->pivot);
     if (info == 0) {
         info = LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', order, w->N, order, norm, &rcond);
@@ -90,30 +104,62 @@ static enum dalcs_status solve(struct work *w, size_t n, size_t n_right, bool *i
     return info == 0 ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-static void read_off(struct dalcs_one_step *step, const struct work *w, size_t n, size_t n_right) {
+/* An entry that is this part of what it is summed from is rounding. */
+static const double rounding = 1e-14;
+
+/* Pair d's coefficient of column j of `right`. */
+static double coefficient(const struct dalcs_system *s, const struct work *w, int d, size_t j,
+                          size_t n_right) {
+    const size_t n = (size_t)dalcs_system_n_equations(s);
+    double sum = 0.0;
+    double size = 0.0;
+    for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
+        size_t c = (size_t)s->C.j[k];
+        double factor = c < n ? w->right[c * n_right + j] : c - n == j ? 1.0 : 0.0;
+        sum += s->C.x[k] * factor;
+        size = fmax(size, fabs(s->C.x[k] * factor));
+    }
+    size_t first_input = (size_t)(s->n_pairs + s->n_x);
+    for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
+        double factor = first_input + (size_t)s->F.j[k] == j ? s->F.x[k] : 0.0;
+        sum += factor;
+        size = fmax(size, fabs(factor));
+    }
+    return fabs(sum) <= rounding * size ? 0.0 : sum;
+}
+
+/* What N^-1 left of 0, beside the rest of its column. */
+static void drop_rounding(double *a, size_t n_rows, size_t n_columns) {
+    for (size_t j = 0; j < n_columns; j++) {
+        double largest = 0.0;
+        for (size_t i = 0; i < n_rows; i++) {
+            largest = fmax(largest, fabs(a[i * n_columns + j]));
+        }
+        for (size_t i = 0; i < n_rows; i++) {
+            double *value = &a[i * n_columns + j];
+            *value = fabs(*value) <= 1e-15 * largest ? 0.0 : *value;
+        }
+    }
+}
+
+static void read_off(struct dalcs_one_step *step, const struct work *w, size_t n_right) {
     const struct dalcs_system *s = step->system;
     for (int d = 0; d < s->n_pairs; d++) {
         double *const target[] = {step->M + (size_t)d * (size_t)s->n_pairs,
                                   step->of_x + (size_t)d * (size_t)s->n_x,
                                   step->of_s + (size_t)d * (size_t)s->n_inputs};
         const int width[] = {s->n_pairs, s->n_x, s->n_inputs};
-        for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
-            size_t c = (size_t)s->C.j[k];
-            if (c >= n) {
-                target[0][c - n] += s->C.x[k];
-                continue;
+        size_t from = 0;
+        for (int part = 0; part < 3; part++) {
+            for (int j = 0; j < width[part]; j++) {
+                target[part][j] = coefficient(s, w, d, from++, n_right);
             }
-            const double *from = w->right + c * n_right;
-            for (int part = 0; part < 3; part++) {
-                for (int j = 0; j < width[part]; j++) {
-                    target[part][j] += s->C.x[k] * *from++;
-                }
-            }
-        }
-        for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
-            target[2][s->F.j[k]] += s->F.x[k];
         }
     }
+    size_t n_pairs = (size_t)s->n_pairs;
+    drop_rounding(step->M, n_pairs, n_pairs);
+    drop_rounding(step->of_x, n_pairs, (size_t)s->n_x);
+    drop_rounding(step->of_s, n_pairs, (size_t)s->n_inputs);
 }
 
 enum dalcs_status dalcs_one_step_of(struct dalcs_one_step *step, const struct dalcs_system *s,
@@ -137,7 +183,7 @@ enum dalcs_status dalcs_one_step_of(struct dalcs_one_step *step, const struct da
         balance(&w, n, n_right);
         status = n == 0 ? DALCS_OK : solve(&w, n, n_right, &step->is_singular);
         if (status == DALCS_OK && !step->is_singular) {
-            read_off(step, &w, n, n_right);
+            read_off(step, &w, n_right);
         }
     }
     free(w.N);
@@ -209,56 +255,125 @@ void dalcs_one_step_write_text(FILE *f, const struct dalcs_one_step *step) {
     }
 }
 
-static void write_latex_matrix(FILE *f, const char *name, const double *a, int n_rows,
-                               int n_columns) {
-    fprintf(f, "%s=\\left(\\begin{array}{", name);
-    for (int j = 0; j < n_columns; j++) {
-        fputc('r', f);
-    }
+/* ---- In LaTeX ------------------------------------------------------------------------------ */
+
+void dalcs_one_step_begin_latex(FILE *f, const struct dalcs_circuit *circuit) {
+    struct dalcs_printer p = {.out = f, .latex = true, .circuit = circuit};
+    dalcs_print_latex_begin(f);
+    fputs("% as wide as the page at most\n"
+          "\\newcommand{\\fit}[1]{\\setbox0\\hbox{$\\displaystyle #1$}%\n"
+          "  \\ifdim\\wd0>\\linewidth\\resizebox{\\linewidth}{!}{\\box0}\\else\\box0\\fi}\n"
+          "\\section*{",
+          f);
+    dalcs_print_name(&p, circuit->title);
     fputs("}\n", f);
-    for (int i = 0; i < n_rows; i++) {
-        for (int j = 0; j < n_columns; j++) {
-            char text[40];
-            snprintf(text, sizeof text, "%.7g", a[(size_t)i * (size_t)n_columns + (size_t)j]);
-            const char *exponent = strchr(text, 'e');
-            fputs(j > 0 ? " & " : "", f);
-            if (exponent == NULL) {
-                fputs(text, f);
-            } else {
-                fprintf(f, "%.*s\\cdot 10^{%ld}", (int)(exponent - text), text,
-                        strtol(exponent + 1, NULL, 10));
+}
+
+/* Part of w: a matrix of n_columns, of which those that are 0 are left out where it is not M. */
+struct part {
+    const char *name;
+    const double *a;
+    int n_columns;
+    bool is_square;
+};
+
+static bool is_used(const struct dalcs_one_step *step, const struct part *part, int column) {
+    for (int d = 0; d < step->system->n_pairs; d++) {
+        if (part->a[(size_t)d * (size_t)part->n_columns + (size_t)column] != 0.0) {
+            return true;
+        }
+    }
+    return part->is_square;
+}
+
+static void write_matrix(struct dalcs_printer *p, const struct dalcs_one_step *step,
+                         const struct part *part) {
+    FILE *f = p->out;
+    fprintf(f, "\\[\\fit{%s=\\left(\\begin{array}{*{%d}{r}}\n", part->name, part->n_columns);
+    for (int d = 0; d < step->system->n_pairs; d++) {
+        bool is_first = true;
+        for (int j = 0; j < part->n_columns; j++) {
+            if (!is_used(step, part, j)) {
+                continue;
             }
+            double value = part->a[(size_t)d * (size_t)part->n_columns + (size_t)j];
+            fputs(is_first ? "" : " & ", f);
+            dalcs_print_digits(p, value, 7);
+            is_first = false;
         }
         fputs("\\\\\n", f);
     }
-    fputs("\\end{array}\\right)", f);
+    fputs("\\end{array}\\right)}\\]\n", f);
 }
 
-void dalcs_one_step_write_latex(FILE *f, const struct dalcs_one_step *step) {
+/* $x = (v_{c1}, ...)$ in running text, only what w has of it. */
+static void write_vector(struct dalcs_printer *p, const struct dalcs_one_step *step,
+                         const struct part *part, int which) {
+    static const char *const letter[] = {"\\lambda", "x_k", "s"};
     const struct dalcs_system *s = step->system;
-    fprintf(
-        f, "\\[0\\le\\lambda\\perp M\\lambda+Q_x x_k+Q_s s\\ge 0,\\qquad h=%.7g\\,\\mathrm{s}\\]\n",
-        1.0 / step->sigma);
+    bool is_first = true;
+    for (int j = 0; j < part->n_columns; j++) {
+        if (!is_used(step, part, j)) {
+            continue;
+        }
+        fprintf(p->out, is_first ? "$%s=($" : ", ", letter[which]);
+        fputc('$', p->out);
+        if (which == 2 && j == 0) {
+            fputc('1', p->out);
+        } else if (which == 2) {
+            dalcs_print_input(p, s->input_element[j]);
+        } else {
+            dalcs_print_column(p, s, which == 0 ? dalcs_system_n_equations(s) + j : j, 0);
+        }
+        fputc('$', p->out);
+        is_first = false;
+    }
+    fputs(is_first ? "" : "$)$\n\n", p->out);
+}
+
+void dalcs_one_step_write_latex(FILE *f, const struct dalcs_circuit *circuit,
+                                const struct dalcs_one_step *step) {
+    const struct dalcs_system *s = step->system;
+    struct dalcs_printer p = {.out = f, .latex = true, .circuit = circuit};
     if (step->is_singular) {
-        fprintf(f, "%s.\n", SINGULAR);
+        fputs("A step of $h=", f);
+        dalcs_print_value(&p, 1.0 / step->sigma, "s");
+        fputs("$: $N(\\sigma)$ is singular, $\\sigma=1/h$. Without complementarity the step leaves "
+              "something "
+              "open, and $\\lambda$ alone does not tell $x$ and $z$.\n\n",
+              f);
         return;
     }
 
-    const struct {
-        const char *name;
-        const double *a;
-        int n_columns;
-    } part[] = {
-        {"M", step->M, s->n_pairs}, {"Q_x", step->of_x, s->n_x}, {"Q_s", step->of_s, s->n_inputs}};
-
+    const struct part part[] = {{"M", step->M, s->n_pairs, true},
+                                {"Q_x", step->of_x, s->n_x, false},
+                                {"Q_s", step->of_s, s->n_inputs, false}};
+    static const char *const times[] = {"M\\lambda", "+Q_x x_k", "+Q_s s"};
+    bool has[3] = {true, false, false};
+    for (int k = 1; k < 3; k++) {
+        for (int j = 0; j < part[k].n_columns; j++) {
+            has[k] = has[k] || is_used(step, &part[k], j);
+        }
+    }
+    fputs("\\[0\\le\\lambda\\perp ", f);
     for (int k = 0; k < 3; k++) {
-        if (part[k].n_columns > 0 && s->n_pairs > 0) {
-            fputs("\\[", f);
-            write_latex_matrix(f, part[k].name, part[k].a, s->n_pairs, part[k].n_columns);
-            fputs("\\]\n", f);
+        fputs(has[k] ? times[k] : "", f);
+    }
+    fputs("\\ge 0,\\qquad h=", f);
+    dalcs_print_value(&p, 1.0 / step->sigma, "s");
+    fputs("\\]\n{\\raggedright\\noindent ", f);
+    for (int k = 0; k < 3; k++) {
+        write_vector(&p, step, &part[k], k);
+    }
+    fputs("}\n", f);
+    for (int k = 0; k < 3; k++) {
+        if (has[k] && s->n_pairs > 0) {
+            write_matrix(&p, step, &part[k]);
         }
     }
 }
+
+/* ---- For programs -------------------------------------------------------------------------- */
 
 static void write_json_matrix(FILE *f, const char *name, const double *a, int n_rows,
                               int n_columns) {

@@ -4,7 +4,8 @@
  *     P x' = (A_I - B_I R A_II) x + (Bbar_I - B_I R Bbar_II) lambda + ...,    R = B_II^-1,
  *        w = (C_I - C_II R A_II) x + (D - C_II R Bbar_II) lambda + ...
  *
- * Where it is singular, the null vector says which unknowns the equations II leave open. */
+ * Where it is singular, the null vector says which unknowns the equations II leave open. What moves a switch is
+ * a sum of columns; where z put sources into it, that sum stays as an unknown with an equation of its own. */
 #include "equations.h"
 #include "reading.h"
 
@@ -28,6 +29,8 @@ struct elimination {
     size_t n_z, n_right; /* columns: x, lambda, inputs */
     double *Z;           /* [n_z][n_right] */
     bool is_regular;
+    int n_controls;  /* unknowns that stay, each the sum that moves a switch */
+    int *control_of; /* [n_pairs] which of these is a pair's, -1: none */
     const char *because;
 };
 
@@ -125,6 +128,19 @@ struct workspace {
     lapack_int *pivot;
 };
 
+/* LAPACKE_dlange allocates, and does not say when that failed. */
+static double one_norm(const double *m, size_t n) {
+    double norm = 0.0;
+    for (size_t j = 0; j < n; j++) {
+        double sum = 0.0;
+        for (size_t i = 0; i < n; i++) {
+            sum += fabs(m[i * n + j]);
+        }
+        norm = fmax(norm, sum);
+    }
+    return norm;
+}
+
 static enum dalcs_status solve_for_z(struct elimination *z, struct workspace *w,
                                      struct dalcs_arena *arena) {
     const struct dalcs_system *s = z->from;
@@ -140,8 +156,7 @@ static enum dalcs_status solve_for_z(struct elimination *z, struct workspace *w,
     }
     balance(w->m, n, w->row, w->column);
     memcpy(w->copy, w->m, n * n * sizeof *w->m);
-    double norm =
-        LAPACKE_dlange(LAPACK_ROW_MAJOR, '1', (lapack_int)n, (lapack_int)n, w->m, (lapack_int)n);
+    double norm = one_norm(w->m, n);
     double rcond = 0.0;
     lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, (lapack_int)n, (lapack_int)n, w->m,
                                      (lapack_int)n, w->pivot);
@@ -234,35 +249,111 @@ static void add_row(const struct elimination *z, const struct dalcs_csr *a, int 
     }
 }
 
-/* Rows of (a, of_inputs) without z, as two new matrices. */
-static enum dalcs_status reduce_rows(const struct elimination *z, const struct dalcs_csr *a,
-                                     const struct dalcs_csr *of_inputs, int n_rows,
-                                     struct dalcs_csr *columns, struct dalcs_csr *inputs) {
-    const struct dalcs_system *s = z->from;
-    int n_columns = s->n_x + s->n_pairs;
-    struct dalcs_triplets t = {0};
-    struct dalcs_triplets u = {0};
-    double *dense = dalcs_alloc(2 * z->n_right, sizeof *dense);
-    enum dalcs_status status = dense == NULL ? DALCS_E_NOMEM : DALCS_OK;
-    for (int i = 0; i < n_rows && status == DALCS_OK; i++) {
-        add_row(z, a, i, of_inputs, dense, dense + z->n_right);
-        for (int j = 0; j < (int)z->n_right && status == DALCS_OK; j++) {
-            if (dense[j] != 0.0) {
-                status = j < n_columns ? dalcs_triplets_add(&t, i, j, dense[j])
-                                       : dalcs_triplets_add(&u, i, j - n_columns, dense[j]);
-            }
+/* A matrix over the columns, and one over the inputs, that become rows of the reduced system. */
+struct rows {
+    struct dalcs_triplets columns, inputs;
+};
+
+static void rows_finish(struct rows *rows) {
+    dalcs_triplets_finish(&rows->columns);
+    dalcs_triplets_finish(&rows->inputs);
+}
+
+/* x, lambda and inputs, as they are counted without z, to columns of the reduced system. */
+static int reduced_column(const struct elimination *z, int j) {
+    return j < z->from->n_x ? j : j + z->n_controls;
+}
+
+/* Row i of (a, of_inputs) without z becomes row `to`. */
+static enum dalcs_status reduce_row(const struct elimination *z, const struct dalcs_csr *a, int i,
+                                    const struct dalcs_csr *of_inputs, double *dense, int to,
+                                    struct rows *rows) {
+    int n_columns = z->from->n_x + z->from->n_pairs;
+    add_row(z, a, i, of_inputs, dense, dense + z->n_right);
+    for (int j = 0; j < (int)z->n_right; j++) {
+        if (dense[j] != 0.0) {
+            DALCS_TRY(j < n_columns
+                          ? dalcs_triplets_add(&rows->columns, to, reduced_column(z, j), dense[j])
+                          : dalcs_triplets_add(&rows->inputs, to, j - n_columns, dense[j]));
         }
     }
-    if (status == DALCS_OK) {
-        status = dalcs_csr_compress(columns, n_rows, n_columns, &t);
+    return DALCS_OK;
+}
+
+/* Does the sum that moves switch d, without z, need a column of its own: because sources enter it, or because
+ * its first column would give it another unit? */
+static bool needs_unknown(const struct elimination *z, int d, double *dense) {
+    const struct dalcs_system *s = z->from;
+    if (s->pair[d].is_direct) {
+        return false;
     }
-    if (status == DALCS_OK && inputs != NULL) {
-        status = dalcs_csr_compress(inputs, n_rows, s->n_inputs, &u);
+    add_row(z, &s->control, d, NULL, dense, dense + z->n_right);
+    int n_columns = s->n_x + s->n_pairs;
+    int first = 0;
+    while (first < n_columns && dense[first] == 0.0) {
+        first++;
     }
-    free(dense);
-    dalcs_triplets_finish(&t);
-    dalcs_triplets_finish(&u);
-    return status;
+    bool needs =
+        first < n_columns && s->column_is_current[first < s->n_x ? first : first + s->n_z] !=
+                                 dalcs_system_control_is_current(s, d);
+    for (int j = n_columns; j < (int)z->n_right && !needs; j++) {
+        needs = dense[j] != 0.0;
+    }
+    return needs;
+}
+
+static enum dalcs_status find_controls(struct elimination *z, double *dense) {
+    const struct dalcs_system *s = z->from;
+    z->control_of = dalcs_alloc((size_t)s->n_pairs, sizeof *z->control_of);
+    if (z->control_of == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        z->control_of[d] = needs_unknown(z, d, dense) ? z->n_controls++ : -1;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status reduce_first(const struct elimination *z, double *dense,
+                                      struct rows *rows) {
+    const struct dalcs_system *s = z->from;
+    for (int i = 0; i < s->n_x; i++) {
+        DALCS_TRY(reduce_row(z, &s->A, i, &s->E, dense, i, rows));
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        if (z->control_of[d] >= 0) {
+            int to = s->n_x + z->control_of[d];
+            DALCS_TRY(reduce_row(z, &s->control, d, NULL, dense, to, rows));
+            DALCS_TRY(dalcs_triplets_add(&rows->columns, to, to, -1.0));
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status reduce_control(const struct elimination *z, int d, double *dense,
+                                        struct rows *rows) {
+    const struct dalcs_system *s = z->from;
+    if (z->control_of[d] >= 0) {
+        return dalcs_triplets_add(&rows->columns, d, s->n_x + z->control_of[d], 1.0);
+    }
+    return reduce_row(z, &s->control, d, NULL, dense, d, rows); /* of a direct one: its unit */
+}
+
+static enum dalcs_status reduce_matrices(const struct elimination *z, double *dense,
+                                         struct rows *first, struct rows *w, struct rows *control,
+                                         struct dalcs_system *to) {
+    const struct dalcs_system *s = z->from;
+    int n_columns = dalcs_system_n_columns(to);
+    DALCS_TRY(reduce_first(z, dense, first));
+    for (int d = 0; d < s->n_pairs; d++) {
+        DALCS_TRY(reduce_row(z, &s->C, d, &s->F, dense, d, w));
+        DALCS_TRY(reduce_control(z, d, dense, control));
+    }
+    DALCS_TRY(dalcs_csr_compress(&to->A, to->n_x + to->n_z, n_columns, &first->columns));
+    DALCS_TRY(dalcs_csr_compress(&to->E, to->n_x + to->n_z, s->n_inputs, &first->inputs));
+    DALCS_TRY(dalcs_csr_compress(&to->C, s->n_pairs, n_columns, &w->columns));
+    DALCS_TRY(dalcs_csr_compress(&to->F, s->n_pairs, s->n_inputs, &w->inputs));
+    return dalcs_csr_compress(&to->control, s->n_pairs, n_columns, &control->columns);
 }
 
 static enum dalcs_status copy_matrix(struct dalcs_csr *to, const struct dalcs_csr *from) {
@@ -280,90 +371,106 @@ static enum dalcs_status copy_matrix(struct dalcs_csr *to, const struct dalcs_cs
     return status;
 }
 
-static void *copy_array(const void *from, size_t n, size_t size) {
-    void *to = dalcs_alloc(n, size);
+/* n of them, with room for more. */
+static void *copy_array(const void *from, size_t n, size_t room, size_t size) {
+    void *to = dalcs_alloc(room, size);
     return to == NULL || n == 0 ? to : memcpy(to, from, n * size);
 }
 
-/* Labels: those of the states, and of all where nothing is eliminated. */
-static enum dalcs_status copy_labels(struct dalcs_system *to, const struct dalcs_system *from) {
-    size_t n = (size_t)dalcs_system_n_equations(to);
+/* Labels of n equations of `from`, with room for those that are left, and of its pairs and inputs. */
+static enum dalcs_status copy_labels(struct dalcs_system *to, const struct dalcs_system *from,
+                                     size_t n) {
+    size_t room = (size_t)dalcs_system_n_equations(to);
     size_t n_pairs = (size_t)to->n_pairs;
     size_t n_inputs = (size_t)to->n_inputs;
-    bool is_whole = to->n_z == from->n_z;
-    to->dual = copy_array(from->dual, n, sizeof *to->dual);
-    to->forest_root = copy_array(from->forest_root, n, sizeof *to->forest_root);
-    to->column_is_current = copy_array(from->column_is_current, n + n_pairs, sizeof(bool));
-    to->row_is_current = copy_array(from->row_is_current, n, sizeof(bool));
-    to->row = copy_array(from->row, n, sizeof *to->row);
-    to->column = copy_array(from->column, n, sizeof *to->column);
-    to->pair = copy_array(from->pair, n_pairs, sizeof *to->pair);
-    to->stimulus = copy_array(from->stimulus, n_inputs, sizeof *to->stimulus);
-    to->input_element = copy_array(from->input_element, n_inputs, sizeof *to->input_element);
+    to->dual = copy_array(from->dual, n, room, sizeof *to->dual);
+    to->forest_root = copy_array(from->forest_root, n, room, sizeof *to->forest_root);
+    to->column_is_current =
+        copy_array(from->column_is_current, n, room + n_pairs, sizeof *to->column_is_current);
+    to->row_is_current = copy_array(from->row_is_current, n, room, sizeof *to->row_is_current);
+    to->row = copy_array(from->row, n, room, sizeof *to->row);
+    to->column = copy_array(from->column, n, room, sizeof *to->column);
+    to->pair = copy_array(from->pair, n_pairs, n_pairs, sizeof *to->pair);
+    to->stimulus = copy_array(from->stimulus, n_inputs, n_inputs, sizeof *to->stimulus);
+    to->input_element =
+        copy_array(from->input_element, n_inputs, n_inputs, sizeof *to->input_element);
     if (to->dual == NULL || to->forest_root == NULL || to->column_is_current == NULL ||
         to->row_is_current == NULL || to->row == NULL || to->column == NULL || to->pair == NULL ||
         to->stimulus == NULL || to->input_element == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (size_t i = 0; i < n && !is_whole; i++) {
-        to->dual[i] = (int)i; /* that of a voltage may have been among z */
-        to->forest_root[i] = (int)i;
-    }
     for (size_t d = 0; d < n_pairs; d++) {
-        to->column_is_current[n + d] = true;
+        to->column_is_current[room + d] = true;
     }
     return DALCS_OK;
 }
 
-/* What commands the switches. z has sources in it: where they were commanded by columns alone, now inputs
- * are a part of the sum, and the constant moves the thresholds. */
-static enum dalcs_status reduce_controls(const struct elimination *z, struct dalcs_system *to) {
-    const struct dalcs_system *s = z->from;
-    struct dalcs_csr inputs = {0};
-    struct dalcs_triplets t = {0};
-    enum dalcs_status status = reduce_rows(z, &s->control, NULL, s->n_pairs, &to->control, &inputs);
-    for (int d = 0; d < s->n_pairs && status == DALCS_OK; d++) {
-        struct dalcs_pair *pair = &to->pair[d];
-        const struct dalcs_csr *from = pair->is_direct ? &s->direct_control : &inputs;
-        for (int k = from->p[d]; k < from->p[d + 1] && status == DALCS_OK; k++) {
-            if (from->j[k] == 0 && !pair->is_direct) {
-                pair->turn_on -= from->x[k];
-                pair->turn_off -= from->x[k];
-                continue;
-            }
-            status = dalcs_triplets_add(&t, d, from->j[k], from->x[k]);
+/* The sums that move switches, as unknowns after the states; each equation is its own column's. */
+static enum dalcs_status label_controls(const struct elimination *z, struct dalcs_system *to,
+                                        struct dalcs_arena *arena) {
+    for (int d = 0; d < to->n_pairs; d++) {
+        if (z->control_of[d] < 0) {
+            continue;
         }
+        int i = to->n_x + z->control_of[d];
+        const char *name = dalcs_arena_printf(arena, "control.%s", to->pair[d].element);
+        if (name == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        to->row[i] = to->column[i] = (struct dalcs_label){name, DALCS_LABEL_BRANCH};
+        to->row_is_current[i] = to->column_is_current[i] =
+            dalcs_system_control_is_current(z->from, d);
     }
-    if (status == DALCS_OK) {
-        status = dalcs_csr_compress(&to->direct_control, s->n_pairs, s->n_inputs, &t);
+    for (int i = 0; i < dalcs_system_n_equations(to); i++) {
+        to->dual[i] = i; /* that of a voltage may have been among z */
+        to->forest_root[i] = i;
     }
-    dalcs_csr_finish(&inputs);
-    dalcs_triplets_finish(&t);
-    return status;
+    return DALCS_OK;
 }
 
-static enum dalcs_status reduce_system(const struct elimination *z, struct dalcs_system *to) {
+static enum dalcs_status keep_system(const struct dalcs_system *s, struct dalcs_system *to) {
+    to->n_z = s->n_z;
+    DALCS_TRY(copy_labels(to, s, (size_t)dalcs_system_n_equations(s)));
+    DALCS_TRY(copy_matrix(&to->A, &s->A));
+    DALCS_TRY(copy_matrix(&to->E, &s->E));
+    DALCS_TRY(copy_matrix(&to->C, &s->C));
+    DALCS_TRY(copy_matrix(&to->F, &s->F));
+    return copy_matrix(&to->control, &s->control);
+}
+
+static enum dalcs_status reduce_regular(struct elimination *z, struct dalcs_system *to,
+                                        struct dalcs_arena *arena) {
+    struct rows first = {0};
+    struct rows w = {0};
+    struct rows control = {0};
+    double *dense = dalcs_alloc(2 * z->n_right, sizeof *dense);
+    enum dalcs_status status = dense == NULL ? DALCS_E_NOMEM : find_controls(z, dense);
+    if (status == DALCS_OK) {
+        to->n_z = z->n_controls;
+        status = copy_labels(to, z->from, (size_t)to->n_x);
+    }
+    if (status == DALCS_OK) {
+        status = label_controls(z, to, arena);
+    }
+    if (status == DALCS_OK) {
+        status = reduce_matrices(z, dense, &first, &w, &control, to);
+    }
+    free(dense);
+    rows_finish(&first);
+    rows_finish(&w);
+    rows_finish(&control);
+    return status == DALCS_OK ? dalcs_system_prove_monotone(to, DALCS_CLAIM_NOTHING) : status;
+}
+
+static enum dalcs_status reduce_system(struct elimination *z, struct dalcs_system *to,
+                                       struct dalcs_arena *arena) {
     const struct dalcs_system *s = z->from;
-    *to = (struct dalcs_system){.n_x = s->n_x,
-                                .n_z = z->is_regular ? 0 : s->n_z,
-                                .n_pairs = s->n_pairs,
-                                .n_inputs = s->n_inputs,
-                                .monotone = s->monotone};
-    DALCS_TRY(copy_labels(to, s));
+    *to = (struct dalcs_system){
+        .n_x = s->n_x, .n_pairs = s->n_pairs, .n_inputs = s->n_inputs, .monotone = s->monotone};
     DALCS_TRY(copy_matrix(&to->P, &s->P));
     DALCS_TRY(copy_matrix(&to->storage, &s->storage));
-    if (!z->is_regular) {
-        DALCS_TRY(copy_matrix(&to->direct_control, &s->direct_control));
-        DALCS_TRY(copy_matrix(&to->A, &s->A));
-        DALCS_TRY(copy_matrix(&to->E, &s->E));
-        DALCS_TRY(copy_matrix(&to->C, &s->C));
-        DALCS_TRY(copy_matrix(&to->F, &s->F));
-        return copy_matrix(&to->control, &s->control);
-    }
-    DALCS_TRY(reduce_rows(z, &s->A, &s->E, s->n_x, &to->A, &to->E));
-    DALCS_TRY(reduce_rows(z, &s->C, &s->F, s->n_pairs, &to->C, &to->F));
-    DALCS_TRY(reduce_controls(z, to));
-    return dalcs_system_prove_monotone(to, DALCS_CLAIM_NOTHING);
+    DALCS_TRY(copy_matrix(&to->direct_control, &s->direct_control));
+    return z->is_regular ? reduce_regular(z, to, arena) : keep_system(s, to);
 }
 
 /* ---- Probes -------------------------------------------------------------------------------- */
@@ -400,8 +507,8 @@ static enum dalcs_status reduce_probe(const struct elimination *all, const struc
     for (int j = 0; j < (int)z->n_right; j++) {
         bool is_input = j >= s->n_x + s->n_pairs;
         if (dense[j] != 0.0) {
-            to->term[to->n_terms + to->n_inputs] =
-                (struct dalcs_probe_term){is_input ? j - s->n_x - s->n_pairs : j, dense[j]};
+            to->term[to->n_terms + to->n_inputs] = (struct dalcs_probe_term){
+                is_input ? j - s->n_x - s->n_pairs : reduced_column(z, j), dense[j]};
             *(is_input ? &to->n_inputs : &to->n_terms) += 1;
         }
     }
@@ -440,11 +547,11 @@ static enum dalcs_status reduce_all(struct elimination *all, const struct dalcs_
     int n = network->n_systems;
     for (int k = 0; k < n; k++) {
         DALCS_TRY(eliminate(&all[k], &network->system[k], arena));
-        enum dalcs_status status = reduce_system(&all[k], &reduced->system[k]);
+        enum dalcs_status status = reduce_system(&all[k], &reduced->system[k], &reduced->arena);
         reduced->n_systems = k + 1;
         DALCS_TRY(status);
         size_t n_x = (size_t)network->system[k].n_x;
-        reduced->initial[k] = copy_array(network->initial[k], n_x, sizeof(double));
+        reduced->initial[k] = copy_array(network->initial[k], n_x, n_x, sizeof(double));
         if (reduced->initial[k] == NULL) {
             return DALCS_E_NOMEM;
         }
@@ -471,6 +578,7 @@ enum dalcs_status dalcs_equations_reduce(const struct dalcs_network *network,
     }
     for (size_t k = 0; all != NULL && k < n; k++) {
         free(all[k].Z);
+        free(all[k].control_of);
     }
     free(all);
     if (status != DALCS_OK) {

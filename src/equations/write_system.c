@@ -104,9 +104,10 @@ static void end_card(struct writer *w) {
 
 /* ---- Source functions ----------------------------------------------------------------------- */
 
-/* name(a b c ...), without what at the end is infinite: left out it is so, too. */
-static void write_function(FILE *f, const char *name, const double *value, int n) {
-    while (n > 0 && !isfinite(value[n - 1])) {
+/* name(a b c ...), without what at the end is infinite, or 0 after the first `least`: left out it is so,
+ * too. */
+static void write_function(FILE *f, const char *name, const double *value, int n, int least) {
+    while (n > 0 && (!isfinite(value[n - 1]) || (n > least && value[n - 1] == 0.0))) {
         n--;
     }
     fprintf(f, "%s(", name);
@@ -168,7 +169,7 @@ void dalcs_write_stimulus(FILE *f, const struct dalcs_stimulus *s) {
                        (const double[]){s->u.sine.offset, s->u.sine.amplitude, s->u.sine.frequency,
                                         s->u.sine.delay, s->u.sine.damping, s->u.sine.phase,
                                         s->u.sine.n_cycles},
-                       7);
+                       7, 3);
         break;
     case DALCS_STIMULUS_PULSE: {
         bool ends = isfinite(s->u.pulse.period); /* only then does a count mean anything */
@@ -176,7 +177,7 @@ void dalcs_write_stimulus(FILE *f, const struct dalcs_stimulus *s) {
                        (const double[]){s->u.pulse.low, s->u.pulse.high, s->u.pulse.delay,
                                         s->u.pulse.rise, s->u.pulse.fall, s->u.pulse.width,
                                         s->u.pulse.period, s->u.pulse.n_periods},
-                       ends ? 8 : 7);
+                       ends ? 8 : 7, 7);
         break;
     }
     case DALCS_STIMULUS_EXP: {
@@ -185,7 +186,7 @@ void dalcs_write_stimulus(FILE *f, const struct dalcs_stimulus *s) {
                        (const double[]){s->u.exponential.low, s->u.exponential.high,
                                         s->u.exponential.rise_delay, s->u.exponential.rise_tau,
                                         s->u.exponential.fall_delay, s->u.exponential.fall_tau},
-                       falls ? 6 : 4);
+                       falls ? 6 : 4, 6);
         break;
     }
     case DALCS_STIMULUS_PWL:

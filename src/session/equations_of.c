@@ -97,28 +97,28 @@ static enum dalcs_status close_document(struct document *d, enum dalcs_status st
 
 /* ---- One step ------------------------------------------------------------------------------ */
 
-static void begin_steps(FILE *f, enum dalcs_equations_format format, const char *title) {
+static void begin_steps(FILE *f, enum dalcs_equations_format format,
+                        const struct dalcs_circuit *circuit) {
     switch (format) {
     case DALCS_EQUATIONS_LATEX:
-        fputs("\\documentclass{article}\n\\usepackage[utf8]{inputenc}\n\\usepackage{amsmath}\n"
-              "\\begin{document}\n",
-              f);
+        dalcs_one_step_begin_latex(f, circuit);
         break;
     case DALCS_EQUATIONS_JSON:
         fputs("{\"dalcs-one-step\": 2,\n\"parts\": [\n", f);
         break;
     default:
-        fprintf(f, "%s\n", title);
+        fprintf(f, "%s\n", circuit->title);
         break;
     }
 }
 
 static enum dalcs_status write_step(FILE *f, const struct dalcs_equations_options *o, int part,
+                                    const struct dalcs_circuit *circuit,
                                     const struct dalcs_one_step *step,
                                     const struct dalcs_equations_files *files) {
     switch (o->format) {
     case DALCS_EQUATIONS_LATEX:
-        dalcs_one_step_write_latex(f, step);
+        dalcs_one_step_write_latex(f, circuit, step);
         return DALCS_OK;
     case DALCS_EQUATIONS_JSON:
         fputs(part > 1 ? ",\n" : "", f);
@@ -152,13 +152,13 @@ static enum dalcs_status write_steps(struct dalcs_session *s,
         }
     }
     DALCS_TRY(open_document(&d));
-    begin_steps(d.f, o->format, s->circuit.title);
+    begin_steps(d.f, o->format, &s->circuit);
     enum dalcs_status status = DALCS_OK;
     for (int k = 0; k < n->n_systems && status == DALCS_OK; k++) {
         struct dalcs_one_step step;
         status = dalcs_one_step_of(&step, &n->system[k], o->step);
         if (status == DALCS_OK) {
-            status = write_step(d.f, o, n->n_systems > 1 ? k + 1 : 0, &step, files);
+            status = write_step(d.f, o, n->n_systems > 1 ? k + 1 : 0, &s->circuit, &step, files);
             dalcs_one_step_finish(&step);
         }
     }

@@ -76,6 +76,8 @@ D1 a b
 C1 b 0 1u
 L1 b c 1m
 S1 c 0 in 0 sm
+R2 c 0 1k
+S2 c 0 in c sm
 .model sm SW(Vt=2)
 .ic v(b)=1
 .tran 10u 1m

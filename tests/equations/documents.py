@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""The example of doc/system-file.md runs; files with mistakes are refused with their line; LaTeX is balanced and
-uses known commands; the text names elements.
+"""The example of doc/system-file.md runs; files with mistakes are refused with their line; the text names
+elements.
 
 usage: documents.py DALCS"""
 
 import json
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
@@ -28,27 +27,8 @@ MISTAKES = [
     ("pair d\n", "contact d\n", "belongs to a system of coordinates"),
     ("state x 1\npair d\n", "pair d\n", "of which the system has no states"),
 ]
-COMMANDS = {"documentclass", "usepackage", "allowdisplaybreaks", "begin", "end", "section", "subsection",
-            "mathrm", "mathit", "lambda", "dot", "quad", "qquad", "perp", "ge", "le", "text", "cdot", "item",
-            "texttt", "left", "right", "textbackslash"}
-
-
 def call(program, *arguments):
     return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=False)
-
-
-def check_latex(checker, program, netlist, *options):
-    done = call(program, "equations", netlist, "--format", "latex", *options)
-    text = done.stdout
-    name = f"LaTeX of {netlist.stem} {' '.join(options)}"
-    checker.check(done.returncode == 0, f"{name}: {done.stderr}")
-    plain = re.sub(r"\\[\\{}_#$%&,~^]", "", text)
-    checker.check(plain.count("{") == plain.count("}"), f"{name}: braces")
-    checker.check(plain.count("$") % 2 == 0, f"{name}: dollars")
-    begun = re.findall(r"\\begin\{(\w+\*?)\}", text)
-    checker.check(sorted(begun) == sorted(re.findall(r"\\end\{(\w+\*?)\}", text)), f"{name}: ends")
-    unknown = set(re.findall(r"\\([a-zA-Z]+)", re.sub(r"\\\\", " ", text))) - COMMANDS
-    checker.check(not unknown, f"{name}: unknown commands {unknown}")
 
 
 def main():
@@ -74,8 +54,9 @@ def main():
                           f"{wrong!r}: status {done.returncode}, {done.stderr}")
     buck = dalcs_program.NETLISTS / "converters" / "buck.cir"
     text = call(program, "equations", buck).stdout
-    for line in ("C1 dv(c1)/dt = i(l1) - 0.5 v(out)", "L1 di(l1)/dt = v(sw) - v(out)",
-                 "0 <= i(d1) _|_ v(sw) >= 0", "closes when vg(t) > 0.5, opens below 0.5"):
+    for line in ("C1 dv(c1)/dt = i(l1) - v(out)/R1", "L1 di(l1)/dt = v(sw) - v(out)",
+                 "0 <= i(d1) _|_ v(sw) >= 0", "i(s1) = 0 or 0 = v(sw) - v(in)",
+                 "[closed while vg(t) > 0.5]", "R1 = 2 Ohm"):
         checker.check(line in text, f"{line} is not in\n{text}")
     peak = dalcs_program.NETLISTS / "papers" / "bt10_fig_2_1.cir"
     step = call(program, "equations", peak, "--form", "osnsp", "--step", "1m", "--format", "json")
@@ -87,10 +68,6 @@ def main():
     step = call(program, "equations", system, "--form", "osnsp", "--step", "1m", "--format", "json")
     # z in mA and uC: M = D + C (sigma P - A)^-1 B = 1 - 1 / (1 + 1)
     checker.close(json.loads(step.stdout)["parts"][0]["M"][0][0], 0.5, 1e-15, "M")
-    for netlist in sorted(dalcs_program.NETLISTS.rglob("*.cir")):
-        if call(program, "equations", netlist).returncode == 0:
-            check_latex(checker, program, netlist)
-    check_latex(checker, program, system, "--form", "osnsp", "--step", "1m")
     for wrong in (["--format", "txt"], ["--form", "osnsp"], ["--step", "1"], ["--format", "matrix-market"]):
         checker.check(call(program, "equations", buck, *wrong).returncode == 2, f"{wrong} is usage")
     return checker.finish()

@@ -180,11 +180,15 @@ def check_closed_forms(checker, program):
 
 def check_solvability(checker, program):
     for name, wanted in (("hsw99_4_2a.cir", 1), ("hsw99_4_2b.cir", 0), ("hsw99_4_11.cir", 0),
-                         ("hsw99_5_11.dalcs", 0), ("hsw99_5_18.dalcs", 1)):
+                         ("hsw99_5_11.dalcs", 0), ("hsw99_5_18.dalcs", 1),
+                         ("hsw99_5_11.cir", 0), ("hsw99_5_18.cir", 1)):
         status, columns, stderr = run(program, name)
         checker.check(status == wanted, f"{name}: status {status}, not {wanted}: {stderr}")
         if name == "hsw99_5_11.dalcs":
             checker.close(at(columns, "x1", 0.5), 0.0, 1e-9, "5.11: x1")
+        if name == "hsw99_5_11.cir":
+            for signal in ("v(x1)", "v(x2)"):
+                checker.close(at(columns, signal, 0.5), 0.0, 1e-9, f"5.11: {signal}")
         if name == "hsw99_4_2b.cir":
             checker.close(at(columns, "v(x1)", 2.0), 0.0, 1e-9, "4.2b: v(x1)")
         if name == "hsw99_4_11.cir":

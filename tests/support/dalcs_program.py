@@ -1,6 +1,7 @@
 """Runs the dalcs program for the tests and reads back what it wrote."""
 
 import csv
+import functools
 import json
 import os
 import pathlib
@@ -20,12 +21,16 @@ class Run:
         self.stderr = stderr
         self.output = output  # the CSV as bytes, None when there is none
         self.report = report  # the parsed report, None when there is none
-        self.rows = []
-        self.names = []
-        if output is not None:
-            lines = csv.reader(output.decode("ascii").splitlines())
-            self.names = next(lines)
-            self.rows = [[float(field) for field in line] for line in lines]
+
+    @functools.cached_property
+    def names(self):
+        return next(csv.reader(self.output.decode("utf-8").splitlines())) if self.output else []
+
+    @functools.cached_property
+    def rows(self):
+        """Read when asked for: many tests only compare what was written."""
+        lines = (self.output or b"").decode("utf-8").splitlines()
+        return [[float(field) for field in line.split(",")] for line in lines[1:]]
 
     @property
     def time(self):

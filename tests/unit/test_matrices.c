@@ -29,7 +29,7 @@ static struct dalcs_matrices relay(void) {
 
 struct last {
     const struct dalcs_plot *plot;
-    double at_one, value[8];
+    double at_one, value[12];
 };
 
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
@@ -40,7 +40,7 @@ static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
 
 static enum dalcs_status row(void *user, double time, const double *value) {
     struct last *last = user;
-    ck_assert_uint_le(last->plot->n_signals, 8);
+    ck_assert_uint_le(last->plot->n_signals, 12);
     memcpy(last->value, value, last->plot->n_signals * sizeof(*value));
     last->at_one = fabs(time - 1.0) < 1e-9 ? value[0] : last->at_one;
     return DALCS_OK;
@@ -77,6 +77,44 @@ START_TEST(test_wrong_matrices) {
 
 END_TEST
 
+/* A ball of 2 kg falls from 1 m and stays on the floor; a block of 1 kg with 3 N of friction slides 2 m/s. */
+START_TEST(test_mechanics) {
+    static const double mass[] = {2.0, 0.0, 0.0, 1.0};
+    static const double weight[] = {-19.62, 0.0};
+    static const double G[] = {1.0, 0.0, 0.0, 1.0};
+    static const double limit[] = {3.0};
+    static const double q0[] = {1.0, 0.0};
+    static const double v0[] = {0.0, 2.0};
+    static const char *const names[] = {"ball", "block"};
+    const struct dalcs_mechanics m = {.cards = ".tran 10m 1",
+                                      .n_q = 2,
+                                      .n_contacts = 1,
+                                      .n_frictions = 1,
+                                      .q_name = names,
+                                      .q0 = q0,
+                                      .v0 = v0,
+                                      .mass = mass,
+                                      .constant_force = weight,
+                                      .G = G,
+                                      .friction_limit = limit};
+    struct dalcs_session *session;
+    struct last last = {0};
+    const struct dalcs_sink sink = {.user = &last, .begin = begin, .row = row};
+    const struct dalcs_run_options options = dalcs_run_options_default();
+    ck_assert_int_eq(dalcs_session_create(&session), DALCS_OK);
+    ck_assert_int_eq(dalcs_session_read_mechanics(session, "ball", &m), DALCS_OK);
+    ck_assert_int_eq(dalcs_session_run(session, &options, &sink), DALCS_OK);
+    ck_assert_str_eq(last.plot->name[0], "ball");
+    ck_assert_str_eq(last.plot->name[1], "block");
+    ck_assert_str_eq(last.plot->name[2], "d(ball)");
+    ck_assert_double_eq_tol(last.value[0], 0.0, 1e-9);
+    ck_assert_double_eq_tol(last.value[1], 2.0 / 3.0, 1e-5); /* v^2 / (2 a) */
+    ck_assert_double_eq_tol(last.value[3], 0.0, 1e-9);
+    dalcs_session_destroy(session);
+}
+
+END_TEST
+
 static enum dalcs_status keep(void *user, const char *suffix, const char *text, size_t length) {
     char **kept = user;
     ck_assert_str_eq(suffix, "");
@@ -102,4 +140,4 @@ START_TEST(test_equations) {
 
 END_TEST
 
-RUN_TESTS("matrices", test_relay, test_wrong_matrices, test_equations)
+RUN_TESTS("matrices", test_relay, test_wrong_matrices, test_mechanics, test_equations)
