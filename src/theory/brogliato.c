@@ -173,9 +173,8 @@ static enum dalcs_status check_passive(struct check *c, const char *id, const ch
             ? "not strictly: the matrix inequality has the least eigenvalue %.1g (scaled)"
         : p->is_exhaustive
             ? "for no X > 0: the least eigenvalue is %.3g (scaled) at best"
-            : "the best X tried leaves the eigenvalue %.3g (scaled); deciding needs a semidefinite "
-              "program",
-        p->margin));
+            : "the best X tried leaves the eigenvalue %.3g (scaled); for all others: %s",
+        p->margin, p->why == NULL ? "not checked" : p->why));
     if (p->is_passive && c->b->p > 0 && c->b->p <= 40) {
         struct dalcs_evidence w;
         DALCS_TRY(dalcs_evidence_matrix(&w, c->f, "X", &p->X, c->z_name));

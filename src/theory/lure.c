@@ -2,6 +2,7 @@
 #include "lure.h"
 
 #include "coupling.h"
+#include "storage.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -42,6 +43,24 @@ enum dalcs_status dalcs_lure_metric_witness(struct dalcs_findings *f, const stru
     }
     DALCS_TRY(name_states(&c, &names));
     DALCS_TRY(dalcs_evidence_matrix(&w, f, "P", P, names));
+    return dalcs_findings_witness(f, of_verdict, &w);
+}
+
+enum dalcs_status dalcs_lure_refutation_witness(struct dalcs_findings *f, const struct dalcs_lcs *l,
+                                                const struct dalcs_matrix *Z, bool of_verdict) {
+    const char **names = dalcs_arena_alloc(f->work, (size_t)(l->n + l->m) + 1, sizeof(*names));
+    struct dalcs_evidence w;
+    if (names == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < l->n + l->m; i++) {
+        names[i] = i < l->n ? dalcs_lcs_state_name(l, i, f->result)
+                            : dalcs_lcs_u_name(l, i - l->n, f->result);
+        if (names[i] == NULL) {
+            return DALCS_E_NOMEM;
+        }
+    }
+    DALCS_TRY(dalcs_evidence_matrix(&w, f, "Z", Z, names));
     return dalcs_findings_witness(f, of_verdict, &w);
 }
 
@@ -322,15 +341,78 @@ static enum dalcs_status try_metric(struct check *c, const struct dalcs_matrix *
         dalcs_answer_of(found->is_dissipative), "largest eigenvalue (scaled): %.3g", excess);
 }
 
+/* All P, where the stored energy and P B = C' tell nothing. */
+static enum dalcs_status try_all(struct check *c) {
+    struct dalcs_lure *found = c->found;
+    const struct dalcs_lcs *l = c->l;
+    const struct dalcs_quadruple q = {l->A, l->B, l->C, l->D};
+    struct dalcs_storage storage;
+    if (found->is_dissipative || c->D_least < -dalcs_definite) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_storage_find(&q, &storage, c->f->work));
+    found->is_dissipative = storage.is_found;
+    found->is_refuted = storage.is_refuted;
+    found->open = storage.why;
+    DALCS_TRY(dalcs_findings_condition(
+        c->f, "K10", BG09 "definition 1, theorem 3",
+        "some P > 0 makes the passivity inequality hold",
+        storage.is_found     ? DALCS_YES
+        : storage.is_refuted ? DALCS_NO
+                             : DALCS_NOT_CHECKED,
+        "%s",
+        storage.is_found     ? "a semidefinite program found P"
+        : storage.is_refuted ? "a semidefinite program found Z >= 0, which refutes every P"
+                             : storage.why));
+    if (storage.is_found) {
+        found->by_energy = false;
+        found->metric = storage.P;
+        return dalcs_lure_metric_witness(c->f, l, &storage.P, false);
+    }
+    found->refutation = storage.Z;
+    return storage.is_refuted ? dalcs_lure_refutation_witness(c->f, l, &storage.Z, false)
+                              : DALCS_OK;
+}
+
+/* *eps of the metric, or a larger one of another P. */
+static enum dalcs_status find_rate(struct check *c, double *eps) {
+    const struct dalcs_lcs *l = c->l;
+    const struct dalcs_quadruple q = {l->A, l->B, l->C, l->D};
+    struct dalcs_arena *work = c->f->work;
+    double *re = dalcs_arena_alloc(work, (size_t)l->n + 1, sizeof(double));
+    double *im = dalcs_arena_alloc(work, (size_t)l->n + 1, sizeof(double));
+    double most = INFINITY; /* no difference of motions falls faster than the slowest mode */
+    double other;
+    struct dalcs_matrix P;
+    if (re == NULL || im == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_passivity_rate(l, &c->found->metric, eps, work));
+    c->found->rate_metric = c->found->metric;
+    DALCS_TRY(dalcs_matrix_eigen(&l->A, re, im, NULL, work));
+    for (int i = 0; i < l->n; i++) {
+        most = fmin(most, -2.0 * re[i]);
+    }
+    if (l->n == 0 || most <= *eps * 1.01) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_storage_rate(&q, most, &other, &P, work));
+    if (other > *eps) {
+        *eps = other;
+        c->found->rate_metric = P;
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status check_rates(struct check *c) {
     struct dalcs_lure *found = c->found;
     found->lossless = -1;
     if (!found->is_dissipative) {
         return dalcs_findings_condition(
             c->f, "K11", BG09 "definition 2, theorem 3.2", "strictly passive: motions contract",
-            DALCS_UNDECIDED,
-            "no P was found with which the circuit is passive: another P is a "
-            "semidefinite program");
+            found->is_refuted ? DALCS_NO : DALCS_UNDECIDED, "%s",
+            found->is_refuted ? "no P makes it passive"
+                              : "no P was found with which the circuit is passive");
     }
     if (c->l->n + c->l->m > MOST_CONTRACTION) {
         return dalcs_findings_condition(c->f, "K11", BG09 "definition 2, theorem 3.2",
@@ -338,9 +420,9 @@ static enum dalcs_status check_rates(struct check *c) {
                                         "too large");
     }
     double eps;
-    DALCS_TRY(dalcs_passivity_rate(c->l, &found->metric, &eps, c->f->work));
+    DALCS_TRY(find_rate(c, &eps));
     found->rate = 0.5 * eps;
-    DALCS_TRY(find_omega(c->l, &found->metric, &found->omega, c->f->work));
+    DALCS_TRY(find_omega(c->l, &found->rate_metric, &found->omega, c->f->work));
     DALCS_TRY(dalcs_findings_condition(
         c->f, "K11", BG09 "definition 2, theorem 3.2", "strictly passive: motions contract",
         dalcs_answer_of(eps > 0.0),
@@ -380,5 +462,6 @@ enum dalcs_status dalcs_lure_check(struct dalcs_findings *f, const struct dalcs_
     if (found->is_coupled) {
         DALCS_TRY(try_metric(&c, &P, false));
     }
+    DALCS_TRY(try_all(&c));
     return check_rates(&c);
 }

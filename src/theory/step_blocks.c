@@ -3,6 +3,7 @@
 
 #include "coupling.h"
 #include "passivity.h"
+#include "storage.h"
 
 #include <math.h>
 
@@ -161,6 +162,24 @@ static enum dalcs_status try_multiples(const struct search *s, const struct dalc
     return DALCS_OK;
 }
 
+/* All X, where one could be better. */
+static enum dalcs_status try_all(const struct search *s) {
+    struct dalcs_passive_quadruple *found = s->found;
+    struct dalcs_storage storage;
+    double D_least;
+    DALCS_TRY(dalcs_symmetric_part_least(&s->q->D, &D_least, s->arena));
+    bool is_done = found->margin > (D_least > dalcs_definite ? 1.0 : -1.0) * dalcs_definite;
+    found->is_exhaustive = found->is_exhaustive || D_least < -dalcs_definite;
+    if (found->is_exhaustive || is_done) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_storage_find(s->q, &storage, s->arena));
+    found->is_exhaustive = storage.is_refuted;
+    found->why = storage.why;
+    double margin;
+    return storage.is_found ? try_X(s, &storage.P, 1.0, &margin) : DALCS_OK;
+}
+
 enum dalcs_status dalcs_quadruple_passive(const struct dalcs_quadruple *q,
                                           struct dalcs_passive_quadruple *found,
                                           struct dalcs_arena *arena) {
@@ -200,6 +219,7 @@ enum dalcs_status dalcs_quadruple_passive(const struct dalcs_quadruple *q,
             DALCS_TRY(try_X(&s, &X, 1.0, &margin));
         }
     }
+    DALCS_TRY(try_all(&s));
     /* -XA - A'X >= 0 and > 0 need X > 0, which every candidate is */
     found->is_passive = found->margin > -dalcs_definite;
     found->is_strict = found->margin > dalcs_definite;

@@ -24,11 +24,12 @@ enum dalcs_status dalcs_quadruple_margin(const struct dalcs_quadruple *q,
                                          struct dalcs_arena *arena) DALCS_MUST_CHECK;
 
 /* Looks for an X > 0 that makes the margin >= 0 (passive) or > 0 (strictly passive): multiples of
- * the identity, of X2 with X2 B2 = C2' where D = diag(D11, 0), or both. With one algebraic unknown
- * this decides, with more it may miss one: *is_exhaustive. Which multiplier rows are in D11 is
- * is_first[m]. */
+ * the identity, of X2 with X2 B2 = C2' where D = diag(D11, 0), then a semidefinite program. With one
+ * algebraic unknown the first decide; otherwise that nothing is found means something when
+ * is_exhaustive, and `why` says what is missing when not. */
 struct dalcs_passive_quadruple {
     bool is_passive, is_strict, is_exhaustive;
+    const char *why;
     double margin;
     struct dalcs_matrix X;
 };

@@ -90,12 +90,21 @@ enum dalcs_status dalcs_verdict_passive(struct dalcs_facts *facts) {
         DALCS_TRY(not_passive_by_port(facts));
         return name_givers(facts);
     }
+    if (facts->has_lcs && facts->lure.is_refuted) {
+        DALCS_TRY(dalcs_findings_verdict(facts->f, "passive", DALCS_NO,
+                                         "Z >= 0 against every P of " BG09 "definition 1",
+                                         "no: no quadratic form of the states bounds what it "
+                                         "gives"));
+        return dalcs_lure_refutation_witness(facts->f, &facts->lcs, &facts->lure.refutation, true);
+    }
     facts->passive = facts->is_dense ? DALCS_UNDECIDED : DALCS_NOT_CHECKED;
+    const char *open = facts->has_lcs ? facts->lure.open : facts->lcs.obstacle;
     return facts->is_dense
                ? dalcs_findings_verdict(
                      facts->f, "passive", facts->passive, BG09 "definition 1",
                      "undecided: neither the stored energy proves it nor does a motion refute it; "
-                     "all P would need a semidefinite program")
+                     "for other P: %s",
+                     open == NULL ? "D + D' has a negative eigenvalue" : open)
                : dalcs_findings_verdict(facts->f, "passive", facts->passive, BG09 "definition 1",
                                         "not checked: %s, and not passive by its elements alone",
                                         facts->obstacle);

@@ -148,7 +148,7 @@ static enum dalcs_status judge_contraction(struct dalcs_facts *facts) {
             BG09 "theorem 3.2; " BG13 "proposition 7.3, (40) in the norm of P",
             "yes: trajectories meet at least as exp(-t * %.4g/s)%s", lure->rate, held));
         facts->f->verdict[facts->f->n_verdicts - 1].value = lure->rate;
-        DALCS_TRY(dalcs_lure_metric_witness(facts->f, &facts->lcs, &lure->metric, true));
+        DALCS_TRY(dalcs_lure_metric_witness(facts->f, &facts->lcs, &lure->rate_metric, true));
     } else {
         DALCS_TRY(dalcs_findings_verdict(
             facts->f, "contracting", facts->has_lcs ? DALCS_UNDECIDED : DALCS_NOT_CHECKED,
