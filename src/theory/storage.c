@@ -1,414 +1,19 @@
-/* storage.c - the kernel that every P has, the semidefinite program of the rest, and its verification. */
+/* storage.c - the semidefinite program over the P that are left, and the verification of its answer. */
 #include "storage.h"
 
 #include "passivity.h"
 #include "sdpa.h"
+#include "storage_face.h"
 
 #include <math.h>
-#include <string.h>
-
-/* Scaled eigenvalues below this are 0 where kernels are looked for. */
-static const double noise = 1e-10;
 
 /* P, scaled, is looked for up to this. */
 static const double most_P = 1e3;
 
-struct search {
-    struct dalcs_arena *arena;
-    const struct dalcs_quadruple *given;
-    struct dalcs_quadruple q; /* scaled */
-    double *unit;             /* [n + m] of states, then of pairs */
-    double time;              /* s, its unit */
-    int n, m;
-    struct dalcs_matrix kernel;     /* [n + m][columns] what is known of the kernel of every Q(P) */
-    struct dalcs_matrix complement; /* [n + m][...] orthogonal to it */
-    struct dalcs_matrix base;       /* [n][n] a P with Q(P) kernel = 0 */
-    int n_free;
-    struct dalcs_matrix free;    /* [n (n + 1)/2][n_free] and what may be added to it */
-    bool is_gaining;             /* a form that must be >= 0 is not */
-    struct dalcs_matrix gaining; /* [n + m][...] vectors whose v v' sum to a Z; rows 0: none kept */
-};
-
-/* ---- Units ---------------------------------------------------------------------------------- */
-
-static enum dalcs_status copy(struct dalcs_quadruple *to, const struct dalcs_quadruple *from,
-                              struct dalcs_arena *arena) {
-    DALCS_TRY(dalcs_matrix_copy(&to->A, arena, &from->A));
-    DALCS_TRY(dalcs_matrix_copy(&to->B, arena, &from->B));
-    DALCS_TRY(dalcs_matrix_copy(&to->C, arena, &from->C));
-    return dalcs_matrix_copy(&to->D, arena, &from->D);
-}
-
-/* m's element (i, j) times left[i] right[j]; NULL: 1 */
-static void scale(struct dalcs_matrix *m, const double *left, bool inverse, const double *right,
-                  double factor) {
-    for (int j = 0; j < m->columns; j++) {
-        for (int i = 0; i < m->rows; i++) {
-            *dalcs_at(m, i, j) *= factor * right[j] * (inverse ? 1.0 / left[i] : left[i]);
-        }
-    }
-}
-
-static double largest_of(const struct dalcs_matrix *m, bool in_row, int which, int but) {
-    double largest = 0.0;
-    for (int k = 0; k < (in_row ? m->columns : m->rows); k++) {
-        double value = in_row ? *dalcs_at(m, which, k) : *dalcs_at(m, k, which);
-        largest = k == but ? largest : fmax(largest, fabs(value));
-    }
-    return largest;
-}
-
-/* States x -> x/unit so that what drives them is as large as what they drive, pairs u -> u/unit, y -> y
- * unit likewise, so that their power stays; then time so that A is 1. */
-static enum dalcs_status choose_units(struct search *s) {
-    DALCS_TRY(copy(&s->q, s->given, s->arena));
-    s->unit = dalcs_arena_alloc(s->arena, (size_t)(s->n + s->m) + 1, sizeof(double));
-    if (s->unit == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    double *state = s->unit;
-    double *pair = s->unit + s->n;
-    double fastest = dalcs_matrix_largest(&s->q.A);
-    s->time = fastest > 0.0 ? 1.0 / fastest : 1.0;
-    for (int k = 0; k < s->n + s->m; k++) {
-        s->unit[k] = 1.0;
-    }
-    for (int sweep = 0; sweep < 20; sweep++) {
-        for (int i = 0; i < s->n; i++) {
-            double row = fmax(s->time * largest_of(&s->q.A, true, i, i),
-                              s->time * largest_of(&s->q.B, true, i, -1));
-            double column =
-                fmax(s->time * largest_of(&s->q.A, false, i, i), largest_of(&s->q.C, false, i, -1));
-            state[i] *= row > 0.0 && column > 0.0 ? sqrt(row / column) : 1.0;
-        }
-        for (int j = 0; j < s->m; j++) {
-            double size =
-                fmax(s->time * largest_of(&s->q.B, false, j, -1), largest_of(&s->q.C, true, j, -1));
-            size = fmax(size, sqrt(fabs(*dalcs_at(&s->q.D, j, j))));
-            pair[j] /= size > 0.0 ? size : 1.0;
-        }
-        DALCS_TRY(copy(&s->q, s->given, s->arena));
-        scale(&s->q.A, state, true, state, 1.0);
-        scale(&s->q.B, state, true, pair, 1.0);
-        scale(&s->q.C, pair, false, state, 1.0);
-        scale(&s->q.D, pair, false, pair, 1.0);
-        fastest = dalcs_matrix_largest(&s->q.A);
-        s->time = fastest > 0.0 ? 1.0 / fastest : 1.0;
-    }
-    for (int i = 0; i < s->n; i++) {
-        for (int j = 0; j < s->n; j++) {
-            *dalcs_at(&s->q.A, i, j) *= s->time;
-        }
-        for (int j = 0; j < s->m; j++) {
-            *dalcs_at(&s->q.B, i, j) *= s->time;
-        }
-    }
-    return DALCS_OK;
-}
-
-/* ---- What is in the kernel of every Q(P) ------------------------------------------------------ */
-
-static enum dalcs_status append(struct search *s, const struct dalcs_matrix *more) {
-    struct dalcs_matrix both;
-    int rows = s->n + s->m;
-    DALCS_TRY(dalcs_matrix_new(&both, s->arena, rows, s->kernel.columns + more->columns));
-    memcpy(both.a, s->kernel.a, (size_t)rows * (size_t)s->kernel.columns * sizeof(double));
-    memcpy(both.a + (size_t)rows * (size_t)s->kernel.columns, more->a,
-           (size_t)rows * (size_t)more->columns * sizeof(double));
-    s->kernel = both;
-    return DALCS_OK;
-}
-
-/* The columns of `where` on which the form, >= 0 for a passive system, is 0; each is n_parts vectors
- * (x, u) below one another. */
-static enum dalcs_status append_zeros(struct search *s, const struct dalcs_matrix *form,
-                                      const struct dalcs_matrix *where, int n_parts) {
-    struct dalcs_matrix turned;
-    struct dalcs_matrix half;
-    struct dalcs_matrix within;
-    struct dalcs_matrix vector;
-    struct dalcs_matrix zeros;
-    int rows = s->n + s->m;
-    double *value = dalcs_arena_alloc(s->arena, (size_t)where->columns + 1, sizeof(double));
-    if (value == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    DALCS_TRY(dalcs_matrix_transpose(&turned, s->arena, where));
-    DALCS_TRY(dalcs_matrix_product(&half, s->arena, &turned, form));
-    DALCS_TRY(dalcs_matrix_product(&within, s->arena, &half, where));
-    DALCS_TRY(dalcs_matrix_symmetric_eigen(&within, value, &vector, s->arena));
-    int n_zeros = 0;
-    double size = fmax(1.0, dalcs_matrix_largest(form));
-    while (n_zeros < where->columns && value[n_zeros] < noise * size) {
-        n_zeros++;
-    }
-    if (n_zeros > 0 && value[0] < -noise * size && !s->is_gaining) {
-        s->is_gaining = true;
-        vector.columns = 1;
-        DALCS_TRY(dalcs_matrix_product(&zeros, s->arena, where, &vector));
-        s->gaining = (struct dalcs_matrix){rows, n_parts, zeros.a};
-    }
-    vector.columns = n_zeros; /* the first ones: by columns */
-    DALCS_TRY(dalcs_matrix_product(&zeros, s->arena, where, &vector));
-    struct dalcs_matrix parts;
-    DALCS_TRY(dalcs_matrix_new(&parts, s->arena, rows, n_parts * n_zeros));
-    memcpy(parts.a, zeros.a, (size_t)rows * (size_t)parts.columns * sizeof(double));
-    return append(s, &parts);
-}
-
-/* The power u'y + y'u of (x, u), n_parts times along the diagonal. */
-static enum dalcs_status power_form(const struct search *s, int n_parts,
-                                    struct dalcs_matrix *form) {
-    int rows = s->n + s->m;
-    DALCS_TRY(dalcs_matrix_new(form, s->arena, n_parts * rows, n_parts * rows));
-    for (int part = 0; part < n_parts; part++) {
-        int at = part * rows;
-        for (int i = 0; i < s->m; i++) {
-            for (int k = 0; k < s->n; k++) {
-                double c = *dalcs_at(&s->q.C, i, k);
-                *dalcs_at(form, at + s->n + i, at + k) = *dalcs_at(form, at + k, at + s->n + i) = c;
-            }
-            for (int j = 0; j < s->m; j++) {
-                *dalcs_at(form, at + s->n + i, at + s->n + j) =
-                    *dalcs_at(&s->q.D, i, j) + *dalcs_at(&s->q.D, j, i);
-            }
-        }
-    }
-    return DALCS_OK;
-}
-
-/* Motions exp(j omega t): A x + B u = j omega x. */
-static enum dalcs_status look_at(struct search *s, double omega) {
-    int n_parts = omega == 0.0 ? 1 : 2;
-    int rows = s->n + s->m;
-    struct dalcs_matrix motion;
-    struct dalcs_matrix where;
-    struct dalcs_matrix form;
-    int rank;
-    DALCS_TRY(dalcs_matrix_new(&motion, s->arena, n_parts * s->n, n_parts * rows));
-    for (int part = 0; part < n_parts; part++) {
-        for (int i = 0; i < s->n; i++) {
-            int row = part * s->n + i;
-            for (int k = 0; k < rows; k++) {
-                *dalcs_at(&motion, row, part * rows + k) =
-                    k < s->n ? *dalcs_at(&s->q.A, i, k) : *dalcs_at(&s->q.B, i, k - s->n);
-            }
-            if (n_parts == 2) {
-                *dalcs_at(&motion, row, (1 - part) * rows + i) = part == 0 ? omega : -omega;
-            }
-        }
-    }
-    DALCS_TRY(dalcs_matrix_rank(&motion, &rank, &where, s->arena));
-    DALCS_TRY(power_form(s, n_parts, &form));
-    return append_zeros(s, &form, &where, n_parts);
-}
-
-/* Large s: (0, u) with (D + D') u = 0, hence P B u = C'u; and, one order below, (B u, v) with
- * -u'CABu - u'CBv + v'CBu + v'Dv = 0. */
-static enum dalcs_status look_at_infinity(struct search *s) {
-    struct dalcs_matrix at_once;
-    struct dalcs_matrix first;
-    struct dalcs_matrix form;
-    struct dalcs_matrix u;
-    int rank;
-    DALCS_TRY(dalcs_matrix_new(&first, s->arena, s->n, s->n + s->m));
-    for (int i = 0; i < s->n; i++) {
-        *dalcs_at(&first, i, i) = 1.0;
-    }
-    DALCS_TRY(dalcs_matrix_rank(&first, &rank, &at_once, s->arena));
-    DALCS_TRY(power_form(s, 1, &form));
-    DALCS_TRY(append_zeros(s, &form, &at_once, 1));
-    DALCS_TRY(dalcs_matrix_new(&u, s->arena, s->m, s->kernel.columns));
-    for (int j = 0; j < u.columns; j++) {
-        for (int i = 0; i < s->m; i++) {
-            *dalcs_at(&u, i, j) = *dalcs_at(&s->kernel, s->n + i, j);
-        }
-    }
-    struct dalcs_matrix bu;
-    struct dalcs_matrix abu;
-    struct dalcs_matrix rate;
-    struct dalcs_matrix cb;
-    struct dalcs_matrix where;
-    DALCS_TRY(dalcs_matrix_product(&bu, s->arena, &s->q.B, &u));
-    DALCS_TRY(dalcs_matrix_product(&abu, s->arena, &s->q.A, &bu));
-    DALCS_TRY(dalcs_matrix_product(&rate, s->arena, &s->q.C, &abu));
-    DALCS_TRY(dalcs_matrix_product(&cb, s->arena, &s->q.C, &s->q.B));
-    DALCS_TRY(dalcs_matrix_new(&where, s->arena, s->n + s->m, u.columns + s->m));
-    for (int j = 0; j < where.columns; j++) {
-        for (int i = 0; i < s->n && j < u.columns; i++) {
-            *dalcs_at(&where, i, j) = *dalcs_at(&bu, i, j);
-        }
-        if (j >= u.columns) {
-            *dalcs_at(&where, s->n + j - u.columns, j) = 1.0;
-        }
-    }
-    /* the form over (coefficients of u, v), put back onto vectors (x, u) */
-    struct dalcs_matrix small;
-    DALCS_TRY(dalcs_matrix_new(&small, s->arena, where.columns, where.columns));
-    for (int i = 0; i < u.columns; i++) {
-        for (int j = 0; j < u.columns; j++) {
-            double value = 0.0;
-            for (int k = 0; k < s->m; k++) {
-                value -= *dalcs_at(&u, k, i) * *dalcs_at(&rate, k, j) +
-                         *dalcs_at(&u, k, j) * *dalcs_at(&rate, k, i);
-            }
-            *dalcs_at(&small, i, j) = value;
-        }
-    }
-    for (int i = 0; i < s->m; i++) {
-        for (int j = 0; j < u.columns; j++) {
-            double value = 0.0;
-            for (int k = 0; k < s->m; k++) {
-                value += (*dalcs_at(&cb, i, k) - *dalcs_at(&cb, k, i)) * *dalcs_at(&u, k, j);
-            }
-            *dalcs_at(&small, u.columns + i, j) = *dalcs_at(&small, j, u.columns + i) = value;
-        }
-        for (int j = 0; j < s->m; j++) {
-            *dalcs_at(&small, u.columns + i, u.columns + j) =
-                *dalcs_at(&s->q.D, i, j) + *dalcs_at(&s->q.D, j, i);
-        }
-    }
-    double *value = dalcs_arena_alloc(s->arena, (size_t)small.rows + 1, sizeof(double));
-    struct dalcs_matrix vector;
-    struct dalcs_matrix zeros;
-    if (value == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    DALCS_TRY(dalcs_matrix_symmetric_eigen(&small, value, &vector, s->arena));
-    vector.columns = 0;
-    while (vector.columns < small.rows && value[vector.columns] < noise) {
-        s->is_gaining = s->is_gaining || value[vector.columns] < -noise;
-        vector.columns++;
-    }
-    DALCS_TRY(dalcs_matrix_product(&zeros, s->arena, &where, &vector));
-    return append(s, &zeros);
-}
-
-static enum dalcs_status find_kernel(struct search *s) {
-    double *re = dalcs_arena_alloc(s->arena, (size_t)s->n + 1, sizeof(double));
-    double *im = dalcs_arena_alloc(s->arena, (size_t)s->n + 1, sizeof(double));
-    if (re == NULL || im == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    DALCS_TRY(dalcs_matrix_new(&s->kernel, s->arena, s->n + s->m, 0));
-    DALCS_TRY(look_at_infinity(s));
-    DALCS_TRY(look_at(s, 0.0));
-    DALCS_TRY(dalcs_matrix_eigen(&s->q.A, re, im, NULL, s->arena));
-    for (int i = 0; i < s->n; i++) {
-        if (im[i] > noise && fabs(re[i]) < noise) {
-            DALCS_TRY(look_at(s, im[i]));
-        }
-    }
-    struct dalcs_matrix turned;
-    struct dalcs_matrix right;
-    int rank;
-    DALCS_TRY(dalcs_matrix_transpose(&turned, s->arena, &s->kernel));
-    DALCS_TRY(dalcs_matrix_rank(&turned, &rank, &s->complement, s->arena));
-    rank = dalcs_matrix_largest(&turned) > 0.0 ? rank : 0;
-    DALCS_TRY(dalcs_matrix_transpose(&turned, s->arena, &s->complement));
-    DALCS_TRY(dalcs_matrix_rank(&turned, &rank, &right, s->arena));
-    s->kernel = right; /* orthonormal */
-    return DALCS_OK;
-}
-
-/* ---- P -------------------------------------------------------------------------------------- */
-
-/* Adds `factor` times the matrix number k of the symmetric ones. */
-static void add_basis(struct dalcs_matrix *P, int k, double factor) {
-    int j = 0;
-    while (k > j) {
-        k -= ++j;
-    }
-    *dalcs_at(P, k, j) += k == j ? factor : factor * sqrt(0.5);
-    if (k != j) {
-        *dalcs_at(P, j, k) += factor * sqrt(0.5);
-    }
-}
-
-/* Q(P); `with_constant`: else its linear part. */
-static enum dalcs_status dissipation(const struct search *s, const struct dalcs_matrix *P,
-                                     bool with_constant, struct dalcs_matrix *Q,
-                                     struct dalcs_arena *arena) {
-    struct dalcs_matrix pa;
-    struct dalcs_matrix pb;
-    double constant = with_constant ? 1.0 : 0.0;
-    DALCS_TRY(dalcs_matrix_product(&pa, arena, P, &s->q.A));
-    DALCS_TRY(dalcs_matrix_product(&pb, arena, P, &s->q.B));
-    DALCS_TRY(dalcs_matrix_new(Q, arena, s->n + s->m, s->n + s->m));
-    for (int j = 0; j < s->n; j++) {
-        for (int i = 0; i < s->n; i++) {
-            *dalcs_at(Q, i, j) = -*dalcs_at(&pa, i, j) - *dalcs_at(&pa, j, i);
-        }
-        for (int i = 0; i < s->m; i++) {
-            *dalcs_at(Q, j, s->n + i) = *dalcs_at(Q, s->n + i, j) =
-                constant * *dalcs_at(&s->q.C, i, j) - *dalcs_at(&pb, j, i);
-        }
-    }
-    for (int j = 0; j < s->m; j++) {
-        for (int i = 0; i < s->m; i++) {
-            *dalcs_at(Q, s->n + i, s->n + j) =
-                constant * (*dalcs_at(&s->q.D, i, j) + *dalcs_at(&s->q.D, j, i));
-        }
-    }
-    return DALCS_OK;
-}
-
-/* The P with Q(P) kernel = 0: base + free. False when there is none. */
-static enum dalcs_status find_face(struct search *s, bool *exists) {
-    int n_P = s->n * (s->n + 1) / 2;
-    int rows = s->n + s->m;
-    struct dalcs_matrix equations;
-    DALCS_TRY(dalcs_matrix_new(&equations, s->arena, rows * s->kernel.columns, n_P + 1));
-    for (int k = 0; k <= n_P; k++) {
-        struct dalcs_arena work = {0};
-        struct dalcs_matrix P;
-        struct dalcs_matrix Q;
-        struct dalcs_matrix left;
-        enum dalcs_status status = dalcs_matrix_new(&P, &work, s->n, s->n);
-        if (status == DALCS_OK && k < n_P) {
-            add_basis(&P, k, 1.0);
-        }
-        status = status == DALCS_OK ? dissipation(s, &P, k == n_P, &Q, &work) : status;
-        status = status == DALCS_OK ? dalcs_matrix_product(&left, &work, &Q, &s->kernel) : status;
-        for (int i = 0; status == DALCS_OK && i < equations.rows; i++) {
-            *dalcs_at(&equations, i, k) = left.a[i];
-        }
-        dalcs_arena_finish(&work);
-        DALCS_TRY(status);
-    }
-    struct dalcs_matrix solutions;
-    struct dalcs_matrix last;
-    struct dalcs_matrix directions;
-    int rank;
-    double norm = 0.0;
-    DALCS_TRY(dalcs_matrix_rank(&equations, &rank, &solutions, s->arena));
-    DALCS_TRY(dalcs_matrix_new(&last, s->arena, 1, solutions.columns));
-    for (int j = 0; j < solutions.columns; j++) {
-        last.a[j] = *dalcs_at(&solutions, n_P, j);
-        norm += last.a[j] * last.a[j];
-    }
-    *exists = norm > 1e-14;
-    if (!*exists) {
-        return DALCS_OK;
-    }
-    DALCS_TRY(dalcs_matrix_new(&s->base, s->arena, s->n, s->n));
-    for (int k = 0; k < n_P; k++) {
-        double value = 0.0;
-        for (int j = 0; j < solutions.columns; j++) {
-            value += *dalcs_at(&solutions, k, j) * last.a[j] / norm;
-        }
-        add_basis(&s->base, k, value);
-    }
-    DALCS_TRY(dalcs_matrix_rank(&last, &rank, &directions, s->arena));
-    DALCS_TRY(dalcs_matrix_product(&s->free, s->arena, &solutions, &directions));
-    s->n_free = s->free.columns;
-    return DALCS_OK;
-}
-
 /* ---- The program ---------------------------------------------------------------------------- */
 
 /* The blocks V'Q(P)V, P and most_P - P of a P and, for the constant, most_P. */
-static enum dalcs_status put_blocks(const struct search *s, struct dalcs_sdpa *program,
+static enum dalcs_status put_blocks(const struct dalcs_face *s, struct dalcs_sdpa *program,
                                     int variable, const struct dalcs_matrix *P,
                                     struct dalcs_arena *work) {
     struct dalcs_matrix Q;
@@ -417,7 +22,7 @@ static enum dalcs_status put_blocks(const struct search *s, struct dalcs_sdpa *p
     struct dalcs_matrix face;
     struct dalcs_matrix rest;
     bool is_constant = variable == 0;
-    DALCS_TRY(dissipation(s, P, is_constant, &Q, work));
+    DALCS_TRY(dalcs_face_dissipation(s, P, is_constant, &Q, work));
     DALCS_TRY(dalcs_matrix_transpose(&turned, work, &s->complement));
     DALCS_TRY(dalcs_matrix_product(&half, work, &turned, &Q));
     DALCS_TRY(dalcs_matrix_product(&face, work, &half, &s->complement));
@@ -435,7 +40,7 @@ static enum dalcs_status put_blocks(const struct search *s, struct dalcs_sdpa *p
 }
 
 /* -I in the blocks that are to be larger than t. */
-static enum dalcs_status put_margin(const struct search *s, struct dalcs_sdpa *program,
+static enum dalcs_status put_margin(const struct dalcs_face *s, struct dalcs_sdpa *program,
                                     struct dalcs_arena *work) {
     for (int block = 0; block < 3; block += 2) {
         int n = block == 0 ? s->n : s->complement.columns;
@@ -451,17 +56,8 @@ static enum dalcs_status put_margin(const struct search *s, struct dalcs_sdpa *p
     return DALCS_OK;
 }
 
-static enum dalcs_status direction(const struct search *s, int k, struct dalcs_matrix *P,
-                                   struct dalcs_arena *arena) {
-    DALCS_TRY(dalcs_matrix_new(P, arena, s->n, s->n));
-    for (int i = 0; i < s->n * (s->n + 1) / 2; i++) {
-        add_basis(P, i, *dalcs_at(&s->free, i, k));
-    }
-    return DALCS_OK;
-}
-
 /* maximise t such that V'Q(P)V >= t I, P >= t I, P <= most_P I */
-static enum dalcs_status ask(const struct search *s, struct dalcs_sdpa *program,
+static enum dalcs_status ask(const struct dalcs_face *s, struct dalcs_sdpa *program,
                              struct dalcs_sdpa_answer *answer) {
     int size[3] = {s->n, s->n, s->complement.columns};
     double *cost = dalcs_arena_alloc(s->arena, (size_t)s->n_free + 1, sizeof(double));
@@ -473,7 +69,7 @@ static enum dalcs_status ask(const struct search *s, struct dalcs_sdpa *program,
     for (int k = -1; k < s->n_free; k++) {
         struct dalcs_arena work = {0};
         struct dalcs_matrix P = s->base;
-        enum dalcs_status status = k < 0 ? DALCS_OK : direction(s, k, &P, &work);
+        enum dalcs_status status = k < 0 ? DALCS_OK : dalcs_face_direction(s, k, &P, &work);
         status = status == DALCS_OK ? put_blocks(s, program, k + 1, &P, &work) : status;
         dalcs_arena_finish(&work);
         DALCS_TRY(status);
@@ -484,7 +80,7 @@ static enum dalcs_status ask(const struct search *s, struct dalcs_sdpa *program,
 
 /* ---- Verification --------------------------------------------------------------------------- */
 
-static enum dalcs_status verify_P(const struct search *s, const struct dalcs_matrix *scaled,
+static enum dalcs_status verify_P(const struct dalcs_face *s, const struct dalcs_matrix *scaled,
                                   struct dalcs_storage *found) {
     const struct dalcs_lcs lcs = {.n = s->n,
                                   .m = s->m,
@@ -507,7 +103,7 @@ static enum dalcs_status verify_P(const struct search *s, const struct dalcs_mat
 }
 
 /* R, in scaled units, and the size of what its elements are made of. */
-static enum dalcs_status growth(const struct search *s, const struct dalcs_matrix *Z,
+static enum dalcs_status growth(const struct dalcs_face *s, const struct dalcs_matrix *Z,
                                 struct dalcs_matrix *R, struct dalcs_matrix *size) {
     DALCS_TRY(dalcs_matrix_new(R, s->arena, s->n, s->n));
     DALCS_TRY(dalcs_matrix_new(size, s->arena, s->n, s->n));
@@ -528,7 +124,7 @@ static enum dalcs_status growth(const struct search *s, const struct dalcs_matri
 }
 
 /* The power that Z stands for, over the sum of what it is made of: what goes in, negative. */
-static double gain_of(const struct search *s, const struct dalcs_matrix *Z) {
+static double gain_of(const struct dalcs_face *s, const struct dalcs_matrix *Z) {
     double gain = 0.0;
     double size = 0.0;
     for (int i = 0; i < s->m; i++) {
@@ -543,7 +139,7 @@ static double gain_of(const struct search *s, const struct dalcs_matrix *Z) {
 }
 
 /* Z = V face V', of which V is `vectors`. */
-static enum dalcs_status verify_Z(const struct search *s, const struct dalcs_matrix *vectors,
+static enum dalcs_status verify_Z(const struct dalcs_face *s, const struct dalcs_matrix *vectors,
                                   const struct dalcs_matrix *face, struct dalcs_storage *found) {
     struct dalcs_matrix half;
     struct dalcs_matrix turned;
@@ -563,17 +159,17 @@ static enum dalcs_status verify_Z(const struct search *s, const struct dalcs_mat
     found->gain = gain_of(s, &found->Z);
     found->is_refuted =
         least[0] > -dalcs_definite && least[1] > -dalcs_definite && found->gain > 1e-7;
-    scale(&found->Z, s->unit, false, s->unit, 1.0);
+    dalcs_face_scale(&found->Z, s->unit, false, s->unit, 1.0);
     return DALCS_OK;
 }
 
-static enum dalcs_status judge(const struct search *s, const struct dalcs_sdpa_answer *answer,
+static enum dalcs_status judge(const struct dalcs_face *s, const struct dalcs_sdpa_answer *answer,
                                struct dalcs_storage *found) {
     struct dalcs_matrix P;
     DALCS_TRY(dalcs_matrix_copy(&P, s->arena, &s->base));
     for (int k = 0; k < s->n_free; k++) {
         struct dalcs_matrix more;
-        DALCS_TRY(direction(s, k, &more, s->arena));
+        DALCS_TRY(dalcs_face_direction(s, k, &more, s->arena));
         dalcs_matrix_add(&P, answer->x[k], &more);
     }
     DALCS_TRY(verify_P(s, &P, found));
@@ -588,7 +184,7 @@ static enum dalcs_status judge(const struct search *s, const struct dalcs_sdpa_a
 }
 
 /* A motion that the system gives energy to. */
-static enum dalcs_status judge_motion(const struct search *s, struct dalcs_storage *found) {
+static enum dalcs_status judge_motion(const struct dalcs_face *s, struct dalcs_storage *found) {
     struct dalcs_matrix one;
     int n = s->gaining.columns;
     DALCS_TRY(dalcs_matrix_new(&one, s->arena, n, n));
@@ -602,14 +198,13 @@ static enum dalcs_status judge_motion(const struct search *s, struct dalcs_stora
     return DALCS_OK;
 }
 
-static enum dalcs_status search(struct search *s, struct dalcs_storage *found) {
+static enum dalcs_status search(struct dalcs_face *s, struct dalcs_storage *found) {
     bool exists;
-    DALCS_TRY(choose_units(s));
-    DALCS_TRY(find_kernel(s));
+    DALCS_TRY(dalcs_face_kernel(s));
     if (s->is_gaining) {
         return judge_motion(s, found);
     }
-    DALCS_TRY(find_face(s, &exists));
+    DALCS_TRY(dalcs_face_find(s, &exists));
     if (!exists) {
         found->why = "no P has the kernel that its lossless motions ask for";
         return DALCS_OK;
@@ -625,7 +220,7 @@ static enum dalcs_status search(struct search *s, struct dalcs_storage *found) {
 
 enum dalcs_status dalcs_storage_find(const struct dalcs_quadruple *q, struct dalcs_storage *found,
                                      struct dalcs_arena *arena) {
-    struct search s = {.arena = arena, .given = q, .n = q->A.rows, .m = q->D.rows};
+    struct dalcs_face s = {.arena = arena, .given = q, .n = q->A.rows, .m = q->D.rows};
     *found = (struct dalcs_storage){.why = dalcs_sdpa_missing()};
     if (s.n == 0 || s.n > DALCS_MOST_STORAGE || s.m > 2 * DALCS_MOST_STORAGE) {
         found->why = "it is too large for a semidefinite program";
