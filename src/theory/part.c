@@ -55,6 +55,7 @@ static enum dalcs_status check_dense(struct dalcs_facts *facts) {
         DALCS_TRY(dalcs_modes_find(&facts->modes, work, &facts->lcs));
     }
     if (facts->has_lcs) {
+        DALCS_TRY(dalcs_relay_check(facts->f, &facts->lcs, &facts->modes, &facts->relays));
         DALCS_TRY(dalcs_rcp_check(facts->f, &facts->lcs, &facts->modes, facts->h,
                                   facts->system->monotone || facts->lure.is_dissipative));
     }

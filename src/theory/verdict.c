@@ -118,7 +118,7 @@ static enum dalcs_status limit_of_steps(struct dalcs_facts *facts) {
     if (text == NULL) {
         return DALCS_E_NOMEM;
     }
-    bool unique = facts->modes.minors == DALCS_MINORS_POSITIVE;
+    bool unique = facts->modes.minors == DALCS_MINORS_POSITIVE || facts->relays.is_P;
     DALCS_TRY(dalcs_findings_verdict(
         facts->f, "step", unique ? DALCS_CONDITIONAL : DALCS_UNDECIDED,
         HSW99 "corollary 3.12, by the eigenvalues of all modes",
@@ -142,6 +142,11 @@ static enum dalcs_status possible_steps(struct dalcs_facts *facts) {
     }
     if (dalcs_has_limit(facts)) {
         return limit_of_steps(facts);
+    }
+    if (facts->relays.is_P) {
+        return dalcs_findings_verdict(
+            facts->f, "step", DALCS_YES, HSW99 "theorem 6.7, by the eigenvalues of all modes",
+            "implicit Euler has one solution for every h: no mode has a positive real eigenvalue");
     }
     return dalcs_findings_verdict(
         facts->f, "step",

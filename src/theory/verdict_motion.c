@@ -4,9 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-#define BG09 "Brogliato and Goeleven 2009, "
-#define BG13 "Brogliato and Goeleven 2013, "
-#define BT10 "Brogliato and Thibault 2010, "
+#define HSW99 "Heemels, Schumacher and Weiland 1999, "
+#define BG09  "Brogliato and Goeleven 2009, "
+#define BG13  "Brogliato and Goeleven 2013, "
+#define BT10  "Brogliato and Thibault 2010, "
 
 /* ---- Jumps ---------------------------------------------------------------------------------- */
 
@@ -70,6 +71,12 @@ enum dalcs_status dalcs_verdict_jumps(struct dalcs_facts *facts) {
         return dalcs_findings_verdict(facts->f, "jumps", DALCS_YES,
                                       BT10 "appendix A.4 (K6): an ordinary differential equation",
                                       "states are continuous whatever the sources do");
+    }
+    if (facts->has_lcs && facts->lcs.index_steps == 0 && facts->n_switches == 0 &&
+        dalcs_are_relays(facts)) {
+        return dalcs_findings_verdict(facts->f, "jumps", DALCS_YES,
+                                      HSW99 "theorems 6.7 to 6.9; " BG13 "section 6.2",
+                                      "states are continuous: what a relay puts out is bounded");
     }
     bool has_rule = facts->passive == DALCS_YES ||
                     (facts->has_lcs && (lure->is_block_coupled || facts->lcs.m == 0 ||
