@@ -44,7 +44,8 @@ static enum dalcs_status check_dense(struct dalcs_facts *facts) {
                     facts->blocks.m <= DALCS_MOST_ONE_STEP &&
                     facts->blocks.n <= DALCS_MOST_ONE_STEP;
     if (is_small) {
-        DALCS_TRY(dalcs_brogliato_check(facts->f, &facts->blocks, facts->h, &facts->brogliato));
+        DALCS_TRY(dalcs_brogliato_check(facts->f, &facts->blocks, facts->h, facts->jumps,
+                                        &facts->brogliato));
         facts->has_brogliato = true;
     } else {
         DALCS_TRY(dalcs_findings_condition(

@@ -110,6 +110,32 @@ enum dalcs_status dalcs_block_diagonal(const struct dalcs_matrix *D, bool *holds
     return DALCS_OK;
 }
 
+enum dalcs_status dalcs_index_strength(const struct dalcs_matrix *A, const struct dalcs_matrix *X,
+                                       double *strength, struct dalcs_arena *arena) {
+    int p = A->rows;
+    struct dalcs_matrix vector;
+    struct dalcs_matrix left;
+    struct dalcs_matrix turned;
+    struct dalcs_matrix product;
+    double largest;
+    double *value = dalcs_arena_alloc(arena, (size_t)p + 1, sizeof(double));
+    if (value == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_matrix_symmetric_eigen(X, value, &vector, arena));
+    DALCS_TRY(dalcs_matrix_transpose(&turned, arena, &vector));
+    DALCS_TRY(dalcs_matrix_product(&left, arena, &turned, A));
+    DALCS_TRY(dalcs_matrix_product(&product, arena, &left, &vector));
+    for (int j = 0; j < p; j++) {
+        for (int i = 0; i < p; i++) {
+            *dalcs_at(&product, i, j) *= -sqrt(fmax(value[i], 0.0) / fmax(value[j], 1e-300));
+        }
+    }
+    DALCS_TRY(dalcs_matrix_symmetric_part(&product, strength, &largest, arena));
+    *strength *= 0.5;
+    return DALCS_OK;
+}
+
 /* ---- X -------------------------------------------------------------------------------------- */
 
 struct search {

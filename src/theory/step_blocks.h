@@ -38,6 +38,12 @@ enum dalcs_status dalcs_quadruple_passive(const struct dalcs_quadruple *q,
                                           struct dalcs_passive_quadruple *found,
                                           struct dalcs_arena *arena) DALCS_MUST_CHECK;
 
+/* The least eigenvalue of the symmetric part of -R A R^-1, R R = X: its sign is that of -(XA + A'X),
+ * its size that of lemmas 5.4 and 5.11. */
+enum dalcs_status dalcs_index_strength(const struct dalcs_matrix *A, const struct dalcs_matrix *X,
+                                       double *strength,
+                                       struct dalcs_arena *arena) DALCS_MUST_CHECK;
+
 /* D = diag(D11, 0), with D11 symmetric and positive definite: assumptions 6 and 8. is_second[m] marks
  * the pairs of its zero block. */
 enum dalcs_status dalcs_block_diagonal(const struct dalcs_matrix *D, bool *holds, bool *is_second,

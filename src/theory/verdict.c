@@ -163,10 +163,18 @@ static enum dalcs_status possible_steps(struct dalcs_facts *facts) {
 
 static enum dalcs_status converges(struct dalcs_facts *facts) {
     const struct dalcs_lure *lure = &facts->lure;
-    if (facts->has_brogliato && facts->brogliato.converges_52) {
-        return dalcs_findings_verdict(facts->f, "convergence", DALCS_YES,
-                                      "Brogliato 2022, proposition 5.2",
-                                      "implicit Euler converges (proposition 5.2)");
+    const struct dalcs_brogliato *b = &facts->brogliato;
+    bool by_52 = b->converges_52 == DALCS_YES || b->converges_52 == DALCS_CONDITIONAL;
+    bool by_59 = b->converges_59 == DALCS_YES || b->converges_59 == DALCS_CONDITIONAL;
+    if (facts->has_brogliato && (by_52 || by_59)) {
+        const char *which = by_52 ? "5.2" : "5.9";
+        return dalcs_findings_verdict(
+            facts->f, "convergence", by_52 ? b->converges_52 : b->converges_59,
+            by_52 ? "Brogliato 2022, proposition 5.2" : "Brogliato 2022, propositions 5.6 and 5.9",
+            b->jumping == NULL
+                ? "implicit Euler converges (proposition %s)"
+                : "implicit Euler converges (proposition %s) between the jumps of %s",
+            which, b->jumping == NULL ? "" : b->jumping);
     }
     if (facts->has_lcs && lure->is_coupled && lure->D_is_semidefinite && lure->can_shift &&
         facts->cones.is_solved && facts->cones.is_qualified) {
