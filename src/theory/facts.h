@@ -32,7 +32,8 @@ struct dalcs_facts {
     bool has_lcs; /* no obstacle */
     struct dalcs_lure lure;
     struct dalcs_modes
-        modes; /* of parts that are not passive by their elements, or have no diode */
+        modes;               /* of parts that are not passive by their elements, or have no diode */
+    bool steps_are_monotone; /* A = 0 (rcp.h) */
     struct dalcs_relays relays;
     struct dalcs_giving giving;
     bool has_brogliato;

@@ -16,7 +16,7 @@ struct lemma {
     struct dalcs_arena *work;
     struct dalcs_matrix through_z, through_lambda; /* S B_I, S Bbar_I */
     const char *why;                               /* b) or c) fails */
-    bool is_open;                                  /* this X does not do, another may */
+    bool is_only;                                  /* no other X has c) */
     struct dalcs_matrix X;
 };
 
@@ -54,15 +54,15 @@ static enum dalcs_status find_X(struct lemma *l) {
     DALCS_TRY(dalcs_coupling_find(&l->X, &holds, &l->why, &B, &C, l->work));
     if (!holds) {
         l->why = "no X > 0 has X Bbar_II = C_II' and c)";
+        l->is_only = true;
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_quadruple_margin(&model, &l->X, &margin, l->work));
     DALCS_TRY(dalcs_matrix_rank(&B, &rank, NULL, l->work));
-    bool is_only = rank == b->p && dalcs_matrix_largest(&B) > 0.0;
-    l->is_open = margin < -dalcs_definite && !is_only;
+    l->is_only = rank == b->p && dalcs_matrix_largest(&B) > 0.0;
     l->why = margin >= -dalcs_definite ? NULL
-             : is_only ? "the only X with c) does not make (B_II, Bbar_II, C_II, D) passive"
-                       : "the X tried does not make (B_II, Bbar_II, C_II, D) passive";
+             : l->is_only ? "the only X with c) does not make (B_II, Bbar_II, C_II, D) passive"
+                          : "the X tried does not make (B_II, Bbar_II, C_II, D) passive";
     return DALCS_OK;
 }
 
@@ -87,7 +87,7 @@ static enum dalcs_status find_out(struct lemma *l) {
 
 enum dalcs_status dalcs_lemma41_check(struct dalcs_findings *f, const struct dalcs_blocks *b,
                                       double h) {
-    struct lemma l = {.b = b, .work = f->work};
+    struct lemma l = {.b = b, .work = f->work, .is_only = true};
     struct dalcs_matrix step;
     struct dalcs_matrix half;
     struct dalcs_matrix product;
@@ -109,20 +109,20 @@ enum dalcs_status dalcs_lemma41_check(struct dalcs_findings *f, const struct dal
         }
         DALCS_TRY(dalcs_symmetric_part_least(&product, &least, l.work));
     }
-    enum dalcs_answer failed = l.is_open ? DALCS_NOT_CHECKED : DALCS_NO;
+    enum dalcs_answer failed = l.is_only ? DALCS_NO : DALCS_NOT_CHECKED;
     bool strict = strength > 1e-12 * dalcs_matrix_largest(&b->B_II);
     DALCS_TRY(dalcs_findings_condition(
         f, "L4.1.2", SOURCE("lemma 4.1 item 2"),
         "(B_II, Bbar_II, C_II, D) strictly state passive, b), c): so is the step for small h",
-        l.why != NULL ? failed : dalcs_answer_of(strict), "%s",
+        l.why == NULL && strict ? DALCS_YES : failed, "%s",
         l.why != NULL ? l.why
         : strict      ? "-XB_II - B_II'X > 0, b) and c) hold"
-                      : "-XB_II - B_II'X > 0 fails"));
+                      : "-XB_II - B_II'X > 0 fails for the X of c)"));
     return dalcs_findings_condition(
         f, "L4.1.3", SOURCE("lemma 4.1 item 3"),
         "(B_II, Bbar_II, C_II, D) passive, a), b), c): so is the step",
-        l.why != NULL ? failed : dalcs_answer_of(least > -dalcs_definite), "%s",
+        l.why == NULL && least > -dalcs_definite ? DALCS_YES : failed, "%s",
         l.why != NULL             ? l.why
         : least > -dalcs_definite ? "a), b) and c) hold at the step given"
-                                  : "a) X A_II S B_I + its transpose <= 0 fails");
+                                  : "a) X A_II S B_I + its transpose <= 0 fails for the X of c)");
 }

@@ -58,7 +58,8 @@ static enum dalcs_status check_dense(struct dalcs_facts *facts) {
     if (facts->has_lcs) {
         DALCS_TRY(dalcs_relay_check(facts->f, &facts->lcs, &facts->modes, &facts->relays));
         DALCS_TRY(dalcs_rcp_check(facts->f, &facts->lcs, &facts->modes, facts->h,
-                                  facts->system->monotone || facts->lure.is_dissipative));
+                                  facts->system->monotone || facts->lure.is_dissipative,
+                                  &facts->steps_are_monotone));
     }
     return facts->has_lcs && !facts->system->monotone && !facts->lure.is_dissipative &&
                    facts->modes.growing.value[0] <= 0.0

@@ -131,6 +131,11 @@ static enum dalcs_status limit_of_steps(struct dalcs_facts *facts) {
 }
 
 static enum dalcs_status possible_steps(struct dalcs_facts *facts) {
+    if (facts->passive != DALCS_YES && facts->steps_are_monotone) {
+        return dalcs_findings_verdict(
+            facts->f, "step", DALCS_YES, HSW99 "theorem 4.9; monotone for every sigma = 1/h > 0",
+            "implicit Euler is solvable for every h where a solution exists");
+    }
     if (facts->passive == DALCS_YES) {
         return dalcs_findings_verdict(
             facts->f, "step", DALCS_YES, HSW99 "theorem 6.14; monotone for every sigma = 1/h > 0",

@@ -208,6 +208,11 @@ enum dalcs_status dalcs_verdict_exists(struct dalcs_facts *facts) {
                                                          : BG13 "section 6.2 (relay-K1)",
                                       "yes: every start has a solution, relays included");
     }
+    if (facts->steps_are_monotone && qualified) {
+        return dalcs_findings_verdict(facts->f, "exists", DALCS_YES,
+                                      HSW99 "theorem 4.1: each step is monotone and feasible (K8)",
+                                      "yes: every start has an initial solution");
+    }
     if (facts->modes.minors == DALCS_MINORS_POSITIVE) {
         return dalcs_findings_verdict(facts->f, "exists", DALCS_YES,
                                       HSW99 "corollary 3.12, theorem 4.1",
@@ -247,6 +252,10 @@ static enum dalcs_status unique_states(struct dalcs_facts *facts) {
                                       facts->relays.is_P ? HSW99 "theorems 6.7 to 6.9 (relay-P)"
                                                          : BG13 "section 6.2 (relay-K1)",
                                       "yes: the states%s", given);
+    }
+    if (facts->steps_are_monotone) {
+        return dalcs_findings_verdict(facts->f, "unique", DALCS_YES, HSW99 "theorem 4.9",
+                                      "yes: the states, of initial solutions%s", given);
     }
     if (facts->modes.minors == DALCS_MINORS_POSITIVE) {
         return dalcs_findings_verdict(
