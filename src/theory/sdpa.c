@@ -6,6 +6,7 @@
 #include "process.h"
 
 #include <locale.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -156,7 +157,7 @@ static bool read_numbers(const char *text, const char *title, size_t n, double *
         at += k == 0 ? strlen(title) : 0;
         at += strspn(at, "{}, \t\n");
         value[k] = strtod(at, &rest);
-        at = rest == at ? NULL : rest;
+        at = rest == at || !isfinite(value[k]) ? NULL : rest;
     }
     return at != NULL;
 }
