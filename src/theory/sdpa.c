@@ -5,6 +5,7 @@
 
 #include "process.h"
 
+#include <errno.h>
 #include <locale.h>
 #include <math.h>
 #include <stdlib.h>
@@ -31,6 +32,7 @@ static FILE *open_file(struct dalcs_sdpa *s, enum file file, const char *mode) {
     FILE *stream = fopen(s->path[file], mode);
     if (stream == NULL) {
         s->why = "the files for sdpa could not be written";
+        s->lacks_memory = errno == ENOMEM;
     }
     return stream;
 }
@@ -75,7 +77,7 @@ enum dalcs_status dalcs_sdpa_begin(struct dalcs_sdpa *s, struct dalcs_arena *are
     }
     s->problem = open_file(s, PROBLEM, "w");
     if (s->problem == NULL) {
-        return DALCS_OK;
+        return s->lacks_memory ? DALCS_E_NOMEM : DALCS_OK;
     }
     locale_t before = c_numbers();
     fprintf(s->problem, "%d\n%d\n", n, n_blocks);
@@ -139,9 +141,16 @@ static void run(struct dalcs_sdpa *s) {
                                     "-numThreads",
                                     "1",
                                     NULL};
-    struct dalcs_process process = {
-        .argument = argument, .output = talk, .errors = talk, .limit = limit};
+    /* one thread, the same bits each time, and nothing of what this program was started with */
+    const char *const environment[] = {"LC_ALL=C", "OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1",
+                                       NULL};
+    struct dalcs_process process = {.argument = argument,
+                                    .environment = environment,
+                                    .output = talk,
+                                    .errors = talk,
+                                    .limit = limit};
     enum dalcs_status status = dalcs_process_run(&process);
+    s->lacks_memory = status != DALCS_OK && errno == ENOMEM;
     fclose(talk);
     s->why = process.is_missing    ? "the program sdpa is not there"
              : status != DALCS_OK  ? "the program sdpa could not be run"
@@ -173,11 +182,13 @@ static enum dalcs_status read_answer(struct dalcs_sdpa *s, struct dalcs_sdpa_ans
     double *all = dalcs_arena_alloc(s->arena, n + 1, sizeof(double));
     answer->x = dalcs_arena_alloc(s->arena, (size_t)s->n + 1, sizeof(double));
     answer->dual = dalcs_arena_alloc(s->arena, (size_t)s->n_blocks, sizeof(*answer->dual));
+    errno = 0;
     bool is_read = stream != NULL && getdelim(&text, &length, '\0', stream) > 0;
+    s->lacks_memory = s->lacks_memory || (!is_read && errno == ENOMEM);
     if (stream != NULL) {
         fclose(stream);
     }
-    if (all == NULL || answer->x == NULL || answer->dual == NULL) {
+    if (all == NULL || answer->x == NULL || answer->dual == NULL || s->lacks_memory) {
         free(text);
         return DALCS_E_NOMEM;
     }
@@ -209,9 +220,9 @@ enum dalcs_status dalcs_sdpa_solve(struct dalcs_sdpa *s, struct dalcs_sdpa_answe
         if (is_written) {
             run(s);
         }
-        if (s->why == NULL) {
-            status = read_answer(s, answer);
-        }
+        status = s->lacks_memory  ? DALCS_E_NOMEM
+                 : s->why == NULL ? read_answer(s, answer)
+                                  : DALCS_OK;
     }
     answer->why = s->why;
     return status;

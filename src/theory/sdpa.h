@@ -20,7 +20,8 @@ struct dalcs_sdpa {
     const char *folder;  /* NULL: none could be made */
     const char *path[4]; /* its files in there */
     FILE *problem;       /* or NULL */
-    const char *why;     /* that it is not solved; NULL: nothing is wrong */
+    bool lacks_memory;
+    const char *why; /* that it is not solved; NULL: nothing is wrong */
 };
 
 struct dalcs_sdpa_answer {
