@@ -14,6 +14,9 @@
 
 enum { MOST_MINORS = 14, MOST_WITNESS = 40, MOST_CONTRACTION = 700 };
 
+static const char no_states[] = "it has no states";
+static const char not_decaying[] = "with its diodes still not all states decay";
+
 struct check {
     struct dalcs_findings *f;
     const struct dalcs_lcs *l;
@@ -393,15 +396,22 @@ static enum dalcs_status find_rate(struct check *c, double *eps) {
     for (int i = 0; i < l->n; i++) {
         most = fmin(most, -2.0 * re[i]);
     }
+    c->found->rate_open = l->n == 0 ? no_states : not_decaying;
     if (l->n == 0 || most <= *eps * 1.01) {
         return DALCS_OK;
     }
-    DALCS_TRY(dalcs_storage_rate(&q, most, &other, &P, work));
+    DALCS_TRY(dalcs_storage_rate(&q, most, &other, &P, &c->found->rate_open, work));
     if (other > *eps) {
         *eps = other;
         c->found->rate_metric = P;
     }
     return DALCS_OK;
+}
+
+/* Is there no rate, rather than none found? */
+static bool has_no_rate(const struct dalcs_lure *found) {
+    return found->rate_open == dalcs_no_rate || found->rate_open == not_decaying ||
+           found->rate_open == no_states;
 }
 
 static enum dalcs_status check_rates(struct check *c) {
@@ -425,9 +435,14 @@ static enum dalcs_status check_rates(struct check *c) {
     DALCS_TRY(find_omega(c->l, &found->rate_metric, &found->omega, c->f->work));
     DALCS_TRY(dalcs_findings_condition(
         c->f, "K11", BG09 "definition 2, theorem 3.2", "strictly passive: motions contract",
-        dalcs_answer_of(eps > 0.0),
-        "the largest eps for this P is %.6g 1/s; differences fall as exp(-eps t/2) in its norm",
-        eps));
+        eps > 0.0            ? DALCS_YES
+        : has_no_rate(found) ? DALCS_NO
+                             : DALCS_NOT_CHECKED,
+        eps > 0.0
+            ? "the largest eps found is %.6g 1/s; differences fall as exp(-eps t/2) in the norm "
+              "of its P"
+            : "eps = %.6g 1/s for the P of K10; %s",
+        eps, found->rate_open));
     DALCS_TRY(dalcs_findings_condition(
         c->f, "K12", BG13 "assumption 5.2, (40) in the norm of P, proposition 7.3",
         "omega = 1/2 lambda_max(PA + A'P, P) < 0", dalcs_answer_of(found->omega < 0.0),

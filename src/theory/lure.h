@@ -18,6 +18,7 @@ struct dalcs_lure {
     bool is_refuted;                 /* no P > 0 at all makes it passive */
     struct dalcs_matrix refutation;  /* the Z of storage.h */
     const char *open;                /* why neither, when neither */
+    const char *rate_open;           /* what is known of other P where the rate is 0 */
     struct dalcs_matrix rate_metric; /* that `rate` is of */
     double rate;          /* 1/s: differences of motions fall as exp(-rate t) in the metric */
     int lossless;         /* dimension of what never dissipates; -1: not known */

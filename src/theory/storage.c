@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+const char *const dalcs_no_rate = "no P gives one above 1e-4 of the slowest mode's";
+
 /* P, scaled, is looked for up to this. */
 static const double most_P = 1e3;
 
@@ -237,7 +239,8 @@ enum dalcs_status dalcs_storage_find(const struct dalcs_quadruple *q, struct dal
 }
 
 enum dalcs_status dalcs_storage_rate(const struct dalcs_quadruple *q, double most, double *eps,
-                                     struct dalcs_matrix *P, struct dalcs_arena *arena) {
+                                     struct dalcs_matrix *P, const char **why,
+                                     struct dalcs_arena *arena) {
     double high = most;
     *eps = 0.0;
     for (int step = 0; step < 20 && high > 1.001 * *eps && high > 1e-4 * most; step++) {
@@ -256,12 +259,9 @@ enum dalcs_status dalcs_storage_rate(const struct dalcs_quadruple *q, double mos
         } else {
             high = middle;
         }
-        bool is_missing = status == DALCS_OK && dalcs_sdpa_missing() != NULL;
+        *why = found.why != NULL ? found.why : dalcs_no_rate;
         dalcs_arena_finish(&work);
         DALCS_TRY(status);
-        if (is_missing) {
-            break;
-        }
     }
     return DALCS_OK;
 }

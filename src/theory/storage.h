@@ -29,10 +29,13 @@ struct dalcs_storage {
 enum dalcs_status dalcs_storage_find(const struct dalcs_quadruple *q, struct dalcs_storage *found,
                                      struct dalcs_arena *arena) DALCS_MUST_CHECK;
 
-/* The largest eps for which some P makes Q(P) - eps [P, 0; 0, 0] >= 0, to 1e-3, with this P; 0: none. No
- * eps above `most`. */
+/* Why no rate was found: there is none. */
+extern const char *const dalcs_no_rate;
+
+/* The largest eps for which some P makes Q(P) - eps [P, 0; 0, 0] >= 0, to 1e-3, with this P; 0: none, and
+ * why. No eps above `most`. */
 enum dalcs_status dalcs_storage_rate(const struct dalcs_quadruple *q, double most, double *eps,
-                                     struct dalcs_matrix *P,
+                                     struct dalcs_matrix *P, const char **why,
                                      struct dalcs_arena *arena) DALCS_MUST_CHECK;
 
 #endif

@@ -163,10 +163,9 @@ static enum dalcs_status judge_contraction(struct dalcs_facts *facts) {
             !facts->has_lcs ? "not checked: no reduced system"
             : !applies      ? "not shown: no P was found in whose norm trajectories stay together"
             : lure->lossless == 0
-                ? "trajectories meet, at a rate that the stored energy alone does not give"
-                : "not shown: the stored energy has motions that lose nothing (another P would "
-                  "need "
-                  "a semidefinite program)"));
+                ? "trajectories meet, at a rate that is not known: %s"
+                : "not shown: motions lose nothing in the norm of the P found; %s",
+            applies ? lure->rate_open : ""));
     }
     bool unique = applies && lure->lossless == 0 && facts->n_switches == 0;
     return dalcs_findings_verdict(
