@@ -448,7 +448,8 @@ static enum dalcs_status check_rates(struct check *c) {
         "omega = 1/2 lambda_max(PA + A'P, P) < 0", dalcs_answer_of(found->omega < 0.0),
         "omega = %.6g 1/s", found->omega));
     if (eps == 0.0) {
-        DALCS_TRY(dalcs_passivity_lossless(c->l, &found->metric, &found->lossless, c->f->work));
+        DALCS_TRY(dalcs_passivity_lossless(c->l, &found->metric, found->by_energy ? 1e-10 : 1e-8,
+                                           &found->lossless, c->f->work));
     } else {
         found->lossless = 0;
     }

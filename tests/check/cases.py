@@ -45,6 +45,9 @@ MADE = {
     # no state with losses of its own, and all the same all trajectories meet
     "filter": ("filter\nV1 a 0 SIN(0 1 1)\nD1 a b di\nL1 b c 1\nC1 c 0 1\nR1 c 0 1\nD2 0 b di\n" + DI +
                ".tran 1 9\n.end\n", {"periodic": ("yes", []), "contracting": ("undecided", [])}),
+    # c1 may keep any charge while both diodes block: nothing flows, nothing is lost
+    "rest": ("rest\nV1 a 0 SIN(0 1 1)\nR0 a b 0.37\nC1 b c 1.3u\nD1 0 c di\nD2 c d di\nC2 d 0 0.7u\n"
+             "R1 d 0 1.1k\n" + DI + ".tran 1 9\n.end\n", {"periodic": ("undecided", [])}),
     "tank": ("tank\nV1 a 0 SIN(0 1 1)\nD1 a b di\nL1 b 0 1\nC1 b 0 1\n" + DI + ".tran 1 9\n.end\n",
              {"periodic": ("undecided", [])}),
     "linear": ("linear\nV1 a 0 SIN(0 1 1)\nR1 a b 1\nC1 b 0 0.25\n.tran 1 9\n.end\n",

@@ -36,6 +36,8 @@ EXPECTED = {
         ("unique", "yes", "[BT10] A.4"),
         ("jumps", "yes", "[BT10] A.4: an ordinary differential equation"),
         ("step", "yes", "[HSW99] 6.14 or 3.12: no mode has a positive real eigenvalue"),
+        # u2 = 0, u1 constant: x = -A^-1 B u rests, y1 = 0
+        ("periodic", "undecided", "[ours] a difference may rest and lose nothing"),
     ],
     "b22_6_2": [
         ("A1", "yes", "[B22] 6.2: P_I^h > 0 for all h"),
