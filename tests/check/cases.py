@@ -25,6 +25,7 @@ KNOWN = {
     "hard/hc30": {"unique": "no", "passive": "no", "step": "no"},
     "hard/hc36": {"unique": "yes", "passive": "no", "step": "depends"},
     "rectifiers/half_wave_rc": {"exists": "yes", "contracting": "yes", "periodic": "yes"},
+    "multipliers/greinacher": {"periodic": "undecided"},
     "rectifiers/full_bridge": {"passive": "yes", "step": "yes"},
 }
 
