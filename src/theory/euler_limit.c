@@ -226,8 +226,10 @@ static enum dalcs_status find_constants(const struct limit *l, double h, struct 
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_matrix_product(&through, work, &s.L2, &inverse));
-    k->are_known = true;
-    return add_up(l, &s, &X, &through, strength, &k->k15);
+    enum dalcs_status status = add_up(l, &s, &X, &through, strength, &k->k15);
+    k->are_known = status == DALCS_OK;
+    k->why = "its numbers are too far apart";
+    return status == DALCS_SINGULAR ? DALCS_OK : status;
 }
 
 /* ---- The propositions ------------------------------------------------------------------------ */

@@ -110,27 +110,43 @@ enum dalcs_status dalcs_block_diagonal(const struct dalcs_matrix *D, bool *holds
     return DALCS_OK;
 }
 
+/* It is the least of the generalised eigenvalues of (-(XA + A'X)/2, X), which the units of z do not
+ * change: those are chosen so that X has a diagonal of 1. */
 enum dalcs_status dalcs_index_strength(const struct dalcs_matrix *A, const struct dalcs_matrix *X,
                                        double *strength, struct dalcs_arena *arena) {
     int p = A->rows;
+    struct dalcs_matrix scaled;
     struct dalcs_matrix vector;
-    struct dalcs_matrix left;
+    struct dalcs_matrix xa;
     struct dalcs_matrix turned;
+    struct dalcs_matrix half;
     struct dalcs_matrix product;
     double largest;
     double *value = dalcs_arena_alloc(arena, (size_t)p + 1, sizeof(double));
-    if (value == NULL) {
+    double *unit = dalcs_arena_alloc(arena, (size_t)p + 1, sizeof(double));
+    if (value == NULL || unit == NULL) {
         return DALCS_E_NOMEM;
     }
-    DALCS_TRY(dalcs_matrix_symmetric_eigen(X, value, &vector, arena));
-    DALCS_TRY(dalcs_matrix_transpose(&turned, arena, &vector));
-    DALCS_TRY(dalcs_matrix_product(&left, arena, &turned, A));
-    DALCS_TRY(dalcs_matrix_product(&product, arena, &left, &vector));
+    DALCS_TRY(dalcs_matrix_product(&xa, arena, X, A));
+    DALCS_TRY(dalcs_matrix_copy(&scaled, arena, X));
+    for (int i = 0; i < p; i++) {
+        unit[i] = *dalcs_at(X, i, i) > 0.0 ? 1.0 / sqrt(*dalcs_at(X, i, i)) : 1.0;
+    }
     for (int j = 0; j < p; j++) {
         for (int i = 0; i < p; i++) {
-            *dalcs_at(&product, i, j) *= -sqrt(fmax(value[i], 0.0) / fmax(value[j], 1e-300));
+            *dalcs_at(&scaled, i, j) *= unit[i] * unit[j];
+            *dalcs_at(&xa, i, j) *= -unit[i] * unit[j];
         }
     }
+    DALCS_TRY(dalcs_matrix_symmetric_eigen(&scaled, value, &vector, arena));
+    for (int j = 0; j < p; j++) {
+        for (int i = 0; i < p; i++) {
+            *dalcs_at(&vector, i, j) /= sqrt(fmax(value[j], 1e-16));
+        }
+    }
+    DALCS_TRY(dalcs_matrix_transpose(&turned, arena, &vector));
+    DALCS_TRY(dalcs_matrix_product(&half, arena, &turned, &xa));
+    DALCS_TRY(dalcs_matrix_product(&product, arena, &half, &vector));
     DALCS_TRY(dalcs_matrix_symmetric_part(&product, strength, &largest, arena));
     *strength *= 0.5;
     return DALCS_OK;
