@@ -7,7 +7,7 @@
 packages_of() {
     case $1 in
         build) echo gcc libc6-dev meson ninja-build pkg-config libsuitesparse-dev liblapacke-dev \
-            libgfortran-12-dev libglpk-dev libjansson-dev libjs-dygraphs libltdl-dev uthash-dev ;;
+            libgfortran-12-dev libglpk-dev libjansson-dev libjs-dygraphs libltdl-dev sdpa uthash-dev ;;
         test) echo check g++ mandoc python3 python3-jsonschema ;;
         plot) echo gnuplot-nox ;;
         latex) echo texlive-latex-base ;;

@@ -5,6 +5,8 @@
 #include "brogliato.h"
 
 #include "coupling.h"
+#include "euler_limit.h"
+#include "lemma41.h"
 #include "passivity.h"
 #include "step_blocks.h"
 
@@ -130,34 +132,6 @@ static enum dalcs_status check_coupling(struct check *c, const char *id, const c
     return DALCS_OK;
 }
 
-/* The least eigenvalue of the symmetric part of -R A R^-1, R R = X: its sign is that of -(XA + A'X),
- * its size that of lemmas 5.4 and 5.11. */
-static enum dalcs_status index_strength(const struct dalcs_matrix *A, const struct dalcs_matrix *X,
-                                        double *strength, struct dalcs_arena *arena) {
-    int p = A->rows;
-    struct dalcs_matrix vector;
-    struct dalcs_matrix left;
-    struct dalcs_matrix turned;
-    struct dalcs_matrix product;
-    double largest;
-    double *value = dalcs_arena_alloc(arena, (size_t)p + 1, sizeof(double));
-    if (value == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    DALCS_TRY(dalcs_matrix_symmetric_eigen(X, value, &vector, arena));
-    DALCS_TRY(dalcs_matrix_transpose(&turned, arena, &vector));
-    DALCS_TRY(dalcs_matrix_product(&left, arena, &turned, A));
-    DALCS_TRY(dalcs_matrix_product(&product, arena, &left, &vector));
-    for (int j = 0; j < p; j++) {
-        for (int i = 0; i < p; i++) {
-            *dalcs_at(&product, i, j) *= -sqrt(fmax(value[i], 0.0) / fmax(value[j], 1e-300));
-        }
-    }
-    DALCS_TRY(dalcs_matrix_symmetric_part(&product, strength, &largest, arena));
-    *strength *= 0.5;
-    return DALCS_OK;
-}
-
 /* ---- Passivity of the two quadruples --------------------------------------------------------- */
 
 static enum dalcs_answer passive_answer(const struct dalcs_passive_quadruple *p, bool holds) {
@@ -173,9 +147,8 @@ static enum dalcs_status check_passive(struct check *c, const char *id, const ch
             ? "not strictly: the matrix inequality has the least eigenvalue %.1g (scaled)"
         : p->is_exhaustive
             ? "for no X > 0: the least eigenvalue is %.3g (scaled) at best"
-            : "the best X tried leaves the eigenvalue %.3g (scaled); deciding needs a semidefinite "
-              "program",
-        p->margin));
+            : "the best X tried leaves the eigenvalue %.3g (scaled); for all others: %s",
+        p->margin, p->why == NULL ? "not checked" : p->why));
     if (p->is_passive && c->b->p > 0 && c->b->p <= 40) {
         struct dalcs_evidence w;
         DALCS_TRY(dalcs_evidence_matrix(&w, c->f, "X", &p->X, c->z_name));
@@ -254,7 +227,7 @@ static enum dalcs_status check_433(struct check *c, bool coupled, const struct d
     bool is_zero = dalcs_matrix_largest(&c->step.D) == 0.0;
     double strength = NAN;
     if (is_zero && coupled) {
-        DALCS_TRY(index_strength(&c->step.A, X, &strength, c->f->work));
+        DALCS_TRY(dalcs_index_strength(&c->step.A, X, &strength, c->f->work));
     }
     double rounding = 1e-12 * dalcs_matrix_largest(&c->step.A);
     return dalcs_findings_condition(
@@ -295,7 +268,7 @@ static enum dalcs_status check_43(struct check *c) {
 
 /* Propositions 4.4 (q of the step) and 4.8 (q of the model). */
 static enum dalcs_status check_blocks(struct check *c, bool of_step, bool *blocks, bool *coupled,
-                                      double *strength) {
+                                      bool *monotone, double *strength) {
     const struct dalcs_quadruple *q = of_step ? &c->step : &c->model;
     struct dalcs_arena *work = c->f->work;
     struct dalcs_matrix X;
@@ -313,10 +286,10 @@ static enum dalcs_status check_blocks(struct check *c, bool of_step, bool *block
         c, of_step ? "A7" : "A9", of_step ? SOURCE("assumption 7") : SOURCE("assumption 9"),
         of_step ? "some X2 > 0 has X2 Bt2 = Ct2'" : "some X2 > 0 has X2 Bbar_II2 = C_II2'", q,
         is_second, coupled, &X));
-    bool monotone = true; /* lemma 4.5: G2 is 0 when B1 is, monotone when X2 B1 = C1' */
+    *monotone = true; /* lemma 4.5: G2 is 0 when B1 is, monotone when X2 B1 = C1' */
     bool definite = false;
     if (*blocks && *coupled) {
-        DALCS_TRY(index_strength(&q->A, &X, strength, work));
+        DALCS_TRY(dalcs_index_strength(&q->A, &X, strength, work));
         definite = *strength > 1e-12 * dalcs_matrix_largest(&q->A);
         struct dalcs_matrix xb;
         DALCS_TRY(dalcs_matrix_product(&xb, work, &X, &q->B));
@@ -329,10 +302,10 @@ static enum dalcs_status check_blocks(struct check *c, bool of_step, bool *block
                 is_zero = is_zero && left == 0.0;
                 matches = matches && fabs(left - right) <= 1e-9 * (fabs(left) + fabs(right));
             }
-            monotone = monotone && (is_zero || matches);
+            *monotone = *monotone && (is_zero || matches);
         }
     }
-    bool holds = *blocks && *coupled && definite && monotone;
+    bool holds = *blocks && *coupled && definite && *monotone;
     c->found->step_unique = c->found->step_unique || (holds && of_step);
     return dalcs_findings_condition(
         c->f, of_step ? "P4.4.3" : "P4.8.3",
@@ -342,7 +315,7 @@ static enum dalcs_status check_blocks(struct check *c, bool of_step, bool *block
         dalcs_answer_of(holds),
         !*blocks || !*coupled ? "its assumptions fail"
         : !definite           ? "the least eigenvalue of -R2 A R2^-1 is %.3g"
-        : !monotone           ? "G2 is not known to be monotone (lemma 4.5); least eigenvalue %.3g"
+        : !*monotone          ? "G2 is not known to be monotone (lemma 4.5); least eigenvalue %.3g"
                               : "the least eigenvalue is %.3g",
         *strength);
 }
@@ -380,7 +353,7 @@ static enum dalcs_status check_47(struct check *c, bool D_is_zero, bool coupled,
                                   const struct dalcs_matrix *X) {
     double strength = NAN;
     if (D_is_zero && coupled) {
-        DALCS_TRY(index_strength(&c->b->B_II, X, &strength, c->f->work));
+        DALCS_TRY(dalcs_index_strength(&c->b->B_II, X, &strength, c->f->work));
     }
     bool holds = D_is_zero && coupled && strength > 1e-12 * dalcs_matrix_largest(&c->b->B_II);
     return dalcs_findings_condition(c->f, "P4.7.1", SOURCE("proposition 4.7 item 1"),
@@ -390,67 +363,6 @@ static enum dalcs_status check_47(struct check *c, bool D_is_zero, bool coupled,
                                     : !coupled ? "assumption 3 fails"
                                                : "the least eigenvalue of -R B_II R^-1 is %.3g",
                                     strength);
-}
-
-static enum dalcs_status check_convergence(struct check *c, enum dalcs_answer uniform,
-                                           bool contracts, bool blocks, bool coupled,
-                                           double strength) {
-    c->found->converges_52 = uniform == DALCS_YES && contracts;
-    DALCS_TRY(dalcs_findings_condition(
-        c->f, "P5.2", SOURCE("proposition 5.2"),
-        "A10, A11, Lipschitz sources: implicit Euler converges to a continuous solution",
-        c->found->converges_52 ? DALCS_YES
-        : !contracts           ? DALCS_NO
-                               : uniform,
-        "%s",
-        c->found->converges_52 ? "for every Lipschitz source"
-        : !contracts           ? "assumption 11 fails"
-        : uniform == DALCS_NO  ? "assumption 10 fails"
-                               : "assumption 10 is not shown"));
-    bool all = blocks && coupled;
-    if (all) { /* A12: for every h, 0 included */
-        struct dalcs_quadruple q;
-        struct dalcs_matrix B;
-        struct dalcs_matrix C;
-        struct dalcs_matrix X;
-        const char *why;
-        bool *is_second = dalcs_arena_alloc(c->f->work, (size_t)c->b->m + 1, sizeof(bool));
-        int *index = dalcs_arena_alloc(c->f->work, (size_t)c->b->m + 1, sizeof(int));
-        if (is_second == NULL || index == NULL) {
-            return DALCS_E_NOMEM;
-        }
-        for (int k = 0; k < 5 && all; k++) {
-            int n = 0;
-            DALCS_TRY(
-                dalcs_step_quadruple(&q, c->b, k == 4 ? 0.0 : c->h * pow(10.0, -k), c->f->work));
-            DALCS_TRY(dalcs_block_diagonal(&q.D, &all, is_second, c->f->work));
-            for (int i = 0; i < c->b->m; i++) {
-                index[n] = i;
-                n += is_second[i] ? 1 : 0;
-            }
-            DALCS_TRY(dalcs_matrix_part(&B, c->f->work, &q.B, 0, NULL, n, index));
-            DALCS_TRY(dalcs_matrix_part(&C, c->f->work, &q.C, n, index, 0, NULL));
-            bool holds;
-            DALCS_TRY(dalcs_coupling_find(&X, &holds, &why, &B, &C, c->f->work));
-            all = all && holds;
-        }
-    }
-    DALCS_TRY(dalcs_findings_condition(c->f, "A12", SOURCE("assumption 12"),
-                                       "A6 and A7 for every h >= 0", dalcs_answer_of(all),
-                                       all ? "at h = 0 and five steps up to the one given" : NULL));
-    bool strong = all && strength > 1.5;
-    DALCS_TRY(dalcs_findings_condition(
-        c->f, "L5.4", SOURCE("lemma 5.4"), "-R2 At R2^-1 > 3/2", dalcs_answer_of(strong),
-        isnan(strength) ? NULL : "the least eigenvalue is %.6g", strength));
-    c->found->converges_59 = strong && contracts ? DALCS_UNDECIDED : DALCS_NO;
-    DALCS_TRY(dalcs_findings_condition(
-        c->f, "A13", SOURCE("assumption 13"), "|(P_I - h A_I)^-1 P_I| + h k15 < 1 for small h",
-        DALCS_NOT_CHECKED,
-        "k15 depends on Lipschitz constants of the sources, which are not computed"));
-    return dalcs_findings_condition(
-        c->f, "P5.9", SOURCE("propositions 5.6 and 5.9"),
-        "lemmas 5.3 and 5.4, A12, A13: implicit Euler converges", c->found->converges_59, "%s",
-        strong ? "but for A13, which is not checked" : "lemma 5.4 or assumption 12 fails");
 }
 
 static enum dalcs_status name_algebraic(struct check *c) {
@@ -468,7 +380,8 @@ static enum dalcs_status name_algebraic(struct check *c) {
 }
 
 enum dalcs_status dalcs_brogliato_check(struct dalcs_findings *f, const struct dalcs_blocks *b,
-                                        double h, struct dalcs_brogliato *found) {
+                                        double h, const bool *jumps,
+                                        struct dalcs_brogliato *found) {
     struct check c = {.f = f, .b = b, .h = h, .found = found};
     struct dalcs_matrix X;
     bool contracts;
@@ -476,8 +389,9 @@ enum dalcs_status dalcs_brogliato_check(struct dalcs_findings *f, const struct d
     enum dalcs_answer uniform;
     bool coupled[4];
     bool blocks[2];
+    bool monotone[2];
     double strength[2];
-    *found = (struct dalcs_brogliato){.converges_59 = DALCS_NO};
+    *found = (struct dalcs_brogliato){.converges_52 = DALCS_NO, .converges_59 = DALCS_NO};
     DALCS_TRY(name_algebraic(&c));
     DALCS_TRY(check_step_defined(&c));
     c.model = dalcs_model_quadruple(b);
@@ -500,10 +414,18 @@ enum dalcs_status dalcs_brogliato_check(struct dalcs_findings *f, const struct d
     DALCS_TRY(check_passive(&c, "A5", SOURCE("assumption 5"), "(B_II, Bbar_II, C_II, D) passive",
                             &c.passive_model));
     DALCS_TRY(check_43(&c));
-    DALCS_TRY(check_blocks(&c, true, &blocks[0], &coupled[2], &strength[0]));
-    DALCS_TRY(check_blocks(&c, false, &blocks[1], &coupled[3], &strength[1]));
+    DALCS_TRY(check_blocks(&c, true, &blocks[0], &coupled[2], &monotone[0], &strength[0]));
+    DALCS_TRY(check_blocks(&c, false, &blocks[1], &coupled[3], &monotone[1], &strength[1]));
     DALCS_TRY(check_qualification(&c));
     DALCS_TRY(check_uniform(&c, &is_uniform, &uniform));
+    DALCS_TRY(dalcs_lemma41_check(f, b, h));
     DALCS_TRY(check_contraction(&c, &contracts));
-    return check_convergence(&c, uniform, contracts, blocks[0], coupled[2], strength[0]);
+    const struct dalcs_limit_given given = {.uniform = uniform,
+                                            .contracts = contracts,
+                                            .blocks = blocks[0],
+                                            .coupled = coupled[2],
+                                            .monotone = monotone[0],
+                                            .strength = strength[0],
+                                            .jumps = jumps};
+    return dalcs_euler_limit_check(f, b, h, &given, found);
 }

@@ -6,14 +6,17 @@
 
 /* What the verdicts take from them. */
 struct dalcs_brogliato {
-    double h_defined;  /* s, assumption 1: below it P_I - h A_I is regular; may be INFINITY */
-    bool step_unique;  /* corollary 4.6 item 3, or propositions 4.4, 4.8 item 3, for this h */
-    bool converges_52; /* proposition 5.2 */
+    double h_defined; /* s, assumption 1: below it P_I - h A_I is regular; may be INFINITY */
+    bool step_unique; /* corollary 4.6 item 3, or propositions 4.4, 4.8 item 3, for this h */
+    enum dalcs_answer converges_52; /* proposition 5.2; depends: between jumps of a source */
     enum dalcs_answer converges_59;
+    const char *jumping; /* such a source, or NULL */
 };
 
-/* Conditions 1 to 13 with the propositions that rest on them, for the step h in s. */
+/* Conditions 1 to 13 with the propositions that rest on them, for the step h in s. jumps[n_inputs]
+ * are the sources that jump; NULL: not known. */
 enum dalcs_status dalcs_brogliato_check(struct dalcs_findings *f, const struct dalcs_blocks *b,
-                                        double h, struct dalcs_brogliato *found) DALCS_MUST_CHECK;
+                                        double h, const bool *jumps,
+                                        struct dalcs_brogliato *found) DALCS_MUST_CHECK;
 
 #endif

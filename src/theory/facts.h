@@ -9,6 +9,7 @@
 #include "modes.h"
 #include "motion.h"
 #include "passivity.h"
+#include "relay.h"
 
 /* Dense matrices up to this many equations and pairs; every condition of Brogliato 2022 up to as many
  * algebraic unknowns or pairs. */
@@ -31,7 +32,9 @@ struct dalcs_facts {
     bool has_lcs; /* no obstacle */
     struct dalcs_lure lure;
     struct dalcs_modes
-        modes; /* of parts that are not passive by their elements, or have no diode */
+        modes;               /* of parts that are not passive by their elements, or have no diode */
+    bool steps_are_monotone; /* A = 0 (rcp.h) */
+    struct dalcs_relays relays;
     struct dalcs_giving giving;
     bool has_brogliato;
     struct dalcs_brogliato brogliato;
@@ -41,6 +44,12 @@ struct dalcs_facts {
 /* Is there a mode that bounds the step? */
 static inline bool dalcs_has_limit(const struct dalcs_facts *facts) {
     return facts->modes.is_checked && facts->modes.fastest.value[0] > 0.0;
+}
+
+/* All pairs are relays that well-posedness is known of whatever the rest does. */
+static inline bool dalcs_are_relays(const struct dalcs_facts *facts) {
+    return facts->relays.n > 0 && facts->relays.is_all &&
+           (facts->relays.is_P || (facts->relays.is_coupled && facts->lure.can_shift));
 }
 
 /* Each adds one verdict or two. */

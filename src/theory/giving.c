@@ -148,6 +148,22 @@ static enum dalcs_status try_at(struct search *q, number s) {
     return DALCS_OK;
 }
 
+/* The speeds at which D, C B / s and C A B / s^2 are as large as one another: A may have none. */
+static enum dalcs_status speeds_of_pairs(struct search *q, double speed[3]) {
+    struct dalcs_matrix ab;
+    struct dalcs_matrix cb;
+    struct dalcs_matrix cab;
+    DALCS_TRY(dalcs_matrix_product(&ab, q->arena, &q->l->A, &q->l->B));
+    DALCS_TRY(dalcs_matrix_product(&cb, q->arena, &q->l->C, &q->l->B));
+    DALCS_TRY(dalcs_matrix_product(&cab, q->arena, &q->l->C, &ab));
+    double size[3] = {dalcs_matrix_largest(&q->l->D), dalcs_matrix_largest(&cb),
+                      dalcs_matrix_largest(&cab)};
+    speed[0] = size[1] / size[0];
+    speed[1] = sqrt(size[2] / size[0]);
+    speed[2] = size[2] / size[1];
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_passivity_refute(const struct dalcs_lcs *l, struct dalcs_giving *giving,
                                          struct dalcs_arena *arena) {
     *giving = (struct dalcs_giving){0};
@@ -171,11 +187,13 @@ enum dalcs_status dalcs_passivity_refute(const struct dalcs_lcs *l, struct dalcs
     DALCS_TRY(try_at(&q, 0.0));
     DALCS_TRY(try_at(&q, 1e3 * unit));
     DALCS_TRY(try_at(&q, 1e3 * unit * I));
+    double other[3];
+    DALCS_TRY(speeds_of_pairs(&q, other));
     /* the larger the circuit, the fewer of its motions */
     int every = 1 + l->n / 100 * (l->n / 100);
-    for (int i = 0; i < l->n; i += every) {
-        double speed = hypot(re[i], im[i]);
-        if (speed <= 1e-12 * fastest) {
+    for (int i = -3; i < l->n; i += i < 0 ? 1 : every) {
+        double speed = i < 0 ? other[-1 - i] : hypot(re[i], im[i]);
+        if (!(speed > 1e-12 * fastest) || !isfinite(speed)) {
             continue;
         }
         static const double factor[] = {0.1, 0.5, 0.9, 1.0, 1.1, 2.0, 10.0};
@@ -183,7 +201,7 @@ enum dalcs_status dalcs_passivity_refute(const struct dalcs_lcs *l, struct dalcs
             DALCS_TRY(try_at(&q, factor[k] * speed));
             DALCS_TRY(try_at(&q, factor[k] * speed * I));
         }
-        if (im[i] != 0.0) {
+        if (i >= 0 && im[i] != 0.0) {
             DALCS_TRY(try_at(&q, fmax(re[i], 0.0) * 1.01 + im[i] * I));
         }
     }

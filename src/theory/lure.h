@@ -15,6 +15,11 @@ struct dalcs_lure {
     bool is_dissipative;   /* with `metric` */
     bool by_energy;        /* metric is the stored energy */
     struct dalcs_matrix metric;
+    bool is_refuted;                 /* no P > 0 at all makes it passive */
+    struct dalcs_matrix refutation;  /* the Z of storage.h */
+    const char *open;                /* why neither, when neither */
+    const char *rate_open;           /* what is known of other P where the rate is 0 */
+    struct dalcs_matrix rate_metric; /* that `rate` is of */
     double rate;          /* 1/s: differences of motions fall as exp(-rate t) in the metric */
     int lossless;         /* dimension of what never dissipates; -1: not known */
     double omega;         /* 1/s: 1/2 lambda_max(PA + A'P, P) */
@@ -29,7 +34,12 @@ enum dalcs_status dalcs_lure_check(struct dalcs_findings *f, const struct dalcs_
                                    const struct dalcs_cones *cones,
                                    struct dalcs_lure *found) DALCS_MUST_CHECK;
 
-/* P as a witness over the names of the states; larger ones are left out. */
+/* P as a witness over the names of the states, Z over states and multipliers; larger ones are left
+ * out. */
+enum dalcs_status dalcs_lure_refutation_witness(struct dalcs_findings *f,
+                                                const struct dalcs_lcs *lcs,
+                                                const struct dalcs_matrix *Z,
+                                                bool of_verdict) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_lure_metric_witness(struct dalcs_findings *f, const struct dalcs_lcs *lcs,
                                             const struct dalcs_matrix *P,
                                             bool of_verdict) DALCS_MUST_CHECK;

@@ -44,7 +44,8 @@ static enum dalcs_status check_dense(struct dalcs_facts *facts) {
                     facts->blocks.m <= DALCS_MOST_ONE_STEP &&
                     facts->blocks.n <= DALCS_MOST_ONE_STEP;
     if (is_small) {
-        DALCS_TRY(dalcs_brogliato_check(facts->f, &facts->blocks, facts->h, &facts->brogliato));
+        DALCS_TRY(dalcs_brogliato_check(facts->f, &facts->blocks, facts->h, facts->jumps,
+                                        &facts->brogliato));
         facts->has_brogliato = true;
     } else {
         DALCS_TRY(dalcs_findings_condition(
@@ -55,8 +56,10 @@ static enum dalcs_status check_dense(struct dalcs_facts *facts) {
         DALCS_TRY(dalcs_modes_find(&facts->modes, work, &facts->lcs));
     }
     if (facts->has_lcs) {
+        DALCS_TRY(dalcs_relay_check(facts->f, &facts->lcs, &facts->modes, &facts->relays));
         DALCS_TRY(dalcs_rcp_check(facts->f, &facts->lcs, &facts->modes, facts->h,
-                                  facts->system->monotone || facts->lure.is_dissipative));
+                                  facts->system->monotone || facts->lure.is_dissipative,
+                                  &facts->steps_are_monotone));
     }
     return facts->has_lcs && !facts->system->monotone && !facts->lure.is_dissipative &&
                    facts->modes.growing.value[0] <= 0.0

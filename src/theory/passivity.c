@@ -212,8 +212,23 @@ static enum dalcs_status take_rows(const struct dalcs_matrix *m, int first, int 
     return DALCS_OK;
 }
 
+/* Elements of motion times unit vectors that are below the rounding of their sums. */
+static void drop_rounding(struct dalcs_matrix *rate, const struct dalcs_matrix *motion) {
+    for (int i = 0; i < rate->rows; i++) {
+        double size = 0.0;
+        for (int k = 0; k < motion->columns; k++) {
+            size += fabs(*dalcs_at(motion, i, k));
+        }
+        for (int j = 0; j < rate->columns; j++) {
+            double *a = dalcs_at(rate, i, j);
+            *a = fabs(*a) < 1e-10 * size ? 0.0 : *a;
+        }
+    }
+}
+
 enum dalcs_status dalcs_passivity_lossless(const struct dalcs_lcs *l, const struct dalcs_matrix *P,
-                                           int *dimension, struct dalcs_arena *arena) {
+                                           double noise, int *dimension,
+                                           struct dalcs_arena *arena) {
     struct dalcs_matrix Q;
     struct dalcs_matrix still; /* (x, u) that dissipate nothing and stay, scaled */
     struct dalcs_matrix motion;
@@ -221,7 +236,15 @@ enum dalcs_status dalcs_passivity_lossless(const struct dalcs_lcs *l, const stru
     int rank;
     int n = l->n;
     DALCS_TRY(scaled_dissipation(l, P, 0.0, &Q, &unit, arena));
-    DALCS_TRY(dalcs_matrix_rank(&Q, &rank, &still, arena));
+    double *value = dalcs_arena_alloc(arena, (size_t)Q.rows + 1, sizeof(double));
+    if (value == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_matrix_symmetric_eigen(&Q, value, &still, arena));
+    still.columns = 0;
+    while (still.columns < Q.rows && value[still.columns] < noise) {
+        still.columns++;
+    }
     DALCS_TRY(dalcs_matrix_new(&motion, arena, n, n + l->m));
     for (int j = 0; j < n + l->m; j++) {
         for (int i = 0; i < n; i++) {
@@ -241,6 +264,7 @@ enum dalcs_status dalcs_passivity_lossless(const struct dalcs_lcs *l, const stru
         DALCS_TRY(dalcs_matrix_rank(&x, &rank, NULL, arena));
         DALCS_TRY(complement(&x, &rows, arena));
         DALCS_TRY(dalcs_matrix_product(&rate, arena, &motion, &still));
+        drop_rounding(&rate, &motion);
         DALCS_TRY(dalcs_matrix_product(&leaving, arena, &rows, &rate));
         *dimension = dalcs_matrix_largest(&x) < 1e-10 ? 0 : rank;
         if (*dimension == 0) {

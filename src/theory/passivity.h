@@ -43,9 +43,11 @@ enum dalcs_status dalcs_passivity_rate(const struct dalcs_lcs *lcs, const struct
                                        double *eps, struct dalcs_arena *arena) DALCS_MUST_CHECK;
 
 /* The dimension of the largest set of states that differences of two motions can stay in without
- * dissipating anything; 0: all motions meet in the end. */
+ * dissipating anything; 0: all motions meet in the end. Scaled eigenvalues of the inequality below
+ * `noise` are 0. */
 enum dalcs_status dalcs_passivity_lossless(const struct dalcs_lcs *lcs,
-                                           const struct dalcs_matrix *P, int *dimension,
+                                           const struct dalcs_matrix *P, double noise,
+                                           int *dimension,
                                            struct dalcs_arena *arena) DALCS_MUST_CHECK;
 
 /* A motion u exp(s t), x exp(s t) to which the circuit gives energy. */

@@ -25,6 +25,47 @@ static enum dalcs_status check_step(struct dalcs_findings *f, const struct dalcs
         dalcs_answer_of(least > -dalcs_definite), "least eigenvalue (scaled): %.3g", least);
 }
 
+/* Without dynamics of its own, A = 0, M(s) = D + C B/s: monotone for every s when D and C B are, and then
+ * what (D + D') d = (C B + B'C') d = 0 leaves of u must be in the kernel of B for B u to be unique. */
+static enum dalcs_status check_still(struct dalcs_findings *f, const struct dalcs_lcs *l,
+                                     bool *is_monotone) {
+    struct dalcs_matrix cb;
+    struct dalcs_matrix S;
+    struct dalcs_matrix T;
+    struct dalcs_matrix rows;
+    double least[2];
+    int rank[2];
+    *is_monotone = false;
+    if (l->n == 0 || dalcs_matrix_largest(&l->A) > 0.0) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_matrix_product(&cb, f->work, &l->C, &l->B));
+    DALCS_TRY(dalcs_symmetric_part_least(&l->D, &least[0], f->work));
+    DALCS_TRY(dalcs_symmetric_part_least(&cb, &least[1], f->work));
+    DALCS_TRY(dalcs_matrix_transpose(&S, f->work, &l->D));
+    dalcs_matrix_add(&S, 1.0, &l->D);
+    DALCS_TRY(dalcs_matrix_transpose(&T, f->work, &cb));
+    dalcs_matrix_add(&T, 1.0, &cb);
+    for (int k = 0; k < 2; k++) { /* with B, and without */
+        DALCS_TRY(dalcs_matrix_new(&rows, f->work, 2 * l->m + (k == 0 ? l->n : 0), l->m));
+        for (int j = 0; j < l->m; j++) {
+            for (int i = 0; i < rows.rows; i++) {
+                *dalcs_at(&rows, i, j) = i < l->m       ? *dalcs_at(&S, i, j)
+                                         : i < 2 * l->m ? *dalcs_at(&T, i - l->m, j)
+                                                        : *dalcs_at(&l->B, i - 2 * l->m, j);
+            }
+        }
+        DALCS_TRY(dalcs_matrix_rank(&rows, &rank[k], NULL, f->work));
+    }
+    bool holds = least[0] > -dalcs_definite && least[1] > -dalcs_definite;
+    *is_monotone = holds && rank[0] == rank[1];
+    return dalcs_findings_condition(
+        f, "M(s)", HSW99 "theorem 4.9",
+        "M(s) + M(s)' >= 0 for every s > 0, its kernel in that of B", dalcs_answer_of(*is_monotone),
+        "A = 0; least eigenvalues (scaled) of D and C B: %.3g, %.3g%s", least[0], least[1],
+        rank[0] == rank[1] ? "" : "; B sees the kernel");
+}
+
 static enum dalcs_status check_minors(struct dalcs_findings *f, const struct dalcs_modes *modes) {
     static const enum dalcs_answer answer[] = {[DALCS_MINORS_UNKNOWN] = DALCS_NOT_CHECKED,
                                                [DALCS_MINORS_POSITIVE] = DALCS_YES,
@@ -121,8 +162,10 @@ static enum dalcs_status check_impulses(struct dalcs_findings *f, const struct d
 }
 
 enum dalcs_status dalcs_rcp_check(struct dalcs_findings *f, const struct dalcs_lcs *l,
-                                  const struct dalcs_modes *modes, double h, bool is_passive) {
+                                  const struct dalcs_modes *modes, double h, bool is_passive,
+                                  bool *is_monotone) {
     DALCS_TRY(check_step(f, l, h));
+    DALCS_TRY(check_still(f, l, is_monotone));
     DALCS_TRY(check_minors(f, modes));
     return check_impulses(f, l, is_passive);
 }

@@ -3,6 +3,7 @@
 
 #include "coupling.h"
 #include "passivity.h"
+#include "storage.h"
 
 #include <math.h>
 
@@ -109,6 +110,48 @@ enum dalcs_status dalcs_block_diagonal(const struct dalcs_matrix *D, bool *holds
     return DALCS_OK;
 }
 
+/* It is the least of the generalised eigenvalues of (-(XA + A'X)/2, X), which the units of z do not
+ * change: those are chosen so that X has a diagonal of 1. */
+enum dalcs_status dalcs_index_strength(const struct dalcs_matrix *A, const struct dalcs_matrix *X,
+                                       double *strength, struct dalcs_arena *arena) {
+    int p = A->rows;
+    struct dalcs_matrix scaled;
+    struct dalcs_matrix vector;
+    struct dalcs_matrix xa;
+    struct dalcs_matrix turned;
+    struct dalcs_matrix half;
+    struct dalcs_matrix product;
+    double largest;
+    double *value = dalcs_arena_alloc(arena, (size_t)p + 1, sizeof(double));
+    double *unit = dalcs_arena_alloc(arena, (size_t)p + 1, sizeof(double));
+    if (value == NULL || unit == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_matrix_product(&xa, arena, X, A));
+    DALCS_TRY(dalcs_matrix_copy(&scaled, arena, X));
+    for (int i = 0; i < p; i++) {
+        unit[i] = *dalcs_at(X, i, i) > 0.0 ? 1.0 / sqrt(*dalcs_at(X, i, i)) : 1.0;
+    }
+    for (int j = 0; j < p; j++) {
+        for (int i = 0; i < p; i++) {
+            *dalcs_at(&scaled, i, j) *= unit[i] * unit[j];
+            *dalcs_at(&xa, i, j) *= -unit[i] * unit[j];
+        }
+    }
+    DALCS_TRY(dalcs_matrix_symmetric_eigen(&scaled, value, &vector, arena));
+    for (int j = 0; j < p; j++) {
+        for (int i = 0; i < p; i++) {
+            *dalcs_at(&vector, i, j) /= sqrt(fmax(value[j], 1e-16));
+        }
+    }
+    DALCS_TRY(dalcs_matrix_transpose(&turned, arena, &vector));
+    DALCS_TRY(dalcs_matrix_product(&half, arena, &turned, &xa));
+    DALCS_TRY(dalcs_matrix_product(&product, arena, &half, &vector));
+    DALCS_TRY(dalcs_matrix_symmetric_part(&product, strength, &largest, arena));
+    *strength *= 0.5;
+    return DALCS_OK;
+}
+
 /* ---- X -------------------------------------------------------------------------------------- */
 
 struct search {
@@ -161,6 +204,24 @@ static enum dalcs_status try_multiples(const struct search *s, const struct dalc
     return DALCS_OK;
 }
 
+/* All X, where one could be better. */
+static enum dalcs_status try_all(const struct search *s) {
+    struct dalcs_passive_quadruple *found = s->found;
+    struct dalcs_storage storage;
+    double D_least;
+    DALCS_TRY(dalcs_symmetric_part_least(&s->q->D, &D_least, s->arena));
+    bool is_done = found->margin > (D_least > dalcs_definite ? 1.0 : -1.0) * dalcs_definite;
+    found->is_exhaustive = found->is_exhaustive || D_least < -dalcs_definite;
+    if (found->is_exhaustive || is_done) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_storage_find(s->q, &storage, s->arena));
+    found->is_exhaustive = storage.is_refuted;
+    found->why = storage.why;
+    double margin;
+    return storage.is_found ? try_X(s, &storage.P, 1.0, &margin) : DALCS_OK;
+}
+
 enum dalcs_status dalcs_quadruple_passive(const struct dalcs_quadruple *q,
                                           struct dalcs_passive_quadruple *found,
                                           struct dalcs_arena *arena) {
@@ -200,6 +261,7 @@ enum dalcs_status dalcs_quadruple_passive(const struct dalcs_quadruple *q,
             DALCS_TRY(try_X(&s, &X, 1.0, &margin));
         }
     }
+    DALCS_TRY(try_all(&s));
     /* -XA - A'X >= 0 and > 0 need X > 0, which every candidate is */
     found->is_passive = found->margin > -dalcs_definite;
     found->is_strict = found->margin > dalcs_definite;

@@ -24,11 +24,12 @@ enum dalcs_status dalcs_quadruple_margin(const struct dalcs_quadruple *q,
                                          struct dalcs_arena *arena) DALCS_MUST_CHECK;
 
 /* Looks for an X > 0 that makes the margin >= 0 (passive) or > 0 (strictly passive): multiples of
- * the identity, of X2 with X2 B2 = C2' where D = diag(D11, 0), or both. With one algebraic unknown
- * this decides, with more it may miss one: *is_exhaustive. Which multiplier rows are in D11 is
- * is_first[m]. */
+ * the identity, of X2 with X2 B2 = C2' where D = diag(D11, 0), then a semidefinite program. With one
+ * algebraic unknown the first decide; otherwise that nothing is found means something when
+ * is_exhaustive, and `why` says what is missing when not. */
 struct dalcs_passive_quadruple {
     bool is_passive, is_strict, is_exhaustive;
+    const char *why;
     double margin;
     struct dalcs_matrix X;
 };
@@ -36,6 +37,12 @@ struct dalcs_passive_quadruple {
 enum dalcs_status dalcs_quadruple_passive(const struct dalcs_quadruple *q,
                                           struct dalcs_passive_quadruple *found,
                                           struct dalcs_arena *arena) DALCS_MUST_CHECK;
+
+/* The least eigenvalue of the symmetric part of -R A R^-1, R R = X: its sign is that of -(XA + A'X),
+ * its size that of lemmas 5.4 and 5.11. */
+enum dalcs_status dalcs_index_strength(const struct dalcs_matrix *A, const struct dalcs_matrix *X,
+                                       double *strength,
+                                       struct dalcs_arena *arena) DALCS_MUST_CHECK;
 
 /* D = diag(D11, 0), with D11 symmetric and positive definite: assumptions 6 and 8. is_second[m] marks
  * the pairs of its zero block. */

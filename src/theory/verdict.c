@@ -90,12 +90,21 @@ enum dalcs_status dalcs_verdict_passive(struct dalcs_facts *facts) {
         DALCS_TRY(not_passive_by_port(facts));
         return name_givers(facts);
     }
+    if (facts->has_lcs && facts->lure.is_refuted) {
+        DALCS_TRY(dalcs_findings_verdict(facts->f, "passive", DALCS_NO,
+                                         "Z >= 0 against every P of " BG09 "definition 1",
+                                         "no: no quadratic form of the states bounds what it "
+                                         "gives"));
+        return dalcs_lure_refutation_witness(facts->f, &facts->lcs, &facts->lure.refutation, true);
+    }
     facts->passive = facts->is_dense ? DALCS_UNDECIDED : DALCS_NOT_CHECKED;
+    const char *open = facts->has_lcs ? facts->lure.open : facts->lcs.obstacle;
     return facts->is_dense
                ? dalcs_findings_verdict(
                      facts->f, "passive", facts->passive, BG09 "definition 1",
                      "undecided: neither the stored energy proves it nor does a motion refute it; "
-                     "all P would need a semidefinite program")
+                     "for other P: %s",
+                     open == NULL ? "D + D' has a negative eigenvalue" : open)
                : dalcs_findings_verdict(facts->f, "passive", facts->passive, BG09 "definition 1",
                                         "not checked: %s, and not passive by its elements alone",
                                         facts->obstacle);
@@ -109,7 +118,7 @@ static enum dalcs_status limit_of_steps(struct dalcs_facts *facts) {
     if (text == NULL) {
         return DALCS_E_NOMEM;
     }
-    bool unique = facts->modes.minors == DALCS_MINORS_POSITIVE;
+    bool unique = facts->modes.minors == DALCS_MINORS_POSITIVE || facts->relays.is_P;
     DALCS_TRY(dalcs_findings_verdict(
         facts->f, "step", unique ? DALCS_CONDITIONAL : DALCS_UNDECIDED,
         HSW99 "corollary 3.12, by the eigenvalues of all modes",
@@ -122,6 +131,11 @@ static enum dalcs_status limit_of_steps(struct dalcs_facts *facts) {
 }
 
 static enum dalcs_status possible_steps(struct dalcs_facts *facts) {
+    if (facts->passive != DALCS_YES && facts->steps_are_monotone) {
+        return dalcs_findings_verdict(
+            facts->f, "step", DALCS_YES, HSW99 "theorem 4.9; monotone for every sigma = 1/h > 0",
+            "implicit Euler is solvable for every h where a solution exists");
+    }
     if (facts->passive == DALCS_YES) {
         return dalcs_findings_verdict(
             facts->f, "step", DALCS_YES, HSW99 "theorem 6.14; monotone for every sigma = 1/h > 0",
@@ -133,6 +147,11 @@ static enum dalcs_status possible_steps(struct dalcs_facts *facts) {
     }
     if (dalcs_has_limit(facts)) {
         return limit_of_steps(facts);
+    }
+    if (facts->relays.is_P) {
+        return dalcs_findings_verdict(
+            facts->f, "step", DALCS_YES, HSW99 "theorem 6.7, by the eigenvalues of all modes",
+            "implicit Euler has one solution for every h: no mode has a positive real eigenvalue");
     }
     return dalcs_findings_verdict(
         facts->f, "step",
@@ -149,10 +168,18 @@ static enum dalcs_status possible_steps(struct dalcs_facts *facts) {
 
 static enum dalcs_status converges(struct dalcs_facts *facts) {
     const struct dalcs_lure *lure = &facts->lure;
-    if (facts->has_brogliato && facts->brogliato.converges_52) {
-        return dalcs_findings_verdict(facts->f, "convergence", DALCS_YES,
-                                      "Brogliato 2022, proposition 5.2",
-                                      "implicit Euler converges (proposition 5.2)");
+    const struct dalcs_brogliato *b = &facts->brogliato;
+    bool by_52 = b->converges_52 == DALCS_YES || b->converges_52 == DALCS_CONDITIONAL;
+    bool by_59 = b->converges_59 == DALCS_YES || b->converges_59 == DALCS_CONDITIONAL;
+    if (facts->has_brogliato && (by_52 || by_59)) {
+        const char *which = by_52 ? "5.2" : "5.9";
+        return dalcs_findings_verdict(
+            facts->f, "convergence", by_52 ? b->converges_52 : b->converges_59,
+            by_52 ? "Brogliato 2022, proposition 5.2" : "Brogliato 2022, propositions 5.6 and 5.9",
+            b->jumping == NULL
+                ? "implicit Euler converges (proposition %s)"
+                : "implicit Euler converges (proposition %s) between the jumps of %s",
+            which, b->jumping == NULL ? "" : b->jumping);
     }
     if (facts->has_lcs && lure->is_coupled && lure->D_is_semidefinite && lure->can_shift &&
         facts->cones.is_solved && facts->cones.is_qualified) {

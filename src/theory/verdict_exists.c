@@ -202,6 +202,17 @@ enum dalcs_status dalcs_verdict_exists(struct dalcs_facts *facts) {
                                       BT10 "section 3.3; " BG09 "theorem 1 (K7)",
                                       "yes: for every start and source");
     }
+    if (facts->relays.is_P || dalcs_are_relays(facts)) {
+        return dalcs_findings_verdict(facts->f, "exists", DALCS_YES,
+                                      facts->relays.is_P ? HSW99 "theorems 6.7 to 6.9 (relay-P)"
+                                                         : BG13 "section 6.2 (relay-K1)",
+                                      "yes: every start has a solution, relays included");
+    }
+    if (facts->steps_are_monotone && qualified) {
+        return dalcs_findings_verdict(facts->f, "exists", DALCS_YES,
+                                      HSW99 "theorem 4.1: each step is monotone and feasible (K8)",
+                                      "yes: every start has an initial solution");
+    }
     if (facts->modes.minors == DALCS_MINORS_POSITIVE) {
         return dalcs_findings_verdict(facts->f, "exists", DALCS_YES,
                                       HSW99 "corollary 3.12, theorem 4.1",
@@ -236,6 +247,16 @@ static enum dalcs_status unique_states(struct dalcs_facts *facts) {
                                                                : BT10 "theorem 3.5 (K1)",
                                       "yes: the states%s", given);
     }
+    if (facts->relays.is_P || dalcs_are_relays(facts)) {
+        return dalcs_findings_verdict(facts->f, "unique", DALCS_YES,
+                                      facts->relays.is_P ? HSW99 "theorems 6.7 to 6.9 (relay-P)"
+                                                         : BG13 "section 6.2 (relay-K1)",
+                                      "yes: the states%s", given);
+    }
+    if (facts->steps_are_monotone) {
+        return dalcs_findings_verdict(facts->f, "unique", DALCS_YES, HSW99 "theorem 4.9",
+                                      "yes: the states, of initial solutions%s", given);
+    }
     if (facts->modes.minors == DALCS_MINORS_POSITIVE) {
         return dalcs_findings_verdict(
             facts->f, "unique", DALCS_YES, HSW99 "corollary 3.12, theorem 4.9",
@@ -268,7 +289,7 @@ static enum dalcs_status unique_multipliers(struct dalcs_facts *facts) {
     if (name == NULL) {
         return DALCS_E_NOMEM;
     }
-    bool by_minors = facts->modes.minors == DALCS_MINORS_POSITIVE;
+    bool by_minors = facts->modes.minors == DALCS_MINORS_POSITIVE || facts->relays.is_P;
     for (int i = 0; i < l->m; i++) {
         if (facts->lure.in_kernel[i] && !by_minors) {
             name[n++] = dalcs_lcs_u_name(l, i, facts->f->result);
@@ -287,8 +308,9 @@ static enum dalcs_status unique_multipliers(struct dalcs_facts *facts) {
     }
     if (n == 0) {
         return dalcs_findings_verdict(facts->f, "multipliers", DALCS_YES,
-                                      by_minors ? HSW99 "corollary 3.12"
-                                                : BG09 "remarks 3 and 4 (K13)",
+                                      facts->relays.is_P ? HSW99 "theorem 6.7 (relay-P)"
+                                      : by_minors        ? HSW99 "corollary 3.12"
+                                                         : BG09 "remarks 3 and 4 (K13)",
                                       "yes: currents and voltages of all diodes");
     }
     const char *list = dalcs_join_names(facts->f->result, n, name);

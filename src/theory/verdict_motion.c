@@ -4,9 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-#define BG09 "Brogliato and Goeleven 2009, "
-#define BG13 "Brogliato and Goeleven 2013, "
-#define BT10 "Brogliato and Thibault 2010, "
+#define HSW99 "Heemels, Schumacher and Weiland 1999, "
+#define BG09  "Brogliato and Goeleven 2009, "
+#define BG13  "Brogliato and Goeleven 2013, "
+#define BT10  "Brogliato and Thibault 2010, "
 
 /* ---- Jumps ---------------------------------------------------------------------------------- */
 
@@ -70,6 +71,12 @@ enum dalcs_status dalcs_verdict_jumps(struct dalcs_facts *facts) {
         return dalcs_findings_verdict(facts->f, "jumps", DALCS_YES,
                                       BT10 "appendix A.4 (K6): an ordinary differential equation",
                                       "states are continuous whatever the sources do");
+    }
+    if (facts->has_lcs && facts->lcs.index_steps == 0 && facts->n_switches == 0 &&
+        dalcs_are_relays(facts)) {
+        return dalcs_findings_verdict(facts->f, "jumps", DALCS_YES,
+                                      HSW99 "theorems 6.7 to 6.9; " BG13 "section 6.2",
+                                      "states are continuous: what a relay puts out is bounded");
     }
     bool has_rule = facts->passive == DALCS_YES ||
                     (facts->has_lcs && (lure->is_block_coupled || facts->lcs.m == 0 ||
@@ -148,7 +155,7 @@ static enum dalcs_status judge_contraction(struct dalcs_facts *facts) {
             BG09 "theorem 3.2; " BG13 "proposition 7.3, (40) in the norm of P",
             "yes: trajectories meet at least as exp(-t * %.4g/s)%s", lure->rate, held));
         facts->f->verdict[facts->f->n_verdicts - 1].value = lure->rate;
-        DALCS_TRY(dalcs_lure_metric_witness(facts->f, &facts->lcs, &lure->metric, true));
+        DALCS_TRY(dalcs_lure_metric_witness(facts->f, &facts->lcs, &lure->rate_metric, true));
     } else {
         DALCS_TRY(dalcs_findings_verdict(
             facts->f, "contracting", facts->has_lcs ? DALCS_UNDECIDED : DALCS_NOT_CHECKED,
@@ -156,10 +163,9 @@ static enum dalcs_status judge_contraction(struct dalcs_facts *facts) {
             !facts->has_lcs ? "not checked: no reduced system"
             : !applies      ? "not shown: no P was found in whose norm trajectories stay together"
             : lure->lossless == 0
-                ? "trajectories meet, at a rate that the stored energy alone does not give"
-                : "not shown: the stored energy has motions that lose nothing (another P would "
-                  "need "
-                  "a semidefinite program)"));
+                ? "trajectories meet, at a rate that is not known: %s"
+                : "not shown: motions lose nothing in the norm of the P found; %s",
+            applies ? lure->rate_open : ""));
     }
     bool unique = applies && lure->lossless == 0 && facts->n_switches == 0;
     return dalcs_findings_verdict(

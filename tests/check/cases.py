@@ -25,6 +25,7 @@ KNOWN = {
     "hard/hc30": {"unique": "no", "passive": "no", "step": "no"},
     "hard/hc36": {"unique": "yes", "passive": "no", "step": "depends"},
     "rectifiers/half_wave_rc": {"exists": "yes", "contracting": "yes", "periodic": "yes"},
+    "multipliers/greinacher": {"periodic": "undecided"},
     "rectifiers/full_bridge": {"passive": "yes", "step": "yes"},
 }
 
@@ -45,6 +46,9 @@ MADE = {
     # no state with losses of its own, and all the same all trajectories meet
     "filter": ("filter\nV1 a 0 SIN(0 1 1)\nD1 a b di\nL1 b c 1\nC1 c 0 1\nR1 c 0 1\nD2 0 b di\n" + DI +
                ".tran 1 9\n.end\n", {"periodic": ("yes", []), "contracting": ("undecided", [])}),
+    # c1 may keep any charge while both diodes block: nothing flows, nothing is lost
+    "rest": ("rest\nV1 a 0 SIN(0 1 1)\nR0 a b 0.37\nC1 b c 1.3u\nD1 0 c di\nD2 c d di\nC2 d 0 0.7u\n"
+             "R1 d 0 1.1k\n" + DI + ".tran 1 9\n.end\n", {"periodic": ("undecided", [])}),
     "tank": ("tank\nV1 a 0 SIN(0 1 1)\nD1 a b di\nL1 b 0 1\nC1 b 0 1\n" + DI + ".tran 1 9\n.end\n",
              {"periodic": ("undecided", [])}),
     "linear": ("linear\nV1 a 0 SIN(0 1 1)\nR1 a b 1\nC1 b 0 0.25\n.tran 1 9\n.end\n",
@@ -54,6 +58,83 @@ MADE = {
                     "matrix C\n+ 1\nsystem\nstate y 2\npair e\nmatrix A\n+ 3\nmatrix B\n+ 1\n"
                     "matrix C\n+ 2\n.tran 10m 1\n.end\n", {"passive": ("yes", []),
                                                             "stable": ("yes", [])}),
+}
+
+INDEX_ONE = """dalcs-system 2 index one, strongly
+.tran 10m 1
+input u {source}
+state x 1
+unknown z
+pair d
+matrix A_I
++ -5
+matrix B_I
++ 0.5
+matrix A_II
++ 0.1
+matrix B_II
++ -4
+matrix Bbar_II
++ 1
+matrix E_II
++ 1
+matrix C_II
++ 1
+.end
+"""
+
+# x' = x + lambda, -lambda in Sgn(x): not passive, M(s) no P-matrix, G(s) = 1/(s - 1) one for s > 1
+UNSTABLE_RELAY = """dalcs-system 2 a relay on what runs away
+.tran 10m 1
+state x 0.5
+interval r -1 1
+matrix A
++ {a}
+matrix B
++ 1
+matrix C
++ {c}
+matrix D
++ {d}
+.end
+"""
+
+# two relays on one state: lambda is open, x is not ([BG13] 6.2; G(s) has a minor that is 0)
+TWO_RELAYS = """dalcs-system 2 two relays on one state
+.tran 10m 1
+state x 0.5
+interval r1 -1 1
+interval r2 -1 1
+matrix A
++ 1
+matrix B
++ 1 1
+matrix C
++ 1
++ 1
+.end
+"""
+
+# system files: verdicts, conditions
+SYSTEMS = {
+    # beta = 0.1/4, k15 = 0.5 beta
+    "p59": (INDEX_ONE.replace("{source}", "SIN(0 1 1)"),
+            {"convergence": "yes"}, {"A12": "yes", "L5.4": "yes", "A13": "yes", "P5.9": "yes",
+                                     "P5.2": "no", "L4.1.2": "yes", "L4.1.3": "no"}),
+    "p59_jump": (INDEX_ONE.replace("{source}", "PULSE(0 1 0.1 0 0 0.1 0.2)"),
+                 {"convergence": "depends"}, {"A13": "yes", "P5.9": "depends"}),
+    "p59_ramp": (INDEX_ONE.replace("{source}", "PULSE(0 1 0.1 0.01 0.01 0.1 0.2)"),
+                 {"convergence": "yes"}, {"P5.9": "yes"}),
+    "relay": (UNSTABLE_RELAY.format(a=1, c=1, d=0),
+              {"passive": "no", "exists": "yes", "unique": "yes", "multipliers": "yes", "jumps": "yes",
+               "step": "depends"}, {"relay-P": "yes", "relay-K1": "yes", "P": "no"}),
+    "relay_fed_forward": (UNSTABLE_RELAY.format(a=1, c=1, d=0.5),
+                          {"exists": "yes", "unique": "yes"}, {"relay-P": "yes"}),
+    "relay_backwards": (UNSTABLE_RELAY.format(a=1, c=-1, d=0),
+                        {"unique": "no"}, {"relay-P": "no", "relay-K1": "no"}),
+    "two_relays": (TWO_RELAYS,
+                   {"exists": "yes", "unique": "yes", "multipliers": "depends", "jumps": "yes"},
+                   {"relay-P": "no", "relay-K1": "yes"}),
 }
 
 
@@ -124,6 +205,19 @@ def main(program, root, has_glpk):
                 rate = result["parts"][0]["verdicts"]["contracting"]["value"]
                 if abs(rate - 1.0 / 6.0) > 1e-3 / 6.0:
                     cases.fail(name, f"rate {rate}")
+        for name, (text, expected, conditions) in SYSTEMS.items():
+            netlist = pathlib.Path(folder) / f"{name}.dalcs"
+            netlist.write_text(text)
+            result = cases.read(name, netlist)
+            if result is None or not has_glpk:
+                continue
+            cases.answers(name, result, expected)
+            told = {c["id"]: c for c in result["parts"][0]["conditions"]}
+            for id_, holds in conditions.items():
+                if told[id_]["holds"] != holds:
+                    cases.fail(name, f"{id_}: {told[id_]['holds']}, not {holds}: {told[id_]['because']}")
+            if name == "p59" and "k15 = 0.0125 1/s" not in told["A13"]["because"]:
+                cases.fail(name, told["A13"]["because"])
         many = pathlib.Path(folder) / "many.cir"
         many.write_text("equal parts\n" + "".join(
             f"V{k} a{k} 0 SIN(0 1 1)\nD{k} a{k} b{k} di\nR{k} b{k} 0 1\nC{k} b{k} 0 1\n"

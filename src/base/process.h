@@ -9,8 +9,9 @@
 struct dalcs_process {
     const char *const
         *argument; /* the program, looked up in PATH, and what follows; NULL at the end */
-    FILE *input, *output, *errors; /* its standard streams; input may be NULL: nothing to read */
-    double limit;                  /* s of its CPU time; 0: none */
+    const char *const *environment; /* NAME=VALUE, NULL at the end; NULL: this program's */
+    FILE *input, *output, *errors;  /* its standard streams; input may be NULL: nothing to read */
+    double limit;                   /* s of its CPU time; 0: none */
     const volatile sig_atomic_t *interrupted; /* not 0: end it; may be NULL */
 
     /* Set by the run. */

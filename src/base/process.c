@@ -30,8 +30,9 @@ static int start(const struct dalcs_process *process, pid_t *child) {
         error = posix_spawn_file_actions_adddup2(&actions, fileno(process->errors), 2);
     }
     if (error == 0) {
-        error = posix_spawnp(child, process->argument[0], &actions, NULL,
-                             (char *const *)process->argument, environ);
+        error = posix_spawnp(
+            child, process->argument[0], &actions, NULL, (char *const *)process->argument,
+            process->environment != NULL ? (char *const *)process->environment : environ);
     }
     posix_spawn_file_actions_destroy(&actions);
     return error;
