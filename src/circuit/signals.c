@@ -158,6 +158,30 @@ static bool is_function(const char *word) {
     return dalcs_builder_is_one_of(word, name, sizeof name / sizeof name[0]);
 }
 
+/* @r1[i], as ngspice has the current of an element without a branch of its own. */
+static bool read_device_current(struct dalcs_reader *reader) {
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    struct dalcs_token name = *token;
+    const size_t n = strlen(token->text);
+    if (n <= 4 || strcmp(token->text + n - 3, "[i]") != 0) {
+        dalcs_builder_error(builder, token, "of an element its current is recorded: @name[i]",
+                            "'%s' is not a signal", token->text);
+        return false;
+    }
+    name.text = dalcs_arena_copy(&builder->scratch, token->text + 1, n - 4);
+    if (name.text == NULL) {
+        builder->out_of_memory = true;
+        return false;
+    }
+    reader->at++;
+    const int device = dalcs_builder_find_device(builder, &name);
+    if (device >= 0) {
+        add_current(builder, device);
+    }
+    return true;
+}
+
 static bool read_signal(struct dalcs_reader *reader) {
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
@@ -171,7 +195,7 @@ static bool read_signal(struct dalcs_reader *reader) {
             dalcs_signals_add_default(builder);
             return true;
         }
-        return read_plain_node(reader);
+        return token->text[0] == '@' ? read_device_current(reader) : read_plain_node(reader);
     }
     if (is_part(token->text)) {
         reader->at += 2;

@@ -213,6 +213,11 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
     return q;
 }
 
+/* "//" starts a comment in ngspice. */
+static bool starts_slashes(const char *text) {
+    return text[0] == '/' && text[1] == '/';
+}
+
 static enum dalcs_status read_tokens(struct dalcs_lexer *lexer, size_t p, size_t begin) {
     const char *raw = lexer->raw;
     bool after_comma = false;
@@ -226,6 +231,9 @@ static enum dalcs_status read_tokens(struct dalcs_lexer *lexer, size_t p, size_t
         }
         if (raw[p] == '$' && (p == begin || is_blank(raw[p - 1])) &&
             (raw[p + 1] == '\0' || is_blank(raw[p + 1]))) {
+            return DALCS_OK;
+        }
+        if (starts_slashes(raw + p) && (p == begin || is_blank(raw[p - 1]))) {
             return DALCS_OK;
         }
         DALCS_TRY(need_line(lexer, begin));
@@ -294,7 +302,8 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
         lexer->in_control = !dalcs_lexer_starts_with(lexer, p, ".endc");
         return lexer->in_control ? add_script_line(lexer, begin) : DALCS_OK;
     }
-    if (p == end || lexer->raw[p] == '*' || lexer->raw[p] == ';') {
+    if (p == end || lexer->raw[p] == '*' || lexer->raw[p] == ';' ||
+        starts_slashes(lexer->raw + p)) {
         return DALCS_OK;
     }
     if (lexer->raw[p] == '+' && !lexer->skipping) {
