@@ -9,11 +9,33 @@
 
 static const char USAGE[] = "signals are: v(node) v(a,b) i(element) all";
 
+/* A column of the .print that is being read. */
+static void add_column(struct dalcs_builder *builder, const char *name) {
+    const char *before = builder->print_before;
+    const bool is_function = before != NULL && strchr(before, '(') != NULL;
+    const char *title =
+        before == NULL ? name
+                       : dalcs_arena_printf(&builder->circuit->arena, "%s%s%s", before,
+                                            is_function ? name : name + 1, is_function ? ")" : "");
+    if (title == NULL ||
+        dalcs_grow(&builder->print_column, &builder->print_column_capacity,
+                   builder->n_print_columns + 1, sizeof *builder->print_column) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return;
+    }
+    builder->print_column[builder->n_print_columns++] =
+        (struct dalcs_print_column){name, title, builder->print_part};
+    builder->print[builder->n_prints - 1].n++;
+}
+
 /* Adds a signal; `name` is in the circuit's arena or NULL when memory ran out. The defaults alone
  * hold nothing twice, and a million names are better not looked up. */
 static void add_signal(struct dalcs_builder *builder, const char *name,
                        struct dalcs_signal signal) {
     const bool may_repeat = builder->names_signals;
+    if (name != NULL && builder->is_print) {
+        add_column(builder, name);
+    }
     if (name != NULL && may_repeat && dalcs_names_find(&builder->signals, name) >= 0) {
         return;
     }
@@ -145,17 +167,37 @@ static bool read_plain_node(struct dalcs_reader *reader) {
     return false;
 }
 
+struct part_name {
+    const char *name;
+    enum dalcs_signal_part part;
+};
+
+static const struct part_name *find_part(const struct part_name *part, size_t n, const char *name) {
+    for (size_t k = 0; k < n; k++) {
+        if (strcmp(part[k].name, name) == 0) {
+            return &part[k];
+        }
+    }
+    return NULL;
+}
+
 /* v and i, or a part of one of .ac: vm, vp, vr, vi, vdb. The whole is recorded. */
-static bool is_part(const char *word) {
-    static const char *const suffix[] = {"", "m", "p", "r", "i", "db"};
-    return (word[0] == 'v' || word[0] == 'i') &&
-           dalcs_builder_is_one_of(word + 1, suffix, sizeof suffix / sizeof suffix[0]);
+static const struct part_name *part_of(const char *word) {
+    static const struct part_name suffix[] = {
+        {"", DALCS_PART_PLAIN}, {"m", DALCS_PART_MAGNITUDE}, {"p", DALCS_PART_PHASE},
+        {"r", DALCS_PART_REAL}, {"i", DALCS_PART_IMAGINARY}, {"db", DALCS_PART_DECIBEL}};
+    return word[0] == 'v' || word[0] == 'i'
+               ? find_part(suffix, sizeof suffix / sizeof suffix[0], word + 1)
+               : NULL;
 }
 
 /* The same around a signal: db(v(out)). */
-static bool is_function(const char *word) {
-    static const char *const name[] = {"db", "mag", "ph", "phase", "re", "real", "imag", "abs"};
-    return dalcs_builder_is_one_of(word, name, sizeof name / sizeof name[0]);
+static const struct part_name *function_of(const char *word) {
+    static const struct part_name name[] = {
+        {"db", DALCS_PART_DECIBEL}, {"mag", DALCS_PART_MAGNITUDE}, {"abs", DALCS_PART_MAGNITUDE},
+        {"ph", DALCS_PART_PHASE},   {"phase", DALCS_PART_PHASE},   {"re", DALCS_PART_REAL},
+        {"real", DALCS_PART_REAL},  {"imag", DALCS_PART_IMAGINARY}};
+    return find_part(name, sizeof name / sizeof name[0], word);
 }
 
 /* @r1[i], as ngspice has the current of an element without a branch of its own. */
@@ -197,14 +239,22 @@ static bool read_signal(struct dalcs_reader *reader) {
         }
         return token->text[0] == '@' ? read_device_current(reader) : read_plain_node(reader);
     }
-    if (is_part(token->text)) {
+    const struct part_name *part = part_of(token->text);
+    if (part != NULL) {
         reader->at += 2;
+        if (part->part != DALCS_PART_PLAIN) {
+            builder->print_part = part->part;
+            builder->print_before = token->text;
+        }
         return token->text[0] == 'v' ? read_voltage(reader) : read_current(reader);
     }
-    if (is_function(token->text)) {
+    const struct part_name *function = function_of(token->text);
+    if (function != NULL) {
         reader->at += 2;
         const struct dalcs_token *inner = dalcs_reader_peek(reader, 0);
-        if (inner == NULL || !is_part(inner->text)) {
+        builder->print_part = function->part;
+        builder->print_before = dalcs_builder_hint(builder, "%s(", token->text);
+        if (inner == NULL || part_of(inner->text) == NULL) {
             dalcs_reader_missing(reader, "v(node) or i(element)");
             return false;
         }
@@ -221,39 +271,76 @@ static bool read_signal(struct dalcs_reader *reader) {
     return false;
 }
 
+/* `(0,5)` after a signal of .plot: its limits. */
+static void skip_limits(struct dalcs_reader *reader) {
+    const struct dalcs_token *open = dalcs_reader_peek(reader, 0);
+    if (strcmp(reader->card->token->text, ".plot") != 0 || open == NULL ||
+        open->kind != DALCS_TOKEN_OPEN) {
+        return;
+    }
+    while (!dalcs_reader_at_end(reader) && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        reader->at++;
+    }
+}
+
+/* The table of a .print: of one analysis, or of all. */
+static bool start_print(struct dalcs_builder *builder, int analysis) {
+    if (dalcs_grow(&builder->print, &builder->print_capacity, builder->n_prints + 1,
+                   sizeof *builder->print) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return false;
+    }
+    struct dalcs_print_card *print = &builder->print[builder->n_prints++];
+    *print = (struct dalcs_print_card){0};
+    for (int k = 0; k <= DALCS_MEASURED_AC; k++) {
+        print->is_of[k] = analysis < 0 || k == analysis;
+    }
+    return true;
+}
+
 void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    static const char *const ours[] = {"tran", "op", "dc", "ac"};
+    static const char *const ours[] = {[DALCS_MEASURED_TRAN] = "tran",
+                                       [DALCS_MEASURED_OP] = "op",
+                                       [DALCS_MEASURED_DC] = "dc",
+                                       [DALCS_MEASURED_AC] = "ac"};
     static const char *const other[] = {"noise", "sens", "hb", "four"};
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     const struct dalcs_token *type = dalcs_reader_peek(&reader, 0);
     builder->names_signals = true;
-    builder->circuit->prints = builder->circuit->prints ||
-                               strcmp(card->token->text, ".print") == 0 ||
-                               strcmp(card->token->text, ".plot") == 0;
-    const bool is_print = strcmp(card->token->text, ".save") != 0;
-    for (size_t k = 0; is_print && k < sizeof other / sizeof other[0]; k++) {
+    const char *name = card->token->text;
+    const bool has_type = strcmp(name, ".save") != 0;
+    for (size_t k = 0; has_type && k < sizeof other / sizeof other[0]; k++) {
         if (dalcs_reader_take_word(&reader, other[k])) {
             dalcs_builder_note(builder, type, NULL, "there is no %s analysis: this is ignored",
                                type->text);
             return;
         }
     }
-    bool takes_type = is_print;
-    for (size_t k = 0; k < sizeof ours / sizeof ours[0] && takes_type; k++) {
-        takes_type = !dalcs_reader_take_word(&reader, ours[k]);
+    int analysis = -1;
+    for (int k = 0; has_type && k <= DALCS_MEASURED_AC && analysis < 0; k++) {
+        analysis = dalcs_reader_take_word(&reader, ours[k]) ? k : -1;
     }
     if (dalcs_reader_at_end(&reader)) {
         /* A bare .probe records everything, as in PSpice. */
-        if (strcmp(card->token->text, ".probe") == 0) {
+        if (strcmp(name, ".probe") == 0) {
             dalcs_signals_add_default(builder);
         } else {
             dalcs_reader_missing(&reader, "a signal");
         }
         return;
     }
-    while (!dalcs_reader_at_end(&reader)) {
-        if (!read_signal(&reader)) {
-            return;
-        }
+    const bool is_print = strcmp(name, ".print") == 0 || strcmp(name, ".plot") == 0;
+    if (is_print && !start_print(builder, analysis)) {
+        return;
     }
+    builder->is_print = is_print;
+    while (!dalcs_reader_at_end(&reader)) {
+        builder->print_before = NULL;
+        builder->print_part = DALCS_PART_PLAIN;
+        if (!read_signal(&reader)) {
+            break;
+        }
+        skip_limits(&reader);
+    }
+    builder->is_print = false;
 }
