@@ -53,18 +53,30 @@ static const char *node_text(const struct dalcs_builder *builder, int node) {
     return node == 0 ? "0" : builder->node_name[node];
 }
 
+/* "v(out)" or "i(r1)"; a million of them by printf take as long as to read their netlist. */
+static const char *signal_name(const struct dalcs_builder *builder, char letter,
+                               const char *inside) {
+    const size_t n = strlen(inside);
+    char *name = dalcs_arena_alloc(&builder->circuit->arena, n + 4, 1);
+    if (name != NULL) {
+        name[0] = letter;
+        name[1] = '(';
+        memcpy(name + 2, inside, n);
+        memcpy(name + 2 + n, ")", 2);
+    }
+    return name;
+}
+
 static void add_voltage(struct dalcs_builder *builder, int a, int b, bool is_pair) {
-    struct dalcs_arena *arena = &builder->circuit->arena;
-    const char *name = is_pair ? dalcs_arena_printf(arena, "v(%s,%s)", node_text(builder, a),
-                                                    node_text(builder, b))
-                               : dalcs_arena_printf(arena, "v(%s)", node_text(builder, a));
+    const char *name = is_pair ? dalcs_arena_printf(&builder->circuit->arena, "v(%s,%s)",
+                                                    node_text(builder, a), node_text(builder, b))
+                               : signal_name(builder, 'v', node_text(builder, a));
     add_signal(builder, name,
                (struct dalcs_signal){.kind = DALCS_SIGNAL_VOLTAGE, .node = {a, b}, .device = -1});
 }
 
 static void add_current(struct dalcs_builder *builder, int device) {
-    const char *name = dalcs_arena_printf(&builder->circuit->arena, "i(%s)",
-                                          builder->circuit->device[device].name);
+    const char *name = signal_name(builder, 'i', builder->circuit->device[device].name);
     add_signal(
         builder, name,
         (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .device = builder->current_of[device]});

@@ -17,7 +17,11 @@ static bool is_blank(char c) {
 }
 
 static bool ends_word(char c) {
-    return c == '\0' || is_blank(c) || c == ',' || c == '=' || c == '(' || c == ')' || c == ';';
+    static const bool ends[] = {
+        ['\0'] = true, [' '] = true, ['\t'] = true, ['\r'] = true, ['\v'] = true, ['\f'] = true,
+        [','] = true,  ['='] = true, ['('] = true,  [')'] = true,  [';'] = true};
+    const unsigned char byte = (unsigned char)c;
+    return byte < sizeof ends && ends[byte];
 }
 
 /* The length of the UTF-8 character at p (n bytes follow), 0 when it is not one. */
@@ -316,6 +320,9 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
         if (skips) {
             return DALCS_OK;
         }
+    }
+    if (lexer->raw[p] != '.') {
+        return read_tokens(lexer, p, begin);
     }
     if (dalcs_lexer_starts_with(lexer, p, ".end")) {
         lexer->ended = true;
