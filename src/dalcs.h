@@ -99,10 +99,31 @@ struct dalcs_request {
     bool ac;
     size_t n_steps; /* of .step: how often each of these is run; 1 without */
     double step, stop, start, max_step;
-    bool prints; /* there is a .print or .plot */
-    bool ascii;  /* .options filetype=ascii: raw files as text */
+    size_t n_prints; /* .print and .plot cards */
+    bool ascii;      /* .options filetype=ascii: raw files as text */
 };
 struct dalcs_request dalcs_session_request(const struct dalcs_session *session);
+
+/* What a .print shows of a signal; the plain value of an .ac is complex. */
+enum dalcs_print_part {
+    DALCS_PRINT_PLAIN,
+    DALCS_PRINT_MAGNITUDE,
+    DALCS_PRINT_DECIBEL,
+    DALCS_PRINT_PHASE, /* radians */
+    DALCS_PRINT_REAL,
+    DALCS_PRINT_IMAGINARY
+};
+
+struct dalcs_print {
+    const char *signal; /* by its name in struct dalcs_plot */
+    const char *title;  /* "v(out)", "vdb(out)" */
+    enum dalcs_print_part part;
+};
+
+/* A column of the .print or .plot card number `card`; false when it does not show this analysis (enum
+ * dalcs_analysis) or has fewer columns. Valid as long as the plot that it is about. */
+bool dalcs_session_print(const struct dalcs_session *session, size_t card, int analysis,
+                         size_t column, struct dalcs_print *print);
 
 /* ---- Equations ----------------------------------------------------------------------------- */
 

@@ -24,7 +24,7 @@ int dalcs_names_find(const struct dalcs_names *names, const char *name) {
 }
 
 enum dalcs_status dalcs_names_add(struct dalcs_names *names, const char *name, int value) {
-    struct dalcs_names_entry *entry = dalcs_alloc(1, sizeof *entry);
+    struct dalcs_names_entry *entry = dalcs_arena_alloc(&names->arena, 1, sizeof *entry);
     if (entry == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -32,7 +32,6 @@ enum dalcs_status dalcs_names_add(struct dalcs_names *names, const char *name, i
     entry->value = value;
     HASH_ADD_KEYPTR(hh, names->entry, name, strlen(name), entry);
     if (entry->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
-        free(entry);
         return DALCS_E_NOMEM;
     }
     return DALCS_OK;
@@ -136,11 +135,7 @@ const char *dalcs_names_join(const struct dalcs_names *names, size_t most,
 }
 
 void dalcs_names_finish(struct dalcs_names *names) {
-    struct dalcs_names_entry *entry;
-    struct dalcs_names_entry *next;
-    HASH_ITER(hh, names->entry, entry, next) {
-        HASH_DEL(names->entry, entry);
-        free(entry);
-    }
+    HASH_CLEAR(hh, names->entry);
+    dalcs_arena_finish(&names->arena);
     *names = (struct dalcs_names){0};
 }

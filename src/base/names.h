@@ -8,6 +8,7 @@
 
 struct dalcs_names {
     struct dalcs_names_entry *entry; /* uthash, in the order of insertion */
+    struct dalcs_arena arena;        /* of the entries */
 };
 
 /* The value of a name, or -1. */

@@ -47,7 +47,8 @@ static bool check_times(struct dalcs_builder *builder, const struct dalcs_transi
 static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *transient) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     struct dalcs_builder *builder = reader->builder;
-    if (dalcs_reader_take_word(reader, "uic")) {
+    /* noop is Xyce's word for it */
+    if (dalcs_reader_take_word(reader, "uic") || dalcs_reader_take_word(reader, "noop")) {
         transient->use_initial_conditions = true;
         return true;
     }

@@ -46,6 +46,20 @@ static bool read_formula(struct dalcs_reader *reader, const struct dalcs_token *
     return true;
 }
 
+/* LTspice has B sources that are no sources. */
+static void refuse(struct dalcs_builder *builder, const struct dalcs_token *what) {
+    if (strcmp(what->text, "r") == 0) {
+        dalcs_builder_error(builder, what, "write Rname node node R={expression} for a number",
+                            "a resistance times its current is a product of signals, unless it is "
+                            "a number");
+    } else if (strcmp(what->text, "p") == 0) {
+        dalcs_builder_error(builder, what, "write a resistor, or a current source I= of a table",
+                            "a power over a voltage is no piecewise linear current");
+    } else {
+        dalcs_builder_error(builder, what, USAGE, "a behavioural source has no '%s='", what->text);
+    }
+}
+
 void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     int node[2];
@@ -55,8 +69,7 @@ void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_c
     const struct dalcs_token *what = dalcs_reader_take_parameter(&reader);
     if (what == NULL || strlen(what->text) != 1 || strchr("vi", *what->text) == NULL) {
         if (what != NULL) {
-            dalcs_builder_error(builder, what, USAGE, "a behavioural source has no '%s='",
-                                what->text);
+            refuse(builder, what);
         } else {
             dalcs_reader_missing(&reader, "V= or I=");
         }

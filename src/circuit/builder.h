@@ -100,6 +100,14 @@ struct dalcs_builder {
     struct dalcs_measure_card *measure; /* heap */
     size_t n_measures;
     size_t measure_capacity;
+    struct dalcs_print_card
+        *print; /* heap; columns are in print_column, one card's after the other's */
+    size_t n_prints, print_capacity;
+    struct dalcs_print_column *print_column; /* heap */
+    size_t n_print_columns, print_column_capacity;
+    bool is_print;            /* the signals that are being read are those of the last card */
+    const char *print_before; /* of the title of the next one */
+    enum dalcs_signal_part print_part;
     struct dalcs_fourier_card *fourier; /* heap */
     size_t n_fouriers;
     size_t fourier_capacity;

@@ -50,11 +50,12 @@ static const struct dot_card DOT_CARDS[] = {
     {".fourier", DALCS_CARD_FOURIER, NULL, NULL, NOTHING, NULL},
     {".backanno", DALCS_CARD_NONE, NULL, NULL, NOTHING, NULL},
 
-    {".data", DALCS_CARD_NONE, "parameter sweeps", "write a netlist for each value", NOTHING,
-     ".enddata"},
-    {".enddata", DALCS_CARD_NONE, "parameter sweeps", NULL, NOTHING, NULL},
+    {".data", DALCS_CARD_NONE, "tables of parameters",
+     "write .step param name list value value ...", NOTHING, ".enddata"},
+    {".enddata", DALCS_CARD_NONE, "tables of parameters", NULL, NOTHING, NULL},
     {".wave", DALCS_CARD_NONE, "sound files", NULL, NOTHING, NULL},
-    {".alter", DALCS_CARD_NONE, "altered runs", "write a netlist for each run", NOTHING, NULL},
+    {".alter", DALCS_CARD_NONE, "altered runs", "write .step, or alter in a .control block",
+     NOTHING, NULL},
 };
 
 /* Without a meaning for ideal elements; accepted. */

@@ -212,6 +212,28 @@ static enum dalcs_status collect_measured(struct dalcs_builder *builder) {
     return DALCS_OK;
 }
 
+static enum dalcs_status collect_prints(struct dalcs_builder *builder) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    const size_t n = builder->n_prints;
+    const size_t n_columns = builder->n_print_columns;
+    struct dalcs_print_column *column =
+        dalcs_arena_alloc(&circuit->arena, n_columns, sizeof *column);
+    circuit->print = dalcs_arena_alloc(&circuit->arena, n, sizeof *circuit->print);
+    if (column == NULL || circuit->print == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k < n_columns; k++) {
+        column[k] = builder->print_column[k];
+    }
+    circuit->n_prints = (int)n;
+    for (size_t k = 0; k < n; k++) {
+        circuit->print[k] = builder->print[k];
+        circuit->print[k].column = column;
+        column += circuit->print[k].n;
+    }
+    return DALCS_OK;
+}
+
 /* Moves what grew on the heap into the circuit's arena. */
 static enum dalcs_status collect(struct dalcs_builder *builder) {
     struct dalcs_circuit *circuit = builder->circuit;
@@ -241,6 +263,7 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
     for (size_t k = 0; k < builder->n_initial_conditions; k++) {
         circuit->initial_condition[k] = builder->initial_condition[k];
     }
+    DALCS_TRY(collect_prints(builder));
     return collect_measured(builder);
 }
 
@@ -319,6 +342,8 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
     free(builder.signal);
     free(builder.measured);
     free(builder.measure);
+    free(builder.print);
+    free(builder.print_column);
     free(builder.fourier);
     free(builder.initial_condition);
     free(builder.formula);

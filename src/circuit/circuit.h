@@ -154,8 +154,9 @@ struct dalcs_circuit {
     struct dalcs_fourier_card *fourier; /* .four, one for each signal */
     struct dalcs_transient transient;
     bool operating_point; /* .op */
-    bool prints;          /* .print or .plot */
-    int n_dc;             /* of .dc, the innermost first; 0: there is none */
+    int n_prints;
+    struct dalcs_print_card *print; /* .print and .plot, in their order */
+    int n_dc;                       /* of .dc, the innermost first; 0: there is none */
     struct dalcs_sweep dc[DALCS_MOST_DC];
     struct dalcs_sweep ac; /* frequencies of .ac in Hz; n is 0 without one */
     int n_steps;           /* of .step, the innermost first */
@@ -173,6 +174,16 @@ struct dalcs_circuit {
         struct dalcs_location compress_where;
     } options;
     struct dalcs_arena arena; /* owns everything above, source text of locations included */
+};
+
+struct dalcs_print_card {
+    bool is_of[DALCS_MEASURED_AC + 1]; /* the analyses that it shows */
+    int n;
+
+    struct dalcs_print_column {
+        const char *signal, *title; /* title: as on the card */
+        enum dalcs_signal_part part;
+    } * column; /* [n] */
 };
 
 struct dalcs_netlist;

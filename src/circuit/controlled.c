@@ -18,7 +18,7 @@ static const char *usage_of(enum dalcs_device_kind kind) {
     }
 }
 
-/* LAPLACE and its like stand where the control should be. */
+/* LAPLACE and its like stand where the control should be; in LTspice LAPLACE= behind two nodes. */
 static bool is_refused(struct dalcs_reader *reader) {
     static const char *const forms[] = {"laplace", "freq", "chebyshev"};
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
@@ -26,8 +26,14 @@ static bool is_refused(struct dalcs_reader *reader) {
         !dalcs_builder_is_one_of(token->text, forms, sizeof forms / sizeof forms[0])) {
         return false;
     }
-    dalcs_builder_error(reader->builder, token, reader->usage,
-                        "a source of the form %s is not supported yet", token->text);
+    if (token->text[0] == 'l') {
+        dalcs_builder_error(reader->builder, token,
+                            "build the filter of R, L and C, with sources E or G",
+                            "a transfer function of s is not supported yet");
+    } else {
+        dalcs_builder_error(reader->builder, token, "a circuit of R, L and C can have it",
+                            "a response over frequency (%s) has no equations in time", token->text);
+    }
     return true;
 }
 
@@ -47,7 +53,7 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
         return;
     }
     if (is_voltage_controlled(kind)) {
-        if (!dalcs_reader_nodes(&reader, 2, device->node + 2)) {
+        if (!dalcs_reader_nodes(&reader, 2, device->node + 2) || is_refused(&reader)) {
             return;
         }
         if (dalcs_behavioural_is_form(dalcs_reader_peek(&reader, 0))) {

@@ -125,6 +125,29 @@ static bool read_constant(struct reading *r, const char *what, double *value) {
     return true;
 }
 
+/* A time that is known before the run, or else computed from earlier measurements. */
+static bool read_time(struct reading *r, double *time, struct dalcs_signal_formula *later) {
+    const struct dalcs_signal_formula_rules rules = {
+        .variable = "",
+        .no_signals = "a time is made of numbers, parameters and earlier measurements",
+        .results = &r->builder->measure_names};
+    struct dalcs_signal_formula formula;
+    if (!read_formula(r, false, "a time", &rules, &formula)) {
+        return false;
+    }
+    if (formula.has_results) {
+        *later = formula;
+        return true;
+    }
+    *time = dalcs_signal_formula_value(&formula, &(struct dalcs_signal_formula_point){0});
+    if (!isfinite(*time)) {
+        dalcs_builder_error(r->builder, dalcs_reader_previous(&r->reader), NULL,
+                            "a time has no value here");
+        return false;
+    }
+    return true;
+}
+
 /* RISE=2, FALL=LAST */
 static bool read_count(struct reading *r, int *count) {
     const struct dalcs_token *token = dalcs_reader_peek(&r->reader, 0);
@@ -192,7 +215,7 @@ static bool read_condition(struct reading *r, struct dalcs_measure_instant *inst
             continue;
         }
         if (take(r, "td")) {
-            if (!read_constant(r, "a time", &instant->delay)) {
+            if (!read_time(r, &instant->delay, &instant->delay_formula)) {
                 return false;
             }
             continue;
@@ -232,7 +255,7 @@ static bool read_condition(struct reading *r, struct dalcs_measure_instant *inst
 static bool read_instant(struct reading *r, struct dalcs_measure_instant *instant) {
     if (take(r, "at")) {
         instant->kind = DALCS_INSTANT_AT;
-        return read_constant(r, "a time", &instant->at);
+        return read_time(r, &instant->at, &instant->at_formula);
     }
     return read_condition(r, instant);
 }
@@ -259,11 +282,11 @@ static bool read_bounds(struct reading *r) {
     while (!dalcs_reader_at_end(&r->reader)) {
         const struct dalcs_token *token = dalcs_reader_peek(&r->reader, 0);
         if (take(r, "from") || (is_statistic && take(r, "td"))) {
-            if (!read_constant(r, "a time", &m->from)) {
+            if (!read_time(r, &m->from, &m->from_formula)) {
                 return false;
             }
         } else if (take(r, "to")) {
-            if (!read_constant(r, "a time", &m->to)) {
+            if (!read_time(r, &m->to, &m->to_formula)) {
                 return false;
             }
         } else if (take(r, "goal") || take(r, "minval") || take(r, "weight")) {
@@ -306,7 +329,7 @@ static bool read_place(struct reading *r) {
     }
     if (take(r, "at")) {
         m->instant[0].kind = DALCS_INSTANT_AT;
-        return read_constant(r, "a time", &m->instant[0].at);
+        return read_time(r, &m->instant[0].at, &m->instant[0].at_formula);
     }
     if (m->analysis == DALCS_MEASURED_OP && m->kind == DALCS_MEASURE_FIND) {
         return true;
@@ -366,6 +389,16 @@ static bool read_measurement(struct reading *r) {
     }
 }
 
+static bool needs_results(const struct dalcs_measure_card *m) {
+    bool needs = m->formula.has_results || m->from_formula.has_results || m->to_formula.has_results;
+    for (int k = 0; k < 2; k++) {
+        const struct dalcs_measure_instant *i = &m->instant[k];
+        needs = needs || i->at_formula.has_results || i->delay_formula.has_results ||
+                i->difference.has_results;
+    }
+    return needs;
+}
+
 /* ---- The card -------------------------------------------------------------------------------- */
 
 /* `tran` and the like, which LTspice lets people leave out. */
@@ -421,10 +454,12 @@ void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card 
         .where = dalcs_builder_keep_location(builder, name)};
     r.measure = &measure;
     r.rules.variable = analysis == DALCS_MEASURED_AC ? "frequency" : "time";
+    r.rules.results = &builder->measure_names;
     if (measure.name == NULL || !read_measurement(&r)) {
         builder->out_of_memory = builder->out_of_memory || measure.name == NULL;
         return;
     }
+    measure.is_late = measure.kind != DALCS_MEASURE_PARAM && needs_results(&measure);
     if (!is_run(builder, analysis)) {
         dalcs_builder_note(builder, card->token, NULL,
                            "there is no such analysis: this measurement is left out");

@@ -33,14 +33,16 @@ struct dalcs_measure_instant {
     enum dalcs_instant_kind { DALCS_INSTANT_NONE, DALCS_INSTANT_AT, DALCS_INSTANT_CROSSING } kind;
 
     double at;
+    struct dalcs_signal_formula at_formula; /* n > 0: `at` is computed from earlier measurements, */
     struct dalcs_signal_formula left,
         difference;   /* left = right: of the difference a zero is sought */
     const char *text; /* of the right side */
 
     enum dalcs_measure_edge { DALCS_EDGE_ANY, DALCS_EDGE_RISE, DALCS_EDGE_FALL } edge;
 
-    int count;    /* which of them, from 1; 0: the last */
-    double delay; /* td: those before do not count; -INFINITY: none */
+    int count;                                 /* which of them, from 1; 0: the last */
+    double delay;                              /* td: those before do not count; -INFINITY: none */
+    struct dalcs_signal_formula delay_formula; /* likewise */
 };
 
 struct dalcs_measure_card {
@@ -49,7 +51,9 @@ struct dalcs_measure_card {
     enum dalcs_measure_kind kind;
     struct dalcs_signal_formula formula;
     double from, to; /* infinite: from the first to the last point */
+    struct dalcs_signal_formula from_formula, to_formula; /* n > 0: from earlier measurements */
     struct dalcs_measure_instant instant[2];
+    bool is_late; /* it needs the results of earlier ones, and so comes after the run */
     struct dalcs_location where;
 };
 

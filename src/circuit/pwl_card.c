@@ -8,16 +8,15 @@
  * does not end is written out twice, and the second course repeats. */
 #include "builder.h"
 #include "number.h"
-#include "text_file.h"
+#include "number_file.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const char USAGE[] = "PWL(time value time value ...) [r=time] [td=time]";
 
-enum { MOST_POINTS = 10000000, LONGEST_WORD = 64, DEEPEST = 4 };
+enum { MOST_POINTS = 10000000, DEEPEST = 4 };
 
 /* The points so far. */
 struct points {
@@ -98,94 +97,36 @@ static bool read_point(struct points *p) {
 
 /* ---- A file -------------------------------------------------------------------------------- */
 
-/* The text of a name as it was written: file names have capitals. */
-static const char *written_text(struct dalcs_builder *builder, const struct dalcs_token *token) {
-    return token->kind == DALCS_TOKEN_STRING
-               ? token->text
-               : dalcs_builder_hint(builder, "%.*s", token->length,
-                                    token->line->text + token->offset);
-}
-
-/* Relative to the netlist. */
-static const char *find_path(struct dalcs_builder *builder, const struct dalcs_token *token) {
-    const char *name = written_text(builder, token);
-    const char *file = token->line->source->name;
-    const char *slash = strrchr(file, '/');
-    if (name == NULL || name[0] == '/' || slash == NULL) {
-        return name;
-    }
-    return dalcs_builder_hint(builder, "%.*s/%s", (int)(slash - file), file, name);
-}
-
-/* The next number of a file's text; false at its end, or, with *wrong set, at what is none. */
-static bool next_number(const char **text, int *line, double *value, const char **wrong) {
-    const char *s = *text;
-    for (;;) {
-        s += strspn(s, " \t\r,");
-        if (*s == '\n') {
-            (*line)++;
-            s++;
-        } else if (*s == '*' || *s == '#' || *s == ';') {
-            s += strcspn(s, "\n");
-        } else {
-            break;
-        }
-    }
-    const size_t length = strcspn(s, " \t\r\n,;");
-    *text = s + length;
-    if (length == 0) {
-        return false;
-    }
-    char word[LONGEST_WORD];
-    struct dalcs_number number;
-    *wrong = s;
-    if (length >= sizeof word) {
-        return false;
-    }
-    memcpy(word, s, length);
-    word[length] = '\0';
-    if (dalcs_number_parse(word, &number) != DALCS_NUMBER_OK) {
-        return false;
-    }
-    *wrong = NULL;
-    *value = number.value;
-    return true;
-}
-
-static bool read_text(struct points *p, const struct dalcs_token *place, const char *path,
-                      const char *text) {
+static bool read_text(struct points *p, const struct dalcs_token *place,
+                      struct dalcs_number_file *file) {
     struct dalcs_builder *builder = p->reader->builder;
-    const char *wrong = NULL;
-    int line = 1;
     double t;
     double v;
     const size_t before = p->n;
-    while (next_number(&text, &line, &t, &wrong)) {
-        if (!next_number(&text, &line, &v, &wrong)) {
-            if (wrong != NULL) {
+    while (dalcs_number_file_next(file, &t)) {
+        if (!dalcs_number_file_next(file, &v)) {
+            if (file->wrong != NULL) {
                 break;
             }
             dalcs_builder_error(builder, place, "each line is a time and a value",
-                                "%s:%d: the last time has no value", path, line);
+                                "%s:%d: the last time has no value", file->path, file->line);
             return false;
         }
         if (p->n > before && p->from + t * p->time_scale < p->t[p->n - 1]) {
             dalcs_builder_error(builder, place, "times must ascend; two equal times are a jump",
-                                "%s:%d: time %g s is before the one ahead of it", path, line, t);
+                                "%s:%d: time %g s is before the one ahead of it", file->path,
+                                file->line, t);
             return false;
         }
         if (!add_point(p, place, p->from + t * p->time_scale, v * p->value_scale)) {
             return false;
         }
     }
-    if (wrong != NULL) {
-        dalcs_builder_error(builder, place, "each line is a time and a value",
-                            "%s:%d: '%.*s' is not a number", path, line,
-                            (int)fmin((double)strcspn(wrong, " \t\r\n,;"), LONGEST_WORD), wrong);
+    if (!dalcs_number_file_is_read(builder, place, file, "each line is a time and a value")) {
         return false;
     }
     if (p->n == before) {
-        dalcs_builder_error(builder, place, NULL, "there are no points in %s", path);
+        dalcs_builder_error(builder, place, NULL, "there are no points in %s", file->path);
         return false;
     }
     return true;
@@ -194,30 +135,17 @@ static bool read_text(struct points *p, const struct dalcs_token *place, const c
 static bool read_file(struct points *p) {
     struct dalcs_builder *builder = p->reader->builder;
     const struct dalcs_token *place = dalcs_reader_peek(p->reader, 0);
+    struct dalcs_number_file file;
     if (place == NULL || (place->kind != DALCS_TOKEN_WORD && place->kind != DALCS_TOKEN_STRING)) {
         dalcs_reader_missing(p->reader, "the name of a file");
         return false;
     }
     p->reader->at++;
-    const char *path = find_path(builder, place);
-    if (path == NULL) {
+    if (!dalcs_number_file_open(builder, place, "points", &file)) {
         return false;
     }
-    struct dalcs_diag said = {0};
-    char *text = NULL;
-    size_t length;
-    const enum dalcs_status status =
-        dalcs_text_file_read(path, INT_MAX, &text, &length, NULL, &said);
-    bool ok = false;
-    if (status == DALCS_E_IO) {
-        dalcs_builder_error(builder, place, NULL, "cannot read the points of %s", path);
-    } else if (status != DALCS_OK) {
-        builder->out_of_memory = true;
-    } else {
-        ok = read_text(p, place, path, text);
-    }
-    dalcs_diag_finish(&said);
-    free(text);
+    const bool ok = read_text(p, place, &file);
+    dalcs_number_file_close(&file);
     return ok;
 }
 

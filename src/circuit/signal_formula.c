@@ -78,6 +78,15 @@ double dalcs_signal_formula_value(const struct dalcs_signal_formula *formula,
     int n = 0;
     for (int k = 0; k < formula->n; k++) {
         const struct dalcs_signal_formula_step *step = &formula->step[k];
+        if (step->push == DALCS_PUT_ARGUMENT) {
+            stack[n++] = stack[step->index];
+            continue;
+        }
+        if (step->push == DALCS_PUT_DOWN) {
+            stack[step->index] = stack[n - 1];
+            n = step->index + 1;
+            continue;
+        }
         if (step->push != DALCS_PUT_NOTHING) {
             stack[n++] = pushed(step, point);
             continue;

@@ -18,11 +18,13 @@ enum dalcs_signal_part {
 
 struct dalcs_signal_formula_step {
     enum dalcs_signal_formula_put {
-        DALCS_PUT_NOTHING, /* an operation: code */
-        DALCS_PUT_VALUE,   /* number */
-        DALCS_PUT_SIGNAL,  /* index, part */
-        DALCS_PUT_TIME,    /* or what is swept */
-        DALCS_PUT_RESULT   /* index: of an earlier measurement */
+        DALCS_PUT_NOTHING,  /* an operation: code */
+        DALCS_PUT_VALUE,    /* number */
+        DALCS_PUT_SIGNAL,   /* index, part */
+        DALCS_PUT_TIME,     /* or what is swept */
+        DALCS_PUT_RESULT,   /* index: of an earlier measurement */
+        DALCS_PUT_ARGUMENT, /* stack[index] once more: of a function that is written out */
+        DALCS_PUT_DOWN      /* the topmost to stack[index], where it is the topmost then */
     } push;
 
     enum dalcs_operation_code code;
@@ -38,6 +40,7 @@ struct dalcs_signal_formula {
     int n;
     const struct dalcs_signal_formula_step *step;
     const char *text; /* as on the card, lower case */
+    int deepest;      /* the stack */
     bool is_affine;   /* a sum of signals, time and numbers with constant factors */
     bool is_constant;
     bool has_results;

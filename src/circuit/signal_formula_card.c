@@ -2,39 +2,33 @@
  *
  * The parser of expressions knows no signals. Each is masked by a name of the same length that no
  * netlist can have, so that all places stay what they are. */
-#include "builder.h"
+#include "signal_formula_card.h"
 
-#include <math.h>
 #include <string.h>
 
 static const char USAGE[] = "signals are: v(node) v(a,b) i(element)";
 
 enum { MASK = 0xff, DIGITS = 36, MOST_SIGNALS = DIGITS * DIGITS * DIGITS };
 
-/* A formula on its way to be compiled. */
-struct compilation {
-    struct dalcs_builder *builder;
-    const struct dalcs_signal_formula_rules *rules;
-    struct dalcs_expression_text text;
-    char *masked;
-    int n_signals; /* masked so far */
-    int *signal;   /* [n_signals] of the builder's measured ones */
-    enum dalcs_signal_part *part;
-    bool failed;
-};
-
-static void report(struct compilation *c, int begin, int length, const char *hint,
+static void report(struct dalcs_signal_compilation *c, int begin, int length, const char *hint,
                    const char *format, ...) __attribute__((format(printf, 5, 6)));
 
-static void report(struct compilation *c, int begin, int length, const char *hint,
-                   const char *format, ...) {
-    const struct dalcs_location where = dalcs_expression_place(&c->text, begin, length);
-    va_list arguments;
-    va_start(arguments, format);
+void dalcs_signal_compilation_report(struct dalcs_signal_compilation *c,
+                                     const struct dalcs_expression_text *text, int begin,
+                                     int length, const char *hint, const char *format,
+                                     va_list arguments) {
+    const struct dalcs_location where = dalcs_expression_place(text, begin, length);
     dalcs_diag_add_list(c->builder->diag, DALCS_ERROR, &where, hint, format, arguments);
-    va_end(arguments);
     c->builder->failed = true;
     c->failed = true;
+}
+
+static void report(struct dalcs_signal_compilation *c, int begin, int length, const char *hint,
+                   const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    dalcs_signal_compilation_report(c, &c->text, begin, length, hint, format, arguments);
+    va_end(arguments);
 }
 
 /* ---- Signals --------------------------------------------------------------------------------- */
@@ -66,7 +60,8 @@ static bool is_name_byte(char c) {
 }
 
 /* The word text[begin..end-1] as a token of its line. */
-static bool make_token(struct compilation *c, int begin, int end, struct dalcs_token *token) {
+static bool make_token(struct dalcs_signal_compilation *c, int begin, int end,
+                       struct dalcs_token *token) {
     const char *text = c->text.text;
     while (begin < end && text[begin] == ' ') {
         begin++;
@@ -92,14 +87,38 @@ static bool make_token(struct compilation *c, int begin, int end, struct dalcs_t
     return token->text != NULL && !c->failed;
 }
 
-/* The signal whose names stand in text[begin..end-1]; -1 when an error was reported. */
-static int find_signal(struct compilation *c, bool is_current, int begin, int end) {
+int dalcs_signal_compilation_find(struct dalcs_signal_compilation *c, bool is_current,
+                                  const struct dalcs_token *first,
+                                  const struct dalcs_token *second) {
     struct dalcs_builder *builder = c->builder;
+    struct dalcs_signal signal = {.kind = DALCS_SIGNAL_VOLTAGE, .device = -1};
+    bool found;
+    if (is_current) {
+        const int device = dalcs_builder_find_device(builder, first);
+        found = device >= 0;
+        signal.kind = DALCS_SIGNAL_CURRENT;
+        signal.device = found ? builder->current_of[device] : -1;
+    } else {
+        signal.node[0] = dalcs_builder_find_node(builder, first);
+        signal.node[1] = second != NULL ? dalcs_builder_find_node(builder, second) : 0;
+        found = signal.node[0] >= 0 && signal.node[1] >= 0;
+    }
+    if (!found) {
+        c->failed = true;
+        return -1;
+    }
+    signal.name = dalcs_arena_printf(&builder->circuit->arena, "%c(%s%s%s)", is_current ? 'i' : 'v',
+                                     first->text, second != NULL ? "," : "",
+                                     second != NULL ? second->text : "");
+    return dalcs_signals_measure(builder, signal);
+}
+
+/* The signal whose names stand in text[begin..end-1]; -1 when an error was reported. */
+static int find_signal(struct dalcs_signal_compilation *c, bool is_current, int begin, int end) {
     const char *text = c->text.text;
     const char *comma = memchr(text + begin, ',', (size_t)(end - begin));
     const int first_end = comma != NULL ? (int)(comma - text) : end;
     struct dalcs_token name[2];
-    struct dalcs_signal signal = {.kind = DALCS_SIGNAL_VOLTAGE, .device = -1};
     if (!make_token(c, begin, first_end, &name[0]) ||
         (comma != NULL && !make_token(c, first_end + 1, end, &name[1]))) {
         return -1;
@@ -108,27 +127,11 @@ static int find_signal(struct compilation *c, bool is_current, int begin, int en
         report(c, begin, end - begin, USAGE, "a current is that of one element");
         return -1;
     }
-    if (is_current) {
-        const int device = dalcs_builder_find_device(builder, &name[0]);
-        if (device < 0) {
-            return -1;
-        }
-        signal.kind = DALCS_SIGNAL_CURRENT;
-        signal.device = builder->current_of[device];
-    } else {
-        signal.node[0] = dalcs_builder_find_node(builder, &name[0]);
-        signal.node[1] = comma != NULL ? dalcs_builder_find_node(builder, &name[1]) : 0;
-        if (signal.node[0] < 0 || signal.node[1] < 0) {
-            return -1;
-        }
-    }
-    signal.name = dalcs_arena_printf(&builder->circuit->arena, "%c(%.*s)", is_current ? 'i' : 'v',
-                                     end - begin, text + begin);
-    return dalcs_signals_measure(builder, signal);
+    return dalcs_signal_compilation_find(c, is_current, &name[0], comma != NULL ? &name[1] : NULL);
 }
 
 /* Writes over v(...) a name that says which of this formula's signals it is. */
-static void mask(struct compilation *c, int begin, int end) {
+static void mask(struct dalcs_signal_compilation *c, int begin, int end) {
     int number = c->n_signals;
     c->masked[begin] = (char)MASK;
     for (int k = begin + 1; k < end; k++) {
@@ -138,8 +141,11 @@ static void mask(struct compilation *c, int begin, int end) {
     }
 }
 
-static int unmask(const char *name) {
+int dalcs_signal_compilation_unmask(const char *name) {
     int number = 0;
+    if ((unsigned char)name[0] != MASK) {
+        return -1;
+    }
     for (int k = 3; k >= 1; k--) {
         const int digit = name[k] >= 'a' ? name[k] - 'a' : name[k] - '0' + 26;
         number = DIGITS * number + digit;
@@ -154,20 +160,34 @@ static int previous_byte(const char *text, int k) {
     return k > 0 ? (unsigned char)text[k - 1] : 0;
 }
 
-static void mask_signals(struct compilation *c) {
+/* @r1[i] at t: how long it is; 0: something else. */
+static int device_current(const char *t) {
+    int n = 1;
+    while (t[0] == '@' && (is_name_byte(t[n]) || t[n] == ':')) {
+        n++;
+    }
+    return n > 1 && strncmp(t + n, "[i]", 3) == 0 ? n + 3 : 0;
+}
+
+static void mask_signals(struct dalcs_signal_compilation *c) {
     const char *text = c->text.text;
     for (int k = 0; k < c->text.length && !c->failed; k++) {
         enum dalcs_signal_part part = DALCS_PART_PLAIN;
-        const int open = k > 0 && is_name_byte(text[k - 1]) ? 0 : signal_prefix(text + k, &part);
-        if (open == 0) {
+        const bool starts = k == 0 || !is_name_byte(text[k - 1]);
+        const int open = starts ? signal_prefix(text + k, &part) : 0;
+        const int device = starts ? device_current(text + k) : 0;
+        if (open == 0 && device == 0) {
             continue;
         }
-        /* KiCad's names have a pair of parentheses of their own */
         int end = k + open + 1;
-        for (int depth = 1; end < c->text.length && depth > 0; end++) {
+        if (device > 0) {
+            end = k + device;
+        }
+        /* KiCad's names have a pair of parentheses of their own */
+        for (int depth = 1; open > 0 && end < c->text.length && depth > 0; end++) {
             depth += (text[end] == '(') - (text[end] == ')');
         }
-        if (text[end - 1] != ')') {
+        if (open > 0 && text[end - 1] != ')') {
             report(c, k + open, 1, NULL, "this parenthesis is never closed");
             return;
         }
@@ -183,7 +203,8 @@ static void mask_signals(struct compilation *c) {
             report(c, k, end - k, NULL, "more than %d signals in one formula", MOST_SIGNALS);
             return;
         }
-        const int signal = find_signal(c, text[k] == 'i', k + open + 1, end - 1);
+        const int signal = open > 0 ? find_signal(c, text[k] == 'i', k + open + 1, end - 1)
+                                    : find_signal(c, true, k + 1, end - (int)strlen("[i]"));
         if (signal < 0) {
             c->failed = true;
             return;
@@ -195,166 +216,10 @@ static void mask_signals(struct compilation *c) {
     }
 }
 
-/* ---- Steps ----------------------------------------------------------------------------------- */
-
-static void take_name(struct compilation *c, const struct dalcs_operation *o,
-                      struct dalcs_signal_formula_step *step) {
-    struct dalcs_builder *builder = c->builder;
-    const struct dalcs_signal_formula_rules *rules = c->rules;
-    if ((unsigned char)o->u.name[0] == MASK) {
-        const int k = unmask(o->u.name);
-        step->push = DALCS_PUT_SIGNAL;
-        step->index = c->signal[k];
-        step->part = c->part[k];
-        return;
-    }
-    step->push = DALCS_PUT_VALUE;
-    const int result = rules->results != NULL ? dalcs_names_find(rules->results, o->u.name) : -1;
-    if (result >= 0) {
-        step->push = DALCS_PUT_RESULT;
-        step->index = result;
-        return;
-    }
-    if (strcmp(o->u.name, rules->variable) == 0 && rules->no_signals == NULL) {
-        step->push = DALCS_PUT_TIME;
-        return;
-    }
-    if (dalcs_deck_parameter(builder->deck, o->u.name, &step->number) ||
-        dalcs_constant_find(o->u.name, &step->number)) {
-        return;
-    }
-    const char *hint = NULL;
-    const char *nearest =
-        rules->results != NULL ? dalcs_names_nearest(rules->results, o->u.name) : NULL;
-    if (nearest != NULL) {
-        hint = dalcs_builder_hint(builder, "did you mean '%s'?", nearest);
-    } else if (dalcs_names_find(&builder->nodes, o->u.name) >= 0) {
-        hint = dalcs_builder_hint(builder, "write v(%s)", o->u.name);
-    } else if (dalcs_names_find(&builder->devices, o->u.name) >= 0) {
-        hint = dalcs_builder_hint(builder, "write i(%s)", o->u.name);
-    }
-    report(c, o->begin, o->length, hint,
-           rules->results != NULL ? "there is no parameter and no earlier measurement '%s'"
-                                  : "there is no parameter '%s'",
-           o->u.name);
-}
-
-static void take_call(struct compilation *c, const struct dalcs_operation *o,
-                      struct dalcs_signal_formula_step *step) {
-    step->function = dalcs_function_find(o->u.name);
-    if (step->function == NULL) {
-        const char *nearest = dalcs_function_nearest(o->u.name);
-        report(c, o->begin, o->length,
-               nearest != NULL ? dalcs_builder_hint(c->builder, "did you mean '%s'?", nearest)
-                               : NULL,
-               "there is no function '%s' for measurements", o->u.name);
-    } else if (o->count < step->function->least || o->count > step->function->most) {
-        const bool too_few = o->count < step->function->least;
-        report(c, o->begin, o->length, NULL, "'%s' takes %s%d argument%s, not %d", o->u.name,
-               step->function->least == step->function->most ? ""
-               : too_few                                     ? "at least "
-                                                             : "at most ",
-               too_few ? step->function->least : step->function->most,
-               (too_few ? step->function->least : step->function->most) == 1 ? "" : "s", o->count);
-    }
-}
-
-/* Degree in signals and time of what the steps leave on the stack: 0, 1, or 2 for anything else. */
-static int degree_of(const struct dalcs_signal_formula_step *step, int n) {
-    unsigned char degree[DALCS_SIGNAL_FORMULA_DEEPEST];
-    int top = 0;
-    for (int k = 0; k < n; k++) {
-        const enum dalcs_operation_code code = step[k].code;
-        if (step[k].push != DALCS_PUT_NOTHING) {
-            const bool varies = step[k].push == DALCS_PUT_TIME || step[k].push == DALCS_PUT_SIGNAL;
-            degree[top++] = varies ? (step[k].part == DALCS_PART_PLAIN ? 1 : 2) : 0;
-        } else if (code == DALCS_CALL) {
-            unsigned char most = 0;
-            for (int i = 0; i < step[k].count; i++) {
-                most = degree[--top] > most ? degree[top] : most;
-            }
-            degree[top++] = most > 0 ? 2 : 0;
-        } else if (code >= DALCS_JUMP && code <= DALCS_JUMP_OR) {
-            return 2;
-        } else if (code >= DALCS_ADD && code <= DALCS_GREATER_EQUAL) {
-            const unsigned char b = degree[--top];
-            unsigned char *a = &degree[top - 1];
-            const unsigned char most = *a > b ? *a : b;
-            const bool is_sum = code == DALCS_ADD || code == DALCS_SUBTRACT;
-            const bool is_scaled =
-                (code == DALCS_MULTIPLY && (*a == 0 || b == 0)) || (code == DALCS_DIVIDE && b == 0);
-            *a = most == 0 || is_sum || is_scaled ? most : 2;
-        } else if (code != DALCS_NEGATE && degree[top - 1] > 0) {
-            degree[top - 1] = 2;
-        }
-    }
-    return top > 0 ? degree[0] : 0;
-}
-
-/* The deepest that the stack can get; every choice is counted twice, which is more than it takes. */
-static int depth_of(const struct dalcs_signal_formula_step *step, int n) {
-    int depth = 0;
-    int most = 0;
-    for (int k = 0; k < n; k++) {
-        const enum dalcs_operation_code code = step[k].code;
-        const bool is_binary = code >= DALCS_ADD && code <= DALCS_GREATER_EQUAL;
-        if (step[k].push != DALCS_PUT_NOTHING) {
-            depth++;
-        } else if (code == DALCS_CALL) {
-            depth += 1 - step[k].count;
-        } else if (is_binary || code == DALCS_JUMP_IF_ZERO || code == DALCS_JUMP_AND ||
-                   code == DALCS_JUMP_OR) {
-            depth--;
-        }
-        most = depth > most ? depth : most;
-    }
-    return most;
-}
-
-static void set_steps(struct compilation *c, const struct dalcs_expression *e,
-                      struct dalcs_signal_formula *formula) {
-    struct dalcs_signal_formula_step *step =
-        dalcs_arena_alloc(&c->builder->circuit->arena, (size_t)e->n, sizeof *step);
-    if (step == NULL) {
-        c->builder->out_of_memory = true;
-        c->failed = true;
-        return;
-    }
-    for (int k = 0; k < e->n && !c->failed; k++) {
-        const struct dalcs_operation *o = &e->operation[k];
-        step[k].code = o->code;
-        step[k].count = o->count;
-        if (o->code == DALCS_PUSH_NUMBER) {
-            step[k].push = DALCS_PUT_VALUE;
-            step[k].number = o->u.number;
-        } else if (o->code == DALCS_PUSH_NAME) {
-            take_name(c, o, &step[k]);
-            formula->has_results = formula->has_results || step[k].push == DALCS_PUT_RESULT;
-        } else if (o->code == DALCS_CALL) {
-            take_call(c, o, &step[k]);
-        } else if (o->code == DALCS_CHECK_CALL) {
-            report(c, o->begin, o->length, NULL, "there is no function '%s' for measurements",
-                   o->u.name);
-        }
-    }
-    if (c->failed) {
-        return;
-    }
-    if (depth_of(step, e->n) > DALCS_SIGNAL_FORMULA_DEEPEST) {
-        report(c, 0, 1, NULL, "the formula is too long");
-        return;
-    }
-    const int degree = degree_of(step, e->n);
-    formula->step = step;
-    formula->n = e->n;
-    formula->is_affine = degree <= 1;
-    formula->is_constant = degree == 0 && !formula->has_results;
-}
-
 bool dalcs_signal_formula_compile(struct dalcs_builder *builder, const struct dalcs_token *token,
                                   int n, const struct dalcs_signal_formula_rules *rules,
                                   struct dalcs_signal_formula *formula) {
-    struct compilation c = {.builder = builder, .rules = rules};
+    struct dalcs_signal_compilation c = {.builder = builder, .rules = rules};
     struct dalcs_arena *scratch = &builder->scratch;
     *formula = (struct dalcs_signal_formula){0};
     if (!dalcs_expression_text(scratch, token, n, &c.text)) {
@@ -386,25 +251,5 @@ bool dalcs_signal_formula_compile(struct dalcs_builder *builder, const struct da
         builder->failed = true;
         return false;
     }
-    set_steps(&c, e, formula);
-    return !c.failed;
-}
-
-bool dalcs_signal_formula_difference(struct dalcs_builder *builder,
-                                     const struct dalcs_signal_formula *left,
-                                     const struct dalcs_signal_formula *right,
-                                     struct dalcs_signal_formula *difference) {
-    const int n = left->n + right->n + 1;
-    struct dalcs_signal_formula_step *step =
-        dalcs_arena_alloc(&builder->circuit->arena, (size_t)n, sizeof *step);
-    if (step == NULL) {
-        builder->out_of_memory = true;
-        return false;
-    }
-    memcpy(step, left->step, (size_t)left->n * sizeof *step);
-    memcpy(step + left->n, right->step, (size_t)right->n * sizeof *step);
-    step[n - 1].code = DALCS_SUBTRACT;
-    *difference = (struct dalcs_signal_formula){
-        .n = n, .step = step, .text = left->text, .is_affine = left->is_affine && right->is_affine};
-    return depth_of(step, n) <= DALCS_SIGNAL_FORMULA_DEEPEST;
+    return dalcs_signal_compilation_steps(&c, e, formula);
 }

@@ -9,11 +9,33 @@
 
 static const char USAGE[] = "signals are: v(node) v(a,b) i(element) all";
 
+/* A column of the .print that is being read. */
+static void add_column(struct dalcs_builder *builder, const char *name) {
+    const char *before = builder->print_before;
+    const bool is_function = before != NULL && strchr(before, '(') != NULL;
+    const char *title =
+        before == NULL ? name
+                       : dalcs_arena_printf(&builder->circuit->arena, "%s%s%s", before,
+                                            is_function ? name : name + 1, is_function ? ")" : "");
+    if (title == NULL ||
+        dalcs_grow(&builder->print_column, &builder->print_column_capacity,
+                   builder->n_print_columns + 1, sizeof *builder->print_column) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return;
+    }
+    builder->print_column[builder->n_print_columns++] =
+        (struct dalcs_print_column){name, title, builder->print_part};
+    builder->print[builder->n_prints - 1].n++;
+}
+
 /* Adds a signal; `name` is in the circuit's arena or NULL when memory ran out. The defaults alone
  * hold nothing twice, and a million names are better not looked up. */
 static void add_signal(struct dalcs_builder *builder, const char *name,
                        struct dalcs_signal signal) {
     const bool may_repeat = builder->names_signals;
+    if (name != NULL && builder->is_print) {
+        add_column(builder, name);
+    }
     if (name != NULL && may_repeat && dalcs_names_find(&builder->signals, name) >= 0) {
         return;
     }
@@ -31,18 +53,30 @@ static const char *node_text(const struct dalcs_builder *builder, int node) {
     return node == 0 ? "0" : builder->node_name[node];
 }
 
+/* "v(out)" or "i(r1)"; a million of them by printf take as long as to read their netlist. */
+static const char *signal_name(const struct dalcs_builder *builder, char letter,
+                               const char *inside) {
+    const size_t n = strlen(inside);
+    char *name = dalcs_arena_alloc(&builder->circuit->arena, n + 4, 1);
+    if (name != NULL) {
+        name[0] = letter;
+        name[1] = '(';
+        memcpy(name + 2, inside, n);
+        memcpy(name + 2 + n, ")", 2);
+    }
+    return name;
+}
+
 static void add_voltage(struct dalcs_builder *builder, int a, int b, bool is_pair) {
-    struct dalcs_arena *arena = &builder->circuit->arena;
-    const char *name = is_pair ? dalcs_arena_printf(arena, "v(%s,%s)", node_text(builder, a),
-                                                    node_text(builder, b))
-                               : dalcs_arena_printf(arena, "v(%s)", node_text(builder, a));
+    const char *name = is_pair ? dalcs_arena_printf(&builder->circuit->arena, "v(%s,%s)",
+                                                    node_text(builder, a), node_text(builder, b))
+                               : signal_name(builder, 'v', node_text(builder, a));
     add_signal(builder, name,
                (struct dalcs_signal){.kind = DALCS_SIGNAL_VOLTAGE, .node = {a, b}, .device = -1});
 }
 
 static void add_current(struct dalcs_builder *builder, int device) {
-    const char *name = dalcs_arena_printf(&builder->circuit->arena, "i(%s)",
-                                          builder->circuit->device[device].name);
+    const char *name = signal_name(builder, 'i', builder->circuit->device[device].name);
     add_signal(
         builder, name,
         (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .device = builder->current_of[device]});
@@ -145,17 +179,61 @@ static bool read_plain_node(struct dalcs_reader *reader) {
     return false;
 }
 
+struct part_name {
+    const char *name;
+    enum dalcs_signal_part part;
+};
+
+static const struct part_name *find_part(const struct part_name *part, size_t n, const char *name) {
+    for (size_t k = 0; k < n; k++) {
+        if (strcmp(part[k].name, name) == 0) {
+            return &part[k];
+        }
+    }
+    return NULL;
+}
+
 /* v and i, or a part of one of .ac: vm, vp, vr, vi, vdb. The whole is recorded. */
-static bool is_part(const char *word) {
-    static const char *const suffix[] = {"", "m", "p", "r", "i", "db"};
-    return (word[0] == 'v' || word[0] == 'i') &&
-           dalcs_builder_is_one_of(word + 1, suffix, sizeof suffix / sizeof suffix[0]);
+static const struct part_name *part_of(const char *word) {
+    static const struct part_name suffix[] = {
+        {"", DALCS_PART_PLAIN}, {"m", DALCS_PART_MAGNITUDE}, {"p", DALCS_PART_PHASE},
+        {"r", DALCS_PART_REAL}, {"i", DALCS_PART_IMAGINARY}, {"db", DALCS_PART_DECIBEL}};
+    return word[0] == 'v' || word[0] == 'i'
+               ? find_part(suffix, sizeof suffix / sizeof suffix[0], word + 1)
+               : NULL;
 }
 
 /* The same around a signal: db(v(out)). */
-static bool is_function(const char *word) {
-    static const char *const name[] = {"db", "mag", "ph", "phase", "re", "real", "imag", "abs"};
-    return dalcs_builder_is_one_of(word, name, sizeof name / sizeof name[0]);
+static const struct part_name *function_of(const char *word) {
+    static const struct part_name name[] = {
+        {"db", DALCS_PART_DECIBEL}, {"mag", DALCS_PART_MAGNITUDE}, {"abs", DALCS_PART_MAGNITUDE},
+        {"ph", DALCS_PART_PHASE},   {"phase", DALCS_PART_PHASE},   {"re", DALCS_PART_REAL},
+        {"real", DALCS_PART_REAL},  {"imag", DALCS_PART_IMAGINARY}};
+    return find_part(name, sizeof name / sizeof name[0], word);
+}
+
+/* @r1[i], as ngspice has the current of an element without a branch of its own. */
+static bool read_device_current(struct dalcs_reader *reader) {
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    struct dalcs_token name = *token;
+    const size_t n = strlen(token->text);
+    if (n <= 4 || strcmp(token->text + n - 3, "[i]") != 0) {
+        dalcs_builder_error(builder, token, "of an element its current is recorded: @name[i]",
+                            "'%s' is not a signal", token->text);
+        return false;
+    }
+    name.text = dalcs_arena_copy(&builder->scratch, token->text + 1, n - 4);
+    if (name.text == NULL) {
+        builder->out_of_memory = true;
+        return false;
+    }
+    reader->at++;
+    const int device = dalcs_builder_find_device(builder, &name);
+    if (device >= 0) {
+        add_current(builder, device);
+    }
+    return true;
 }
 
 static bool read_signal(struct dalcs_reader *reader) {
@@ -171,16 +249,24 @@ static bool read_signal(struct dalcs_reader *reader) {
             dalcs_signals_add_default(builder);
             return true;
         }
-        return read_plain_node(reader);
+        return token->text[0] == '@' ? read_device_current(reader) : read_plain_node(reader);
     }
-    if (is_part(token->text)) {
+    const struct part_name *part = part_of(token->text);
+    if (part != NULL) {
         reader->at += 2;
+        if (part->part != DALCS_PART_PLAIN) {
+            builder->print_part = part->part;
+            builder->print_before = token->text;
+        }
         return token->text[0] == 'v' ? read_voltage(reader) : read_current(reader);
     }
-    if (is_function(token->text)) {
+    const struct part_name *function = function_of(token->text);
+    if (function != NULL) {
         reader->at += 2;
         const struct dalcs_token *inner = dalcs_reader_peek(reader, 0);
-        if (inner == NULL || !is_part(inner->text)) {
+        builder->print_part = function->part;
+        builder->print_before = dalcs_builder_hint(builder, "%s(", token->text);
+        if (inner == NULL || part_of(inner->text) == NULL) {
             dalcs_reader_missing(reader, "v(node) or i(element)");
             return false;
         }
@@ -214,46 +300,83 @@ static void skip_print_options(struct dalcs_reader *reader) {
     }
 }
 
+/* `(0,5)` after a signal of .plot: its limits. */
+static void skip_limits(struct dalcs_reader *reader) {
+    const struct dalcs_token *open = dalcs_reader_peek(reader, 0);
+    if (strcmp(reader->card->token->text, ".plot") != 0 || open == NULL ||
+        open->kind != DALCS_TOKEN_OPEN) {
+        return;
+    }
+    while (!dalcs_reader_at_end(reader) && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        reader->at++;
+    }
+}
+
+/* The table of a .print: of one analysis, or of all. */
+static bool start_print(struct dalcs_builder *builder, int analysis) {
+    if (dalcs_grow(&builder->print, &builder->print_capacity, builder->n_prints + 1,
+                   sizeof *builder->print) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return false;
+    }
+    struct dalcs_print_card *print = &builder->print[builder->n_prints++];
+    *print = (struct dalcs_print_card){0};
+    for (int k = 0; k <= DALCS_MEASURED_AC; k++) {
+        print->is_of[k] = analysis < 0 || k == analysis;
+    }
+    return true;
+}
+
 void dalcs_signals_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    static const char *const ours[] = {"tran", "op", "dc", "ac"};
+    static const char *const ours[] = {[DALCS_MEASURED_TRAN] = "tran",
+                                       [DALCS_MEASURED_OP] = "op",
+                                       [DALCS_MEASURED_DC] = "dc",
+                                       [DALCS_MEASURED_AC] = "ac"};
     static const char *const other[] = {"noise", "sens", "hb", "four"};
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     const struct dalcs_token *type = dalcs_reader_peek(&reader, 0);
     builder->names_signals = true;
-    builder->circuit->prints = builder->circuit->prints ||
-                               strcmp(card->token->text, ".print") == 0 ||
-                               strcmp(card->token->text, ".plot") == 0;
-    const bool is_print = strcmp(card->token->text, ".save") != 0;
-    const bool takes_options = strcmp(card->token->text, ".print") == 0;
-    for (size_t k = 0; is_print && k < sizeof other / sizeof other[0]; k++) {
+    const char *name = card->token->text;
+    const bool takes_options = strcmp(name, ".print") == 0;
+    const bool has_type = strcmp(name, ".save") != 0;
+    for (size_t k = 0; has_type && k < sizeof other / sizeof other[0]; k++) {
         if (dalcs_reader_take_word(&reader, other[k])) {
             dalcs_builder_note(builder, type, NULL, "there is no %s analysis: this is ignored",
                                type->text);
             return;
         }
     }
-    bool takes_type = is_print;
-    for (size_t k = 0; k < sizeof ours / sizeof ours[0] && takes_type; k++) {
-        takes_type = !dalcs_reader_take_word(&reader, ours[k]);
+    int analysis = -1;
+    for (int k = 0; has_type && k <= DALCS_MEASURED_AC && analysis < 0; k++) {
+        analysis = dalcs_reader_take_word(&reader, ours[k]) ? k : -1;
     }
     if (takes_options) {
         skip_print_options(&reader);
     }
     if (dalcs_reader_at_end(&reader)) {
         /* A bare .probe records everything, as in PSpice. */
-        if (strcmp(card->token->text, ".probe") == 0) {
+        if (strcmp(name, ".probe") == 0) {
             dalcs_signals_add_default(builder);
         } else {
             dalcs_reader_missing(&reader, "a signal");
         }
         return;
     }
+    const bool is_print = strcmp(name, ".print") == 0 || strcmp(name, ".plot") == 0;
+    if (is_print && !start_print(builder, analysis)) {
+        return;
+    }
+    builder->is_print = is_print;
     while (!dalcs_reader_at_end(&reader)) {
+        builder->print_before = NULL;
+        builder->print_part = DALCS_PART_PLAIN;
         if (!read_signal(&reader)) {
-            return;
+            break;
         }
+        skip_limits(&reader);
         if (takes_options) {
             skip_print_options(&reader);
         }
     }
+    builder->is_print = false;
 }

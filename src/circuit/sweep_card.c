@@ -2,18 +2,20 @@
  *
  *     .dc source start stop step [source start stop step]
  *     .ac dec|oct|lin points start stop
- *     .step [lin|dec|oct] item start stop step, .step item list value ...
+ *     .step [lin|dec|oct] item start stop step, .step item list value ..., .step item file=name
  *
  * An item is an element, `param name`, a model's parameter `D name(parameter)` or `temp`. The first
  * sweep is the innermost. */
-#include "builder.h"
+#include "number_file.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static const char DC_USAGE[] = ".dc source start stop step [source start stop step]";
 static const char AC_USAGE[] = ".ac dec|oct|lin points fstart fstop";
 static const char STEP_USAGE[] =
-    ".step [lin|dec|oct] item start stop step; .step item list value value ...; an item is an "
+    ".step [lin|dec|oct] item start stop step; .step item list value value ...; .step item "
+    "file=name; an item is an "
     "element, param name, D model(parameter) or temp";
 
 enum { MOST_NESTED = 8 };
@@ -228,6 +230,51 @@ static bool read_list(struct dalcs_reader *reader, struct dalcs_sweep *sweep) {
     return true;
 }
 
+/* The values of a file, after the word FILE. */
+static bool read_file(struct dalcs_reader *reader, struct dalcs_sweep *sweep) {
+    struct dalcs_builder *builder = reader->builder;
+    struct dalcs_number_file file;
+    dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+    const struct dalcs_token *name = dalcs_reader_peek(reader, 0);
+    if (name == NULL || (name->kind != DALCS_TOKEN_WORD && name->kind != DALCS_TOKEN_STRING)) {
+        dalcs_reader_missing(reader, "the name of a file");
+        return false;
+    }
+    reader->at++;
+    if (!dalcs_number_file_open(builder, name, "values", &file)) {
+        return false;
+    }
+    double *list = NULL;
+    size_t capacity = 0;
+    double value;
+    enum dalcs_status status = DALCS_OK;
+    while (status == DALCS_OK && sweep->n <= DALCS_SWEEP_MOST &&
+           dalcs_number_file_next(&file, &value)) {
+        status = dalcs_grow(&list, &capacity, (size_t)sweep->n + 1, sizeof *list);
+        if (status == DALCS_OK) {
+            list[sweep->n++] = value;
+        }
+    }
+    bool ok = status == DALCS_OK && dalcs_number_file_is_read(builder, name, &file,
+                                                              "the values, with blanks or lines "
+                                                              "between them");
+    if (ok && sweep->n == 0) {
+        dalcs_builder_error(builder, name, NULL, "there are no values in %s", file.path);
+        ok = false;
+    }
+    double *kept =
+        ok ? dalcs_arena_alloc(&builder->circuit->arena, (size_t)sweep->n, sizeof *kept) : NULL;
+    builder->out_of_memory = builder->out_of_memory || status != DALCS_OK || (ok && kept == NULL);
+    if (kept != NULL) {
+        memcpy(kept, list, (size_t)sweep->n * sizeof *kept);
+    }
+    free(list);
+    dalcs_number_file_close(&file);
+    sweep->spacing = DALCS_LISTED;
+    sweep->list = kept;
+    return kept != NULL;
+}
+
 static bool take_spacing(struct dalcs_reader *reader, enum dalcs_spacing *spacing) {
     if (dalcs_reader_take_word(reader, "lin")) {
         *spacing = DALCS_LINEAR;
@@ -343,13 +390,12 @@ void dalcs_sweep_parse_step(struct dalcs_builder *builder, const struct dalcs_ca
         return;
     }
     is_spaced = take_spacing(&reader, &sweep.spacing) || is_spaced;
-    const struct dalcs_token *next = dalcs_reader_peek(&reader, 0);
-    if (next != NULL && strcmp(next->text, "file") == 0) {
-        dalcs_builder_error(builder, next, "write the values after 'list'",
-                            "values from a file are not supported yet");
-        return;
-    }
-    if (!is_spaced && dalcs_reader_take_word(&reader, "list")) {
+    if (!is_spaced && dalcs_reader_take_word(&reader, "file")) {
+        if (!read_file(&reader, &sweep) || !dalcs_reader_end(&reader)) {
+            return;
+        }
+    } else if (!is_spaced && dalcs_reader_take_word(&reader, "list")) {
+        dalcs_reader_take(&reader, DALCS_TOKEN_EQUAL);
         if (!read_list(&reader, &sweep)) {
             return;
         }

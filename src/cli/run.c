@@ -82,21 +82,22 @@ static enum dalcs_status check_interrupt(const struct run *run) {
 
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct run *run = user;
-    dalcs_print_table_begin(&run->printed, plot);
     run->progress.counts = plot->analysis != DALCS_TRANSIENT;
-    return dalcs_outputs_begin(&run->outputs, plot);
+    enum dalcs_status status = dalcs_print_table_begin(&run->printed, run->session, plot);
+    return status != DALCS_OK ? status : dalcs_outputs_begin(&run->outputs, plot);
 }
 
 static enum dalcs_status row(void *user, double time, const double *value) {
     struct run *run = user;
     run->time = time;
-    dalcs_print_table_row(&run->printed, time, value);
-    enum dalcs_status status = dalcs_outputs_row(&run->outputs, time, value);
+    enum dalcs_status status = dalcs_print_table_row(&run->printed, time, value);
+    status = status == DALCS_OK ? dalcs_outputs_row(&run->outputs, time, value) : status;
     return status == DALCS_OK ? check_interrupt(run) : status;
 }
 
 static enum dalcs_status end(void *user) {
     struct run *run = user;
+    dalcs_print_table_end(&run->printed);
     return dalcs_outputs_end(&run->outputs);
 }
 
@@ -214,6 +215,7 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     enum dalcs_status status =
         run->has_script ? dalcs_script_run(&host) : dalcs_session_run(session, &options, &sink);
     dalcs_progress_finish(&run->progress);
+    dalcs_print_table_finish(&run->printed);
 
     size_t n_before = *n_written;
     dalcs_cli_write_messages(run->cli, session, n_written, arguments->quiet);
@@ -261,7 +263,8 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
             return status;
         }
     }
-    if (arguments->batch && arguments->n_outputs == 0 && (request.prints || !request.transient)) {
+    if (arguments->batch && arguments->n_outputs == 0 &&
+        (request.n_prints > 0 || !request.transient)) {
         run.printed.out = cli->out;
     }
     bool at = times.n > 0;

@@ -595,6 +595,24 @@ bool dalcs_deck_parameter(const struct dalcs_deck *deck, const char *name, doubl
     return true;
 }
 
+bool dalcs_deck_function(const struct dalcs_deck *deck, const char *name, int *n_arguments,
+                         const struct dalcs_expression **body, bool *out_of_memory) {
+    struct dalcs_language *language = deck->language;
+    struct dalcs_user_function *function = language != NULL && language->top != NULL
+                                               ? dalcs_scope_find_function(language->top, name)
+                                               : NULL;
+    if (function == NULL) {
+        return false;
+    }
+    *n_arguments = function->n_arguments;
+    *body = dalcs_scope_compile(language, NULL, function->body, function->n_tokens,
+                                &function->arguments, &function->expression)
+                ? function->expression
+                : NULL;
+    *out_of_memory = *out_of_memory || language->out_of_memory;
+    return true;
+}
+
 void dalcs_deck_finish(struct dalcs_deck *deck) {
     struct dalcs_language *language = deck->language;
     if (language != NULL) {

@@ -9,6 +9,7 @@
 #ifndef DALCS_EXPAND_H
 #define DALCS_EXPAND_H
 
+#include "expression.h"
 #include "names.h"
 #include "netlist.h"
 #include "override.h"
@@ -44,6 +45,11 @@ bool dalcs_deck_parameter(const struct dalcs_deck *deck, const char *name, doubl
 bool dalcs_deck_has_parameter(const struct dalcs_deck *deck, const char *name);
 bool dalcs_deck_uses_parameter(const struct dalcs_deck *deck, const char *name);
 const char *dalcs_deck_nearest_parameter(const struct dalcs_deck *deck, const char *name);
+
+/* One of the netlist's own functions, in whose body DALCS_PUSH_ARGUMENT stands for the arguments; false
+ * when there is none of that name. body: NULL when it is wrong, which was reported, or memory ran out. */
+bool dalcs_deck_function(const struct dalcs_deck *deck, const char *name, int *n_arguments,
+                         const struct dalcs_expression **body, bool *out_of_memory);
 
 void dalcs_deck_finish(struct dalcs_deck *deck);
 

@@ -159,8 +159,13 @@ static const struct dalcs_token *stepped(const struct dalcs_card *card, int *fir
         card->token[k + 1].kind != DALCS_TOKEN_WORD) {
         return NULL;
     }
-    for (*first = k + 2; *first < card->n && card->token[*first].kind == DALCS_TOKEN_WORD &&
-                         !is_number(&card->token[*first]);) {
+    *first = k + 2;
+    if (*first < card->n && is_word(&card->token[*first], "file")) {
+        return NULL; /* which is read later */
+    }
+    while (*first < card->n &&
+           (card->token[*first].kind == DALCS_TOKEN_EQUAL ||
+            (card->token[*first].kind == DALCS_TOKEN_WORD && !is_number(&card->token[*first])))) {
         ++*first;
     }
     return *first < card->n ? &card->token[k + 1] : NULL;

@@ -133,8 +133,11 @@ static void element_roles(const struct dalcs_card *card, const struct shape *sha
 
 /* Behavioural sources: their formulas are of voltages and currents. */
 static void raw_roles(const struct dalcs_card *card, unsigned char *role) {
+    bool is_transfer = false; /* of s: whoever reads the card refuses it */
     for (int k = 1; k < card->n; k++) {
-        const bool is_formula = card->letter == 'b' ||
+        is_transfer =
+            is_transfer || is_word(&card->token[k], "laplace") || is_word(&card->token[k], "freq");
+        const bool is_formula = card->letter == 'b' || is_transfer ||
                                 (k >= 2 && card->token[k - 1].kind == DALCS_TOKEN_EQUAL &&
                                  is_form(&card->token[k - 2])) ||
                                 is_form(&card->token[k - 1]);

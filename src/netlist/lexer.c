@@ -17,7 +17,11 @@ static bool is_blank(char c) {
 }
 
 static bool ends_word(char c) {
-    return c == '\0' || is_blank(c) || c == ',' || c == '=' || c == '(' || c == ')' || c == ';';
+    static const bool ends[] = {
+        ['\0'] = true, [' '] = true, ['\t'] = true, ['\r'] = true, ['\v'] = true, ['\f'] = true,
+        [','] = true,  ['='] = true, ['('] = true,  [')'] = true,  [';'] = true};
+    const unsigned char byte = (unsigned char)c;
+    return byte < sizeof ends && ends[byte];
 }
 
 /* The length of the UTF-8 character at p (n bytes follow), 0 when it is not one. */
@@ -213,6 +217,11 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
     return q;
 }
 
+/* "//" starts a comment in ngspice. */
+static bool starts_slashes(const char *text) {
+    return text[0] == '/' && text[1] == '/';
+}
+
 static enum dalcs_status read_tokens(struct dalcs_lexer *lexer, size_t p, size_t begin) {
     const char *raw = lexer->raw;
     bool after_comma = false;
@@ -226,6 +235,9 @@ static enum dalcs_status read_tokens(struct dalcs_lexer *lexer, size_t p, size_t
         }
         if (raw[p] == '$' && (p == begin || is_blank(raw[p - 1])) &&
             (raw[p + 1] == '\0' || is_blank(raw[p + 1]))) {
+            return DALCS_OK;
+        }
+        if (starts_slashes(raw + p) && (p == begin || is_blank(raw[p - 1]))) {
             return DALCS_OK;
         }
         DALCS_TRY(need_line(lexer, begin));
@@ -294,7 +306,8 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
         lexer->in_control = !dalcs_lexer_starts_with(lexer, p, ".endc");
         return lexer->in_control ? add_script_line(lexer, begin) : DALCS_OK;
     }
-    if (p == end || lexer->raw[p] == '*' || lexer->raw[p] == ';') {
+    if (p == end || lexer->raw[p] == '*' || lexer->raw[p] == ';' ||
+        starts_slashes(lexer->raw + p)) {
         return DALCS_OK;
     }
     if (lexer->raw[p] == '+' && !lexer->skipping) {
@@ -307,6 +320,9 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
         if (skips) {
             return DALCS_OK;
         }
+    }
+    if (lexer->raw[p] != '.') {
+        return read_tokens(lexer, p, begin);
     }
     if (dalcs_lexer_starts_with(lexer, p, ".end")) {
         lexer->ended = true;

@@ -21,7 +21,9 @@ struct raw {
     size_t n_signals, n_parameters;
     bool has_scale, is_complex, is_ascii;
     off_t plot_at, points_at, rows_at; /* file positions: of the plot, of its number of points */
-    double *point;    /* [n_columns], of pairs where it is complex; and at least 1 */
+    double *point; /* [n_columns], of pairs where it is complex; and at least 1 */
+    double *first; /* likewise: the first of a step, held back until the next one comes */
+    bool is_stepped, is_first, holds;
     double *constant; /* [n_parameters] of this step */
     struct dalcs_decimal decimal;
 };
@@ -112,11 +114,15 @@ static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plo
     raw->n_signals = plot->n_signals;
     raw->n_parameters = plot->n_parameters;
     raw->n_columns = n_columns;
+    raw->is_stepped = plot->n_steps > 1 && has_scale;
+    raw->is_first = true;
     free(raw->point);
+    free(raw->first);
     free(raw->constant);
     raw->point = dalcs_alloc(2 * (n_columns + 1), sizeof(double));
+    raw->first = dalcs_alloc(2 * (n_columns + 1), sizeof(double));
     raw->constant = dalcs_alloc(plot->n_parameters, sizeof(double));
-    if (!raw->point || !raw->constant) {
+    if (!raw->point || !raw->first || !raw->constant) {
         return DALCS_E_NOMEM;
     }
     for (size_t i = 0; i < plot->n_parameters; i++) {
@@ -151,13 +157,6 @@ static void fill_point(struct raw *raw, double time, const double *value) {
     memcpy(next, value, width * raw->n_signals * sizeof(double));
 }
 
-static void row(void *state, FILE *stream, double time, const double *value) {
-    struct raw *raw = state;
-    fill_point(raw, time, value);
-    fwrite(raw->point, (raw->is_complex ? 2 : 1) * sizeof(double), raw->n_columns, stream);
-    raw->n_points++;
-}
-
 static void write_number(struct raw *raw, FILE *stream, double number) {
     char text[DALCS_DECIMAL_SIZE];
     size_t n = dalcs_decimal_write(&raw->decimal, number, text);
@@ -166,24 +165,59 @@ static void write_number(struct raw *raw, FILE *stream, double number) {
 
 /* " 12\t1e-06\n\t5\n\t0.1\n\n": the number of the point, then a value on each line, "re,im" of a complex
  * one. */
-static void row_ascii(void *state, FILE *stream, double time, const double *value) {
-    struct raw *raw = state;
-    fill_point(raw, time, value);
+static void write_text(struct raw *raw, FILE *stream, const double *point) {
     fprintf(stream, " %zu", raw->n_points++);
     for (size_t i = 0; i < raw->n_columns; i++) {
         fputc('\t', stream);
-        write_number(raw, stream, raw->point[raw->is_complex ? 2 * i : i]);
+        write_number(raw, stream, point[raw->is_complex ? 2 * i : i]);
         if (raw->is_complex) {
             fputc(',', stream);
-            write_number(raw, stream, raw->point[2 * i + 1]);
+            write_number(raw, stream, point[2 * i + 1]);
         }
         fputc('\n', stream);
     }
     fputc('\n', stream);
 }
 
+static void write_point(struct raw *raw, FILE *stream, const double *point) {
+    if (raw->is_ascii) {
+        write_text(raw, stream, point);
+        return;
+    }
+    fwrite(point, (raw->is_complex ? 2 : 1) * sizeof(double), raw->n_columns, stream);
+    raw->n_points++;
+}
+
+static void release(struct raw *raw, FILE *stream) {
+    if (raw->holds) {
+        raw->holds = false;
+        write_point(raw, stream, raw->first);
+    }
+}
+
+/* Readers count the steps by how often the scale is what it is at first. So of two rows there, before
+ * and behind an edge at tstart, only the second one is written. */
+static void row(void *state, FILE *stream, double time, const double *value) {
+    struct raw *raw = state;
+    fill_point(raw, time, value);
+    if (raw->is_stepped && raw->is_first) {
+        double *swap = raw->first;
+        raw->first = raw->point;
+        raw->point = swap;
+        raw->is_first = false;
+        raw->holds = true;
+        return;
+    }
+    if (raw->holds && raw->point[0] == raw->first[0]) {
+        raw->holds = false;
+    }
+    release(raw, stream);
+    write_point(raw, stream, raw->point);
+}
+
 static void end(void *state, FILE *stream) {
-    const struct raw *raw = state;
+    struct raw *raw = state;
+    release(raw, stream);
     if (fseeko(stream, raw->points_at, SEEK_SET) == 0) {
         fprintf(stream, POINTS_FIELD, raw->n_points);
         fseeko(stream, 0, SEEK_END);
@@ -238,6 +272,7 @@ static off_t recover_ascii(const void *state, int descriptor, off_t size) {
 static void finish(void *state) {
     struct raw *raw = state;
     free(raw->point);
+    free(raw->first);
     free(raw->constant);
 }
 
@@ -255,7 +290,7 @@ const struct dalcs_table_format dalcs_raw_ascii_format = {
     .extension = ".raw",
     .state_size = sizeof(struct raw),
     .begin = begin_ascii,
-    .row = row_ascii,
+    .row = row,
     .end = end,
     .recover = recover_ascii,
     .finish = finish,

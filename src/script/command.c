@@ -1,6 +1,7 @@
 /* command.c - statements that are no blocks. */
 #include "script_internal.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -253,11 +254,38 @@ static struct dalcs_writing writing(const struct dalcs_script *script) {
     const struct dalcs_variables *set = &script->variables;
     const char *digits = dalcs_variables_get(set, "numdgt");
     const long n = digits != NULL ? strtol(digits, NULL, 10) : 0;
+    const char *type = dalcs_variables_get(set, "filetype");
     return (struct dalcs_writing){.digits = n >= 1 && n <= 17 ? (int)n : 0,
                                   .single_scale =
                                       dalcs_variables_get(set, "wr_singlescale") != NULL,
                                   .with_names = dalcs_variables_get(set, "wr_vecnames") != NULL,
-                                  .appends = dalcs_variables_get(set, "appendwrite") != NULL};
+                                  .appends = dalcs_variables_get(set, "appendwrite") != NULL,
+                                  .ascii = type != NULL && strcmp(type, "ascii") == 0};
+}
+
+static enum dalcs_status refuse_file(struct dalcs_script *script, const struct dalcs_statement *s,
+                                     const char *path, int error) {
+    (void)dalcs_script_refuse(script, s, NULL, "cannot write '%s': %s", path, strerror(error));
+    return DALCS_E_IO;
+}
+
+/* `> name` or `>> name` at the end of a line, in a copy of which it is cut off; a name has a dot, which
+ * tells it from what is compared. NULL: none. */
+static const char *cut_redirection(char *text, bool *appends) {
+    char *sign = strrchr(text, '>');
+    if (sign == NULL || sign == text) {
+        return NULL;
+    }
+    const char *name = sign + 1 + strspn(sign + 1, " \t");
+    *appends = sign[-1] == '>';
+    sign -= *appends;
+    const bool is_name = strchr(name, '.') != NULL && strpbrk(name, " \t()*+") == NULL &&
+                         strpbrk(name, "abcdefghijklmnopqrstuvwxyz") != NULL;
+    if (!is_name) {
+        return NULL;
+    }
+    *sign = '\0';
+    return name;
 }
 
 static enum dalcs_status print(struct dalcs_script *script, const struct dalcs_statement *s) {
@@ -271,20 +299,29 @@ static enum dalcs_status print(struct dalcs_script *script, const struct dalcs_s
     } else if (status == DALCS_OK && strncmp(text, "col ", 4) == 0) {
         text += 4;
     }
-    status = status == DALCS_OK ? dalcs_script_vectors(script, s, text, &vector, &n) : status;
-    if (status == DALCS_OK) {
-        const struct dalcs_plot_vectors *plot = &script->vectors.plot;
-        const bool is_point = plot->analysis == DALCS_OPERATING_POINT;
-        dalcs_writing_print(script->host->out, &how,
-                            is_point ? NULL : dalcs_vectors_scale(&script->vectors), vector, n);
+    DALCS_TRY(status);
+    bool appends = false;
+    char *line = dalcs_arena_copy(&script->arena, text, strlen(text));
+    if (line == NULL) {
+        return DALCS_E_NOMEM;
     }
-    return status;
-}
-
-static enum dalcs_status refuse_file(struct dalcs_script *script, const struct dalcs_statement *s,
-                                     const char *path, int error) {
-    (void)dalcs_script_refuse(script, s, NULL, "cannot write '%s': %s", path, strerror(error));
-    return DALCS_E_IO;
+    const char *path = cut_redirection(line, &appends);
+    DALCS_TRY(dalcs_script_vectors(script, s, line, &vector, &n));
+    FILE *file = path != NULL ? fopen(path, appends ? "a" : "w") : script->host->out;
+    if (file == NULL) {
+        return refuse_file(script, s, path, errno);
+    }
+    const struct dalcs_plot_vectors *plot = &script->vectors.plot;
+    const bool is_point = plot->analysis == DALCS_OPERATING_POINT;
+    dalcs_writing_print(file, &how, is_point ? NULL : dalcs_vectors_scale(&script->vectors), vector,
+                        n);
+    if (path != NULL) {
+        const bool failed = ferror(file) != 0;
+        if (fclose(file) != 0 || failed) {
+            return refuse_file(script, s, path, errno != 0 ? errno : EIO);
+        }
+    }
+    return DALCS_OK;
 }
 
 static enum dalcs_status write_file(struct dalcs_script *script, const struct dalcs_statement *s) {
@@ -316,7 +353,7 @@ static enum dalcs_status write_file(struct dalcs_script *script, const struct da
                                    "there is nothing to write");
     }
     int error;
-    status = is_raw ? dalcs_writing_raw(name, &script->vectors.plot, scale, vector, n, &error)
+    status = is_raw ? dalcs_writing_raw(name, &how, &script->vectors.plot, scale, vector, n, &error)
                     : dalcs_writing_data(name, &how, scale, vector, n, &error);
     return status == DALCS_E_IO ? refuse_file(script, s, name, error) : status;
 }

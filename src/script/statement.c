@@ -31,6 +31,7 @@ static const struct {
     {"reset", DALCS_STATEMENT_RESET},
     {"save", DALCS_STATEMENT_SAVE},
     {"option", DALCS_STATEMENT_SAVE},
+    {"options", DALCS_STATEMENT_SAVE},
     {"wrdata", DALCS_STATEMENT_WRDATA},
     {"write", DALCS_STATEMENT_WRITE},
     {"foreach", DALCS_STATEMENT_FOREACH},

@@ -186,7 +186,8 @@ static enum dalcs_status write_table(struct dalcs_table *table, const struct dal
     return status == DALCS_OK ? dalcs_table_commit(table) : status;
 }
 
-enum dalcs_status dalcs_writing_raw(const char *path, const struct dalcs_plot_vectors *plot,
+enum dalcs_status dalcs_writing_raw(const char *path, const struct dalcs_writing *how,
+                                    const struct dalcs_plot_vectors *plot,
                                     const struct dalcs_vector *scale,
                                     const struct dalcs_vector *const *vector, size_t n,
                                     int *error) {
@@ -196,7 +197,9 @@ enum dalcs_status dalcs_writing_raw(const char *path, const struct dalcs_plot_ve
     const char **name = dalcs_alloc(n, sizeof *name);
     enum dalcs_unit *unit = dalcs_alloc(n, sizeof *unit);
     double *value = dalcs_alloc(2 * n, sizeof *value);
-    struct dalcs_table table = {.path = path, .format = &dalcs_raw_format, .main = plot->analysis};
+    struct dalcs_table table = {.path = path,
+                                .format = how->ascii ? &dalcs_raw_ascii_format : &dalcs_raw_format,
+                                .main = plot->analysis};
     table.state = dalcs_alloc(1, table.format->state_size);
     enum dalcs_status status = DALCS_E_NOMEM;
     if (kept != NULL && name != NULL && unit != NULL && value != NULL && table.state != NULL) {
@@ -206,6 +209,8 @@ enum dalcs_status dalcs_writing_raw(const char *path, const struct dalcs_plot_ve
                                    .scale_unit = scale != NULL ? scale->unit : DALCS_UNIT_NONE,
                                    .name = name,
                                    .unit = unit,
+                                   /* as ngspice, and readers go by the name of the plot */
+                                   .is_complex = plot->analysis == DALCS_AC,
                                    .n_steps = 1};
         for (size_t i = 0; i < n; i++) {
             if (vector[i]->n == length && (is_point || strcmp(vector[i]->name, scale->name) != 0)) {

@@ -12,6 +12,7 @@ struct dalcs_writing {
     bool single_scale; /* of wrdata: the scale once, not for each vector */
     bool with_names;   /* of wrdata: a line of names first */
     bool appends;      /* of wrdata */
+    bool ascii;        /* raw files as text */
 };
 
 /* Numbers one a line, vectors as a table beside their scale (NULL: numbered only). */
@@ -26,7 +27,8 @@ enum dalcs_status dalcs_writing_data(const char *path, const struct dalcs_writin
                                      int *error) DALCS_MUST_CHECK;
 
 /* A raw file of the vectors that are as long as the scale. DALCS_E_IO: *error is an errno. */
-enum dalcs_status dalcs_writing_raw(const char *path, const struct dalcs_plot_vectors *plot,
+enum dalcs_status dalcs_writing_raw(const char *path, const struct dalcs_writing *how,
+                                    const struct dalcs_plot_vectors *plot,
                                     const struct dalcs_vector *scale,
                                     const struct dalcs_vector *const *vector, size_t n,
                                     int *error) DALCS_MUST_CHECK;

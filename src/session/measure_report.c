@@ -48,17 +48,16 @@ static bool check_instant(struct result *r, const struct dalcs_instant *i) {
     static const char *const verbs[] = {[DALCS_EDGE_ANY] = "crosses",
                                         [DALCS_EDGE_RISE] = "rises through",
                                         [DALCS_EDGE_FALL] = "falls through"};
-    const struct dalcs_measure_card *card = r->item->card;
     const struct dalcs_measure_instant *c = i->card;
     char a[DALCS_QUANTITY_SIZE];
     char b[DALCS_QUANTITY_SIZE];
     if (i->found) {
         return true;
     }
-    double from = fmax(r->measuring->start, card->from);
-    double to = fmin(r->measuring->stop, card->to);
+    double from = fmax(r->measuring->start, r->item->from);
+    double to = fmin(r->measuring->stop, r->item->to);
     if (c->kind == DALCS_INSTANT_AT) {
-        fail(r, "AT=%s does not lie between %s and %s", moment(r, a, c->at), moment(r, b, from),
+        fail(r, "AT=%s does not lie between %s and %s", moment(r, a, i->at), moment(r, b, from),
              moment(r, (char[DALCS_QUANTITY_SIZE]){0}, to));
         return false;
     }
@@ -66,7 +65,7 @@ static bool check_instant(struct result *r, const struct dalcs_instant *i) {
         fail(r, "'%s' has no value everywhere", c->text);
         return false;
     }
-    moment(r, a, fmax(from, c->delay));
+    moment(r, a, fmax(from, i->delay));
     moment(r, b, to);
     if (i->n == 0) {
         fail(r, "'%s' never %s %s between %s and %s", c->left.text, verbs[c->edge], c->text, a, b);
@@ -98,6 +97,11 @@ static void tell_statistic(struct result *r) {
                  moment(r, b, trig->time));
             return;
         }
+    }
+    if (!(item->from < item->to)) {
+        fail(r, "FROM=%s does not come before TO=%s", moment(r, a, item->from),
+             moment(r, b, item->to));
+        return;
     }
     if (!(length > 0.0)) {
         fail(r, "there is nothing to measure: the run goes from %s to %s",
@@ -183,10 +187,10 @@ static void tell(struct result *r, const double *results) {
     }
 }
 
-/* The measurement that a PARAM needs and that failed; NULL: none. */
-static const struct dalcs_measure_card *failed_source(const struct dalcs_circuit *c,
-                                                      const struct dalcs_signal_formula *formula,
-                                                      const double *results) {
+/* The measurement that a formula needs and that failed; NULL: none. */
+static const struct dalcs_measure_card *failed_in(const struct dalcs_circuit *c,
+                                                  const struct dalcs_signal_formula *formula,
+                                                  const double *results) {
     for (int k = 0; k < formula->n; k++) {
         const struct dalcs_signal_formula_step *step = &formula->step[k];
         if (step->push == DALCS_PUT_RESULT && isnan(results[step->index])) {
@@ -194,6 +198,28 @@ static const struct dalcs_measure_card *failed_source(const struct dalcs_circuit
         }
     }
     return NULL;
+}
+
+/* The same for all formulas of a card. */
+static const struct dalcs_measure_card *failed_source(const struct dalcs_circuit *c,
+                                                      const struct dalcs_measure_card *card,
+                                                      const double *results) {
+    const struct dalcs_signal_formula *const formula[] = {
+        &card->formula,
+        &card->from_formula,
+        &card->to_formula,
+        &card->instant[0].difference,
+        &card->instant[0].at_formula,
+        &card->instant[0].delay_formula,
+        &card->instant[1].difference,
+        &card->instant[1].at_formula,
+        &card->instant[1].delay_formula,
+    };
+    const struct dalcs_measure_card *failed = NULL;
+    for (size_t k = 0; k < sizeof formula / sizeof formula[0] && failed == NULL; k++) {
+        failed = failed_in(c, formula[k], results);
+    }
+    return failed;
 }
 
 static enum dalcs_status tell_harmonics(struct dalcs_measures *measures, struct dalcs_run *r) {
@@ -250,6 +276,9 @@ static enum dalcs_status make_room(struct dalcs_run *r) {
         r->measurement = dalcs_arena_alloc(&r->s->arena, n, sizeof(*r->measurement));
         r->result = dalcs_arena_alloc(&r->s->arena, n, sizeof(*r->result));
         report->measurement = r->measurement;
+        for (size_t k = 0; r->result != NULL && k < n; k++) {
+            r->result[k] = NAN; /* until its analysis has run */
+        }
     }
     return r->measurement == NULL || r->result == NULL ? DALCS_E_NOMEM : DALCS_OK;
 }
@@ -262,7 +291,7 @@ enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct 
         return DALCS_OK;
     }
     DALCS_TRY(make_room(r));
-    dalcs_measuring_close(m);
+    DALCS_TRY(dalcs_measuring_close(m));
     for (int k = 0; k < m->n; k++) {
         const struct dalcs_measure_card *card = &c->measure[k];
         struct dalcs_measurement *measurement = &r->measurement[r->s->report.n_measurements];
@@ -277,12 +306,13 @@ enum dalcs_status dalcs_measures_report(struct dalcs_measures *measures, struct 
             return DALCS_E_NOMEM;
         }
         *measurement = (struct dalcs_measurement){.name = name};
-        const struct dalcs_measure_card *source =
-            card->kind == DALCS_MEASURE_PARAM ? failed_source(c, &card->formula, r->result) : NULL;
+        const struct dalcs_measure_card *source = failed_source(c, card, r->result);
         if (status != DALCS_OK) {
             fail(&result, "the run did not come to its end");
         } else if (source != NULL) {
             fail(&result, "it needs '%s', which could not be measured", source->name);
+        } else if (card->is_late && !dalcs_measuring_late(m, k, r->result)) {
+            fail(&result, "a time that earlier measurements give has no value");
         } else {
             tell(&result, r->result);
         }

@@ -158,8 +158,32 @@ struct dalcs_request dalcs_session_request(const struct dalcs_session *session) 
                                   .stop = t->stop,
                                   .start = t->start,
                                   .max_step = t->max_step,
-                                  .prints = session->circuit.prints,
+                                  .n_prints = (size_t)session->circuit.n_prints,
                                   .ascii = session->circuit.options.ascii};
+}
+
+bool dalcs_session_print(const struct dalcs_session *session, size_t card, int analysis,
+                         size_t column, struct dalcs_print *print) {
+    static const int measured[] = {[DALCS_OPERATING_POINT] = DALCS_MEASURED_OP,
+                                   [DALCS_TRANSIENT] = DALCS_MEASURED_TRAN,
+                                   [DALCS_DC_SWEEP] = DALCS_MEASURED_DC,
+                                   [DALCS_AC] = DALCS_MEASURED_AC};
+
+    static const enum dalcs_print_part part[] = {
+        [DALCS_PART_PLAIN] = DALCS_PRINT_PLAIN,     [DALCS_PART_MAGNITUDE] = DALCS_PRINT_MAGNITUDE,
+        [DALCS_PART_DECIBEL] = DALCS_PRINT_DECIBEL, [DALCS_PART_PHASE] = DALCS_PRINT_PHASE,
+        [DALCS_PART_REAL] = DALCS_PRINT_REAL,       [DALCS_PART_IMAGINARY] = DALCS_PRINT_IMAGINARY};
+    const struct dalcs_circuit *circuit = &session->circuit;
+    if (card >= (size_t)circuit->n_prints || analysis < 0 || analysis >= DALCS_N_ANALYSES) {
+        return false;
+    }
+    const struct dalcs_print_card *found = &circuit->print[card];
+    if (!found->is_of[measured[analysis]] || column >= (size_t)found->n) {
+        return false;
+    }
+    const struct dalcs_print_column *c = &found->column[column];
+    *print = (struct dalcs_print){c->signal, c->title, part[c->part]};
+    return true;
 }
 
 const struct dalcs_report *dalcs_session_report(const struct dalcs_session *session) {

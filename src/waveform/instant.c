@@ -141,12 +141,16 @@ static bool look_at_span(void *user, const struct dalcs_span *span) {
 }
 
 static bool look_for_time(struct dalcs_instant *i, double from, double to) {
-    if (i->found || !(i->card->at >= from && i->card->at <= to)) {
+    if (i->found || !(i->at >= from && i->at <= to)) {
         return false;
     }
     i->found = true;
-    i->time = i->card->at;
+    i->time = i->at;
     return true;
+}
+
+struct dalcs_instant dalcs_instant_start(const struct dalcs_measure_instant *card) {
+    return (struct dalcs_instant){.card = card, .at = card->at, .delay = card->delay};
 }
 
 bool dalcs_instant_look(struct dalcs_instant *instant, const struct dalcs_stretch *stretch,
@@ -155,7 +159,7 @@ bool dalcs_instant_look(struct dalcs_instant *instant, const struct dalcs_stretc
     if (card->kind == DALCS_INSTANT_AT) {
         return look_for_time(instant, from, to);
     }
-    from = fmax(from, card->delay);
+    from = fmax(from, instant->delay);
     if (card->kind == DALCS_INSTANT_NONE || is_over(instant) || !(from < to) ||
         instant->has_no_value) {
         return false;

@@ -10,6 +10,7 @@
 
 struct dalcs_instant {
     const struct dalcs_measure_instant *card;
+    double at, delay; /* the card's, or from earlier measurements */
     int side; /* where it has last been clearly and not been counted from: -1 below, 1 above, 0 */
     double scale;
     int n; /* counted so far */
@@ -17,6 +18,9 @@ struct dalcs_instant {
     double time;
     bool has_no_value;
 };
+
+/* At the start of a run. */
+struct dalcs_instant dalcs_instant_start(const struct dalcs_measure_instant *card);
 
 /* Looks at [from, to] of a stretch; true when `time` is a new one. */
 bool dalcs_instant_look(struct dalcs_instant *instant, const struct dalcs_stretch *stretch,

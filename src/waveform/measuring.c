@@ -70,15 +70,24 @@ enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
     if (analysis == DALCS_MEASURED_AC) {
         m->stretch.imaginary = m->values + 2 * n_signals;
     }
+    bool keeps = false;
     for (int k = 0; k < m->n; k++) {
         const struct dalcs_measure_card *card = &circuit->measure[k];
-        m->item[k] = (struct dalcs_measured){
-            .card = card,
-            .instant = {{.card = &card->instant[0]}, {.card = &card->instant[1]}},
-            .begin = INFINITY,
-            .end = -INFINITY,
-            .least = INFINITY,
-            .most = -INFINITY};
+        m->item[k] = (struct dalcs_measured){.card = card,
+                                             .instant = {dalcs_instant_start(&card->instant[0]),
+                                                         dalcs_instant_start(&card->instant[1])},
+                                             .from = card->from,
+                                             .to = card->to,
+                                             .begin = INFINITY,
+                                             .end = -INFINITY,
+                                             .least = INFINITY,
+                                             .most = -INFINITY};
+        keeps = keeps || (card->is_late && card->analysis == analysis);
+    }
+    m->kept = keeps ? dalcs_kept_stretches_create(&m->stretch) : NULL;
+    if (keeps && m->kept == NULL) {
+        dalcs_measuring_finish(m);
+        return DALCS_E_NOMEM;
     }
     return DALCS_OK;
 }
@@ -87,6 +96,7 @@ void dalcs_measuring_finish(struct dalcs_measuring *m) {
     for (int k = 0; k < m->n_harmonics; k++) {
         dalcs_harmonics_finish(&m->harmonics[k]);
     }
+    dalcs_kept_stretches_destroy(m->kept);
     free(m->harmonics);
     free(m->values);
     free(m->row);
@@ -251,8 +261,8 @@ static bool needs_value(const struct dalcs_measured *item) {
 static void measure(const struct dalcs_measuring *m, struct dalcs_measured *item) {
     const struct dalcs_measure_card *card = item->card;
     const struct dalcs_stretch *s = &m->stretch;
-    double from = fmax(s->from, fmax(m->start, card->from));
-    double to = fmin(s->to, fmin(m->stop, card->to));
+    double from = fmax(s->from, fmax(m->start, item->from));
+    double to = fmin(s->to, fmin(m->stop, item->to));
     if (card->analysis != m->analysis || card->kind == DALCS_MEASURE_PARAM || item->has_no_value) {
         return;
     }
@@ -284,10 +294,25 @@ void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to) 
         dalcs_stretch_expand(&m->rule, s->value[k], s->coefficient[k]);
     }
     for (int k = 0; k < m->n; k++) {
-        measure(m, &m->item[k]);
+        if (!m->item[k].card->is_late) {
+            measure(m, &m->item[k]);
+        }
     }
     for (int k = 0; k < m->n_harmonics; k++) {
         dalcs_harmonics_add(&m->harmonics[k], s);
+    }
+    if (m->kept != NULL) {
+        dalcs_kept_stretches_add(m->kept, s);
+    }
+}
+
+static void measure_at_point(const struct dalcs_measuring *m, struct dalcs_measured *item) {
+    const struct dalcs_measure_card *card = item->card;
+    if (card->analysis == m->analysis && card->formula.n > 0 && card->kind != DALCS_MEASURE_PARAM &&
+        card->instant[0].kind == DALCS_INSTANT_NONE) {
+        item->value = dalcs_stretch_value(&m->stretch, &card->formula, m->stretch.from);
+        item->has_no_value = isnan(item->value);
+        item->has_value = m->analysis == DALCS_MEASURED_OP && !item->has_no_value;
     }
 }
 
@@ -305,15 +330,12 @@ static void measure_point(struct dalcs_measuring *m, double at, const double *re
             s->imaginary[k][0] = im[k];
         }
     }
+    if (m->kept != NULL) {
+        dalcs_kept_stretches_add(m->kept, s);
+    }
     for (int k = 0; k < m->n; k++) {
-        struct dalcs_measured *item = &m->item[k];
-        const struct dalcs_signal_formula *formula = &item->card->formula;
-        if (item->card->analysis == m->analysis && formula->n > 0 &&
-            item->card->kind != DALCS_MEASURE_PARAM &&
-            item->card->instant[0].kind == DALCS_INSTANT_NONE) {
-            item->value = dalcs_stretch_value(s, formula, at);
-            item->has_no_value = isnan(item->value);
-            item->has_value = m->analysis == DALCS_MEASURED_OP && !item->has_no_value;
+        if (!m->item[k].card->is_late) {
+            measure_at_point(m, &m->item[k]);
         }
     }
 }
@@ -345,10 +367,50 @@ void dalcs_measuring_row(struct dalcs_measuring *m, double at, const double *re,
     m->has_row = true;
 }
 
-void dalcs_measuring_close(struct dalcs_measuring *m) {
+enum dalcs_status dalcs_measuring_close(struct dalcs_measuring *m) {
     for (int k = 0; k < m->n; k++) {
         if (m->item[k].waits) {
             evaluate(m, &m->item[k], m->stretch.to);
         }
     }
+    return m->kept != NULL && m->kept->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
+}
+
+/* ---- After the run ----------------------------------------------------------------------------- */
+
+/* A time on the card, or what earlier measurements make of it. */
+static bool take_time(const struct dalcs_signal_formula *formula, const double *result,
+                      double *time) {
+    if (formula->n > 0) {
+        *time = dalcs_signal_formula_value(formula,
+                                           &(struct dalcs_signal_formula_point){.result = result});
+    }
+    return !isnan(*time);
+}
+
+bool dalcs_measuring_late(struct dalcs_measuring *m, int k, const double *result) {
+    struct dalcs_measured *item = &m->item[k];
+    const struct dalcs_measure_card *card = item->card;
+    struct dalcs_stretch *s = &m->stretch;
+    bool is_known = take_time(&card->from_formula, result, &item->from) &&
+                    take_time(&card->to_formula, result, &item->to);
+    for (int i = 0; i < 2 && is_known; i++) {
+        const struct dalcs_measure_instant *instant = &card->instant[i];
+        is_known = take_time(&instant->at_formula, result, &item->instant[i].at) &&
+                   take_time(&instant->delay_formula, result, &item->instant[i].delay);
+    }
+    s->result = result;
+    for (size_t i = 0; i < m->kept->n && is_known; i++) {
+        dalcs_kept_stretches_load(m->kept, i, s);
+        if (s->from == s->to) {
+            measure_at_point(m, item);
+        } else {
+            measure(m, item);
+        }
+    }
+    if (item->waits) {
+        evaluate(m, item, s->to);
+    }
+    s->result = NULL;
+    return is_known;
 }

@@ -8,10 +8,12 @@
 #include "circuit.h"
 #include "harmonics.h"
 #include "instant.h"
+#include "kept_stretches.h"
 
 struct dalcs_measured {
     const struct dalcs_measure_card *card;
     struct dalcs_instant instant[2];
+    double from, to;   /* the card's, or from earlier measurements */
     double begin, end; /* what the sums are over; end < begin: nothing yet */
     double integral, square;
     double least, least_at, most, most_at;
@@ -33,6 +35,7 @@ struct dalcs_measuring {
     int n_harmonics;
     struct dalcs_harmonics *harmonics; /* one for each .four; in a .tran */
     double *row, *row_imaginary;       /* [n_signals] the last one */
+    struct dalcs_kept_stretches *kept; /* all of the run; NULL: no measurement is late */
     bool has_row;
     double row_at;
 };
@@ -57,6 +60,10 @@ void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to);
 void dalcs_measuring_row(struct dalcs_measuring *m, double at, const double *re, const double *im);
 
 /* After the last: what was still waited for. */
-void dalcs_measuring_close(struct dalcs_measuring *m);
+enum dalcs_status dalcs_measuring_close(struct dalcs_measuring *m) DALCS_MUST_CHECK;
+
+/* Measurement k, which is late, with result[circuit->n_measures] of those before it: goes through the
+ * run again. False when a time has no value. */
+bool dalcs_measuring_late(struct dalcs_measuring *m, int k, const double *result);
 
 #endif

@@ -140,7 +140,8 @@ static double evaluate(const struct dalcs_stretch *stretch,
     const struct dalcs_signal_formula_point point = {
         .time = stretch->from + 0.5 * (1.0 + x) * (stretch->to - stretch->from),
         .user = &place,
-        .signal = signal_at};
+        .signal = signal_at,
+        .result = stretch->result};
     return dalcs_signal_formula_value(formula, &point);
 }
 

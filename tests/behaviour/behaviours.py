@@ -160,6 +160,27 @@ def check_hard_cases(checker, program):
                               f"{name}: {two.report['work']['steps']} steps")
 
 
+NEGATIVE_RELAY = """the negative relay of hc30 as a formula
+B1 x 0 I=-sgn(v(x))
+C1 x 0 1 ic=0
+.save v(x)
+.tran 1m 1 uic
+.end
+"""
+
+
+def check_negative_relay(checker, program):
+    """Not passive: t, 0 and -t are solutions; one is taken, and that there are others is said."""
+    for method in (None, "euler"):
+        for netlist in (NEGATIVE_RELAY, NETLISTS / "hard" / "hc30.cir"):
+            result = successful(checker, program, netlist, method=method)
+            final = result.column("v(x)")[-1]
+            checker.check(min(abs(final - wanted) for wanted in (-1, 0, 1)) < 1e-9,
+                          f"negative relay, {method}: v(x) ends at {final}")
+            checker.check("3 solutions of a circuit that is not passive" in result.stderr,
+                          f"negative relay, {method}: {result.stderr}")
+
+
 # ---- Values at an operating point, times of events ---------------------------------------------------
 
 OPAMPS = """op-amps at rest
@@ -289,6 +310,7 @@ def main():
     check_switching_dae(checker, program)
     check_second_switching_dae(checker, program)
     check_hard_cases(checker, program)
+    check_negative_relay(checker, program)
     check_operating_points(checker, program)
     check_events(checker, program)
     check_oscillator(checker, program)

@@ -68,6 +68,76 @@ def tables(program, checker, folder):
                   "files without -r: " + ", ".join(p.name for p in folder.iterdir()))
 
 
+CARDS = """several tables // and comments
+V1 in 0 DC 1 AC 1 // a volt
+// R9 in 0 1
+R1 in out 1k
+C1 out 0 1u
+.op
+.dc V1 0 1 0.5
+.ac dec 1 10 100
+.tran 0.5m 1m uic
+.print dc v(out) i(v1)
+.print ac vdb(out) v(out)
+.plot ac vp(out) (-1,1) db(v(in,out))
+.print tran v(in) v(out)
+.print tran v(in,out) @r1[i]
+.print op v(out)
+.end
+"""
+
+LINES = """\
+Operating Point
+Index   v(out)
+0 1.000000e+00
+DC transfer characteristic
+Index   v1              v(out)          i(v1)
+0 0.000000e+00 0.000000e+00 0.000000e+00
+1 5.000000e-01 5.000000e-01 0.000000e+00
+2 1.000000e+00 1.000000e+00 0.000000e+00
+AC Analysis
+Index   frequency       vdb(out)        v(out)
+0 1.000000e+01 -1.71115e-02 9.960677e-01, -6.25848e-02
+1 1.000000e+02 -1.44507e+00 7.169568e-01, -4.50477e-01
+AC Analysis
+Index   frequency       vp(out)         db(v(in,out))
+0 1.000000e+01 -6.27494e-02 -2.40535e+01
+1 1.000000e+02 -5.60982e-01 -5.48147e+00
+Transient Analysis
+Index   time            v(in)           v(out)
+0 0.000000e+00 1.000000e+00 0.000000e+00
+1 5.000000e-04 1.000000e+00 3.934693e-01
+2 1.000000e-03 1.000000e+00 6.321206e-01
+Transient Analysis
+Index   time            v(in,out)       i(r1)
+0 0.000000e+00 1.000000e+00 1.000000e-03
+1 5.000000e-04 6.065307e-01 6.065307e-04
+2 1.000000e-03 3.678794e-01 3.678794e-04
+"""
+
+
+def cards(program, checker, folder):
+    """A table for each .print, in the order of the analyses; the numbers of .ac are ngspice's own."""
+    (folder / "cards.cir").write_text(CARDS)
+    done = run(program, folder, "-b", "cards.cir")
+    checker.check(done.returncode == 0 and done.stderr == "", f"cards: {done}")
+    found = re.findall(r"^ *(Operating Point|DC transfer \w+|\w+ Analysis|Index .*?|\d+\t.*?)\s*$",
+                       done.stdout, re.MULTILINE)
+    found = [re.sub(r"\d\.\d+e-2\d", "0.000000e+00", line.replace("\t", " ")) for line in found]
+    checker.check(found == LINES.splitlines(), "cards: " + "\n".join(found))
+    (folder / "cards.cir").write_text(CARDS.replace(".op", ".op\n.step R1 list 1k 2k"))
+    done = run(program, folder, "-b", "cards.cir")
+    checker.check(re.findall(r"Transient Analysis(.*)", done.stdout)
+                  == ["  r1=1000"] * 2 + ["  r1=2000"] * 2, f"steps: {done.stdout}")
+    (folder / "cards.cir").write_text(re.sub(r"\.(print|plot|tran) .*\n", "", CARDS))
+    done = run(program, folder, "-b", "cards.cir")
+    checker.check(re.findall(r"^Index.*", done.stdout, re.MULTILINE)
+                  == [f"Index   {'v1':16}{'v(in)':16}{'v(out)':16}{'i(v1)':16}",
+                      f"Index   {'frequency':16}{'v(in)':32}{'v(out)':32}{'i(v1)':32}"],
+                  f"without .print and .tran everything: {done.stdout}")
+    (folder / "cards.cir").unlink()
+
+
 def refusals(program, checker, folder):
     for line, status, why in ((["-b"], 2, "no netlist given"),
                               (["-b", "c.cir", "d.cir"], 2, "'d.cir' is one too many"),
@@ -111,7 +181,7 @@ def ascii_files(program, checker, folder):
 def main():
     program = str(pathlib.Path(sys.argv[1]).resolve())
     checker = dalcs_program.Checker("batch")
-    for test in (command_lines, tables, refusals, ascii_files):
+    for test in (command_lines, tables, cards, refusals, ascii_files):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             (folder / "c.cir").write_text(NETLIST)

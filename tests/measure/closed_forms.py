@@ -319,6 +319,94 @@ R3 free 0 1
     checker.check("none" not in r.of, "others: a measurement of an analysis that is not there")
 
 
+def late(program, checker):
+    """Of earlier results: times, levels, formulas; functions of the netlist."""
+    r = Results(program, checker, """late
+.param tau=1m
+.func half(x) {x/2}
+.func power(r) {v(out)*v(out)/r}
+.func nest(a,b) {half(a) + half(b)*if(a > 0, 1, 2) + (b > 0 ? 0 : a)}
+.func nothing() {3}
+V1 in 0 1
+R1 in out 1k
+C1 out 0 1u
+.dc V1 0 2 0.5
+.ac lin 3 1k 3k
+V2 aside 0 AC 1
+R2 aside 0 1
+.op
+.tran 0.1m 5m uic
+.meas op o1 FIND v(in)
+.meas op o2 FIND v(in)*o1+nothing()
+.meas dc d1 WHEN v(in)=o1/4
+.meas dc d2 AVG v(in) FROM=d1
+.meas ac a1 FIND v(aside)*o1 AT=2k
+.meas ac a2 FIND vi(aside) AT={a1*1k+500}
+.meas tran t1 WHEN v(out)=0.5
+.meas tran vmax MAX v(out)
+.meas tran t9 WHEN v(out)=0.9*vmax
+.meas tran mean AVG v(out) FROM=t1 TO={t1+tau}
+.meas tran early FIND v(out) AT='t1/2'
+.meas tran middle WHEN v(out)='half(vmax)' TD='t1/2'
+.meas tran much FIND v(out) WHEN v(out)=0.5 TD=t1+tau
+.meas tran over MAX v(out)/vmax
+.meas tran energy INTEG power(1k)
+.meas tran nested FIND nest(v(out), 1-v(out)) AT=tau
+.meas tran both WHEN half(v(out))=half(0.5)
+.meas tran rise TRIG AT=t1 TARG v(out) VAL='0.9*vmax'
+.meas tran edge AVG v(out) TRIG AT=t1 TARG AT=t9
+.meas tran slope DERIV v(out) AT=t1
+.meas tran wrong AVG v(out) FROM=t9 TO=t1
+.meas tran follows FIND v(out) AT=wrong
+.meas tran infinite FIND v(out) AT='1/(t1-t1)'
+.end
+""")
+    tau, stop = 1e-3, 5e-3
+    v = lambda t: 1 - math.exp(-t / tau)
+    when = lambda level: -tau * math.log(1 - level)
+    integral = lambda t: t + tau * math.exp(-t / tau)
+    t1, vmax = when(0.5), v(stop)
+    t9 = when(0.9 * vmax)
+    r.close("o2", 4.0)
+    r.close("d1", 0.25)
+    r.close("d2", 1.125)
+    r.close("a1", 1.0)
+    r.close("a2", 0.0, scale=1.0)
+    r.close("t9", t9)
+    r.close("mean", (integral(t1 + tau) - integral(t1)) / tau)
+    r.close("mean", t1, "from")
+    r.close("mean", t1 + tau, "to")
+    r.close("early", v(t1 / 2))
+    r.close("middle", when(vmax / 2))
+    r.close("over", 1.0)
+    r.close("energy", 1e-3 * (stop - 2 * tau * v(stop) + tau / 2 * (1 - math.exp(-2 * stop / tau))))
+    r.close("nested", 0.5)
+    r.close("both", t1)
+    r.close("rise", t9 - t1)
+    r.close("edge", (integral(t9) - integral(t1)) / (t9 - t1))
+    r.close("slope", 0.5 / tau)
+    wanted = {
+        "much": "'v(out)' never crosses 0.5 between 1.69315 ms and 5 ms",
+        "wrong": "FROM=2.24371 ms does not come before TO=693.147 us",
+        "follows": "it needs 'wrong', which could not be measured",
+        "infinite": "a time that earlier measurements give has no value",
+    }
+    for name, why in wanted.items():
+        checker.check(r.of.get(name, {}).get("failure") == why, f"late: {name}: {r.of.get(name)}")
+    stepped = Results(program, checker, """late, with implicit Euler and steps
+.param r=1
+.step param r list 1 2
+V1 a 0 PWL(0 0 10 10)
+R1 a 0 {r}
+.tran 1 10
+.meas tran t WHEN i(r1)=2
+.meas tran mean AVG v(a) FROM=t
+.end
+""", method="euler", tolerance=None, step=1.0)
+    stepped.close("t", 4.0, tolerance=1e-9)  # of the last step
+    stepped.close("mean", 7.0, tolerance=1e-9)
+
+
 def fourier(program, checker):
     run = dalcs_program.run(program, """fourier
 V1 sq 0 PULSE(-1 1 0 0 0 0.5m 1m)
@@ -363,7 +451,7 @@ R3 tri 0 1
 def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("measurements")
-    for test in (sines, charging, rectifier, pulses, ledger, euler, others, fourier):
+    for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier):
         test(program, checker)
     return checker.finish()
 

@@ -1,0 +1,352 @@
+/* signal_formula_steps.c - formulas of signals: from operations to steps on a stack.
+ *
+ * Functions of the netlist are written out where they are called: their arguments are on the stack
+ * then, and how high it is there is known. */
+#include "signal_formula_card.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Functions that write themselves out again and again: no person wrote such a formula. */
+enum { DEEPEST_CALL = 100, MOST_STEPS = 100000 };
+
+static void report(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                   const struct dalcs_operation *o, const char *hint, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+
+static void report(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                   const struct dalcs_operation *o, const char *hint, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    dalcs_signal_compilation_report(c, &e->text, o->begin, o->length, hint, format, arguments);
+    va_end(arguments);
+}
+
+/* Adds a step after which the stack is `higher` than before. */
+static void add(struct dalcs_signal_compilation *c, struct dalcs_signal_formula_step step,
+                int higher) {
+    if (dalcs_grow(&c->step, &c->step_capacity, c->n_steps + 1, sizeof *c->step) != DALCS_OK) {
+        c->builder->out_of_memory = true;
+        c->failed = true;
+        return;
+    }
+    c->step[c->n_steps++] = step;
+    c->height += higher;
+    c->deepest = c->height > c->deepest ? c->height : c->deepest;
+}
+
+/* ---- Names and signals ----------------------------------------------------------------------- */
+
+static const char *hint_for_name(const struct dalcs_signal_compilation *c, const char *name) {
+    struct dalcs_builder *builder = c->builder;
+    const struct dalcs_names *results = c->rules->results;
+    const char *nearest = results != NULL ? dalcs_names_nearest(results, name) : NULL;
+    if (nearest != NULL) {
+        return dalcs_builder_hint(builder, "did you mean '%s'?", nearest);
+    }
+    if (dalcs_names_find(&builder->nodes, name) >= 0) {
+        return dalcs_builder_hint(builder, "write v(%s)", name);
+    }
+    return dalcs_names_find(&builder->devices, name) >= 0
+               ? dalcs_builder_hint(builder, "write i(%s)", name)
+               : NULL;
+}
+
+static void add_name(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                     const struct dalcs_operation *o) {
+    const struct dalcs_signal_formula_rules *rules = c->rules;
+    const int signal = dalcs_signal_compilation_unmask(o->u.name);
+    const int result = rules->results != NULL ? dalcs_names_find(rules->results, o->u.name) : -1;
+    struct dalcs_signal_formula_step step = {.push = DALCS_PUT_VALUE};
+    if (signal >= 0) {
+        step.push = DALCS_PUT_SIGNAL;
+        step.index = c->signal[signal];
+        step.part = c->part[signal];
+    } else if (result >= 0) {
+        step.push = DALCS_PUT_RESULT;
+        step.index = result;
+    } else if (strcmp(o->u.name, rules->variable) == 0 && rules->no_signals == NULL) {
+        step.push = DALCS_PUT_TIME;
+    } else if (!dalcs_deck_parameter(c->builder->deck, o->u.name, &step.number) &&
+               !dalcs_constant_find(o->u.name, &step.number)) {
+        report(c, e, o, hint_for_name(c, o->u.name),
+               rules->results != NULL ? "there is no parameter and no earlier measurement '%s'"
+                                      : "there is no parameter '%s'",
+               o->u.name);
+        return;
+    }
+    add(c, step, 1);
+}
+
+/* v(...) or i(...) in a function of the netlist; its names follow. */
+static void add_signal(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                       const struct dalcs_operation *o) {
+    struct dalcs_token name[2];
+    if (c->rules->no_signals != NULL) {
+        report(c, e, o, NULL, "%s", c->rules->no_signals);
+        return;
+    }
+    for (int k = 0; k < o->count; k++) {
+        const struct dalcs_piece *piece = dalcs_expression_piece(&e->text, o[1 + k].begin);
+        name[k] = (struct dalcs_token){.line = piece->line,
+                                       .text = o[1 + k].u.name,
+                                       .offset = piece->offset + o[1 + k].begin - piece->begin,
+                                       .length = o[1 + k].length,
+                                       .kind = DALCS_TOKEN_WORD};
+    }
+    const int index = dalcs_signal_compilation_find(c, *o->u.name == 'i', &name[0],
+                                                    o->count > 1 ? &name[1] : NULL);
+    if (index >= 0) {
+        add(c, (struct dalcs_signal_formula_step){.push = DALCS_PUT_SIGNAL, .index = index}, 1);
+    }
+}
+
+/* ---- Calls ----------------------------------------------------------------------------------- */
+
+static void add_expression(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                           int arguments);
+
+static void check_count(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                        const struct dalcs_operation *o, int least, int most) {
+    if (o->count < least || o->count > most) {
+        const int limit = o->count < least ? least : most;
+        report(c, e, o, NULL, "'%s' takes %s%d argument%s, not %d", o->u.name,
+               least == most      ? ""
+               : o->count < least ? "at least "
+                                  : "at most ",
+               limit, limit == 1 ? "" : "s", o->count);
+    }
+}
+
+/* A function of the netlist; false when there is none of this name. */
+static bool write_out(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                      const struct dalcs_operation *o) {
+    const struct dalcs_expression *body;
+    int n_arguments;
+    if (!dalcs_deck_function(c->builder->deck, o->u.name, &n_arguments, &body,
+                             &c->builder->out_of_memory)) {
+        return false;
+    }
+    if (body == NULL) {
+        c->builder->failed = c->builder->failed || !c->builder->out_of_memory;
+        c->failed = true;
+        return true;
+    }
+    check_count(c, e, o, n_arguments, n_arguments);
+    if (c->depth >= DEEPEST_CALL) {
+        report(c, e, o, NULL, "functions call each other too deep, here '%s'", o->u.name);
+    }
+    if (!c->failed) {
+        const int arguments = c->height - n_arguments;
+        c->depth++;
+        add_expression(c, body, arguments);
+        c->depth--;
+        add(c, (struct dalcs_signal_formula_step){.push = DALCS_PUT_DOWN, .index = arguments},
+            -n_arguments);
+    }
+    return true;
+}
+
+static void add_call(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                     const struct dalcs_operation *o) {
+    if (write_out(c, e, o)) {
+        return;
+    }
+    const struct dalcs_function *function = dalcs_function_find(o->u.name);
+    if (function == NULL) {
+        const char *nearest = dalcs_function_nearest(o->u.name);
+        report(c, e, o,
+               nearest != NULL ? dalcs_builder_hint(c->builder, "did you mean '%s'?", nearest)
+                               : NULL,
+               "there is no function '%s' for measurements", o->u.name);
+        return;
+    }
+    check_count(c, e, o, function->least, function->most);
+    add(c,
+        (struct dalcs_signal_formula_step){
+            .code = o->code, .count = o->count, .function = function},
+        1 - o->count);
+}
+
+/* Of a function that other simulators have: is it the netlist's own? */
+static void check_call(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                       const struct dalcs_operation *o) {
+    const struct dalcs_expression *body;
+    int n_arguments;
+    if (!dalcs_deck_function(c->builder->deck, o->u.name, &n_arguments, &body,
+                             &c->builder->out_of_memory)) {
+        report(c, e, o, NULL, "there is no function '%s' for measurements", o->u.name);
+    }
+}
+
+/* ---- Operations ------------------------------------------------------------------------------ */
+
+static bool is_jump(const struct dalcs_operation *o) {
+    return o->code >= DALCS_JUMP && o->code <= DALCS_JUMP_OR;
+}
+
+static void add_operation(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                          const struct dalcs_operation *o, int arguments) {
+    switch (o->code) {
+    case DALCS_PUSH_NUMBER:
+        add(c, (struct dalcs_signal_formula_step){.push = DALCS_PUT_VALUE, .number = o->u.number},
+            1);
+        break;
+    case DALCS_PUSH_NAME:
+        add_name(c, e, o);
+        break;
+    case DALCS_PUSH_ARGUMENT:
+        add(c,
+            (struct dalcs_signal_formula_step){.push = DALCS_PUT_ARGUMENT,
+                                               .index = arguments + o->count},
+            1);
+        break;
+    case DALCS_PUSH_SIGNAL:
+        add_signal(c, e, o);
+        break;
+    case DALCS_SIGNAL_NAME:
+        break; /* add_signal has taken it */
+    case DALCS_CHECK_CALL:
+        check_call(c, e, o);
+        break;
+    case DALCS_CALL:
+        add_call(c, e, o);
+        break;
+    case DALCS_NEGATE:
+    case DALCS_NOT:
+    case DALCS_TO_LOGIC:
+        add(c, (struct dalcs_signal_formula_step){.code = o->code}, 0);
+        break;
+    default: /* takes a value off the stack, and so does a jump, or what it jumps over puts one on */
+        add(c, (struct dalcs_signal_formula_step){.code = o->code, .count = o->count}, -1);
+        break;
+    }
+}
+
+/* Adds all of an expression; arguments: where those of its function begin on the stack. */
+static void add_expression(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                           int arguments) {
+    size_t *start = dalcs_arena_alloc(&c->builder->scratch, (size_t)e->n + 1, sizeof *start);
+    if (start == NULL) {
+        c->builder->out_of_memory = true;
+        c->failed = true;
+        return;
+    }
+    for (int k = 0; k < e->n && !c->failed; k++) {
+        start[k] = c->n_steps;
+        add_operation(c, e, &e->operation[k], arguments);
+        if (!c->failed && c->n_steps > MOST_STEPS) {
+            report(c, e, &e->operation[k], NULL, "the formula is too long");
+        }
+    }
+    start[e->n] = c->n_steps;
+    for (int k = 0; k < e->n && !c->failed; k++) {
+        const struct dalcs_operation *o = &e->operation[k];
+        if (is_jump(o)) {
+            c->step[start[k]].count = (int)(start[k + o->count] - start[k]);
+        }
+    }
+}
+
+/* ---- The whole ------------------------------------------------------------------------------- */
+
+/* Degree in signals and time of what the steps leave on the stack: 0, 1, or 2 for anything else. */
+static int degree_of(const struct dalcs_signal_formula_step *step, size_t n) {
+    unsigned char degree[DALCS_SIGNAL_FORMULA_DEEPEST];
+    int top = 0;
+    for (size_t k = 0; k < n; k++) {
+        const enum dalcs_operation_code code = step[k].code;
+        if (step[k].push == DALCS_PUT_ARGUMENT) {
+            degree[top++] = degree[step[k].index];
+        } else if (step[k].push == DALCS_PUT_DOWN) {
+            degree[step[k].index] = degree[top - 1];
+            top = step[k].index + 1;
+        } else if (step[k].push != DALCS_PUT_NOTHING) {
+            const bool varies = step[k].push == DALCS_PUT_TIME || step[k].push == DALCS_PUT_SIGNAL;
+            degree[top++] = varies ? (step[k].part == DALCS_PART_PLAIN ? 1 : 2) : 0;
+        } else if (code == DALCS_CALL) {
+            unsigned char most = 0;
+            for (int i = 0; i < step[k].count; i++) {
+                most = degree[--top] > most ? degree[top] : most;
+            }
+            degree[top++] = most > 0 ? 2 : 0;
+        } else if (code >= DALCS_JUMP && code <= DALCS_JUMP_OR) {
+            return 2;
+        } else if (code >= DALCS_ADD && code <= DALCS_GREATER_EQUAL) {
+            const unsigned char b = degree[--top];
+            unsigned char *a = &degree[top - 1];
+            const unsigned char most = *a > b ? *a : b;
+            const bool is_sum = code == DALCS_ADD || code == DALCS_SUBTRACT;
+            const bool is_scaled =
+                (code == DALCS_MULTIPLY && (*a == 0 || b == 0)) || (code == DALCS_DIVIDE && b == 0);
+            *a = most == 0 || is_sum || is_scaled ? most : 2;
+        } else if (code != DALCS_NEGATE && degree[top - 1] > 0) {
+            degree[top - 1] = 2;
+        }
+    }
+    return top > 0 ? degree[0] : 0;
+}
+
+static void finish(struct dalcs_signal_compilation *c, const struct dalcs_expression *e,
+                   struct dalcs_signal_formula *formula) {
+    if (c->deepest > DALCS_SIGNAL_FORMULA_DEEPEST) {
+        report(c, e, &e->operation[e->n - 1], NULL, "the formula is too long");
+        return;
+    }
+    struct dalcs_signal_formula_step *step =
+        dalcs_arena_alloc(&c->builder->circuit->arena, c->n_steps, sizeof *step);
+    if (step == NULL) {
+        c->builder->out_of_memory = true;
+        c->failed = true;
+        return;
+    }
+    memcpy(step, c->step, c->n_steps * sizeof *step);
+    for (size_t k = 0; k < c->n_steps; k++) {
+        formula->has_results = formula->has_results || step[k].push == DALCS_PUT_RESULT;
+    }
+    const int degree = degree_of(step, c->n_steps);
+    formula->step = step;
+    formula->n = (int)c->n_steps;
+    formula->deepest = c->deepest;
+    formula->is_affine = degree <= 1;
+    formula->is_constant = degree == 0 && !formula->has_results;
+}
+
+bool dalcs_signal_compilation_steps(struct dalcs_signal_compilation *c,
+                                    const struct dalcs_expression *expression,
+                                    struct dalcs_signal_formula *formula) {
+    add_expression(c, expression, 0);
+    if (!c->failed) {
+        finish(c, expression, formula);
+    }
+    free(c->step);
+    return !c->failed;
+}
+
+bool dalcs_signal_formula_difference(struct dalcs_builder *builder,
+                                     const struct dalcs_signal_formula *left,
+                                     const struct dalcs_signal_formula *right,
+                                     struct dalcs_signal_formula *difference) {
+    const int n = left->n + right->n + 1;
+    struct dalcs_signal_formula_step *step =
+        dalcs_arena_alloc(&builder->circuit->arena, (size_t)n, sizeof *step);
+    if (step == NULL) {
+        builder->out_of_memory = true;
+        return false;
+    }
+    memcpy(step, left->step, (size_t)left->n * sizeof *step);
+    memcpy(step + left->n, right->step, (size_t)right->n * sizeof *step);
+    for (int k = left->n; k < n - 1; k++) {
+        /* what the left side leaves lies below */
+        step[k].index += step[k].push == DALCS_PUT_ARGUMENT || step[k].push == DALCS_PUT_DOWN;
+    }
+    step[n - 1].code = DALCS_SUBTRACT;
+    *difference = (struct dalcs_signal_formula){
+        .n = n,
+        .step = step,
+        .text = left->text,
+        .deepest = left->deepest > right->deepest + 1 ? left->deepest : right->deepest + 1,
+        .is_affine = left->is_affine && right->is_affine,
+        .has_results = left->has_results || right->has_results};
+    return difference->deepest <= DALCS_SIGNAL_FORMULA_DEEPEST;
+}
