@@ -5,6 +5,7 @@
  *     q = F s + (C_I C_II) N(sigma)^-1 (sigma P x_k + E_I s; E_II s)
  *
  * (Brogliato 2022, eq. (3.2); Heemels, Schumacher and Weiland 1999, whose M(s) this is at s = 1/h). */
+#include "eliminate.h"
 #include "equations.h"
 #include "printer.h"
 
@@ -65,24 +66,11 @@ static void balance(struct work *w, size_t n, size_t n_right) {
     }
 }
 
-/* LAPACKE_dlange allocates, and does not say when that failed. */
-static double one_norm(const double *m, size_t n) {
-    double norm = 0.0;
-    for (size_t j = 0; j < n; j++) {
-        double sum = 0.0;
-        for (size_t i = 0; i < n; i++) {
-            sum += fabs(m[i * n + j]);
-        }
-        norm = fmax(norm, sum);
-    }
-    return norm;
-}
-
 /* right becomes N^-1 right; false when N is singular. */
 static enum dalcs_status solve(struct work *w, size_t n, size_t n_right, bool *is_singular) {
     lapack_int order = (lapack_int)n;
     double rcond = 0.0;
-    double norm = one_norm(w->N, n);
+    double norm = dalcs_dense_one_norm(w->N, n);
     lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, order, order, w->N, order, w->pivot);
     if (info == 0) {
         info = LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', order, w->N, order, norm, &rcond);

@@ -4,221 +4,23 @@
  *     P x' = (A_I - B_I R A_II) x + (Bbar_I - B_I R Bbar_II) lambda + ...,    R = B_II^-1,
  *        w = (C_I - C_II R A_II) x + (D - C_II R Bbar_II) lambda + ...
  *
- * Where it is singular, the null vector says which unknowns the equations II leave open. What moves a switch is
- * a sum of columns; where z put sources into it, that sum stays as an unknown with an equation of its own. */
+ * What moves a switch is a sum of columns; where z put sources into it, that sum stays as an unknown with an
+ * equation of its own. */
+#include "eliminate.h"
 #include "equations.h"
 #include "reading.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Unknowns up to which z is eliminated densely. */
-enum { MOST_UNKNOWNS = 1000 };
-
-/* A B_II, balanced, whose reciprocal condition is smaller is singular. */
-static const double least_rcond = 1e-14;
-
 /* An entry of R A_II that is this part of what it is summed from is rounding. */
 static const double rounding = 1e-15;
-
-/* z = Z (x, lambda, s): dense, row by row. */
-struct elimination {
-    const struct dalcs_system *from;
-    size_t n_z, n_right; /* columns: x, lambda, inputs */
-    double *Z;           /* [n_z][n_right] */
-    bool is_regular;
-    int n_controls;  /* unknowns that stay, each the sum that moves a switch */
-    int *control_of; /* [n_pairs] which of these is a pair's, -1: none */
-    const char *because;
-};
-
-/* ---- Solving for z ------------------------------------------------------------------------- */
-
-/* Powers of 2 that make rows and then columns of m[n][n] of size 1. */
-static void balance(double *m, size_t n, double *row, double *column) {
-    for (int by_column = 0; by_column < 2; by_column++) {
-        for (size_t i = 0; i < n; i++) {
-            double largest = 0.0;
-            for (size_t j = 0; j < n; j++) {
-                largest = fmax(largest, fabs(m[by_column ? j * n + i : i * n + j]));
-            }
-            int power = 0;
-            (void)frexp(largest, &power);
-            double scale = largest > 0.0 ? ldexp(1.0, -power) : 1.0;
-            (by_column ? column : row)[i] = scale;
-            for (size_t j = 0; j < n; j++) {
-                m[by_column ? j * n + i : i * n + j] *= scale;
-            }
-        }
-    }
-}
-
-/* The right side -(A_II, Bbar_II, E_II), scaled as the rows. */
-static void fill_right(struct elimination *z, const double *row) {
-    const struct dalcs_system *s = z->from;
-    for (size_t i = 0; i < z->n_z; i++) {
-        int r = s->n_x + (int)i;
-        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
-            int c = s->A.j[k];
-            if (c < s->n_x || c >= dalcs_system_n_equations(s)) {
-                size_t to = (size_t)(c < s->n_x ? c : c - s->n_z);
-                z->Z[i * z->n_right + to] = -row[i] * s->A.x[k];
-            }
-        }
-        for (int k = s->E.p[r]; k < s->E.p[r + 1]; k++) {
-            z->Z[i * z->n_right + (size_t)(s->n_x + s->n_pairs + s->E.j[k])] = -row[i] * s->E.x[k];
-        }
-    }
-}
-
-/* The names that a null vector of B_II has. */
-static const char *name_open(const struct elimination *z, const double *null, const double *column,
-                             struct dalcs_arena *arena) {
-    const struct dalcs_system *s = z->from;
-    const char *list = NULL;
-    double largest = 0.0;
-    int n = 0;
-    for (size_t i = 0; i < z->n_z; i++) {
-        largest = fmax(largest, fabs(null[i] * column[i]));
-    }
-    for (size_t i = 0; i < z->n_z; i++) {
-        int c = s->n_x + (int)i;
-        if (fabs(null[i] * column[i]) < 1e-6 * largest || ++n > 6) {
-            continue;
-        }
-        const char *what = s->column_is_current[c] ? "i" : "v";
-        list = list == NULL
-                   ? dalcs_arena_printf(arena, "%s(%s)", what, s->column[c].element)
-                   : dalcs_arena_printf(arena, "%s, %s(%s)", list, what, s->column[c].element);
-        if (list == NULL) {
-            return NULL;
-        }
-    }
-    return n > 6 ? dalcs_arena_printf(arena, "%s and %d more", list, n - 6) : list;
-}
-
-static enum dalcs_status explain_singular(struct elimination *z, double *m, const double *column,
-                                          struct dalcs_arena *arena) {
-    size_t n = z->n_z;
-    double *value = dalcs_alloc(n, sizeof *value);
-    double *vt = dalcs_alloc(n * n, sizeof *vt);
-    double *work = dalcs_alloc(n, sizeof *work);
-    enum dalcs_status status = DALCS_E_NOMEM;
-    if (value != NULL && vt != NULL && work != NULL) {
-        double unused;
-        lapack_int info =
-            LAPACKE_dgesvd(LAPACK_ROW_MAJOR, 'N', 'A', (lapack_int)n, (lapack_int)n, m,
-                           (lapack_int)n, value, &unused, 1, vt, (lapack_int)n, work);
-        const char *names = info == 0 ? name_open(z, vt + (n - 1) * n, column, arena) : NULL;
-        z->because = dalcs_arena_printf(
-            arena, "B_II is singular: the equations without complementarity leave %s open",
-            names == NULL ? "something" : names);
-        status = z->because == NULL ? DALCS_E_NOMEM : DALCS_OK;
-    }
-    free(value);
-    free(vt);
-    free(work);
-    return status;
-}
-
-struct workspace {
-    double *m, *copy, *row, *column;
-    lapack_int *pivot;
-};
-
-/* LAPACKE_dlange allocates, and does not say when that failed. */
-static double one_norm(const double *m, size_t n) {
-    double norm = 0.0;
-    for (size_t j = 0; j < n; j++) {
-        double sum = 0.0;
-        for (size_t i = 0; i < n; i++) {
-            sum += fabs(m[i * n + j]);
-        }
-        norm = fmax(norm, sum);
-    }
-    return norm;
-}
-
-static enum dalcs_status solve_for_z(struct elimination *z, struct workspace *w,
-                                     struct dalcs_arena *arena) {
-    const struct dalcs_system *s = z->from;
-    const size_t n = z->n_z;
-    for (size_t i = 0; i < n; i++) {
-        int r = s->n_x + (int)i;
-        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
-            int c = s->A.j[k] - s->n_x;
-            if (c >= 0 && c < s->n_z) {
-                w->m[i * n + (size_t)c] = s->A.x[k];
-            }
-        }
-    }
-    balance(w->m, n, w->row, w->column);
-    memcpy(w->copy, w->m, n * n * sizeof *w->m);
-    double norm = one_norm(w->m, n);
-    double rcond = 0.0;
-    lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, (lapack_int)n, (lapack_int)n, w->m,
-                                     (lapack_int)n, w->pivot);
-    if (info == 0) {
-        info =
-            LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', (lapack_int)n, w->m, (lapack_int)n, norm, &rcond);
-    }
-    if (info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR) {
-        return DALCS_E_NOMEM;
-    }
-    if (info != 0 || rcond < least_rcond) {
-        return explain_singular(z, w->copy, w->column, arena);
-    }
-    fill_right(z, w->row);
-    if (LAPACKE_dgetrs(LAPACK_ROW_MAJOR, 'N', (lapack_int)n, (lapack_int)z->n_right, w->m,
-                       (lapack_int)n, w->pivot, z->Z, (lapack_int)z->n_right) != 0) {
-        return DALCS_E_NOMEM;
-    }
-    for (size_t i = 0; i < n; i++) {
-        for (size_t j = 0; j < z->n_right; j++) {
-            z->Z[i * z->n_right + j] *= w->column[i];
-        }
-    }
-    z->is_regular = true;
-    return DALCS_OK;
-}
-
-static enum dalcs_status eliminate(struct elimination *z, const struct dalcs_system *from,
-                                   struct dalcs_arena *arena) {
-    *z = (struct elimination){.from = from,
-                              .n_z = (size_t)from->n_z,
-                              .n_right = (size_t)(from->n_x + from->n_pairs + from->n_inputs)};
-    if (from->n_z > MOST_UNKNOWNS) {
-        z->because =
-            dalcs_arena_printf(arena, "more than %d unknowns are not eliminated", MOST_UNKNOWNS);
-        return z->because == NULL ? DALCS_E_NOMEM : DALCS_OK;
-    }
-    const size_t n = z->n_z;
-    struct workspace w = {.m = dalcs_alloc(n * n, sizeof *w.m),
-                          .copy = dalcs_alloc(n * n, sizeof *w.copy),
-                          .row = dalcs_alloc(n, sizeof *w.row),
-                          .column = dalcs_alloc(n, sizeof *w.column),
-                          .pivot = dalcs_alloc(n, sizeof *w.pivot)};
-    z->Z = dalcs_alloc(n * z->n_right, sizeof *z->Z);
-    enum dalcs_status status = DALCS_E_NOMEM;
-    if (w.m != NULL && w.copy != NULL && w.row != NULL && w.column != NULL && w.pivot != NULL &&
-        z->Z != NULL) {
-        z->is_regular = n == 0;
-        status = n == 0 ? DALCS_OK : solve_for_z(z, &w, arena);
-    }
-    free(w.m);
-    free(w.copy);
-    free(w.row);
-    free(w.column);
-    free(w.pivot);
-    return status;
-}
 
 /* ---- The reduced system -------------------------------------------------------------------- */
 
 /* A row of which columns are those of `from`, added to one of the reduced system. */
-static void add_row(const struct elimination *z, const struct dalcs_csr *a, int i,
+static void add_row(const struct dalcs_elimination *z, const struct dalcs_csr *a, int i,
                     const struct dalcs_csr *of_inputs, double *dense, double *size) {
     const struct dalcs_system *s = z->from;
     for (size_t j = 0; j < z->n_right; j++) {
@@ -260,13 +62,13 @@ static void rows_finish(struct rows *rows) {
 }
 
 /* x, lambda and inputs, as they are counted without z, to columns of the reduced system. */
-static int reduced_column(const struct elimination *z, int j) {
+static int reduced_column(const struct dalcs_elimination *z, int j) {
     return j < z->from->n_x ? j : j + z->n_controls;
 }
 
 /* Row i of (a, of_inputs) without z becomes row `to`. */
-static enum dalcs_status reduce_row(const struct elimination *z, const struct dalcs_csr *a, int i,
-                                    const struct dalcs_csr *of_inputs, double *dense, int to,
+static enum dalcs_status reduce_row(const struct dalcs_elimination *z, const struct dalcs_csr *a,
+                                    int i, const struct dalcs_csr *of_inputs, double *dense, int to,
                                     struct rows *rows) {
     int n_columns = z->from->n_x + z->from->n_pairs;
     add_row(z, a, i, of_inputs, dense, dense + z->n_right);
@@ -282,7 +84,7 @@ static enum dalcs_status reduce_row(const struct elimination *z, const struct da
 
 /* Does the sum that moves switch d, without z, need a column of its own: because sources enter it, or because
  * its first column would give it another unit? */
-static bool needs_unknown(const struct elimination *z, int d, double *dense) {
+static bool needs_unknown(const struct dalcs_elimination *z, int d, double *dense) {
     const struct dalcs_system *s = z->from;
     if (s->pair[d].is_direct) {
         return false;
@@ -302,7 +104,7 @@ static bool needs_unknown(const struct elimination *z, int d, double *dense) {
     return needs;
 }
 
-static enum dalcs_status find_controls(struct elimination *z, double *dense) {
+static enum dalcs_status find_controls(struct dalcs_elimination *z, double *dense) {
     const struct dalcs_system *s = z->from;
     z->control_of = dalcs_alloc((size_t)s->n_pairs, sizeof *z->control_of);
     if (z->control_of == NULL) {
@@ -314,7 +116,7 @@ static enum dalcs_status find_controls(struct elimination *z, double *dense) {
     return DALCS_OK;
 }
 
-static enum dalcs_status reduce_first(const struct elimination *z, double *dense,
+static enum dalcs_status reduce_first(const struct dalcs_elimination *z, double *dense,
                                       struct rows *rows) {
     const struct dalcs_system *s = z->from;
     for (int i = 0; i < s->n_x; i++) {
@@ -330,7 +132,7 @@ static enum dalcs_status reduce_first(const struct elimination *z, double *dense
     return DALCS_OK;
 }
 
-static enum dalcs_status reduce_control(const struct elimination *z, int d, double *dense,
+static enum dalcs_status reduce_control(const struct dalcs_elimination *z, int d, double *dense,
                                         struct rows *rows) {
     const struct dalcs_system *s = z->from;
     if (z->control_of[d] >= 0) {
@@ -339,7 +141,7 @@ static enum dalcs_status reduce_control(const struct elimination *z, int d, doub
     return reduce_row(z, &s->control, d, NULL, dense, d, rows); /* of a direct one: its unit */
 }
 
-static enum dalcs_status reduce_matrices(const struct elimination *z, double *dense,
+static enum dalcs_status reduce_matrices(const struct dalcs_elimination *z, double *dense,
                                          struct rows *first, struct rows *w, struct rows *control,
                                          struct dalcs_system *to) {
     const struct dalcs_system *s = z->from;
@@ -406,7 +208,7 @@ static enum dalcs_status copy_labels(struct dalcs_system *to, const struct dalcs
 }
 
 /* The sums that move switches, as unknowns after the states; each equation is its own column's. */
-static enum dalcs_status label_controls(const struct elimination *z, struct dalcs_system *to,
+static enum dalcs_status label_controls(const struct dalcs_elimination *z, struct dalcs_system *to,
                                         struct dalcs_arena *arena) {
     for (int d = 0; d < to->n_pairs; d++) {
         if (z->control_of[d] < 0) {
@@ -438,7 +240,7 @@ static enum dalcs_status keep_system(const struct dalcs_system *s, struct dalcs_
     return copy_matrix(&to->control, &s->control);
 }
 
-static enum dalcs_status reduce_regular(struct elimination *z, struct dalcs_system *to,
+static enum dalcs_status reduce_regular(struct dalcs_elimination *z, struct dalcs_system *to,
                                         struct dalcs_arena *arena) {
     struct rows first = {0};
     struct rows w = {0};
@@ -462,7 +264,7 @@ static enum dalcs_status reduce_regular(struct elimination *z, struct dalcs_syst
     return status == DALCS_OK ? dalcs_system_prove_monotone(to, DALCS_CLAIM_NOTHING) : status;
 }
 
-static enum dalcs_status reduce_system(struct elimination *z, struct dalcs_system *to,
+static enum dalcs_status reduce_system(struct dalcs_elimination *z, struct dalcs_system *to,
                                        struct dalcs_arena *arena) {
     const struct dalcs_system *s = z->from;
     *to = (struct dalcs_system){
@@ -475,13 +277,14 @@ static enum dalcs_status reduce_system(struct elimination *z, struct dalcs_syste
 
 /* ---- Probes -------------------------------------------------------------------------------- */
 
-static enum dalcs_status reduce_probe(const struct elimination *all, const struct dalcs_probe *from,
-                                      struct dalcs_network *network, struct dalcs_probe *to) {
+static enum dalcs_status reduce_probe(const struct dalcs_elimination *all,
+                                      const struct dalcs_probe *from, struct dalcs_network *network,
+                                      struct dalcs_probe *to) {
     *to = *from;
     if (from->system < 0 || !all[from->system].is_regular) {
         return DALCS_OK;
     }
-    const struct elimination *z = &all[from->system];
+    const struct dalcs_elimination *z = &all[from->system];
     const struct dalcs_system *s = z->from;
     double *dense = dalcs_alloc(z->n_right, sizeof *dense);
     to->term = dalcs_arena_alloc(&network->arena, z->n_right, sizeof *to->term);
@@ -517,7 +320,7 @@ static enum dalcs_status reduce_probe(const struct elimination *all, const struc
     return DALCS_OK;
 }
 
-static enum dalcs_status reduce_outputs(const struct elimination *all,
+static enum dalcs_status reduce_outputs(const struct dalcs_elimination *all,
                                         const struct dalcs_network *from,
                                         struct dalcs_network *to) {
     to->output = dalcs_arena_alloc(&to->arena, (size_t)from->n_outputs, sizeof *to->output);
@@ -541,12 +344,13 @@ static enum dalcs_status reduce_outputs(const struct elimination *all,
 
 /* ---- All together -------------------------------------------------------------------------- */
 
-static enum dalcs_status reduce_all(struct elimination *all, const struct dalcs_network *network,
+static enum dalcs_status reduce_all(struct dalcs_elimination *all,
+                                    const struct dalcs_network *network,
                                     struct dalcs_network *reduced, struct dalcs_arena *arena,
                                     const char **because) {
     int n = network->n_systems;
     for (int k = 0; k < n; k++) {
-        DALCS_TRY(eliminate(&all[k], &network->system[k], arena));
+        DALCS_TRY(dalcs_eliminate(&all[k], &network->system[k], arena));
         enum dalcs_status status = reduce_system(&all[k], &reduced->system[k], &reduced->arena);
         reduced->n_systems = k + 1;
         DALCS_TRY(status);
@@ -567,7 +371,7 @@ enum dalcs_status dalcs_equations_reduce(const struct dalcs_network *network,
                                          struct dalcs_network *reduced, struct dalcs_arena *arena,
                                          const char **because) {
     size_t n = (size_t)network->n_systems;
-    struct elimination *all = dalcs_alloc(n, sizeof *all);
+    struct dalcs_elimination *all = dalcs_alloc(n, sizeof *all);
     *reduced = (struct dalcs_network){.n_nodes = network->n_nodes};
     reduced->system = dalcs_alloc(n, sizeof *reduced->system);
     reduced->initial = dalcs_alloc(n, sizeof *reduced->initial);

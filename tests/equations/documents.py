@@ -27,6 +27,24 @@ MISTAKES = [
     ("pair d\n", "contact d\n", "belongs to a system of coordinates"),
     ("state x 1\npair d\n", "pair d\n", "of which the system has no states"),
 ]
+# 2 t - t rises above 0.5 at 0.5 s: the state alone would at 0.25 s, the input never.
+COMMANDED = """dalcs-system 2 a switch commanded by a state and an input
+input u PWL(0 0 1 -1)
+input one 1
+state x 0
+switch s on=0.5 off=0.4
+matrix E
++ 0 2
+matrix D
++ 1
+matrix control
++ 1 0
+matrix direct_control
++ 1 0
+.tran 0.1 1
+"""
+
+
 def call(program, *arguments):
     return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=False)
 
@@ -43,6 +61,10 @@ def main():
         if checker.check(done.returncode == 0, f"the example: {done.stderr}"):
             last = output.read_text().splitlines()[-1].split(",")
             checker.close(float(last[1]), 4.72092260618, 1e-6, "the example's z(20 ms)")
+        path.write_text(COMMANDED)
+        events = dalcs_program.run(program, path, method=None).report["events"]
+        if checker.check([event["element"] for event in events] == ["s"], f"events {events}"):
+            checker.close(events[0]["time"], 0.5, 1e-11, "the switch closes at")
         path.write_text(GOOD)
         done = call(program, "run", path, "-o", output, "--quiet")
         checker.check(done.returncode == 0, f"without a mistake: {done.stderr}")
