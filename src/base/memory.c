@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 struct dalcs_arena_block {
     struct dalcs_arena_block *next;
@@ -19,7 +20,24 @@ struct dalcs_arena_block {
 
 /* Blocks double from the first size to the last, so that a small netlist stays small and a huge one
  * makes few calls to the allocator. */
-enum { FIRST_BLOCK = 4096, LAST_BLOCK = 1 << 20 };
+enum { FIRST_BLOCK = 4096, LAST_BLOCK = 1 << 24 };
+
+/* A netlist of a million elements spends a quarter of its time on touching pages of 4 kB first. Where the
+ * system has pages of 2 MB it is asked for them; where not, nothing happens. */
+static void prefer_large_pages(void *memory, size_t bytes) {
+#ifdef MADV_HUGEPAGE
+    const uintptr_t page = (uintptr_t)1 << 21;
+    if (bytes >= 4 * page) {
+        const uintptr_t first = ((uintptr_t)memory + page - 1) / page * page;
+        const uintptr_t last = ((uintptr_t)memory + bytes) / page * page;
+        (void)madvise((unsigned char *)memory + (first - (uintptr_t)memory), last - first,
+                      MADV_HUGEPAGE);
+    }
+#else
+    (void)memory;
+    (void)bytes;
+#endif
+}
 
 void *dalcs_alloc(size_t n, size_t size) {
     if (n == 0 || size == 0) {
@@ -49,6 +67,7 @@ enum dalcs_status dalcs_grow(void *array, size_t *capacity, size_t need, size_t 
     if (grown == NULL) {
         return DALCS_E_NOMEM;
     }
+    prefer_large_pages(grown, bigger * size);
     memset((unsigned char *)grown + *capacity * size, 0, (bigger - *capacity) * size);
     memcpy(array, &grown, sizeof grown);
     *capacity = bigger;
@@ -61,6 +80,7 @@ static struct dalcs_arena_block *make_block(size_t size) {
     }
     struct dalcs_arena_block *block = calloc(1, sizeof *block + size);
     if (block != NULL) {
+        prefer_large_pages(block, sizeof *block + size);
         block->size = size;
     }
     return block;
