@@ -240,17 +240,26 @@ static bool extrapolate(struct dalcs_euler *e, int k, const double *u, const dou
     return jumps;
 }
 
-/* The impulses that the two micro-steps saw; those of y are there already. */
+/* The impulses that the two micro-steps saw; those of y are there already. Where diodes share an impulse
+ * in more than one way the two may have taken different ones: what is extrapolated from them may then be
+ * negative, which no diode's is, and the shorter step's own are an answer. */
 static void extrapolate_impulses(struct dalcs_euler *e, int k, double h) {
     const struct dalcs_component *c = &e->component[k];
     const double *lambda = c->scratch + dalcs_system_n_equations(c->system);
+    bool differ = false;
+    for (int d = 0; d < c->system->n_pairs; d++) {
+        double charge = h * lambda[d] - e->charge[d];
+        double flux = h * c->osnsp.w[d] - e->flux[d];
+        differ = differ || (c->osnsp.is_diode[d] && (charge < -jump_part * fabs(e->charge[d]) ||
+                                                     flux < -jump_part * fabs(e->flux[d])));
+    }
     for (int d = 0; d < c->system->n_pairs; d++) {
         double *impulse[2] = {&e->charge[d], &e->flux[d]};
         double half[2] = {0.5 * h * lambda[d], 0.5 * h * c->osnsp.w[d]};
         for (int i = 0; i < 2; i++) {
             double limit_of_0 = 2.0 * half[i] - *impulse[i];
             bool impulsive = fabs(limit_of_0) > jump_part * fabs(*impulse[i]);
-            *impulse[i] = impulsive ? limit_of_0 : 0.0;
+            *impulse[i] = !impulsive ? 0.0 : differ ? half[i] : limit_of_0;
         }
     }
 }

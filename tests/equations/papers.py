@@ -189,10 +189,22 @@ def check_solvability(checker, program):
         if name == "hsw99_5_11.cir":
             for signal in ("v(x1)", "v(x2)"):
                 checker.close(at(columns, signal, 0.5), 0.0, 1e-9, f"5.11: {signal}")
+            check_shared_impulse(checker, program, name)
         if name == "hsw99_4_2b.cir":
             checker.close(at(columns, "v(x1)", 2.0), 0.0, 1e-9, "4.2b: v(x1)")
         if name == "hsw99_4_11.cir":
             checker.close(at(columns, "i(d2)", 1e-6), 1e-3, 1e-9, "4.11: i(d2)")
+
+
+def check_shared_impulse(checker, program, name):
+    """Any shares of 1 C are an answer, none of which is negative."""
+    for method in ("euler", None):
+        for step in (10e-3, 7e-3, 1e-3):
+            report = dalcs_program.run(program, dalcs_program.NETLISTS / "papers" / name, step=step,
+                                       method=method).report
+            charges = [impulse["charge"] for impulse in report["jumps"][0]["impulses"].values()]
+            checker.close(sum(charges), 1.0, 1e-9, f"5.11, {method}: the charges together")
+            checker.check(min(charges) >= 0.0, f"5.11, {method}: charges {charges}")
 
 
 def main():
