@@ -169,30 +169,37 @@ static void unload(const struct dalcs_stage_factors *f, int first, int count, st
     }
 }
 
-/* piece->y = the combination of its parts; for a number of parts that the compiler knows. */
-static inline void combine_known(int n_parts, const double *to, struct piece *piece) {
-    for (int k = 0; k < DALCS_STAGE_PIECE; k++) {
-        double sum = to[0] * piece->part[0][k];
-        for (int q = 1; q < n_parts; q++) {
-            sum += to[q] * piece->part[q][k];
+/* piece->y = the combination of its parts, four at a time; for a number of parts that the compiler knows. */
+static inline void combine_known(int n_parts, const double *to, int count, struct piece *piece) {
+    enum { WIDTH = 4 };
+
+    for (int first = 0; first < count; first += WIDTH) {
+        double sum[WIDTH];
+        for (int k = 0; k < WIDTH; k++) {
+            sum[k] = to[0] * piece->part[0][first + k];
         }
-        piece->y[k] = sum;
+        for (int q = 1; q < n_parts; q++) {
+            for (int k = 0; k < WIDTH; k++) {
+                sum[k] += to[q] * piece->part[q][first + k];
+            }
+        }
+        memcpy(piece->y + first, sum, sizeof(sum));
     }
 }
 
-static void combine(int n_parts, const double *to, struct piece *piece) {
+static void combine(int n_parts, const double *to, int count, struct piece *piece) {
     switch (n_parts) {
     case 1:
-        combine_known(1, to, piece);
+        combine_known(1, to, count, piece);
         break;
     case 3:
-        combine_known(3, to, piece);
+        combine_known(3, to, count, piece);
         break;
     case 5:
-        combine_known(5, to, piece);
+        combine_known(5, to, count, piece);
         break;
     default:
-        combine_known(7, to, piece);
+        combine_known(7, to, count, piece);
         break;
     }
 }
@@ -215,7 +222,7 @@ static void put_columns(const struct dalcs_stage_plan *plan, const struct dalcs_
             unload(f, first, count, &piece);
             for (int node = 0; node < l->n_nodes; node++) {
                 double *y = out + node * l->stride;
-                combine(plan->n_parts, plan->to[node], &piece);
+                combine(plan->n_parts, plan->to[node], count, &piece);
                 if (kind == 0 && node == 0) {
                     for (int k = 0; k < count; k++) {
                         y[first + k] = x[first + k];
