@@ -185,6 +185,8 @@ static enum dalcs_status judge(const struct dalcs_face *s, const struct dalcs_sd
     return DALCS_OK;
 }
 
+static const char gains_in_the_limit[] = "it gives energy in the limit of fast motions";
+
 /* A motion that the system gives energy to. */
 static enum dalcs_status judge_motion(const struct dalcs_face *s, struct dalcs_storage *found) {
     struct dalcs_matrix one;
@@ -196,7 +198,7 @@ static enum dalcs_status judge_motion(const struct dalcs_face *s, struct dalcs_s
     if (n > 0) {
         DALCS_TRY(verify_Z(s, &s->gaining, &one, found));
     }
-    found->why = found->is_refuted ? NULL : "it gives energy in the limit of fast motions";
+    found->why = found->is_refuted ? NULL : gains_in_the_limit;
     return DALCS_OK;
 }
 
@@ -259,7 +261,10 @@ enum dalcs_status dalcs_storage_rate(const struct dalcs_quadruple *q, double mos
         } else {
             high = middle;
         }
-        *why = found.why != NULL ? found.why : dalcs_no_rate;
+        *why = found.why == NULL ? dalcs_no_rate
+               : found.why == gains_in_the_limit /* that of a circuit with faster motions */
+                   ? "for a rate, motions would have to lose more in the limit of fast ones"
+                   : found.why;
         dalcs_arena_finish(&work);
         DALCS_TRY(status);
     }
