@@ -5,6 +5,8 @@
  * of the balancing and the orders of the factors are folded into loading and unloading them. */
 #include "stage_factors.h"
 
+#include "dense_map.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -146,9 +148,11 @@ static void solve(const struct dalcs_stage_plan *plan, const struct dalcs_stage_
     }
 }
 
+/* Some unknowns of all systems: a dense map from the weights of a node to their values there. */
 struct piece {
-    double part[DALCS_STAGE_PARTS][DALCS_STAGE_PIECE];
+    _Alignas(64) double part[DALCS_STAGE_PARTS * DALCS_STAGE_PIECE];
     double y[DALCS_STAGE_PIECE];
+    int n_rows;
 };
 
 /* count unknowns of all systems, from `first` on, unscaled. */
@@ -156,51 +160,20 @@ static void unload(const struct dalcs_stage_factors *f, int first, int count, st
     const double *scale = f->column_scale + first;
     const int *position = f->order[0].position + first;
     const double *work = f->lu[0].work;
+    double *part = piece->part;
+    piece->n_rows = dalcs_dense_map_rows(count);
     for (int k = 0; k < count; k++) {
-        piece->part[0][k] = scale[k] * work[position[k]];
+        part[k] = scale[k] * work[position[k]];
     }
     for (int q = 1; q < f->n_systems; q++) {
         position = f->order[q].position + first;
         work = f->lu[q].work;
+        double *re = part + (2 * q - 1) * piece->n_rows;
+        double *im = re + piece->n_rows;
         for (int k = 0; k < count; k++) {
-            piece->part[2 * q - 1][k] = scale[k] * work[2 * position[k]];
-            piece->part[2 * q][k] = scale[k] * work[2 * position[k] + 1];
+            re[k] = scale[k] * work[2 * position[k]];
+            im[k] = scale[k] * work[2 * position[k] + 1];
         }
-    }
-}
-
-/* piece->y = the combination of its parts, four at a time; for a number of parts that the compiler knows. */
-static inline void combine_known(int n_parts, const double *to, int count, struct piece *piece) {
-    enum { WIDTH = 4 };
-
-    for (int first = 0; first < count; first += WIDTH) {
-        double sum[WIDTH];
-        for (int k = 0; k < WIDTH; k++) {
-            sum[k] = to[0] * piece->part[0][first + k];
-        }
-        for (int q = 1; q < n_parts; q++) {
-            for (int k = 0; k < WIDTH; k++) {
-                sum[k] += to[q] * piece->part[q][first + k];
-            }
-        }
-        memcpy(piece->y + first, sum, sizeof(sum));
-    }
-}
-
-static void combine(int n_parts, const double *to, int count, struct piece *piece) {
-    switch (n_parts) {
-    case 1:
-        combine_known(1, to, count, piece);
-        break;
-    case 3:
-        combine_known(3, to, count, piece);
-        break;
-    case 5:
-        combine_known(5, to, count, piece);
-        break;
-    default:
-        combine_known(7, to, count, piece);
-        break;
     }
 }
 
@@ -222,7 +195,8 @@ static void put_columns(const struct dalcs_stage_plan *plan, const struct dalcs_
             unload(f, first, count, &piece);
             for (int node = 0; node < l->n_nodes; node++) {
                 double *y = out + node * l->stride;
-                combine(plan->n_parts, plan->to[node], count, &piece);
+                dalcs_dense_map_apply(piece.n_rows, plan->n_parts, piece.part, plan->to[node],
+                                      piece.y);
                 if (kind == 0 && node == 0) {
                     for (int k = 0; k < count; k++) {
                         y[first + k] = x[first + k];
