@@ -17,17 +17,10 @@ static const double null_rounding = 1e-10;
 static double other_side(const struct dalcs_stage_workshop *b, int d, const double *y,
                          int rhs_column, double share) {
     const struct dalcs_system *s = b->system;
-    int n_equations = dalcs_system_n_equations(s);
     double w = 0.0;
     for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
-        int c = s->C.j[k];
-        if (c < n_equations) {
-            w += s->C.x[k] * y[c];
-        } else {
-            for (int on = 0; on < b->entry->n_on; on++) {
-                w += b->entry->on[on] == c - n_equations ? s->C.x[k] * y[n_equations + on] : 0.0;
-            }
-        }
+        int c = b->place[s->C.j[k]];
+        w += c >= 0 ? s->C.x[k] * y[c] : 0.0;
     }
     for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
         int wave = b->wave_column[s->F.j[k]];
@@ -171,6 +164,21 @@ static void find_factors(const struct dalcs_stage_workshop *b, const double *sha
     }
 }
 
+/* Unknown r at the stages from its increments in balanced units, into b->node and b->start. */
+static void put_stages(struct dalcs_stage_workshop *b, int r, const long double *increment,
+                       bool is_column) {
+    const struct dalcs_collocation *m = b->stages->method;
+    long double scale = b->column_scale[r];
+    long double unit = is_column ? 1.0L : 0.0L;
+    long double start = 0.0L;
+    for (int i = 0; i < m->s; i++) {
+        long double y = increment[i] * scale + unit;
+        start += m->exact_back[i] * y;
+        b->node[(i + 1) * b->n + r] = (double)y;
+    }
+    b->start[r] = start;
+}
+
 /* The stages, and how far the polynomial through them alone misses the start, into b->node, b->start
  * and, before the filter, b->defect. */
 static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_column,
@@ -179,27 +187,39 @@ static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_colu
     bool is_state = column < b->n_x;
     long double factor[DALCS_MAX_STAGES][DALCS_SOLUTION_PARTS] = {{0.0L}};
     find_factors(b, share, is_state, factor);
-    for (int r = 0; r < b->n; r++) {
-        const long double *part = b->part + (rhs_column * b->n + r) * DALCS_SOLUTION_PARTS;
-        long double start = 0.0L;
+    const long double *part = b->part + rhs_column * b->n_kept * DALCS_SOLUTION_PARTS;
+    long double *stage = b->stage;
+    for (int r = 0; r < b->n_kept; r++, part += DALCS_SOLUTION_PARTS, stage += DALCS_MAX_STAGES) {
         for (int i = 0; i < m->s; i++) {
             long double sum = factor[i][0] * part[0];
             for (int k = 1; k < DALCS_SOLUTION_PARTS; k++) {
                 sum += factor[i][k] * part[k];
             }
-            sum = sum * b->column_scale[r] + (is_state && r == column ? 1.0L : 0.0L);
-            start += m->exact_back[i] * sum;
-            b->node[(i + 1) * b->n + r] = (double)sum;
+            stage[i] = sum;
         }
-        b->start[r] = start;
+        put_stages(b, b->kept[r], stage, is_state && b->kept[r] == column);
+    }
+    for (int f = 0; f < b->n_followers; f++) {
+        long double increment[DALCS_MAX_STAGES];
+        long double drive = dalcs_stage_workshop_drive(b, f, rhs_column);
+        for (int i = 0; i < m->s; i++) {
+            increment[i] = is_state ? drive : drive * share[i + 1];
+        }
+        for (int k = b->follows_p[f]; k < b->follows_p[f + 1]; k++) {
+            stage = b->stage + b->follows_j[k] * DALCS_MAX_STAGES;
+            for (int i = 0; i < m->s; i++) {
+                increment[i] -= b->follows_x[k] * stage[i];
+            }
+        }
+        put_stages(b, b->follower[f], increment, false);
     }
 }
 
 /* What the filter makes of a state that is off by `missed`. */
 static void add_defect(const struct dalcs_stage_workshop *b, int x, long double missed) {
-    const long double *part = b->part + x * b->n * DALCS_SOLUTION_PARTS;
+    const long double *real = b->real + x * b->n;
     for (int r = 0; r < b->n && missed != 0.0L; r++) {
-        b->defect[r] += part[r * DALCS_SOLUTION_PARTS] * missed;
+        b->defect[r] += real[r] * missed;
     }
 }
 
@@ -209,13 +229,13 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
     const struct dalcs_collocation *m = b->stages->method;
     int n = b->n;
     bool is_state = column < b->n_x;
-    const long double *real = b->part + rhs_column * n * DALCS_SOLUTION_PARTS;
+    const long double *real = b->real + rhs_column * n;
     long double source_drift = share[0];
     for (int i = 1; i <= m->s; i++) {
         source_drift -= m->exact_back[i - 1] * share[i];
     }
     for (int r = 0; r < n; r++) {
-        b->defect[r] = is_state ? 0.0L : real[r * DALCS_SOLUTION_PARTS] * source_drift;
+        b->defect[r] = is_state ? 0.0L : real[r] * source_drift;
     }
     for (int x = 0; x < b->n_x; x++) {
         long double given = x == column ? 1.0L : 0.0L;
@@ -229,9 +249,9 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
     }
     /* What was added goes with states that are off by the defect: take that back as well. */
     for (int x = 0; x < b->n_x; x++) {
-        const long double *part = b->part + x * n * DALCS_SOLUTION_PARTS;
+        const long double *of_state = b->real + x * n;
         for (int r = b->n_x; r < n; r++) {
-            b->start[r] -= part[r * DALCS_SOLUTION_PARTS] * b->column_scale[r] * b->defect[x];
+            b->start[r] -= of_state[r] * b->column_scale[r] * b->defect[x];
         }
     }
     for (int r = 0; r < n; r++) {
@@ -265,10 +285,9 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
         for (int k = 0; k <= m->s; k++) {
             missed -= m->test[k] * share[k];
         }
-        const long double *real = b->part + rhs_column * n * DALCS_SOLUTION_PARTS;
+        const long double *real = b->real + rhs_column * n;
         for (int r = 0; r < n; r++) {
-            b->drift[r] = (double)real[r * DALCS_SOLUTION_PARTS] * b->column_scale[r] * missed *
-                          m->test_factor;
+            b->drift[r] = (double)real[r] * b->column_scale[r] * missed * m->test_factor;
         }
         find_guards(b, b->drift, rhs_column, missed);
         put_columns(b, b->drift, out + l->ripple);

@@ -13,6 +13,9 @@
 static const double doubtful_pivot = 1e-9;
 static const double rank_tolerance = 1e-12;
 
+/* The smallest pivot (balanced) that makes an unknown a follower. */
+static const long double least_follower = 1e-2L;
+
 enum { BALANCING_ROUNDS = 3 };
 
 /* ---- Room ---------------------------------------------------------------------------------- */
@@ -24,7 +27,7 @@ static long double *extendeds(struct dalcs_arena *arena, int n) {
 /* For as many unknowns as a map may have. */
 static bool allocate(struct dalcs_stage_workshop *b) {
     const struct dalcs_system *s = b->system;
-    struct dalcs_arena *kept = &b->kept;
+    struct dalcs_arena *kept = &b->for_all;
     int all = dalcs_system_n_columns(s);
     int n = all < b->stages->dense_limit ? all : b->stages->dense_limit;
     b->wave_column = dalcs_arena_alloc(kept, (size_t)s->n_inputs + 1, sizeof(int));
@@ -37,7 +40,18 @@ static bool allocate(struct dalcs_stage_workshop *b) {
     b->S = dalcs_stage_workshop_reals(kept, n * n);
     b->re = extendeds(kept, n * (n + b->n_rhs));
     b->im = extendeds(kept, n * (n + b->n_rhs));
+    b->whole = extendeds(kept, n * (n + b->n_rhs));
     b->part = extendeds(kept, n * b->n_rhs * DALCS_SOLUTION_PARTS);
+    b->real = extendeds(kept, n * b->n_rhs);
+    b->stage = extendeds(kept, n * DALCS_MAX_STAGES);
+    b->follows_x = extendeds(kept, n * n);
+    b->follows_j = dalcs_arena_alloc(kept, (size_t)(n * n) + 1, sizeof(int));
+    b->follows_p = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
+    b->follower = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
+    b->kept = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
+    b->kept_row = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
+    b->row_of = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
+    b->is_used = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(*b->is_used));
     b->node = dalcs_stage_workshop_reals(kept, n * b->stages->layout.n_nodes);
     b->start = extendeds(kept, n);
     b->defect = extendeds(kept, n);
@@ -46,9 +60,11 @@ static bool allocate(struct dalcs_stage_workshop *b) {
     b->residual = dalcs_stage_workshop_reals(kept, n);
     return b->wave_column != NULL && b->place != NULL && b->row_scale != NULL &&
            b->column_scale != NULL && b->base != NULL && b->P != NULL && b->rhs != NULL &&
-           b->S != NULL && b->re != NULL && b->im != NULL && b->part != NULL && b->node != NULL &&
-           b->start != NULL && b->defect != NULL && b->guard != NULL && b->drift != NULL &&
-           b->residual != NULL;
+           b->S != NULL && b->re != NULL && b->im != NULL && b->whole != NULL && b->part != NULL &&
+           b->real != NULL && b->stage != NULL && b->follows_x != NULL && b->follows_j != NULL &&
+           b->follows_p != NULL && b->follower != NULL && b->kept != NULL && b->kept_row != NULL &&
+           b->row_of != NULL && b->is_used != NULL && b->node != NULL && b->start != NULL &&
+           b->defect != NULL && b->guard != NULL && b->drift != NULL && b->residual != NULL;
 }
 
 enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **workshop,
@@ -80,7 +96,7 @@ enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **work
 void dalcs_stage_workshop_destroy(struct dalcs_stage_workshop *workshop) {
     if (workshop != NULL) {
         dalcs_arena_finish(&workshop->arena);
-        dalcs_arena_finish(&workshop->kept);
+        dalcs_arena_finish(&workshop->for_all);
         free(workshop);
     }
 }
@@ -270,13 +286,11 @@ static double border(const struct dalcs_stage_workshop *b, int i, int j) {
     return sum;
 }
 
-/* The system at sigma, with its right-hand sides. im: NULL where sigma is real. */
-static void fill_system(const struct dalcs_stage_workshop *b, long double sigma_re,
-                        long double sigma_im, long double *im) {
+/* S without P and its right-hand sides, by rows. */
+static void fill_whole(const struct dalcs_stage_workshop *b) {
     int n = b->n;
-    int width = n + b->n_rhs;
     for (int i = 0; i < n; i++) {
-        long double *row = b->re + i * width;
+        long double *row = b->whole + i * (n + b->n_rhs);
         for (int j = 0; j < n; j++) {
             row[j] = b->base[j * n + i];
         }
@@ -286,6 +300,71 @@ static void fill_system(const struct dalcs_stage_workshop *b, long double sigma_
         for (int j = 0; j < b->n_rhs; j++) {
             row[n + j] = b->rhs[j * n + i];
         }
+    }
+}
+
+/* What the equations without derivatives say of an unknown without memory is the same for every
+ * eigenvalue: those that they determine are solved for once. What is kept are the states and, where the
+ * index is 2, what only derivatives determine. */
+static void eliminate_followers(struct dalcs_stage_workshop *b) {
+    int n = b->n;
+    int width = n + b->n_rhs;
+    b->n_kept = b->n_x;
+    b->n_followers = 0;
+    b->entries = 0;
+    dalcs_extended_eliminate(b->n_x, n, width, least_follower, b->whole, b->row_of);
+    for (int c = 0; c < b->n_x; c++) {
+        b->kept[c] = c;
+        b->kept_row[c] = c;
+    }
+    memset(b->is_used, 0, (size_t)n * sizeof(*b->is_used));
+    for (int c = b->n_x; c < n; c++) {
+        if (b->row_of[c] < 0) {
+            b->kept[b->n_kept++] = c;
+        } else {
+            b->is_used[b->row_of[c]] = true;
+            b->follower[b->n_followers++] = c;
+        }
+    }
+    for (int r = b->n_x, k = b->n_x; r < n; r++) {
+        if (!b->is_used[r]) {
+            b->kept_row[k++] = r;
+        }
+    }
+    b->follows_p[0] = 0;
+    for (int f = 0; f < b->n_followers; f++) {
+        const long double *row = b->whole + b->row_of[b->follower[f]] * width;
+        for (int k = 0; k < b->n_kept; k++) {
+            if (row[b->kept[k]] != 0.0L) {
+                b->follows_j[b->entries] = k;
+                b->follows_x[b->entries++] = row[b->kept[k]];
+            }
+        }
+        b->follows_p[f + 1] = b->entries;
+    }
+}
+
+static void keep_all(struct dalcs_stage_workshop *b) {
+    b->n_kept = b->n;
+    b->n_followers = 0;
+    for (int c = 0; c < b->n; c++) {
+        b->kept[c] = c;
+        b->kept_row[c] = c;
+    }
+}
+
+/* The system at sigma of what is kept, with its right-hand sides. im: NULL where sigma is real. */
+static void fill_system(const struct dalcs_stage_workshop *b, long double sigma_re,
+                        long double sigma_im, long double *im) {
+    int n = b->n_kept;
+    int width = n + b->n_rhs;
+    for (int i = 0; i < n; i++) {
+        long double *row = b->re + i * width;
+        const long double *from = b->whole + b->kept_row[i] * (b->n + b->n_rhs);
+        for (int j = 0; j < n; j++) {
+            row[j] = from[b->kept[j]];
+        }
+        memcpy(row + n, from + b->n, (size_t)b->n_rhs * sizeof(*row));
         for (int j = 0; j < b->n_x && i < b->n_x; j++) {
             row[j] += sigma_re * b->P[j * b->n_x + i];
         }
@@ -297,31 +376,54 @@ static void fill_system(const struct dalcs_stage_workshop *b, long double sigma_
 
 static void take_solutions(const struct dalcs_stage_workshop *b, const long double *from,
                            int part) {
-    for (int i = 0; i < b->n; i++) {
-        const long double *row = from + i * (b->n + b->n_rhs) + b->n;
+    for (int i = 0; i < b->n_kept; i++) {
+        const long double *row = from + i * (b->n_kept + b->n_rhs) + b->n_kept;
         for (int j = 0; j < b->n_rhs; j++) {
-            b->part[(j * b->n + i) * DALCS_SOLUTION_PARTS + part] = row[j];
+            b->part[(j * b->n_kept + i) * DALCS_SOLUTION_PARTS + part] = row[j];
+        }
+    }
+}
+
+/* The solution of the real eigenvalue, of all unknowns. */
+static void take_real(const struct dalcs_stage_workshop *b) {
+    take_solutions(b, b->re, 0);
+    for (int j = 0; j < b->n_rhs; j++) {
+        const long double *part = b->part + j * b->n_kept * DALCS_SOLUTION_PARTS;
+        long double *real = b->real + j * b->n;
+        for (int k = 0; k < b->n_kept; k++) {
+            real[b->kept[k]] = part[k * DALCS_SOLUTION_PARTS];
+        }
+        for (int f = 0; f < b->n_followers; f++) {
+            long double y = dalcs_stage_workshop_drive(b, f, j);
+            for (int k = b->follows_p[f]; k < b->follows_p[f + 1]; k++) {
+                y -= b->follows_x[k] * part[b->follows_j[k] * DALCS_SOLUTION_PARTS];
+            }
+            real[b->follower[f]] = y;
         }
     }
 }
 
 static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
     long double sigma = b->stages->method->exact_lambda / b->entry->h;
+    fill_whole(b);
+    eliminate_followers(b);
     fill_system(b, sigma, 0.0L, NULL);
-    long double pivot = dalcs_extended_solve(b->n, b->n_rhs, b->re, NULL);
+    long double pivot = dalcs_extended_solve(b->n_kept, b->n_rhs, b->re, NULL);
     if (pivot < doubtful_pivot) {
         DALCS_TRY(find_null_space(b, b->S));
+        fill_whole(b);
+        keep_all(b);
         fill_system(b, sigma, 0.0L, NULL);
-        pivot = dalcs_extended_solve(b->n, b->n_rhs, b->re, NULL);
+        pivot = dalcs_extended_solve(b->n_kept, b->n_rhs, b->re, NULL);
     }
-    take_solutions(b, b->re, 0);
+    take_real(b);
     return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
 }
 
 static enum dalcs_status solve_pair(struct dalcs_stage_workshop *b, int p) {
     long double complex sigma = b->stages->method->exact_mu[p] / b->entry->h;
     fill_system(b, creall(sigma), cimagl(sigma), b->im);
-    long double pivot = dalcs_extended_solve(b->n, b->n_rhs, b->re, b->im);
+    long double pivot = dalcs_extended_solve(b->n_kept, b->n_rhs, b->re, b->im);
     take_solutions(b, b->re, 1 + 2 * p);
     take_solutions(b, b->im, 2 + 2 * p);
     return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;

@@ -27,17 +27,26 @@ struct dalcs_stage_workshop {
     double *P;                        /* [n_x][n_x] balanced */
     double *rhs;                      /* [n_rhs][n] balanced: unit states, constants, unit waves */
     double *S;                        /* [n][n] the real one, balanced */
-    long double *re, *im;             /* [n][n + n_rhs] a system by rows, then its solutions */
-    long double *part;                /* [n_rhs][n][parts] the solutions, balanced */
-    double *node;                     /* [s + 1][n] the answer at the nodes */
-    long double *start, *defect;      /* [n] at the first of them, before rounding */
-    double *guard;                    /* [n_pairs] */
-    double *drift;                    /* [n] */
-    double *residual;                 /* [n] */
+    long double *whole; /* [n][n + n_rhs] S without P by rows, then followers as pivots */
+    int n_kept, n_followers;
+    int *kept, *kept_row;   /* [n_kept] unknowns and rows of the systems: states first */
+    int *follower, *row_of; /* [n_followers]; [n] row of `whole` of an unknown that follows */
+    bool *is_used;          /* [n] */
+    int entries, *follows_p, *follows_j; /* what followers take of the kept, by rows */
+    long double *follows_x;
+    long double *re, *im;        /* [n_kept][n_kept + n_rhs] a system by rows, then its solutions */
+    long double *part;           /* [n_rhs][n_kept][parts] the solutions, balanced */
+    long double *real;           /* [n_rhs][n] those of the real eigenvalue */
+    long double *stage;          /* [n_kept][stages] increments */
+    double *node;                /* [s + 1][n] the answer at the nodes */
+    long double *start, *defect; /* [n] at the start, before rounding */
+    double *guard;               /* [n_pairs] */
+    double *drift;               /* [n] */
+    double *residual;            /* [n] */
     int nullity;
     double *left, *right; /* [nullity][n] null vectors, balanced */
     double *choice;       /* [nullity][n_pairs] what the other sides of pairs add of them */
-    struct dalcs_arena kept, arena;
+    struct dalcs_arena for_all, arena;
 };
 
 enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **workshop,
@@ -47,6 +56,13 @@ void dalcs_stage_workshop_destroy(struct dalcs_stage_workshop *workshop);
 /* The solutions for an entry's mode and step length, and the null vectors of a singular mode. */
 enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *workshop,
                                              struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
+
+/* What a right-hand side adds to follower f, balanced; the unknowns that are kept add
+ * - follows_x[k] y[follows_j[k]]. */
+static inline long double dalcs_stage_workshop_drive(const struct dalcs_stage_workshop *b, int f,
+                                                     int rhs_column) {
+    return b->whole[b->row_of[b->follower[f]] * (b->n + b->n_rhs) + b->n + rhs_column];
+}
 
 static inline double *dalcs_stage_workshop_reals(struct dalcs_arena *arena, int n) {
     return dalcs_arena_alloc(arena, (size_t)(n > 0 ? n : 1), sizeof(double));

@@ -2,6 +2,7 @@
 #include "extended.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 static void swap_rows(int width, long double *a, long double *b) {
@@ -15,13 +16,13 @@ static void swap_rows(int width, long double *a, long double *b) {
 /* Columns of a pivot row that are looked at together. */
 enum { COLUMNS = 64 };
 
-/* The columns in [from, to) where the row has something. Rows of circuits are mostly empty. */
-static int list_nonzeros(int from, int to, const long double *re, const long double *im,
+/* The columns in [from, to) but c where the row has something. Rows of circuits are mostly empty. */
+static int list_nonzeros(int from, int to, int c, const long double *re, const long double *im,
                          int *column) {
     int n = 0;
     for (int j = from; j < to; j++) {
         column[n] = j;
-        n += re[j] != 0.0L || (im != NULL && im[j] != 0.0L) ? 1 : 0;
+        n += j != c && (re[j] != 0.0L || (im != NULL && im[j] != 0.0L)) ? 1 : 0;
     }
     return n;
 }
@@ -60,6 +61,35 @@ static void subtract_complex(int n, const int *column, long double *target_re,
     }
 }
 
+/* Row k is divided by what it has in column c, then taken from all other rows, so that they have nothing
+ * there; in columns [from, width) but c. What column c holds afterwards means nothing. */
+static void clear_column(int n, int from, int width, int k, int c, long double *re,
+                         long double *im) {
+    long double *row_re = re + (size_t)k * (size_t)width;
+    long double *row_im = im != NULL ? im + (size_t)k * (size_t)width : NULL;
+    long double d_re = row_re[c];
+    long double d_im = im != NULL ? row_im[c] : 0.0L;
+    for (; from < width; from += COLUMNS) {
+        int column[COLUMNS];
+        int to = from + COLUMNS < width ? from + COLUMNS : width;
+        int n_columns = list_nonzeros(from, to, c, row_re, row_im, column);
+        divide(n_columns, column, row_re, row_im, d_re, d_im);
+        for (int i = 0; i < n; i++) {
+            long double *other_re = re + (size_t)i * (size_t)width;
+            long double *other_im = im != NULL ? im + (size_t)i * (size_t)width : NULL;
+            if (i == k || (other_re[c] == 0.0L && (im == NULL || other_im[c] == 0.0L))) {
+                continue;
+            }
+            if (im == NULL) {
+                subtract(n_columns, column, other_re, row_re, other_re[c]);
+            } else {
+                subtract_complex(n_columns, column, other_re, other_im, row_re, row_im, other_re[c],
+                                 other_im[c]);
+            }
+        }
+    }
+}
+
 long double dalcs_extended_solve(int n, int n_rhs, long double *re, long double *im) {
     int width = n + n_rhs;
     long double least = INFINITY;
@@ -78,37 +108,42 @@ long double dalcs_extended_solve(int n, int n_rhs, long double *re, long double 
             return 0.0L;
         }
         least = largest < least ? largest : least;
-        long double *row_re = re + (size_t)k * (size_t)width;
-        long double *row_im = im != NULL ? im + (size_t)k * (size_t)width : NULL;
         if (pivot != k) {
-            swap_rows(width, row_re, re + (size_t)pivot * (size_t)width);
+            size_t from = (size_t)k * (size_t)width;
+            size_t with = (size_t)pivot * (size_t)width;
+            swap_rows(width, re + from, re + with);
             if (im != NULL) {
-                swap_rows(width, row_im, im + (size_t)pivot * (size_t)width);
+                swap_rows(width, im + from, im + with);
             }
         }
-        /* The pivot row is divided by its pivot, then eliminates the column above and below. What
-         * stays in the column is never read again. */
-        long double d_re = row_re[k];
-        long double d_im = im != NULL ? row_im[k] : 0.0L;
-        for (int from = k + 1; from < width; from += COLUMNS) {
-            int column[COLUMNS];
-            int to = from + COLUMNS < width ? from + COLUMNS : width;
-            int n_columns = list_nonzeros(from, to, row_re, row_im, column);
-            divide(n_columns, column, row_re, row_im, d_re, d_im);
-            for (int i = 0; i < n; i++) {
-                long double *other_re = re + (size_t)i * (size_t)width;
-                long double *other_im = im != NULL ? im + (size_t)i * (size_t)width : NULL;
-                if (i == k || (other_re[k] == 0.0L && (im == NULL || other_im[k] == 0.0L))) {
-                    continue;
-                }
-                if (im == NULL) {
-                    subtract(n_columns, column, other_re, row_re, other_re[k]);
-                } else {
-                    subtract_complex(n_columns, column, other_re, other_im, row_re, row_im,
-                                     other_re[k], other_im[k]);
-                }
-            }
-        }
+        clear_column(n, k + 1, width, k, k, re, im);
     }
     return least;
+}
+
+void dalcs_extended_eliminate(int first, int n, int width, long double least, long double *a,
+                              int *row_of) {
+    for (int c = first; c < n; c++) {
+        int pivot = -1;
+        long double largest = least;
+        for (int i = first; i < n; i++) {
+            long double size = fabsl(a[(size_t)i * (size_t)width + (size_t)c]);
+            bool is_used = false;
+            for (int k = first; k < c && size >= largest; k++) {
+                is_used = is_used || row_of[k] == i;
+            }
+            if (size >= largest && !is_used) {
+                largest = size;
+                pivot = i;
+            }
+        }
+        row_of[c] = pivot;
+        if (pivot < 0) {
+            continue;
+        }
+        clear_column(n, 0, width, pivot, c, a, NULL);
+        for (int i = 0; i < n; i++) {
+            a[(size_t)i * (size_t)width + (size_t)c] = 0.0L;
+        }
+    }
 }

@@ -11,4 +11,10 @@
  * smallest pivot in magnitude, the caller having balanced A; with 0, X means nothing. */
 long double dalcs_extended_solve(int n, int n_rhs, long double *re, long double *im);
 
+/* Solves rows [first, n) of a[n][width] for columns [first, n), as far as there are pivots of at least
+ * `least`, and takes them out of all rows: row_of[c] says y_c = its last columns - its other columns * y,
+ * or is -1 where column c stays. Columns that are gone are 0. */
+void dalcs_extended_eliminate(int first, int n, int width, long double least, long double *a,
+                              int *row_of);
+
 #endif

@@ -117,4 +117,39 @@ START_TEST(test_random) {
 
 END_TEST
 
-RUN_TESTS("extended", test_real, test_complex, test_pivots, test_precision, test_random)
+/* Unknowns 1 to 3 of four: the third has too small a pivot left, the others follow from it and the
+ * first. */
+START_TEST(test_eliminate) {
+    long double a[4][5] = {
+        {5, 1, 1, 1, 9}, {1, 0, 4, 2, 8}, {3, 2, 0, 0, 6}, {2, 1, 3, 1.501L, 14}};
+    const long double before[4][5] = {
+        {5, 1, 1, 1, 9}, {1, 0, 4, 2, 8}, {3, 2, 0, 0, 6}, {2, 1, 3, 1.501L, 14}};
+    int row_of[4] = {-2, 0, 0, 0};
+    dalcs_extended_eliminate(1, 4, 5, 0.01L, a[0], row_of);
+    ck_assert_int_eq(row_of[0], -2);
+    ck_assert_int_eq(row_of[1], 2);
+    ck_assert_int_eq(row_of[2], 1);
+    ck_assert_int_eq(row_of[3], -1);
+    const long double y[4] = {0.25L, 0.0L, 0.0L, -3.0L}; /* the kept ones, chosen */
+    long double all[4] = {y[0], 0.0L, 0.0L, y[3]};
+    for (int c = 1; c < 3; c++) {
+        const long double *row = a[row_of[c]];
+        check_near(row[1], 0.0L, 0.0L);
+        check_near(row[2], 0.0L, 0.0L);
+        all[c] = row[4] - row[0] * y[0] - row[3] * y[3];
+    }
+    for (int i = 0; i < 4; i++) { /* every row says of all what it says now of the kept ones */
+        long double sum = -before[i][4];
+        for (int j = 0; j < 4; j++) {
+            sum += before[i][j] * all[j];
+        }
+        bool is_follower = i == 1 || i == 2;
+        long double now = is_follower ? 0.0L : a[i][0] * y[0] + a[i][3] * y[3] - a[i][4];
+        check_near(sum, now, 1e-17L);
+    }
+}
+
+END_TEST
+
+RUN_TESTS("extended", test_real, test_complex, test_pivots, test_precision, test_random,
+          test_eliminate)
