@@ -1,6 +1,7 @@
 /* excitation.c - which functions of time a system sees, and their coefficients. */
 #include "excitation.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -180,6 +181,23 @@ double dalcs_excitation_function_at(const struct dalcs_excitation_function *f, d
         return exp(-f->decay * h * theta) * sin(f->omega * h * theta);
     }
     return 0.0;
+}
+
+double dalcs_excitation_missed(const struct dalcs_excitation_function *f,
+                               const struct dalcs_collocation *method, double h,
+                               const double *value) {
+    if (f->shape == DALCS_EXCITATION_LEVEL || f->shape == DALCS_EXCITATION_RAMP) {
+        return 0.0;
+    }
+    double missed = dalcs_excitation_function_at(f, h, method->test_node);
+    double size = fabs(missed);
+    double derivative = method->test_size;
+    for (int k = 0; k <= method->s; k++) {
+        missed -= method->test[k] * value[k];
+        size += fabs(method->test[k] * value[k]);
+        derivative *= hypot(f->decay, f->omega) * h / (k + 1);
+    }
+    return fabs(missed) > 4.0 * DBL_EPSILON * size ? missed : derivative;
 }
 
 void dalcs_excitation_inputs(const struct dalcs_excitation *excitation, double t, double tau,

@@ -8,6 +8,7 @@
 
 #include "bystanders.h"
 #include "circuit.h"
+#include "collocation.h"
 
 /* One function of theta that multiplies one input. */
 struct dalcs_excitation_function {
@@ -66,6 +67,12 @@ void dalcs_excitation_coefficients(const struct dalcs_excitation *excitation, do
 
 double dalcs_excitation_function_at(const struct dalcs_excitation_function *f, double h,
                                     double theta);
+
+/* What the polynomial through value[s + 1] of f at the nodes misses of it at the test node. What cannot
+ * be told from rounding, which a short step makes large, is estimated from the next derivative. */
+double dalcs_excitation_missed(const struct dalcs_excitation_function *f,
+                               const struct dalcs_collocation *method, double h,
+                               const double *value);
 
 /* inputs[n_inputs] at t + tau, continuing the present pieces, over edges if need be. */
 void dalcs_excitation_inputs(const struct dalcs_excitation *excitation, double t, double tau,

@@ -48,7 +48,8 @@ struct dalcs_radau_part {
     double end;  /* of the segment, in steps */
     double t_end;
     enum dalcs_radau_end why;
-    int level;            /* h = 2^-level */
+    double rung;          /* s, of level 0 */
+    int level;            /* h = rung 2^-level */
     int waited, patience; /* steps since the length changed; until a longer one is tried anyhow */
     bool grew;            /* the present length is such a try */
     double longest;       /* s, step worth trying */

@@ -16,9 +16,10 @@ double dalcs_segment_longest(const struct dalcs_radau *r, const struct dalcs_rad
 double dalcs_segment_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
 
 /* restart.c: two micro-steps from part->t decide mode and state; a jump is reported. `longer` makes
- * them 2^(5 longer) times as long; mode_only leaves the state as it is. */
+ * them 2^(5 longer) times as long; mode_only leaves the state as it is. *is_off: it jumps by no
+ * more than the error that the state of an event has, or so it seems; it was left where it is. */
 enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                      int longer, bool mode_only) DALCS_MUST_CHECK;
+                                      int longer, bool mode_only, bool *is_off) DALCS_MUST_CHECK;
 
 /* One step of implicit Euler of length h as the present segment. */
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -30,8 +31,8 @@ enum dalcs_status dalcs_radau_tell_open(struct dalcs_radau *r) DALCS_MUST_CHECK;
 /* The next edge, command or the stop time. */
 double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
 
-static inline double dalcs_radau_ladder(int level) {
-    return __builtin_ldexp(1.0, -level);
+static inline double dalcs_radau_ladder(const struct dalcs_radau_part *part, int level) {
+    return __builtin_ldexp(part->rung, -level);
 }
 
 #endif

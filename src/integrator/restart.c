@@ -20,8 +20,8 @@ static const double jump_ratio = 4.0;
  * has no limit. */
 static const double shorter = 1.0 / 1024.0, runaway = 4.0;
 
-/* States that move by less, over the largest of their unit, have not jumped. */
-static const double smallest_jump = 1e-9;
+/* States that move by less, over the largest of their unit, have not jumped; by still less, not at all. */
+static const double smallest_jump = 1e-9, rounding = 1e-15;
 
 static enum dalcs_status fail(struct dalcs_radau *r, struct dalcs_radau_part *part, double sigma,
                               const double *u, enum dalcs_status status) {
@@ -94,9 +94,10 @@ static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_pa
     for (int x = 0; x < s->n_x; x++) {
         double first = fabs(part->y1[x] - part->x[x]);
         double second = fabs(part->y2[x] - part->y1[x]);
-        bool moved = first > jump_ratio * second;
+        double scale = largest[s->column_is_current[x]];
+        bool moved = first > jump_ratio * second && first > rounding * scale;
         jumps = jumps || moved;
-        *noticeable = *noticeable || (moved && first > smallest * largest[s->column_is_current[x]]);
+        *noticeable = *noticeable || (moved && first > smallest * scale);
         after[x] = 2.0 * part->y1[x] - part->y2[x];
     }
     return jumps;
@@ -121,7 +122,7 @@ static void extrapolate_impulses(struct dalcs_radau *r, const struct dalcs_radau
 static double micro_length(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                            int longer) {
     double h = r->options.fixed_step > 0.0 ? ldexp(r->options.fixed_step, -MICRO)
-                                           : dalcs_radau_ladder((part->level & ~3) + MICRO);
+                                           : dalcs_radau_ladder(part, (part->level & ~3) + MICRO);
     h = ldexp(h, 5 * longer);
     /* clear of the next edge: on the flank of a fast source more may happen than at t */
     double room = dalcs_radau_limit(r, part) - part->t;
@@ -246,9 +247,10 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
 }
 
 enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                      int longer, bool mode_only) {
+                                      int longer, bool mode_only, bool *is_off) {
     const struct dalcs_system *s = part->component->system;
     enum dalcs_status status = DALCS_NOT_CONVERGED;
+    *is_off = false;
     double h = 0.0;
     for (int k = 0; k < LONGER_TRIES && status > DALCS_OK; k++) {
         h = micro_length(r, part, longer + k);
@@ -259,16 +261,9 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
         return DALCS_OK;
     }
     bool noticeable;
-    if (extrapolate(r, part, part->after, &noticeable)) {
-        if (noticeable) {
-            return settle_jump(r, part, h);
-        }
-        if (r->base->energy != NULL) {
-            dalcs_energy_move(r->base->energy, part, part->after);
-        }
-        memcpy(part->x, part->after, (size_t)s->n_x * sizeof(double));
-    }
-    return DALCS_OK;
+    bool jumps = extrapolate(r, part, part->after, &noticeable);
+    *is_off = jumps && !noticeable;
+    return noticeable ? settle_jump(r, part, h) : DALCS_OK;
 }
 
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,

@@ -97,7 +97,8 @@ struct search {
     bool opened;  /* and are open now, to try */
     bool projected;
     int stuck;
-    double ratio_before, ratio_first;
+    double ratio_before;
+    int level_before_stuck;
     double tolerated; /* the ratio that is let pass */
 };
 
@@ -112,7 +113,7 @@ static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part 
     struct dalcs_stage_entry *entry;
     *moved = false;
     part->h = search->fixed ? ldexp(part->h, -PROJECTION)
-                            : dalcs_radau_ladder((part->level & ~7) + PROJECTION);
+                            : dalcs_radau_ladder(part, (part->level & ~7) + PROJECTION);
     if (n_x == 0 || part->h > search->limit - part->t) {
         return DALCS_OK;
     }
@@ -140,7 +141,15 @@ static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part 
 
 static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                  struct search *search, bool mode_only) {
-    DALCS_TRY(dalcs_radau_restart(r, part, search->restarts++, mode_only));
+    bool is_off;
+    DALCS_TRY(dalcs_radau_restart(r, part, search->restarts++, mode_only, &is_off));
+    if (is_off) {
+        /* Micro-steps may see a transient that is as fast as they are; a projecting step is far
+         * shorter. */
+        bool moved;
+        search->projected = true;
+        DALCS_TRY(project(r, part, search, &moved));
+    }
     if (!search->fixed) {
         part->level = search->first_level;
     }
@@ -154,7 +163,7 @@ static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part 
 static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                    struct search *search) {
     part->level = search->first_level;
-    double whole = search->fixed ? r->options.fixed_step : dalcs_radau_ladder(part->level);
+    double whole = search->fixed ? r->options.fixed_step : dalcs_radau_ladder(part, part->level);
     double h = ldexp(whole, part->tries - FALL_BACK);
     h = fmin(h, ldexp(whole, -FALL_BACK_LEAST));
     h = fmax(h, 64.0 * r->resolution);
@@ -191,7 +200,7 @@ static void lengthen(struct dalcs_radau_part *part, double ratio) {
     double rungs = log2(safety / ratio) / (double)(part->stages.method->s + 1);
     bool promising = rungs > 1.0;
     int up = rungs > MOST_RUNGS ? MOST_RUNGS : promising ? (int)rungs : 1;
-    while (up > 0 && dalcs_radau_ladder(part->level - up) > part->longest) {
+    while (up > 0 && dalcs_radau_ladder(part, part->level - up) > part->longest) {
         up--;
     }
     part->waited++;
@@ -255,18 +264,19 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
      * not mend it, and rounding is all it is, or small beside the largest signal of its unit. */
     search->stuck = quality->ratio > 0.3 * search->ratio_before ? search->stuck + 1 : 0;
     search->ratio_before = quality->ratio;
-    if (part->level == search->first_level) {
-        search->ratio_first = quality->ratio;
+    if (search->stuck == 0) {
+        search->level_before_stuck = part->level;
     }
     bool is_rounding = search->stuck >= STUCK && quality->of_unit < most_tolerated * part->rounding;
     bool is_small = search->stuck >= VERY_STUCK && quality->of_unit < r->inner_tolerance;
     if ((is_rounding || is_small) && isfinite(quality->ratio) && search->tolerated == 1.0) {
         search->tolerated = 4.0 * quality->ratio;
-        part->level = search->ratio_first <= search->tolerated ? search->first_level : part->level;
+        part->level = search->level_before_stuck;
         return DALCS_OK;
     }
     bool wrong_flip = search->flips > 0 && !(quality->ratio < most_projected);
-    if (search->fixed || wrong_flip || dalcs_radau_ladder(part->level) < 64.0 * r->resolution) {
+    if (search->fixed || wrong_flip ||
+        dalcs_radau_ladder(part, part->level) < 64.0 * r->resolution) {
         *done = true;
         return fall_back(r, part, search);
     }
@@ -354,7 +364,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
                                   struct search *search, bool *done) {
     struct dalcs_stage_entry *entry = NULL;
     struct dalcs_step_quality quality = {.ratio = NAN};
-    part->h = search->fixed ? r->options.fixed_step : dalcs_radau_ladder(part->level);
+    part->h = search->fixed ? r->options.fixed_step : dalcs_radau_ladder(part, part->level);
     enum dalcs_status status = solve_step(part, &entry);
     if (status < DALCS_OK) {
         return status;
@@ -412,7 +422,6 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
                             .first_level = part->level,
                             .fixed = r->options.fixed_step > 0.0,
                             .ratio_before = INFINITY,
-                            .ratio_first = INFINITY,
                             .tolerated = 1.0};
     if (part->crowd > CROWD + 4 * part->component->system->n_pairs) {
         part->fresh = true;

@@ -64,11 +64,10 @@ static void find_function_shares(const struct dalcs_stages *stages, double h,
     }
     long double real = 0.0L;
     long double drift = share[0];
-    double missed = dalcs_excitation_function_at(function, h, m->test_node) - m->test[0] * share[0];
+    double missed = dalcs_excitation_missed(function, m, h, share);
     for (int i = 1; i <= m->s; i++) {
         real += m->exact_from[i - 1] * share[i];
         drift -= m->exact_back[i - 1] * share[i];
-        missed -= m->test[i] * share[i];
     }
     share[DALCS_SHARE_REAL] = (double)real;
     share[DALCS_SHARE_DRIFT] = (double)drift;

@@ -259,10 +259,10 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
     }
 }
 
-/* One column of the map: the answer to in[column] = 1. share[s + 1] and test_share are the values of
- * the source there; for a state they are 0. */
+/* One column of the map: the answer to in[column] = 1. share[s + 1] are the values of the source
+ * there, `missed` is what they miss of it in between; for a state all are 0. */
 static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_column,
-                        const double *share, double test_share, double *out) {
+                        const double *share, double missed, double *out) {
     const struct dalcs_collocation *m = b->stages->method;
     const struct dalcs_stage_layout *l = &b->stages->layout;
     const struct dalcs_system *s = b->system;
@@ -281,10 +281,6 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
     }
     memcpy(out + l->drift, b->drift, (size_t)b->n_x * sizeof(double));
     if (b->stages->excitation->is_curved && !is_state) {
-        double missed = test_share;
-        for (int k = 0; k <= m->s; k++) {
-            missed -= m->test[k] * share[k];
-        }
         const long double *real = b->real + rhs_column * n;
         for (int r = 0; r < n; r++) {
             b->drift[r] = (double)real[r] * b->column_scale[r] * missed * m->test_factor;
@@ -349,7 +345,7 @@ static void fill_map(struct dalcs_stage_workshop *b) {
     for (int k = 0; k <= m->s; k++) {
         share[k] = 1.0;
     }
-    fill_column(b, b->n_x, b->n_x, share, 1.0, out);
+    fill_column(b, b->n_x, b->n_x, share, 0.0, out);
     check_column(b, b->n_x, b->n_x, 1.0);
     out += b->entry->rows;
     for (int f = 0; f < e->n_functions; f++, out += b->entry->rows) {
@@ -359,7 +355,7 @@ static void fill_map(struct dalcs_stage_workshop *b) {
         }
         int rhs_column = b->wave_column[function->input];
         fill_column(b, b->n_x + 1 + f, rhs_column, share,
-                    dalcs_excitation_function_at(function, b->entry->h, m->test_node), out);
+                    dalcs_excitation_missed(function, m, b->entry->h, share), out);
         check_column(b, b->n_x + 1 + f, rhs_column, share[m->s]);
     }
 }

@@ -168,7 +168,7 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
             continue;
         }
         int of = is_pair || s->column_is_current[c] ? 1 : 0;
-        double scale = larger(is_pair ? 0.0 : part->scale[c], fabs(known[c]));
+        double scale = larger(part->scale[c], fabs(known[c]));
         scale = larger(larger(scale, fabs(first[c])),
                        (is_pair ? smallest_pair : smallest_scale) * q->unit[of]);
         double floor =
@@ -204,6 +204,11 @@ void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double
         double b = fabs(last[c]);
         double largest = part->scale[c] > a ? part->scale[c] : a;
         part->scale[c] = b > largest ? b : largest;
+    }
+    for (int d = 0; d < part->component->system->n_pairs; d++) {
+        int c = n_equations + d;
+        double here = larger(fabs(first[c]), fabs(last[c]));
+        part->scale[c] = is_on(part, d) ? larger(part->scale[c], here) : 0.0; /* since it closed */
     }
     part->unit_scale[0] = unit[0];
     part->unit_scale[1] = unit[1];

@@ -295,8 +295,9 @@ class DefaultCase(HardCase):
             result = self.toleranced(tolerance)
             wanted = self.value_of(entry, None, key)
             largest = max(abs(value) for value in result.column(entry["q"]))
-            if re.search(r"\)[+-]", entry["q"]) or largest <= NOTHING * result.scale(entry["q"]):
-                largest = max(result.scale(entry["q"]), entry.get("scale", 0))
+            scale = max(result.scale(entry["q"]), entry.get("scale", 0))
+            if re.search(r"\)[+-]", entry["q"]) or largest <= NOTHING * scale:
+                largest = scale
             self.checker.close(result.at(entry["q"], entry["t"]), wanted,
                                (tolerance or DEFAULT) * largest,
                                f"{entry['q']} at {entry['t']}, tolerance {tolerance or DEFAULT:g}")
