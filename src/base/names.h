@@ -7,8 +7,10 @@
 #include "memory.h"
 
 struct dalcs_names {
-    struct dalcs_names_entry *entry; /* uthash, in the order of insertion */
-    struct dalcs_arena arena;        /* of the entries */
+    struct dalcs_names_entry *entry; /* [n] in the order of insertion */
+    size_t n, capacity;
+    struct dalcs_names_slot *slot; /* [n_slots], a power of 2 */
+    size_t n_slots;
 };
 
 /* The value of a name, or -1. */
