@@ -59,10 +59,9 @@ int dalcs_names_find(const struct dalcs_names *names, const char *name) {
 /* Twice the slots. */
 static enum dalcs_status spread(struct dalcs_names *names) {
     const size_t n_slots = names->n_slots == 0 ? FIRST_SLOTS : 2 * names->n_slots;
-    struct dalcs_names_slot *slot = dalcs_alloc(n_slots, sizeof *slot);
-    if (slot == NULL) {
-        return DALCS_E_NOMEM;
-    }
+    struct dalcs_names_slot *slot = NULL;
+    size_t capacity = 0;
+    DALCS_TRY(dalcs_grow(&slot, &capacity, n_slots, sizeof *slot));
     for (size_t k = 0; k < names->n_slots; k++) {
         const struct dalcs_names_slot old = names->slot[k];
         size_t to = old.hash & (n_slots - 1);
@@ -77,16 +76,25 @@ static enum dalcs_status spread(struct dalcs_names *names) {
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_names_add(struct dalcs_names *names, const char *name, int value) {
+enum dalcs_status dalcs_names_find_or_add(struct dalcs_names *names, const char *name, int value,
+                                          int *found) {
     if (2 * names->n >= names->n_slots) {
         DALCS_TRY(spread(names));
     }
     DALCS_TRY(dalcs_grow(&names->entry, &names->capacity, names->n + 1, sizeof *names->entry));
     const uint32_t hash = hash_of(name);
     struct dalcs_names_slot *slot = slot_of(names, name, hash);
-    names->entry[names->n++] = (struct dalcs_names_entry){name, value};
-    *slot = (struct dalcs_names_slot){hash, (uint32_t)names->n};
+    if (slot->place == 0) {
+        names->entry[names->n++] = (struct dalcs_names_entry){name, value};
+        *slot = (struct dalcs_names_slot){hash, (uint32_t)names->n};
+    }
+    *found = names->entry[slot->place - 1].value;
     return DALCS_OK;
+}
+
+enum dalcs_status dalcs_names_add(struct dalcs_names *names, const char *name, int value) {
+    int found;
+    return dalcs_names_find_or_add(names, name, value, &found);
 }
 
 /* ---- Mistyped names ------------------------------------------------------------------------ */

@@ -98,54 +98,36 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
     }
 }
 
-/* What a card means in a pass; cards of other passes are left alone. */
-enum pass { OPTIONS, MODELS, ELEMENTS, REFERENCES, MEASURES };
+enum pass { OPTIONS, MODELS, ELEMENTS, REFERENCES, MEASURES, NEVER };
 
-static void read_card(struct dalcs_builder *builder, const struct dalcs_card *card,
-                      enum dalcs_card_class c, enum pass pass) {
-    if (pass == OPTIONS) {
-        if (c == DALCS_CARD_OPTIONS) {
-            dalcs_options_parse(builder, card);
-        }
-    } else if (pass == MODELS) {
-        if (c == DALCS_CARD_MODEL) {
-            dalcs_model_parse(builder, card);
-        } else if (c == DALCS_CARD_TRAN) {
-            dalcs_analysis_parse_tran(builder, card);
-        } else if (c == DALCS_CARD_OP) {
-            dalcs_analysis_parse_op(builder, card);
-        }
-    } else if (pass == ELEMENTS) {
-        if (c == DALCS_CARD_ELEMENT) {
-            read_element(builder, card);
-        }
-    } else if (pass == MEASURES) {
-        if (c == DALCS_CARD_MEASURE) {
-            dalcs_measure_parse(builder, card);
-        } else if (c == DALCS_CARD_FOURIER) {
-            dalcs_fourier_parse(builder, card);
-        }
-    } else if (c == DALCS_CARD_COUPLING) {
-        dalcs_coupling_parse(builder, card);
-    } else if (c == DALCS_CARD_IC) {
-        dalcs_initial_parse(builder, card);
-    } else if (c == DALCS_CARD_SIGNALS) {
-        dalcs_signals_parse(builder, card);
-    } else if (c == DALCS_CARD_NODESET) {
-        dalcs_initial_parse_nodeset(builder, card);
-    } else if (c == DALCS_CARD_DC) {
-        dalcs_sweep_parse_dc(builder, card);
-    } else if (c == DALCS_CARD_AC) {
-        dalcs_sweep_parse_ac(builder, card);
-    } else if (c == DALCS_CARD_STEP) {
-        dalcs_sweep_parse_step(builder, card);
-    }
-}
+/* How cards are read, and in which pass. */
+static const struct {
+    enum pass pass;
+    void (*parse)(struct dalcs_builder *builder, const struct dalcs_card *card);
+} READ[DALCS_N_CARD_CLASSES] = {
+    [DALCS_CARD_NONE] = {NEVER, NULL},
+    [DALCS_CARD_OPTIONS] = {OPTIONS, dalcs_options_parse},
+    [DALCS_CARD_MODEL] = {MODELS, dalcs_model_parse},
+    [DALCS_CARD_TRAN] = {MODELS, dalcs_analysis_parse_tran},
+    [DALCS_CARD_OP] = {MODELS, dalcs_analysis_parse_op},
+    [DALCS_CARD_ELEMENT] = {ELEMENTS, read_element},
+    [DALCS_CARD_COUPLING] = {REFERENCES, dalcs_coupling_parse},
+    [DALCS_CARD_IC] = {REFERENCES, dalcs_initial_parse},
+    [DALCS_CARD_SIGNALS] = {REFERENCES, dalcs_signals_parse},
+    [DALCS_CARD_NODESET] = {REFERENCES, dalcs_initial_parse_nodeset},
+    [DALCS_CARD_DC] = {REFERENCES, dalcs_sweep_parse_dc},
+    [DALCS_CARD_AC] = {REFERENCES, dalcs_sweep_parse_ac},
+    [DALCS_CARD_STEP] = {REFERENCES, dalcs_sweep_parse_step},
+    [DALCS_CARD_MEASURE] = {MEASURES, dalcs_measure_parse},
+    [DALCS_CARD_FOURIER] = {MEASURES, dalcs_fourier_parse},
+};
 
 static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigned char *class_of) {
     for (enum pass pass = OPTIONS; pass <= MEASURES; pass++) {
         for (size_t k = 0; k < builder->deck->n_cards; k++) {
-            read_card(builder, &builder->deck->card[k], (enum dalcs_card_class)class_of[k], pass);
+            if (READ[class_of[k]].pass == pass) {
+                READ[class_of[k]].parse(builder, &builder->deck->card[k]);
+            }
             if (builder->out_of_memory) {
                 return DALCS_E_NOMEM;
             }

@@ -57,12 +57,12 @@ static const char *node_text(const struct dalcs_builder *builder, int node) {
 static const char *signal_name(const struct dalcs_builder *builder, char letter,
                                const char *inside) {
     const size_t n = strlen(inside);
-    char *name = dalcs_arena_alloc(&builder->circuit->arena, n + 4, 1);
+    char *name = dalcs_arena_text(&builder->circuit->arena, n + 3);
     if (name != NULL) {
         name[0] = letter;
         name[1] = '(';
         memcpy(name + 2, inside, n);
-        memcpy(name + 2 + n, ")", 2);
+        name[2 + n] = ')';
     }
     return name;
 }
