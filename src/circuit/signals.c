@@ -82,20 +82,31 @@ static void add_current(struct dalcs_builder *builder, int device) {
         (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .device = builder->current_of[device]});
 }
 
+/* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
+static bool has_default(const struct dalcs_device *d) {
+    const bool is_default = (d->letter != 0 && strchr("vldsweh", d->letter) != NULL) ||
+                            d->kind == DALCS_DIODE || (d->letter == 'b' && d->kind == DALCS_VCVS);
+    return is_default && !dalcs_builder_is_inner(d->name);
+}
+
 void dalcs_signals_add_default(struct dalcs_builder *builder) {
     const struct dalcs_circuit *circuit = builder->circuit;
+    size_t need = builder->n_signals + (size_t)circuit->n_nodes - 1;
+    for (int k = 0; k < circuit->n_devices; k++) {
+        need += has_default(&circuit->device[k]);
+    }
+    if (dalcs_grow(&builder->signal, &builder->signal_capacity, need, sizeof *builder->signal) !=
+        DALCS_OK) {
+        builder->out_of_memory = true;
+        return;
+    }
     for (int k = 1; k < circuit->n_nodes; k++) {
         if (!dalcs_builder_is_inner(builder->node_name[k])) {
             add_voltage(builder, k, 0, false);
         }
     }
-    /* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
     for (int k = 0; k < circuit->n_devices; k++) {
-        const struct dalcs_device *d = &circuit->device[k];
-        const bool is_default = (d->letter != 0 && strchr("vldsweh", d->letter) != NULL) ||
-                                d->kind == DALCS_DIODE ||
-                                (d->letter == 'b' && d->kind == DALCS_VCVS);
-        if (is_default && !dalcs_builder_is_inner(d->name)) {
+        if (has_default(&circuit->device[k])) {
             add_current(builder, k);
         }
     }

@@ -129,13 +129,6 @@ void dalcs_lexer_report(struct dalcs_lexer *lexer, const struct dalcs_token *tok
     lexer->netlist->has_errors = true;
 }
 
-static enum dalcs_status add_token(struct dalcs_lexer *lexer, const struct dalcs_token *token) {
-    DALCS_TRY(
-        dalcs_grow(&lexer->token, &lexer->capacity, lexer->n_tokens + 1, sizeof *lexer->token));
-    lexer->token[lexer->n_tokens++] = *token;
-    return DALCS_OK;
-}
-
 /* Net-(D1-K), as KiCad names a net: takes the part in parentheses into the word that ends at raw[*q],
  * and what follows it. Elsewhere a minus before a parenthesis is in an expression. */
 static bool closes_name(const char *raw, size_t *q) {
@@ -212,7 +205,7 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
     if (token->kind != DALCS_TOKEN_WORD && closed) {
         q++;
     }
-    token->length = (int)(q - p);
+    token->length = (unsigned)(q - p);
 
     if (invalid) {
         dalcs_lexer_report(lexer, token, "save the netlist as UTF-8 text",
@@ -250,12 +243,16 @@ static enum dalcs_status read_tokens(struct dalcs_lexer *lexer, size_t p, size_t
             return DALCS_OK;
         }
         DALCS_TRY(need_line(lexer, begin));
-        struct dalcs_token token;
-        memset(&token, 0, sizeof token);
-        token.after_comma = after_comma;
+        DALCS_TRY(
+            dalcs_grow(&lexer->token, &lexer->capacity, lexer->n_tokens + 1, sizeof *lexer->token));
+        struct dalcs_token *token = &lexer->token[lexer->n_tokens++];
+        *token = (struct dalcs_token){.after_comma = after_comma};
         after_comma = false;
-        p = read_token(lexer, p, begin, &token);
-        DALCS_TRY(add_token(lexer, &token));
+        const size_t end = read_token(lexer, p, begin, token);
+        if (end - p > DALCS_LONGEST_TOKEN) {
+            return DALCS_E_LIMIT;
+        }
+        p = end;
     }
 }
 
