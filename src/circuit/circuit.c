@@ -159,6 +159,43 @@ static void check_presence(struct dalcs_builder *builder) {
     }
 }
 
+/* The first place among the shown signals of each node's voltage, then of each device's current, in
+ * scratch; -1 where there is none. */
+static int *list_shown(struct dalcs_builder *builder) {
+    const struct dalcs_circuit *circuit = builder->circuit;
+    const int n = circuit->n_nodes + circuit->n_devices;
+    int *shown = dalcs_arena_alloc(&builder->scratch, (size_t)n, sizeof *shown);
+    for (int k = 0; k < n && shown != NULL; k++) {
+        shown[k] = -1;
+    }
+    for (int k = circuit->n_shown - 1; k >= 0 && shown != NULL; k--) {
+        const struct dalcs_signal *s = &circuit->signal[k];
+        if (s->kind == DALCS_SIGNAL_CURRENT) {
+            shown[circuit->n_nodes + s->device] = k;
+        } else if (s->node[1] == 0) {
+            shown[s->node[0]] = k;
+        }
+    }
+    return shown;
+}
+
+/* Where a signal is shown, -1 when it is not. Voltages between two nodes, which someone wrote one by
+ * one, are searched for. */
+static int place_of(const struct dalcs_circuit *circuit, const int *shown,
+                    const struct dalcs_signal *signal) {
+    if (signal->kind == DALCS_SIGNAL_CURRENT) {
+        return shown[circuit->n_nodes + signal->device];
+    }
+    if (signal->node[1] == 0) {
+        return shown[signal->node[0]];
+    }
+    int place = 0;
+    while (place < circuit->n_shown && !dalcs_signal_is_same(&circuit->signal[place], signal)) {
+        place++;
+    }
+    return place < circuit->n_shown ? place : -1;
+}
+
 /* What formulas name: a signal that is recorded anyway, or one more behind those. */
 static enum dalcs_status collect_measured(struct dalcs_builder *builder) {
     struct dalcs_circuit *circuit = builder->circuit;
@@ -171,13 +208,13 @@ static enum dalcs_status collect_measured(struct dalcs_builder *builder) {
     if (circuit->measured == NULL || circuit->measure == NULL || circuit->fourier == NULL) {
         return DALCS_E_NOMEM;
     }
+    const int *shown = n > 0 ? list_shown(builder) : NULL;
+    if (n > 0 && shown == NULL) {
+        return DALCS_E_NOMEM;
+    }
     for (size_t k = 0; k < n; k++) {
-        int place = 0;
-        while (place < circuit->n_shown &&
-               !dalcs_signal_is_same(&circuit->signal[place], &builder->measured[k])) {
-            place++;
-        }
-        if (place == circuit->n_shown) {
+        int place = place_of(circuit, shown, &builder->measured[k]);
+        if (place < 0) {
             place = circuit->n_signals++;
             circuit->signal[place] = builder->measured[k];
         }
@@ -318,6 +355,7 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
     dalcs_names_finish(&builder.initial_pairs);
     dalcs_names_finish(&builder.signals);
     dalcs_names_finish(&builder.measure_names);
+    dalcs_names_finish(&builder.measured_keys);
     dalcs_arena_finish(&builder.scratch);
     free(builder.node_name);
     free(builder.node_token);

@@ -113,19 +113,22 @@ void dalcs_signals_add_default(struct dalcs_builder *builder) {
 }
 
 int dalcs_signals_measure(struct dalcs_builder *builder, struct dalcs_signal signal) {
-    for (size_t k = 0; k < builder->n_measured; k++) {
-        if (dalcs_signal_is_same(&builder->measured[k], &signal)) {
-            return (int)k;
-        }
-    }
-    if (signal.name == NULL ||
+    const char *key = signal.kind == DALCS_SIGNAL_CURRENT
+                          ? dalcs_builder_hint(builder, "%d", signal.device)
+                          : dalcs_builder_hint(builder, "%d %d", signal.node[0], signal.node[1]);
+    const int next = (int)builder->n_measured;
+    int place;
+    if (signal.name == NULL || key == NULL ||
+        dalcs_names_find_or_add(&builder->measured_keys, key, next, &place) != DALCS_OK ||
         dalcs_grow(&builder->measured, &builder->measured_capacity, builder->n_measured + 1,
                    sizeof *builder->measured) != DALCS_OK) {
         builder->out_of_memory = true;
         return -1;
     }
-    builder->measured[builder->n_measured] = signal;
-    return (int)builder->n_measured++;
+    if (place == next) {
+        builder->measured[builder->n_measured++] = signal;
+    }
+    return place;
 }
 
 /* After `v (`: a node or two, and the closing parenthesis. */

@@ -283,9 +283,10 @@ static enum dalcs_status report_loops(const struct forest *f, const struct dalcs
             continue;
         }
         int device = f->device[i];
-        struct loop loop = walk_loop(f, c, device, arena);
+        struct loop loop = walk_loop(f, c, device, NULL);
         double left;
         enum verdict verdict = judge(c, &loop.sum, &left);
+        loop = verdict != UNKNOWN ? walk_loop(f, c, device, arena) : loop;
         if (verdict == CONTRADICT) {
             report_loop(c, device, &loop, left, arena, diag);
             status = DALCS_E_NETLIST;
