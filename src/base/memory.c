@@ -49,10 +49,7 @@ void *dalcs_alloc(size_t n, size_t size) {
     return calloc(n, size);
 }
 
-enum dalcs_status dalcs_grow(void *array, size_t *capacity, size_t need, size_t size) {
-    if (need <= *capacity) {
-        return DALCS_OK;
-    }
+enum dalcs_status dalcs_grow_now(void *array, size_t *capacity, size_t need, size_t size) {
     size_t bigger = *capacity < 8 ? 16 : *capacity + *capacity / 2;
     if (bigger < need) {
         bigger = need;
@@ -86,10 +83,11 @@ static struct dalcs_arena_block *make_block(size_t size) {
     return block;
 }
 
+/* align: a power of 2. */
 static void *take(struct dalcs_arena *arena, size_t bytes, size_t align) {
     struct dalcs_arena_block *head = arena->head;
     if (head != NULL) {
-        const size_t start = (head->used + align - 1) / align * align;
+        const size_t start = (head->used + align - 1) & ~(align - 1);
         if (start <= head->size && bytes <= head->size - start) {
             head->used = start + bytes;
             return head->data + start;
@@ -122,8 +120,12 @@ void *dalcs_arena_alloc(struct dalcs_arena *arena, size_t n, size_t size) {
     return take(arena, bytes == 0 ? 1 : bytes, _Alignof(max_align_t));
 }
 
+char *dalcs_arena_text(struct dalcs_arena *arena, size_t length) {
+    return length < PTRDIFF_MAX ? take(arena, length + 1, 1) : NULL;
+}
+
 char *dalcs_arena_copy(struct dalcs_arena *arena, const char *text, size_t length) {
-    char *copy = length < PTRDIFF_MAX ? take(arena, length + 1, 1) : NULL;
+    char *copy = dalcs_arena_text(arena, length);
     if (copy != NULL && length > 0) {
         memcpy(copy, text, length);
     }

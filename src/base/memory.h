@@ -10,10 +10,16 @@
  * a unique non-NULL pointer. Release with free(). */
 void *dalcs_alloc(size_t n, size_t size);
 
+/* The same as dalcs_grow where there is no room. */
+enum dalcs_status dalcs_grow_now(void *array, size_t *capacity, size_t need,
+                                 size_t size) DALCS_MUST_CHECK;
+
 /* Makes room for at least `need` items in *array (item size `size`, present capacity *capacity).
  * Growth is geometric and new items are zeroed. On failure *array and *capacity are unchanged. */
-enum dalcs_status dalcs_grow(void *array, size_t *capacity, size_t need,
-                             size_t size) DALCS_MUST_CHECK;
+static inline DALCS_MUST_CHECK enum dalcs_status dalcs_grow(void *array, size_t *capacity,
+                                                            size_t need, size_t size) {
+    return need <= *capacity ? DALCS_OK : dalcs_grow_now(array, capacity, need, size);
+}
 
 /* An arena: many small objects that die together. Zero-initialise; finish frees everything. */
 struct dalcs_arena {
@@ -22,6 +28,9 @@ struct dalcs_arena {
 
 /* Zeroed, aligned for any type; NULL when out of memory. */
 void *dalcs_arena_alloc(struct dalcs_arena *arena, size_t n, size_t size);
+
+/* Room for a text of this length, its NUL in place; NULL when out of memory. */
+char *dalcs_arena_text(struct dalcs_arena *arena, size_t length);
 
 /* A NUL-terminated copy of text[0..length-1]; NULL when out of memory. */
 char *dalcs_arena_copy(struct dalcs_arena *arena, const char *text, size_t length);

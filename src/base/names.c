@@ -1,44 +1,104 @@
-/* names.c - a table from names to small integers, and the search for a mistyped name. */
+/* names.c - a table from names to small integers, and the search for a mistyped name.
+ *
+ * Open addressing with linear probing, half empty at least. A slot holds the hash beside the place of
+ * its entry, so that a name that is not there costs one look into memory, also in a table of a
+ * million names, where each look is a cache miss. */
 #include "names.h"
 
-#define HASH_NONFATAL_OOM 1
-#include <uthash.h>
-
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct dalcs_names_entry {
-    UT_hash_handle hh;
     const char *name;
     int value;
 };
+
+struct dalcs_names_slot {
+    uint32_t hash;
+    uint32_t place; /* of the entry, from 1; 0: free */
+};
+
+enum { FIRST_SLOTS = 32 };
 
 /* Longer names are not searched for a near one: nobody mistypes them by two letters and the search
  * keeps its rows on the stack. */
 enum { NEAREST_MAX_LENGTH = 63 };
 
-int dalcs_names_find(const struct dalcs_names *names, const char *name) {
-    struct dalcs_names_entry *entry;
-    HASH_FIND_STR(names->entry, name, entry);
-    return entry == NULL ? -1 : entry->value;
+/* FNV-1a of 64 bits, folded (G. Fowler, L. C. Noll, K.-P. Vo, RFC 9923), of all but the last
+ * character, which counts up in the lowest bits: r10 to r19 are neighbours, and mostly come one after
+ * the other. */
+static uint32_t hash_of(const char *name) {
+    uint64_t hash = 0xCBF29CE484222325U;
+    unsigned char last = (unsigned char)*name;
+    for (; last != '\0' && name[1] != '\0'; last = (unsigned char)*name) {
+        hash = (hash ^ last) * 0x100000001B3U;
+        name++;
+    }
+    return (uint32_t)(hash >> 32 ^ hash) << 4 ^ last;
 }
 
-enum dalcs_status dalcs_names_add(struct dalcs_names *names, const char *name, int value) {
-    struct dalcs_names_entry *entry = dalcs_arena_alloc(&names->arena, 1, sizeof *entry);
-    if (entry == NULL) {
-        return DALCS_E_NOMEM;
+/* The slot of a name, or the free one where it belongs. There is one: the table is never full. */
+static struct dalcs_names_slot *slot_of(const struct dalcs_names *names, const char *name,
+                                        uint32_t hash) {
+    const size_t last = names->n_slots - 1;
+    size_t k = hash & last;
+    for (; names->slot[k].place != 0; k = (k + 1) & last) {
+        if (names->slot[k].hash == hash &&
+            strcmp(names->entry[names->slot[k].place - 1].name, name) == 0) {
+            break;
+        }
     }
-    entry->name = name;
-    entry->value = value;
-    HASH_ADD_KEYPTR(hh, names->entry, name, strlen(name), entry);
-    if (entry->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
-        return DALCS_E_NOMEM;
+    return &names->slot[k];
+}
+
+int dalcs_names_find(const struct dalcs_names *names, const char *name) {
+    if (names->n == 0) {
+        return -1;
     }
+    const struct dalcs_names_slot *slot = slot_of(names, name, hash_of(name));
+    return slot->place == 0 ? -1 : names->entry[slot->place - 1].value;
+}
+
+/* Twice the slots. */
+static enum dalcs_status spread(struct dalcs_names *names) {
+    const size_t n_slots = names->n_slots == 0 ? FIRST_SLOTS : 2 * names->n_slots;
+    struct dalcs_names_slot *slot = NULL;
+    size_t capacity = 0;
+    DALCS_TRY(dalcs_grow(&slot, &capacity, n_slots, sizeof *slot));
+    for (size_t k = 0; k < names->n_slots; k++) {
+        const struct dalcs_names_slot old = names->slot[k];
+        size_t to = old.hash & (n_slots - 1);
+        while (old.place != 0 && slot[to].place != 0) {
+            to = (to + 1) & (n_slots - 1);
+        }
+        slot[to] = old.place != 0 ? old : slot[to];
+    }
+    free(names->slot);
+    names->slot = slot;
+    names->n_slots = n_slots;
     return DALCS_OK;
 }
 
-static const struct dalcs_names_entry *next_of(const struct dalcs_names_entry *entry) {
-    return entry->hh.next;
+enum dalcs_status dalcs_names_find_or_add(struct dalcs_names *names, const char *name, int value,
+                                          int *found) {
+    if (2 * names->n >= names->n_slots) {
+        DALCS_TRY(spread(names));
+    }
+    DALCS_TRY(dalcs_grow(&names->entry, &names->capacity, names->n + 1, sizeof *names->entry));
+    const uint32_t hash = hash_of(name);
+    struct dalcs_names_slot *slot = slot_of(names, name, hash);
+    if (slot->place == 0) {
+        names->entry[names->n++] = (struct dalcs_names_entry){name, value};
+        *slot = (struct dalcs_names_slot){hash, (uint32_t)names->n};
+    }
+    *found = names->entry[slot->place - 1].value;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_names_add(struct dalcs_names *names, const char *name, int value) {
+    int found;
+    return dalcs_names_find_or_add(names, name, value, &found);
 }
 
 /* ---- Mistyped names ------------------------------------------------------------------------ */
@@ -107,8 +167,8 @@ static void consider(struct nearest *nearest, const char *candidate, const char 
 
 const char *dalcs_names_nearest(const struct dalcs_names *names, const char *name) {
     struct nearest nearest = {0};
-    for (const struct dalcs_names_entry *e = names->entry; e != NULL; e = next_of(e)) {
-        consider(&nearest, e->name, name, strlen(name));
+    for (size_t k = 0; k < names->n; k++) {
+        consider(&nearest, names->entry[k].name, name, strlen(name));
     }
     return nearest.name;
 }
@@ -123,19 +183,18 @@ const char *dalcs_names_nearest_of(const char *const *candidate, size_t n, const
 
 const char *dalcs_names_join(const struct dalcs_names *names, size_t most,
                              struct dalcs_arena *arena) {
-    const struct dalcs_names_entry *e = names->entry;
-    if (e == NULL || HASH_COUNT(names->entry) > most) {
+    if (names->n == 0 || names->n > most) {
         return NULL;
     }
-    const char *list = e->name;
-    for (e = next_of(e); e != NULL && list != NULL; e = next_of(e)) {
-        list = dalcs_arena_printf(arena, "%s, %s", list, e->name);
+    const char *list = names->entry[0].name;
+    for (size_t k = 1; k < names->n && list != NULL; k++) {
+        list = dalcs_arena_printf(arena, "%s, %s", list, names->entry[k].name);
     }
     return list;
 }
 
 void dalcs_names_finish(struct dalcs_names *names) {
-    HASH_CLEAR(hh, names->entry);
-    dalcs_arena_finish(&names->arena);
+    free(names->entry);
+    free(names->slot);
     *names = (struct dalcs_names){0};
 }

@@ -7,8 +7,10 @@
 #include "memory.h"
 
 struct dalcs_names {
-    struct dalcs_names_entry *entry; /* uthash, in the order of insertion */
-    struct dalcs_arena arena;        /* of the entries */
+    struct dalcs_names_entry *entry; /* [n] in the order of insertion */
+    size_t n, capacity;
+    struct dalcs_names_slot *slot; /* [n_slots], a power of 2 */
+    size_t n_slots;
 };
 
 /* The value of a name, or -1. */
@@ -17,6 +19,10 @@ int dalcs_names_find(const struct dalcs_names *names, const char *name);
 /* Adds a name that is not in the table yet; value >= 0. */
 enum dalcs_status dalcs_names_add(struct dalcs_names *names, const char *name,
                                   int value) DALCS_MUST_CHECK;
+
+/* The value of a name in *found; one that is not in the table is added first, with this value. */
+enum dalcs_status dalcs_names_find_or_add(struct dalcs_names *names, const char *name, int value,
+                                          int *found) DALCS_MUST_CHECK;
 
 /* The name most like this one, were it mistyped: a distance of at most 2 edits (insert, delete,
  * change, swap neighbours) and at most a third of the length; NULL when there is none. */

@@ -189,17 +189,17 @@ int dalcs_builder_node(struct dalcs_builder *builder, const struct dalcs_token *
     if (is_ground(token->text)) {
         return 0;
     }
-    const int known = dalcs_names_find(&builder->nodes, token->text);
-    if (known >= 0) {
-        return known;
-    }
-    const char *name = dalcs_arena_copy(&builder->circuit->arena, token->text, strlen(token->text));
-    const int node = add_node(builder, name, token);
-    if (node < 0 ||
-        !note_memory(builder, dalcs_names_add(&builder->nodes, name, node) == DALCS_OK)) {
+    int node;
+    const int next = builder->circuit->n_nodes;
+    if (!note_memory(builder, dalcs_names_find_or_add(&builder->nodes, token->text, next, &node) ==
+                                  DALCS_OK)) {
         return -1;
     }
-    return node;
+    return node < next ? node
+                       : add_node(builder,
+                                  dalcs_arena_copy(&builder->circuit->arena, token->text,
+                                                   strlen(token->text)),
+                                  token);
 }
 
 int dalcs_builder_inner_node(struct dalcs_builder *builder, const char *what,
@@ -297,9 +297,10 @@ int dalcs_builder_find_device(struct dalcs_builder *builder, const struct dalcs_
 
 void dalcs_builder_add_name(struct dalcs_builder *builder, const struct dalcs_token *name,
                             int value) {
-    const int first = dalcs_names_find(&builder->devices, name->text);
-    if (first < 0) {
-        note_memory(builder, dalcs_names_add(&builder->devices, name->text, value) == DALCS_OK);
+    int first;
+    if (!note_memory(builder, dalcs_names_find_or_add(&builder->devices, name->text, value,
+                                                      &first) == DALCS_OK) ||
+        first == value) {
         return;
     }
     dalcs_builder_error(builder, name, "give it another name",

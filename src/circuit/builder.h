@@ -96,7 +96,9 @@ struct dalcs_builder {
     struct dalcs_signal *measured; /* heap: what formulas name */
     size_t n_measured;
     size_t measured_capacity;
-    struct dalcs_names measure_names;   /* name -> place in measure */
+    struct dalcs_names measured_keys; /* "7" or "0 4": place in measured of the current of device 7,
+                                           the voltage of node 0 against 4 */
+    struct dalcs_names measure_names; /* name -> place in measure */
     struct dalcs_measure_card *measure; /* heap */
     size_t n_measures;
     size_t measure_capacity;

@@ -150,8 +150,9 @@ static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
 /* Each becomes a device, and one more measures their current. */
 static size_t count_parasitics(const struct dalcs_card *card) {
     size_t n = 0;
-    for (int k = 1; k < card->n; k++) {
-        n += dalcs_parasitic_is_name(card->token[k].text);
+    for (int k = 2; k < card->n; k++) {
+        n += card->token[k].kind == DALCS_TOKEN_EQUAL &&
+             dalcs_parasitic_is_name(card->token[k - 1].text);
     }
     return n > 0 ? n + 1 : 0;
 }

@@ -98,54 +98,36 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
     }
 }
 
-/* What a card means in a pass; cards of other passes are left alone. */
-enum pass { OPTIONS, MODELS, ELEMENTS, REFERENCES, MEASURES };
+enum pass { OPTIONS, MODELS, ELEMENTS, REFERENCES, MEASURES, NEVER };
 
-static void read_card(struct dalcs_builder *builder, const struct dalcs_card *card,
-                      enum dalcs_card_class c, enum pass pass) {
-    if (pass == OPTIONS) {
-        if (c == DALCS_CARD_OPTIONS) {
-            dalcs_options_parse(builder, card);
-        }
-    } else if (pass == MODELS) {
-        if (c == DALCS_CARD_MODEL) {
-            dalcs_model_parse(builder, card);
-        } else if (c == DALCS_CARD_TRAN) {
-            dalcs_analysis_parse_tran(builder, card);
-        } else if (c == DALCS_CARD_OP) {
-            dalcs_analysis_parse_op(builder, card);
-        }
-    } else if (pass == ELEMENTS) {
-        if (c == DALCS_CARD_ELEMENT) {
-            read_element(builder, card);
-        }
-    } else if (pass == MEASURES) {
-        if (c == DALCS_CARD_MEASURE) {
-            dalcs_measure_parse(builder, card);
-        } else if (c == DALCS_CARD_FOURIER) {
-            dalcs_fourier_parse(builder, card);
-        }
-    } else if (c == DALCS_CARD_COUPLING) {
-        dalcs_coupling_parse(builder, card);
-    } else if (c == DALCS_CARD_IC) {
-        dalcs_initial_parse(builder, card);
-    } else if (c == DALCS_CARD_SIGNALS) {
-        dalcs_signals_parse(builder, card);
-    } else if (c == DALCS_CARD_NODESET) {
-        dalcs_initial_parse_nodeset(builder, card);
-    } else if (c == DALCS_CARD_DC) {
-        dalcs_sweep_parse_dc(builder, card);
-    } else if (c == DALCS_CARD_AC) {
-        dalcs_sweep_parse_ac(builder, card);
-    } else if (c == DALCS_CARD_STEP) {
-        dalcs_sweep_parse_step(builder, card);
-    }
-}
+/* How cards are read, and in which pass. */
+static const struct {
+    enum pass pass;
+    void (*parse)(struct dalcs_builder *builder, const struct dalcs_card *card);
+} READ[DALCS_N_CARD_CLASSES] = {
+    [DALCS_CARD_NONE] = {NEVER, NULL},
+    [DALCS_CARD_OPTIONS] = {OPTIONS, dalcs_options_parse},
+    [DALCS_CARD_MODEL] = {MODELS, dalcs_model_parse},
+    [DALCS_CARD_TRAN] = {MODELS, dalcs_analysis_parse_tran},
+    [DALCS_CARD_OP] = {MODELS, dalcs_analysis_parse_op},
+    [DALCS_CARD_ELEMENT] = {ELEMENTS, read_element},
+    [DALCS_CARD_COUPLING] = {REFERENCES, dalcs_coupling_parse},
+    [DALCS_CARD_IC] = {REFERENCES, dalcs_initial_parse},
+    [DALCS_CARD_SIGNALS] = {REFERENCES, dalcs_signals_parse},
+    [DALCS_CARD_NODESET] = {REFERENCES, dalcs_initial_parse_nodeset},
+    [DALCS_CARD_DC] = {REFERENCES, dalcs_sweep_parse_dc},
+    [DALCS_CARD_AC] = {REFERENCES, dalcs_sweep_parse_ac},
+    [DALCS_CARD_STEP] = {REFERENCES, dalcs_sweep_parse_step},
+    [DALCS_CARD_MEASURE] = {MEASURES, dalcs_measure_parse},
+    [DALCS_CARD_FOURIER] = {MEASURES, dalcs_fourier_parse},
+};
 
 static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigned char *class_of) {
     for (enum pass pass = OPTIONS; pass <= MEASURES; pass++) {
         for (size_t k = 0; k < builder->deck->n_cards; k++) {
-            read_card(builder, &builder->deck->card[k], (enum dalcs_card_class)class_of[k], pass);
+            if (READ[class_of[k]].pass == pass) {
+                READ[class_of[k]].parse(builder, &builder->deck->card[k]);
+            }
             if (builder->out_of_memory) {
                 return DALCS_E_NOMEM;
             }
@@ -177,6 +159,43 @@ static void check_presence(struct dalcs_builder *builder) {
     }
 }
 
+/* The first place among the shown signals of each node's voltage, then of each device's current, in
+ * scratch; -1 where there is none. */
+static int *list_shown(struct dalcs_builder *builder) {
+    const struct dalcs_circuit *circuit = builder->circuit;
+    const int n = circuit->n_nodes + circuit->n_devices;
+    int *shown = dalcs_arena_alloc(&builder->scratch, (size_t)n, sizeof *shown);
+    for (int k = 0; k < n && shown != NULL; k++) {
+        shown[k] = -1;
+    }
+    for (int k = circuit->n_shown - 1; k >= 0 && shown != NULL; k--) {
+        const struct dalcs_signal *s = &circuit->signal[k];
+        if (s->kind == DALCS_SIGNAL_CURRENT) {
+            shown[circuit->n_nodes + s->device] = k;
+        } else if (s->node[1] == 0) {
+            shown[s->node[0]] = k;
+        }
+    }
+    return shown;
+}
+
+/* Where a signal is shown, -1 when it is not. Voltages between two nodes, which someone wrote one by
+ * one, are searched for. */
+static int place_of(const struct dalcs_circuit *circuit, const int *shown,
+                    const struct dalcs_signal *signal) {
+    if (signal->kind == DALCS_SIGNAL_CURRENT) {
+        return shown[circuit->n_nodes + signal->device];
+    }
+    if (signal->node[1] == 0) {
+        return shown[signal->node[0]];
+    }
+    int place = 0;
+    while (place < circuit->n_shown && !dalcs_signal_is_same(&circuit->signal[place], signal)) {
+        place++;
+    }
+    return place < circuit->n_shown ? place : -1;
+}
+
 /* What formulas name: a signal that is recorded anyway, or one more behind those. */
 static enum dalcs_status collect_measured(struct dalcs_builder *builder) {
     struct dalcs_circuit *circuit = builder->circuit;
@@ -189,13 +208,13 @@ static enum dalcs_status collect_measured(struct dalcs_builder *builder) {
     if (circuit->measured == NULL || circuit->measure == NULL || circuit->fourier == NULL) {
         return DALCS_E_NOMEM;
     }
+    const int *shown = n > 0 ? list_shown(builder) : NULL;
+    if (n > 0 && shown == NULL) {
+        return DALCS_E_NOMEM;
+    }
     for (size_t k = 0; k < n; k++) {
-        int place = 0;
-        while (place < circuit->n_shown &&
-               !dalcs_signal_is_same(&circuit->signal[place], &builder->measured[k])) {
-            place++;
-        }
-        if (place == circuit->n_shown) {
+        int place = place_of(circuit, shown, &builder->measured[k]);
+        if (place < 0) {
             place = circuit->n_signals++;
             circuit->signal[place] = builder->measured[k];
         }
@@ -336,6 +355,7 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
     dalcs_names_finish(&builder.initial_pairs);
     dalcs_names_finish(&builder.signals);
     dalcs_names_finish(&builder.measure_names);
+    dalcs_names_finish(&builder.measured_keys);
     dalcs_arena_finish(&builder.scratch);
     free(builder.node_name);
     free(builder.node_token);

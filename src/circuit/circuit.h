@@ -104,10 +104,10 @@ struct dalcs_initial_condition {
 enum dalcs_signal_kind { DALCS_SIGNAL_VOLTAGE, DALCS_SIGNAL_CURRENT };
 
 struct dalcs_signal {
-    enum dalcs_signal_kind kind;
     const char *name; /* "v(out)", "v(a,b)", "i(d1)" */
-    int node[2];      /* voltage: node[0] - node[1] */
-    int device;       /* current: index of the device, else -1 */
+    enum dalcs_signal_kind kind;
+    int device;  /* current: index of the device, else -1 */
+    int node[2]; /* voltage: node[0] - node[1] */
 };
 
 static inline bool dalcs_signal_is_same(const struct dalcs_signal *a,

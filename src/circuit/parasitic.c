@@ -34,9 +34,7 @@ static int index_of(const char *name) {
 }
 
 bool dalcs_parasitic_is_name(const char *name) {
-    /* asked of every word of a netlist: most go by their second letter */
-    const bool may_be = name[0] != '\0' && (name[1] == 's' || name[1] == 'p' || name[1] == 'l');
-    return may_be && index_of(name) < N_PARASITICS;
+    return index_of(name) < N_PARASITICS;
 }
 
 bool dalcs_parasitic_read(struct dalcs_reader *reader, const struct dalcs_token *name,

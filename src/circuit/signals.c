@@ -57,12 +57,12 @@ static const char *node_text(const struct dalcs_builder *builder, int node) {
 static const char *signal_name(const struct dalcs_builder *builder, char letter,
                                const char *inside) {
     const size_t n = strlen(inside);
-    char *name = dalcs_arena_alloc(&builder->circuit->arena, n + 4, 1);
+    char *name = dalcs_arena_text(&builder->circuit->arena, n + 3);
     if (name != NULL) {
         name[0] = letter;
         name[1] = '(';
         memcpy(name + 2, inside, n);
-        memcpy(name + 2 + n, ")", 2);
+        name[2 + n] = ')';
     }
     return name;
 }
@@ -82,39 +82,53 @@ static void add_current(struct dalcs_builder *builder, int device) {
         (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .device = builder->current_of[device]});
 }
 
+/* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
+static bool has_default(const struct dalcs_device *d) {
+    const bool is_default = (d->letter != 0 && strchr("vldsweh", d->letter) != NULL) ||
+                            d->kind == DALCS_DIODE || (d->letter == 'b' && d->kind == DALCS_VCVS);
+    return is_default && !dalcs_builder_is_inner(d->name);
+}
+
 void dalcs_signals_add_default(struct dalcs_builder *builder) {
     const struct dalcs_circuit *circuit = builder->circuit;
+    size_t need = builder->n_signals + (size_t)circuit->n_nodes - 1;
+    for (int k = 0; k < circuit->n_devices; k++) {
+        need += has_default(&circuit->device[k]);
+    }
+    if (dalcs_grow(&builder->signal, &builder->signal_capacity, need, sizeof *builder->signal) !=
+        DALCS_OK) {
+        builder->out_of_memory = true;
+        return;
+    }
     for (int k = 1; k < circuit->n_nodes; k++) {
         if (!dalcs_builder_is_inner(builder->node_name[k])) {
             add_voltage(builder, k, 0, false);
         }
     }
-    /* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
     for (int k = 0; k < circuit->n_devices; k++) {
-        const struct dalcs_device *d = &circuit->device[k];
-        const bool is_default = (d->letter != 0 && strchr("vldsweh", d->letter) != NULL) ||
-                                d->kind == DALCS_DIODE ||
-                                (d->letter == 'b' && d->kind == DALCS_VCVS);
-        if (is_default && !dalcs_builder_is_inner(d->name)) {
+        if (has_default(&circuit->device[k])) {
             add_current(builder, k);
         }
     }
 }
 
 int dalcs_signals_measure(struct dalcs_builder *builder, struct dalcs_signal signal) {
-    for (size_t k = 0; k < builder->n_measured; k++) {
-        if (dalcs_signal_is_same(&builder->measured[k], &signal)) {
-            return (int)k;
-        }
-    }
-    if (signal.name == NULL ||
+    const char *key = signal.kind == DALCS_SIGNAL_CURRENT
+                          ? dalcs_builder_hint(builder, "%d", signal.device)
+                          : dalcs_builder_hint(builder, "%d %d", signal.node[0], signal.node[1]);
+    const int next = (int)builder->n_measured;
+    int place;
+    if (signal.name == NULL || key == NULL ||
+        dalcs_names_find_or_add(&builder->measured_keys, key, next, &place) != DALCS_OK ||
         dalcs_grow(&builder->measured, &builder->measured_capacity, builder->n_measured + 1,
                    sizeof *builder->measured) != DALCS_OK) {
         builder->out_of_memory = true;
         return -1;
     }
-    builder->measured[builder->n_measured] = signal;
-    return (int)builder->n_measured++;
+    if (place == next) {
+        builder->measured[builder->n_measured++] = signal;
+    }
+    return place;
 }
 
 /* After `v (`: a node or two, and the closing parenthesis. */

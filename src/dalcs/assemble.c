@@ -94,33 +94,14 @@ static enum dalcs_status stamp_references(struct stamps *b, int n_nodes, const i
     return DALCS_OK;
 }
 
-/* The component that holds a .ic voltage; -1 when there is nothing to hold, because a short joins
- * its nodes or no equation knows one of them. */
-static int holding_component(const struct dalcs_layout *l,
-                             const struct dalcs_initial_condition *ic) {
-    const struct dalcs_topology *t = &l->topology;
-    const int node[2] = {t->node_of[ic->node[0]], t->node_of[ic->node[1]]};
-    int component = -1;
-    for (int e = 0; e < 2; e++) {
-        if (node[e] != 0 && t->node_component[node[e]] < 0) {
-            return -1;
-        }
-        component = node[e] != 0 ? t->node_component[node[e]] : component;
-    }
-    return node[0] == node[1] ? -1 : component;
-}
-
 /* .ic voltages held by sources while the operating point is sought, as SPICE does. In an island that
  * floats, the voltage of a node is that against the island's reference. */
 static enum dalcs_status stamp_clamps(struct stamps *b, int component) {
     struct dalcs_layout *l = b->layout;
     struct dalcs_system *s = b->s;
     const struct dalcs_circuit *c = l->circuit;
-    for (int k = 0; k < c->n_initial_conditions; k++) {
-        const struct dalcs_initial_condition *ic = &c->initial_condition[k];
-        if (holding_component(l, ic) != component) {
-            continue;
-        }
+    for (int k = l->held_start[component]; k < l->held_start[component + 1]; k++) {
+        const struct dalcs_initial_condition *ic = &c->initial_condition[l->held[k]];
         int column = s->n_x + b->next_z++;
         int row = s->n_x + b->next_row++;
         int first = ic->node[0];
@@ -200,8 +181,8 @@ static void count(struct stamps *b, int n_devices, const int *device, int n_node
             break;
         }
     }
-    for (int k = 0; l->options->clamp_initial_conditions && k < c->n_initial_conditions; k++) {
-        s->n_z += holding_component(l, &c->initial_condition[k]) == component ? 1 : 0;
+    if (l->held_start != NULL) {
+        s->n_z += l->held_start[component + 1] - l->held_start[component];
     }
 }
 
@@ -286,7 +267,7 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_de
     if (status == DALCS_OK) {
         status = stamp_references(&b, n_nodes, node);
     }
-    if (status == DALCS_OK && layout->options->clamp_initial_conditions) {
+    if (status == DALCS_OK && layout->held_start != NULL) {
         status = stamp_clamps(&b, component);
     }
     int n_equations = dalcs_system_n_equations(system);

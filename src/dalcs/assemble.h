@@ -3,6 +3,7 @@
 #define DALCS_ASSEMBLE_H
 
 #include "inductance.h"
+#include "initial_voltages.h"
 #include "network.h"
 #include "topology.h"
 
@@ -30,6 +31,9 @@ struct dalcs_layout {
     struct coil_group *group;
     int *group_of; /* [n_devices], -1 for a coil on its own */
     int *grouped_coil;
+    struct dalcs_initial_voltages initial_voltages;
+    int *held_start, *held; /* [n_components + 1] conditions of .ic that each component holds, one
+                               component's after the other's; NULL when none are held */
 };
 
 /* Assembles component `index` from its devices (ascending) into *system (zeroed on failure) and

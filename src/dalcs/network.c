@@ -12,6 +12,9 @@
 
 static void layout_finish(struct dalcs_layout *l) {
     dalcs_topology_finish(&l->topology);
+    dalcs_initial_voltages_finish(&l->initial_voltages);
+    free(l->held_start);
+    free(l->held);
     for (int g = 0; g < l->n_groups; g++) {
         free(l->group[g].L);
         dalcs_inductance_finish(&l->group[g].split);
@@ -190,6 +193,40 @@ done:
 }
 
 /* ---- Components ---------------------------------------------------------------------------- */
+
+/* The component that holds a .ic voltage; -1 when there is nothing to hold, because a short joins
+ * its nodes or no equation knows one of them. */
+static int holding_component(const struct dalcs_layout *l,
+                             const struct dalcs_initial_condition *ic) {
+    const struct dalcs_topology *t = &l->topology;
+    const int node[2] = {t->node_of[ic->node[0]], t->node_of[ic->node[1]]};
+    int component = -1;
+    for (int e = 0; e < 2; e++) {
+        if (node[e] != 0 && t->node_component[node[e]] < 0) {
+            return -1;
+        }
+        component = node[e] != 0 ? t->node_component[node[e]] : component;
+    }
+    return node[0] == node[1] ? -1 : component;
+}
+
+static enum dalcs_status list_held(struct dalcs_layout *l) {
+    const struct dalcs_circuit *c = l->circuit;
+    if (!l->options->clamp_initial_conditions) {
+        return DALCS_OK;
+    }
+    int *component = dalcs_alloc((size_t)c->n_initial_conditions, sizeof(*component));
+    if (component == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < c->n_initial_conditions; k++) {
+        component[k] = holding_component(l, &c->initial_condition[k]);
+    }
+    enum dalcs_status status = list_members(c->n_initial_conditions, component,
+                                            l->topology.n_components, &l->held_start, &l->held);
+    free(component);
+    return status;
+}
 
 static enum dalcs_status assemble_all(struct dalcs_network *network, struct dalcs_layout *l) {
     const struct dalcs_circuit *c = l->circuit;
@@ -397,6 +434,13 @@ enum dalcs_status dalcs_network_build(struct dalcs_network *network,
     }
     if (status == DALCS_OK) {
         status = find_groups(&layout, diag);
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_initial_voltages_setup(&layout.initial_voltages, circuit,
+                                              layout.topology.node_of);
+    }
+    if (status == DALCS_OK) {
+        status = list_held(&layout);
     }
     if (status == DALCS_OK) {
         status = assemble_all(network, &layout);

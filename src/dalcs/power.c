@@ -156,7 +156,8 @@ enum dalcs_status dalcs_power_build(struct dalcs_network *network, const struct 
             if (k < 0) {
                 continue;
             }
-            struct terms t = {0};
+            struct terms t;
+            t.n = 0;
             struct dalcs_power *power = &network->power[k];
             put_device(l, &network->system[k], i, &t);
             for (int n = 0; n < t.n && round == 1; n++) {

@@ -129,8 +129,10 @@ static const char *listed(struct dalcs_arena *a, const char *before, const char 
 /* ---- Loops of voltage sources --------------------------------------------------------------- */
 
 struct forest {
-    bool *is_tree;    /* [n_devices] */
-    int *start, *arc; /* [n_nodes + 1], [2 n_devices] tree devices at each node */
+    int n, *device;   /* [n] V sources and shorts, in the order of the netlist */
+    bool *is_tree;    /* [n] */
+    bool has_loops;   /* else nothing below is set */
+    int *start, *arc; /* [n_nodes + 1], [2 n] tree devices at each node */
     int *up;          /* [n_nodes] the device towards the root, -1 */
     int *depth;       /* [n_nodes] */
     int *queue;       /* [n_nodes], of a union-find before */
@@ -147,26 +149,30 @@ static int rank_of(const struct dalcs_device *d, bool wants_current) {
 
 static void grow(struct forest *f, const struct dalcs_circuit *c, const bool *wants_current) {
     dalcs_union_reset(f->queue, c->n_nodes);
-    for (int pass = 0; pass < 3; pass++) {
-        for (int i = 0; i < c->n_devices; i++) {
-            const struct dalcs_device *d = &c->device[i];
-            if (rank_of(d, wants_current[i]) == pass) {
+    for (int rank = 0; rank < 3; rank++) {
+        for (int i = 0; i < f->n; i++) {
+            const struct dalcs_device *d = &c->device[f->device[i]];
+            if (rank_of(d, wants_current[f->device[i]]) == rank) {
                 f->is_tree[i] = dalcs_union_join(f->queue, d->node[0], d->node[1]);
+                f->has_loops = f->has_loops || (rank > 0 && !f->is_tree[i]);
             }
         }
     }
-    for (int i = 0; i < c->n_devices; i++) {
+}
+
+static void list_arcs(struct forest *f, const struct dalcs_circuit *c) {
+    for (int i = 0; i < f->n; i++) {
         for (int e = 0; e < 2 && f->is_tree[i]; e++) {
-            f->start[c->device[i].node[e] + 1]++;
+            f->start[c->device[f->device[i]].node[e] + 1]++;
         }
     }
     for (int n = 0; n < c->n_nodes; n++) {
         f->start[n + 1] += f->start[n];
         f->depth[n] = f->start[n]; /* where the next one goes */
     }
-    for (int i = 0; i < c->n_devices; i++) {
+    for (int i = 0; i < f->n; i++) {
         for (int e = 0; e < 2 && f->is_tree[i]; e++) {
-            f->arc[f->depth[c->device[i].node[e]]++] = i;
+            f->arc[f->depth[c->device[f->device[i]].node[e]]++] = f->device[i];
         }
     }
 }
@@ -196,9 +202,10 @@ static void root(struct forest *f, const struct dalcs_circuit *c) {
     }
 }
 
+/* Does number i of f->device? */
 static bool closes_loop(const struct forest *f, const struct dalcs_circuit *c,
-                        const bool *wants_current, int device) {
-    return rank_of(&c->device[device], wants_current[device]) > 0 && !f->is_tree[device];
+                        const bool *wants_current, int i) {
+    return rank_of(&c->device[f->device[i]], wants_current[f->device[i]]) > 0 && !f->is_tree[i];
 }
 
 struct loop {
@@ -206,8 +213,8 @@ struct loop {
     const char *rest; /* its elements but the source that closes it, in order */
 };
 
-/* The loop that a source closes: up the tree from both of its ends until they meet. Without an arena
- * its sum only. */
+/* The loop that a source closes: up the tree from both of its ends until they meet, or until there
+ * are too many sources to be judged. Without an arena its sum only. */
 static struct loop walk_loop(const struct forest *f, const struct dalcs_circuit *c, int closing,
                              struct dalcs_arena *arena) {
     const struct dalcs_device *d = &c->device[closing];
@@ -217,7 +224,7 @@ static struct loop walk_loop(const struct forest *f, const struct dalcs_circuit 
     if (d->kind == DALCS_VSOURCE) {
         add_term(&loop.sum, closing, 1.0);
     }
-    for (int n = 0; node[0] != node[1]; n++) {
+    for (int n = 0; node[0] != node[1] && loop.sum.n <= MOST_TERMS; n++) {
         int side = f->depth[node[0]] >= f->depth[node[1]] ? 0 : 1;
         int up = f->up[node[side]];
         const struct dalcs_device *e = &c->device[up];
@@ -271,18 +278,20 @@ static enum dalcs_status report_loops(const struct forest *f, const struct dalcs
                                       struct dalcs_diag *diag) {
     enum dalcs_status status = DALCS_OK;
     int n_messages = 0;
-    for (int i = 0; i < c->n_devices && n_messages < MOST_MESSAGES; i++) {
+    for (int i = 0; f->has_loops && i < f->n && n_messages < MOST_MESSAGES; i++) {
         if (!closes_loop(f, c, wants_current, i)) {
             continue;
         }
-        struct loop loop = walk_loop(f, c, i, arena);
+        int device = f->device[i];
+        struct loop loop = walk_loop(f, c, device, NULL);
         double left;
         enum verdict verdict = judge(c, &loop.sum, &left);
+        loop = verdict != UNKNOWN ? walk_loop(f, c, device, arena) : loop;
         if (verdict == CONTRADICT) {
-            report_loop(c, i, &loop, left, arena, diag);
+            report_loop(c, device, &loop, left, arena, diag);
             status = DALCS_E_NETLIST;
-        } else if (verdict == AGREE && c->device[i].node[0] != c->device[i].node[1]) {
-            say_idle(c, i, &loop, arena, diag);
+        } else if (verdict == AGREE && c->device[device].node[0] != c->device[device].node[1]) {
+            say_idle(c, device, &loop, arena, diag);
         }
         n_messages += verdict == UNKNOWN ? 0 : 1;
     }
@@ -291,16 +300,17 @@ static enum dalcs_status report_loops(const struct forest *f, const struct dalcs
 
 static void mark_idle(const struct forest *f, const struct dalcs_circuit *c,
                       const bool *wants_current, bool *idle) {
-    for (int i = 0; i < c->n_devices; i++) {
+    for (int i = 0; f->has_loops && i < f->n; i++) {
         if (closes_loop(f, c, wants_current, i)) {
-            struct loop loop = walk_loop(f, c, i, NULL);
+            struct loop loop = walk_loop(f, c, f->device[i], NULL);
             double left;
-            idle[i] = judge(c, &loop.sum, &left) == AGREE;
+            idle[f->device[i]] = judge(c, &loop.sum, &left) == AGREE;
         }
     }
 }
 
 static void forest_finish(struct forest *f) {
+    free(f->device);
     free(f->is_tree);
     free(f->start);
     free(f->arc);
@@ -312,19 +322,35 @@ static void forest_finish(struct forest *f) {
 static enum dalcs_status forest_setup(struct forest *f, const struct dalcs_circuit *c,
                                       const bool *wants_current) {
     size_t n_nodes = (size_t)c->n_nodes;
-    size_t n_devices = (size_t)c->n_devices;
-    *f = (struct forest){.is_tree = dalcs_alloc(n_devices, sizeof(bool)),
-                         .start = dalcs_alloc(n_nodes + 1, sizeof(int)),
-                         .arc = dalcs_alloc(2 * n_devices, sizeof(int)),
-                         .up = dalcs_alloc(n_nodes, sizeof(int)),
-                         .depth = dalcs_alloc(n_nodes, sizeof(int)),
+    size_t n = 0;
+    for (int i = 0; i < c->n_devices; i++) {
+        n += rank_of(&c->device[i], wants_current[i]) >= 0;
+    }
+    *f = (struct forest){.device = dalcs_alloc(n, sizeof(int)),
+                         .is_tree = dalcs_alloc(n, sizeof(bool)),
                          .queue = dalcs_alloc(n_nodes, sizeof(int))};
-    if (f->is_tree == NULL || f->start == NULL || f->arc == NULL || f->up == NULL ||
-        f->depth == NULL || f->queue == NULL) {
+    if (f->device == NULL || f->is_tree == NULL || f->queue == NULL) {
         forest_finish(f);
         return DALCS_E_NOMEM;
     }
+    for (int i = 0; i < c->n_devices; i++) {
+        if (rank_of(&c->device[i], wants_current[i]) >= 0) {
+            f->device[f->n++] = i;
+        }
+    }
     grow(f, c, wants_current);
+    if (!f->has_loops) {
+        return DALCS_OK;
+    }
+    f->start = dalcs_alloc(n_nodes + 1, sizeof(int));
+    f->arc = dalcs_alloc(2 * n, sizeof(int));
+    f->up = dalcs_alloc(n_nodes, sizeof(int));
+    f->depth = dalcs_alloc(n_nodes, sizeof(int));
+    if (f->start == NULL || f->arc == NULL || f->up == NULL || f->depth == NULL) {
+        forest_finish(f);
+        return DALCS_E_NOMEM;
+    }
+    list_arcs(f, c);
     root(f, c);
     return DALCS_OK;
 }
@@ -419,6 +445,13 @@ static void report_part(const struct dalcs_circuit *c, const struct part *p, con
 
 static enum dalcs_status check_parts(const struct dalcs_circuit *c, struct dalcs_arena *arena,
                                      struct dalcs_diag *diag) {
+    bool has_source = false;
+    for (int i = 0; i < c->n_devices; i++) {
+        has_source = has_source || c->device[i].kind == DALCS_ISOURCE;
+    }
+    if (!has_source) {
+        return DALCS_OK;
+    }
     int *whole = dalcs_alloc((size_t)c->n_nodes, sizeof(*whole));
     bool *is_seen = dalcs_alloc((size_t)c->n_nodes, sizeof(*is_seen));
     enum dalcs_status status = whole == NULL || is_seen == NULL ? DALCS_E_NOMEM : DALCS_OK;

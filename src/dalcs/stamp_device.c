@@ -6,29 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static double initial_voltage(const struct dalcs_layout *l, const struct dalcs_device *d) {
-    if (d->has_initial) {
-        return d->initial;
-    }
-    const int *node_of = l->topology.node_of;
-    const int end[2] = {node_of[d->node[0]], node_of[d->node[1]]};
-    double v[2] = {0.0, 0.0};
-    for (int k = 0; k < l->circuit->n_initial_conditions; k++) {
-        const struct dalcs_initial_condition *ic = &l->circuit->initial_condition[k];
-        const int node[2] = {node_of[ic->node[0]], node_of[ic->node[1]]};
-        if (node[1] == 0) {
-            for (int e = 0; e < 2; e++) {
-                v[e] = end[e] == node[0] ? ic->value : v[e];
-            }
-        } else if (end[0] == node[0] && end[1] == node[1]) {
-            return ic->value;
-        } else if (end[0] == node[1] && end[1] == node[0]) {
-            return -ic->value;
-        }
-    }
-    return v[0] - v[1];
-}
-
 static enum dalcs_status stamp_capacitor(struct stamps *b, int device, int forest_column) {
     struct dalcs_layout *l = b->layout;
     struct dalcs_system *s = b->s;
@@ -62,7 +39,11 @@ static enum dalcs_status stamp_capacitor(struct stamps *b, int device, int fores
         DALCS_TRY(dalcs_stamp_branch_current(b, d, column, 1.0));
     }
     l->state_column[device] = x;
-    b->initial[x] = initial_voltage(l, d);
+    const int *node_of = l->topology.node_of;
+    b->initial[x] = d->has_initial
+                        ? d->initial
+                        : dalcs_initial_voltages_between(&l->initial_voltages, l->circuit, node_of,
+                                                         node_of[d->node[0]], node_of[d->node[1]]);
     return dalcs_stamp_add(&b->storage, x, x, d->value);
 }
 

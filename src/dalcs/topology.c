@@ -139,27 +139,59 @@ static void find_references(struct dalcs_topology *t, const struct dalcs_circuit
     }
 }
 
-/* Nodes whose voltage is a sum of V sources on the way from ground. Rounds over the sources: as many
- * as the longest stack of them, which is short. */
+/* Nodes whose voltage is a sum of V sources on the way from ground, for switches that such a voltage
+ * commands: breadth first, along lists of the ends of sources at each node. End e of device i has the
+ * number 2 i + e. */
 static void find_potentials(struct dalcs_topology *t, const struct dalcs_circuit *c,
-                            bool *known /* work [n_nodes] */) {
+                            int *first /* work [n_nodes]: an end, -1 */,
+                            int *next /* work [2 n_devices]: the next end at its node, -1 */,
+                            int *queue /* work [n_nodes] */) {
     for (int n = 0; n < c->n_nodes; n++) {
-        t->potential_source[n] = -1;
-        known[n] = n == 0;
+        first[n] = -1;
     }
-    for (bool more = true; more;) {
-        more = false;
-        for (int i = 0; i < c->n_devices; i++) {
-            const struct dalcs_device *d = &c->device[i];
-            int a = t->node_of[d->node[0]];
-            int b = t->node_of[d->node[1]];
-            if (d->kind == DALCS_VSOURCE && known[a] != known[b]) {
-                t->potential_source[known[a] ? b : a] = i;
-                known[known[a] ? b : a] = true;
-                more = true;
+    for (int end = 2 * c->n_devices - 1; end >= 0; end--) {
+        const struct dalcs_device *d = &c->device[end / 2];
+        if (d->kind == DALCS_VSOURCE) {
+            int *place = &first[t->node_of[d->node[end % 2]]];
+            next[end] = *place;
+            *place = end;
+        }
+    }
+    queue[0] = 0;
+    for (int q = 0, n = 1; q < n; q++) {
+        for (int end = first[queue[q]]; end >= 0; end = next[end]) {
+            int other = t->node_of[c->device[end / 2].node[1 - end % 2]];
+            if (other != 0 && t->potential_source[other] < 0) {
+                t->potential_source[other] = end / 2;
+                queue[n++] = other;
             }
         }
     }
+}
+
+static enum dalcs_status find_commanding_potentials(struct dalcs_topology *t,
+                                                    const struct dalcs_circuit *c) {
+    bool has_switch = false;
+    for (int i = 0; i < c->n_devices; i++) {
+        has_switch = has_switch || c->device[i].kind == DALCS_SWITCH;
+    }
+    for (int n = 0; n < c->n_nodes; n++) {
+        t->potential_source[n] = -1;
+    }
+    if (!has_switch) {
+        return DALCS_OK;
+    }
+    int *first = dalcs_alloc((size_t)c->n_nodes, sizeof(*first));
+    int *next = dalcs_alloc(2 * (size_t)c->n_devices, sizeof(*next));
+    int *queue = dalcs_alloc((size_t)c->n_nodes, sizeof(*queue));
+    bool complete = first != NULL && next != NULL && queue != NULL;
+    if (complete) {
+        find_potentials(t, c, first, next, queue);
+    }
+    free(first);
+    free(next);
+    free(queue);
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 static void build_forest(struct dalcs_topology *t, const struct dalcs_circuit *c,
@@ -198,14 +230,12 @@ enum dalcs_status dalcs_topology_build(struct dalcs_topology *t,
     };
     int *parent = dalcs_alloc(n_nodes + n_devices, sizeof(*parent));
     int *number = dalcs_alloc(n_nodes + n_devices, sizeof(*number));
-    bool *known = dalcs_alloc(n_nodes, sizeof(*known));
-    if (known == NULL || t->potential_source == NULL || t->node_of == NULL ||
-        t->node_component == NULL || t->device_component == NULL || t->is_reference == NULL ||
-        t->reference_of == NULL || t->in_forest == NULL || t->has_current == NULL ||
-        t->is_idle == NULL || t->forest_root == NULL || parent == NULL || number == NULL) {
+    if (t->potential_source == NULL || t->node_of == NULL || t->node_component == NULL ||
+        t->device_component == NULL || t->is_reference == NULL || t->reference_of == NULL ||
+        t->in_forest == NULL || t->has_current == NULL || t->is_idle == NULL ||
+        t->forest_root == NULL || parent == NULL || number == NULL) {
         free(parent);
         free(number);
-        free(known);
         dalcs_topology_finish(t);
         return DALCS_E_NOMEM;
     }
@@ -215,12 +245,14 @@ enum dalcs_status dalcs_topology_build(struct dalcs_topology *t,
     merge_shorts(t, circuit, wants_current, parent);
     find_components(t, circuit, parent, number);
     find_references(t, circuit, parent);
-    find_potentials(t, circuit, known);
     build_forest(t, circuit, wants_current, parent);
-    free(known);
     free(parent);
     free(number);
-    return DALCS_OK;
+    enum dalcs_status status = find_commanding_potentials(t, circuit);
+    if (status != DALCS_OK) {
+        dalcs_topology_finish(t);
+    }
+    return status;
 }
 
 void dalcs_topology_finish(struct dalcs_topology *t) {

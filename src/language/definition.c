@@ -62,10 +62,7 @@ static enum dalcs_status assign(struct collector *c, const struct dalcs_token *n
     struct dalcs_definition *d = c->definition;
     int slot = dalcs_names_find(&d->parameters, name->text);
     if (slot >= 0) {
-        const struct dalcs_assignment *last = &d->assignment[d->n_assignments - 1];
-        while (last->slot != slot) {
-            last--;
-        }
+        const struct dalcs_assignment *last = &d->assignment[d->last_of[slot]];
         const bool both_formal = is_formal && last->item < 0;
         if (both_formal || (last->item >= 0 && !last->is_conditional && !is_conditional(c) &&
                             !is_same_place(last->name, name))) {
@@ -78,9 +75,12 @@ static enum dalcs_status assign(struct collector *c, const struct dalcs_token *n
                                   name->text, dalcs_language_place(c->language, last->name));
         }
     } else {
-        slot = d->n_slots++;
+        slot = d->n_slots;
+        DALCS_TRY(dalcs_grow(&d->last_of, &d->last_capacity, (size_t)slot + 1, sizeof *d->last_of));
         DALCS_TRY(dalcs_names_add(&d->parameters, name->text, slot));
+        d->n_slots++;
     }
+    d->last_of[slot] = d->n_assignments;
     DALCS_TRY(dalcs_grow(&d->assignment, &d->assignment_capacity, d->n_assignments + 1,
                          sizeof *d->assignment));
     d->assignment[d->n_assignments++] =
@@ -473,6 +473,7 @@ void dalcs_definition_finish(struct dalcs_definition *definition) {
     dalcs_names_finish(&definition->models);
     free(definition->item);
     free(definition->assignment);
+    free(definition->last_of);
     free(definition->function);
     free(definition->inner);
 }

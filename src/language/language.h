@@ -66,6 +66,8 @@ struct dalcs_definition {
     size_t n_items, item_capacity;
     struct dalcs_assignment *assignment;
     size_t n_assignments, assignment_capacity;
+    size_t *last_of; /* [n_slots] the last of them to each parameter */
+    size_t last_capacity;
     struct dalcs_names parameters; /* name -> slot */
     int n_slots;
     struct dalcs_names functions; /* name -> index of function */

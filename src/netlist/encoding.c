@@ -1,6 +1,8 @@
 /* encoding.c - UTF-16 and Latin-1 to UTF-8. */
 #include "encoding.h"
 
+#include "eight_bytes.h"
+
 #include <string.h>
 
 /* How UTF-16 text starts; no byte order mark: two characters of ASCII. */
@@ -45,7 +47,7 @@ static size_t put(char *to, unsigned code) {
  * bytes that Latin-1 has no character for are no text at all. */
 static bool is_latin1(const unsigned char *p, size_t n) {
     bool found = false;
-    for (size_t k = 0; k < n; k++) {
+    for (size_t k = dalcs_eight_skip_ascii(p, n); k < n; k++) {
         const bool is_sequence = p[k] >= 0xC2 && k + 1 < n && p[k + 1] >= 0x80 && p[k + 1] < 0xC0;
         if ((p[k] >= 0x80 && p[k] < 0xA0) || is_sequence) {
             return false;

@@ -245,7 +245,7 @@ enum dalcs_status dalcs_include_skips(struct dalcs_lexer *lexer, size_t p, bool 
         open[0] = (struct dalcs_token){.line = where,
                                        .text = ".lib",
                                        .offset = (int)(line - lexer->at),
-                                       .length = (int)strlen(".lib")};
+                                       .length = sizeof ".lib" - 1};
         open[1].text = name;
         lexer->open = open;
         lexer->section_found = true;

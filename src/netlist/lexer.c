@@ -5,6 +5,8 @@
  * end a word is therefore always read from `raw`. */
 #include "lexer.h"
 
+#include "eight_bytes.h"
+
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,11 +19,10 @@ static bool is_blank(char c) {
 }
 
 static bool ends_word(char c) {
-    static const bool ends[] = {
+    static const bool ends[UCHAR_MAX + 1] = {
         ['\0'] = true, [' '] = true, ['\t'] = true, ['\r'] = true, ['\v'] = true, ['\f'] = true,
         [','] = true,  ['='] = true, ['('] = true,  [')'] = true,  [';'] = true};
-    const unsigned char byte = (unsigned char)c;
-    return byte < sizeof ends && ends[byte];
+    return ends[(unsigned char)c];
 }
 
 /* The length of the UTF-8 character at p (n bytes follow), 0 when it is not one. */
@@ -59,40 +60,48 @@ static size_t utf8_length(const unsigned char *p, size_t n) {
     return code < least || code > 0x10FFFF || surrogate ? 0 : length;
 }
 
-/* Lower-cases the line into `low` and marks what is no text. A no-break space, which comes with text
- * copied from web pages, becomes blanks. */
-static void clean_line(struct dalcs_lexer *lexer, size_t begin, size_t end) {
+/* Cleans the character at raw[k]; its bytes. A no-break space, which comes with text copied from web
+ * pages, becomes blanks, and a carriage return that ends no line one. */
+static size_t clean_character(struct dalcs_lexer *lexer, size_t k) {
     char *raw = lexer->raw;
     char *low = lexer->low;
-    size_t k = begin;
-    while (k < end) {
-        const char c = raw[k];
-        const unsigned char byte = (unsigned char)c;
-        if (byte >= 0x80) {
-            const size_t length = utf8_length((const unsigned char *)raw + k, end - k);
-            if (length == 2 && byte == 0xC2 && (unsigned char)raw[k + 1] == 0xA0) {
-                raw[k] = raw[k + 1] = low[k] = low[k + 1] = ' ';
-                k += 2;
-                continue;
-            }
-            if (length > 0) {
-                memcpy(low + k, raw + k, length);
-                k += length;
-                continue;
-            }
-        }
-        if (byte >= 0x80 || byte == 0x7F || (byte < 0x20 && !is_blank(c))) {
-            raw[k] = '?';
-            low[k] = INVALID;
-        } else if (is_blank(c) && c != '\t') {
-            raw[k] = low[k] = ' ';
-        } else {
-            low[k] = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-        }
-        k++;
+    const size_t end = lexer->length;
+    const char c = raw[k];
+    const unsigned char byte = (unsigned char)c;
+    const size_t length = byte < 0x80 ? 0 : utf8_length((const unsigned char *)raw + k, end - k);
+    if (length == 2 && byte == 0xC2 && (unsigned char)raw[k + 1] == 0xA0) {
+        raw[k] = raw[k + 1] = low[k] = low[k + 1] = ' ';
+        return 2;
     }
-    raw[end] = '\0';
-    low[end] = '\0';
+    if (length > 0) {
+        memcpy(low + k, raw + k, length);
+        return length;
+    }
+    const bool ends_line = c == '\n' || (c == '\r' && (k + 1 == end || raw[k + 1] == '\n'));
+    if (byte >= 0x7F || (byte < 0x20 && !is_blank(c) && !ends_line)) {
+        raw[k] = '?';
+        low[k] = INVALID;
+        lexer->has_invalid = true;
+    } else if (is_blank(c) && c != '\t' && !ends_line) {
+        raw[k] = low[k] = ' ';
+    } else {
+        low[k] = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+    }
+    return 1;
+}
+
+void dalcs_lexer_clean(struct dalcs_lexer *lexer, size_t begin) {
+    for (size_t k = begin; k < lexer->length;) {
+        const bool is_room = lexer->length - k >= 8;
+        const uint64_t eight = is_room ? dalcs_eight_load(lexer->raw + k) : 0;
+        if (is_room && dalcs_eight_is_plain(eight)) {
+            const uint64_t lower = dalcs_eight_lower(eight);
+            memcpy(lexer->low + k, &lower, sizeof lower);
+            k += 8;
+        } else {
+            k += clean_character(lexer, k);
+        }
+    }
 }
 
 static enum dalcs_status need_line(struct dalcs_lexer *lexer, size_t begin) {
@@ -118,13 +127,6 @@ void dalcs_lexer_report(struct dalcs_lexer *lexer, const struct dalcs_token *tok
     dalcs_diag_add_list(lexer->diag, DALCS_ERROR, &where, hint, format, arguments);
     va_end(arguments);
     lexer->netlist->has_errors = true;
-}
-
-static enum dalcs_status add_token(struct dalcs_lexer *lexer, const struct dalcs_token *token) {
-    DALCS_TRY(
-        dalcs_grow(&lexer->token, &lexer->capacity, lexer->n_tokens + 1, sizeof *lexer->token));
-    lexer->token[lexer->n_tokens++] = *token;
-    return DALCS_OK;
 }
 
 /* Net-(D1-K), as KiCad names a net: takes the part in parentheses into the word that ends at raw[*q],
@@ -198,12 +200,12 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
         }
         token->text = low + p;
     }
-    const bool invalid = memchr(low + p, INVALID, q - p) != NULL;
+    const bool invalid = lexer->has_invalid && memchr(low + p, INVALID, q - p) != NULL;
     low[q] = '\0';
     if (token->kind != DALCS_TOKEN_WORD && closed) {
         q++;
     }
-    token->length = (int)(q - p);
+    token->length = (unsigned)(q - p);
 
     if (invalid) {
         dalcs_lexer_report(lexer, token, "save the netlist as UTF-8 text",
@@ -241,12 +243,16 @@ static enum dalcs_status read_tokens(struct dalcs_lexer *lexer, size_t p, size_t
             return DALCS_OK;
         }
         DALCS_TRY(need_line(lexer, begin));
-        struct dalcs_token token;
-        memset(&token, 0, sizeof token);
-        token.after_comma = after_comma;
+        DALCS_TRY(
+            dalcs_grow(&lexer->token, &lexer->capacity, lexer->n_tokens + 1, sizeof *lexer->token));
+        struct dalcs_token *token = &lexer->token[lexer->n_tokens++];
+        *token = (struct dalcs_token){.after_comma = after_comma};
         after_comma = false;
-        p = read_token(lexer, p, begin, &token);
-        DALCS_TRY(add_token(lexer, &token));
+        const size_t end = read_token(lexer, p, begin, token);
+        if (end - p > DALCS_LONGEST_TOKEN) {
+            return DALCS_E_LIMIT;
+        }
+        p = end;
     }
 }
 
@@ -292,7 +298,8 @@ static enum dalcs_status add_script_line(struct dalcs_lexer *lexer, size_t begin
 enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin, size_t end) {
     lexer->line_number++;
     lexer->line = NULL;
-    clean_line(lexer, begin, end);
+    lexer->raw[end] = '\0';
+    lexer->low[end] = '\0';
     if (lexer->line_number == 1 && lexer->source->outer == NULL) {
         DALCS_TRY(need_line(lexer, begin));
         lexer->netlist->title_line = lexer->line;

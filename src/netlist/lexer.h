@@ -17,6 +17,8 @@ struct dalcs_lexer {
     bool in_control; /* between .control and .endc, which hold another language */
     bool ended;      /* .end was seen */
 
+    bool has_invalid; /* bytes that are no text */
+
     size_t at; /* the line being read starts here; in the end the length of the text */
     size_t length;
     const char *section; /* the only section of a library that is wanted, else NULL */
@@ -30,6 +32,9 @@ struct dalcs_lexer {
     size_t n_tokens;
     size_t capacity;
 };
+
+/* Lower-cases raw[begin..length-1] into `low` and marks what is no text, before any line is read. */
+void dalcs_lexer_clean(struct dalcs_lexer *lexer, size_t begin);
 
 /* Reads the line raw[begin..end-1] (newline not included; raw[end] may be overwritten). */
 enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,

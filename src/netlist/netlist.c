@@ -39,6 +39,7 @@ static bool is_no_text(struct dalcs_netlist *netlist, const struct dalcs_source 
 }
 
 static enum dalcs_status read_lines(struct dalcs_lexer *lexer, size_t begin) {
+    dalcs_lexer_clean(lexer, begin);
     while (begin < lexer->length && !lexer->ended) {
         const char *newline = memchr(lexer->raw + begin, '\n', lexer->length - begin);
         const size_t end = newline != NULL ? (size_t)(newline - lexer->raw) : lexer->length;

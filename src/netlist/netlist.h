@@ -25,6 +25,8 @@ enum dalcs_token_kind {
     DALCS_TOKEN_BAD /* an error was reported: readers fail without another word */
 };
 
+enum { DALCS_LONGEST_TOKEN = (1 << 27) - 1 };
+
 /* A file, or the text that was given in place of one. */
 struct dalcs_source {
     const char *name;                    /* as messages call it */
@@ -46,9 +48,10 @@ struct dalcs_token {
     const struct dalcs_source_line *line;
     const char *text; /* NUL-terminated */
     int offset;       /* of the token's first byte in line->text, quote or brace included */
-    int length;       /* its bytes there */
-    enum dalcs_token_kind kind;
-    bool after_comma; /* a comma stands between it and the token before */
+    /* Half of a netlist in memory is tokens: these three share a word. */
+    unsigned length : 27; /* its bytes there, at most DALCS_LONGEST_TOKEN */
+    enum dalcs_token_kind kind : 4;
+    bool after_comma : 1; /* a comma stands between it and the token before */
 
     union {
         double value;                        /* of a NUMBER */

@@ -50,8 +50,8 @@ static int read_suffix(const char *text, char *suffix, int *power) {
         {"\xCE\xBC", 'u', -6}, /* the micro sign and the Greek mu */
     };
 
-    for (size_t k = 0; k < sizeof table / sizeof table[0]; k++) {
-        if (starts_with(text, table[k].text)) {
+    for (size_t k = 0; *text != '\0' && k < sizeof table / sizeof table[0]; k++) {
+        if (lower(*text) == table[k].text[0] && starts_with(text, table[k].text)) {
             *suffix = table[k].suffix;
             *power = table[k].power;
             return (int)strlen(table[k].text);

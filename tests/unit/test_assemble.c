@@ -203,5 +203,27 @@ START_TEST(test_initial) {
 
 END_TEST
 
+/* A condition on both nodes comes before those on one; shorts make nodes one; ground may be an end. */
+START_TEST(test_initial_pairs) {
+    const struct dalcs_system *s = system_of(
+        "pairs\nV1 in 0 1\nR1 in a 1\nRs c d 0\nR2 c 0 1\nR3 b 0 1\n"
+        "C1 a b 1\nC2 b a 1\nC3 d 0 1\nC4 0 b 1\nC5 a d 1\nC6 in b 1\nC7 e a 1\nR4 e 0 1\n"
+        ".ic v(a)=9 v(c,a)=6 v(a,b)=2 v(c)=5 v(0,b)=3\n.tran 1 9 uic\n");
+    const double *x = t.network.initial[0];
+
+    static const struct {
+        const char *name;
+        double voltage;
+    } wanted[] = {{"c1", 2}, {"c2", -2}, {"c3", 5}, {"c4", 3}, {"c5", -6}, {"c6", 0}, {"c7", -9}};
+
+    for (size_t k = 0; k < sizeof wanted / sizeof wanted[0]; k++) {
+        ck_assert_double_eq(x[find_column(s, DALCS_LABEL_STATE, wanted[k].name)],
+                            wanted[k].voltage);
+    }
+    text_network_finish(&t);
+}
+
+END_TEST
+
 RUN_TESTS("assemble", test_rectifier, test_nothing_unused, test_separate, test_reference,
-          test_pairs, test_passive, test_initial)
+          test_pairs, test_passive, test_initial, test_initial_pairs)

@@ -82,6 +82,35 @@ START_TEST(test_tokens) {
 
 END_TEST
 
+/* Text is cleaned eight bytes at a time where it is plain: each byte in each place of the eight. */
+START_TEST(test_every_byte) {
+    enum { PLACES = 16 };
+
+    for (int byte = 1; byte < 0x80; byte++) {
+        for (size_t k = 1; k <= PLACES && byte != '\n'; k++) {
+            char text[] = "t\nRBBBBBBBBBBBBBBBBBBBBBBB\n";
+            char word[] = "rbbbbbbbbbbbbbbbbbbbbbbb";
+            text[2 + k] = (char)byte;
+            word[k] = (char)(byte >= 'A' && byte <= 'Z' ? byte + 'a' - 'A' : byte);
+            if (strchr(" \t\r\v\f,=();", byte) != NULL) {
+                word[k] = '\0';
+            }
+            read_text(text);
+            const struct dalcs_token *token = netlist.card[0].token;
+            if ((byte < ' ' && strchr("\t\r\v\f", byte) == NULL) || byte == 0x7F) {
+                ck_assert_int_eq(token->kind, DALCS_TOKEN_BAD);
+                ck_assert_int_eq(token->line->text[k], '?');
+            } else {
+                ck_assert_int_eq(token->kind, DALCS_TOKEN_WORD);
+                ck_assert_str_eq(token->text, word);
+            }
+            finish();
+        }
+    }
+}
+
+END_TEST
+
 START_TEST(test_comments_and_continuation) {
     read_text("title\n"
               "* a comment\n"
@@ -255,6 +284,6 @@ START_TEST(test_spans) {
 
 END_TEST
 
-RUN_TESTS("netlist", test_tokens, test_comments_and_continuation, test_end, test_title,
-          test_line_ends_and_encodings, test_control_block, test_errors, test_no_text, test_file,
-          test_spans)
+RUN_TESTS("netlist", test_tokens, test_every_byte, test_comments_and_continuation, test_end,
+          test_title, test_line_ends_and_encodings, test_control_block, test_errors, test_no_text,
+          test_file, test_spans)

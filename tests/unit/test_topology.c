@@ -124,10 +124,16 @@ START_TEST(test_forest) {
 
 END_TEST
 
-/* Voltages that V sources alone fix, stacked and upside down. */
+/* Voltages that V sources alone fix, stacked and upside down; looked for where there is a switch. */
 START_TEST(test_potentials) {
     struct sketch s;
-    sketch_build(&s, "stack\nV2 b a 1\nV1 0 a 1\nR1 b c 1\nV3 c d 1\nR2 d 0 1\n.op\n", NULL);
+    sketch_build(&s, "no switch\nV1 0 a 1\nR1 a 0 1\n.op\n", NULL);
+    ck_assert_int_eq(s.t.potential_source[node(&s, "a")], -1);
+    sketch_finish(&s);
+    sketch_build(&s,
+                 "stack\nV2 b a 1\nV1 0 a 1\nR1 b c 1\nV3 c d 1\nR2 d 0 1\nS1 c 0 b 0 m\n"
+                 ".model m sw\n.op\n",
+                 NULL);
     ck_assert_int_eq(s.t.potential_source[node(&s, "a")], device(&s, "v1"));
     ck_assert_int_eq(s.t.potential_source[node(&s, "b")], device(&s, "v2"));
     ck_assert_int_eq(s.t.potential_source[node(&s, "c")], -1);
