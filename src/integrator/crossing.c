@@ -21,15 +21,16 @@ static void subdivide(int n, const double *coefficient, double split, double *le
     }
 }
 
+/* Horner's scheme in Bernstein's basis: all weights are positive, nothing cancels that did not before. */
 static double evaluate(int n, const double *coefficient, double theta) {
-    double work[DALCS_MAX_NODES];
-    memcpy(work, coefficient, (size_t)n * sizeof(*work));
-    for (int level = n - 1; level > 0; level--) {
-        for (int i = 0; i < level; i++) {
-            work[i] += theta * (work[i + 1] - work[i]);
-        }
+    double other = 1.0 - theta;
+    double weight = 1.0; /* of coefficient i, but for a power of `other` */
+    double sum = coefficient[0];
+    for (int i = 1; i < n; i++) {
+        weight *= theta * (n - i) / i;
+        sum = sum * other + weight * coefficient[i];
     }
-    return work[0];
+    return sum;
 }
 
 static int sign_changes(int n, const double *coefficient) {
@@ -115,10 +116,29 @@ static double find_root(int n, const double *coefficient, double from, double le
     return -1.0;
 }
 
+/* Is that clear from the straight line between the ends and how far the values are from it? What
+ * remains is 0 at the ends, and a polynomial's coefficients leave the range of its values by little. */
+static bool stays_above(const struct dalcs_collocation *c, const double *value, int stride,
+                        double depth) {
+    double first = value[0];
+    double rise = value[c->s * stride] - first;
+    double farthest = 0.0;
+    for (int k = 1; k < c->s; k++) {
+        double off = fabs(value[k * stride] - first - c->node[k] * rise);
+        farthest = off > farthest ? off : farthest;
+    }
+    double rounding = 4.0 * DBL_EPSILON * (fabs(first) + fabs(rise));
+    double least = rise < 0.0 ? first + rise : first;
+    return least - (1.0 + 2.0 * c->bernstein_spread) * (farthest + rounding) >= -depth;
+}
+
 struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, const double *value,
                                           int stride, double end, double depth) {
     int n = c->s + 1;
     struct dalcs_crossing found = {.falls = false};
+    if (stays_above(c, value, stride, depth)) {
+        return found;
+    }
     double b[DALCS_MAX_NODES] = {0.0};
     double largest = 0.0;
     for (int k = 0; k < n; k++) {

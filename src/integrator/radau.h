@@ -84,7 +84,8 @@ struct dalcs_radau_part {
 
     uint64_t *transition_modes;
     int level_before;
-    uint64_t *mode_before, *mode_tied;
+    uint64_t *modes_before; /* the one that held, the one after pairs changed sides */
+    uint64_t *mode_tied;
     long crowd; /* events since `crowd_since` */
     double crowd_since;
 };

@@ -22,6 +22,10 @@ static const double most_projected = 1e4;
 /* Smaller ones are allowed, but currents across capacitors are their derivatives. */
 static const double worth_projecting = 1e-2;
 
+/* A remembered first step gets longer the next time if its error, over the signal, is below this: for
+ * a row more at each event waveforms would be worse than they need. */
+static const double fine = 3e-11;
+
 /* Errors over their unit that no smaller step mends are rounding's up to this. */
 static const double most_tolerated = 2e-13;
 
@@ -194,10 +198,14 @@ static void shorten(struct dalcs_radau_part *part, double ratio, int stuck) {
     part->grew = false;
 }
 
+static double rungs_promised(const struct dalcs_radau_part *part, double ratio) {
+    return log2(safety / ratio) / (double)(part->stages.method->s + 1);
+}
+
 /* A longer step next time if the error promises it, or, as errors near rounding promise nothing, now
  * and then to see. */
 static void lengthen(struct dalcs_radau_part *part, double ratio) {
-    double rungs = log2(safety / ratio) / (double)(part->stages.method->s + 1);
+    double rungs = rungs_promised(part, ratio);
     bool promising = rungs > 1.0;
     int up = rungs > MOST_RUNGS ? MOST_RUNGS : promising ? (int)rungs : 1;
     while (up > 0 && dalcs_radau_ladder(part, part->level - up) > part->longest) {
@@ -349,8 +357,13 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
     }
     if (part->fresh) {
         if (part->flipped) {
-            dalcs_transition_learn(part);
+            double ratio = quality->ratio * fmax(1.0, r->inner_tolerance / fine);
+            bool longer = !search->fixed && part->end == 1.0 && part->n_crossed == 0 &&
+                          rungs_promised(part, ratio) > 1.0 &&
+                          dalcs_radau_ladder(part, part->level - 1) <= part->longest;
+            dalcs_transition_learn(part, longer ? part->level - 1 : part->level);
         }
+        dalcs_transition_hold(part);
         part->fresh = false;
         part->flipped = false;
     }
@@ -388,7 +401,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         quality.ratio = means_something ? quality.ratio : INFINITY;
         return recover(r, part, search, &quality, done);
     }
-    if (part->fresh && !search->projected &&
+    if (part->fresh && !search->projected && !dalcs_stage_frees_states(entry) &&
         quality.drift > (search->fixed ? 0.0 : worth_projecting)) {
         bool moved;
         search->projected = true;

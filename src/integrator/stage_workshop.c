@@ -416,6 +416,7 @@ static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
         fill_system(b, sigma, 0.0L, NULL);
         pivot = dalcs_extended_solve(b->n_kept, b->n_rhs, b->re, NULL);
     }
+    b->entry->frees_states = b->n_kept == b->n_x;
     take_real(b);
     return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
 }

@@ -213,6 +213,10 @@ double dalcs_stage_residual(const struct dalcs_stage_entry *entry) {
     return entry->residual;
 }
 
+bool dalcs_stage_frees_states(const struct dalcs_stage_entry *entry) {
+    return entry->frees_states;
+}
+
 const double *dalcs_stage_natural_units(const struct dalcs_stage_entry *entry) {
     return entry->natural;
 }

@@ -76,6 +76,9 @@ int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry);
 /* How much more of the answer is rounding than in one from a dense map: 1 for those. */
 double dalcs_stage_rounding(const struct dalcs_stage_entry *entry);
 
+/* May every state be what it likes in this mode? false: not, or not known. */
+bool dalcs_stage_frees_states(const struct dalcs_stage_entry *entry);
+
 /* [2 n_equations] units in which the columns are in balance with each other, then their inverses. */
 const double *dalcs_stage_natural_units(const struct dalcs_stage_entry *entry);
 

@@ -20,6 +20,7 @@ struct dalcs_stage_entry {
     int n_on;
     int *on; /* [n_on] ascending */
     int n_clashes;
+    bool frees_states;
     double *natural; /* [2 n_equations] */
     double residual;
     int rows;    /* of map, padded to 8 */

@@ -1,65 +1,74 @@
-/* transition.c - a small table, the place of an entry being the hash of the mode before. */
+/* transition.c - a small table, the place of an entry being the hash of the modes before. */
 #include "transition.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { SLOTS = 64 };
+/* An entry has three modes: the one that held, the one after pairs changed sides, what followed. */
+enum { SLOTS = 64, MODES = 3 };
 
 enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
     size_t words = (size_t)part->component->osnsp.n_words;
     part->transition = dalcs_alloc(SLOTS, sizeof(*part->transition));
-    part->transition_modes = dalcs_alloc(SLOTS * 2 * words, sizeof(uint64_t));
-    part->mode_before = dalcs_alloc(words, sizeof(uint64_t));
+    part->transition_modes = dalcs_alloc(SLOTS * MODES * words, sizeof(uint64_t));
+    part->modes_before = dalcs_alloc(2 * words, sizeof(uint64_t));
     part->mode_tied = dalcs_alloc(words, sizeof(uint64_t));
     bool complete = part->transition != NULL && part->transition_modes != NULL &&
-                    part->mode_before != NULL && part->mode_tied != NULL;
+                    part->modes_before != NULL && part->mode_tied != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 void dalcs_transition_finish(struct dalcs_radau_part *part) {
     free(part->transition);
     free(part->transition_modes);
-    free(part->mode_before);
+    free(part->modes_before);
     free(part->mode_tied);
 }
 
-static size_t slot_of(const struct dalcs_radau_part *part, const uint64_t *mode) {
+/* Of part->modes_before. */
+static size_t find_slot(const struct dalcs_radau_part *part) {
     uint64_t hash = 14695981039346656037u;
-    for (int k = 0; k < part->component->osnsp.n_words; k++) {
-        hash = (hash ^ mode[k]) * 1099511628211u;
+    for (int k = 0; k < 2 * part->component->osnsp.n_words; k++) {
+        hash = (hash ^ part->modes_before[k]) * 1099511628211u;
         hash ^= hash >> 29;
     }
     return (size_t)(hash % SLOTS);
 }
 
+void dalcs_transition_hold(struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    memcpy(part->modes_before, p->mode, (size_t)p->n_words * sizeof(uint64_t));
+}
+
 bool dalcs_transition_guess(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     size_t words = (size_t)p->n_words;
-    memcpy(part->mode_before, p->mode, words * sizeof(uint64_t));
+    memcpy(part->modes_before + words, p->mode, words * sizeof(uint64_t));
     part->level_before = part->level;
-    size_t slot = slot_of(part, p->mode);
-    const uint64_t *known = part->transition_modes + slot * 2 * words;
-    if (!part->transition[slot].is_known || memcmp(known, p->mode, words * sizeof(uint64_t)) != 0) {
+    size_t slot = find_slot(part);
+    const uint64_t *known = part->transition_modes + slot * MODES * words;
+    if (!part->transition[slot].is_known ||
+        memcmp(known, part->modes_before, 2 * words * sizeof(uint64_t)) != 0) {
         return false;
     }
-    memcpy(p->mode, known + words, words * sizeof(uint64_t));
+    memcpy(p->mode, known + 2 * words, words * sizeof(uint64_t));
     part->level = part->transition[slot].level;
     return true;
 }
 
 void dalcs_transition_refuse(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
-    memcpy(p->mode, part->mode_before, (size_t)p->n_words * sizeof(uint64_t));
+    memcpy(p->mode, part->modes_before + p->n_words, (size_t)p->n_words * sizeof(uint64_t));
     part->level = part->level_before;
 }
 
-void dalcs_transition_learn(struct dalcs_radau_part *part) {
+void dalcs_transition_learn(struct dalcs_radau_part *part, int level) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     size_t words = (size_t)p->n_words;
-    size_t slot = slot_of(part, part->mode_before);
-    memcpy(part->transition_modes + slot * 2 * words, part->mode_before, words * sizeof(uint64_t));
-    memcpy(part->transition_modes + (slot * 2 + 1) * words, p->mode, words * sizeof(uint64_t));
+    size_t slot = find_slot(part);
+    uint64_t *known = part->transition_modes + slot * MODES * words;
+    memcpy(known, part->modes_before, 2 * words * sizeof(uint64_t));
+    memcpy(known + 2 * words, p->mode, words * sizeof(uint64_t));
     part->transition[slot].is_known = true;
-    part->transition[slot].level = part->level;
+    part->transition[slot].level = level;
 }

@@ -12,14 +12,17 @@ enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) DALCS_MU
 
 void dalcs_transition_finish(struct dalcs_radau_part *part);
 
+/* The present mode holds: from it pairs change sides the next time. */
+void dalcs_transition_hold(struct dalcs_radau_part *part);
+
 /* At a fresh point, after pairs changed sides: takes the mode and the level of the ladder that
- * followed from the present mode. false: none is known, and nothing changed. */
+ * followed from the one that held and the present one. false: none is known, and nothing changed. */
 bool dalcs_transition_guess(struct dalcs_radau_part *part);
 
 /* The guess did not pass: back to what was before it. */
 void dalcs_transition_refuse(struct dalcs_radau_part *part);
 
-/* The present mode and level are what followed. */
-void dalcs_transition_learn(struct dalcs_radau_part *part);
+/* The present mode is what followed, and `level` the step to begin with. */
+void dalcs_transition_learn(struct dalcs_radau_part *part, int level);
 
 #endif

@@ -26,8 +26,7 @@ static bool guess(uint64_t first, uint64_t second) {
 static void learn(uint64_t first, uint64_t second, int level) {
     mode[0] = first;
     mode[1] = second;
-    part.level = level;
-    dalcs_transition_learn(&part);
+    dalcs_transition_learn(&part, level);
 }
 
 START_TEST(test_learns) {
@@ -45,6 +44,32 @@ START_TEST(test_learns) {
     ck_assert(mode[0] == 7 && mode[1] == 8 && part.level == 4);
     ck_assert(!guess(1, 3));
     ck_assert(!guess(0, 2));
+    dalcs_transition_finish(&part);
+}
+
+END_TEST
+
+static void hold(uint64_t first, uint64_t second) {
+    mode[0] = first;
+    mode[1] = second;
+    dalcs_transition_hold(&part);
+}
+
+/* Two modes held before the same pairs have the same sides: what follows is not the same. */
+START_TEST(test_held) {
+    start();
+    hold(9, 0);
+    ck_assert(!guess(1, 2));
+    learn(5, 6, 17);
+    hold(0, 9);
+    ck_assert(!guess(1, 2));
+    learn(7, 8, 4);
+    hold(9, 0);
+    ck_assert(guess(1, 2));
+    ck_assert(mode[0] == 5 && mode[1] == 6 && part.level == 17);
+    hold(0, 9);
+    ck_assert(guess(1, 2));
+    ck_assert(mode[0] == 7 && mode[1] == 8 && part.level == 4);
     dalcs_transition_finish(&part);
 }
 
@@ -73,4 +98,4 @@ START_TEST(test_many) {
 
 END_TEST
 
-RUN_TESTS("transition", test_learns, test_many)
+RUN_TESTS("transition", test_learns, test_held, test_many)
