@@ -65,6 +65,8 @@ struct dalcs_builder {
     int n_device_cards;       /* and the devices that parts of cards become */
     int *current_of;          /* [n_device_cards] the device whose current an element's is: mostly
                                  its own */
+    double *default_rser;     /* [n_device_cards] ohms that LTspice adds to a coil, 0 where it adds
+                                 none; NULL: the netlist is not told to be one of LTspice */
     int n_couplings_seen;     /* K cards so far, right or wrong */
     struct dalcs_names pairs; /* "3 7": coils 3 and 7 are coupled, by the place of the card */
     int ideal_diode;          /* the model of diodes without one, -1 before the first */
@@ -289,6 +291,13 @@ void dalcs_parasitic_multiply(struct dalcs_parasitics *parasitics, double m);
 /* Puts them around a device whose nodes are those of its card. */
 void dalcs_parasitic_expand(struct dalcs_builder *builder, const struct dalcs_token *element,
                             struct dalcs_device *device, const struct dalcs_parasitics *parasitics);
+bool dalcs_parasitic_has_rser(const struct dalcs_parasitics *parasitics);
+/* Puts a resistor in series with a device that has its other parasitics. */
+void dalcs_parasitic_add_rser(struct dalcs_builder *builder, const struct dalcs_token *element,
+                              struct dalcs_device *device, double ohms);
+/* Coils that have no Rser and that no K card names get LTspice's, where the netlist is told to be one of
+ * LTspice. */
+void dalcs_passive_add_default_rser(struct dalcs_builder *builder);
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind);
 void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card *card);

@@ -169,6 +169,8 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
     if (strchr("rlcviefghdswab", letter) != NULL) {
         table->n_stimuli += strchr("vic", letter) != NULL;
         table->n_inner += count_parasitics(card);
+        table->n_inner += letter == 'l' &&
+                          dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_LTSPICE);
         if (strchr("efgh", letter) != NULL) {
             const size_t n = dalcs_poly_count(card);
             table->n_inner += n;

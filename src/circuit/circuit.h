@@ -120,7 +120,8 @@ static inline bool dalcs_signal_is_same(const struct dalcs_signal *a,
 /* What .tran asks for; times in s. */
 struct dalcs_transient {
     bool present;
-    double step, stop, start, max_step; /* max_step 0: not given */
+    double step, stop, start, max_step; /* step 0: rows every stop/1000; max_step 0: not given */
+    double first_step;                  /* Xyce's, which other simulators may want; else 0 */
     bool use_initial_conditions;        /* uic */
     struct dalcs_location where;
 };

@@ -8,8 +8,8 @@
 #include <string.h>
 
 /* Known here. */
-static const char *const OURS[] = {"reltol", "abstol",   "vntol",        "method",  "step",
-                                   "stages", "compress", "diodecurrent", "filetype"};
+static const char *const OURS[] = {"reltol", "abstol",   "vntol",        "method",   "step",
+                                   "stages", "compress", "diodecurrent", "filetype", "dialect"};
 
 static const char *const FOREIGN[] = {
     "itl1",          "itl2",        "itl3",         "itl4",        "itl5",         "itl6",
@@ -165,6 +165,10 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     }
     if (strcmp(name, "filetype") == 0) {
         return read_filetype(reader);
+    }
+    if (strcmp(name, "dialect") == 0) {
+        const struct dalcs_token *read_before; /* by dalcs_dialect_settle */
+        return dalcs_reader_name(reader, "the name of a dialect", &read_before);
     }
     return read_method(reader);
 }

@@ -237,7 +237,8 @@ static void call(struct work *w, const struct frame *f, const struct dalcs_opera
         call_user(w, f, o, user);
         return;
     }
-    const struct dalcs_function *function = dalcs_function_find(o->u.name);
+    const struct dalcs_function *function =
+        dalcs_function_find(o->u.name, w->language->netlist->dialect.name);
     const bool is_wrong =
         function == NULL || o->count < function->least || o->count > function->most;
     if (is_wrong || are_numbers(w, o->count)) {
@@ -349,6 +350,7 @@ const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
                                                      .diag = language->diag,
                                                      .instance = scope->origin,
                                                      .has_signals = true,
+                                                     .dialect = language->netlist->dialect,
                                                      .noted_caret = &language->noted_caret,
                                                      .noted_log = &language->noted_log};
     struct dalcs_expression_text text;
