@@ -101,6 +101,15 @@ void dalcs_signals_add_default(struct dalcs_builder *builder) {
     }
 }
 
+/* ngspice's alli: the current of each element. */
+static void add_currents(struct dalcs_builder *builder) {
+    for (int k = 0; k < builder->circuit->n_devices; k++) {
+        if (!dalcs_builder_is_inner(builder->circuit->device[k].name)) {
+            add_current(builder, k);
+        }
+    }
+}
+
 int dalcs_signals_measure(struct dalcs_builder *builder, struct dalcs_signal signal) {
     for (size_t k = 0; k < builder->n_measured; k++) {
         if (dalcs_signal_is_same(&builder->measured[k], &signal)) {
@@ -247,6 +256,13 @@ static bool read_signal(struct dalcs_reader *reader) {
     if (next == NULL || next->kind != DALCS_TOKEN_OPEN) {
         if (dalcs_reader_take_word(reader, "all")) {
             dalcs_signals_add_default(builder);
+            return true;
+        }
+        if (dalcs_reader_take_word(reader, "alli")) {
+            if (strcmp(reader->card->token->text, ".probe") == 0) {
+                dalcs_signals_add_default(builder);
+            }
+            add_currents(builder);
             return true;
         }
         return token->text[0] == '@' ? read_device_current(reader) : read_plain_node(reader);
