@@ -82,6 +82,7 @@ struct dalcs_diode_model {
 struct dalcs_switch_model {
     const char *name;
     double ron, roff, vt, vh; /* ohm, ohm, V or A, V or A */
+    double lser, vser;        /* H, V; in series with each such switch, elements of their own */
     bool is_inverted;
 };
 

@@ -109,7 +109,8 @@ def switches(checker, program):
             ("W1 d b Vm m", "m CSW(It=1 Ih=0.25)", 1.25e-3, 5.25e-3),
             ("W1 d b Vm m OFF", "m CSW(It=2)", 2e-3, 4e-3),
             ("W1 d b Vm m", "m ISWITCH(Ion=2 Ioff=1)", 1.5e-3, 4.5e-3),
-            ("W1 d b Vm m", "m ISWITCH(It=1.5 Ih=1)", 2.5e-3, 5.5e-3)):
+            ("W1 d b Vm m", "m ISWITCH(It=1.5 Ih=1)", 2.5e-3, 5.5e-3),
+            ("W1 d b Vm m", "m ISWITCH(IHon=2 IHoff=0.5)", 2e-3, 5.5e-3)):
         case = Case(checker, program, BY_CURRENT.format(switch=switch, model=model),
                     around(on, off))
         switched_on(case, (on, off))
@@ -117,7 +118,8 @@ def switches(checker, program):
                            ("m SW(Vt=1 Vh=-0.25)", 1e-3, 5e-3),
                            ("m VSWITCH(Von=2 Voff=1)", 1.5e-3, 4.5e-3),
                            ("m VSWITCH", 0.5e-3, 5.5e-3),
-                           ("m VSWITCH(Vt=1 Vh=0.25)", 1.25e-3, 5.25e-3)):
+                           ("m VSWITCH(Vt=1 Vh=0.25)", 1.25e-3, 5.25e-3),
+                           ("m VSWITCH(VHon=2 VHoff=0.5)", 2e-3, 5.5e-3)):
         case = Case(checker, program, BY_VOLTAGE.format(model=model), around(on, off))
         switched_on(case, (on, off))
     # Inverted: on below the middle.
@@ -127,6 +129,10 @@ def switches(checker, program):
         case = Case(checker, program, netlist, around(1.5e-3, 4.5e-3))
         for time, wanted in ((1.499e-3, 1), (1.501e-3, 0), (4.499e-3, 0), (4.501e-3, 1)):
             case.is_at("v(b)", time, wanted)
+    case = Case(checker, program, BY_VOLTAGE.format(model="m VSWITCH(VHon=1 VHoff=2)"),
+                around(2e-3, 5e-3))
+    for time, wanted in ((1.999e-3, 1), (2.001e-3, 0), (4.999e-3, 0), (5.001e-3, 1)):
+        case.is_at("v(b)", time, wanted)
     # A closed loop: inverted, the switch opens where the current passes 0.5 A.
     case = Case(checker, program, OF_ITSELF.format(model="ISWITCH(Ion=0 Ioff=1)"))
     case.is_at("i(l1)", 50e-6, 1 - math.exp(-0.5))
@@ -149,6 +155,10 @@ PARASITICS = (
      "Rt b t 0\nRs t x 1\nL1 x 0 0.5m ic=20m\nRp t 0 100\nCp t 0 20n", "i(rt)"),
     ("L1 b 0 1m Rser=0", "L1 b 0 1m", "i(l1)"),
     ("R1 b 0 100 m=4", "R1 b 0 25", "i(r1)"),
+    ("S1 b 0 a 0 m1\n.model m1 SW(Ron=2 Roff=1k Vt=1 Lser=1u Vser=0.6)",
+     "Ls b x 1u\nVs x y 0.6\nS1 y 0 a 0 m1\n.model m1 SW(Ron=2 Roff=1k Vt=1)", "i(ls)"),
+    ("W1 b 0 V1 m1\n.model m1 ISWITCH(Ron=2 Roff=1k IHon=-0.2 IHoff=-0.1 Vser=-0.6)",
+     "Vs b x -0.6\nW1 x 0 V1 m1\n.model m1 ISWITCH(Ron=2 Roff=1k IHon=-0.2 IHoff=-0.1)", "i(w1)"),
     ("Vx b 0 SIN(0 3 20k) Rser=2", "Rs b x 2\nVx x 0 SIN(0 3 20k)", "i(rs)"),
     ("Vx b 0 1 Rser=2 Cpar=1u AC 1", "Rt b t 0\nRs t x 2\nVx x 0 1\nCp t 0 1u", "i(rt)"),
 )
