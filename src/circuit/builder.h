@@ -334,6 +334,8 @@ size_t dalcs_poly_count(const struct dalcs_card *card);
 void dalcs_controlled_resolve(struct dalcs_builder *builder);
 /* B, and what follows the first two nodes of E and G: VALUE, TABLE. */
 void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* The node whose voltage is the formula that comes next; -1 when an error was reported. */
+int dalcs_behavioural_parse_control(struct dalcs_reader *reader, const struct dalcs_token *element);
 bool dalcs_behavioural_is_form(const struct dalcs_token *token);
 void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_device *device);
 /* Compiles all formulas, when all elements are known. */
@@ -347,6 +349,8 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_tok
 /* The lines of an exponential diode: its tangent at a current, for `area` of them in parallel. */
 void dalcs_diode_model_map(const struct dalcs_diode_card *card, double current, double area,
                            struct dalcs_diode_model *model);
+/* CONTROL=formula: a source of its own makes the control. */
+bool dalcs_switch_has_formula(const struct dalcs_card *card);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* type: sw, csw, vswitch or iswitch */
 bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,

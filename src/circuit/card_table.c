@@ -176,6 +176,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_inner += n;
             table->n_stimuli += n > 0;
         }
+        table->n_inner += letter == 's' && dalcs_switch_has_formula(card);
         table->n_switches += letter == 's' || letter == 'w';
         table->n_diodes += letter == 'd' || letter == 'a';
         table->n_scaled += (letter == 'd' || letter == 'a') && card->n > 4;

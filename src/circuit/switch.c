@@ -9,6 +9,8 @@
 #include <string.h>
 
 static const char USAGE[] = "a switch is: Sname node node control control model [ON|OFF]";
+static const char FORMULA_USAGE[] =
+    "such a switch is: Sname node node model [ON|OFF] CONTROL={expression}";
 static const char CURRENT_USAGE[] = "a switch is: Wname node node Vsource model [ON|OFF]";
 
 /* Lser and Vser of the model, between the switch's first node and the switch. */
@@ -42,13 +44,26 @@ static void add_series(struct dalcs_builder *builder, const struct dalcs_token *
     }
 }
 
+bool dalcs_switch_has_formula(const struct dalcs_card *card) {
+    bool found = false;
+    for (int k = 1; k + 1 < card->n && !found; k++) {
+        found = card->token[k + 1].kind == DALCS_TOKEN_EQUAL &&
+                strcmp(card->token[k].text, "control") == 0;
+    }
+    return found;
+}
+
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     const bool by_current = card->letter == 'w';
-    struct dalcs_reader reader =
-        dalcs_reader_start(builder, card, by_current ? CURRENT_USAGE : USAGE);
+    const bool by_formula = !by_current && dalcs_switch_has_formula(card);
+    struct dalcs_reader reader = dalcs_reader_start(builder, card,
+                                                    by_current   ? CURRENT_USAGE
+                                                    : by_formula ? FORMULA_USAGE
+                                                                 : USAGE);
     struct dalcs_device *device = dalcs_builder_add_device(builder, DALCS_SWITCH, card->token);
     const struct dalcs_token *model;
-    if (device == NULL || !dalcs_reader_nodes(&reader, by_current ? 2 : 4, device->node)) {
+    if (device == NULL ||
+        !dalcs_reader_nodes(&reader, by_current || by_formula ? 2 : 4, device->node)) {
         return;
     }
     if (by_current &&
@@ -63,6 +78,15 @@ void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *
                                      by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
     device->initially_on = dalcs_reader_take_word(&reader, "on");
     device->has_initial_state = device->initially_on || dalcs_reader_take_word(&reader, "off");
+    const struct dalcs_token *control = by_formula ? dalcs_reader_peek(&reader, 0) : NULL;
+    if (control != NULL && strcmp(control->text, "control") == 0 &&
+        dalcs_reader_take_parameter(&reader) != NULL) {
+        const int node = dalcs_behavioural_parse_control(&reader, card->token);
+        if (node < 0) {
+            return;
+        }
+        device->node[2] = node;
+    }
     dalcs_reader_end(&reader);
     if (device->model >= 0) {
         add_series(builder, card->token, device);

@@ -101,6 +101,9 @@ static void element_roles(const struct dalcs_card *card, const struct shape *sha
     int n_nodes = shape->n_nodes;
     int n_devices = shape->n_devices;
     bool has_model = shape->has_model;
+    if (shape->letter == 's' && dalcs_formula_find_control(card) < card->n) {
+        n_nodes = 2; /* its control is a formula */
+    }
     for (int k = 1; k < card->n; k++) {
         if (token[k].kind != DALCS_TOKEN_WORD) {
             continue;

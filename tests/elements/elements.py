@@ -139,6 +139,44 @@ def switches(checker, program):
     case.is_at("i(l1)", 100e-6, 0.5)
 
 
+# CONTROL= is a source of its own; nothing of it is recorded.
+CONTROLLED = """switches by formulas, {what}
+V1 in 0 SIN(0 5 1k)
+Vx x 0 SIN(1 2 3k 0 0 90)
+Rx x 0 2
+{first}
+R1 a 0 10
+X1 in x b sub
+R2 b 0 10
+.subckt sub p q r k=0.5
+{second}
+.model m SW(Ron=1 Roff=1Meg Vt=1 Vh=0.5)
+.ends
+.model m1 VSWITCH(Ron=1 Roff=1Meg VHon=2 VHoff=-1)
+.save v(a) v(b) i(s1) i(x1.s1) v(in)
+.tran 10u 2m
+"""
+
+
+def controls(checker, program):
+    times = [k * 17e-6 for k in range(1, 110)]
+    one = Case(checker, program, CONTROLLED.format(
+        what="one card", first="S1 in a m1 ON CONTROL={2*v(in)+4*i(Rx)-1}",
+        second="S1 p r m CONTROL={k*v(p,q)+u(v(q)-2.9)}"), times)
+    two = Case(checker, program, CONTROLLED.format(
+        what="two cards", first="E1 c 0 VALUE={2*v(in)+4*i(Rx)-1}\nS1 in a c 0 m1 ON",
+        second="B1 c 0 V={k*v(p,q)+u(v(q)-2.9)}\nS1 p r c 0 m"), times)
+    for signal in one.result.names[1:]:
+        for t in times:
+            one.is_at(signal, t, two.result.at(signal, t), 1e-9)
+    checker.check(min(one.result.column("i(s1)")) < -0.05 < 0.4 < max(one.result.column("i(s1)")),
+                  "the switch moves")
+    every = Case(checker, program, "all\nV1 a 0 1\nS1 a b m CONTROL={v(a)}\nR1 b 0 1\n"
+                 ".model m SW(Vt=0.5)\n.tran 1u 10u\n.end\n")
+    checker.check(every.result.names == ["time", "v(a)", "v(b)", "i(v1)", "i(s1)"],
+                  f"recorded: {every.result.names}")
+
+
 # ---- Parasitics --------------------------------------------------------------------------------
 
 # What stands on one card, the same on several, and the element's current there.
@@ -356,7 +394,7 @@ def diodes(checker, program):
 
 def main():
     checker = Checker("elements")
-    for part in (couplings, switches, sources, parasitics, diodes, polynomials):
+    for part in (couplings, switches, controls, sources, parasitics, diodes, polynomials):
         part(checker, sys.argv[1])
     return checker.finish()
 
