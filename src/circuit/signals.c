@@ -82,13 +82,17 @@ static void add_current(struct dalcs_builder *builder, int device) {
         (struct dalcs_signal){.kind = DALCS_SIGNAL_CURRENT, .device = builder->current_of[device]});
 }
 
-void dalcs_signals_add_default(struct dalcs_builder *builder) {
-    const struct dalcs_circuit *circuit = builder->circuit;
-    for (int k = 1; k < circuit->n_nodes; k++) {
+static void add_voltages(struct dalcs_builder *builder) {
+    for (int k = 1; k < builder->circuit->n_nodes; k++) {
         if (!dalcs_builder_is_inner(builder->node_name[k])) {
             add_voltage(builder, k, 0, false);
         }
     }
+}
+
+void dalcs_signals_add_default(struct dalcs_builder *builder) {
+    const struct dalcs_circuit *circuit = builder->circuit;
+    add_voltages(builder);
     /* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
     for (int k = 0; k < circuit->n_devices; k++) {
         const struct dalcs_device *d = &circuit->device[k];
@@ -101,7 +105,7 @@ void dalcs_signals_add_default(struct dalcs_builder *builder) {
     }
 }
 
-/* ngspice's alli: the current of each element. */
+/* ngspice's alli and LTspice's i(*): the current of each element. */
 static void add_currents(struct dalcs_builder *builder) {
     for (int k = 0; k < builder->circuit->n_devices; k++) {
         if (!dalcs_builder_is_inner(builder->circuit->device[k].name)) {
@@ -132,6 +136,10 @@ static bool read_voltage(struct dalcs_reader *reader) {
     if (!dalcs_reader_name(reader, "a node", &name[0])) {
         return false;
     }
+    if (strcmp(name[0]->text, "*") == 0 && dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        add_voltages(reader->builder);
+        return true;
+    }
     const int a = dalcs_builder_find_node(reader->builder, name[0]);
     int b = 0;
     const bool is_pair = !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE);
@@ -159,6 +167,10 @@ static bool read_current(struct dalcs_reader *reader) {
     if (!dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
         dalcs_reader_missing(reader, "')'");
         return false;
+    }
+    if (strcmp(name->text, "*") == 0) {
+        add_currents(reader->builder);
+        return true;
     }
     const int device = dalcs_builder_find_device(reader->builder, name);
     if (device >= 0) {
@@ -245,10 +257,33 @@ static bool read_device_current(struct dalcs_reader *reader) {
     return true;
 }
 
+/* {v(a)*2}, par('...'), name=par('...'), and what follows a signal in v(a)-v(b). */
+static bool is_formula(const struct dalcs_reader *reader) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    const char first = token->text[0]; /* KiCad's nodes may begin with a slash */
+    const bool is_operator = first != '\0' && strchr("+-*/", first) != NULL &&
+                             dalcs_names_find(&reader->builder->nodes, token->text) < 0;
+    if (next != NULL && next->kind == DALCS_TOKEN_EQUAL && dalcs_reader_peek(reader, 2) != NULL) {
+        token = dalcs_reader_peek(reader, 2); /* name=formula */
+        next = dalcs_reader_peek(reader, 3);
+    }
+    const bool is_par =
+        strcmp(token->text, "par") == 0 && next != NULL && next->kind == DALCS_TOKEN_OPEN;
+    return is_operator || is_par || token->kind == DALCS_TOKEN_EXPRESSION;
+}
+
 static bool read_signal(struct dalcs_reader *reader) {
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    if (token->kind != DALCS_TOKEN_BAD && is_formula(reader)) {
+        dalcs_builder_error(builder, token,
+                            "v(a,b) is v(a)-v(b); .meas has formulas, and B1 x 0 V={formula} makes "
+                            "a node of one",
+                            "a formula is no signal: signals are recorded, not computed");
+        return false;
+    }
     if (token->kind != DALCS_TOKEN_WORD) {
         dalcs_reader_unexpected(reader);
         return false;
