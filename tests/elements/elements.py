@@ -209,6 +209,17 @@ R9 a b 10
 """
 
 
+def many(checker, program):
+    """Room for the parts of every card: coils and switches that bring two devices each, and controls."""
+    n = 2000
+    text = ["many", ".options dialect=ltspice", "V1 a 0 1", ".model m SW(Vt=0.5 Lser=1u Vser=0.25)"]
+    text += [f"S{k} a s{k} m CONTROL={{v(a)}}\nR{k} s{k} 0 1" for k in range(n)]
+    text += [f"L{k} a l{k} 1u\nRl{k} l{k} 0 1" for k in range(n)]
+    case = Case(checker, program, "\n".join(text + [".save v(s7) v(l7)", ".op", ".end"]) + "\n")
+    case.is_at("v(s7)", 0, 0.75)
+    case.is_at("v(l7)", 0, 1 / 1.001)
+
+
 def parasitics(checker, program):
     times = [k * 1e-6 for k in range(1, 100, 7)]
     for card, parts, current in PARASITICS:
@@ -394,7 +405,7 @@ def diodes(checker, program):
 
 def main():
     checker = Checker("elements")
-    for part in (couplings, switches, controls, sources, parasitics, diodes, polynomials):
+    for part in (couplings, switches, controls, many, sources, parasitics, diodes, polynomials):
         part(checker, sys.argv[1])
     return checker.finish()
 
