@@ -73,6 +73,15 @@ enum dalcs_status dalcs_session_create(struct dalcs_session **session) DALCS_MUS
 /* Accepts NULL. Everything that a session handed out dies with it. */
 void dalcs_session_destroy(struct dalcs_session *session);
 
+/* The simulators whose netlists are known by name, ngspice first; NULL when index is too large. */
+const char *dalcs_dialect_name(size_t index);
+
+/* Says, before a netlist is read, for which of them it was written; NULL: what the netlist says or shows,
+ * else ngspice. What this changes is in doc/netlist.md. DALCS_E_OPTION: there is no such dialect (a message
+ * names them), or a netlist was read. */
+enum dalcs_status dalcs_session_set_dialect(struct dalcs_session *session,
+                                            const char *name) DALCS_MUST_CHECK;
+
 /* Reads a netlist from a file, or from text[0..length-1] that messages call `name`. A session reads
  * one netlist, once: a second call is DALCS_E_OPTION. Files that it includes are read too, relative to
  * the folder of `path` or `name`. Errors in the netlist: DALCS_E_NETLIST, all

@@ -92,9 +92,12 @@ void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs
         dalcs_reader_missing(&reader, "a stop time");
         return;
     }
+    const struct dalcs_dialect dialect = builder->netlist->dialect;
     if (n == 1) {
-        dalcs_builder_note(builder, place[0], TRAN_USAGE,
-                           "the only time on .tran is the stop time");
+        if (!dalcs_dialect_is_told(dialect, DALCS_DIALECT_LTSPICE)) {
+            dalcs_builder_note(builder, place[0], TRAN_USAGE,
+                               "the only time on .tran is the stop time");
+        }
         time[TSTOP] = time[TSTEP];
         place[TSTOP] = place[TSTEP];
         time[TSTEP] = 0;
@@ -104,6 +107,16 @@ void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs
     transient->start = time[TSTART];
     transient->max_step = time[TMAX];
     transient->present = check_times(builder, transient, place);
+    if (dialect.name == DALCS_DIALECT_XYCE && transient->step > 0) {
+        if (!dialect.is_told) {
+            dalcs_builder_note(builder, place[TSTEP], NULL,
+                               "the first time on Xyce's .tran is its first step, which is chosen "
+                               "here: there are rows every %g s",
+                               transient->stop / 1000);
+        }
+        transient->first_step = transient->step;
+        transient->step = 0;
+    }
 }
 
 void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card) {

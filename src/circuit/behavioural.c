@@ -92,6 +92,25 @@ void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_c
     }
 }
 
+int dalcs_behavioural_parse_control(struct dalcs_reader *reader,
+                                    const struct dalcs_token *element) {
+    const struct dalcs_token *token;
+    if (!read_formula(reader, &token)) {
+        return -1;
+    }
+    struct dalcs_device *device =
+        dalcs_builder_add_inner_device(reader->builder, DALCS_VCVS, "control", element);
+    const int node = dalcs_builder_inner_node(reader->builder, "control", element);
+    struct dalcs_formula_source *source =
+        device != NULL ? add_source(reader->builder, device) : NULL;
+    if (source == NULL || node < 0) {
+        return -1;
+    }
+    device->node[0] = node;
+    source->token = token;
+    return node;
+}
+
 bool dalcs_behavioural_is_form(const struct dalcs_token *token) {
     static const char *const forms[] = {"value", "vol", "cur", "table"};
     return token != NULL && token->kind == DALCS_TOKEN_WORD &&

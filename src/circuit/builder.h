@@ -65,6 +65,8 @@ struct dalcs_builder {
     int n_device_cards;       /* and the devices that parts of cards become */
     int *current_of;          /* [n_device_cards] the device whose current an element's is: mostly
                                  its own */
+    double *default_rser;     /* [n_device_cards] ohms that LTspice adds to a coil, 0 where it adds
+                                 none; NULL: the netlist is not told to be one of LTspice */
     int n_couplings_seen;     /* K cards so far, right or wrong */
     struct dalcs_names pairs; /* "3 7": coils 3 and 7 are coupled, by the place of the card */
     int ideal_diode;          /* the model of diodes without one, -1 before the first */
@@ -114,6 +116,8 @@ struct dalcs_builder {
     size_t n_fouriers;
     size_t fourier_capacity;
     bool noted_caret, noted_log; /* in a formula */
+    const char *ignored_options; /* names of options without a meaning here, NULL: none so far */
+    const struct dalcs_token *ignored_option; /* the first of them */
 
     const struct dalcs_source_line *kept_line; /* the last line copied by keep_location */
     const char *kept_text;
@@ -291,6 +295,13 @@ void dalcs_parasitic_multiply(struct dalcs_parasitics *parasitics, double m);
 /* Puts them around a device whose nodes are those of its card. */
 void dalcs_parasitic_expand(struct dalcs_builder *builder, const struct dalcs_token *element,
                             struct dalcs_device *device, const struct dalcs_parasitics *parasitics);
+bool dalcs_parasitic_has_rser(const struct dalcs_parasitics *parasitics);
+/* Puts a resistor in series with a device that has its other parasitics. */
+void dalcs_parasitic_add_rser(struct dalcs_builder *builder, const struct dalcs_token *element,
+                              struct dalcs_device *device, double ohms);
+/* Coils that have no Rser and that no K card names get LTspice's, where the netlist is told to be one of
+ * LTspice. */
+void dalcs_passive_add_default_rser(struct dalcs_builder *builder);
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind);
 void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
@@ -325,6 +336,8 @@ size_t dalcs_poly_count(const struct dalcs_card *card);
 void dalcs_controlled_resolve(struct dalcs_builder *builder);
 /* B, and what follows the first two nodes of E and G: VALUE, TABLE. */
 void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* The node whose voltage is the formula that comes next; -1 when an error was reported. */
+int dalcs_behavioural_parse_control(struct dalcs_reader *reader, const struct dalcs_token *element);
 bool dalcs_behavioural_is_form(const struct dalcs_token *token);
 void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_device *device);
 /* Compiles all formulas, when all elements are known. */
@@ -338,6 +351,8 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_tok
 /* The lines of an exponential diode: its tangent at a current, for `area` of them in parallel. */
 void dalcs_diode_model_map(const struct dalcs_diode_card *card, double current, double area,
                            struct dalcs_diode_model *model);
+/* CONTROL=formula: a source of its own makes the control. */
+bool dalcs_switch_has_formula(const struct dalcs_card *card);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* type: sw, csw, vswitch or iswitch */
 bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
@@ -376,6 +391,8 @@ void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card
 void dalcs_sweep_parse_step(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_sweep_check(struct dalcs_builder *builder);
 void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* After all of them: says once which ones are other simulators' business. */
+void dalcs_options_note_ignored(struct dalcs_builder *builder);
 void dalcs_initial_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* .nodeset: the same form, without an effect */
 void dalcs_initial_parse_nodeset(struct dalcs_builder *builder, const struct dalcs_card *card);

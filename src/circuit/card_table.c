@@ -170,11 +170,15 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
     if (strchr("rlcviefghdswab", letter) != NULL) {
         table->n_stimuli += strchr("vic", letter) != NULL;
         table->n_inner += count_parasitics(card);
+        table->n_inner += letter == 'l' &&
+                          dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_LTSPICE);
         if (strchr("efgh", letter) != NULL) {
             const size_t n = dalcs_poly_count(card);
             table->n_inner += n;
             table->n_stimuli += n > 0;
         }
+        table->n_inner += letter == 's' && dalcs_switch_has_formula(card);
+        table->n_switches += letter == 's' || letter == 'w';
         table->n_diodes += letter == 'd' || letter == 'a';
         table->n_scaled += (letter == 'd' || letter == 'a') && card->n > 4;
         return DALCS_CARD_ELEMENT;
@@ -201,7 +205,20 @@ static bool has_limit(const struct dalcs_card *card) {
     return found;
 }
 
+static bool has_series(const struct dalcs_card *card) {
+    bool found = false;
+    for (int k = 1; k < card->n; k++) {
+        found = found || strcmp(card->token[k].text, "lser") == 0 ||
+                strcmp(card->token[k].text, "vser") == 0;
+    }
+    return found;
+}
+
 void dalcs_card_table_make_room(struct dalcs_card_table *table) {
+    if (table->has_series) {
+        table->n_inner += 2 * table->n_switches;
+        table->n_stimuli += table->n_switches;
+    }
     if (table->has_limits) {
         table->n_inner += 4 * table->n_diodes;
         table->n_stimuli += 2 * table->n_diodes;
@@ -227,6 +244,8 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
         }
         return DALCS_CARD_NONE;
     }
+    table->has_series =
+        table->has_series || (strcmp(name->text, ".model") == 0 && has_series(card));
     table->has_limits = table->has_limits || (strcmp(name->text, ".model") == 0 && has_limit(card));
     return card->letter == '.' ? classify_dot(table, name) : classify_element(table, card);
 }

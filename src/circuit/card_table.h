@@ -34,14 +34,17 @@ struct dalcs_card_table {
     size_t n_inner;   /* devices that parts of cards may become */
     size_t n_diodes;
     size_t n_scaled; /* diodes that may want a model of their own */
+    size_t n_switches;
     bool has_limits; /* a model limits the current */
+    bool has_series; /* a model puts Lser or Vser in series */
 };
 
 /* Call once for each card in order. Reports cards that are not supported, once for a block. */
 enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
                                                 const struct dalcs_card *card);
 
-/* When all cards are classified: what diodes need whose models limit their current. */
+/* When all cards are classified: what diodes need whose models limit their current, and switches whose models
+ * put something in series. */
 void dalcs_card_table_make_room(struct dalcs_card_table *table);
 
 /* Warns when the first line looks like a card: it is the title all the same. */

@@ -51,6 +51,11 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
                     circuit->switch_model != NULL && builder->model != NULL &&
                     builder->device_token != NULL && builder->control_token != NULL &&
                     builder->current_of != NULL;
+    if (dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_LTSPICE)) {
+        builder->default_rser =
+            dalcs_arena_alloc(&builder->scratch, n_devices, sizeof *builder->default_rser);
+        return ok && builder->default_rser != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    }
     return ok ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -295,6 +300,8 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_card_table_check_title(builder);
     DALCS_TRY(classify_cards(builder, class_of));
     DALCS_TRY(read_cards(builder, class_of));
+    dalcs_options_note_ignored(builder);
+    dalcs_passive_add_default_rser(builder);
     dalcs_controlled_resolve(builder);
     dalcs_behavioural_resolve(builder);
     dalcs_model_check(builder);

@@ -82,6 +82,7 @@ struct dalcs_diode_model {
 struct dalcs_switch_model {
     const char *name;
     double ron, roff, vt, vh; /* ohm, ohm, V or A, V or A */
+    double lser, vser;        /* H, V; in series with each such switch, elements of their own */
     bool is_inverted;
 };
 
@@ -120,7 +121,8 @@ static inline bool dalcs_signal_is_same(const struct dalcs_signal *a,
 /* What .tran asks for; times in s. */
 struct dalcs_transient {
     bool present;
-    double step, stop, start, max_step; /* max_step 0: not given */
+    double step, stop, start, max_step; /* step 0: rows every stop/1000; max_step 0: not given */
+    double first_step;                  /* Xyce's, which other simulators may want; else 0 */
     bool use_initial_conditions;        /* uic */
     struct dalcs_location where;
 };

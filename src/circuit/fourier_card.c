@@ -48,6 +48,12 @@ static int signal_end(const struct dalcs_card *card, int k) {
     return k;
 }
 
+/* LTspice's -1: as many periods as the run has. */
+static int all_periods(const struct dalcs_transient *tran, double frequency) {
+    const double n = floor((tran->stop - tran->start) * frequency * (1.0 + 1e-12));
+    return (int)fmax(1.0, fmin(n, 1e9));
+}
+
 void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
     const struct dalcs_signal_formula_rules rules = {.variable = "time"};
@@ -60,10 +66,14 @@ void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_builder_error(builder, place, USAGE, "the frequency must be positive");
         return;
     }
-    if ((next_is_number(&reader) &&
-         !read_whole(&reader, "the number of harmonics", &fourier.n_harmonics)) ||
-        (next_is_number(&reader) &&
-         !read_whole(&reader, "the number of periods", &fourier.n_periods))) {
+    if (next_is_number(&reader) &&
+        !read_whole(&reader, "the number of harmonics", &fourier.n_harmonics)) {
+        return;
+    }
+    if (dalcs_reader_take_word(&reader, "-1")) {
+        fourier.n_periods = all_periods(&builder->circuit->transient, fourier.frequency);
+    } else if (next_is_number(&reader) &&
+               !read_whole(&reader, "the number of periods", &fourier.n_periods)) {
         return;
     }
     if (dalcs_reader_at_end(&reader)) {

@@ -1,15 +1,15 @@
 /* options.c - .options cards.
  *
- * Options of other simulators that steer what does not exist here are accepted with a note each, so
- * that netlists need no change; a name that no simulator knows is probably a spelling mistake, and
+ * Options of other simulators that steer what does not exist here are accepted with one note for all
+ * of them, so that netlists need no change; a name that no simulator knows is probably a spelling mistake, and
  * silently ignoring those has cost people days. */
 #include "builder.h"
 
 #include <string.h>
 
 /* Known here. */
-static const char *const OURS[] = {"reltol", "abstol",   "vntol",        "method",  "step",
-                                   "stages", "compress", "diodecurrent", "filetype"};
+static const char *const OURS[] = {"reltol", "abstol",   "vntol",        "method",   "step",
+                                   "stages", "compress", "diodecurrent", "filetype", "dialect"};
 
 static const char *const FOREIGN[] = {
     "itl1",          "itl2",        "itl3",         "itl4",        "itl5",         "itl6",
@@ -166,7 +166,37 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     if (strcmp(name, "filetype") == 0) {
         return read_filetype(reader);
     }
+    if (strcmp(name, "dialect") == 0) {
+        const struct dalcs_token *read_before; /* by dalcs_dialect_settle */
+        return dalcs_reader_name(reader, "the name of a dialect", &read_before);
+    }
     return read_method(reader);
+}
+
+/* One more name in the note about them. */
+static void ignore(struct dalcs_builder *builder, const struct dalcs_token *name) {
+    const char *known = builder->ignored_options;
+    const size_t n = strlen(name->text);
+    for (const char *p = known; p != NULL; p = strchr(p, ' ')) {
+        p += *p == ' ';
+        if (strncmp(p, name->text, n) == 0 && (p[n] == ' ' || p[n] == '\0')) {
+            return;
+        }
+    }
+    builder->ignored_option = known == NULL ? name : builder->ignored_option;
+    builder->ignored_options =
+        known == NULL ? name->text : dalcs_builder_hint(builder, "%s %s", known, name->text);
+}
+
+void dalcs_options_note_ignored(struct dalcs_builder *builder) {
+    const char *names = builder->ignored_options;
+    if (names != NULL && strchr(names, ' ') == NULL) {
+        dalcs_builder_note(builder, builder->ignored_option, NULL,
+                           "option '%s' has no meaning here", names);
+    } else if (names != NULL) {
+        dalcs_builder_note(builder, builder->ignored_option, NULL,
+                           "these options have no meaning here: %s", names);
+    }
 }
 
 void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -184,7 +214,7 @@ void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card 
             continue;
         }
         if (dalcs_builder_is_one_of(name->text, FOREIGN, N_FOREIGN)) {
-            dalcs_builder_note(builder, name, NULL, "option '%s' has no meaning here", name->text);
+            ignore(builder, name);
         } else {
             report_unknown(builder, name);
         }

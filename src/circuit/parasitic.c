@@ -123,3 +123,16 @@ void dalcs_parasitic_multiply(struct dalcs_parasitics *parasitics, double m) {
         parasitics->value[k] *= k == CPAR ? m : 1 / m;
     }
 }
+
+bool dalcs_parasitic_has_rser(const struct dalcs_parasitics *parasitics) {
+    return parasitics->place[RSER] != NULL;
+}
+
+void dalcs_parasitic_add_rser(struct dalcs_builder *builder, const struct dalcs_token *element,
+                              struct dalcs_device *device, double ohms) {
+    const int inside = dalcs_builder_inner_node(builder, "inside", element);
+    if (inside >= 0) {
+        add(builder, element, RSER, ohms, device->node[0], inside);
+        device->node[0] = inside;
+    }
+}

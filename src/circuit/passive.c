@@ -6,6 +6,9 @@
 
 #include <string.h>
 
+/* Ohms that LTspice puts in series with a coil where no Rser= is written and no K card names it. */
+static const double LTSPICE_RSER = 1e-3;
+
 /* What belongs to one of the three letters. */
 struct family {
     const char *usage;
@@ -169,6 +172,11 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_builder_error(builder, value, NULL, "%s cannot be negative", family->value);
         return;
     }
+    if (builder->default_rser != NULL && kind == DALCS_INDUCTOR &&
+        !dalcs_parasitic_has_rser(&values.parasitics)) {
+        builder->default_rser[device - builder->circuit->device] =
+            LTSPICE_RSER / (values.multiplier > 0 ? values.multiplier : 1);
+    }
     if (values.multiplier > 0) {
         device->value *= kind == DALCS_CAPACITOR ? values.multiplier : 1 / values.multiplier;
         device->initial *= kind == DALCS_INDUCTOR ? values.multiplier : 1;
@@ -177,5 +185,32 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
     dalcs_parasitic_expand(builder, card->token, device, &values.parasitics);
     if (device->value == 0 && kind != DALCS_RESISTOR) {
         replace_zero(builder, device, value);
+    }
+}
+
+void dalcs_passive_add_default_rser(struct dalcs_builder *builder) {
+    const struct dalcs_circuit *circuit = builder->circuit;
+    const int n_devices = circuit->n_devices;
+    int n = 0;
+    const struct dalcs_token *first = NULL;
+    if (builder->default_rser == NULL) {
+        return;
+    }
+    for (int k = 0; k < circuit->n_couplings; k++) {
+        builder->default_rser[circuit->coupling[k].inductor[0]] = 0;
+        builder->default_rser[circuit->coupling[k].inductor[1]] = 0;
+    }
+    for (int k = 0; k < n_devices && !builder->out_of_memory; k++) {
+        struct dalcs_device *device = &builder->circuit->device[k];
+        if (builder->default_rser[k] > 0 && device->kind == DALCS_INDUCTOR) {
+            first = n++ == 0 ? builder->device_token[k] : first;
+            dalcs_parasitic_add_rser(builder, builder->device_token[k], device,
+                                     builder->default_rser[k]);
+        }
+    }
+    if (n > 0) {
+        dalcs_builder_note(builder, first, "write Rser=0 for none",
+                           "%d coil%s without Rser= %s the 1 mohm that LTspice puts in series", n,
+                           n == 1 ? "" : "s", n == 1 ? "has" : "have");
     }
 }

@@ -184,11 +184,23 @@ static void warn_of_suffix(struct dalcs_builder *builder, const struct dalcs_tok
     } else if (number->suffix == 'i') {
         dalcs_builder_warn(builder, token, "write m for milli", "mil is 25.4e-6: this is %g",
                            number->value);
-    } else if (number->suffix == 0 && *tail == 'x') {
+    } else if (number->suffix == 0 && *tail == 'x' &&
+               !dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_NGSPICE)) {
         dalcs_builder_warn(
             builder, token,
             dalcs_builder_hint(builder, "write %.*sMeg if that is meant", number->digits, digits),
             "X is no suffix here: this is %g", number->value);
+    }
+}
+
+/* A number that only one other simulator reads so; silent where the netlist is told to be its. */
+static void warn_of_dialect(struct dalcs_builder *builder, const struct dalcs_token *token,
+                            const struct dalcs_number *number) {
+    const struct dalcs_dialect *dialect = &builder->netlist->dialect;
+    if (number->is_special && !dialect->is_told) {
+        dalcs_builder_warn(builder, token, NULL, "'%s' is %g, as %s reads it", token->text,
+                           number->value,
+                           dialect->name == DALCS_DIALECT_LTSPICE ? "LTspice" : "Xyce");
     }
 }
 
@@ -226,7 +238,8 @@ bool dalcs_reader_list_number(struct dalcs_reader *reader, enum dalcs_quantity q
         return false;
     }
     struct dalcs_number number;
-    const enum dalcs_number_status status = dalcs_number_parse(token->text, &number);
+    const enum dalcs_number_status status =
+        dalcs_number_parse_as(token->text, builder->netlist->dialect.name, &number);
     if (status == DALCS_NUMBER_MALFORMED && !dalcs_reader_is_number(token)) {
         dalcs_builder_error(builder, token, reader->usage, "expected %s, not '%s'", what,
                             token->text);
@@ -237,6 +250,7 @@ bool dalcs_reader_list_number(struct dalcs_reader *reader, enum dalcs_quantity q
         return false;
     }
     warn_of_suffix(builder, token, &number, quantity);
+    warn_of_dialect(builder, token, &number);
     reader->at++;
     *value = number.value;
     return true;

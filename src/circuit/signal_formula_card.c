@@ -241,6 +241,7 @@ bool dalcs_signal_formula_compile(struct dalcs_builder *builder, const struct da
     }
     const struct dalcs_expression_context context = {.arena = scratch,
                                                      .diag = builder->diag,
+                                                     .dialect = builder->netlist->dialect,
                                                      .noted_caret = &builder->noted_caret,
                                                      .noted_log = &builder->noted_log};
     struct dalcs_expression_text masked = c.text;

@@ -152,7 +152,8 @@ static void add_call(struct dalcs_signal_compilation *c, const struct dalcs_expr
     if (write_out(c, e, o)) {
         return;
     }
-    const struct dalcs_function *function = dalcs_function_find(o->u.name);
+    const struct dalcs_function *function =
+        dalcs_function_find(o->u.name, c->builder->netlist->dialect.name);
     if (function == NULL) {
         const char *nearest = dalcs_function_nearest(o->u.name);
         report(c, e, o,

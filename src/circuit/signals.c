@@ -89,6 +89,14 @@ static bool has_default(const struct dalcs_device *d) {
     return is_default && !dalcs_builder_is_inner(d->name);
 }
 
+static void add_voltages(struct dalcs_builder *builder) {
+    for (int k = 1; k < builder->circuit->n_nodes; k++) {
+        if (!dalcs_builder_is_inner(builder->node_name[k])) {
+            add_voltage(builder, k, 0, false);
+        }
+    }
+}
+
 void dalcs_signals_add_default(struct dalcs_builder *builder) {
     const struct dalcs_circuit *circuit = builder->circuit;
     size_t need = builder->n_signals + (size_t)circuit->n_nodes - 1;
@@ -100,13 +108,18 @@ void dalcs_signals_add_default(struct dalcs_builder *builder) {
         builder->out_of_memory = true;
         return;
     }
-    for (int k = 1; k < circuit->n_nodes; k++) {
-        if (!dalcs_builder_is_inner(builder->node_name[k])) {
-            add_voltage(builder, k, 0, false);
-        }
-    }
+    add_voltages(builder);
     for (int k = 0; k < circuit->n_devices; k++) {
         if (has_default(&circuit->device[k])) {
+            add_current(builder, k);
+        }
+    }
+}
+
+/* ngspice's alli and LTspice's i(*): the current of each element. */
+static void add_currents(struct dalcs_builder *builder) {
+    for (int k = 0; k < builder->circuit->n_devices; k++) {
+        if (!dalcs_builder_is_inner(builder->circuit->device[k].name)) {
             add_current(builder, k);
         }
     }
@@ -137,6 +150,10 @@ static bool read_voltage(struct dalcs_reader *reader) {
     if (!dalcs_reader_name(reader, "a node", &name[0])) {
         return false;
     }
+    if (strcmp(name[0]->text, "*") == 0 && dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        add_voltages(reader->builder);
+        return true;
+    }
     const int a = dalcs_builder_find_node(reader->builder, name[0]);
     int b = 0;
     const bool is_pair = !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE);
@@ -164,6 +181,10 @@ static bool read_current(struct dalcs_reader *reader) {
     if (!dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
         dalcs_reader_missing(reader, "')'");
         return false;
+    }
+    if (strcmp(name->text, "*") == 0) {
+        add_currents(reader->builder);
+        return true;
     }
     const int device = dalcs_builder_find_device(reader->builder, name);
     if (device >= 0) {
@@ -250,10 +271,33 @@ static bool read_device_current(struct dalcs_reader *reader) {
     return true;
 }
 
+/* {v(a)*2}, par('...'), name=par('...'), and what follows a signal in v(a)-v(b). */
+static bool is_formula(const struct dalcs_reader *reader) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    const char first = token->text[0]; /* KiCad's nodes may begin with a slash */
+    const bool is_operator = first != '\0' && strchr("+-*/", first) != NULL &&
+                             dalcs_names_find(&reader->builder->nodes, token->text) < 0;
+    if (next != NULL && next->kind == DALCS_TOKEN_EQUAL && dalcs_reader_peek(reader, 2) != NULL) {
+        token = dalcs_reader_peek(reader, 2); /* name=formula */
+        next = dalcs_reader_peek(reader, 3);
+    }
+    const bool is_par =
+        strcmp(token->text, "par") == 0 && next != NULL && next->kind == DALCS_TOKEN_OPEN;
+    return is_operator || is_par || token->kind == DALCS_TOKEN_EXPRESSION;
+}
+
 static bool read_signal(struct dalcs_reader *reader) {
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    if (token->kind != DALCS_TOKEN_BAD && is_formula(reader)) {
+        dalcs_builder_error(builder, token,
+                            "v(a,b) is v(a)-v(b); .meas has formulas, and B1 x 0 V={formula} makes "
+                            "a node of one",
+                            "a formula is no signal: signals are recorded, not computed");
+        return false;
+    }
     if (token->kind != DALCS_TOKEN_WORD) {
         dalcs_reader_unexpected(reader);
         return false;
@@ -261,6 +305,13 @@ static bool read_signal(struct dalcs_reader *reader) {
     if (next == NULL || next->kind != DALCS_TOKEN_OPEN) {
         if (dalcs_reader_take_word(reader, "all")) {
             dalcs_signals_add_default(builder);
+            return true;
+        }
+        if (dalcs_reader_take_word(reader, "alli")) {
+            if (strcmp(reader->card->token->text, ".probe") == 0) {
+                dalcs_signals_add_default(builder);
+            }
+            add_currents(builder);
             return true;
         }
         return token->text[0] == '@' ? read_device_current(reader) : read_plain_node(reader);

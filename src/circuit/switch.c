@@ -9,15 +9,61 @@
 #include <string.h>
 
 static const char USAGE[] = "a switch is: Sname node node control control model [ON|OFF]";
+static const char FORMULA_USAGE[] =
+    "such a switch is: Sname node node model [ON|OFF] CONTROL={expression}";
 static const char CURRENT_USAGE[] = "a switch is: Wname node node Vsource model [ON|OFF]";
+
+/* Lser and Vser of the model, between the switch's first node and the switch. */
+static void add_series(struct dalcs_builder *builder, const struct dalcs_token *element,
+                       struct dalcs_device *device) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    const struct dalcs_switch_model *model = &circuit->switch_model[device->model];
+    for (int k = 0; k < 2; k++) {
+        const bool is_coil = k == 0;
+        if ((is_coil ? model->lser : model->vser) == 0) {
+            continue;
+        }
+        const char *what = is_coil ? "lser" : "vser";
+        const int next =
+            dalcs_builder_inner_node(builder, is_coil ? "after_lser" : "inside", element);
+        struct dalcs_device *part = dalcs_builder_add_inner_device(
+            builder, is_coil ? DALCS_INDUCTOR : DALCS_VSOURCE, what, element);
+        if (next < 0 || part == NULL) {
+            return;
+        }
+        part->node[0] = device->node[0];
+        part->node[1] = next;
+        device->node[0] = next;
+        if (is_coil) {
+            part->value = model->lser;
+        } else {
+            part->stimulus = circuit->n_stimuli++;
+            circuit->stimulus[part->stimulus] = (struct dalcs_stimulus){
+                .kind = DALCS_STIMULUS_DC, .dc = model->vser, .has_dc = true};
+        }
+    }
+}
+
+bool dalcs_switch_has_formula(const struct dalcs_card *card) {
+    bool found = false;
+    for (int k = 1; k + 1 < card->n && !found; k++) {
+        found = card->token[k + 1].kind == DALCS_TOKEN_EQUAL &&
+                strcmp(card->token[k].text, "control") == 0;
+    }
+    return found;
+}
 
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     const bool by_current = card->letter == 'w';
-    struct dalcs_reader reader =
-        dalcs_reader_start(builder, card, by_current ? CURRENT_USAGE : USAGE);
+    const bool by_formula = !by_current && dalcs_switch_has_formula(card);
+    struct dalcs_reader reader = dalcs_reader_start(builder, card,
+                                                    by_current   ? CURRENT_USAGE
+                                                    : by_formula ? FORMULA_USAGE
+                                                                 : USAGE);
     struct dalcs_device *device = dalcs_builder_add_device(builder, DALCS_SWITCH, card->token);
     const struct dalcs_token *model;
-    if (device == NULL || !dalcs_reader_nodes(&reader, by_current ? 2 : 4, device->node)) {
+    if (device == NULL ||
+        !dalcs_reader_nodes(&reader, by_current || by_formula ? 2 : 4, device->node)) {
         return;
     }
     if (by_current &&
@@ -32,12 +78,36 @@ void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *
                                      by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
     device->initially_on = dalcs_reader_take_word(&reader, "on");
     device->has_initial_state = device->initially_on || dalcs_reader_take_word(&reader, "off");
+    const struct dalcs_token *control = by_formula ? dalcs_reader_peek(&reader, 0) : NULL;
+    if (control != NULL && strcmp(control->text, "control") == 0 &&
+        dalcs_reader_take_parameter(&reader) != NULL) {
+        const int node = dalcs_behavioural_parse_control(&reader, card->token);
+        if (node < 0) {
+            return;
+        }
+        device->node[2] = node;
+    }
     dalcs_reader_end(&reader);
+    if (device->model >= 0) {
+        add_series(builder, card->token, device);
+    }
 }
 
 /* ---- Models -------------------------------------------------------------------------------- */
 
-enum { RON, ROFF, THRESHOLD, HYSTERESIS, ON, OFF, N_PARAMETERS };
+enum {
+    RON,
+    ROFF,
+    THRESHOLD,
+    HYSTERESIS,
+    LSER,
+    VSER,
+    ON,
+    OFF,
+    HYSTERESIS_ON,
+    HYSTERESIS_OFF,
+    N_PARAMETERS
+};
 
 /* The four types: how their parameters are called. */
 struct form {
@@ -53,27 +123,27 @@ static const struct form *form_of(const char *type) {
     static const struct form forms[] = {
         {"sw",
          "a switch model is: .model name SW [(Ron=ohms Roff=ohms Vt=volts Vh=volts)]",
-         {"ron", "roff", "vt", "vh", NULL, NULL},
+         {"ron", "roff", "vt", "vh", "lser", "vser", NULL, NULL, NULL, NULL},
          DALCS_VOLTAGE,
          "V",
          0},
         {"csw",
          "a current switch model is: .model name CSW [(Ron=ohms Roff=ohms It=amperes Ih=amperes)]",
-         {"ron", "roff", "it", "ih", NULL, NULL},
+         {"ron", "roff", "it", "ih", "lser", "vser", NULL, NULL, NULL, NULL},
          DALCS_CURRENT,
          "A",
          0},
         {"vswitch",
          "a PSpice switch model is: .model name VSWITCH [(Ron=ohms Roff=ohms Von=volts "
          "Voff=volts)]",
-         {"ron", "roff", "vt", "vh", "von", "voff"},
+         {"ron", "roff", "vt", "vh", "lser", "vser", "von", "voff", "vhon", "vhoff"},
          DALCS_VOLTAGE,
          "V",
          1},
         {"iswitch",
          "a PSpice current switch model is: .model name ISWITCH [(Ron=ohms Roff=ohms Ion=amperes "
          "Ioff=amperes)]",
-         {"ron", "roff", "it", "ih", "ion", "ioff"},
+         {"ron", "roff", "it", "ih", "lser", "vser", "ion", "ioff", "ihon", "ihoff"},
          DALCS_CURRENT,
          "A",
          1e-3},
@@ -86,10 +156,10 @@ static const struct form *form_of(const char *type) {
 }
 
 static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_token *name) {
-    static const char *const ours[] = {"ron", "roff", "vt",   "vh",  "it",
-                                       "ih",  "von",  "voff", "ion", "ioff"};
-    static const char *const later[] = {"vton", "vtoff", "vhon", "vhoff",  "ilimit", "lser",
-                                        "vser", "level", "td",   "oneway", "epsilon"};
+    static const char *const ours[] = {"ron",  "roff", "vt",   "vh",   "it",    "ih",   "von",
+                                       "voff", "ion",  "ioff", "vhon", "vhoff", "ihon", "ihoff"};
+    static const char *const later[] = {"vton", "vtoff",  "ilimit", "level",
+                                        "td",   "oneway", "epsilon"};
     struct dalcs_builder *builder = reader->builder;
     if (dalcs_builder_is_one_of(name->text, later, sizeof later / sizeof later[0])) {
         dalcs_builder_error(builder, name, reader->usage, "'%s' of a switch is not supported yet",
@@ -109,6 +179,10 @@ static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_tok
 static bool check_resistances(struct dalcs_builder *builder, const struct dalcs_parameter *p) {
     if (p[RON].value < 0) {
         dalcs_builder_error(builder, p[RON].place, NULL, "Ron cannot be negative");
+        return false;
+    }
+    if (p[LSER].value < 0) {
+        dalcs_builder_error(builder, p[LSER].place, NULL, "Lser cannot be negative");
         return false;
     }
     if (p[ROFF].value <= 0) {
@@ -164,6 +238,23 @@ static bool set_midpoint(struct dalcs_builder *builder, const struct form *form,
     return true;
 }
 
+/* VHON and VHOFF of PSpice: with hysteresis, hard at both. */
+static bool set_hysteresis(struct dalcs_builder *builder, const struct form *form,
+                           const struct dalcs_parameter *p, struct dalcs_switch_model *model) {
+    const struct dalcs_parameter *on = &p[HYSTERESIS_ON];
+    const struct dalcs_parameter *off = &p[HYSTERESIS_OFF];
+    if (on->place == NULL || off->place == NULL) {
+        dalcs_builder_error(builder, on->place != NULL ? on->place : off->place, form->usage,
+                            "a switch with hysteresis has %s and %s", on->name, off->name);
+        return false;
+    }
+    const double middle = off->value + 0.5 * (on->value - off->value);
+    model->is_inverted = on->value < off->value;
+    model->vt = model->is_inverted ? -middle : middle;
+    model->vh = 0.5 * fabs(on->value - off->value);
+    return true;
+}
+
 bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
                               struct dalcs_switch_model *model) {
     const struct form *form = form_of(type->text);
@@ -174,6 +265,10 @@ bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_to
         [HYSTERESIS] = {.quantity = form->quantity},
         [ON] = {.quantity = form->quantity, .value = form->on},
         [OFF] = {.quantity = form->quantity},
+        [HYSTERESIS_ON] = {.quantity = form->quantity},
+        [HYSTERESIS_OFF] = {.quantity = form->quantity},
+        [LSER] = {.quantity = DALCS_HENRY},
+        [VSER] = {.quantity = DALCS_VOLTAGE},
     };
     const bool has_midpoint = form->name[ON] != NULL;
     for (int k = 0; k < N_PARAMETERS; k++) {
@@ -186,21 +281,33 @@ bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_to
     }
     model->ron = parameter[RON].value;
     model->roff = parameter[ROFF].value;
+    model->lser = parameter[LSER].value;
+    model->vser = parameter[VSER].value;
     if (!check_resistances(reader->builder, parameter)) {
         return false;
     }
+    const bool has_hysteresis =
+        parameter[HYSTERESIS_ON].place != NULL || parameter[HYSTERESIS_OFF].place != NULL;
     const struct dalcs_token *given = parameter[THRESHOLD].place != NULL
                                           ? parameter[THRESHOLD].place
                                           : parameter[HYSTERESIS].place;
-    if (!has_midpoint ||
-        (given != NULL && parameter[ON].place == NULL && parameter[OFF].place == NULL)) {
+    if (!has_midpoint || (!has_hysteresis && given != NULL && parameter[ON].place == NULL &&
+                          parameter[OFF].place == NULL)) {
         set_threshold(reader->builder, form, parameter, model);
         return true;
     }
-    if (given != NULL) {
-        dalcs_builder_error(
-            reader->builder, given, form->usage, "a switch model has either %s and %s or %s and %s",
-            form->name[THRESHOLD], form->name[HYSTERESIS], form->name[ON], form->name[OFF]);
+    if (has_hysteresis && given == NULL && parameter[ON].place == NULL &&
+        parameter[OFF].place == NULL) {
+        return set_hysteresis(reader->builder, form, parameter, model);
+    }
+    if (given != NULL || has_hysteresis) {
+        given = given != NULL                            ? given
+                : parameter[HYSTERESIS_ON].place != NULL ? parameter[HYSTERESIS_ON].place
+                                                         : parameter[HYSTERESIS_OFF].place;
+        dalcs_builder_error(reader->builder, given, form->usage,
+                            "a switch model has either %s and %s or %s and %s or %s and %s",
+                            form->name[THRESHOLD], form->name[HYSTERESIS], form->name[ON],
+                            form->name[OFF], form->name[HYSTERESIS_ON], form->name[HYSTERESIS_OFF]);
         return false;
     }
     return set_midpoint(reader->builder, form, type, parameter, model);

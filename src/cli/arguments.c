@@ -12,6 +12,7 @@
 
 enum {
     METHOD = 256,
+    DIALECT,
     TOL,
     STAGES,
     STEP,
@@ -29,6 +30,7 @@ enum {
 static const struct option option[] = {
     {"output", required_argument, NULL, 'o'},
     {"method", required_argument, NULL, METHOD},
+    {"dialect", required_argument, NULL, DIALECT},
     {"tol", required_argument, NULL, TOL},
     {"stages", required_argument, NULL, STAGES},
     {"step", required_argument, NULL, STEP},
@@ -132,6 +134,8 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return add_output(arguments, cli, optarg);
     case METHOD:
         return parse_method(arguments, cli, optarg);
+    case DIALECT:
+        return dalcs_verb_take_dialect(cli, optarg, &arguments->dialect);
     case TOL:
         return parse_tolerance(arguments, cli, optarg);
     case STAGES:

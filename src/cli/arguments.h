@@ -9,8 +9,9 @@ struct dalcs_arguments {
     const char *netlist;
     const char **output; /* [n_outputs], at least one; owned array */
     size_t n_outputs;
-    const char *method; /* NULL: the netlist's */
-    double tolerance;   /* 0: the netlist's; so with the next three */
+    const char *dialect; /* NULL: what the netlist shows */
+    const char *method;  /* NULL: the netlist's */
+    double tolerance;    /* 0: the netlist's; so with the next three */
     int stages;
     double step; /* s */
     double compress;

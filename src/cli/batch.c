@@ -9,6 +9,7 @@
 #include "memory.h"
 #include "paths.h"
 #include "run.h"
+#include "verb.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -26,21 +27,30 @@ static const char help[] =
     "                      .plot are printed as tables\n"
     "  -o, --output LOG    write there what would be printed\n"
     "      --ascii         write the raw file as text\n"
+    "      --dialect ngspice|ltspice|xyce\n"
+    "                      for which simulator the netlist was written (default: what it shows)\n"
     "  -a, -n, -i, -p, -s, -D VARIABLE=VALUE\n"
     "                      are ngspice's and have no meaning here\n"
     "  -h, --help          this text\n"
     "\n"
     "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n";
 
-enum { ASCII = 256 };
+enum { ASCII = 256, DIALECT };
 
 static const struct option option[] = {
-    {"batch", no_argument, NULL, 'b'},        {"rawfile", required_argument, NULL, 'r'},
-    {"output", required_argument, NULL, 'o'}, {"ascii", no_argument, NULL, ASCII},
-    {"autorun", no_argument, NULL, 'a'},      {"no-spiceinit", no_argument, NULL, 'n'},
-    {"interactive", no_argument, NULL, 'i'},  {"pipe", no_argument, NULL, 'p'},
-    {"server", no_argument, NULL, 's'},       {"define", required_argument, NULL, 'D'},
-    {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
+    {"batch", no_argument, NULL, 'b'},
+    {"rawfile", required_argument, NULL, 'r'},
+    {"output", required_argument, NULL, 'o'},
+    {"ascii", no_argument, NULL, ASCII},
+    {"autorun", no_argument, NULL, 'a'},
+    {"no-spiceinit", no_argument, NULL, 'n'},
+    {"interactive", no_argument, NULL, 'i'},
+    {"pipe", no_argument, NULL, 'p'},
+    {"server", no_argument, NULL, 's'},
+    {"define", required_argument, NULL, 'D'},
+    {"dialect", required_argument, NULL, DIALECT},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
 };
 
 struct batch {
@@ -72,6 +82,9 @@ static enum dalcs_status parse(struct batch *b, const struct dalcs_cli *cli, int
             break;
         case ASCII:
             b->arguments.ascii = true;
+            break;
+        case DIALECT:
+            DALCS_TRY(dalcs_verb_take_dialect(cli, optarg, &b->arguments.dialect));
             break;
         case 'h':
             b->help = true;

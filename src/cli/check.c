@@ -17,6 +17,8 @@ static const char help[] =
     "      --step H    the step in s of the conditions that speak of one step (default: .options\n"
     "                  step, else that of .tran, else 1u)\n"
     "      --all       every condition with its numbers and witnesses\n"
+    "      --dialect ngspice|ltspice|xyce\n"
+    "                  for which simulator the netlist was written (default: what it shows)\n"
     "      --json      all of it as JSON, by doc/check.schema.json\n"
     "  -h, --help      this text\n"
     "\n"
@@ -29,18 +31,19 @@ static const char help[] =
     "4\n"
     "input/output\n";
 
-enum { STEP = 256, ALL, JSON };
+enum { STEP = 256, ALL, DIALECT, JSON };
 
 static const struct option option[] = {
     {"step", required_argument, NULL, STEP},
     {"all", no_argument, NULL, ALL},
+    {"dialect", required_argument, NULL, DIALECT},
     {"json", no_argument, NULL, JSON},
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
 };
 
 struct arguments {
-    const char *netlist;
+    const char *netlist, *dialect;
     double step;
     bool all, json, help;
 };
@@ -54,6 +57,9 @@ static enum dalcs_status parse(struct arguments *arguments, const struct dalcs_c
         switch (code) {
         case STEP:
             DALCS_TRY(dalcs_verb_take_positive(cli, "--step", optarg, &arguments->step));
+            break;
+        case DIALECT:
+            DALCS_TRY(dalcs_verb_take_dialect(cli, optarg, &arguments->dialect));
             break;
         case ALL:
             arguments->all = true;
@@ -89,7 +95,7 @@ static enum dalcs_status check_netlist(const struct dalcs_cli *cli,
                                        const struct arguments *arguments,
                                        struct dalcs_session *session) {
     const struct dalcs_check *check = NULL;
-    enum dalcs_status status = dalcs_session_read_file(session, arguments->netlist);
+    enum dalcs_status status = dalcs_verb_read(session, arguments->netlist, arguments->dialect);
     if (status == DALCS_OK) {
         status = dalcs_session_check(session, arguments->step, &check);
     }

@@ -21,6 +21,8 @@ static const char help[] =
     "      --methods LIST    of dalcs, separated by commas: auto, radau, euler (default: "
     "auto,euler);\n"
     "                        the first is the one that is compared signal by signal\n"
+    "      --dialect ngspice|ltspice|xyce\n"
+    "                        for which simulator the netlist was written (default: what it shows)\n"
     "  -o, --output FILE     write a page with tables, figures and both netlists: .html; the "
     "figures\n"
     "                        need gnuplot\n"
@@ -40,11 +42,12 @@ static const char help[] =
     "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output, no "
     "ngspice\n";
 
-enum { WITH = 256, METHODS, LIMIT_OPTION, WITHIN };
+enum { WITH = 256, METHODS, DIALECT, LIMIT_OPTION, WITHIN };
 
 static const struct option option[] = {
     {"with", required_argument, NULL, WITH},
     {"methods", required_argument, NULL, METHODS},
+    {"dialect", required_argument, NULL, DIALECT},
     {"output", required_argument, NULL, 'o'},
     {"limit", required_argument, NULL, LIMIT_OPTION},
     {"within", required_argument, NULL, WITHIN},
@@ -54,7 +57,7 @@ static const struct option option[] = {
 };
 
 struct arguments {
-    const char *netlist, *with, *output;
+    const char *netlist, *dialect, *with, *output;
     const char *method[DALCS_MAX_METHODS];
     size_t n_methods;
     double limit, within; /* s, and over a signal's scale; 0: not asked */
@@ -99,6 +102,8 @@ static enum dalcs_status take(struct arguments *a, const struct dalcs_cli *cli, 
         return take_with(a, cli, optarg);
     case METHODS:
         return take_methods(a, cli, optarg);
+    case DIALECT:
+        return dalcs_verb_take_dialect(cli, optarg, &a->dialect);
     case LIMIT_OPTION:
         return dalcs_verb_take_positive(cli, "--limit", optarg, &a->limit);
     case WITHIN:
@@ -200,7 +205,7 @@ static enum dalcs_status open_and_compare(const struct dalcs_cli *cli, const str
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         return DALCS_E_NOMEM;
     }
-    enum dalcs_status status = dalcs_verb_open(cli, a->netlist, &session, &n_messages);
+    enum dalcs_status status = dalcs_verb_open(cli, a->netlist, a->dialect, &session, &n_messages);
     if (status == DALCS_OK) {
         c->path = a->netlist;
         c->session = session;

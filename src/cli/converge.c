@@ -28,6 +28,8 @@ static const char help[] =
     "      --methods LIST    euler, radau (with 3, 5 and 7 stages), radau1, radau3, radau5, "
     "radau7,\n"
     "                        separated by commas (default: euler,radau)\n"
+    "      --dialect ngspice|ltspice|xyce\n"
+    "                        for which simulator the netlist was written (default: what it shows)\n"
     "  -o, --output FILE     write a page with a figure, drawn by gnuplot, .html, or the table, "
     ".csv\n"
     "  -q, --quiet           print nothing but warnings and errors\n"
@@ -39,16 +41,20 @@ static const char help[] =
     "\n"
     "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n";
 
-enum { STEPS = 256, METHODS };
+enum { STEPS = 256, METHODS, DIALECT };
 
 static const struct option option[] = {
-    {"steps", required_argument, NULL, STEPS}, {"methods", required_argument, NULL, METHODS},
-    {"output", required_argument, NULL, 'o'},  {"quiet", no_argument, NULL, 'q'},
-    {"help", no_argument, NULL, 'h'},          {NULL, 0, NULL, 0},
+    {"steps", required_argument, NULL, STEPS},
+    {"methods", required_argument, NULL, METHODS},
+    {"output", required_argument, NULL, 'o'},
+    {"quiet", no_argument, NULL, 'q'},
+    {"dialect", required_argument, NULL, DIALECT},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
 };
 
 struct arguments {
-    const char *netlist, *output;
+    const char *netlist, *dialect, *output;
     double step[MOST_STEPS]; /* s, falling */
     size_t n_steps;
     struct dalcs_stepping stepping[MOST_STEPPINGS];
@@ -187,6 +193,8 @@ static enum dalcs_status take(struct arguments *a, const struct dalcs_cli *cli, 
         return take_steps(a, cli, optarg);
     case METHODS:
         return take_methods(a, cli, optarg);
+    case DIALECT:
+        return dalcs_verb_take_dialect(cli, optarg, &a->dialect);
     case 'o':
         a->output = optarg;
         return DALCS_OK;
@@ -288,7 +296,7 @@ enum dalcs_exit dalcs_cli_converge(const struct dalcs_cli *cli, int argc, char *
     }
     struct dalcs_session *session = NULL;
     size_t n_messages = 0;
-    status = dalcs_verb_open(cli, arguments.netlist, &session, &n_messages);
+    status = dalcs_verb_open(cli, arguments.netlist, arguments.dialect, &session, &n_messages);
     if (status == DALCS_OK) {
         const struct dalcs_request request = dalcs_session_request(session);
         status = check_steps(cli, &arguments, &request);

@@ -26,6 +26,8 @@ static const char help[] =
     "Euler\n"
     "                      of length --step solves); default: dalcs\n"
     "      --step H        s, of --form osnsp; SPICE suffixes allowed\n"
+    "      --dialect ngspice|ltspice|xyce\n"
+    "                      for which simulator the netlist was written (default: what it shows)\n"
     "  -h, --help          this text\n"
     "\n"
     "examples:\n"
@@ -37,7 +39,7 @@ static const char help[] =
     "exit status: 0 ok, 1 it failed, 2 usage, 3 error in the netlist, 4 input/output\n";
 
 struct request {
-    const char *netlist, *output;
+    const char *netlist, *output, *dialect;
     bool help;
     enum dalcs_equations_format format;
     enum dalcs_equations_form form;
@@ -54,12 +56,16 @@ struct files {
 
 /* ---- The command line ----------------------------------------------------------------------- */
 
-enum { FORMAT = 256, FORM, STEP };
+enum { FORMAT = 256, FORM, STEP, DIALECT };
 
 static const struct option option[] = {
-    {"output", required_argument, NULL, 'o'}, {"format", required_argument, NULL, FORMAT},
-    {"form", required_argument, NULL, FORM},  {"step", required_argument, NULL, STEP},
-    {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
+    {"output", required_argument, NULL, 'o'},
+    {"format", required_argument, NULL, FORMAT},
+    {"form", required_argument, NULL, FORM},
+    {"step", required_argument, NULL, STEP},
+    {"dialect", required_argument, NULL, DIALECT},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
 };
 
 static const char *const FORMATS[] = {[DALCS_EQUATIONS_TEXT] = "text",
@@ -105,6 +111,8 @@ static enum dalcs_status take(struct request *r, const struct dalcs_cli *cli, in
         return DALCS_OK;
     case STEP:
         return dalcs_verb_take_positive(cli, "--step", optarg, &r->step);
+    case DIALECT:
+        return dalcs_verb_take_dialect(cli, optarg, &r->dialect);
     case 'h':
         r->help = true;
         return DALCS_OK;
@@ -263,7 +271,7 @@ enum dalcs_exit dalcs_cli_equations(const struct dalcs_cli *cli, int argc, char 
     size_t n_written = 0;
     status = dalcs_session_create(&session);
     if (status == DALCS_OK) {
-        status = dalcs_session_read_file(session, request.netlist);
+        status = dalcs_verb_read(session, request.netlist, request.dialect);
         dalcs_cli_write_messages(cli, session, &n_written, false);
     }
     if (status == DALCS_E_NOMEM || (status != DALCS_OK && n_written == 0)) {

@@ -11,6 +11,7 @@
 #include "script.h"
 #include "summary.h"
 #include "times.h"
+#include "verb.h"
 
 #include <math.h>
 #include <string.h>
@@ -59,6 +60,8 @@ static const char help[] =
     "      --all-signals   print the measurements of all signals, not of the first 24\n"
     "      --energy        print where the energy came from and where it went\n"
     "      --ascii         write raw files as text (default: .options filetype, else binary)\n"
+    "      --dialect ngspice|ltspice|xyce\n"
+    "                      for which simulator the netlist was written (default: what it shows)\n"
     "      --split-steps   in a raw file, make each step of .step a plot of its own\n"
     "  -q, --quiet         print nothing but warnings and errors\n"
     "  -h, --help          this text\n"
@@ -238,7 +241,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
                                      const struct dalcs_arguments *arguments,
                                      struct dalcs_session *session) {
     size_t n_written = 0;
-    enum dalcs_status status = dalcs_session_read_file(session, arguments->netlist);
+    enum dalcs_status status = dalcs_verb_read(session, arguments->netlist, arguments->dialect);
     dalcs_cli_write_messages(cli, session, &n_written, arguments->quiet);
     if (status != DALCS_OK) {
         if (n_written == 0) {

@@ -60,6 +60,28 @@ enum dalcs_status dalcs_verb_take_positive(const struct dalcs_cli *cli, const ch
     return DALCS_OK;
 }
 
+enum dalcs_status dalcs_verb_take_dialect(const struct dalcs_cli *cli, const char *text,
+                                          const char **dialect) {
+    for (size_t n = 0; dalcs_dialect_name(n); n++) {
+        if (strcmp(dalcs_dialect_name(n), text) == 0) {
+            *dialect = text;
+            return DALCS_OK;
+        }
+    }
+    fprintf(cli->err, "dalcs: error: --dialect: unknown dialect '%s'; the dialects are:", text);
+    for (size_t n = 0; dalcs_dialect_name(n); n++) {
+        fprintf(cli->err, " %s", dalcs_dialect_name(n));
+    }
+    fputc('\n', cli->err);
+    return DALCS_E_OPTION;
+}
+
+enum dalcs_status dalcs_verb_read(struct dalcs_session *session, const char *netlist,
+                                  const char *dialect) {
+    DALCS_TRY(dalcs_session_set_dialect(session, dialect));
+    return dalcs_session_read_file(session, netlist);
+}
+
 static bool is_same_file(const char *a, const char *b) {
     struct stat first, second;
     return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
@@ -103,13 +125,14 @@ enum dalcs_status dalcs_verb_split(char *list, const char **part, size_t most, s
 }
 
 enum dalcs_status dalcs_verb_open(const struct dalcs_cli *cli, const char *netlist,
-                                  struct dalcs_session **session, size_t *n_messages) {
+                                  const char *dialect, struct dalcs_session **session,
+                                  size_t *n_messages) {
     enum dalcs_status status = dalcs_session_create(session);
     if (status != DALCS_OK) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
         return status;
     }
-    status = dalcs_session_read_file(*session, netlist);
+    status = dalcs_verb_read(*session, netlist, dialect);
     *n_messages = 0;
     dalcs_cli_write_messages(cli, *session, n_messages, true);
     if (status == DALCS_OK && !dalcs_session_request(*session).transient) {

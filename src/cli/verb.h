@@ -30,9 +30,17 @@ enum dalcs_status dalcs_verb_check_output(const struct dalcs_cli *cli, const cha
 enum dalcs_status dalcs_verb_split(char *list, const char **part, size_t most,
                                    size_t *n) DALCS_MUST_CHECK;
 
+/* The value of --dialect, or a message. */
+enum dalcs_status dalcs_verb_take_dialect(const struct dalcs_cli *cli, const char *text,
+                                          const char **dialect) DALCS_MUST_CHECK;
+
+/* Lets the session read the netlist, in this dialect; NULL: what it shows. */
+enum dalcs_status dalcs_verb_read(struct dalcs_session *session, const char *netlist,
+                                  const char *dialect) DALCS_MUST_CHECK;
+
 /* A session that has read the netlist, which must have a .tran. Messages go to cli->err. */
 enum dalcs_status dalcs_verb_open(const struct dalcs_cli *cli, const char *netlist,
-                                  struct dalcs_session **session,
+                                  const char *dialect, struct dalcs_session **session,
                                   size_t *n_messages) DALCS_MUST_CHECK;
 
 /* The session's messages that came since, errors only; where there are none, the status in words. */

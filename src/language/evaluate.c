@@ -56,7 +56,7 @@ static bool hides_names(const struct dalcs_language *language) {
 
 static const char *suggest_name(struct dalcs_language *language, struct dalcs_scope *scope,
                                 const char *name) {
-    if (dalcs_function_find(name) != NULL) {
+    if (dalcs_function_find(name, language->netlist->dialect.name) != NULL) {
         return dalcs_language_text(language, "'%s' is a function: write %s(...)", name, name);
     }
     if (strcmp(name, "time") == 0) {
@@ -167,7 +167,8 @@ static enum dalcs_outcome call(const struct run *r, const struct dalcs_operation
     if (user != NULL) {
         return call_user(r, o, user);
     }
-    const struct dalcs_function *function = dalcs_function_find(o->u.name);
+    const struct dalcs_function *function =
+        dalcs_function_find(o->u.name, language->netlist->dialect.name);
     if (function == NULL && hides_names(language)) {
         return DALCS_OUTCOME_WRONG;
     }

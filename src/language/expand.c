@@ -408,9 +408,11 @@ static void check_use(const struct call *call, const struct dalcs_scope *inner) 
             continue;
         }
         if (strcmp(name, "m") == 0) {
-            dalcs_language_report(language, DALCS_ERROR, call->scope, extra->name,
-                                  "write as many calls",
-                                  "multiplier 'm' of a subcircuit is not supported yet");
+            if (extra->state == DALCS_VALUE_KNOWN && extra->value != 1) {
+                dalcs_language_report(language, DALCS_ERROR, call->scope, extra->name,
+                                      "write as many calls, with the same nodes",
+                                      "m=%g: a subcircuit is not multiplied", extra->value);
+            }
             continue;
         }
         dalcs_language_report(

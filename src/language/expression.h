@@ -91,7 +91,8 @@ struct dalcs_expression_context {
     const struct dalcs_origin *instance; /* for messages, or NULL */
     const struct dalcs_names *arguments; /* name -> index, of a function's body; else NULL */
     bool has_signals;                    /* v(a), v(a,b) and i(x) are signals */
-    bool *noted_caret;                   /* this and the next: a note about it was made */
+    struct dalcs_dialect dialect;
+    bool *noted_caret; /* this and the next: a note about it was made */
     bool *noted_log;
 };
 
@@ -110,7 +111,7 @@ struct dalcs_function {
 };
 
 /* A function by name, or NULL. */
-const struct dalcs_function *dalcs_function_find(const char *name);
+const struct dalcs_function *dalcs_function_find(const char *name, enum dalcs_dialect_name dialect);
 
 /* Why a function of other simulators is not here, as a hint; NULL for any other name. */
 const char *dalcs_function_refusal(const char *name);

@@ -129,6 +129,15 @@ static void warn_of_capital(struct parser *p, const struct dalcs_number *number)
     }
 }
 
+/* A number that only one other simulator reads so; silent where the netlist is told to be its. */
+static void warn_of_dialect(struct parser *p, const char *text, const struct dalcs_number *number) {
+    const struct dalcs_dialect *dialect = &p->context->dialect;
+    if (number->is_special && !dialect->is_told) {
+        report(p, DALCS_WARNING, p->begin, p->length, NULL, "'%s' is %g, as %s reads it", text,
+               number->value, dialect->name == DALCS_DIALECT_LTSPICE ? "LTspice" : "Xyce");
+    }
+}
+
 static void read_number(struct parser *p) {
     const char *t = p->text->text + p->begin;
     p->length = number_length(t);
@@ -140,9 +149,10 @@ static void read_number(struct parser *p) {
         p->symbol = WRONG;
         return;
     }
-    switch (dalcs_number_parse(copy, &number)) {
+    switch (dalcs_number_parse_as(copy, p->context->dialect.name, &number)) {
     case DALCS_NUMBER_OK:
         p->number = number.value;
+        warn_of_dialect(p, copy, &number);
         warn_of_capital(p, &number);
         if (number.suffix == 'i') {
             report(p, DALCS_WARNING, p->begin, p->length, "write m for milli",
@@ -314,10 +324,25 @@ static void parse_if(struct parser *p, int begin, int length) {
 }
 
 static void note_log(struct parser *p, int begin, int length, const char *name) {
-    if (strcmp(name, "log") == 0 && !*p->context->noted_log) {
+    if (strcmp(name, "log") == 0 && !*p->context->noted_log && !p->context->dialect.is_told) {
         *p->context->noted_log = true;
         report(p, DALCS_WARNING, begin, length, "write ln or log10",
-               "log is the natural logarithm, as in ngspice and LTspice; elsewhere it is log10");
+               p->context->dialect.name == DALCS_DIALECT_XYCE
+                   ? "log is log10, as in Xyce and PSpice; elsewhere it is the natural logarithm"
+                   : "log is the natural logarithm, as in ngspice and LTspice; elsewhere it is "
+                     "log10");
+    }
+}
+
+/* ^, which is a power everywhere but in LTspice, where most people who write it mean one too. */
+static void note_caret(struct parser *p, int begin) {
+    if (p->context->dialect.name == DALCS_DIALECT_LTSPICE) {
+        report(p, DALCS_ERROR, begin, 1, "write ** or pow(x, y) for a power",
+               "^ is exclusive or in LTspice, not a power");
+    } else if (!*p->context->noted_caret && !p->context->dialect.is_told) {
+        *p->context->noted_caret = true;
+        report(p, DALCS_WARNING, begin, 1, "write ** or pow(x, y)",
+               "^ is a power, as in ngspice; in LTspice it is exclusive or");
     }
 }
 
@@ -384,7 +409,7 @@ static void parse_signal(struct parser *p, int begin, const char *name) {
 
 static void parse_call(struct parser *p, int begin, int length, const char *name) {
     const int open = p->begin;
-    const struct dalcs_function *function = dalcs_function_find(name);
+    const struct dalcs_function *function = dalcs_function_find(name, p->context->dialect.name);
     if (p->context->has_signals && (strcmp(name, "v") == 0 || strcmp(name, "i") == 0)) {
         parse_signal(p, begin, name);
         return;
@@ -467,10 +492,8 @@ static void parse_power(struct parser *p, int minus) {
     }
     const int begin = p->begin;
     const int length = p->length;
-    if (length == 1 && !*p->context->noted_caret) {
-        *p->context->noted_caret = true;
-        report(p, DALCS_WARNING, begin, length, "write ** or pow(x, y)",
-               "^ is a power, as in ngspice; in LTspice it is exclusive or");
+    if (length == 1) {
+        note_caret(p, begin);
     }
     if (minus >= 0) {
         report(p, DALCS_ERROR, minus, begin - minus, "write parentheses",

@@ -237,7 +237,8 @@ static void call(struct work *w, const struct frame *f, const struct dalcs_opera
         call_user(w, f, o, user);
         return;
     }
-    const struct dalcs_function *function = dalcs_function_find(o->u.name);
+    const struct dalcs_function *function =
+        dalcs_function_find(o->u.name, w->language->netlist->dialect.name);
     const bool is_wrong =
         function == NULL || o->count < function->least || o->count > function->most;
     if (is_wrong || are_numbers(w, o->count)) {
@@ -349,6 +350,7 @@ const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
                                                      .diag = language->diag,
                                                      .instance = scope->origin,
                                                      .has_signals = true,
+                                                     .dialect = language->netlist->dialect,
                                                      .noted_caret = &language->noted_caret,
                                                      .noted_log = &language->noted_log};
     struct dalcs_expression_text text;
@@ -409,12 +411,28 @@ static int start_of_controlled(const struct dalcs_card *card, bool *is_table) {
     return is_kind(card, k, DALCS_TOKEN_EQUAL) ? k + 1 : k;
 }
 
+int dalcs_formula_find_control(const struct dalcs_card *card) {
+    static const char *const control[] = {"control"};
+    int k = 1;
+    while (k < card->n &&
+           !(is_word(&card->token[k], control, 1) && is_kind(card, k + 1, DALCS_TOKEN_EQUAL))) {
+        k++;
+    }
+    return k;
+}
+
 bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n) {
     bool is_table = false;
     if (card->letter == 'b') {
         *first = start_of_source(card);
     } else if (card->letter == 'e' || card->letter == 'g') {
         *first = start_of_controlled(card, &is_table);
+    } else if (card->letter == 's') {
+        *first = dalcs_formula_find_control(card) + 2;
+        if (is_kind(card, *first, DALCS_TOKEN_EXPRESSION)) {
+            *n = 1;
+            return true;
+        }
     } else {
         return false;
     }

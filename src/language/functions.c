@@ -158,7 +158,10 @@ static const struct dalcs_function FUNCTIONS[] = {
 
 enum { N_FUNCTIONS = sizeof FUNCTIONS / sizeof FUNCTIONS[0] };
 
-const struct dalcs_function *dalcs_function_find(const char *name) {
+const struct dalcs_function *dalcs_function_find(const char *name,
+                                                 enum dalcs_dialect_name dialect) {
+    const bool is_log10 = dialect == DALCS_DIALECT_XYCE && strcmp(name, "log") == 0;
+    name = is_log10 ? "log10" : name;
     for (int k = 0; k < N_FUNCTIONS; k++) {
         if (strcmp(FUNCTIONS[k].name, name) == 0) {
             return &FUNCTIONS[k];

@@ -101,6 +101,9 @@ static void element_roles(const struct dalcs_card *card, const struct shape *sha
     int n_nodes = shape->n_nodes;
     int n_devices = shape->n_devices;
     bool has_model = shape->has_model;
+    if (shape->letter == 's' && dalcs_formula_find_control(card) < card->n) {
+        n_nodes = 2; /* its control is a formula */
+    }
     for (int k = 1; k < card->n; k++) {
         if (token[k].kind != DALCS_TOKEN_WORD) {
             continue;
@@ -164,9 +167,14 @@ static void signal_roles(const struct dalcs_card *card, unsigned char *role) {
     }
 }
 
-/* Formulas of measurements. */
-static bool measures(const struct dalcs_card *card) {
-    return is_word(card->token, ".meas") || is_word(card->token, ".measure");
+/* Formulas of measurements, and on cards that name signals, where their reader refuses them. */
+static bool has_formulas(const struct dalcs_card *card) {
+    static const char *const cards[] = {".meas", ".measure", ".save", ".print", ".plot", ".probe"};
+    bool found = false;
+    for (size_t k = 0; k < sizeof cards / sizeof cards[0]; k++) {
+        found = found || is_word(card->token, cards[k]);
+    }
+    return found;
 }
 
 static void formula_roles(const struct dalcs_card *card, unsigned char *role) {
@@ -189,9 +197,13 @@ void dalcs_roles(const struct dalcs_card *card, unsigned char *role) {
         block_roles(card, role);
     } else if (card->letter == 'k') {
         coupling_roles(card, role);
-    } else if (measures(card)) {
-        formula_roles(card, role);
     } else if (card->letter == '.' && strcmp(card->token->text, ".model") != 0) {
-        signal_roles(card, role);
+        const bool is_measure = is_word(card->token, ".meas") || is_word(card->token, ".measure");
+        if (!is_measure) {
+            signal_roles(card, role);
+        }
+        if (has_formulas(card)) {
+            formula_roles(card, role);
+        }
     }
 }

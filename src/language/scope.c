@@ -119,6 +119,7 @@ bool dalcs_scope_compile(struct dalcs_language *language, const struct dalcs_sco
                                                              scope != NULL ? scope->origin : NULL,
                                                          .arguments = arguments,
                                                          .has_signals = arguments != NULL,
+                                                         .dialect = language->netlist->dialect,
                                                          .noted_caret = &language->noted_caret,
                                                          .noted_log = &language->noted_log};
         struct dalcs_expression_text text;

@@ -124,7 +124,9 @@ static enum dalcs_status read_first(struct dalcs_netlist *netlist, const char *n
             return DALCS_E_NOMEM;
         }
     }
-    return dalcs_source_read(netlist, source, text, length, NULL, diag);
+    DALCS_TRY(dalcs_source_read(netlist, source, text, length, NULL, diag));
+    dalcs_dialect_settle(netlist, diag);
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_netlist_read_text(struct dalcs_netlist *netlist, const char *name,

@@ -10,6 +10,7 @@
 #define DALCS_NETLIST_H
 
 #include "diag.h"
+#include "dialect.h"
 
 struct dalcs_formula;
 
@@ -65,10 +66,11 @@ struct dalcs_card {
     char letter; /* the first of its first word, before a subcircuit call puts its name there */
 };
 
-/* Zero-initialise, set no_includes and most_cards if wanted, read, then finish. */
+/* Zero-initialise, set the first three if wanted, read, then finish. */
 struct dalcs_netlist {
-    bool no_includes;  /* refuse .include and .lib: no other file is read */
-    size_t most_cards; /* that subcircuit calls may expand to; 0: DALCS_MOST_CARDS */
+    bool no_includes;             /* refuse .include and .lib: no other file is read */
+    size_t most_cards;            /* that subcircuit calls may expand to; 0: DALCS_MOST_CARDS */
+    struct dalcs_dialect dialect; /* once it is read: what it is written in */
 
     const char *name; /* the file's path, or what read_text was told */
     const char *title;

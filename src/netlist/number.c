@@ -137,6 +137,23 @@ static double convert_short(const struct mantissa *m, int power) {
     return power < 0 ? whole / ten[-power] : whole * ten[power];
 }
 
+/* LTspice's 4k7, 2R2: the suffix at p stands for the point. Reads the digits behind it; the first byte
+ * after them, or p when this is something else. */
+static const char *read_rkm(const char *p, struct dalcs_number *number, struct mantissa *m,
+                            int *power) {
+    const bool is_plain = lower(*p) == 'r' || lower(*p) == 'v';
+    const char *q = is_plain ? p + 1 : p + read_suffix(p, &number->suffix, power);
+    if (q == p || !is_digit(*q) || number->suffix == 'i' || number->suffix == 'a') {
+        return p;
+    }
+    number->suffix = is_plain ? 0 : number->suffix;
+    number->is_special = true;
+    for (; is_digit(*q); q++) {
+        add_digit(m, *q, true);
+    }
+    return q;
+}
+
 static double convert(const struct mantissa *m, long long power, bool negative) {
     char buffer[MAX_DIGITS + 40];
     if (m->n == 0) {
@@ -153,7 +170,8 @@ static double convert(const struct mantissa *m, long long power, bool negative) 
     return strtod(buffer, NULL);
 }
 
-enum dalcs_number_status dalcs_number_parse(const char *text, struct dalcs_number *number) {
+enum dalcs_number_status dalcs_number_parse_as(const char *text, enum dalcs_dialect_name dialect,
+                                               struct dalcs_number *number) {
     const char *p = text;
     const bool negative = *p == '-';
     p += *p == '-' || *p == '+';
@@ -162,10 +180,13 @@ enum dalcs_number_status dalcs_number_parse(const char *text, struct dalcs_numbe
     m.n = 0;
     m.power = 0;
     m.sticky = false;
+    const char *digits = p;
     p = read_mantissa(p, &m);
     if (p == NULL) {
         return DALCS_NUMBER_MALFORMED;
     }
+    const bool is_whole = memchr(digits, '.', (size_t)(p - digits)) == NULL;
+    const char *mantissa_end = p;
     long long exponent = 0;
     p = read_exponent(p, &exponent);
     if (p - text > INT_MAX / 2) {
@@ -173,9 +194,19 @@ enum dalcs_number_status dalcs_number_parse(const char *text, struct dalcs_numbe
     }
     struct dalcs_number result = {.digits = (int)(p - text)};
 
-    int suffix_power;
+    int suffix_power = 0;
     const char *suffix = p;
-    p += read_suffix(p, &result.suffix, &suffix_power);
+    if (dialect == DALCS_DIALECT_LTSPICE && is_whole && p == mantissa_end) {
+        p = read_rkm(p, &result, &m, &suffix_power);
+    } else if (dialect == DALCS_DIALECT_XYCE && lower(*p) == 'x') {
+        result.suffix = 'x';
+        result.is_special = true;
+        suffix_power = 6;
+        p++;
+    }
+    if (!result.is_special) {
+        p += read_suffix(p, &result.suffix, &suffix_power);
+    }
     result.tail = (int)(p - text);
     while (is_unit_letter(*p)) {
         p++;
@@ -199,4 +230,8 @@ enum dalcs_number_status dalcs_number_parse(const char *text, struct dalcs_numbe
     }
     *number = result;
     return DALCS_NUMBER_OK;
+}
+
+enum dalcs_number_status dalcs_number_parse(const char *text, struct dalcs_number *number) {
+    return dalcs_number_parse_as(text, DALCS_DIALECT_UNKNOWN, number);
 }

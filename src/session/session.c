@@ -90,7 +90,7 @@ static enum dalcs_status read_netlist(struct dalcs_session *s, const char *path,
     if (text == NULL ? dalcs_description_is_file(path) : dalcs_description_is_text(text, length)) {
         return read_system(s, path, text, length);
     }
-    struct dalcs_netlist netlist = {0};
+    struct dalcs_netlist netlist = {.dialect = s->dialect};
     enum dalcs_status status =
         text == NULL ? dalcs_netlist_read_file(&netlist, path, &s->diag)
                      : dalcs_netlist_read_text(&netlist, path, text, length, &s->diag);
@@ -113,6 +113,20 @@ static enum dalcs_status read_netlist(struct dalcs_session *s, const char *path,
         s->has_network = status == DALCS_OK;
     }
     return status;
+}
+
+enum dalcs_status dalcs_session_set_dialect(struct dalcs_session *session, const char *name) {
+    struct dalcs_dialect dialect = {DALCS_DIALECT_UNKNOWN, name != NULL};
+    if (session->name != NULL) {
+        return DALCS_E_OPTION; /* it is read */
+    }
+    if (name != NULL && !dalcs_dialect_find(name, &dialect.name)) {
+        dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, DALCS_DIALECTS, "unknown dialect '%s'",
+                       name);
+        return DALCS_E_OPTION;
+    }
+    session->dialect = dialect;
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_session_read_file(struct dalcs_session *session, const char *path) {

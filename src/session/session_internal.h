@@ -11,6 +11,7 @@
 
 struct dalcs_session {
     char *name;
+    struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
     struct dalcs_diag diag;
     struct dalcs_circuit circuit;
     bool has_circuit;

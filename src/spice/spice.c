@@ -298,7 +298,10 @@ static enum dalcs_status write_initial_conditions(const struct writer *w) {
 static void write_analysis(const struct writer *w) {
     const struct dalcs_transient *t = &w->circuit->transient;
     const struct dalcs_spice_options *o = w->options;
-    double netlists = t->max_step > 0.0 ? t->max_step : t->step;
+    double netlists = t->max_step > 0.0     ? t->max_step
+                      : t->step > 0.0       ? t->step
+                      : t->first_step > 0.0 ? t->first_step
+                                            : t->stop / 1000.0;
     double step = o->max_step > 0.0 ? o->max_step : netlists;
     fprintf(w->stream, ".options method=%s", o->method);
     if (o->reltol > 0.0) {

@@ -135,6 +135,21 @@ G1 k 0 POLY(2) b 0 g 0 1 2 3
 .save v(d) i(l1) i(g1) i(d1) i(v1)
 .end
 """, 0),
+    "dialect": ("""A netlist told to be LTspice's, and what its and Xyce's switches have
+.options dialect=ltspice gmin=1n itl4=10
+V1 a 0 SIN(0 4k7 1)
+L1 a b 1m
+L2 b 0 1m
+L3 c 0 2m
+K1 L2 L3 0.5
+R1 c 0 2R2
+S1 a d m1 CONTROL={2*v(a)-1}
+R2 d 0 1k
+.model m1 SW(Ron=1 Roff=1Meg Vt=1 Lser=1m Vser=0.6)
+.save v(*) i(*)
+.tran 1
+.end
+""", 0),
     "switched": ("""Coupled inductors, controlled sources, an ideal switch
 Vin in 0 12
 Vg g 0 PULSE(0 1 0 0 0 4u 10u)

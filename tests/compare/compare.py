@@ -88,6 +88,11 @@ class Compare(unittest.TestCase):
         self.assertRegex(out, r"v\(out\) +(?:9\.\d+|10) V +\d\.\de-(0[7-9]|1\d) +\d\.\de-0[4-9] +\d\.\de-0[12]\n")
         self.assertIn("dalcs as it comes is more exact", out)
 
+    def test_without_a_first_time(self):
+        """ngspice has no .tran of one time, and 0 is no step for it."""
+        netlist = self.write("a.cir", SMOOTH.replace(".tran 50u 4m", ".tran 4m"))
+        self.compare(netlist, "--within", "1e-3")
+
     def test_planted_difference(self):
         netlist = self.write("a.cir", HALF_WAVE)
         done = self.compare(netlist, "--with", self.pretender(TAMPERED), "--within", "1e-3",

@@ -109,7 +109,8 @@ def switches(checker, program):
             ("W1 d b Vm m", "m CSW(It=1 Ih=0.25)", 1.25e-3, 5.25e-3),
             ("W1 d b Vm m OFF", "m CSW(It=2)", 2e-3, 4e-3),
             ("W1 d b Vm m", "m ISWITCH(Ion=2 Ioff=1)", 1.5e-3, 4.5e-3),
-            ("W1 d b Vm m", "m ISWITCH(It=1.5 Ih=1)", 2.5e-3, 5.5e-3)):
+            ("W1 d b Vm m", "m ISWITCH(It=1.5 Ih=1)", 2.5e-3, 5.5e-3),
+            ("W1 d b Vm m", "m ISWITCH(IHon=2 IHoff=0.5)", 2e-3, 5.5e-3)):
         case = Case(checker, program, BY_CURRENT.format(switch=switch, model=model),
                     around(on, off))
         switched_on(case, (on, off))
@@ -117,7 +118,8 @@ def switches(checker, program):
                            ("m SW(Vt=1 Vh=-0.25)", 1e-3, 5e-3),
                            ("m VSWITCH(Von=2 Voff=1)", 1.5e-3, 4.5e-3),
                            ("m VSWITCH", 0.5e-3, 5.5e-3),
-                           ("m VSWITCH(Vt=1 Vh=0.25)", 1.25e-3, 5.25e-3)):
+                           ("m VSWITCH(Vt=1 Vh=0.25)", 1.25e-3, 5.25e-3),
+                           ("m VSWITCH(VHon=2 VHoff=0.5)", 2e-3, 5.5e-3)):
         case = Case(checker, program, BY_VOLTAGE.format(model=model), around(on, off))
         switched_on(case, (on, off))
     # Inverted: on below the middle.
@@ -127,10 +129,52 @@ def switches(checker, program):
         case = Case(checker, program, netlist, around(1.5e-3, 4.5e-3))
         for time, wanted in ((1.499e-3, 1), (1.501e-3, 0), (4.499e-3, 0), (4.501e-3, 1)):
             case.is_at("v(b)", time, wanted)
+    case = Case(checker, program, BY_VOLTAGE.format(model="m VSWITCH(VHon=1 VHoff=2)"),
+                around(2e-3, 5e-3))
+    for time, wanted in ((1.999e-3, 1), (2.001e-3, 0), (4.999e-3, 0), (5.001e-3, 1)):
+        case.is_at("v(b)", time, wanted)
     # A closed loop: inverted, the switch opens where the current passes 0.5 A.
     case = Case(checker, program, OF_ITSELF.format(model="ISWITCH(Ion=0 Ioff=1)"))
     case.is_at("i(l1)", 50e-6, 1 - math.exp(-0.5))
     case.is_at("i(l1)", 100e-6, 0.5)
+
+
+# CONTROL= is a source of its own; nothing of it is recorded.
+CONTROLLED = """switches by formulas, {what}
+V1 in 0 SIN(0 5 1k)
+Vx x 0 SIN(1 2 3k 0 0 90)
+Rx x 0 2
+{first}
+R1 a 0 10
+X1 in x b sub
+R2 b 0 10
+.subckt sub p q r k=0.5
+{second}
+.model m SW(Ron=1 Roff=1Meg Vt=1 Vh=0.5)
+.ends
+.model m1 VSWITCH(Ron=1 Roff=1Meg VHon=2 VHoff=-1)
+.save v(a) v(b) i(s1) i(x1.s1) v(in)
+.tran 10u 2m
+"""
+
+
+def controls(checker, program):
+    times = [k * 17e-6 for k in range(1, 110)]
+    one = Case(checker, program, CONTROLLED.format(
+        what="one card", first="S1 in a m1 ON CONTROL={2*v(in)+4*i(Rx)-1}",
+        second="S1 p r m CONTROL={k*v(p,q)+u(v(q)-2.9)}"), times)
+    two = Case(checker, program, CONTROLLED.format(
+        what="two cards", first="E1 c 0 VALUE={2*v(in)+4*i(Rx)-1}\nS1 in a c 0 m1 ON",
+        second="B1 c 0 V={k*v(p,q)+u(v(q)-2.9)}\nS1 p r c 0 m"), times)
+    for signal in one.result.names[1:]:
+        for t in times:
+            one.is_at(signal, t, two.result.at(signal, t), 1e-9)
+    checker.check(min(one.result.column("i(s1)")) < -0.05 < 0.4 < max(one.result.column("i(s1)")),
+                  "the switch moves")
+    every = Case(checker, program, "all\nV1 a 0 1\nS1 a b m CONTROL={v(a)}\nR1 b 0 1\n"
+                 ".model m SW(Vt=0.5)\n.tran 1u 10u\n.end\n")
+    checker.check(every.result.names == ["time", "v(a)", "v(b)", "i(v1)", "i(s1)"],
+                  f"recorded: {every.result.names}")
 
 
 # ---- Parasitics --------------------------------------------------------------------------------
@@ -149,6 +193,10 @@ PARASITICS = (
      "Rt b t 0\nRs t x 1\nL1 x 0 0.5m ic=20m\nRp t 0 100\nCp t 0 20n", "i(rt)"),
     ("L1 b 0 1m Rser=0", "L1 b 0 1m", "i(l1)"),
     ("R1 b 0 100 m=4", "R1 b 0 25", "i(r1)"),
+    ("S1 b 0 a 0 m1\n.model m1 SW(Ron=2 Roff=1k Vt=1 Lser=1u Vser=0.6)",
+     "Ls b x 1u\nVs x y 0.6\nS1 y 0 a 0 m1\n.model m1 SW(Ron=2 Roff=1k Vt=1)", "i(ls)"),
+    ("W1 b 0 V1 m1\n.model m1 ISWITCH(Ron=2 Roff=1k IHon=-0.2 IHoff=-0.1 Vser=-0.6)",
+     "Vs b x -0.6\nW1 x 0 V1 m1\n.model m1 ISWITCH(Ron=2 Roff=1k IHon=-0.2 IHoff=-0.1)", "i(w1)"),
     ("Vx b 0 SIN(0 3 20k) Rser=2", "Rs b x 2\nVx x 0 SIN(0 3 20k)", "i(rs)"),
     ("Vx b 0 1 Rser=2 Cpar=1u AC 1", "Rt b t 0\nRs t x 2\nVx x 0 1\nCp t 0 1u", "i(rt)"),
 )
@@ -159,6 +207,17 @@ R9 a b 10
 .save v(b) {current}
 .tran 1u 100u uic
 """
+
+
+def many(checker, program):
+    """Room for the parts of every card: coils and switches that bring two devices each, and controls."""
+    n = 2000
+    text = ["many", ".options dialect=ltspice", "V1 a 0 1", ".model m SW(Vt=0.5 Lser=1u Vser=0.25)"]
+    text += [f"S{k} a s{k} m CONTROL={{v(a)}}\nR{k} s{k} 0 1" for k in range(n)]
+    text += [f"L{k} a l{k} 1u\nRl{k} l{k} 0 1" for k in range(n)]
+    case = Case(checker, program, "\n".join(text + [".save v(s7) v(l7)", ".op", ".end"]) + "\n")
+    case.is_at("v(s7)", 0, 0.75)
+    case.is_at("v(l7)", 0, 1 / 1.001)
 
 
 def parasitics(checker, program):
@@ -346,7 +405,7 @@ def diodes(checker, program):
 
 def main():
     checker = Checker("elements")
-    for part in (couplings, switches, sources, parasitics, diodes, polynomials):
+    for part in (couplings, switches, controls, many, sources, parasitics, diodes, polynomials):
         part(checker, sys.argv[1])
     return checker.finish()
 

@@ -419,10 +419,11 @@ R3 tri 0 1
 .tran 10u 7.3m
 .four 1k v(sq)
 .four 1k 15 3 v(out) v(tri)
+.four 1k 5 -1 v(sq)
 .end
 """, method=None, tolerance=1e-13)
     checker.check(run.status == 0, run.stderr)
-    square, half, triangle = run.report["fourier"]
+    square, half, triangle, whole = run.report["fourier"]
 
     def check(entry, k, wanted, what):
         """wanted: the coefficient of exp(2 pi i k f t), of sines."""
@@ -446,6 +447,8 @@ R3 tri 0 1
     checker.close(half["magnitude"][0], 10 / PI, CLOSE, "half wave: mean")
     checker.close(square["thd"], math.sqrt(sum(1 / k**2 for k in (3, 5, 7, 9))), CLOSE, "thd")
     checker.close(half["from"], 4.3e-3, 1e-15, "half wave: window")
+    checker.close(whole["from"], 0.3e-3, 1e-15, "all whole periods: window")
+    checker.close(whole["magnitude"][3], 4 / PI / 3, CLOSE, "all whole periods")
 
 
 def main():

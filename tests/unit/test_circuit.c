@@ -297,6 +297,24 @@ START_TEST(test_signals) {
     ck_assert_str_eq(circuit.signal[0].name, "i(r1)");
     ck_assert_str_eq(circuit.signal[2].name, "v(b)");
     dalcs_circuit_finish(&circuit);
+
+    snprintf(named, sizeof named, "%s%s", netlist, "C2 a 0 1 Rser=1 Rpar=2\n.save i(*) alli\n");
+    build_good_circuit(&circuit, named);
+    static const char *const currents[] = {"i(d1)", "i(v1)", "i(r1)", "i(l1)", "i(c1)", "i(s1)",
+                                           "i(e1)", "i(h1)", "i(g1)", "i(f1)", "i(i1)", "i(c2)"};
+    check_signals(currents, 12);
+    dalcs_circuit_finish(&circuit);
+
+    snprintf(named, sizeof named, "%s%s", netlist, "C2 a 0 1 Rser=1\n.save v(*)\n");
+    build_good_circuit(&circuit, named);
+    static const char *const voltages[] = {"v(b)", "v(c)", "v(a)", "v(e)", "v(h)"};
+    check_signals(voltages, 5);
+    dalcs_circuit_finish(&circuit);
+
+    snprintf(named, sizeof named, "%s%s", netlist, ".probe alli\n");
+    build_good_circuit(&circuit, named);
+    ck_assert_int_eq(circuit.n_signals, 16); /* 5 voltages and all elements */
+    dalcs_circuit_finish(&circuit);
 }
 
 END_TEST

@@ -112,6 +112,42 @@ START_TEST(test_many_digits) {
 
 END_TEST
 
+static void check_value_as(const char *text, enum dalcs_dialect_name dialect, double wanted) {
+    struct dalcs_number number;
+    ck_assert_msg(dalcs_number_parse_as(text, dialect, &number) == DALCS_NUMBER_OK, "%s", text);
+    ck_assert_msg(number.value == wanted, "%s is %.17g, not %.17g", text, number.value, wanted);
+}
+
+START_TEST(test_dialects) {
+    static const char *const refused[] = {"4.7k2", "1e3k5", "1mil5", "1a5", "4k7k7", "4q7"};
+    struct dalcs_number number;
+    check_value_as("4k7", DALCS_DIALECT_LTSPICE, 4700);
+    check_value_as("-6K34ohm", DALCS_DIALECT_LTSPICE, -6340);
+    check_value_as("2R2", DALCS_DIALECT_LTSPICE, 2.2);
+    check_value_as("5v0", DALCS_DIALECT_LTSPICE, 5);
+    check_value_as("1meg5", DALCS_DIALECT_LTSPICE, 1.5e6);
+    check_value_as("1u5", DALCS_DIALECT_LTSPICE, 1.5e-6);
+    check_value_as("0\xC2\xB5"
+                   "47F",
+                   DALCS_DIALECT_LTSPICE, 0.47e-6);
+    check_value_as("4.7k", DALCS_DIALECT_LTSPICE, 4700);
+    check_value_as("2r", DALCS_DIALECT_LTSPICE, 2);
+    check_value_as("1x", DALCS_DIALECT_LTSPICE, 1);
+    for (size_t k = 0; k < sizeof refused / sizeof refused[0]; k++) {
+        ck_assert_msg(dalcs_number_parse_as(refused[k], DALCS_DIALECT_LTSPICE, &number) ==
+                          DALCS_NUMBER_RKM,
+                      "%s", refused[k]);
+    }
+    check_value_as("2.5x", DALCS_DIALECT_XYCE, 2.5e6);
+    check_value_as("1e-3XOhm", DALCS_DIALECT_XYCE, 1e3);
+    check_value_as("2.5x", DALCS_DIALECT_NGSPICE, 2.5);
+    ck_assert_int_eq(dalcs_number_parse_as("4k7", DALCS_DIALECT_XYCE, &number), DALCS_NUMBER_RKM);
+    ck_assert_int_eq(dalcs_number_parse_as("4k7", DALCS_DIALECT_NGSPICE, &number),
+                     DALCS_NUMBER_RKM);
+}
+
+END_TEST
+
 START_TEST(test_refusals) {
     static const char *const malformed[] = {"",    "-",    "+",   ".",     "abc", "1..5", "1.2.3",
                                             "1e",  "1e+",  "1,5", "k",     "--1", "1-",   "1k-",
@@ -158,5 +194,5 @@ START_TEST(test_ignores_the_locale) {
 
 END_TEST
 
-RUN_TESTS("number", test_values, test_suffixes, test_rounding, test_many_digits, test_refusals,
-          test_parts, test_ignores_the_locale)
+RUN_TESTS("number", test_values, test_suffixes, test_rounding, test_many_digits, test_dialects,
+          test_refusals, test_parts, test_ignores_the_locale)

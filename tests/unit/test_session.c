@@ -398,6 +398,30 @@ START_TEST(test_threads) {
 
 END_TEST
 
+START_TEST(test_dialect) {
+    static const char text[] = "numbers\nV1 a 0 4k7\nR1 a 0 1x\n.op\n.end\n";
+    struct dalcs_session *session;
+    for (int k = 0; k < 4; k++) {
+        const char *name = dalcs_dialect_name((size_t)k);
+        ck_assert_int_eq(dalcs_session_create(&session), DALCS_OK);
+        ck_assert_int_eq(dalcs_session_set_dialect(session, "hspice"), DALCS_E_OPTION);
+        ck_assert_ptr_nonnull(strstr(dalcs_session_message(session, 0, NULL), "ngspice ltspice"));
+        ck_assert_int_eq(dalcs_session_set_dialect(session, name), DALCS_OK);
+        const bool is_ltspice = name != NULL && strcmp(name, "ltspice") == 0;
+        ck_assert_int_eq(dalcs_session_read_text(session, "t.cir", text, strlen(text)),
+                         is_ltspice ? DALCS_OK : DALCS_E_NETLIST);
+        ck_assert_int_eq(dalcs_session_set_dialect(session, "xyce"), DALCS_E_OPTION);
+        if (is_ltspice) {
+            ck_assert_int_eq(run(session, &rows), DALCS_OK);
+            ck_assert_double_eq(rows.value[1], 4700);
+        }
+        dalcs_session_destroy(session);
+    }
+    ck_assert_ptr_null(dalcs_dialect_name(3));
+}
+
+END_TEST
+
 /* What a thread and the one that stops it share. */
 struct endless {
     atomic_bool stop;
@@ -452,4 +476,4 @@ END_TEST
 RUN_TESTS("session", test_wrong_options, test_method_and_tolerance, test_step_without_states,
           test_cancel, test_memory_of_jumps, test_bounded_events, test_initial_across_parts,
           test_initial_beside_short, test_initial_of_floating_part, test_certificate_of_held_point,
-          test_shorts_in_a_loop, test_threads, test_cancel_from_another_thread)
+          test_shorts_in_a_loop, test_dialect, test_threads, test_cancel_from_another_thread)
