@@ -59,8 +59,10 @@ struct dalcs_radau_part {
     bool flipped;         /* and it is that pairs changed sides */
     double *x;            /* [n_x] at t */
     double *in, *out;
-    double rounding;      /* of out, over that of a dense map */
-    double *scale;        /* [n_columns] largest magnitudes so far */
+    double rounding;   /* of out, over that of a dense map */
+    double *scale;     /* [n_columns] largest magnitudes so far */
+    double *magnitude; /* [n_columns] in the present step up to magnitude_end, in steps */
+    double magnitude_end;
     double unit_scale[2]; /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */

@@ -361,7 +361,9 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
             bool longer = !search->fixed && part->end == 1.0 && part->n_crossed == 0 &&
                           rungs_promised(part, ratio) > 1.0 &&
                           dalcs_radau_ladder(part, part->level - 1) <= part->longest;
-            dalcs_transition_learn(part, longer ? part->level - 1 : part->level);
+            if (longer || !search->guessed) {
+                dalcs_transition_learn(part, longer ? part->level - 1 : part->level);
+            }
         }
         dalcs_transition_hold(part);
         part->fresh = false;

@@ -127,35 +127,47 @@ void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double
     }
 }
 
-void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                      const struct dalcs_stage_entry *entry, double end,
-                      struct dalcs_step_quality *q) {
-    const struct dalcs_system *s = part->component->system;
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    int n_equations = dalcs_system_n_equations(s);
+/* The larger of what a column is at the first and at the last known node of a segment. */
+static void find_magnitudes(struct dalcs_radau_part *part, double end) {
+    int n = dalcs_system_n_columns(part->component->system);
     const double *first = part->out;
-    const double *final = part->out + part->stages.method->s * l->stride;
-    const double *known = part->out + last_node(part, end) * l->stride;
-    double here[2] = {0.0, 0.0};
-    raise_units(part, known, here);
-    if (part->fresh && known != first) {
-        raise_units(part, first, here);
+    const double *known = part->out + last_node(part, end) * part->stages.layout.stride;
+    double *restrict magnitude = part->magnitude;
+    for (int c = 0; c < n; c++) {
+        double a = fabs(first[c]);
+        double b = fabs(known[c]);
+        magnitude[c] = a > b ? a : b;
     }
-    *q = (struct dalcs_step_quality){
-        .unit = {larger(here[0], part->unit_scale[0]), larger(here[1], part->unit_scale[1])}};
-    cross_units(part, q->unit);
-    const double *natural = dalcs_stage_natural_units(entry);
-    const double *inverse = natural + n_equations;
+    part->magnitude_end = end;
+}
+
+/* What a column of 1 in balanced units may be off by rounding in this step. */
+static double rounding_of_step(const struct dalcs_radau_part *part,
+                               const struct dalcs_stage_entry *entry) {
+    int n_equations = dalcs_system_n_equations(part->component->system);
+    const double *final = part->out + part->stages.method->s * part->stages.layout.stride;
+    const double *inverse = dalcs_stage_natural_units(entry) + n_equations;
     double balanced = 0.0;
     for (int c = 0; c < n_equations; c++) {
         balanced = larger(balanced, fabs(final[c]) * inverse[c]);
     }
-    double rounding = rounding_part * part->rounding * balanced;
-    double besides[2] = {0.1 * r->options.vntol + crossed * part->cross[0] * here[1],
-                         0.1 * r->options.abstol + crossed * part->cross[1] * here[0]};
+    return rounding_part * part->rounding * balanced;
+}
+
+/* The errors over what is allowed, with `rounding` besides. */
+static void compare(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                    const double *natural, double rounding, struct dalcs_step_quality *q) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    int n_equations = dalcs_system_n_equations(s);
+    double besides[2] = {0.1 * r->options.vntol + crossed * part->cross[0] * q->here[1],
+                         0.1 * r->options.abstol + crossed * part->cross[1] * q->here[0]};
     double tolerance = r->inner_tolerance;
     bool curved = part->excitation.is_curved;
     int n_judged = curved ? n_equations + s->n_pairs : s->n_x;
+    q->ratio = 0.0;
+    q->drift = 0.0;
+    q->of_unit = 0.0;
     for (int c = 0; c < n_judged; c++) {
         bool is_pair = c >= n_equations;
         if (is_pair && !is_on(part, c - n_equations)) {
@@ -168,11 +180,10 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
             continue;
         }
         int of = is_pair || s->column_is_current[c] ? 1 : 0;
-        double scale = larger(part->scale[c], fabs(known[c]));
-        scale = larger(larger(scale, fabs(first[c])),
-                       (is_pair ? smallest_pair : smallest_scale) * q->unit[of]);
-        double floor =
-            is_pair ? rounding_part * part->rounding * q->unit[1] : rounding * natural[c];
+        double scale = larger(larger(part->scale[c], part->magnitude[c]),
+                              (is_pair ? smallest_pair : smallest_scale) * q->unit[of]);
+        double floor = is_pair ? rounding_part * part->rounding * q->unit[1]
+                               : (rounding > 0.0 ? rounding * natural[c] : 0.0);
         double allowed = tolerance * scale + floor + besides[of];
         double ratio = error / allowed;
         q->drift = larger(q->drift, drift / allowed);
@@ -188,6 +199,22 @@ void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part
     }
 }
 
+void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                      const struct dalcs_stage_entry *entry, double end,
+                      struct dalcs_step_quality *q) {
+    find_magnitudes(part, end);
+    *q = (struct dalcs_step_quality){0};
+    raise_units(part, part->magnitude, q->here);
+    q->unit[0] = larger(q->here[0], part->unit_scale[0]);
+    q->unit[1] = larger(q->here[1], part->unit_scale[1]);
+    cross_units(part, q->unit);
+    const double *natural = dalcs_stage_natural_units(entry);
+    compare(r, part, natural, 0.0, q);
+    if (!(q->ratio <= 1.0)) { /* is it rounding? Few steps have to ask. */
+        compare(r, part, natural, rounding_of_step(part, entry), q);
+    }
+}
+
 void dalcs_step_reach(struct dalcs_radau_part *part, double end, double *unit) {
     dalcs_step_values(part, end, part->y2);
     raise_units(part, part->y2, unit);
@@ -195,20 +222,20 @@ void dalcs_step_reach(struct dalcs_radau_part *part, double end, double *unit) {
 }
 
 void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double *unit) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    int n_equations = dalcs_system_n_equations(part->component->system);
-    const double *first = part->out;
-    const double *last = part->out + last_node(part, end) * l->stride;
-    for (int c = 0; c < n_equations; c++) {
-        double a = fabs(first[c]);
-        double b = fabs(last[c]);
-        double largest = part->scale[c] > a ? part->scale[c] : a;
-        part->scale[c] = b > largest ? b : largest;
+    const struct dalcs_system *s = part->component->system;
+    int n_equations = dalcs_system_n_equations(s);
+    if (end != part->magnitude_end) {
+        find_magnitudes(part, end);
     }
-    for (int d = 0; d < part->component->system->n_pairs; d++) {
-        int c = n_equations + d;
-        double here = larger(fabs(first[c]), fabs(last[c]));
-        part->scale[c] = is_on(part, d) ? larger(part->scale[c], here) : 0.0; /* since it closed */
+    const double *restrict magnitude = part->magnitude;
+    double *restrict scale = part->scale;
+    for (int c = 0; c < n_equations + s->n_pairs; c++) {
+        scale[c] = scale[c] > magnitude[c] ? scale[c] : magnitude[c];
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        if (!is_on(part, d)) {
+            scale[n_equations + d] = 0.0; /* of a current: since it closed */
+        }
     }
     part->unit_scale[0] = unit[0];
     part->unit_scale[1] = unit[1];

@@ -9,7 +9,8 @@ struct dalcs_step_quality {
     double ratio;   /* estimated error over what is allowed; NaN when the step means nothing */
     double drift;   /* the part of it that comes from where the states start */
     double of_unit; /* the errors that are not allowed, over the largest of their unit */
-    double unit[2]; /* V, A: the largest of each, up to the end of the segment */
+    double here[2]; /* V, A: the largest of each in the segment */
+    double unit[2]; /* V, A: so far */
 };
 
 /* x[n_x], or value[n_columns + n_watched], at theta of the present step. */
@@ -17,7 +18,7 @@ void dalcs_step_states(const struct dalcs_radau_part *part, double theta, double
 void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double *value);
 
 /* The segment ends at `end` (in steps). */
-void dalcs_step_judge(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                       const struct dalcs_stage_entry *entry, double end,
                       struct dalcs_step_quality *quality);
 
