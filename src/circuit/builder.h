@@ -116,8 +116,6 @@ struct dalcs_builder {
     size_t n_fouriers;
     size_t fourier_capacity;
     bool noted_caret, noted_log; /* in a formula */
-    const char *ignored_options; /* names of options without a meaning here, NULL: none so far */
-    const struct dalcs_token *ignored_option; /* the first of them */
 
     const struct dalcs_source_line *kept_line; /* the last line copied by keep_location */
     const char *kept_text;
@@ -391,8 +389,6 @@ void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card
 void dalcs_sweep_parse_step(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_sweep_check(struct dalcs_builder *builder);
 void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
-/* After all of them: says once which ones are other simulators' business. */
-void dalcs_options_note_ignored(struct dalcs_builder *builder);
 void dalcs_initial_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* .nodeset: the same form, without an effect */
 void dalcs_initial_parse_nodeset(struct dalcs_builder *builder, const struct dalcs_card *card);

@@ -300,7 +300,6 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_card_table_check_title(builder);
     DALCS_TRY(classify_cards(builder, class_of));
     DALCS_TRY(read_cards(builder, class_of));
-    dalcs_options_note_ignored(builder);
     dalcs_passive_add_default_rser(builder);
     dalcs_controlled_resolve(builder);
     dalcs_behavioural_resolve(builder);

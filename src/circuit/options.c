@@ -1,7 +1,7 @@
 /* options.c - .options cards.
  *
- * Options of other simulators that steer what does not exist here are accepted with one note for all
- * of them, so that netlists need no change; a name that no simulator knows is probably a spelling mistake, and
+ * Options of other simulators that steer what does not exist here are accepted with a note each, so
+ * that netlists need no change; a name that no simulator knows is probably a spelling mistake, and
  * silently ignoring those has cost people days. */
 #include "builder.h"
 
@@ -173,32 +173,6 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     return read_method(reader);
 }
 
-/* One more name in the note about them. */
-static void ignore(struct dalcs_builder *builder, const struct dalcs_token *name) {
-    const char *known = builder->ignored_options;
-    const size_t n = strlen(name->text);
-    for (const char *p = known; p != NULL; p = strchr(p, ' ')) {
-        p += *p == ' ';
-        if (strncmp(p, name->text, n) == 0 && (p[n] == ' ' || p[n] == '\0')) {
-            return;
-        }
-    }
-    builder->ignored_option = known == NULL ? name : builder->ignored_option;
-    builder->ignored_options =
-        known == NULL ? name->text : dalcs_builder_hint(builder, "%s %s", known, name->text);
-}
-
-void dalcs_options_note_ignored(struct dalcs_builder *builder) {
-    const char *names = builder->ignored_options;
-    if (names != NULL && strchr(names, ' ') == NULL) {
-        dalcs_builder_note(builder, builder->ignored_option, NULL,
-                           "option '%s' has no meaning here", names);
-    } else if (names != NULL) {
-        dalcs_builder_note(builder, builder->ignored_option, NULL,
-                           "these options have no meaning here: %s", names);
-    }
-}
-
 void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_reader reader =
         dalcs_reader_start(builder, card, ".options name=value name=value ...");
@@ -214,7 +188,7 @@ void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card 
             continue;
         }
         if (dalcs_builder_is_one_of(name->text, FOREIGN, N_FOREIGN)) {
-            ignore(builder, name);
+            dalcs_builder_note(builder, name, NULL, "option '%s' has no meaning here", name->text);
         } else {
             report_unknown(builder, name);
         }

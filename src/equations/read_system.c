@@ -519,7 +519,6 @@ static enum dalcs_status read_netlist(struct dalcs_reading *r, const struct dalc
     if (status == DALCS_OK) {
         r->builder.failed = netlist->has_errors || deck.has_errors;
         status = take_cards(r);
-        dalcs_options_note_ignored(&r->builder);
     }
     if (status == DALCS_OK && check_request(r)) {
         start_from_values(r, has_values(&deck));
