@@ -349,8 +349,6 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_tok
 /* The lines of an exponential diode: its tangent at a current, for `area` of them in parallel. */
 void dalcs_diode_model_map(const struct dalcs_diode_card *card, double current, double area,
                            struct dalcs_diode_model *model);
-/* CONTROL=formula: a source of its own makes the control. */
-bool dalcs_switch_has_formula(const struct dalcs_card *card);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* type: sw, csw, vswitch or iswitch */
 bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,

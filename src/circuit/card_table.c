@@ -5,6 +5,7 @@
  * conditions and included files are gone before: language/ has expanded them. */
 #include "card_table.h"
 
+#include "formula.h"
 #include "number.h"
 
 #include <string.h>
@@ -177,7 +178,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_inner += n;
             table->n_stimuli += n > 0;
         }
-        table->n_inner += letter == 's' && dalcs_switch_has_formula(card);
+        table->n_inner += letter == 's' && dalcs_formula_find_control(card) < card->n;
         table->n_switches += letter == 's' || letter == 'w';
         table->n_diodes += letter == 'd' || letter == 'a';
         table->n_scaled += (letter == 'd' || letter == 'a') && card->n > 4;
@@ -196,20 +197,12 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
     return DALCS_CARD_NONE;
 }
 
-static bool has_limit(const struct dalcs_card *card) {
+/* Does a model name either of these parameters? */
+static bool is_model_with(const struct dalcs_card *card, const char *one, const char *other) {
     bool found = false;
-    for (int k = 1; k < card->n; k++) {
-        found = found || strcmp(card->token[k].text, "ilimit") == 0 ||
-                strcmp(card->token[k].text, "revilimit") == 0;
-    }
-    return found;
-}
-
-static bool has_series(const struct dalcs_card *card) {
-    bool found = false;
-    for (int k = 1; k < card->n; k++) {
-        found = found || strcmp(card->token[k].text, "lser") == 0 ||
-                strcmp(card->token[k].text, "vser") == 0;
+    for (int k = 1; k < card->n && strcmp(card->token->text, ".model") == 0; k++) {
+        found = found || strcmp(card->token[k].text, one) == 0 ||
+                strcmp(card->token[k].text, other) == 0;
     }
     return found;
 }
@@ -244,9 +237,8 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
         }
         return DALCS_CARD_NONE;
     }
-    table->has_series =
-        table->has_series || (strcmp(name->text, ".model") == 0 && has_series(card));
-    table->has_limits = table->has_limits || (strcmp(name->text, ".model") == 0 && has_limit(card));
+    table->has_series = table->has_series || is_model_with(card, "lser", "vser");
+    table->has_limits = table->has_limits || is_model_with(card, "ilimit", "revilimit");
     return card->letter == '.' ? classify_dot(table, name) : classify_element(table, card);
 }
 

@@ -199,8 +199,7 @@ static void warn_of_dialect(struct dalcs_builder *builder, const struct dalcs_to
     const struct dalcs_dialect *dialect = &builder->netlist->dialect;
     if (number->is_special && !dialect->is_told) {
         dalcs_builder_warn(builder, token, NULL, "'%s' is %g, as %s reads it", token->text,
-                           number->value,
-                           dialect->name == DALCS_DIALECT_LTSPICE ? "LTspice" : "Xyce");
+                           number->value, dalcs_dialect_simulator(dialect->name));
     }
 }
 

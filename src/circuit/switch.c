@@ -4,6 +4,7 @@
  * when the control rises through Vt + Vh and opens when it falls through Vt - Vh. The switches of
  * PSpice and LTspice that change over smoothly do it at once here, half way. */
 #include "builder.h"
+#include "formula.h"
 
 #include <math.h>
 #include <string.h>
@@ -44,18 +45,9 @@ static void add_series(struct dalcs_builder *builder, const struct dalcs_token *
     }
 }
 
-bool dalcs_switch_has_formula(const struct dalcs_card *card) {
-    bool found = false;
-    for (int k = 1; k + 1 < card->n && !found; k++) {
-        found = card->token[k + 1].kind == DALCS_TOKEN_EQUAL &&
-                strcmp(card->token[k].text, "control") == 0;
-    }
-    return found;
-}
-
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     const bool by_current = card->letter == 'w';
-    const bool by_formula = !by_current && dalcs_switch_has_formula(card);
+    const bool by_formula = !by_current && dalcs_formula_find_control(card) < card->n;
     struct dalcs_reader reader = dalcs_reader_start(builder, card,
                                                     by_current   ? CURRENT_USAGE
                                                     : by_formula ? FORMULA_USAGE
@@ -217,6 +209,14 @@ static void set_threshold(struct dalcs_builder *builder, const struct form *form
     }
 }
 
+/* The threshold half way, below which a switch closes whose control is smaller where it is on. */
+static double set_middle(struct dalcs_switch_model *model, double on, double off) {
+    const double middle = off + 0.5 * (on - off);
+    model->is_inverted = on < off;
+    model->vt = model->is_inverted ? -middle : middle;
+    return middle;
+}
+
 /* Von and Voff of VSWITCH and ISWITCH, between which the logarithm of the resistance changes
  * smoothly: half way it is the mean of the two. */
 static bool set_midpoint(struct dalcs_builder *builder, const struct form *form,
@@ -228,9 +228,7 @@ static bool set_midpoint(struct dalcs_builder *builder, const struct form *form,
                             form->unit);
         return false;
     }
-    const double middle = p[OFF].value + 0.5 * (p[ON].value - p[OFF].value);
-    model->is_inverted = p[ON].value < p[OFF].value;
-    model->vt = model->is_inverted ? -middle : middle;
+    const double middle = set_middle(model, p[ON].value, p[OFF].value);
     dalcs_builder_warn(builder, name, NULL,
                        "a switch that changes over smoothly from %g to %g %s: here it does so at "
                        "once, at %g %s",
@@ -248,9 +246,7 @@ static bool set_hysteresis(struct dalcs_builder *builder, const struct form *for
                             "a switch with hysteresis has %s and %s", on->name, off->name);
         return false;
     }
-    const double middle = off->value + 0.5 * (on->value - off->value);
-    model->is_inverted = on->value < off->value;
-    model->vt = model->is_inverted ? -middle : middle;
+    (void)set_middle(model, on->value, off->value);
     model->vh = 0.5 * fabs(on->value - off->value);
     return true;
 }

@@ -110,12 +110,13 @@ struct search {
  * that is where the stages of a step in the mode are, here so short a step that only such a defect
  * moves the state, and where their polynomial starts. */
 static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                 const struct search *search, bool *moved) {
+                                 struct search *search, bool *moved) {
     const struct dalcs_collocation *m = part->stages.method;
     int n_x = part->component->system->n_x;
     int stride = part->stages.layout.stride;
     struct dalcs_stage_entry *entry;
     *moved = false;
+    search->projected = true;
     part->h = search->fixed ? ldexp(part->h, -PROJECTION)
                             : dalcs_radau_ladder(part, (part->level & ~7) + PROJECTION);
     if (n_x == 0 || part->h > search->limit - part->t) {
@@ -151,7 +152,6 @@ static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part 
         /* Micro-steps may see a transient that is as fast as they are; a projecting step is far
          * shorter. */
         bool moved;
-        search->projected = true;
         DALCS_TRY(project(r, part, search, &moved));
     }
     if (!search->fixed) {
@@ -261,7 +261,6 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     bool asked = search->restarts > 0 || !part->fresh;
     if (quality->ratio < most_projected && !search->fixed && !search->projected && asked) {
         bool moved;
-        search->projected = true;
         DALCS_TRY(project(r, part, search, &moved));
         if (moved) {
             return DALCS_OK;
@@ -406,7 +405,6 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (part->fresh && !search->projected && !dalcs_stage_frees_states(entry) &&
         quality.drift > (search->fixed ? 0.0 : worth_projecting)) {
         bool moved;
-        search->projected = true;
         DALCS_TRY(project(r, part, search, &moved));
         return DALCS_OK;
     }

@@ -311,7 +311,6 @@ static void eliminate_followers(struct dalcs_stage_workshop *b) {
     int width = n + b->n_rhs;
     b->n_kept = b->n_x;
     b->n_followers = 0;
-    b->entries = 0;
     dalcs_extended_eliminate(b->n_x, n, width, least_follower, b->whole, b->row_of);
     for (int c = 0; c < b->n_x; c++) {
         b->kept[c] = c;
@@ -331,16 +330,17 @@ static void eliminate_followers(struct dalcs_stage_workshop *b) {
             b->kept_row[k++] = r;
         }
     }
+    int entries = 0;
     b->follows_p[0] = 0;
     for (int f = 0; f < b->n_followers; f++) {
         const long double *row = b->whole + b->row_of[b->follower[f]] * width;
         for (int k = 0; k < b->n_kept; k++) {
             if (row[b->kept[k]] != 0.0L) {
-                b->follows_j[b->entries] = k;
-                b->follows_x[b->entries++] = row[b->kept[k]];
+                b->follows_j[entries] = k;
+                b->follows_x[entries++] = row[b->kept[k]];
             }
         }
-        b->follows_p[f + 1] = b->entries;
+        b->follows_p[f + 1] = entries;
     }
 }
 

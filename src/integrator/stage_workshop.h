@@ -29,10 +29,10 @@ struct dalcs_stage_workshop {
     double *S;                        /* [n][n] the real one, balanced */
     long double *whole; /* [n][n + n_rhs] S without P by rows, then followers as pivots */
     int n_kept, n_followers;
-    int *kept, *kept_row;   /* [n_kept] unknowns and rows of the systems: states first */
-    int *follower, *row_of; /* [n_followers]; [n] row of `whole` of an unknown that follows */
-    bool *is_used;          /* [n] */
-    int entries, *follows_p, *follows_j; /* what followers take of the kept, by rows */
+    int *kept, *kept_row;       /* [n_kept] unknowns and rows of the systems: states first */
+    int *follower, *row_of;     /* [n_followers]; [n] row of `whole` of an unknown that follows */
+    bool *is_used;              /* [n] */
+    int *follows_p, *follows_j; /* what followers take of the kept, by rows */
     long double *follows_x;
     long double *re, *im;        /* [n_kept][n_kept + n_rhs] a system by rows, then its solutions */
     long double *part;           /* [n_rhs][n_kept][parts] the solutions, balanced */

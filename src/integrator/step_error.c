@@ -182,8 +182,8 @@ static void compare(const struct dalcs_radau *r, const struct dalcs_radau_part *
         int of = is_pair || s->column_is_current[c] ? 1 : 0;
         double scale = larger(larger(part->scale[c], part->magnitude[c]),
                               (is_pair ? smallest_pair : smallest_scale) * q->unit[of]);
-        double floor = is_pair ? rounding_part * part->rounding * q->unit[1]
-                               : (rounding > 0.0 ? rounding * natural[c] : 0.0);
+        double floor =
+            is_pair ? rounding_part * part->rounding * q->unit[1] : rounding * natural[c];
         double allowed = tolerance * scale + floor + besides[of];
         double ratio = error / allowed;
         q->drift = larger(q->drift, drift / allowed);

@@ -134,7 +134,7 @@ static void warn_of_dialect(struct parser *p, const char *text, const struct dal
     const struct dalcs_dialect *dialect = &p->context->dialect;
     if (number->is_special && !dialect->is_told) {
         report(p, DALCS_WARNING, p->begin, p->length, NULL, "'%s' is %g, as %s reads it", text,
-               number->value, dialect->name == DALCS_DIALECT_LTSPICE ? "LTspice" : "Xyce");
+               number->value, dalcs_dialect_simulator(dialect->name));
     }
 }
 

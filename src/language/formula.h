@@ -33,4 +33,7 @@ struct dalcs_formula {
     int begin, end;
 };
 
+/* Where CONTROL= of a switch starts, whose formula makes the control; card->n when there is none. */
+int dalcs_formula_find_control(const struct dalcs_card *card);
+
 #endif

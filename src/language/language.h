@@ -238,9 +238,6 @@ enum dalcs_outcome dalcs_evaluate(struct dalcs_language *language, struct dalcs_
 /* Where the card has a formula: token[*first..*first+*n-1]; false when nowhere. */
 bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n);
 
-/* Where CONTROL= of a switch starts, card->n when there is none. */
-int dalcs_formula_find_control(const struct dalcs_card *card);
-
 /* The formula of token[0..n-1]; NULL when an error was reported or out of memory. */
 const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
                                                struct dalcs_scope *scope,

@@ -174,26 +174,27 @@ static void judge(struct dalcs_netlist *netlist, const struct signs *signs,
     netlist->dialect.name = ltspice != NULL ? DALCS_DIALECT_LTSPICE : DALCS_DIALECT_XYCE;
     dalcs_diag_add(diag, DALCS_NOTE, &where, HINT,
                    "'%s' is not ngspice's: the netlist is taken for one of %s", sign->text,
-                   ltspice != NULL ? "LTspice" : "Xyce");
+                   dalcs_dialect_simulator(netlist->dialect.name));
 }
 
 void dalcs_dialect_settle(struct dalcs_netlist *netlist, struct dalcs_diag *diag) {
     const struct dalcs_token *told = NULL;
     struct signs signs = {NULL, NULL, NULL};
+    const bool looks = !netlist->dialect.is_told && netlist->n_script_lines == 0;
     for (size_t k = 0; k < netlist->n_cards; k++) {
         const struct dalcs_card *card = &netlist->card[k];
         const struct dalcs_token *name = is_options(card) ? find_told(card) : NULL;
         if (name != NULL) {
             take_told(netlist, name, &told, diag);
         }
-        if (card->letter == '.') {
+        if (looks && card->letter == '.') {
             look_at_card(card, &signs);
-        } else {
+        } else if (looks) {
             look_at_element(card, &signs);
         }
     }
     netlist->dialect.is_told = netlist->dialect.is_told || told != NULL;
-    if (!netlist->dialect.is_told && netlist->n_script_lines == 0) {
+    if (looks && !netlist->dialect.is_told) {
         judge(netlist, &signs, diag);
     }
 }

@@ -26,6 +26,13 @@ static inline bool dalcs_dialect_is_told(struct dalcs_dialect dialect,
     return dialect.is_told && dialect.name == name;
 }
 
+/* As people write it. */
+static inline const char *dalcs_dialect_simulator(enum dalcs_dialect_name name) {
+    return name == DALCS_DIALECT_LTSPICE ? "LTspice"
+           : name == DALCS_DIALECT_XYCE  ? "Xyce"
+                                         : "ngspice";
+}
+
 /* A hint: their names. */
 extern const char DALCS_DIALECTS[];
 
