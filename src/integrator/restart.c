@@ -201,6 +201,13 @@ static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_par
     return DALCS_OK;
 }
 
+static void go_after(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    if (r->base->energy != NULL) {
+        dalcs_energy_move(r->base->energy, part, part->after);
+    }
+    memcpy(part->x, part->after, (size_t)part->component->system->n_x * sizeof(double));
+}
+
 /* The micro-steps of length h have seen the state move: part->x becomes the state after the jump,
  * exactly where that is known, and the jump is reported. What else they have seen is a transient
  * faster than they are: they get shorter, until they tell the mode before it, or, where time cannot be
@@ -238,10 +245,7 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         moves = extrapolate(r, part, part->after, &noticeable);
     }
     if (moves) {
-        if (e->energy != NULL) {
-            dalcs_energy_move(e->energy, part, part->after);
-        }
-        memcpy(part->x, part->after, (size_t)s->n_x * sizeof(double));
+        go_after(r, part);
     }
     return DALCS_OK;
 }
@@ -262,7 +266,10 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     }
     bool noticeable;
     bool jumps = extrapolate(r, part, part->after, &noticeable);
-    *is_off = jumps && !noticeable;
+    *is_off = jumps && !noticeable && part->rounding == 1.0;
+    if (jumps && !noticeable && !*is_off) {
+        go_after(r, part);
+    }
     return noticeable ? settle_jump(r, part, h) : DALCS_OK;
 }
 
