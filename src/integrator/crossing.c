@@ -1,4 +1,4 @@
-/* crossing.c - subdivision in Bernstein's basis, then a bracketed secant. */
+/* crossing.c - subdivision in Bernstein's basis, then interpolation that keeps a bracket. */
 #include "crossing.h"
 
 #include <float.h>
@@ -7,6 +7,9 @@
 
 /* Halvings of the step before a cluster of roots counts as one. */
 enum { MAX_DEPTH = 48, ROOT_ROUNDS = 60 };
+
+/* Of what falls as early as this it matters how far it was above 0 before. */
+static const double early = 1e-3;
 
 /* The polynomial on [0, split] and on [split, 1] (de Casteljau). left may be coefficient itself. */
 static void subdivide(int n, const double *coefficient, double split, double *left, double *right) {
@@ -21,14 +24,15 @@ static void subdivide(int n, const double *coefficient, double split, double *le
     }
 }
 
-/* Horner's scheme in Bernstein's basis: all weights are positive, nothing cancels that did not before. */
+/* Horner's scheme in Bernstein's basis, coefficients times their binomials: all weights are positive,
+ * nothing cancels that did not before. */
 static double evaluate(int n, const double *coefficient, double theta) {
     double other = 1.0 - theta;
-    double weight = 1.0; /* of coefficient i, but for a power of `other` */
+    double power = theta;
     double sum = coefficient[0];
     for (int i = 1; i < n; i++) {
-        weight *= theta * (n - i) / i;
-        sum = sum * other + weight * coefficient[i];
+        sum = sum * other + power * coefficient[i];
+        power *= theta;
     }
     return sum;
 }
@@ -43,14 +47,38 @@ static int sign_changes(int n, const double *coefficient) {
     return changes;
 }
 
-/* The one root on [0, 1], where the ends have different signs: secants that keep the bracket
- * (Illinois). */
+/* Where the polygon of the coefficients, which change sign once, is 0: near the root. */
+static double polygon_root(int n, const double *coefficient) {
+    bool negative = coefficient[0] < 0.0;
+    int i = 1;
+    while (i < n - 1 && (coefficient[i] < 0.0) == negative) {
+        i++;
+    }
+    double before = coefficient[i - 1];
+    return (i - 1 + before / (before - coefficient[i])) / (n - 1);
+}
+
+/* One end of a bracket, or what was one. */
+struct probe {
+    double theta, value;
+};
+
+/* Inverse quadratic interpolation through three probes, as a part of the way from a to b; half of it
+ * where the three are not on such a curve (Chandrupatla, Adv. Eng. Software 28, 1997). */
+static double next_part(struct probe a, struct probe b, struct probe old) {
+    double xi = (a.theta - b.theta) / (old.theta - b.theta);
+    double phi = (a.value - b.value) / (old.value - b.value);
+    if (!(phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi)) {
+        return 0.5;
+    }
+    double to_old = a.value / (old.value - a.value) * (old.theta - a.theta) / (b.theta - a.theta);
+    return a.value / (b.value - a.value) * old.value / (b.value - old.value) +
+           to_old * b.value / (old.value - b.value);
+}
+
+/* The one root on [0, 1], where the ends have different signs. */
 static double only_root(int n, const double *coefficient) {
-    double a = 0.0;
-    double b = 1.0;
-    double at_a = coefficient[0];
-    double at_b = coefficient[n - 1];
-    if (at_a == 0.0) {
+    if (coefficient[0] == 0.0) {
         int next = 1; /* which way does it leave? */
         while (next < n - 1 && coefficient[next] == 0.0) {
             next++;
@@ -59,37 +87,31 @@ static double only_root(int n, const double *coefficient) {
             return 0.0;
         }
     }
-    int side = 0;
-    for (int round = 0; round < ROOT_ROUNDS && at_b != 0.0 && b - a > DBL_EPSILON * b; round++) {
-        double x = a + (b - a) * (at_a / (at_a - at_b));
-        if (!(x > a && x < b)) {
-            x = 0.5 * (a + b);
-        }
-        if (x == a || x == b) {
+    double weighted[DALCS_MAX_NODES];
+    double binomial = 1.0;
+    for (int i = 0; i < n; i++) {
+        weighted[i] = binomial * coefficient[i];
+        binomial = binomial * (n - 1 - i) / (i + 1);
+    }
+    struct probe a = {0.0, coefficient[0]}; /* the latest */
+    struct probe b = {1.0, coefficient[n - 1]};
+    double part = polygon_root(n, coefficient);
+    for (int round = 0; round < ROOT_ROUNDS; round++) {
+        struct probe at = {a.theta + part * (b.theta - a.theta), 0.0};
+        at.value = evaluate(n, weighted, at.theta);
+        bool same_side = (at.value < 0.0) == (a.value < 0.0);
+        struct probe old = same_side ? a : b;
+        b = same_side ? b : a;
+        a = at;
+        double least = DBL_EPSILON / fabs(b.theta - a.theta);
+        if (a.value == 0.0 || least > 0.5) {
             break;
         }
-        double at_x = evaluate(n, coefficient, x);
-        if ((at_x < 0.0) == (at_b < 0.0)) {
-            double moved = b - x;
-            b = x;
-            at_b = at_x;
-            at_a *= side < 0 ? 0.5 : 1.0;
-            side = -1;
-            if (moved <= DBL_EPSILON * b) {
-                break;
-            }
-        } else {
-            double moved = x - a;
-            a = x;
-            at_a = at_x;
-            at_b *= side > 0 ? 0.5 : 1.0;
-            side = 1;
-            if (moved <= DBL_EPSILON * b) {
-                break;
-            }
-        }
+        part = next_part(a, b, old);
+        part = part > least ? part : least;
+        part = part < 1.0 - least ? part : 1.0 - least;
     }
-    return fabs(at_a) < fabs(at_b) ? a : b;
+    return fabs(a.value) < fabs(b.value) ? a.theta : b.theta;
 }
 
 /* The first (or last) root on [from, from + length], or -1. */
@@ -160,6 +182,16 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
     double rest[DALCS_MAX_NODES];
     if (end < 1.0) {
         subdivide(n, b, end, b, rest);
+    }
+    if (b[n - 1] < -depth && b[0] > 0.0 && sign_changes(n, b) == 1) {
+        found.theta = only_root(n, b) * end;
+        if (found.theta > early) {
+            found.falls = true;
+            for (int i = 0; i < n; i++) {
+                found.peak = b[i] > found.peak ? b[i] : found.peak;
+            }
+            return found;
+        }
     }
     double shifted[DALCS_MAX_NODES] = {0.0};
     for (int i = 0; i < n; i++) {
