@@ -47,16 +47,10 @@ static int pair_of(const struct dalcs_radau_part *part, int guard) {
     return guard < n_pairs ? guard : part->stages.watched[guard - n_pairs];
 }
 
-/* Values at the nodes, with their stride; NULL for a switch, which has no sign to keep. */
-static const double *values_of(const struct dalcs_radau_part *part, int guard, double *work,
-                               int *stride) {
+/* A voltage that moves a switch, less its threshold. */
+static const double *control_values(const struct dalcs_radau_part *part, int guard, double *work) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    *stride = l->stride;
-    if (guard < s->n_pairs) {
-        bool is_diode = s->pair[guard].kind == DALCS_PAIR_DIODE;
-        return is_diode ? part->out + dalcs_system_n_equations(s) + guard : NULL;
-    }
     int d = pair_of(part, guard);
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, d);
     const double *v = part->out + dalcs_system_n_columns(s) + guard - s->n_pairs;
@@ -64,28 +58,44 @@ static const double *values_of(const struct dalcs_radau_part *part, int guard, d
         work[k] =
             is_on ? v[k * l->stride] - s->pair[d].turn_off : s->pair[d].turn_on - v[k * l->stride];
     }
-    *stride = 1;
     return work;
 }
 
-static double scale_of(const struct dalcs_radau_part *part, int guard, const double *unit) {
+/* Values at the nodes, with their stride; NULL for a switch, which has no sign to keep. */
+static inline const double *values_of(const struct dalcs_radau_part *part, int guard, double *work,
+                                      int *stride) {
+    const struct dalcs_system *s = part->component->system;
+    if (guard >= s->n_pairs) {
+        *stride = 1;
+        return control_values(part, guard, work);
+    }
+    *stride = part->stages.layout.stride;
+    bool is_diode = s->pair[guard].kind == DALCS_PAIR_DIODE;
+    return is_diode ? part->out + dalcs_system_n_equations(s) + guard : NULL;
+}
+
+static double control_scale(const struct dalcs_radau_part *part, int guard, const double *unit) {
     const struct dalcs_system *s = part->component->system;
     int d = pair_of(part, guard);
-    if (guard < s->n_pairs) {
-        return unit[dalcs_osnsp_is_on(&part->component->osnsp, d) ? 1 : 0];
-    }
     return fmax(unit[dalcs_system_control_is_current(s, d)],
                 fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off)));
 }
 
+static inline double scale_of(const struct dalcs_radau_part *part, int guard, const double *unit) {
+    return guard < part->component->system->n_pairs
+               ? unit[dalcs_osnsp_is_on(&part->component->osnsp, guard) ? 1 : 0]
+               : control_scale(part, guard, unit);
+}
+
 /* What rounding may make of a guard that is 0, in V or A. */
-static double rounding_of(const struct dalcs_radau_part *part, int guard, const double *unit) {
+static inline double rounding_of(const struct dalcs_radau_part *part, int guard,
+                                 const double *unit) {
     if (guard >= part->component->system->n_pairs) {
         return 0.0;
     }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
-    double held = is_on ? part->held_charge[guard] * unit[0] : part->held_flux[guard] * unit[1];
-    return rounded * held / part->h;
+    double held = is_on ? part->held_charge[guard] : part->held_flux[guard];
+    return held > 0.0 ? rounded * held * unit[is_on ? 0 : 1] / part->h : 0.0;
 }
 
 /* F at a node, H of a coil; 0 of an algebraic row. */
@@ -300,19 +310,19 @@ bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit) {
 double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end,
                                const double *unit) {
     const struct dalcs_system *s = part->component->system;
+    int stride = part->stages.layout.stride;
+    int n_known = 0;
+    while (n_known < part->stages.layout.n_nodes && part->stages.method->node[n_known] <= end) {
+        n_known++;
+    }
     double worst = 0.0;
     for (int d = 0; d < s->n_pairs; d++) {
-        double work[DALCS_MAX_NODES];
-        int stride;
-        const double *value = values_of(part, d, work, &stride);
+        const double *value = part->out + dalcs_system_n_equations(s) + d;
         double least = 0.0;
-        for (int k = 0; value != NULL && k < part->stages.layout.n_nodes &&
-                        part->stages.method->node[k] <= end;
-             k++) {
-            double v = value[k * stride];
-            least = v < least ? v : least;
+        for (int k = 0; k < n_known; k++, value += stride) {
+            least = *value < least ? *value : least;
         }
-        if (least < 0.0) {
+        if (least < 0.0 && s->pair[d].kind == DALCS_PAIR_DIODE) {
             worst = fmax(worst, -least / scale_of(part, d, unit));
         }
     }

@@ -185,15 +185,17 @@ static void compare(const struct dalcs_radau *r, const struct dalcs_radau_part *
         double floor =
             is_pair ? rounding_part * part->rounding * q->unit[1] : rounding * natural[c];
         double allowed = tolerance * scale + floor + besides[of];
-        double ratio = error / allowed;
-        q->drift = larger(q->drift, drift / allowed);
-        if (!(ratio <= q->ratio)) {
-            q->ratio = ratio;
+        /* Divisions are dear, and few columns are worse than all before. */
+        if (drift > q->drift * allowed) {
+            q->drift = drift / allowed;
         }
-        if (!(ratio <= 1.0)) {
+        if (!(error <= allowed)) {
             q->of_unit = larger(q->of_unit, error / q->unit[of]);
         }
-        if (ratio != ratio) {
+        if (!(error <= q->ratio * allowed)) {
+            q->ratio = error / allowed;
+        }
+        if (q->ratio != q->ratio) {
             return;
         }
     }
