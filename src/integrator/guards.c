@@ -319,10 +319,10 @@ double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end,
     for (int d = 0; d < s->n_pairs; d++) {
         const double *value = part->out + dalcs_system_n_equations(s) + d;
         double least = 0.0;
-        for (int k = 0; k < n_known; k++, value += stride) {
+        for (int k = 0; k < n_known && s->pair[d].kind == DALCS_PAIR_DIODE; k++, value += stride) {
             least = *value < least ? *value : least;
         }
-        if (least < 0.0 && s->pair[d].kind == DALCS_PAIR_DIODE) {
+        if (least < 0.0) {
             worst = fmax(worst, -least / scale_of(part, d, unit));
         }
     }

@@ -127,16 +127,29 @@ void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double
     }
 }
 
-/* The larger of what a column is at the first and at the last known node of a segment. */
-static void find_magnitudes(struct dalcs_radau_part *part, double end) {
-    int n = dalcs_system_n_columns(part->component->system);
+/* The larger of what a column is at the first and at the last known node of a segment; raises the
+ * units to the largest of them. */
+static void find_magnitudes(struct dalcs_radau_part *part, double end, double *unit) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    int n_equations = dalcs_system_n_equations(p->system);
     const double *first = part->out;
     const double *known = part->out + last_node(part, end) * part->stages.layout.stride;
     double *restrict magnitude = part->magnitude;
-    for (int c = 0; c < n; c++) {
-        double a = fabs(first[c]);
-        double b = fabs(known[c]);
-        magnitude[c] = a > b ? a : b;
+    for (int k = 0; k < p->n_runs && p->run[k].begin < n_equations; k++) {
+        int run_end = p->run[k].end < n_equations ? p->run[k].end : n_equations;
+        double largest = unit[p->run[k].is_current];
+        for (int c = p->run[k].begin; c < run_end; c++) {
+            double m = larger(fabs(first[c]), fabs(known[c]));
+            magnitude[c] = m;
+            largest = larger(largest, m);
+        }
+        unit[p->run[k].is_current] = largest;
+    }
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        int c = n_equations + d;
+        int of = is_on(part, d);
+        magnitude[c] = larger(fabs(first[c]), fabs(known[c]));
+        unit[of] = larger(unit[of], magnitude[c]);
     }
     part->magnitude_end = end;
 }
@@ -204,9 +217,8 @@ static void compare(const struct dalcs_radau *r, const struct dalcs_radau_part *
 void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                       const struct dalcs_stage_entry *entry, double end,
                       struct dalcs_step_quality *q) {
-    find_magnitudes(part, end);
     *q = (struct dalcs_step_quality){0};
-    raise_units(part, part->magnitude, q->here);
+    find_magnitudes(part, end, q->here);
     q->unit[0] = larger(q->here[0], part->unit_scale[0]);
     q->unit[1] = larger(q->here[1], part->unit_scale[1]);
     cross_units(part, q->unit);
@@ -227,7 +239,8 @@ void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double
     const struct dalcs_system *s = part->component->system;
     int n_equations = dalcs_system_n_equations(s);
     if (end != part->magnitude_end) {
-        find_magnitudes(part, end);
+        double here[2] = {0.0, 0.0};
+        find_magnitudes(part, end, here);
     }
     const double *restrict magnitude = part->magnitude;
     double *restrict scale = part->scale;

@@ -1,4 +1,4 @@
-/* dense_map.c - the product, eight rows at a time. */
+/* dense_map.c - the product, sixteen rows at a time, then eight. */
 #include "dense_map.h"
 
 #include <stdlib.h>
@@ -25,7 +25,27 @@ __attribute__((target_clones("avx2", "default")))
 static void
 multiply(int rows, int columns, const double *restrict map, const double *restrict x,
          double *restrict y) {
-    for (int i = 0; i < rows; i += 8) {
+    int i = 0;
+    for (; i + 16 <= rows; i += 16) {
+        vector4 a = {0.0};
+        vector4 b = {0.0};
+        vector4 c = {0.0};
+        vector4 d = {0.0};
+        const double *column = map + i;
+        for (int j = 0; j < columns; j++, column += rows) {
+            const vector4 *m = (const vector4 *)column;
+            vector4 v = {x[j], x[j], x[j], x[j]};
+            a += m[0] * v;
+            b += m[1] * v;
+            c += m[2] * v;
+            d += m[3] * v;
+        }
+        memcpy(y + i, &a, sizeof(a));
+        memcpy(y + i + 4, &b, sizeof(b));
+        memcpy(y + i + 8, &c, sizeof(c));
+        memcpy(y + i + 12, &d, sizeof(d));
+    }
+    if (i < rows) {
         vector4 a = {0.0};
         vector4 b = {0.0};
         const double *column = map + i;
