@@ -139,19 +139,21 @@ static double find_root(int n, const double *coefficient, double from, double le
 }
 
 /* Is that clear from the straight line between the ends and how far the values are from it? What
- * remains is 0 at the ends, and a polynomial's coefficients leave the range of its values by little. */
+ * remains is 0 at the ends, and leaves the range of its values by little. */
 static bool stays_above(const struct dalcs_collocation *c, const double *value, int stride,
                         double depth) {
     double first = value[0];
     double rise = value[c->s * stride] - first;
-    double farthest = 0.0;
+    double lowest = 0.0;
+    double highest = 0.0;
     for (int k = 1; k < c->s; k++) {
-        double off = fabs(value[k * stride] - first - c->node[k] * rise);
-        farthest = off > farthest ? off : farthest;
+        double off = value[k * stride] - first - c->node[k] * rise;
+        lowest = off < lowest ? off : lowest;
+        highest = off > highest ? off : highest;
     }
-    double rounding = 4.0 * DBL_EPSILON * (fabs(first) + fabs(rise));
+    double rounding = 4.0 * DBL_EPSILON * (1.0 + 2.0 * c->spread) * (fabs(first) + fabs(rise));
     double least = rise < 0.0 ? first + rise : first;
-    return least - (1.0 + 2.0 * c->bernstein_spread) * (farthest + rounding) >= -depth;
+    return least + lowest - c->spread * (highest - lowest) - rounding >= -depth;
 }
 
 struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, const double *value,

@@ -292,6 +292,22 @@ static void bernstein_matrix(struct dalcs_collocation *c, const real *node) {
     c->bernstein_spread = (double)spread;
 }
 
+/* How far a polynomial leaves the range of its values at the nodes, by Lebesgue's constant, which the
+ * scan may miss by a little. */
+static void find_spread(struct dalcs_collocation *c, const real *node) {
+    real largest = 1.0L;
+    for (int i = 0; i <= SCAN; i++) {
+        real value[MAX];
+        real sum = 0.0L;
+        lagrange(c->s + 1, node, (real)i / SCAN, value);
+        for (int k = 0; k <= c->s; k++) {
+            sum += fabsl(value[k]);
+        }
+        largest = fmaxl(largest, sum);
+    }
+    c->spread = (double)(0.5L * (1.001L * largest - 1.0L));
+}
+
 static void compute(struct dalcs_collocation *c, int s) {
     *c = (struct dalcs_collocation){.s = s};
     real node[MAX] = {0.0L};
@@ -326,6 +342,7 @@ static void compute(struct dalcs_collocation *c, int s) {
     }
     choose_test_node(c, node);
     bernstein_matrix(c, node);
+    find_spread(c, node);
 }
 
 static void print_reals(const char *name, int n, const double *x) {
@@ -406,6 +423,7 @@ static void print_method(const struct dalcs_collocation *c) {
     printf("        .test_size = %.17g,\n", c->test_size);
     printf("        .test_node = %.17g,\n        .test_factor = %.17g,\n", c->test_node,
            c->test_factor);
+    printf("        .spread = %.17g,\n", c->spread);
     printf("        .bernstein_spread = %.17g,\n        .to_bernstein = {\n", c->bernstein_spread);
     for (int i = 0; i <= s; i++) {
         printf("            {");

@@ -234,5 +234,25 @@ START_TEST(test_bernstein) {
 
 END_TEST
 
+START_TEST(test_spread) {
+    for (int s = 1; s <= DALCS_MAX_STAGES; s += 2) {
+        const struct dalcs_collocation *c = dalcs_collocation_of(s);
+        double worst = 0.0;
+        for (int at = 0; at <= 997; at++) {
+            double weight[DALCS_MAX_NODES];
+            double sum = 0.0;
+            dalcs_collocation_weights(c, at / 997.0, weight);
+            for (int k = 0; k <= s; k++) {
+                sum += fabs(weight[k]);
+            }
+            worst = fmax(worst, sum);
+        }
+        ck_assert_double_le(worst, 1.0 + 2.0 * c->spread);
+        check_near(worst, 1.0 + 2.0 * c->spread, 2e-3 * worst);
+    }
+}
+
+END_TEST
+
 RUN_TESTS("collocation", test_closed_forms, test_order_conditions, test_coordinates, test_weights,
-          test_extrapolation, test_bernstein)
+          test_extrapolation, test_bernstein, test_spread)
