@@ -46,7 +46,8 @@ struct dalcs_collocation {
     double test[DALCS_MAX_NODES];         /* their value there */
     double test_factor; /* how much more their derivative may be off than the filter of the error
                            estimate lets through */
-    double spread; /* a polynomial leaves the range of its values at the nodes by at most this part */
+    double
+        spread; /* a polynomial leaves the range of its values at the nodes by at most this part */
     double to_bernstein[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* [node][coefficient] */
     double bernstein_spread; /* coefficients leave the range of the values by at most this part */
 };

@@ -1,6 +1,8 @@
 /* commands.c - walking the edges of control sources, or counting the periods of a PULSE. */
 #include "commands.h"
 
+#include "extremes.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -151,7 +153,7 @@ void dalcs_commands_finish(struct dalcs_commands *commands) {
 static void find_earliest(struct dalcs_commands *commands) {
     commands->next = INFINITY;
     for (int k = 0; k < commands->n; k++) {
-        commands->next = fmin(commands->next, commands->command[k].next);
+        commands->next = dalcs_smaller(commands->next, commands->command[k].next);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "energy.h"
 
 #include "decided_energy.h"
+#include "extremes.h"
 #include "stage_rule.h"
 #include "step_error.h"
 
@@ -102,10 +103,6 @@ void dalcs_energy_enter(struct dalcs_energy *energy, enum dalcs_power_account ac
     energy->turnover += fabs(joule);
 }
 
-static inline double larger(double a, double b) {
-    return a > b ? a : b;
-}
-
 /* What goes back and forth in capacitors and coils, and how much rounding it may leave: a segment that
  * is cut is a small part of a step, whose other end may be far away. Returns 1/2 |after - x|^2 by the
  * diagonal of the storage. */
@@ -115,10 +112,10 @@ static double enter_swing(struct dalcs_energy *energy, const struct dalcs_energy
     double size = 0.0;
     double distance = 0.0;
     for (int i = 0; i < part->system->n_x; i++) {
-        double near = larger(fabs(x[i]), fabs(after[i]));
+        double near = dalcs_larger(fabs(x[i]), fabs(after[i]));
         double step = after[i] - x[i];
         turnover += part->half[i] * fabs(step * (after[i] + x[i]));
-        size += part->half[i] * near * larger(near, fabs(far[i]));
+        size += part->half[i] * near * dalcs_larger(near, fabs(far[i]));
         distance += part->half[i] * step * step;
     }
     energy->turnover += turnover;
@@ -169,8 +166,8 @@ void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, cons
 void dalcs_energy_scale(struct dalcs_energy *energy, int k,
                         const struct dalcs_certificate *certificate) {
     double *largest = energy->part[k].largest;
-    largest[0] = larger(largest[0], certificate->volt);
-    largest[1] = larger(largest[1], certificate->ampere);
+    largest[0] = dalcs_larger(largest[0], certificate->volt);
+    largest[1] = dalcs_larger(largest[1], certificate->ampere);
 }
 
 void dalcs_energy_move(struct dalcs_energy *energy, const struct dalcs_radau_part *part,
@@ -338,7 +335,7 @@ static void raise_entries(const struct dalcs_system *s, const struct dalcs_csr *
         double *most = s->row_is_current[r] ? conductance : resistance;
         for (int k = block->p[r]; k < block->p[r + 1]; k++) {
             if (s->column_is_current[block->j[k]] != s->row_is_current[r]) {
-                *most = larger(*most, fabs(block->x[k]) / seconds);
+                *most = dalcs_larger(*most, fabs(block->x[k]) / seconds);
             }
         }
     }
@@ -353,8 +350,8 @@ static double power_of_rounding(const struct dalcs_system *s, double stop, const
     raise_entries(s, &s->A, 1.0, &g, &r);
     raise_entries(s, &s->P, stop, &g, &r);
     double power = g * largest[0] * largest[0] + r * largest[1] * largest[1];
-    double v = g > 0.0 ? larger(largest[0], largest[1] / g) : largest[0];
-    double i = r > 0.0 ? larger(largest[1], largest[0] / r) : largest[1];
+    double v = g > 0.0 ? dalcs_larger(largest[0], largest[1] / g) : largest[0];
+    double i = r > 0.0 ? dalcs_larger(largest[1], largest[0] / r) : largest[1];
     return dalcs_system_n_columns(s) * (power + v * i);
 }
 

@@ -2,6 +2,7 @@
 #include "guards.h"
 
 #include "crossing.h"
+#include "extremes.h"
 #include "union_find.h"
 
 #include <float.h>
@@ -236,7 +237,7 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
                                double end, const double *unit, bool *at_once) {
     double first = INFINITY;
     double same = part->rounding > 1.0 ? same_on_factors : same_on_maps;
-    double together = fmax(same, 2.0 * r->resolution / part->h);
+    double together = dalcs_larger(same, 2.0 * r->resolution / part->h);
     double band = band_of(r, part);
     /* What crosses at the stop time, up to the error, is left to a longer run. */
     bool stops = end <= 1.0 && part->t + end * part->h >= r->options.stop - r->resolution;
@@ -265,7 +266,7 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
             part->n_crossed = 0;
             *at_once = false;
         }
-        first = fmin(first, c.theta);
+        first = dalcs_smaller(first, c.theta);
         bool soon = c.at_once || (c.theta <= soon_after && c.peak <= band * scale);
         *at_once = *at_once || (!part->armed[g] && soon);
         part->crossed[part->n_crossed++] = g;
@@ -323,7 +324,7 @@ double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end,
             least = *value < least ? *value : least;
         }
         if (least < 0.0) {
-            worst = fmax(worst, -least / scale_of(part, d, unit));
+            worst = dalcs_larger(worst, -least / scale_of(part, d, unit));
         }
     }
     return worst;

@@ -5,6 +5,9 @@
 #include "radau.h"
 #include "transition.h"
 
+#include <math.h>
+#include <string.h>
+
 /* segment.c: from part->t, part->x and the mode to a segment that holds until part->t_end. */
 enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r,
                                       struct dalcs_radau_part *part) DALCS_MUST_CHECK;
@@ -33,7 +36,15 @@ enum dalcs_status dalcs_radau_tell_open(struct dalcs_radau *r) DALCS_MUST_CHECK;
 double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
 
 static inline double dalcs_radau_ladder(const struct dalcs_radau_part *part, int level) {
-    return __builtin_ldexp(part->rung, -level);
+    enum { FAR = 900 }; /* beyond, the power of 2 might not be a normal number */
+
+    if (level < -FAR || level > FAR) {
+        return ldexp(part->rung, -level);
+    }
+    uint64_t bits = (uint64_t)(1023 - level) << 52;
+    double power;
+    memcpy(&power, &bits, sizeof(power));
+    return part->rung * power;
 }
 
 #endif

@@ -7,6 +7,7 @@
  * of it, by shorter steps whether the error was the step's. Where all fail, as where events accumulate
  * in finite time, implicit Euler goes on by itself for a while, certified and a little at a time. */
 #include "energy.h"
+#include "extremes.h"
 #include "guards.h"
 #include "radau_internal.h"
 
@@ -54,7 +55,8 @@ static double most_periods(int stages) {
 }
 
 double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
-    return fmin(fmin(part->excitation.next_edge, part->commands.next), r->options.stop);
+    return dalcs_smaller(dalcs_smaller(part->excitation.next_edge, part->commands.next),
+                         r->options.stop);
 }
 
 double dalcs_segment_longest(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
@@ -340,7 +342,7 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         double whole = rint(t_end / part->h) * part->h; /* counted, not accumulated */
         t_end = fabs(t_end - whole) <= 4.0 * r->resolution ? whole : t_end;
     }
-    part->t_end = fmin(t_end, search->limit);
+    part->t_end = dalcs_smaller(t_end, search->limit);
     if (theta * part->h > 4.0 * part->fell_back) {
         part->tries = 0;
     }
@@ -349,7 +351,8 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         dalcs_guards_arm(r, part, theta, quality->unit);
     }
     r->steps++;
-    r->wrong_sign = fmax(r->wrong_sign, dalcs_guards_wrong_sign(part, theta, quality->unit));
+    r->wrong_sign =
+        dalcs_larger(r->wrong_sign, dalcs_guards_wrong_sign(part, theta, quality->unit));
     if (residual > r->worst_residual) {
         r->worst_residual = residual;
         r->worst_time = part->t;
@@ -383,7 +386,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (status < DALCS_OK) {
         return status;
     }
-    double end = fmin(1.0, (search->limit - part->t) / part->h);
+    double end = dalcs_smaller(1.0, (search->limit - part->t) / part->h);
     if (status == DALCS_OK && !(dalcs_stage_residual(entry) <= largest_residual)) {
         if (part->fresh && search->restarts == 0) {
             return restart(r, part, search, false);
@@ -425,7 +428,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return untie(r, part, search, &quality);
     }
     part->open = part->fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);
-    accept(r, part, search, fmin(theta, end), &quality, dalcs_stage_residual(entry));
+    accept(r, part, search, dalcs_smaller(theta, end), &quality, dalcs_stage_residual(entry));
     *done = true;
     return DALCS_OK;
 }

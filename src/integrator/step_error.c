@@ -7,6 +7,8 @@
  * the current of a source across a capacitor. */
 #include "step_error.h"
 
+#include "extremes.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -26,10 +28,6 @@ static const double crossed = 2e-8;
 /* Sources that disagree by more than this part of the largest signal. */
 static const double clash_part = 1e-9;
 
-static inline double larger(double a, double b) {
-    return a > b ? a : b;
-}
-
 static bool is_on(const struct dalcs_radau_part *part, int pair) {
     return dalcs_osnsp_is_on(&part->component->osnsp, pair);
 }
@@ -45,9 +43,9 @@ static double largest_of(const double *y, int begin, int end, double largest) {
         other = b > other ? b : other;
     }
     if (c < end) {
-        largest = larger(largest, fabs(y[c]));
+        largest = dalcs_larger(largest, fabs(y[c]));
     }
-    return larger(largest, other);
+    return dalcs_larger(largest, other);
 }
 
 static void raise_units(const struct dalcs_radau_part *part, const double *y, double *unit) {
@@ -60,15 +58,15 @@ static void raise_units(const struct dalcs_radau_part *part, const double *y, do
     }
     for (int d = 0; d < p->system->n_pairs; d++) {
         int of = is_on(part, d);
-        unit[of] = larger(unit[of], fabs(y[n_equations + d]));
+        unit[of] = dalcs_larger(unit[of], fabs(y[n_equations + d]));
     }
 }
 
 /* Each unit vouches a little for the other. */
 static void cross_units(const struct dalcs_radau_part *part, double *unit) {
     double volt = unit[0];
-    unit[0] = larger(unit[0], part->cross[0] * unit[1]);
-    unit[1] = larger(unit[1], part->cross[1] * volt);
+    unit[0] = dalcs_larger(unit[0], part->cross[0] * unit[1]);
+    unit[1] = dalcs_larger(unit[1], part->cross[1] * volt);
 }
 
 /* The last node that belongs to the segment. */
@@ -139,17 +137,17 @@ static void find_magnitudes(struct dalcs_radau_part *part, double end, double *u
         int run_end = p->run[k].end < n_equations ? p->run[k].end : n_equations;
         double largest = unit[p->run[k].is_current];
         for (int c = p->run[k].begin; c < run_end; c++) {
-            double m = larger(fabs(first[c]), fabs(known[c]));
+            double m = dalcs_larger(fabs(first[c]), fabs(known[c]));
             magnitude[c] = m;
-            largest = larger(largest, m);
+            largest = dalcs_larger(largest, m);
         }
         unit[p->run[k].is_current] = largest;
     }
     for (int d = 0; d < p->system->n_pairs; d++) {
         int c = n_equations + d;
         int of = is_on(part, d);
-        magnitude[c] = larger(fabs(first[c]), fabs(known[c]));
-        unit[of] = larger(unit[of], magnitude[c]);
+        magnitude[c] = dalcs_larger(fabs(first[c]), fabs(known[c]));
+        unit[of] = dalcs_larger(unit[of], magnitude[c]);
     }
     part->magnitude_end = end;
 }
@@ -162,7 +160,7 @@ static double rounding_of_step(const struct dalcs_radau_part *part,
     const double *inverse = dalcs_stage_natural_units(entry) + n_equations;
     double balanced = 0.0;
     for (int c = 0; c < n_equations; c++) {
-        balanced = larger(balanced, fabs(final[c]) * inverse[c]);
+        balanced = dalcs_larger(balanced, fabs(final[c]) * inverse[c]);
     }
     return rounding_part * part->rounding * balanced;
 }
@@ -188,13 +186,13 @@ static void compare(const struct dalcs_radau *r, const struct dalcs_radau_part *
         }
         double drift = c < s->n_x ? fabs(part->out[l->drift + c]) : 0.0;
         double error = drift;
-        error = curved ? larger(error, fabs(part->out[l->ripple + c])) : error;
+        error = curved ? dalcs_larger(error, fabs(part->out[l->ripple + c])) : error;
         if (error == 0.0) {
             continue;
         }
         int of = is_pair || s->column_is_current[c] ? 1 : 0;
-        double scale = larger(larger(part->scale[c], part->magnitude[c]),
-                              (is_pair ? smallest_pair : smallest_scale) * q->unit[of]);
+        double scale = dalcs_larger(dalcs_larger(part->scale[c], part->magnitude[c]),
+                                    (is_pair ? smallest_pair : smallest_scale) * q->unit[of]);
         double floor =
             is_pair ? rounding_part * part->rounding * q->unit[1] : rounding * natural[c];
         double allowed = tolerance * scale + floor + besides[of];
@@ -203,7 +201,7 @@ static void compare(const struct dalcs_radau *r, const struct dalcs_radau_part *
             q->drift = drift / allowed;
         }
         if (!(error <= allowed)) {
-            q->of_unit = larger(q->of_unit, error / q->unit[of]);
+            q->of_unit = dalcs_larger(q->of_unit, error / q->unit[of]);
         }
         if (!(error <= q->ratio * allowed)) {
             q->ratio = error / allowed;
@@ -219,8 +217,8 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
                       struct dalcs_step_quality *q) {
     *q = (struct dalcs_step_quality){0};
     find_magnitudes(part, end, q->here);
-    q->unit[0] = larger(q->here[0], part->unit_scale[0]);
-    q->unit[1] = larger(q->here[1], part->unit_scale[1]);
+    q->unit[0] = dalcs_larger(q->here[0], part->unit_scale[0]);
+    q->unit[1] = dalcs_larger(q->here[1], part->unit_scale[1]);
     cross_units(part, q->unit);
     const double *natural = dalcs_stage_natural_units(entry);
     compare(r, part, natural, 0.0, q);
@@ -260,7 +258,7 @@ bool dalcs_step_clashes(const struct dalcs_radau_part *part, const struct dalcs_
                         double end, const double *unit) {
     int n = dalcs_stage_n_clashes(entry);
     int s = part->stages.method->s;
-    double limit = clash_part * larger(unit[0], unit[1]);
+    double limit = clash_part * dalcs_larger(unit[0], unit[1]);
     bool found = false;
     for (int k = 0; k < n && !found; k++) {
         bool counts = k % s == 0 || part->stages.method->node[k % s + 1] <= end;
