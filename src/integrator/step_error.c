@@ -165,49 +165,55 @@ static double rounding_of_step(const struct dalcs_radau_part *part,
     return rounding_part * part->rounding * balanced;
 }
 
+/* One more error, over what is allowed for it. Divisions are dear, and few columns are worse than all
+ * before. */
+static inline void judge(struct dalcs_step_quality *q, double error, double allowed, int of) {
+    if (!(error <= allowed)) {
+        q->of_unit = dalcs_larger(q->of_unit, error / q->unit[of]);
+    }
+    if (!(error <= q->ratio * allowed) && q->ratio == q->ratio) {
+        q->ratio = error / allowed;
+    }
+}
+
 /* The errors over what is allowed, with `rounding` besides. */
 static void compare(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                     const double *natural, double rounding, struct dalcs_step_quality *q) {
     const struct dalcs_system *s = part->component->system;
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    int n_equations = dalcs_system_n_equations(s);
+    const double *drift = part->out + part->stages.layout.drift;
+    const double *ripple = part->out + part->stages.layout.ripple;
+    bool curved = part->excitation.is_curved;
     double besides[2] = {0.1 * r->options.vntol + crossed * part->cross[0] * q->here[1],
                          0.1 * r->options.abstol + crossed * part->cross[1] * q->here[0]};
-    double tolerance = r->inner_tolerance;
-    bool curved = part->excitation.is_curved;
-    int n_judged = curved ? n_equations + s->n_pairs : s->n_x;
+    double least[2] = {smallest_scale * q->unit[0], smallest_scale * q->unit[1]};
     q->ratio = 0.0;
     q->drift = 0.0;
     q->of_unit = 0.0;
-    for (int c = 0; c < n_judged; c++) {
-        bool is_pair = c >= n_equations;
-        if (is_pair && !is_on(part, c - n_equations)) {
-            continue; /* its voltage is one of the columns */
+    int c = 0;
+    for (; c < s->n_x; c++) {
+        int of = s->column_is_current[c] ? 1 : 0;
+        double scale = dalcs_larger(dalcs_larger(part->scale[c], part->magnitude[c]), least[of]);
+        double allowed = r->inner_tolerance * scale + rounding * natural[c] + besides[of];
+        double error = fabs(drift[c]);
+        if (error > q->drift * allowed) {
+            q->drift = error / allowed;
         }
-        double drift = c < s->n_x ? fabs(part->out[l->drift + c]) : 0.0;
-        double error = drift;
-        error = curved ? dalcs_larger(error, fabs(part->out[l->ripple + c])) : error;
-        if (error == 0.0) {
-            continue;
-        }
-        int of = is_pair || s->column_is_current[c] ? 1 : 0;
-        double scale = dalcs_larger(dalcs_larger(part->scale[c], part->magnitude[c]),
-                                    (is_pair ? smallest_pair : smallest_scale) * q->unit[of]);
-        double floor =
-            is_pair ? rounding_part * part->rounding * q->unit[1] : rounding * natural[c];
-        double allowed = tolerance * scale + floor + besides[of];
-        /* Divisions are dear, and few columns are worse than all before. */
-        if (drift > q->drift * allowed) {
-            q->drift = drift / allowed;
-        }
-        if (!(error <= allowed)) {
-            q->of_unit = dalcs_larger(q->of_unit, error / q->unit[of]);
-        }
-        if (!(error <= q->ratio * allowed)) {
-            q->ratio = error / allowed;
-        }
-        if (q->ratio != q->ratio) {
-            return;
+        judge(q, curved ? dalcs_larger(error, fabs(ripple[c])) : error, allowed, of);
+    }
+    int n_equations = dalcs_system_n_equations(s);
+    for (; curved && c < n_equations; c++) {
+        int of = s->column_is_current[c] ? 1 : 0;
+        double scale = dalcs_larger(dalcs_larger(part->scale[c], part->magnitude[c]), least[of]);
+        judge(q, fabs(ripple[c]), r->inner_tolerance * scale + rounding * natural[c] + besides[of],
+              of);
+    }
+    double floor = rounding_part * part->rounding * q->unit[1] + besides[1];
+    double least_pair = smallest_pair * q->unit[1];
+    for (int d = 0; curved && d < s->n_pairs; d++, c++) {
+        if (is_on(part, d)) { /* the voltage of the others is one of the columns */
+            double scale =
+                dalcs_larger(dalcs_larger(part->scale[c], part->magnitude[c]), least_pair);
+            judge(q, fabs(ripple[c]), r->inner_tolerance * scale + floor, 1);
         }
     }
 }
@@ -256,13 +262,16 @@ void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double
 
 bool dalcs_step_clashes(const struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry,
                         double end, const double *unit) {
-    int n = dalcs_stage_n_clashes(entry);
-    int s = part->stages.method->s;
+    const struct dalcs_collocation *m = part->stages.method;
+    const double *clash = part->out + part->stages.layout.n_fixed;
+    const double *last = clash + dalcs_stage_n_clashes(entry);
     double limit = clash_part * dalcs_larger(unit[0], unit[1]);
-    bool found = false;
-    for (int k = 0; k < n && !found; k++) {
-        bool counts = k % s == 0 || part->stages.method->node[k % s + 1] <= end;
-        found = counts && fabs(part->out[part->stages.layout.n_fixed + k]) > limit;
+    for (; clash < last; clash += m->s) { /* those of one null vector, at the stages */
+        for (int i = 0; i < m->s && (i == 0 || m->node[i + 1] <= end); i++) {
+            if (fabs(clash[i]) > limit) {
+                return true;
+            }
+        }
     }
-    return found;
+    return false;
 }
