@@ -141,10 +141,10 @@ static double watched_voltage(const struct dalcs_stage_workshop *b, int d, const
 }
 
 /* What the stages take of each part of a solution: factor[s][parts]. */
-static void find_factors(const struct dalcs_stage_workshop *b, const double *share, bool is_state,
+static void find_factors(const struct dalcs_stage_workshop *b, const double *share,
                          long double factor[][DALCS_SOLUTION_PARTS]) {
     const struct dalcs_collocation *m = b->stages->method;
-    long double weight = is_state ? 1.0L : 0.0L;
+    long double weight = 0.0L;
     for (int q = 0; q < m->s; q++) {
         weight += m->exact_from[q] * share[q + 1];
     }
@@ -152,14 +152,31 @@ static void find_factors(const struct dalcs_stage_workshop *b, const double *sha
         factor[i][0] = m->exact_to[i] * weight;
     }
     for (int p = 0; p < m->n_pairs; p++) {
-        long double complex of_pair = is_state ? 1.0L : 0.0L;
+        long double re = 0.0L;
+        long double im = 0.0L;
         for (int q = 0; q < m->s; q++) {
-            of_pair += m->exact_from_pair[p][q] * share[q + 1];
+            re += creall(m->exact_from_pair[p][q]) * share[q + 1];
+            im += cimagl(m->exact_from_pair[p][q]) * share[q + 1];
         }
         for (int i = 0; i < m->s; i++) {
-            long double complex both = 2.0L * m->exact_to_pair[i][p] * of_pair;
-            factor[i][1 + 2 * p] = creall(both);
-            factor[i][2 + 2 * p] = -cimagl(both);
+            long double to_re = 2.0L * creall(m->exact_to_pair[i][p]);
+            long double to_im = 2.0L * cimagl(m->exact_to_pair[i][p]);
+            factor[i][1 + 2 * p] = to_re * re - to_im * im;
+            factor[i][2 + 2 * p] = -(to_re * im + to_im * re);
+        }
+    }
+}
+
+/* Those of what is the same at all stages, as states and constants are: each coordinate sees the
+ * constant 1 as 1. */
+static void find_constant_factors(const struct dalcs_stage_workshop *b,
+                                  long double factor[][DALCS_SOLUTION_PARTS]) {
+    const struct dalcs_collocation *m = b->stages->method;
+    for (int i = 0; i < m->s; i++) {
+        factor[i][0] = m->exact_to[i];
+        for (int p = 0; p < m->n_pairs; p++) {
+            factor[i][1 + 2 * p] = 2.0L * creall(m->exact_to_pair[i][p]);
+            factor[i][2 + 2 * p] = -2.0L * cimagl(m->exact_to_pair[i][p]);
         }
     }
 }
@@ -186,7 +203,11 @@ static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_colu
     const struct dalcs_collocation *m = b->stages->method;
     bool is_state = column < b->n_x;
     long double factor[DALCS_MAX_STAGES][DALCS_SOLUTION_PARTS] = {{0.0L}};
-    find_factors(b, share, is_state, factor);
+    if (column <= b->n_x) {
+        find_constant_factors(b, factor);
+    } else {
+        find_factors(b, share, factor);
+    }
     const long double *part = b->part + rhs_column * b->n_kept * DALCS_SOLUTION_PARTS;
     long double *stage = b->stage;
     for (int r = 0; r < b->n_kept; r++, part += DALCS_SOLUTION_PARTS, stage += DALCS_MAX_STAGES) {
