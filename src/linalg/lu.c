@@ -10,7 +10,7 @@ static const double least_reciprocal_growth = 1e-3;
 void dalcs_lu_common_init(klu_common *common) {
     klu_defaults(common);
     common->halt_if_singular = 1;
-    common->scale = 0; /* the caller balances: no division by row scales in every solve */
+    common->scale = -1; /* the caller balances and knows its entries: neither scales nor a check */
 }
 
 void dalcs_lu_keep_diagonal(klu_common *common, bool keep) {
