@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Elements that grow more than this over those of the matrix cost too many digits. */
 static const double least_reciprocal_growth = 1e-3;
@@ -26,57 +27,76 @@ static const double clear_of_rounding = 100.0;
 struct extracted {
     int *Lp, *Li, *Up, *Ui, *Fp, *Fi;
     double *Lx, *Ux, *Fx;
+    void *storage; /* of all of them */
 };
 
-static void extracted_finish(struct extracted *e) {
-    free(e->Lp);
-    free(e->Li);
-    free(e->Lx);
-    free(e->Up);
-    free(e->Ui);
-    free(e->Ux);
-    free(e->Fp);
-    free(e->Fi);
-    free(e->Fx);
+/* n numbers of `size` bytes, the next ones in a storage; *used grows by them. Without storage that is
+ * all. */
+static void *carve(void *storage, size_t *used, size_t n, size_t size) {
+    enum { ALIGNED = 16 };
+
+    void *at = storage != NULL ? (char *)storage + *used : NULL;
+    *used += (n * size + ALIGNED - 1) / ALIGNED * ALIGNED;
+    return at;
 }
 
-static enum dalcs_status extract(struct extracted *e, struct dalcs_lu *lu, klu_symbolic *symbolic,
-                                 klu_numeric *numeric, klu_common *common) {
+static size_t lay_out_extracted(struct extracted *e, const struct dalcs_lu *lu,
+                                const klu_numeric *numeric) {
     size_t n = (size_t)lu->n;
     size_t lnz = (size_t)numeric->lnz;
     size_t unz = (size_t)numeric->unz;
     size_t nzoff = (size_t)numeric->nzoff;
     size_t number = (lu->is_complex ? 2 : 1) * sizeof(double);
-    *e = (struct extracted){
-        .Lp = dalcs_alloc(n + 1, sizeof(int)),
-        .Li = dalcs_alloc(lnz, sizeof(int)),
-        .Lx = dalcs_alloc(lnz, number),
-        .Up = dalcs_alloc(n + 1, sizeof(int)),
-        .Ui = dalcs_alloc(unz, sizeof(int)),
-        .Ux = dalcs_alloc(unz, number),
-        .Fp = dalcs_alloc(n + 1, sizeof(int)),
-        .Fi = dalcs_alloc(nzoff, sizeof(int)),
-        .Fx = dalcs_alloc(nzoff, number),
-    };
+    size_t used = 0;
+    e->Lx = carve(e->storage, &used, lnz, number);
+    e->Ux = carve(e->storage, &used, unz, number);
+    e->Fx = carve(e->storage, &used, nzoff, number);
+    e->Lp = carve(e->storage, &used, n + 1, sizeof(int));
+    e->Li = carve(e->storage, &used, lnz, sizeof(int));
+    e->Up = carve(e->storage, &used, n + 1, sizeof(int));
+    e->Ui = carve(e->storage, &used, unz, sizeof(int));
+    e->Fp = carve(e->storage, &used, n + 1, sizeof(int));
+    e->Fi = carve(e->storage, &used, nzoff, sizeof(int));
+    return used;
+}
+
+/* Row pointers, which count, come first. */
+static size_t lay_out(struct dalcs_lu *lu, const klu_numeric *numeric) {
+    size_t n = (size_t)lu->n;
+    size_t lower = (size_t)numeric->lnz - n + (size_t)numeric->nzoff;
+    size_t upper = (size_t)numeric->unz - n;
+    size_t number = (lu->is_complex ? 2 : 1) * sizeof(double);
+    size_t used = 0;
+    lu->lower_p = carve(lu->storage, &used, n + 1, sizeof(int));
+    lu->upper_p = carve(lu->storage, &used, n + 1, sizeof(int));
+    lu->lower_x = carve(lu->storage, &used, lower, number);
+    lu->upper_x = carve(lu->storage, &used, upper, number);
+    lu->pivot_inverse = carve(lu->storage, &used, n, number);
+    lu->work = carve(lu->storage, &used, n, number);
+    lu->lower_j = carve(lu->storage, &used, lower, sizeof(int));
+    lu->upper_j = carve(lu->storage, &used, upper, sizeof(int));
+    lu->from = carve(lu->storage, &used, n, sizeof(int));
+    lu->to = carve(lu->storage, &used, n, sizeof(int));
+    lu->block = carve(lu->storage, &used, (size_t)lu->n_blocks + 1, sizeof(int));
+    return used;
+}
+
+/* All is written, but for row pointers: not zeroed, for that would take as long as a solve. */
+static enum dalcs_status extract(struct extracted *e, struct dalcs_lu *lu, klu_symbolic *symbolic,
+                                 klu_numeric *numeric, klu_common *common) {
+    *e = (struct extracted){.storage = NULL};
     lu->n_blocks = symbolic->nblocks;
-    lu->block = dalcs_alloc((size_t)lu->n_blocks + 1, sizeof(int));
-    lu->from = dalcs_alloc(n, sizeof(int));
-    lu->to = dalcs_alloc(n, sizeof(int));
-    lu->lower_p = dalcs_alloc(n + 1, sizeof(int));
-    lu->lower_j = dalcs_alloc(lnz - n + nzoff, sizeof(int));
-    lu->lower_x = dalcs_alloc(lnz - n + nzoff, number);
-    lu->upper_p = dalcs_alloc(n + 1, sizeof(int));
-    lu->upper_j = dalcs_alloc(unz - n, sizeof(int));
-    lu->upper_x = dalcs_alloc(unz - n, number);
-    lu->pivot_inverse = dalcs_alloc(n, number);
-    lu->work = dalcs_alloc(n, number);
-    if (e->Lp == NULL || e->Li == NULL || e->Lx == NULL || e->Up == NULL || e->Ui == NULL ||
-        e->Ux == NULL || e->Fp == NULL || e->Fi == NULL || e->Fx == NULL || lu->block == NULL ||
-        lu->from == NULL || lu->to == NULL || lu->lower_p == NULL || lu->lower_j == NULL ||
-        lu->lower_x == NULL || lu->upper_p == NULL || lu->upper_j == NULL || lu->upper_x == NULL ||
-        lu->pivot_inverse == NULL || lu->work == NULL) {
+    e->storage = malloc(lay_out_extracted(e, lu, numeric));
+    lu->storage = malloc(lay_out(lu, numeric));
+    if (e->storage == NULL || lu->storage == NULL) {
         return DALCS_E_NOMEM;
     }
+    lay_out_extracted(e, lu, numeric);
+    lay_out(lu, numeric);
+    memset(lu->lower_p, 0, (size_t)((char *)lu->lower_x - (char *)lu->lower_p));
+    size_t lnz = (size_t)numeric->lnz;
+    size_t unz = (size_t)numeric->unz;
+    size_t nzoff = (size_t)numeric->nzoff;
     int done = lu->is_complex
                    ? klu_z_extract(numeric, symbolic, e->Lp, e->Li, e->Lx, e->Lx + lnz, e->Up,
                                    e->Ui, e->Ux, e->Ux + unz, e->Fp, e->Fi, e->Fx, e->Fx + nzoff,
@@ -280,7 +300,7 @@ enum dalcs_status dalcs_lu_factor_analyzed(struct dalcs_lu *lu, klu_common *comm
         if (status == DALCS_OK) {
             arrange(lu, &e);
         }
-        extracted_finish(&e);
+        free(e.storage);
     }
     if (kept == NULL || status != DALCS_OK) {
         dalcs_lu_drop(&numeric, is_complex, common);
@@ -424,16 +444,6 @@ size_t dalcs_lu_bytes(const struct dalcs_lu *lu) {
 }
 
 void dalcs_lu_finish(struct dalcs_lu *lu) {
-    free(lu->block);
-    free(lu->from);
-    free(lu->to);
-    free(lu->lower_p);
-    free(lu->lower_j);
-    free(lu->lower_x);
-    free(lu->upper_p);
-    free(lu->upper_j);
-    free(lu->upper_x);
-    free(lu->pivot_inverse);
-    free(lu->work);
+    free(lu->storage);
     *lu = (struct dalcs_lu){0};
 }

@@ -27,6 +27,7 @@ struct dalcs_lu {
     double *upper_x;
     double *pivot_inverse; /* [n] */
     double *work;          /* [n] */
+    void *storage;         /* of all of these */
 };
 
 /* KLU's settings and counters; one for each thread of work. */
