@@ -109,10 +109,10 @@ def run_ngspice(search, rows):
         row.cpu.append(search.runner.time(setting, search.tried[setting].seconds))
 
 
-def choose_ngspice(rows):
+def choose_ngspice(search, rows):
     """The fastest row for each target, marked with the sharpest target that it serves."""
     chosen = []
-    for target in ngspice_search.TARGETS:
+    for target in search.targets():
         good = [row for row in rows.values() if row.error <= target and row.cpu]
         if good:
             best = min(good, key=lambda row: row.median)

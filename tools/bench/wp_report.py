@@ -62,7 +62,7 @@ def table(circuit, result):
     lines += ["| method | setting | error | CPU ms | steps | factorisations | ratio |",
               "|---|---|---|---|---|---|---|"]
     for row in shown(rows):
-        setting = row["setting"] + (f" (target {row['target']:g})" if row["target"] else "")
+        setting = row["setting"] + (f" (target {row['target']:.2g})" if row["target"] else "")
         lines.append(f"| {row['method']} | {setting} | {row['error']:.1e} | "
                      f"{digits(1e3 * row['cpu_s'])} | "
                      f"{'' if row['steps'] is None else row['steps']} | "
