@@ -17,7 +17,7 @@
 
 #define POINTS_FIELD "%-20zu"
 
-enum { BLOCK_DOUBLES = 1 << 12 };
+enum { BLOCK_DOUBLES = 1 << 10 }; /* and of a large circuit one point */
 
 struct raw {
     size_t n_columns, n_points;
@@ -212,19 +212,21 @@ static void row(void *state, FILE *stream, double time, const double *value) {
     raw->n_of_step++;
 }
 
-static void end(void *state, FILE *stream) {
-    struct raw *raw = state;
-    release(raw, stream);
-    if (fseeko(stream, raw->points_at, SEEK_SET) == 0) {
-        fprintf(stream, POINTS_FIELD, raw->n_points);
-        fseeko(stream, 0, SEEK_END);
-    }
-}
-
 static bool write_points(const struct raw *raw, int descriptor, size_t n_points) {
     char text[32];
     const int length = snprintf(text, sizeof text, POINTS_FIELD, n_points);
     return pwrite(descriptor, text, (size_t)length, raw->points_at) == length;
+}
+
+/* Into the file behind the stream's back, for to seek in a stream is to read it. */
+static void end(void *state, FILE *stream) {
+    struct raw *raw = state;
+    release(raw, stream);
+    if (fflush(stream) == 0 && !write_points(raw, fileno(stream), raw->n_points) &&
+        fseeko(stream, raw->points_at, SEEK_SET) == 0) {
+        fprintf(stream, POINTS_FIELD, raw->n_points); /* notes the error, if it is one */
+        fseeko(stream, 0, SEEK_END);
+    }
 }
 
 /* Without a whole row of the last plot, the plots before it. */
