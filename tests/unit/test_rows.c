@@ -26,7 +26,7 @@ static const char STEPPED[] =
     "S1 p q g 0 sw\n"
     "L1 q 0 10m\n"
     "R5 q 0 7\n"
-                              "I5 0 q SIN(0 0.1 30)\n"
+    "I5 0 q SIN(0 0.1 30)\n"
     "V4 z 0 2\n"
     "R6 z 0 1\n"
     ".model sw sw(vt=0.3)\n"
