@@ -36,7 +36,8 @@ static enum dalcs_status init_tables(struct dalcs_outputs *outputs,
 enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
                                      const struct dalcs_arguments *arguments, bool ascii,
                                      enum dalcs_analysis main, double start, double stop) {
-    *outputs = (struct dalcs_outputs){.report_path = arguments->report};
+    *outputs =
+        (struct dalcs_outputs){.report_path = arguments->report, .has_summary = !arguments->quiet};
     enum dalcs_status status = init_tables(outputs, arguments, ascii, main);
     if (status != DALCS_OK) {
         dalcs_outputs_finish(outputs);
@@ -81,18 +82,25 @@ enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs,
     return dalcs_measure_begin(&outputs->measure[plot->analysis], plot);
 }
 
-enum dalcs_status dalcs_outputs_row(struct dalcs_outputs *outputs, double time,
-                                    const double *value) {
-    struct dalcs_measure *measure = &outputs->measure[outputs->analysis];
+static void measure_row(struct dalcs_outputs *outputs, struct dalcs_measure *measure, double time,
+                        const double *value) {
     const struct dalcs_plot *plot = measure->plot;
-    outputs->n_rows++;
     if (plot->is_complex) {
         for (size_t i = 0; i < plot->n_signals; i++) {
             outputs->magnitude[i] = hypot(value[2 * i], value[2 * i + 1]);
         }
     }
     dalcs_measure_row(measure, time, plot->is_complex ? outputs->magnitude : value);
-    if (outputs->drawn == plot) {
+}
+
+enum dalcs_status dalcs_outputs_row(struct dalcs_outputs *outputs, double time,
+                                    const double *value) {
+    struct dalcs_measure *measure = &outputs->measure[outputs->analysis];
+    outputs->n_rows++;
+    if (outputs->has_summary) {
+        measure_row(outputs, measure, time, value);
+    }
+    if (outputs->drawn == measure->plot) {
         dalcs_figure_row(&outputs->figure, time, value);
     }
     for (size_t i = 0; i < outputs->n_tables; i++) {

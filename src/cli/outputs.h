@@ -16,6 +16,7 @@ struct dalcs_outputs {
     const struct dalcs_plot *drawn; /* in the figure: the first transient; NULL: not yet */
     const char *report_path;        /* NULL: none */
     struct dalcs_atomic_file report;
+    bool has_summary; /* that shows what rows are measured for */
     struct dalcs_measure measure[DALCS_N_ANALYSES];
     struct dalcs_step_lines steps; /* of .step */
     enum dalcs_analysis analysis;  /* of the plot being received */

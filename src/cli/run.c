@@ -93,9 +93,11 @@ static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
 static enum dalcs_status row(void *user, double time, const double *value) {
     struct run *run = user;
     run->time = time;
-    enum dalcs_status status = dalcs_print_table_row(&run->printed, time, value);
-    status = status == DALCS_OK ? dalcs_outputs_row(&run->outputs, time, value) : status;
-    return status == DALCS_OK ? check_interrupt(run) : status;
+    if (run->printed.out != NULL) {
+        DALCS_TRY(dalcs_print_table_row(&run->printed, time, value));
+    }
+    DALCS_TRY(dalcs_outputs_row(&run->outputs, time, value));
+    return check_interrupt(run);
 }
 
 static enum dalcs_status end(void *user) {

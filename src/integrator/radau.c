@@ -276,18 +276,17 @@ static void count_crowd(const struct dalcs_radau *r, struct dalcs_radau_part *pa
 }
 
 static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
+    struct dalcs_component *c = part->component;
+    size_t n_columns = (size_t)dalcs_system_n_columns(c->system);
+    size_t state_bytes = (size_t)c->system->n_x * sizeof(double);
     part->jumped = false;
     if (r->base->energy != NULL) {
         memcpy(part->after, part->x, state_bytes);
     }
-    if (part->end == 1.0) {
-        const double *end = part->out + part->stages.method->s * part->stages.layout.stride;
-        memcpy(part->x, end, state_bytes);
-    } else {
-        dalcs_step_states(part, part->end, part->x);
-        part->fresh = true; /* the next step starts inside this one */
-    }
+    dalcs_step_values(part, part->end, part->y1);
+    memcpy(part->x, part->y1, state_bytes);
+    memcpy(c->y, part->y1, n_columns * sizeof(double)); /* should there be no next segment */
+    part->fresh = part->fresh || part->end != 1.0;      /* the next step starts inside this one */
     if (r->base->energy != NULL) {
         dalcs_energy_segment(r->base->energy, part, part->after);
     }
@@ -322,22 +321,20 @@ enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) {
     return opens ? dalcs_radau_tell_open(r) : DALCS_OK;
 }
 
-static void ask_bystanders(const struct dalcs_radau_part *part, double t, enum dalcs_side side) {
+double dalcs_radau_bystander(const struct dalcs_radau_part *part, int bystander, double t,
+                             enum dalcs_side side) {
     const struct dalcs_component *c = part->component;
     const struct dalcs_system *s = c->system;
-    const struct dalcs_bystanders *b = &part->excitation.bystanders;
-    for (int i = 0; i < b->n; i++) {
-        double sum = 0.0;
-        for (int k = 0; k < s->n_inputs; k++) {
-            double gain = b->gain[i * s->n_inputs + k];
-            if (gain != 0.0) {
-                const struct dalcs_stimulus *stimulus =
-                    k > 0 ? &c->circuit->stimulus[s->stimulus[k]] : NULL;
-                sum += gain * (k > 0 ? dalcs_stimulus_value(stimulus, t, side) : 1.0);
-            }
+    const double *gain = &part->excitation.bystanders.gain[bystander * s->n_inputs];
+    double sum = 0.0;
+    for (int k = 0; k < s->n_inputs; k++) {
+        if (gain[k] != 0.0) {
+            const struct dalcs_stimulus *stimulus =
+                k > 0 ? &c->circuit->stimulus[s->stimulus[k]] : NULL;
+            sum += gain[k] * (k > 0 ? dalcs_stimulus_value(stimulus, t, side) : 1.0);
         }
-        c->y[b->column[i]] = sum;
     }
+    return sum;
 }
 
 /* A part without memory has no solution at t: then it has had none, but for single times, since its
@@ -361,48 +358,73 @@ static void note_failure(const struct dalcs_radau *r, struct dalcs_radau_part *p
     r->base->failed_time = since;
 }
 
-static enum dalcs_status evaluate(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                  double t, enum dalcs_side side) {
+static void evaluate_stepped(struct dalcs_radau_part *part, double t, enum dalcs_side side) {
     struct dalcs_component *c = part->component;
     const struct dalcs_system *s = c->system;
-    if (part->kind == DALCS_PART_ALGEBRAIC) {
-        if (c->n_varying == 0 && t > 0.0) {
-            return DALCS_OK;
-        }
-        for (int i = 0; i < c->n_varying; i++) {
-            int k = c->varying[i];
-            c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
-        }
-        r->base->t = t;
-        enum dalcs_status status = dalcs_component_solve(c, 0.0, c->u, c->y);
-        if (status > DALCS_OK) {
-            note_failure(r, part, t, side);
-        }
-        DALCS_TRY(status);
-        return dalcs_euler_tell_open(r->base, part->index);
-    }
+    const struct dalcs_bystanders *b = &part->excitation.bystanders;
     int n_equations = dalcs_system_n_equations(s);
-    dalcs_step_values(part, fmin(1.0, (t - part->t) / part->h), part->y1);
+    dalcs_step_values(part, dalcs_radau_theta(part, t), part->y1);
     memcpy(c->y, part->y1, (size_t)dalcs_system_n_columns(s) * sizeof(double));
     for (int d = 0; d < s->n_pairs; d++) {
         c->y[n_equations + d] *= dalcs_osnsp_is_on(&c->osnsp, d) ? 1.0 : 0.0;
     }
-    ask_bystanders(part, t, side);
+    for (int i = 0; i < b->n; i++) {
+        c->y[b->column[i]] = dalcs_radau_bystander(part, i, t, side);
+    }
     for (int i = 0; i < part->n_used_inputs; i++) {
         int k = part->used_input[i];
         c->u[s->n_x + k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
     }
-    return DALCS_OK;
 }
 
-enum dalcs_status dalcs_radau_evaluate_part(struct dalcs_radau *r, int part, double t,
-                                            enum dalcs_side side) {
-    return evaluate(r, &r->part[part], t, side);
+static void evaluate_all_stepped(struct dalcs_radau *r, double t, enum dalcs_side side) {
+    for (int k = 0; k < r->n_parts; k++) {
+        if (r->part[k].kind == DALCS_PART_STEPPED) {
+            evaluate_stepped(&r->part[k], t, side);
+        }
+    }
+}
+
+enum dalcs_status dalcs_radau_solve(struct dalcs_radau *r, struct dalcs_radau_part *part, double t,
+                                    enum dalcs_side side) {
+    struct dalcs_component *c = part->component;
+    const struct dalcs_system *s = c->system;
+    if (c->n_varying == 0 && t > 0.0) {
+        return DALCS_OK;
+    }
+    for (int i = 0; i < c->n_varying; i++) {
+        int k = c->varying[i];
+        c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+    }
+    r->base->t = t;
+    enum dalcs_status status = dalcs_component_solve(c, 0.0, c->u, c->y);
+    if (status > DALCS_OK) {
+        note_failure(r, part, t, side);
+    }
+    DALCS_TRY(status);
+    if (!dalcs_osnsp_is_open(&c->osnsp)) {
+        return DALCS_OK;
+    }
+    evaluate_all_stepped(r, t, side); /* voltages between parts are told, too */
+    return dalcs_euler_tell_open(r->base, part->index);
 }
 
 enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t, enum dalcs_side side) {
+    evaluate_all_stepped(r, t, side);
     for (int k = 0; k < r->n_parts; k++) {
-        DALCS_TRY(evaluate(r, &r->part[k], t, side));
+        if (r->part[k].kind == DALCS_PART_ALGEBRAIC) {
+            DALCS_TRY(dalcs_radau_solve(r, &r->part[k], t, side));
+        }
     }
     return DALCS_OK;
+}
+
+/* A component that found no next segment is where its last one ended. */
+void dalcs_radau_break_off(struct dalcs_radau *r, double t) {
+    for (int k = 0; k < r->n_parts; k++) {
+        struct dalcs_radau_part *part = &r->part[k];
+        if (part->kind == DALCS_PART_STEPPED && part->t_end > part->t) {
+            evaluate_stepped(part, t, DALCS_LEFT);
+        }
+    }
 }

@@ -121,13 +121,12 @@ double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens);
 /* Ends all segments that end at t and starts the next ones. */
 enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) DALCS_MUST_CHECK;
 
-/* The same as below for one part. */
-enum dalcs_status dalcs_radau_evaluate_part(struct dalcs_radau *r, int part, double t,
-                                            enum dalcs_side side) DALCS_MUST_CHECK;
-
 /* y and u of every component at t, which lies in the present segments: the left limit at their ends,
- * the right one at their starts. */
+ * the right one at their starts. Of few outputs or at many times: rows.h. */
 enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t,
                                        enum dalcs_side side) DALCS_MUST_CHECK;
+
+/* After a failure at t: y as far as each component came. */
+void dalcs_radau_break_off(struct dalcs_radau *r, double t);
 
 #endif

@@ -35,6 +35,20 @@ enum dalcs_status dalcs_radau_tell_open(struct dalcs_radau *r) DALCS_MUST_CHECK;
 /* The next edge, command or the stop time. */
 double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
 
+/* A part without memory at t: y and u. */
+enum dalcs_status dalcs_radau_solve(struct dalcs_radau *r, struct dalcs_radau_part *part, double t,
+                                    enum dalcs_side side) DALCS_MUST_CHECK;
+
+/* A column of a part that sources alone decide, by its number. */
+double dalcs_radau_bystander(const struct dalcs_radau_part *part, int bystander, double t,
+                             enum dalcs_side side);
+
+/* Where t is in the present step, which may end a rounding earlier. */
+static inline double dalcs_radau_theta(const struct dalcs_radau_part *part, double t) {
+    double theta = (t - part->t) / part->h;
+    return theta < 1.0 ? theta : 1.0;
+}
+
 static inline double dalcs_radau_ladder(const struct dalcs_radau_part *part, int level) {
     enum { FAR = 900 }; /* beyond, the power of 2 might not be a normal number */
 

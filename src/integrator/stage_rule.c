@@ -1,15 +1,9 @@
 /* stage_rule.c - Lagrange's polynomials on the stages at Gauss' points, without a division. */
 #include "stage_rule.h"
 
-#include <string.h>
+#include "wide_vectors.h"
 
-/* As in dense_map.c: the clones differ in vector width only, not in any bit of their results. */
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) &&                             \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define FOR_WIDE_VECTORS __attribute__((target_clones("avx2", "default")))
-#else
-#define FOR_WIDE_VECTORS
-#endif
+#include <string.h>
 
 /* Integral of what has these values at the points. */
 static inline double weigh(const struct dalcs_stage_rule *rule, const dalcs_points *value) {
@@ -21,7 +15,7 @@ static inline double weigh(const struct dalcs_stage_rule *rule, const dalcs_poin
     return sum[0] + sum[1];
 }
 
-FOR_WIDE_VECTORS
+DALCS_FOR_WIDE_VECTORS
 static void set_cut(struct dalcs_stage_rule *rule, const struct dalcs_collocation *m, double end) {
     dalcs_points point[DALCS_POINT_GROUPS];
     dalcs_points before[DALCS_POINT_GROUPS]; /* products of the distances from the stages before */
@@ -80,14 +74,14 @@ static inline void spread(const struct dalcs_stage_rule *rule, const double *a,
     memcpy(value, sum, sizeof(sum));
 }
 
-FOR_WIDE_VECTORS
+DALCS_FOR_WIDE_VECTORS
 static double integral_of_cut(const struct dalcs_stage_rule *rule, const double *a) {
     dalcs_points at_points[DALCS_POINT_GROUPS];
     spread(rule, a, at_points);
     return weigh(rule, at_points);
 }
 
-FOR_WIDE_VECTORS
+DALCS_FOR_WIDE_VECTORS
 static double product_of_cut(const struct dalcs_stage_rule *rule, const double *a,
                              const double *b) {
     dalcs_points at_points[DALCS_POINT_GROUPS];
@@ -130,7 +124,7 @@ double dalcs_stage_rule_product(const struct dalcs_stage_rule *rule, const doubl
 /* With x - x~ = miss(theta) defect, and by parts,
  *     integral of miss defect' storage (x~' + miss' defect)
  *         = [miss along] - integral of miss' along + 1/2 [miss^2] square. */
-FOR_WIDE_VECTORS
+DALCS_FOR_WIDE_VECTORS
 static double loss_of_cut(const struct dalcs_stage_rule *rule, double square, const double *along,
                           double along_start) {
     dalcs_points at_points[DALCS_POINT_GROUPS];

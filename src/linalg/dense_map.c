@@ -1,6 +1,8 @@
 /* dense_map.c - the product, sixteen rows at a time, then eight. */
 #include "dense_map.h"
 
+#include "wide_vectors.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,15 +18,9 @@ double *dalcs_dense_map_alloc(int rows, int columns) {
 
 typedef double vector4 __attribute__((vector_size(32), aligned(32)));
 
-/* The clones differ in vector width only: without contraction every element is computed by the same
- * operations in the same order. */
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) &&                             \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-__attribute__((target_clones("avx2", "default")))
-#endif
-static void
-multiply(int rows, int columns, const double *restrict map, const double *restrict x,
-         double *restrict y) {
+DALCS_FOR_WIDE_VECTORS
+static void multiply(int rows, int columns, const double *restrict map, const double *restrict x,
+                     double *restrict y) {
     int i = 0;
     for (; i + 16 <= rows; i += 16) {
         vector4 a = {0.0};

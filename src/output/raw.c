@@ -1,7 +1,8 @@
 /* raw.c - the raw file that ngspice, gaw, spicelib and others read: a text header, then native doubles
  * point after point, or text that gives the same doubles. Several plots follow one another.
  *
- * The number of points is not known while streaming: its field is padded and filled in at the end.
+ * The number of points is not known while streaming: its field is padded and filled in at the end. Points
+ * are gathered into a block, for a point is written in no time and a call to write it is not.
  * ngspice runs a Command line when it loads the file; starting with '*' it is a comment there, and
  * spicelib still finds the word that it looks for. */
 #include "decimal.h"
@@ -16,14 +17,18 @@
 
 #define POINTS_FIELD "%-20zu"
 
+enum { BLOCK_DOUBLES = 1 << 10 }; /* and of a large circuit one point */
+
 struct raw {
     size_t n_columns, n_points;
     size_t n_signals, n_parameters;
     bool has_scale, is_complex, is_ascii;
     off_t plot_at, points_at, rows_at; /* file positions: of the plot, of its number of points */
-    double *point; /* [n_columns], of pairs where it is complex; and at least 1 */
-    double *first; /* likewise: the first of a step, held back until the next one comes */
-    bool is_stepped, is_first, holds;
+    size_t width;  /* doubles of a point: n_columns, of pairs where it is complex; at least 1 */
+    double *block; /* [most_held][width] points that the stream does not have yet */
+    size_t n_held, most_held;
+    bool is_stepped;
+    size_t n_of_step; /* points */
     double *constant; /* [n_parameters] of this step */
     struct dalcs_decimal decimal;
 };
@@ -115,14 +120,14 @@ static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plo
     raw->n_parameters = plot->n_parameters;
     raw->n_columns = n_columns;
     raw->is_stepped = plot->n_steps > 1 && has_scale;
-    raw->is_first = true;
-    free(raw->point);
-    free(raw->first);
+    raw->n_of_step = 0;
+    raw->width = (plot->is_complex ? 2 : 1) * (n_columns > 0 ? n_columns : 1);
+    raw->most_held = 1 + BLOCK_DOUBLES / raw->width;
+    free(raw->block);
     free(raw->constant);
-    raw->point = dalcs_alloc(2 * (n_columns + 1), sizeof(double));
-    raw->first = dalcs_alloc(2 * (n_columns + 1), sizeof(double));
+    raw->block = dalcs_alloc(raw->most_held * raw->width, sizeof(double));
     raw->constant = dalcs_alloc(plot->n_parameters, sizeof(double));
-    if (!raw->point || !raw->first || !raw->constant) {
+    if (!raw->block || !raw->constant) {
         return DALCS_E_NOMEM;
     }
     for (size_t i = 0; i < plot->n_parameters; i++) {
@@ -142,21 +147,6 @@ static enum dalcs_status begin_ascii(void *state, FILE *stream, const struct dal
     return begin(state, stream, plot);
 }
 
-/* A row as it stands in the file, into raw->point. */
-static void fill_point(struct raw *raw, double time, const double *value) {
-    const size_t width = raw->is_complex ? 2 : 1;
-    double *next = raw->point;
-    if (raw->has_scale) {
-        *next = time;
-        next += width;
-    }
-    for (size_t i = 0; i < raw->n_parameters; i++) {
-        *next = raw->constant[i];
-        next += width;
-    }
-    memcpy(next, value, width * raw->n_signals * sizeof(double));
-}
-
 static void write_number(struct raw *raw, FILE *stream, double number) {
     char text[DALCS_DECIMAL_SIZE];
     size_t n = dalcs_decimal_write(&raw->decimal, number, text);
@@ -165,8 +155,8 @@ static void write_number(struct raw *raw, FILE *stream, double number) {
 
 /* " 12\t1e-06\n\t5\n\t0.1\n\n": the number of the point, then a value on each line, "re,im" of a complex
  * one. */
-static void write_text(struct raw *raw, FILE *stream, const double *point) {
-    fprintf(stream, " %zu", raw->n_points++);
+static void write_text(struct raw *raw, FILE *stream, const double *point, size_t number) {
+    fprintf(stream, " %zu", number);
     for (size_t i = 0; i < raw->n_columns; i++) {
         fputc('\t', stream);
         write_number(raw, stream, point[raw->is_complex ? 2 * i : i]);
@@ -179,55 +169,64 @@ static void write_text(struct raw *raw, FILE *stream, const double *point) {
     fputc('\n', stream);
 }
 
-static void write_point(struct raw *raw, FILE *stream, const double *point) {
-    if (raw->is_ascii) {
-        write_text(raw, stream, point);
-        return;
+/* What is held goes into the stream. */
+static void release(struct raw *raw, FILE *stream) {
+    if (!raw->is_ascii) {
+        fwrite(raw->block, raw->width * sizeof(double), raw->n_columns > 0 ? raw->n_held : 0,
+               stream);
     }
-    fwrite(point, (raw->is_complex ? 2 : 1) * sizeof(double), raw->n_columns, stream);
-    raw->n_points++;
+    for (size_t k = 0; k < raw->n_held && raw->is_ascii; k++) {
+        write_text(raw, stream, raw->block + k * raw->width, raw->n_points + k);
+    }
+    raw->n_points += raw->n_held;
+    raw->n_held = 0;
 }
 
-static void release(struct raw *raw, FILE *stream) {
-    if (raw->holds) {
-        raw->holds = false;
-        write_point(raw, stream, raw->first);
+/* A row as it stands in the file. */
+static void fill_point(const struct raw *raw, double *point, double time, const double *value) {
+    const size_t stride = raw->is_complex ? 2 : 1;
+    double *next = point;
+    if (raw->has_scale) {
+        *next = time;
+        next += stride;
     }
+    for (size_t i = 0; i < raw->n_parameters; i++) {
+        *next = raw->constant[i];
+        next += stride;
+    }
+    memcpy(next, value, stride * raw->n_signals * sizeof(double));
 }
 
 /* Readers count the steps by how often the scale is what it is at first. So of two rows there, before
- * and behind an edge at tstart, only the second one is written. */
+ * and behind an edge at tstart, only the second one is written. The first is still held. */
 static void row(void *state, FILE *stream, double time, const double *value) {
     struct raw *raw = state;
-    fill_point(raw, time, value);
-    if (raw->is_stepped && raw->is_first) {
-        double *swap = raw->first;
-        raw->first = raw->point;
-        raw->point = swap;
-        raw->is_first = false;
-        raw->holds = true;
-        return;
+    const bool is_second = raw->is_stepped && raw->n_of_step == 1;
+    if (is_second && raw->block[(raw->n_held - 1) * raw->width] == time) {
+        raw->n_held--;
+    } else if (raw->n_held == raw->most_held) {
+        release(raw, stream);
     }
-    if (raw->holds && raw->point[0] == raw->first[0]) {
-        raw->holds = false;
-    }
-    release(raw, stream);
-    write_point(raw, stream, raw->point);
-}
-
-static void end(void *state, FILE *stream) {
-    struct raw *raw = state;
-    release(raw, stream);
-    if (fseeko(stream, raw->points_at, SEEK_SET) == 0) {
-        fprintf(stream, POINTS_FIELD, raw->n_points);
-        fseeko(stream, 0, SEEK_END);
-    }
+    fill_point(raw, raw->block + raw->n_held * raw->width, time, value);
+    raw->n_held++;
+    raw->n_of_step++;
 }
 
 static bool write_points(const struct raw *raw, int descriptor, size_t n_points) {
     char text[32];
     const int length = snprintf(text, sizeof text, POINTS_FIELD, n_points);
     return pwrite(descriptor, text, (size_t)length, raw->points_at) == length;
+}
+
+/* Into the file behind the stream's back, for to seek in a stream is to read it. */
+static void end(void *state, FILE *stream) {
+    struct raw *raw = state;
+    release(raw, stream);
+    if (fflush(stream) == 0 && !write_points(raw, fileno(stream), raw->n_points) &&
+        fseeko(stream, raw->points_at, SEEK_SET) == 0) {
+        fprintf(stream, POINTS_FIELD, raw->n_points); /* notes the error, if it is one */
+        fseeko(stream, 0, SEEK_END);
+    }
 }
 
 /* Without a whole row of the last plot, the plots before it. */
@@ -271,8 +270,7 @@ static off_t recover_ascii(const void *state, int descriptor, off_t size) {
 
 static void finish(void *state) {
     struct raw *raw = state;
-    free(raw->point);
-    free(raw->first);
+    free(raw->block);
     free(raw->constant);
 }
 

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* A stretch of a sinusoid or an exponential is resolved up to this many radians and time constants. */
 static const double most_turn = 3.6, most_decay = 3.0;
@@ -73,8 +74,7 @@ static void read_signals(const struct dalcs_measures *measures, const struct dal
 }
 
 enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct dalcs_run *r,
-                                       const struct dalcs_euler *e,
-                                       const struct dalcs_radau *radau) {
+                                       const struct dalcs_euler *e, struct dalcs_radau *radau) {
     const struct dalcs_circuit *c = &r->s->circuit;
     measures->next_edge = INFINITY;
     if (!dalcs_measuring_is_wanted(c, DALCS_MEASURED_TRAN)) {
@@ -88,6 +88,7 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
         read_signals(measures, e, measures->now);
         return DALCS_OK;
     }
+    DALCS_TRY(dalcs_rows_setup(&measures->rows, radau, c->measured, c->n_measured));
     find_sources(measures, c, e);
     measures->next_edge = edge_after(measures, 0.0);
     return DALCS_OK;
@@ -97,6 +98,7 @@ void dalcs_measures_finish(struct dalcs_measures *measures) {
     if (measures->wanted) {
         dalcs_measuring_finish(&measures->measuring);
     }
+    dalcs_rows_finish(&measures->rows);
     free(measures->reads);
     free(measures->stimulus);
     free(measures->term);
@@ -132,19 +134,19 @@ static double longest(const struct dalcs_measures *measures, double t) {
     return length;
 }
 
-static enum dalcs_status hand_over(struct dalcs_measures *measures, struct dalcs_radau *radau,
-                                   double from, double to) {
+static enum dalcs_status hand_over(struct dalcs_measures *measures, double from, double to) {
     struct dalcs_measuring *m = &measures->measuring;
+    double time[DALCS_STRETCH_NODES];
     for (int i = 0; i < DALCS_STRETCH_NODES; i++) {
-        double t = from + 0.5 * (1.0 + m->rule.node[i]) * (to - from);
-        for (int k = 0; k < radau->n_parts; k++) {
-            if (measures->reads[k]) {
-                DALCS_TRY(dalcs_radau_evaluate_part(radau, k, t, DALCS_RIGHT));
-            }
-        }
-        read_signals(measures, radau->base, measures->now);
+        time[i] = from + 0.5 * (1.0 + m->rule.node[i]) * (to - from);
+    }
+    int n_done;
+    for (int first = 0; first < DALCS_STRETCH_NODES; first += n_done) {
+        DALCS_TRY(dalcs_rows_fill(&measures->rows, time + first, DALCS_STRETCH_NODES - first,
+                                  DALCS_RIGHT, &n_done));
         for (int k = 0; k < m->stretch.n_signals; k++) {
-            m->stretch.value[k][i] = measures->now[k];
+            memcpy(m->stretch.value[k] + first, measures->rows.value[k].at,
+                   (size_t)n_done * sizeof(double));
         }
     }
     dalcs_measuring_stretch(m, from, to);
@@ -161,15 +163,15 @@ static bool ends_at(const struct dalcs_measures *measures, const struct dalcs_ra
     return ends;
 }
 
-enum dalcs_status dalcs_measures_reach(struct dalcs_measures *measures, struct dalcs_radau *radau,
-                                       double t, double near) {
+enum dalcs_status dalcs_measures_reach(struct dalcs_measures *measures,
+                                       const struct dalcs_radau *radau, double t, double near) {
     if (!measures->wanted || !ends_at(measures, radau, t, near)) {
         return DALCS_OK;
     }
     while (measures->t < t) {
         double to = fmin(t, measures->t + longest(measures, measures->t));
         if (to - measures->t > near) {
-            DALCS_TRY(hand_over(measures, radau, measures->t, to));
+            DALCS_TRY(hand_over(measures, measures->t, to));
         }
         measures->t = to;
     }

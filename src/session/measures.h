@@ -3,7 +3,7 @@
 #define DALCS_MEASURES_H
 
 #include "measuring.h"
-#include "radau.h"
+#include "rows.h"
 #include "session_internal.h"
 
 /* Zero-initialise; without a start nothing is measured and nothing costs anything. */
@@ -11,7 +11,8 @@ struct dalcs_measures {
     bool wanted;
     struct dalcs_measuring measuring;
     const struct dalcs_network *network;
-    bool *reads; /* [n_systems] components that measured signals come from */
+    struct dalcs_rows rows; /* of radau: the measured signals */
+    bool *reads;            /* [n_systems] components that measured signals come from */
     int n_stimuli;
     const struct dalcs_stimulus **stimulus; /* [n_stimuli] those that drive them and vary */
     struct dalcs_stimulus_term *term;       /* work */
@@ -23,12 +24,13 @@ struct dalcs_measures {
 /* After the start of a transient: radau is NULL with implicit Euler. */
 enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct dalcs_run *r,
                                        const struct dalcs_euler *e,
-                                       const struct dalcs_radau *radau) DALCS_MUST_CHECK;
+                                       struct dalcs_radau *radau) DALCS_MUST_CHECK;
 void dalcs_measures_finish(struct dalcs_measures *measures);
 
 /* Up to t, before the segments that end there are passed; `near`: s, times that are the same. */
-enum dalcs_status dalcs_measures_reach(struct dalcs_measures *measures, struct dalcs_radau *radau,
-                                       double t, double near) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_measures_reach(struct dalcs_measures *measures,
+                                       const struct dalcs_radau *radau, double t,
+                                       double near) DALCS_MUST_CHECK;
 
 /* After a step of implicit Euler, and after it crossed a discontinuity. */
 void dalcs_measures_step(struct dalcs_measures *measures, const struct dalcs_euler *e);

@@ -5,6 +5,7 @@
 #include "measures.h"
 
 #include "energy.h"
+#include "rows.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -131,8 +132,11 @@ struct transient {
     struct dalcs_recorder *recorder;
     struct dalcs_radau *radau;
     struct dalcs_measures *measures;
+    struct dalcs_rows rows;
     double t;
     double next_edge; /* s, of any source: rows are wanted there */
+    long interval;    /* steps and rows between calls of progress */
+    long to_go;       /* of them, until the next */
 };
 
 static double edge_after(const struct transient *c, double t) {
@@ -154,21 +158,47 @@ static bool source_jumps(const struct transient *c) {
     return jumps;
 }
 
-static enum dalcs_status row(struct transient *c, enum dalcs_side side, bool is_due) {
-    DALCS_TRY(dalcs_radau_evaluate(c->radau, c->t, side));
-    return dalcs_recorder_row(c->recorder, c->radau->base, c->t, is_due);
+static enum dalcs_status tell_progress(struct transient *c) {
+    if (--c->to_go > 0) {
+        return DALCS_OK;
+    }
+    c->to_go = c->interval;
+    return c->run->sink->progress(c->run->sink->user, c->t, c->radau->options.stop);
 }
 
-/* To the next time at which there is something to write or to do. */
+static enum dalcs_status row(struct transient *c, enum dalcs_side side, bool is_due) {
+    int n_done;
+    DALCS_TRY(dalcs_rows_fill(&c->rows, &c->t, 1, side, &n_done));
+    return dalcs_recorder_row(c->recorder, &c->rows, 0, c->t, is_due);
+}
+
+/* The rows that are due while nothing else happens: until shortly before `until`. */
+static enum dalcs_status rows(struct transient *c, double until) {
+    double due[DALCS_MOST_ROWS];
+    double near = c->radau->resolution;
+    int n;
+    while ((n = dalcs_recorder_list_due(c->recorder, until, near, due, DALCS_MOST_ROWS)) > 0) {
+        DALCS_TRY(dalcs_rows_fill(&c->rows, due, n, DALCS_LEFT, &n));
+        for (int i = 0; i < n; i++) {
+            c->t = due[i];
+            DALCS_TRY(dalcs_recorder_row(c->recorder, &c->rows, i, c->t, true));
+            DALCS_TRY(tell_progress(c));
+        }
+    }
+    return DALCS_OK;
+}
+
+/* To the next time at which there is something to do, with the rows up to there. */
 static enum dalcs_status advance(struct transient *c) {
     struct dalcs_radau *radau = c->radau;
     double near = radau->resolution;
     double stop = radau->options.stop;
     bool happens;
-    double due = dalcs_recorder_due(c->recorder);
     double end = dalcs_radau_next_stop(radau, &happens);
-    double t = fmin(fmin(due, end), fmin(c->next_edge, stop));
-    t = fmin(t, c->measures->next_edge);
+    double t = fmin(fmin(end, stop), fmin(c->next_edge, c->measures->next_edge));
+    DALCS_TRY(rows(c, t));
+    double due = dalcs_recorder_due(c->recorder);
+    t = fmin(t, due);
     bool ends = end <= t + near;
     bool edge = c->next_edge <= t + near;
     if (ends) {
@@ -209,15 +239,18 @@ static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau 
     struct transient c = {
         .run = r, .recorder = &r->s->recorder, .radau = radau, .measures = measures};
     c.next_edge = edge_after(&c, 0.0);
-    const long interval = progress_interval(&r->s->network);
-    long rounds = 0;
-    while (c.t < radau->options.stop) {
-        DALCS_TRY(advance(&c));
-        if (++rounds % interval == 0) {
-            DALCS_TRY(r->sink->progress(r->sink->user, c.t, radau->options.stop));
-        }
+    c.interval = c.to_go = progress_interval(&r->s->network);
+    DALCS_TRY(dalcs_rows_setup(&c.rows, radau, NULL, r->s->network.n_outputs));
+    enum dalcs_status status = DALCS_OK;
+    while (c.t < radau->options.stop && status == DALCS_OK) {
+        status = advance(&c);
+        status = status == DALCS_OK ? tell_progress(&c) : status;
     }
-    return DALCS_OK;
+    if (status != DALCS_OK) {
+        dalcs_radau_break_off(radau, c.t);
+    }
+    dalcs_rows_finish(&c.rows);
+    return status;
 }
 
 /* Which method each component goes with, and why. */

@@ -223,20 +223,40 @@ enum dalcs_status dalcs_recorder_cross(struct dalcs_recorder *r, const struct da
     return wanted ? emit(r, e->t, r->now) : DALCS_OK;
 }
 
+/* The same, not a rounding behind the stop time. */
+static double due_before_stop(const struct dalcs_schedule *s) {
+    double due = next_output(s);
+    return due <= s->stop ? due : due <= s->stop * (1.0 + same_time) ? s->stop : INFINITY;
+}
+
 double dalcs_recorder_due(const struct dalcs_recorder *r) {
-    double due = next_output(&r->schedule);
-    return due <= r->schedule.stop * (1.0 + same_time) ? fmin(due, r->schedule.stop) : INFINITY;
+    return due_before_stop(&r->schedule);
+}
+
+int dalcs_recorder_list_due(const struct dalcs_recorder *r, double until, double near, double *due,
+                            int most) {
+    struct dalcs_schedule s = r->schedule;
+    int n = 0;
+    for (; n < most; n++, s.next++) {
+        due[n] = due_before_stop(&s);
+        if (!(due[n] + near < until)) {
+            break;
+        }
+    }
+    return n;
 }
 
 bool dalcs_recorder_wants_sides(const struct dalcs_recorder *r, double t) {
     return r->schedule.kind != DALCS_AT_TIMES && t >= r->schedule.start;
 }
 
-enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_euler *e,
+enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_rows *rows, int k,
                                      double t, bool is_due) {
     r->schedule.next += is_due ? 1 : 0;
-    dalcs_recorder_evaluate(r->network, e, r->now);
-    return emit(r, t, r->now);
+    for (int i = 0; i < rows->n_outputs; i++) {
+        r->row[i] = rows->value[i].at[k];
+    }
+    return emit(r, t, r->row);
 }
 
 enum dalcs_status dalcs_recorder_events(struct dalcs_recorder *r, const struct dalcs_euler *e) {

@@ -4,7 +4,7 @@
 #ifndef DALCS_RECORDER_H
 #define DALCS_RECORDER_H
 
-#include "euler.h"
+#include "rows.h"
 
 struct dalcs_schedule {
     enum dalcs_schedule_kind {
@@ -62,11 +62,15 @@ enum dalcs_status dalcs_recorder_cross(struct dalcs_recorder *r,
  * INFINITY when none is. */
 double dalcs_recorder_due(const struct dalcs_recorder *r);
 
+/* The next rows that are due more than `near` before `until`: their times into due[most]; how many. */
+int dalcs_recorder_list_due(const struct dalcs_recorder *r, double until, double near, double *due,
+                            int most);
+
 /* Should there be rows at edges and on both sides of events, besides the due ones, at time t? */
 bool dalcs_recorder_wants_sides(const struct dalcs_recorder *r, double t);
 
-/* A row of e's values, evaluated at time t; is_due: the one that was due. */
-enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_euler *e,
+/* A row at time t, the k-th of `rows`, of all outputs; is_due: the one that was due. */
+enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_rows *rows, int k,
                                      double t, bool is_due) DALCS_MUST_CHECK;
 
 /* Modes that changed at e->t become events. */

@@ -1,0 +1,64 @@
+/* rows.h - outputs at many times at once, for rows and for measurements.
+ *
+ * Between two stops each component is on the polynomials of one step. The weights of its nodes are made
+ * for all times together, and only columns that an output reads are summed, four times in a vector.
+ * Whatever the times beside it, a value has the same bits. */
+#ifndef DALCS_ROWS_H
+#define DALCS_ROWS_H
+
+#include "radau.h"
+
+enum { DALCS_MOST_ROWS = 32, DALCS_ROW_GROUPS = DALCS_MOST_ROWS / 4 };
+
+/* Something at all times, which are taken by fours. */
+typedef double dalcs_four __attribute__((vector_size(32), aligned(8)));
+
+union dalcs_row_values {
+    double at[DALCS_MOST_ROWS];
+    dalcs_four group[DALCS_ROW_GROUPS];
+};
+
+struct dalcs_rows_part {
+    int n_signals;
+
+    struct dalcs_row_signal {
+        const struct dalcs_probe *probe;
+        int output; /* among those of the rows */
+        double sign;
+    } * signal; /* [n_signals] what outputs read of this part */
+
+    /* Columns and inputs that sources decide have a place among the `source`s when they are read. */
+    int *place; /* [n_columns + n_inputs], -1: none, below: bystander -2 - place */
+    int n_sources;
+
+    struct dalcs_row_source {
+        bool is_bystander; /* or an input */
+        int index;
+        union dalcs_row_values value;
+    } * source; /* [n_sources] */
+};
+
+struct dalcs_rows {
+    struct dalcs_radau *radau; /* borrowed */
+    int n_outputs;
+    union dalcs_row_values *value; /* [n_outputs] */
+    struct dalcs_rows_part *part;  /* [radau->n_parts] */
+    int n_asked, *asked;           /* parts that are read or have to be solved */
+    bool one_by_one;               /* one of them is */
+    union dalcs_row_values time;   /* the last one again where its group is not full */
+    union dalcs_row_values theta, weight[DALCS_MAX_NODES]; /* work: of one part */
+};
+
+/* output[n_outputs]: which of the network's. NULL: all of them, and parts without memory are solved though
+ * nothing may read them, for they may have no solution. */
+enum dalcs_status dalcs_rows_setup(struct dalcs_rows *rows, struct dalcs_radau *radau,
+                                   const int *output, int n_outputs) DALCS_MUST_CHECK;
+
+void dalcs_rows_finish(struct dalcs_rows *rows);
+
+/* The outputs at time[n], n <= DALCS_MOST_ROWS, which lie in the present segments, into `value`: at the
+ * first *n_done of them, at least one. */
+enum dalcs_status dalcs_rows_fill(struct dalcs_rows *rows, const double *time, int n,
+                                  enum dalcs_side side, int *n_done) DALCS_MUST_CHECK;
+
+#endif
