@@ -75,6 +75,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->x = dalcs_alloc((size_t)s->n_x, sizeof(double));
     part->in = dalcs_alloc((size_t)part->stages.n_in, sizeof(double));
     part->out = dalcs_alloc(n_out, sizeof(double));
+    part->out_before = dalcs_alloc(n_out, sizeof(double));
     part->scale = dalcs_alloc(n_columns, sizeof(double));
     part->magnitude = dalcs_alloc(n_columns, sizeof(double));
     part->armed = dalcs_alloc(n_guards, sizeof(bool));
@@ -87,9 +88,9 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->after = dalcs_alloc((size_t)s->n_x, sizeof(double));
     part->used_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
-                    part->scale != NULL && part->magnitude != NULL && part->armed != NULL &&
-                    part->crossed != NULL && part->tied != NULL && part->u != NULL &&
-                    part->y1 != NULL && part->y2 != NULL && part->w1 != NULL &&
+                    part->out_before != NULL && part->scale != NULL && part->magnitude != NULL &&
+                    part->armed != NULL && part->crossed != NULL && part->tied != NULL &&
+                    part->u != NULL && part->y1 != NULL && part->y2 != NULL && part->w1 != NULL &&
                     part->after != NULL && part->used_input != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
@@ -194,6 +195,7 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->x);
     free(part->in);
     free(part->out);
+    free(part->out_before);
     free(part->scale);
     free(part->magnitude);
     free(part->armed);
@@ -275,18 +277,26 @@ static void count_crowd(const struct dalcs_radau *r, struct dalcs_radau_part *pa
     part->crowd++;
 }
 
+/* The last segment is kept while the next one is looked for: there may be none. */
+static void swap_segments(struct dalcs_radau_part *part) {
+    double *last = part->out;
+    part->out = part->out_before;
+    part->out_before = last;
+}
+
 static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    struct dalcs_component *c = part->component;
-    size_t n_columns = (size_t)dalcs_system_n_columns(c->system);
-    size_t state_bytes = (size_t)c->system->n_x * sizeof(double);
+    size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
     part->jumped = false;
     if (r->base->energy != NULL) {
         memcpy(part->after, part->x, state_bytes);
     }
-    dalcs_step_values(part, part->end, part->y1);
-    memcpy(part->x, part->y1, state_bytes);
-    memcpy(c->y, part->y1, n_columns * sizeof(double)); /* should there be no next segment */
-    part->fresh = part->fresh || part->end != 1.0;      /* the next step starts inside this one */
+    if (part->end == 1.0) {
+        const double *end = part->out + part->stages.method->s * part->stages.layout.stride;
+        memcpy(part->x, end, state_bytes);
+    } else {
+        dalcs_step_states(part, part->end, part->x);
+        part->fresh = true; /* the next step starts inside this one */
+    }
     if (r->base->energy != NULL) {
         dalcs_energy_segment(r->base->energy, part, part->after);
     }
@@ -307,7 +317,12 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
         part->fresh = true;
         part->flipped = true;
     }
-    return part->t < r->options.stop ? dalcs_segment_begin(r, part) : DALCS_OK;
+    if (part->t >= r->options.stop) {
+        return DALCS_OK;
+    }
+    swap_segments(part);
+    part->end_before = part->end;
+    return dalcs_segment_begin(r, part);
 }
 
 enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) {
@@ -419,12 +434,24 @@ enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t, enum dal
     return DALCS_OK;
 }
 
+static void evaluate_end_of_last(struct dalcs_radau_part *part) {
+    struct dalcs_component *c = part->component;
+    swap_segments(part);
+    dalcs_step_values(part, part->end_before, part->y1);
+    memcpy(c->y, part->y1, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
+}
+
 /* A component that found no next segment is where its last one ended. */
 void dalcs_radau_break_off(struct dalcs_radau *r, double t) {
     for (int k = 0; k < r->n_parts; k++) {
         struct dalcs_radau_part *part = &r->part[k];
-        if (part->kind == DALCS_PART_STEPPED && part->t_end > part->t) {
+        if (part->kind != DALCS_PART_STEPPED) {
+            continue;
+        }
+        if (part->t_end > part->t) {
             evaluate_stepped(part, t, DALCS_LEFT);
+        } else if (part->t > 0.0) {
+            evaluate_end_of_last(part);
         }
     }
 }

@@ -59,6 +59,8 @@ struct dalcs_radau_part {
     bool flipped;         /* and it is that pairs changed sides */
     double *x;            /* [n_x] at t */
     double *in, *out;
+    double *out_before; /* the segment before, which ended there, in its steps */
+    double end_before;
     double rounding;   /* of out, over that of a dense map */
     double *scale;     /* [n_columns] largest magnitudes so far */
     double *magnitude; /* [n_columns] in the present step up to magnitude_end, in steps */
