@@ -1,4 +1,4 @@
-"""The whole process on the half-wave rectifier: from the netlist to the raw file."""
+"""The whole process on the half-wave rectifier: from the netlist to a raw file that was not there."""
 
 import os
 import statistics
@@ -42,6 +42,7 @@ def measure(dalcs, netlist, settings, methods, folder):
     rows = {}
     for _ in range(REPEATS + 1):
         for name, (command, raw) in commands.items():
+            (folder / raw).unlink(missing_ok=True)
             samples[name].append(once(command, folder))
             if name not in rows:
                 rows[name] = ngspice_batch.read_raw(folder / raw).n_rows
