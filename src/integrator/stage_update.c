@@ -1,0 +1,541 @@
+/* stage_update.c - low-rank updates of the stage matrices.
+ *
+ * M0 is the balanced matrix of a mode that is factored, the base, at one of the eigenvalues. A pair
+ * that closes borders it with an unknown, its lambda with column b of M, and with row c, its w. One
+ * that opens leaves its row to a slack, its w, and gets the row lambda = 0:
+ *     [M0 U] [y ]   [r]       U: columns b and unit columns,
+ *     [V  W] [nu] = [t]       V: rows c and unit rows.
+ * With G = M0^-1 U, which belongs to the base, a solution is one of the base and a few dot products:
+ *     S nu = V M0^-1 r - t,    y = M0^-1 r - G nu,    S = V G - W
+ * (Sherman and Morrison, Woodbury; W. W. Hager, Updating the inverse of a matrix, SIAM Review 31(2),
+ * 1989).
+ *
+ * The unknowns nu belong to the answer: currents of what has closed, voltages of what has opened.
+ * What is subtracted is thus no larger than the answer times G, in balanced units, and as long as G
+ * is moderate no digits cancel that factors of the mode itself would keep. */
+#include "stage_update.h"
+
+#include "extended.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Sum of the largest elements of G: the part of the digits that may cancel, as in the growth of
+ * elements of a factorisation. */
+static const double largest_growth = 1e3;
+
+/* A pivot of S this small beside the elements it comes from may be rounding: then the mode may be
+ * singular, which its own factors tell. */
+static const double least_pivot = 1e-9;
+
+/* The residual may be so many times the base's, or rounding in any case. */
+static const double residual_growth = 10.0;
+static const double residual_of_rounding = 1e-13;
+
+/* So many bases are looked at, the latest first. */
+enum { MOST_BASES = 64 };
+
+/* What a factorisation costs, in changes worked into a step. */
+enum { WORTH_FACTORING = 200 };
+
+/* ---- Changes of a base ----------------------------------------------------------------------- */
+
+static int compare_pairs(const void *a, const void *b) {
+    return *(const int *)a - *(const int *)b;
+}
+
+/* The unknown of the base that a column of the system is, -1: none. */
+static int unknown_of(const struct dalcs_stage_factors *f, int column) {
+    int n_equations = f->n - f->n_pairs;
+    if (column < n_equations) {
+        return column;
+    }
+    int d = column - n_equations;
+    const int *at = bsearch(&d, f->pair, (size_t)f->n_pairs, sizeof(int), compare_pairs);
+    return at != NULL ? n_equations + (int)(at - f->pair) : -1;
+}
+
+/* w of a pair that closes as a balanced row. */
+static enum dalcs_status list_terms(const struct dalcs_system *s,
+                                    const struct dalcs_stage_factors *f,
+                                    struct dalcs_stage_change *c) {
+    int n_equations = f->n - f->n_pairs;
+    int first = s->C.p[c->pair];
+    int end = s->C.p[c->pair + 1];
+    c->unknown = dalcs_alloc((size_t)(end - first), sizeof(int));
+    c->value = dalcs_alloc((size_t)(end - first), sizeof(double));
+    if (c->unknown == NULL || c->value == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    double largest = 0.0;
+    for (int k = first; k < end; k++) {
+        int u = unknown_of(f, s->C.j[k]);
+        if (u < 0) {
+            continue;
+        }
+        double scale = u < n_equations ? f->column_scale[u] : f->pair_scale[u - n_equations];
+        c->unknown[c->n_terms] = u;
+        c->value[c->n_terms] = s->C.x[k] * scale;
+        largest = fmax(largest, fabs(c->value[c->n_terms++]));
+    }
+    c->row_scale = dalcs_stage_matrix_scale(largest);
+    for (int k = 0; k < c->n_terms; k++) {
+        c->value[k] *= c->row_scale;
+    }
+    return DALCS_OK;
+}
+
+static double largest_of(const double *v, int n) {
+    double largest = 0.0;
+    for (int k = 0; k < n; k++) {
+        largest = fmax(largest, fabs(v[k]));
+    }
+    return largest;
+}
+
+/* lu[system].work = the column of U. */
+static void load_change(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
+                        int system, bool closes, struct dalcs_stage_change *c) {
+    const struct dalcs_stage_order *o = &f->order[system];
+    int n_equations = f->n - f->n_pairs;
+    int stride = system > 0 ? 2 : 1;
+    double *work = f->lu[system].work;
+    if (!closes) {
+        memset(work, 0, (size_t)(o->n * stride) * sizeof(double));
+        while (o->row_of[c->row_at[system]] != n_equations + c->pair) {
+            c->row_at[system]++;
+        }
+        work[c->row_at[system] * stride] = 1.0;
+        return;
+    }
+    memset(plan->rhs, 0, (size_t)plan->n_rows * sizeof(double));
+    int column = n_equations + c->pair;
+    for (int k = plan->base.p[column]; k < plan->base.p[column + 1]; k++) {
+        plan->rhs[plan->base.j[k]] = plan->base.x[k];
+    }
+    dalcs_stage_factors_load(plan, f, system, DALCS_SHARE_NONE);
+    c->column_scale = dalcs_stage_matrix_scale(largest_of(work, o->n * stride));
+    for (int k = 0; k < o->n * stride; k++) {
+        work[k] *= c->column_scale;
+    }
+}
+
+static enum dalcs_status solve_change(const struct dalcs_stage_plan *plan,
+                                      const struct dalcs_stage_factors *f, bool closes,
+                                      struct dalcs_stage_change *c) {
+    for (int q = 0; q < f->n_systems; q++) {
+        int n = f->lu[q].n * (q > 0 ? 2 : 1);
+        c->response[q] = dalcs_alloc((size_t)n, sizeof(double));
+        if (c->response[q] == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        load_change(plan, f, q, closes, c);
+        if (q > 0) {
+            dalcs_lu_solve_ordered_complex(&f->lu[q]);
+        } else {
+            dalcs_lu_solve_ordered(&f->lu[q]);
+        }
+        memcpy(c->response[q], f->lu[q].work, (size_t)n * sizeof(double));
+        c->largest = fmax(c->largest, largest_of(c->response[q], n));
+    }
+    return DALCS_OK;
+}
+
+static void change_destroy(struct dalcs_stage_change *c) {
+    if (c == NULL) {
+        return;
+    }
+    for (int q = 0; q < DALCS_STAGE_SYSTEMS; q++) {
+        free(c->response[q]);
+    }
+    free(c->unknown);
+    free(c->value);
+    free(c);
+}
+
+void dalcs_stage_changes_destroy(const struct dalcs_stages *stages,
+                                 struct dalcs_stage_change **change) {
+    for (int d = 0; change != NULL && d < stages->system->n_pairs; d++) {
+        change_destroy(change[d]);
+    }
+    free(change);
+}
+
+static void count_bytes(struct dalcs_stages *stages, struct dalcs_stage_entry *e, size_t bytes) {
+    e->bytes += bytes;
+    stages->bytes += bytes;
+}
+
+/* What the base knows of a change of pair d, found out if it is asked for the first time. */
+static enum dalcs_status get_change(struct dalcs_stages *stages, struct dalcs_stage_entry *base,
+                                    int d, struct dalcs_stage_change **change) {
+    struct dalcs_stage_factors *f = base->factors;
+    size_t n_pairs = (size_t)stages->system->n_pairs;
+    if (f->change == NULL) {
+        f->change = dalcs_alloc(n_pairs, sizeof(*f->change));
+        if (f->change == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        count_bytes(stages, base, n_pairs * sizeof(*f->change));
+    }
+    if (f->change[d] == NULL) {
+        struct dalcs_stage_change *c = dalcs_alloc(1, sizeof(*c));
+        if (c == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        c->pair = d;
+        bool closes = !dalcs_stage_is_on(base, d);
+        enum dalcs_status status = closes ? list_terms(stages->system, f, c) : DALCS_OK;
+        if (status == DALCS_OK) {
+            status = solve_change(stages->plan, f, closes, c);
+        }
+        if (status != DALCS_OK) {
+            change_destroy(c);
+            return status;
+        }
+        f->change[d] = c;
+        count_bytes(stages, base,
+                    sizeof(*c) + (size_t)c->n_terms * (sizeof(int) + sizeof(double)) +
+                        (size_t)f->lu[0].n * (size_t)(2 * f->n_systems - 1) * sizeof(double));
+    }
+    *change = f->change[d];
+    return DALCS_OK;
+}
+
+/* ---- A mode as an update --------------------------------------------------------------------- */
+
+bool dalcs_stage_update_can_be_base(const struct dalcs_stage_entry *entry) {
+    const struct dalcs_stage_factors *f = entry->factors;
+    return f != NULL && f->update == NULL && f->singular == NULL;
+}
+
+bool dalcs_stage_update_is_spent(struct dalcs_stage_entry *entry) {
+    if (entry->factors == NULL || entry->factors->update == NULL) {
+        return false;
+    }
+    entry->spent += entry->factors->update->n_changes;
+    return entry->spent > WORTH_FACTORING;
+}
+
+static int count_changes(const struct dalcs_stages *stages, const struct dalcs_stage_entry *a,
+                         const struct dalcs_stage_entry *b) {
+    int n = 0;
+    for (int i = 0; i < stages->n_words; i++) {
+        n += __builtin_popcountll(a->mode[i] ^ b->mode[i]);
+    }
+    return n;
+}
+
+/* The latest of the nearest bases of the entry's step length, NULL: none is near enough. */
+static struct dalcs_stage_entry *choose_base(const struct dalcs_stages *stages,
+                                             const struct dalcs_stage_entry *entry) {
+    struct dalcs_stage_entry *chosen = NULL;
+    int least = DALCS_STAGE_MOST_CHANGES + 1;
+    struct dalcs_stage_entry *b = stages->newest_base;
+    for (int k = 0; k < MOST_BASES && b != NULL && least > 0; k++, b = b->older_base) {
+        int n = b->h == entry->h ? count_changes(stages, b, entry) : least;
+        if (n < least) {
+            least = n;
+            chosen = b;
+        }
+    }
+    return chosen;
+}
+
+/* Row i of V times a vector in the order of the base; part 0 or 1 of complex numbers. */
+static double row_times(const struct dalcs_stage_factors *f, const struct dalcs_stage_update *u,
+                        int i, int system, const double *v, int part) {
+    const struct dalcs_stage_change *c = u->change[i];
+    const struct dalcs_stage_order *o = &f->order[system];
+    int stride = system > 0 ? 2 : 1;
+    if (i >= u->n_closed) {
+        return v[o->position[unknown_of(u->base->factors, f->n - f->n_pairs + c->pair)] * stride +
+                 part];
+    }
+    double sum = 0.0;
+    for (int k = 0; k < c->n_terms; k++) {
+        sum += c->value[k] * v[o->position[c->unknown[k]] * stride + part];
+    }
+    return sum;
+}
+
+/* What pair j does to w of pair i at once, balanced; both close. */
+static double direct(const struct dalcs_system *s, const struct dalcs_stage_change *i,
+                     const struct dalcs_stage_change *j) {
+    int column = dalcs_system_n_equations(s) + j->pair;
+    for (int k = s->C.p[i->pair]; k < s->C.p[i->pair + 1]; k++) {
+        if (s->C.j[k] == column) {
+            return s->C.x[k] * i->row_scale * j->column_scale;
+        }
+    }
+    return 0.0;
+}
+
+/* The inverse of S of one system; *pivot: the smallest, over the elements of its column of G. */
+static enum dalcs_status invert(const struct dalcs_system *s, const struct dalcs_stage_factors *f,
+                                struct dalcs_stage_update *u, int system, double *pivot) {
+    int k = u->n_changes;
+    size_t n = (size_t)k * (size_t)k;
+    bool is_complex = system > 0;
+    long double *re = dalcs_alloc(2 * n, sizeof(*re)); /* [k][2 k] S and the identity */
+    long double *im = dalcs_alloc(2 * n, sizeof(*im));
+    u->inverse[system] = dalcs_alloc(is_complex ? 2 * n : n, sizeof(**u->inverse));
+    if (re == NULL || im == NULL || u->inverse[system] == NULL) {
+        free(re);
+        free(im);
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < k; i++) {
+        for (int j = 0; j < k; j++) {
+            const struct dalcs_stage_change *of = u->change[j];
+            double at_once = i < u->n_closed && j < u->n_closed ? direct(s, u->change[i], of) : 0.0;
+            const double *g = of->response[system];
+            re[i * 2 * k + j] = (row_times(f, u, i, system, g, 0) - at_once) / of->largest;
+            im[i * 2 * k + j] = is_complex ? row_times(f, u, i, system, g, 1) / of->largest : 0.0;
+        }
+        re[i * 2 * k + k + i] = 1.0L;
+    }
+    *pivot = (double)dalcs_extended_solve(k, k, re, is_complex ? im : NULL);
+    for (int i = 0; i < k; i++) {
+        for (int j = 0; j < k; j++) {
+            u->inverse[system][i * k + j] = re[i * 2 * k + k + j] / u->change[i]->largest;
+            if (is_complex) {
+                u->inverse[system][n + (size_t)(i * k + j)] =
+                    im[i * 2 * k + k + j] / u->change[i]->largest;
+            }
+        }
+    }
+    free(re);
+    free(im);
+    return DALCS_OK;
+}
+
+/* Lists the changes and inverts S; *good: its digits can be trusted. */
+static enum dalcs_status prepare(struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
+                                 struct dalcs_stage_factors *f, bool *good) {
+    struct dalcs_stage_update *u = f->update;
+    double growth = 0.0;
+    *good = false;
+    for (int closes = 1; closes >= 0; closes--) {
+        for (int d = 0; d < stages->system->n_pairs; d++) {
+            bool is_on = dalcs_stage_is_on(entry, d);
+            if (is_on == dalcs_stage_is_on(u->base, d) || is_on != (closes == 1)) {
+                continue;
+            }
+            DALCS_TRY(get_change(stages, u->base, d, &u->change[u->n_changes]));
+            growth += u->change[u->n_changes++]->largest;
+            u->n_closed += closes;
+        }
+    }
+    for (int q = 0; q < f->n_systems && growth <= largest_growth; q++) {
+        double pivot;
+        DALCS_TRY(invert(stages->system, f, u, q, &pivot));
+        *good = pivot >= least_pivot;
+        if (!*good) {
+            return DALCS_OK;
+        }
+    }
+    return DALCS_OK;
+}
+
+/* Where lambdas of the entry's pairs are. */
+static enum dalcs_status place_pairs(const struct dalcs_stage_entry *entry,
+                                     struct dalcs_stage_factors *f) {
+    const struct dalcs_stage_update *u = f->update;
+    const struct dalcs_stage_factors *base = u->base->factors;
+    int n_equations = f->n - f->n_pairs;
+    f->pair_scale = dalcs_alloc((size_t)f->n_pairs, sizeof(double));
+    if (f->pair_scale == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int q = 0; q < f->n_systems; q++) {
+        int *of_pair = dalcs_alloc((size_t)f->n_pairs, sizeof(int));
+        f->order[q].of_pair = of_pair;
+        if (of_pair == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        int at = 0;
+        int closed = 0;
+        for (int k = 0; k < f->n_pairs; k++) {
+            int d = entry->on[k];
+            if (closed < u->n_closed && u->change[closed]->pair == d) {
+                f->pair_scale[k] = u->change[closed]->column_scale;
+                of_pair[k] = base->order[q].n + closed++;
+                continue;
+            }
+            while (base->pair[at] != d) {
+                at++;
+            }
+            f->pair_scale[k] = base->pair_scale[at];
+            of_pair[k] = base->order[q].position[n_equations + at];
+        }
+    }
+    return DALCS_OK;
+}
+
+/* The entry's factors are the base's. */
+static void borrow(struct dalcs_stage_factors *f, const struct dalcs_stage_entry *entry,
+                   struct dalcs_stage_entry *base) {
+    struct dalcs_stage_update *u = f->update;
+    *f = *base->factors;
+    f->update = u;
+    f->change = NULL;
+    f->pair_scale = NULL;
+    f->n = entry->n;
+    f->n_pairs = entry->n_on;
+    f->pair = entry->on;
+    for (int q = 0; q < f->n_systems; q++) {
+        f->order[q].of_pair = NULL;
+    }
+    u->base = base;
+    base->n_holders++;
+}
+
+enum dalcs_status dalcs_stage_update_build(struct dalcs_stages *stages,
+                                           struct dalcs_stage_entry *entry) {
+    struct dalcs_stage_entry *base = choose_base(stages, entry);
+    if (base == NULL) {
+        return DALCS_OK;
+    }
+    struct dalcs_stage_factors *f = dalcs_alloc(1, sizeof(*f));
+    struct dalcs_stage_update *u = dalcs_alloc(1, sizeof(*u));
+    if (f == NULL || u == NULL) {
+        free(f);
+        free(u);
+        return DALCS_E_NOMEM;
+    }
+    f->update = u;
+    borrow(f, entry, base);
+    entry->factors = f;
+    memcpy(entry->natural, base->natural,
+           (size_t)dalcs_system_n_equations(stages->system) * sizeof(double));
+    bool good;
+    enum dalcs_status status = prepare(stages, entry, f, &good);
+    if (status == DALCS_OK && good) {
+        status = place_pairs(entry, f);
+    }
+    if (status == DALCS_OK && good) {
+        status = dalcs_stage_factors_residual(stages, entry);
+        good = entry->residual <= fmax(residual_growth * base->residual, residual_of_rounding);
+    }
+    if (status != DALCS_OK || !good) {
+        dalcs_stage_factors_destroy(stages, f);
+        entry->factors = NULL;
+    }
+    return status;
+}
+
+size_t dalcs_stage_update_bytes(const struct dalcs_stage_factors *f) {
+    size_t k = (size_t)f->update->n_changes;
+    size_t parts = (size_t)(2 * f->n_systems - 1);
+    return sizeof(*f) + sizeof(*f->update) + k * k * parts * sizeof(long double) +
+           (size_t)f->n_pairs * ((size_t)f->n_systems * sizeof(int) + sizeof(double));
+}
+
+void dalcs_stage_update_destroy(struct dalcs_stages *stages, struct dalcs_stage_factors *f) {
+    for (int q = 0; q < f->n_systems; q++) {
+        free(f->update->inverse[q]);
+        free(f->order[q].of_pair);
+    }
+    free(f->pair_scale);
+    dalcs_stages_release(stages, f->update->base);
+    free(f->update);
+}
+
+/* ---- Its solutions --------------------------------------------------------------------------- */
+
+/* t into the slots of what closes, and nothing is asked of what opens. */
+static void load(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
+                 int system, int share) {
+    const struct dalcs_stage_update *u = f->update;
+    int stride = system > 0 ? 2 : 1;
+    double *work = f->lu[system].work;
+    for (int i = u->n_closed; i < u->n_changes; i++) {
+        memset(work + u->change[i]->row_at[system] * stride, 0, (size_t)stride * sizeof(double));
+    }
+    for (int i = 0; i < u->n_closed; i++) {
+        int row = f->n - f->n_pairs + u->change[i]->pair;
+        double *t = work + (f->lu[system].n + i) * stride;
+        for (int part = 0; part < stride; part++) {
+            double sum = part == 0 ? plan->rhs[row] : 0.0;
+            for (int k = plan->wave_begin[row]; k < plan->wave_begin[row + 1]; k++) {
+                sum +=
+                    plan->wave_x[k] * plan->share[plan->wave_of[k] * DALCS_N_SHARES + share + part];
+            }
+            t[part] = u->change[i]->row_scale * sum;
+        }
+    }
+}
+
+static void subtract(int n, const double *restrict g, double nu, double *restrict work) {
+    for (int i = 0; i < n; i++) {
+        work[i] -= nu * g[i];
+    }
+}
+
+static void subtract_complex(int n, const double *restrict g, double re, double im,
+                             double *restrict work) {
+    for (int i = 0; i < n; i++) {
+        work[2 * i] -= re * g[2 * i] - im * g[2 * i + 1];
+        work[2 * i + 1] -= re * g[2 * i + 1] + im * g[2 * i];
+    }
+}
+
+static void solve_real(const struct dalcs_stage_factors *f) {
+    const struct dalcs_stage_update *u = f->update;
+    const struct dalcs_lu *lu = &f->lu[0];
+    double missed[DALCS_STAGE_MOST_CHANGES];
+    dalcs_lu_solve_ordered(lu);
+    for (int i = 0; i < u->n_changes; i++) {
+        missed[i] =
+            row_times(f, u, i, 0, lu->work, 0) - (i < u->n_closed ? lu->work[lu->n + i] : 0.0);
+    }
+    for (int i = 0; i < u->n_changes; i++) {
+        const long double *inverse = u->inverse[0] + i * u->n_changes;
+        long double nu = 0.0L;
+        for (int j = 0; j < u->n_changes; j++) {
+            nu += inverse[j] * missed[j];
+        }
+        subtract(lu->n, u->change[i]->response[0], (double)nu, lu->work);
+        if (i < u->n_closed) {
+            lu->work[lu->n + i] = (double)nu;
+        }
+    }
+}
+
+static void solve_complex(const struct dalcs_stage_factors *f, int system) {
+    const struct dalcs_stage_update *u = f->update;
+    const struct dalcs_lu *lu = &f->lu[system];
+    int k = u->n_changes;
+    double missed[2 * DALCS_STAGE_MOST_CHANGES];
+    dalcs_lu_solve_ordered_complex(lu);
+    for (int i = 0; i < 2 * k; i++) {
+        double t = i < 2 * u->n_closed ? lu->work[2 * lu->n + i] : 0.0;
+        missed[i] = row_times(f, u, i / 2, system, lu->work, i % 2) - t;
+    }
+    for (int i = 0; i < k; i++) {
+        const long double *re = u->inverse[system] + i * k;
+        const long double *im = re + k * k;
+        long double nu[2] = {0.0L};
+        for (int j = 0; j < k; j++) {
+            nu[0] += re[j] * missed[2 * j] - im[j] * missed[2 * j + 1];
+            nu[1] += re[j] * missed[2 * j + 1] + im[j] * missed[2 * j];
+        }
+        subtract_complex(lu->n, u->change[i]->response[system], (double)nu[0], (double)nu[1],
+                         lu->work);
+        for (int part = 0; i < u->n_closed && part < 2; part++) {
+            lu->work[2 * (lu->n + i) + part] = (double)nu[part];
+        }
+    }
+}
+
+void dalcs_stage_update_solve(const struct dalcs_stage_plan *plan,
+                              const struct dalcs_stage_factors *f, int system, int share) {
+    load(plan, f, system, share);
+    if (system == 0) {
+        solve_real(f);
+    } else {
+        solve_complex(f, system);
+    }
+}
