@@ -21,17 +21,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Sum of the largest elements of G: the part of the digits that may cancel, as in the growth of
- * elements of a factorisation. */
-static const double largest_growth = 1e3;
+/* An element of G this large lets so many digits cancel. */
+static const double largest_response = 10.0;
+
+/* Elements of G this small beside the largest are nothing. */
+static const double nothing = 1e-30;
+
+/* Runs of G that are not this far apart are one. */
+enum { GAP = 8 };
 
 /* A pivot of S this small beside the elements it comes from may be rounding: then the mode may be
  * singular, which its own factors tell. */
 static const double least_pivot = 1e-9;
 
 /* The residual may be so many times the base's, or rounding in any case. */
-static const double residual_growth = 10.0;
-static const double residual_of_rounding = 1e-13;
+static const double residual_growth = 4.0;
+static const double residual_of_rounding = 4e-15;
 
 /* So many bases are looked at, the latest first. */
 enum { MOST_BASES = 64 };
@@ -86,10 +91,14 @@ static enum dalcs_status list_terms(const struct dalcs_system *s,
     return DALCS_OK;
 }
 
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
 static double largest_of(const double *v, int n) {
     double largest = 0.0;
     for (int k = 0; k < n; k++) {
-        largest = fmax(largest, fabs(v[k]));
+        largest = larger(fabs(v[k]), largest);
     }
     return largest;
 }
@@ -101,12 +110,13 @@ static void load_change(const struct dalcs_stage_plan *plan, const struct dalcs_
     int n_equations = f->n - f->n_pairs;
     int stride = system > 0 ? 2 : 1;
     double *work = f->lu[system].work;
+    memset(work, 0, (size_t)(o->n * stride) * sizeof(double));
     if (!closes) {
-        memset(work, 0, (size_t)(o->n * stride) * sizeof(double));
         while (o->row_of[c->row_at[system]] != n_equations + c->pair) {
             c->row_at[system]++;
         }
         work[c->row_at[system] * stride] = 1.0;
+        c->lambda_at[system] = o->position[unknown_of(f, n_equations + c->pair)];
         return;
     }
     memset(plan->rhs, 0, (size_t)plan->n_rows * sizeof(double));
@@ -114,30 +124,87 @@ static void load_change(const struct dalcs_stage_plan *plan, const struct dalcs_
     for (int k = plan->base.p[column]; k < plan->base.p[column + 1]; k++) {
         plan->rhs[plan->base.j[k]] = plan->base.x[k];
     }
-    dalcs_stage_factors_load(plan, f, system, DALCS_SHARE_NONE);
-    c->column_scale = dalcs_stage_matrix_scale(largest_of(work, o->n * stride));
-    for (int k = 0; k < o->n * stride; k++) {
-        work[k] *= c->column_scale;
+    double largest = 0.0;
+    for (int i = 0; i < o->n; i++) {
+        largest = larger(largest, fabs(o->scale[i] * plan->rhs[o->row_of[i]]));
     }
+    c->column_scale = dalcs_stage_matrix_scale(largest);
+    for (int i = 0; i < o->n; i++) {
+        work[i * stride] = c->column_scale * o->scale[i] * plan->rhs[o->row_of[i]];
+    }
+}
+
+/* Lists the runs of v[n] with numbers above `least`; first and end may be NULL. */
+static int list_runs(const double *v, int n, int stride, double least, int *first, int *end) {
+    int n_runs = 0;
+    int last = -GAP - 1; /* position of the last one */
+    for (int i = 0; i < n; i++) {
+        double size = fabs(v[i * stride]);
+        size += stride > 1 ? fabs(v[i * stride + 1]) : 0.0;
+        if (!(size > least)) {
+            continue;
+        }
+        if (i - last > GAP) {
+            if (first != NULL) {
+                first[n_runs] = i;
+            }
+            n_runs++;
+        }
+        last = i;
+        if (end != NULL) {
+            end[n_runs - 1] = i + 1;
+        }
+    }
+    return n_runs;
+}
+
+static enum dalcs_status keep_response(struct dalcs_stage_change *c, int system, const double *v,
+                                       int n, double largest) {
+    struct dalcs_stage_response *g = &c->response[system];
+    int stride = system > 0 ? 2 : 1;
+    double least = nothing * largest;
+    g->n_runs = list_runs(v, n, stride, least, NULL, NULL);
+    g->first = dalcs_alloc((size_t)g->n_runs, sizeof(int));
+    g->end = dalcs_alloc((size_t)g->n_runs, sizeof(int));
+    if (g->first == NULL || g->end == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    (void)list_runs(v, n, stride, least, g->first, g->end);
+    size_t total = 0;
+    for (int k = 0; k < g->n_runs; k++) {
+        total += (size_t)((g->end[k] - g->first[k]) * stride);
+    }
+    g->value = dalcs_alloc(total, sizeof(double));
+    if (g->value == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    double *to = g->value;
+    for (int k = 0; k < g->n_runs; k++) {
+        size_t length = (size_t)((g->end[k] - g->first[k]) * stride);
+        memcpy(to, v + g->first[k] * stride, length * sizeof(double));
+        to += length;
+    }
+    c->bytes += total * sizeof(double) + (size_t)g->n_runs * 2 * sizeof(int);
+    return DALCS_OK;
 }
 
 static enum dalcs_status solve_change(const struct dalcs_stage_plan *plan,
                                       const struct dalcs_stage_factors *f, bool closes,
                                       struct dalcs_stage_change *c) {
     for (int q = 0; q < f->n_systems; q++) {
-        int n = f->lu[q].n * (q > 0 ? 2 : 1);
-        c->response[q] = dalcs_alloc((size_t)n, sizeof(double));
-        if (c->response[q] == NULL) {
-            return DALCS_E_NOMEM;
-        }
         load_change(plan, f, q, closes, c);
         if (q > 0) {
             dalcs_lu_solve_ordered_complex(&f->lu[q]);
         } else {
             dalcs_lu_solve_ordered(&f->lu[q]);
         }
-        memcpy(c->response[q], f->lu[q].work, (size_t)n * sizeof(double));
-        c->largest = fmax(c->largest, largest_of(c->response[q], n));
+        double largest = largest_of(f->lu[q].work, f->lu[q].n * (q > 0 ? 2 : 1));
+        c->largest = fmax(c->largest, largest);
+        if (!(largest <= largest_response)) {
+            c->refused = true;
+            return DALCS_OK;
+        }
+        DALCS_TRY(keep_response(c, q, f->lu[q].work, f->lu[q].n, largest));
     }
     return DALCS_OK;
 }
@@ -147,7 +214,9 @@ static void change_destroy(struct dalcs_stage_change *c) {
         return;
     }
     for (int q = 0; q < DALCS_STAGE_SYSTEMS; q++) {
-        free(c->response[q]);
+        free(c->response[q].first);
+        free(c->response[q].end);
+        free(c->response[q].value);
     }
     free(c->unknown);
     free(c->value);
@@ -195,9 +264,8 @@ static enum dalcs_status get_change(struct dalcs_stages *stages, struct dalcs_st
             return status;
         }
         f->change[d] = c;
-        count_bytes(stages, base,
-                    sizeof(*c) + (size_t)c->n_terms * (sizeof(int) + sizeof(double)) +
-                        (size_t)f->lu[0].n * (size_t)(2 * f->n_systems - 1) * sizeof(double));
+        c->bytes += sizeof(*c) + (size_t)c->n_terms * (sizeof(int) + sizeof(double));
+        count_bytes(stages, base, c->bytes);
     }
     *change = f->change[d];
     return DALCS_OK;
@@ -243,19 +311,47 @@ static struct dalcs_stage_entry *choose_base(const struct dalcs_stages *stages,
     return chosen;
 }
 
-/* Row i of V times a vector in the order of the base; part 0 or 1 of complex numbers. */
-static double row_times(const struct dalcs_stage_factors *f, const struct dalcs_stage_update *u,
-                        int i, int system, const double *v, int part) {
+/* Element of G at a position; part 0 or 1 of complex numbers. */
+static double element(const struct dalcs_stage_response *g, int at, int stride, int part) {
+    const double *value = g->value;
+    for (int k = 0; k < g->n_runs && at >= g->first[k]; k++) {
+        if (at < g->end[k]) {
+            return value[(at - g->first[k]) * stride + part];
+        }
+        value += (g->end[k] - g->first[k]) * stride;
+    }
+    return 0.0;
+}
+
+/* Element (i, j) of V G. */
+static double product(const struct dalcs_stage_update *u, int i, int j, int system, int part) {
     const struct dalcs_stage_change *c = u->change[i];
-    const struct dalcs_stage_order *o = &f->order[system];
+    const struct dalcs_stage_response *g = &u->change[j]->response[system];
+    const int *position = u->base->factors->order[system].position;
     int stride = system > 0 ? 2 : 1;
     if (i >= u->n_closed) {
-        return v[o->position[unknown_of(u->base->factors, f->n - f->n_pairs + c->pair)] * stride +
-                 part];
+        return element(g, c->lambda_at[system], stride, part);
     }
     double sum = 0.0;
     for (int k = 0; k < c->n_terms; k++) {
-        sum += c->value[k] * v[o->position[c->unknown[k]] * stride + part];
+        sum += c->value[k] * element(g, position[c->unknown[k]], stride, part);
+    }
+    return sum;
+}
+
+/* Row i of V times lu[system].work. */
+static double row_times_work(const struct dalcs_stage_factors *f, int i, int system, int part) {
+    const struct dalcs_stage_update *u = f->update;
+    const struct dalcs_stage_change *c = u->change[i];
+    const int *position = f->order[system].position;
+    const double *work = f->lu[system].work + part;
+    int stride = system > 0 ? 2 : 1;
+    if (i >= u->n_closed) {
+        return work[c->lambda_at[system] * stride];
+    }
+    double sum = 0.0;
+    for (int k = 0; k < c->n_terms; k++) {
+        sum += c->value[k] * work[position[c->unknown[k]] * stride];
     }
     return sum;
 }
@@ -273,8 +369,8 @@ static double direct(const struct dalcs_system *s, const struct dalcs_stage_chan
 }
 
 /* The inverse of S of one system; *pivot: the smallest, over the elements of its column of G. */
-static enum dalcs_status invert(const struct dalcs_system *s, const struct dalcs_stage_factors *f,
-                                struct dalcs_stage_update *u, int system, double *pivot) {
+static enum dalcs_status invert(const struct dalcs_system *s, struct dalcs_stage_update *u,
+                                int system, double *pivot) {
     int k = u->n_changes;
     size_t n = (size_t)k * (size_t)k;
     bool is_complex = system > 0;
@@ -290,9 +386,8 @@ static enum dalcs_status invert(const struct dalcs_system *s, const struct dalcs
         for (int j = 0; j < k; j++) {
             const struct dalcs_stage_change *of = u->change[j];
             double at_once = i < u->n_closed && j < u->n_closed ? direct(s, u->change[i], of) : 0.0;
-            const double *g = of->response[system];
-            re[i * 2 * k + j] = (row_times(f, u, i, system, g, 0) - at_once) / of->largest;
-            im[i * 2 * k + j] = is_complex ? row_times(f, u, i, system, g, 1) / of->largest : 0.0;
+            re[i * 2 * k + j] = (product(u, i, j, system, 0) - at_once) / of->largest;
+            im[i * 2 * k + j] = is_complex ? product(u, i, j, system, 1) / of->largest : 0.0;
         }
         re[i * 2 * k + k + i] = 1.0L;
     }
@@ -313,28 +408,24 @@ static enum dalcs_status invert(const struct dalcs_system *s, const struct dalcs
 
 /* Lists the changes and inverts S; *good: its digits can be trusted. */
 static enum dalcs_status prepare(struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
-                                 struct dalcs_stage_factors *f, bool *good) {
+                                 const struct dalcs_stage_factors *f, bool *good) {
     struct dalcs_stage_update *u = f->update;
-    double growth = 0.0;
-    *good = false;
+    *good = true;
     for (int closes = 1; closes >= 0; closes--) {
-        for (int d = 0; d < stages->system->n_pairs; d++) {
+        for (int d = 0; d < stages->system->n_pairs && *good; d++) {
             bool is_on = dalcs_stage_is_on(entry, d);
             if (is_on == dalcs_stage_is_on(u->base, d) || is_on != (closes == 1)) {
                 continue;
             }
             DALCS_TRY(get_change(stages, u->base, d, &u->change[u->n_changes]));
-            growth += u->change[u->n_changes++]->largest;
+            *good = !u->change[u->n_changes++]->refused;
             u->n_closed += closes;
         }
     }
-    for (int q = 0; q < f->n_systems && growth <= largest_growth; q++) {
+    for (int q = 0; q < f->n_systems && *good; q++) {
         double pivot;
-        DALCS_TRY(invert(stages->system, f, u, q, &pivot));
+        DALCS_TRY(invert(stages->system, u, q, &pivot));
         *good = pivot >= least_pivot;
-        if (!*good) {
-            return DALCS_OK;
-        }
     }
     return DALCS_OK;
 }
@@ -468,17 +559,23 @@ static void load(const struct dalcs_stage_plan *plan, const struct dalcs_stage_f
     }
 }
 
-static void subtract(int n, const double *restrict g, double nu, double *restrict work) {
-    for (int i = 0; i < n; i++) {
-        work[i] -= nu * g[i];
+static void subtract(const struct dalcs_stage_response *g, double nu, double *restrict work) {
+    const double *restrict value = g->value;
+    for (int k = 0; k < g->n_runs; k++) {
+        for (int i = g->first[k]; i < g->end[k]; i++) {
+            work[i] -= nu * *value++;
+        }
     }
 }
 
-static void subtract_complex(int n, const double *restrict g, double re, double im,
+static void subtract_complex(const struct dalcs_stage_response *g, double re, double im,
                              double *restrict work) {
-    for (int i = 0; i < n; i++) {
-        work[2 * i] -= re * g[2 * i] - im * g[2 * i + 1];
-        work[2 * i + 1] -= re * g[2 * i + 1] + im * g[2 * i];
+    const double *restrict value = g->value;
+    for (int k = 0; k < g->n_runs; k++) {
+        for (int i = g->first[k]; i < g->end[k]; i++, value += 2) {
+            work[2 * i] -= re * value[0] - im * value[1];
+            work[2 * i + 1] -= re * value[1] + im * value[0];
+        }
     }
 }
 
@@ -488,8 +585,7 @@ static void solve_real(const struct dalcs_stage_factors *f) {
     double missed[DALCS_STAGE_MOST_CHANGES];
     dalcs_lu_solve_ordered(lu);
     for (int i = 0; i < u->n_changes; i++) {
-        missed[i] =
-            row_times(f, u, i, 0, lu->work, 0) - (i < u->n_closed ? lu->work[lu->n + i] : 0.0);
+        missed[i] = row_times_work(f, i, 0, 0) - (i < u->n_closed ? lu->work[lu->n + i] : 0.0);
     }
     for (int i = 0; i < u->n_changes; i++) {
         const long double *inverse = u->inverse[0] + i * u->n_changes;
@@ -497,7 +593,7 @@ static void solve_real(const struct dalcs_stage_factors *f) {
         for (int j = 0; j < u->n_changes; j++) {
             nu += inverse[j] * missed[j];
         }
-        subtract(lu->n, u->change[i]->response[0], (double)nu, lu->work);
+        subtract(&u->change[i]->response[0], (double)nu, lu->work);
         if (i < u->n_closed) {
             lu->work[lu->n + i] = (double)nu;
         }
@@ -512,7 +608,7 @@ static void solve_complex(const struct dalcs_stage_factors *f, int system) {
     dalcs_lu_solve_ordered_complex(lu);
     for (int i = 0; i < 2 * k; i++) {
         double t = i < 2 * u->n_closed ? lu->work[2 * lu->n + i] : 0.0;
-        missed[i] = row_times(f, u, i / 2, system, lu->work, i % 2) - t;
+        missed[i] = row_times_work(f, i / 2, system, i % 2) - t;
     }
     for (int i = 0; i < k; i++) {
         const long double *re = u->inverse[system] + i * k;
@@ -522,8 +618,7 @@ static void solve_complex(const struct dalcs_stage_factors *f, int system) {
             nu[0] += re[j] * missed[2 * j] - im[j] * missed[2 * j + 1];
             nu[1] += re[j] * missed[2 * j + 1] + im[j] * missed[2 * j];
         }
-        subtract_complex(lu->n, u->change[i]->response[system], (double)nu[0], (double)nu[1],
-                         lu->work);
+        subtract_complex(&u->change[i]->response[system], (double)nu[0], (double)nu[1], lu->work);
         for (int part = 0; i < u->n_closed && part < 2; part++) {
             lu->work[2 * (lu->n + i) + part] = (double)nu[part];
         }

@@ -6,16 +6,26 @@
 
 enum { DALCS_STAGE_MOST_CHANGES = DALCS_LU_SPARE };
 
+/* A column of G in the order of the base: what is not nothing of it, in runs. */
+struct dalcs_stage_response {
+    int n_runs;
+    int *first, *end; /* [n_runs] positions */
+    double *value;    /* of all runs, one behind the other */
+};
+
 /* What a base knows of one of its pairs that changes: an open one closes, a closed one opens. */
 struct dalcs_stage_change {
     int pair;
+    bool refused;                   /* digits would cancel: nothing else is known */
     double row_scale, column_scale; /* of one that closes */
     int n_terms;                    /* of its w in unknowns of the base, balanced */
     int *unknown;
     double *value;
-    int row_at[DALCS_STAGE_SYSTEMS];       /* position of the row of one that opens */
-    double *response[DALCS_STAGE_SYSTEMS]; /* [n] G, in the order of the base */
-    double largest;                        /* of all of them, in magnitude */
+    int row_at[DALCS_STAGE_SYSTEMS]; /* positions of its row and its lambda, of one that opens */
+    int lambda_at[DALCS_STAGE_SYSTEMS];
+    struct dalcs_stage_response response[DALCS_STAGE_SYSTEMS];
+    double largest; /* of all of them, in magnitude */
+    size_t bytes;
 };
 
 /* The mode of an entry as changes of its base. */
