@@ -36,10 +36,13 @@ static const double least_pivot = 1e-9;
 
 /* The residual may be so many times the base's, or rounding in any case. */
 static const double residual_growth = 4.0;
-static const double residual_of_rounding = 4e-15;
+static const double residual_of_rounding = 1e-15;
 
 /* So many bases are looked at, the latest first. */
 enum { MOST_BASES = 64 };
+
+/* Where refusals outweigh, in a system whose digits do not stand it, no more is tried. */
+enum { SERVED = 1, REFUSED = -2, MOST_TRUST = 2 * DALCS_STAGE_FIRST_TRUST };
 
 /* What a factorisation costs, in changes worked into a step. */
 enum { WORTH_FACTORING = 200 };
@@ -485,7 +488,7 @@ static void borrow(struct dalcs_stage_factors *f, const struct dalcs_stage_entry
 
 enum dalcs_status dalcs_stage_update_build(struct dalcs_stages *stages,
                                            struct dalcs_stage_entry *entry) {
-    struct dalcs_stage_entry *base = choose_base(stages, entry);
+    struct dalcs_stage_entry *base = stages->update_trust > 0 ? choose_base(stages, entry) : NULL;
     if (base == NULL) {
         return DALCS_OK;
     }
@@ -510,6 +513,8 @@ enum dalcs_status dalcs_stage_update_build(struct dalcs_stages *stages,
         status = dalcs_stage_factors_residual(stages, entry);
         good = entry->residual <= fmax(residual_growth * base->residual, residual_of_rounding);
     }
+    stages->update_trust += good ? SERVED : REFUSED;
+    stages->update_trust = stages->update_trust < MOST_TRUST ? stages->update_trust : MOST_TRUST;
     if (status != DALCS_OK || !good) {
         dalcs_stage_factors_destroy(stages, f);
         entry->factors = NULL;

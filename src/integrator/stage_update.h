@@ -4,7 +4,7 @@
 
 #include "stage_factors.h"
 
-enum { DALCS_STAGE_MOST_CHANGES = DALCS_LU_SPARE };
+enum { DALCS_STAGE_MOST_CHANGES = DALCS_LU_SPARE, DALCS_STAGE_FIRST_TRUST = 8 };
 
 /* A column of G in the order of the base: what is not nothing of it, in runs. */
 struct dalcs_stage_response {

@@ -20,7 +20,8 @@ enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct d
                                     .n_words = (system->n_pairs + 63) / 64,
                                     .dense_limit = dense_limit,
                                     .rcond_min = rcond_min,
-                                    .most_bytes = most_bytes};
+                                    .most_bytes = most_bytes,
+                                    .update_trust = DALCS_STAGE_FIRST_TRUST};
     stages->method = dalcs_collocation_of(s);
     dalcs_lu_common_init(&stages->klu);
     dalcs_lu_common_init(&stages->klu_complex);
