@@ -151,9 +151,9 @@ static enum dalcs_status entry_create(struct dalcs_stages *stages, double h, boo
             }
         }
         e->n = dalcs_system_n_equations(stages->system) + e->n_on;
-        stages->factorizations++;
         status = e->n <= stages->dense_limit ? dalcs_stage_map_build(stages, e)
                                              : dalcs_stage_factors_build(stages, e, of_its_own);
+        stages->factorizations += dalcs_stage_is_update(e) ? 0 : 1;
         for (int c = 0, n = dalcs_system_n_equations(stages->system); c < n; c++) {
             e->natural[n + c] = 1.0 / e->natural[c];
         }
