@@ -6,82 +6,10 @@
 #include "stage_factors.h"
 
 #include "dense_map.h"
+#include "stage_update.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* A factorisation that is worse than this has failed without saying so. */
-static const double largest_residual = 1e-6;
-
-void dalcs_stage_factors_eigenvalue(const struct dalcs_stages *stages, double h, int system,
-                                    double *re, double *im) {
-    const struct dalcs_collocation *m = stages->method;
-    *re = (system == 0 ? m->lambda : creal(m->mu[system - 1])) / h;
-    *im = (system == 0 ? 0.0 : cimag(m->mu[system - 1])) / h;
-}
-
-enum dalcs_status dalcs_stage_factors_order(const struct dalcs_stage_plan *plan,
-                                            const struct dalcs_stage_matrix *m,
-                                            struct dalcs_stage_factors *f, int system) {
-    const struct dalcs_lu *lu = &f->lu[system];
-    struct dalcs_stage_order *o = &f->order[system];
-    size_t n = (size_t)m->n;
-    int n_equations = m->n - m->n_pairs;
-    o->row_of = dalcs_alloc(n, sizeof(int));
-    o->scale = dalcs_alloc(n, sizeof(double));
-    o->position = dalcs_alloc(n, sizeof(int));
-    o->wave_at = dalcs_alloc((size_t)plan->n_waves, sizeof(int));
-    int *at = dalcs_alloc((size_t)plan->n_rows, sizeof(int)); /* positions of the rows of M */
-    if (o->row_of == NULL || o->scale == NULL || o->position == NULL || o->wave_at == NULL ||
-        at == NULL) {
-        free(at);
-        return DALCS_E_NOMEM;
-    }
-    for (int r = 0; r < plan->n_rows; r++) {
-        at[r] = -1;
-    }
-    for (int i = 0; i < m->n; i++) {
-        int row = lu->from[i];
-        o->row_of[i] = row < n_equations ? row : n_equations + m->pair[row - n_equations];
-        o->scale[i] = m->row_scale[row];
-        o->position[lu->to[i]] = i;
-        at[o->row_of[i]] = i;
-    }
-    for (int k = 0; k < plan->n_waves; k++) {
-        o->wave_at[k] = at[plan->wave_row[k]];
-    }
-    free(at);
-    return DALCS_OK;
-}
-
-/* What a function of unit size makes of the shares of its wave. */
-static void find_function_shares(const struct dalcs_stages *stages, double h,
-                                 const struct dalcs_excitation_function *function, double *share) {
-    const struct dalcs_collocation *m = stages->method;
-    for (int k = 0; k <= m->s; k++) {
-        share[k] = dalcs_excitation_function_at(function, h, m->node[k]);
-    }
-    long double real = 0.0L;
-    long double drift = share[0];
-    double missed = dalcs_excitation_missed(function, m, h, share);
-    for (int i = 1; i <= m->s; i++) {
-        real += m->exact_from[i - 1] * share[i];
-        drift -= m->exact_back[i - 1] * share[i];
-    }
-    share[DALCS_SHARE_REAL] = (double)real;
-    share[DALCS_SHARE_DRIFT] = (double)drift;
-    share[DALCS_SHARE_RIPPLE] = missed;
-    share[DALCS_SHARE_RIPPLE_RATE] = missed * m->test_factor;
-    for (int p = 0; p < m->n_pairs; p++) {
-        long double complex sum = 0.0L;
-        for (int i = 1; i <= m->s; i++) {
-            sum += m->exact_from_pair[p][i - 1] * share[i];
-        }
-        share[DALCS_SHARE_PAIR + 2 * p] = (double)creall(sum);
-        share[DALCS_SHARE_PAIR + 2 * p + 1] = (double)cimagl(sum);
-    }
-}
 
 /* Shares of the waves in this step. */
 static void find_shares(const struct dalcs_stages *stages, const struct dalcs_stage_factors *f,
@@ -111,18 +39,17 @@ static void find_drive(const struct dalcs_stage_plan *plan, const struct dalcs_s
     }
 }
 
-/* lu.work = the balanced right-hand side in its order: plan->rhs and a share of the waves. */
-static void load(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
-                 int system, int share) {
+void dalcs_stage_factors_load(const struct dalcs_stage_plan *plan,
+                              const struct dalcs_stage_factors *f, int system, int share) {
     const struct dalcs_stage_order *o = &f->order[system];
     double *restrict work = f->lu[system].work;
     int stride = system > 0 ? 2 : 1;
     if (stride == 1) {
-        for (int i = 0; i < f->n; i++) {
+        for (int i = 0; i < o->n; i++) {
             work[i] = o->scale[i] * plan->rhs[o->row_of[i]];
         }
     } else {
-        for (int i = 0; i < f->n; i++) {
+        for (int i = 0; i < o->n; i++) {
             work[2 * i] = o->scale[i] * plan->rhs[o->row_of[i]];
             work[2 * i + 1] = 0.0;
         }
@@ -136,9 +63,13 @@ static void load(const struct dalcs_stage_plan *plan, const struct dalcs_stage_f
     }
 }
 
+/* Of plan->rhs and a share of the waves: the unknowns of a system, balanced, to lu.work. */
 static void solve(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
-                  const struct dalcs_stage_factors *f, int system) {
-    if (f->singular != NULL) {
+                  const struct dalcs_stage_factors *f, int system, int share) {
+    dalcs_stage_factors_load(plan, f, system, share);
+    if (f->update != NULL) {
+        dalcs_stage_update_solve(plan, f, system, share);
+    } else if (f->singular != NULL) {
         dalcs_stage_singular_solve(plan, entry, f, system);
     } else if (system == 0) {
         dalcs_lu_solve_ordered(&f->lu[0]);
@@ -154,10 +85,19 @@ struct piece {
     int n_rows;
 };
 
+/* Positions of unknowns from `first` on, which are all equations' or all pairs'. */
+static const int *positions(const struct dalcs_stage_factors *f, int system, int first) {
+    const struct dalcs_stage_order *o = &f->order[system];
+    int n_equations = f->n - f->n_pairs;
+    return first < n_equations ? o->position + first : o->of_pair + (first - n_equations);
+}
+
 /* count unknowns of all systems, from `first` on, unscaled. */
 static void unload(const struct dalcs_stage_factors *f, int first, int count, struct piece *piece) {
-    const double *scale = f->column_scale + first;
-    const int *position = f->order[0].position + first;
+    int n_equations = f->n - f->n_pairs;
+    const double *scale =
+        first < n_equations ? f->column_scale + first : f->pair_scale + (first - n_equations);
+    const int *position = positions(f, 0, first);
     const double *work = f->lu[0].work;
     double *part = piece->part;
     piece->n_rows = dalcs_dense_map_rows(count);
@@ -165,7 +105,7 @@ static void unload(const struct dalcs_stage_factors *f, int first, int count, st
         part[k] = scale[k] * work[position[k]];
     }
     for (int q = 1; q < f->n_systems; q++) {
-        position = f->order[q].position + first;
+        position = positions(f, q, first);
         work = f->lu[q].work;
         double *re = part + (2 * q - 1) * piece->n_rows;
         double *im = re + piece->n_rows;
@@ -284,10 +224,9 @@ static void add_real(const struct dalcs_stage_entry *entry, const struct dalcs_s
     for (int u = first; u < n_equations; u++) {
         columns[u] += f->column_scale[u] * work[position[u]];
     }
-    for (int u = n_equations; u < f->n; u++) {
-        int d = f->pair[u - n_equations];
-        if (dalcs_stage_is_on(entry, d)) {
-            columns[n_equations + d] += f->column_scale[u] * work[position[u]];
+    for (int k = 0; k < f->n_pairs; k++) {
+        if (dalcs_stage_is_on(entry, f->pair[k])) {
+            columns[n_equations + f->pair[k]] += f->pair_scale[k] * work[f->order[0].of_pair[k]];
         }
     }
 }
@@ -304,16 +243,14 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
     find_shares(stages, f, in + n_x + 1);
     find_drive(plan, f, in, in[n_x]);
     for (int q = 0; q < f->n_systems; q++) {
-        load(plan, f, q, q == 0 ? DALCS_SHARE_REAL : DALCS_SHARE_PAIR + 2 * (q - 1));
-        solve(plan, entry, f, q);
+        solve(plan, entry, f, q, q == 0 ? DALCS_SHARE_REAL : DALCS_SHARE_PAIR + 2 * (q - 1));
     }
     put_columns(plan, entry, f, in, out);
     if (f->singular != NULL) {
         put_clashes(plan, out + l->n_fixed);
     }
     find_drive(plan, f, plan->missed, 0.0);
-    load(plan, f, 0, DALCS_SHARE_DRIFT);
-    solve(plan, entry, f, 0);
+    solve(plan, entry, f, 0, DALCS_SHARE_DRIFT);
     for (int x = 0; x < n_x; x++) {
         out[l->drift + x] = f->column_scale[x] * f->lu[0].work[f->order[0].position[x]];
     }
@@ -324,8 +261,7 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
             plan->missed[x] = -out[l->drift + x];
         }
         find_drive(plan, f, plan->missed, 0.0);
-        load(plan, f, 0, DALCS_SHARE_NONE);
-        solve(plan, entry, f, 0);
+        solve(plan, entry, f, 0, DALCS_SHARE_NONE);
         add_real(entry, f, n_x, out);
     }
     for (int node = 0; node < l->n_nodes; node++) {
@@ -333,176 +269,9 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
     }
     if (stages->excitation->is_curved) {
         memset(plan->rhs, 0, (size_t)n_columns * sizeof(double));
-        load(plan, f, 0, DALCS_SHARE_RIPPLE_RATE);
-        solve(plan, entry, f, 0);
+        solve(plan, entry, f, 0, DALCS_SHARE_RIPPLE_RATE);
         add_real(entry, f, 0, out + l->ripple);
         put_other_sides(plan, entry, 0.0, DALCS_SHARE_RIPPLE, false, out + l->ripple);
     }
     return DALCS_OK;
-}
-
-static enum dalcs_status factor_regular(struct dalcs_stages *stages,
-                                        struct dalcs_stage_entry *entry,
-                                        struct dalcs_stage_factors *f,
-                                        struct dalcs_stage_matrix *m) {
-    struct dalcs_stage_analysis *a;
-    DALCS_TRY(
-        dalcs_stage_plan_analyze(stages, entry->mode, m->n, m->n_pairs, m->pair, m->p, m->i, &a));
-    for (int q = 0; q < f->n_systems; q++) {
-        double re;
-        double im;
-        dalcs_stage_factors_eigenvalue(stages, entry->h, q, &re, &im);
-        dalcs_stage_matrix_at(m, re, im, q > 0);
-        DALCS_TRY(dalcs_lu_factor_analyzed(&f->lu[q], q > 0 ? &stages->klu_complex : &stages->klu,
-                                           a->symbolic, &a->numeric[q], q > 0, m->p, m->i,
-                                           m->values, stages->rcond_min));
-        DALCS_TRY(dalcs_stage_factors_order(stages->plan, m, f, q));
-    }
-    return DALCS_OK;
-}
-
-static void remember_pivots(struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f) {
-    const int *row_of = f->order[0].row_of;
-    int n_equations = f->n - f->n_pairs;
-    for (int i = 0; i < f->n; i++) {
-        int u = f->lu[0].to[i];
-        plan->match[u < n_equations ? u : n_equations + f->pair[u - n_equations]] = row_of[i];
-    }
-}
-
-static void drop_systems(struct dalcs_stage_factors *f) {
-    for (int q = 0; q < DALCS_STAGE_SYSTEMS; q++) {
-        struct dalcs_stage_order *o = &f->order[q];
-        dalcs_lu_finish(&f->lu[q]);
-        free(o->row_of);
-        free(o->scale);
-        free(o->position);
-        free(o->wave_at);
-        *o = (struct dalcs_stage_order){0};
-    }
-}
-
-/* The largest miss of the rows without derivatives over the largest of their terms, balanced, at
- * the last stage of an arbitrary step. */
-static enum dalcs_status find_residual(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
-                                       const struct dalcs_stage_matrix *m) {
-    const struct dalcs_stage_plan *plan = stages->plan;
-    const struct dalcs_system *s = stages->system;
-    const struct dalcs_stage_layout *l = &stages->layout;
-    int n_equations = dalcs_system_n_equations(s);
-    double *in = dalcs_alloc((size_t)stages->n_in, sizeof(double));
-    double *out = dalcs_alloc((size_t)l->n_fixed, sizeof(double));
-    enum dalcs_status status = DALCS_E_NOMEM;
-    if (in != NULL && out != NULL) {
-        for (int k = 0; k < stages->n_in; k++) {
-            in[k] = k == s->n_x ? 1.0 : cos(1.0 + k * (double)k);
-        }
-        status = dalcs_stage_factors_apply(stages, entry, in, out);
-    }
-    double *y = out != NULL ? out + stages->method->s * l->stride : NULL;
-    double worst = 0.0;
-    double size = 0.0;
-    for (int d = 0; status == DALCS_OK && d < s->n_pairs; d++) {
-        y[n_equations + d] *= dalcs_stage_is_on(entry, d) ? 1.0 : 0.0;
-    }
-    for (int u = s->n_x; status == DALCS_OK && u < m->n; u++) {
-        int d = u < n_equations ? -1 : m->pair[u - n_equations];
-        int r = d < 0 ? u : n_equations + d;
-        const struct dalcs_csr *a = d < 0 ? &s->A : &s->C;
-        int from = d < 0 ? u : d;
-        double missed = plan->constant[r];
-        double terms = fabs(missed);
-        for (int k = a->p[from]; k < a->p[from + 1]; k++) {
-            double term = (d < 0 ? a->x[k] : -a->x[k]) * y[a->j[k]];
-            missed += term;
-            terms += fabs(term);
-            if (a->j[k] < s->n_x) { /* solved for as an increment over this */
-                terms += fabs(a->x[k] * in[a->j[k]]);
-            }
-        }
-        for (int k = plan->wave_begin[r]; k < plan->wave_begin[r + 1]; k++) {
-            double term = plan->wave_x[k] *
-                          plan->share[plan->wave_of[k] * DALCS_N_SHARES + stages->method->s];
-            missed += term;
-            terms += fabs(term);
-        }
-        worst = missed != missed ? INFINITY : fmax(worst, m->row_scale[u] * fabs(missed));
-        size = fmax(size, m->row_scale[u] * terms);
-    }
-    entry->residual = size > 0.0 ? worst / size : 0.0;
-    free(in);
-    free(out);
-    return status;
-}
-
-static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
-                               struct dalcs_stage_matrix *m) {
-    const struct dalcs_system *s = stages->system;
-    const struct dalcs_excitation *e = stages->excitation;
-    struct dalcs_stage_factors *f = entry->factors;
-    DALCS_TRY(dalcs_stage_plan_get(stages));
-    f->n = entry->n;
-    f->n_pairs = entry->n_on;
-    f->n_systems = 1 + stages->method->n_pairs;
-    f->pair = dalcs_alloc((size_t)s->n_pairs, sizeof(int));
-    f->column_scale = dalcs_alloc((size_t)dalcs_system_n_columns(s), sizeof(double));
-    f->function_share = dalcs_alloc((size_t)e->n_functions, DALCS_N_SHARES * sizeof(double));
-    if (f->pair == NULL || f->column_scale == NULL || f->function_share == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    memcpy(f->pair, entry->on, (size_t)entry->n_on * sizeof(int));
-    for (int k = 0; k < e->n_functions; k++) {
-        find_function_shares(stages, entry->h, &e->function[k],
-                             f->function_share + k * DALCS_N_SHARES);
-    }
-    DALCS_TRY(dalcs_stage_matrix_build(m, stages->plan, f->n_pairs, f->pair, entry->h));
-    memcpy(f->column_scale, m->column_scale, (size_t)m->n * sizeof(double));
-    memcpy(entry->natural, m->column_scale, (size_t)dalcs_system_n_equations(s) * sizeof(double));
-    enum dalcs_status status = factor_regular(stages, entry, f, m);
-    if (status == DALCS_OK) {
-        remember_pivots(stages->plan, f);
-        DALCS_TRY(find_residual(stages, entry, m));
-    } else if (status == DALCS_SINGULAR && s->n_pairs > 0) {
-        drop_systems(f);
-        DALCS_TRY(dalcs_stage_singular_build(stages, entry, f));
-        entry->n_clashes = stages->method->s;
-        entry->residual = dalcs_stage_singular_residual(stages->plan, entry, f);
-    } else {
-        return status;
-    }
-    return entry->residual <= largest_residual ? DALCS_OK : DALCS_SINGULAR;
-}
-
-enum dalcs_status dalcs_stage_factors_build(struct dalcs_stages *stages,
-                                            struct dalcs_stage_entry *entry) {
-    struct dalcs_stage_factors *f = dalcs_alloc(1, sizeof(*f));
-    if (f == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    entry->factors = f;
-    struct dalcs_stage_matrix m = {0};
-    enum dalcs_status status = build(stages, entry, &m);
-    dalcs_stage_matrix_finish(&m);
-    DALCS_TRY(status);
-    size_t n = (size_t)f->n;
-    entry->bytes += sizeof(*f) + dalcs_stage_singular_bytes(f->singular) +
-                    (size_t)stages->system->n_pairs * sizeof(int) + n * sizeof(double) +
-                    (size_t)stages->excitation->n_functions * DALCS_N_SHARES * sizeof(double);
-    for (int q = 0; q < f->n_systems; q++) {
-        entry->bytes += dalcs_lu_bytes(&f->lu[q]) + n * (2 * sizeof(int) + sizeof(double)) +
-                        (size_t)stages->plan->n_waves * sizeof(int);
-    }
-    return DALCS_OK;
-}
-
-void dalcs_stage_factors_destroy(struct dalcs_stage_factors *factors) {
-    if (factors == NULL) {
-        return;
-    }
-    drop_systems(factors);
-    dalcs_stage_singular_destroy(factors->singular);
-    free(factors->pair);
-    free(factors->column_scale);
-    free(factors->function_share);
-    free(factors);
 }

@@ -7,9 +7,11 @@
 
 /* Where a system's LU, which has its own order, takes what it solves from and leaves it. */
 struct dalcs_stage_order {
+    int n;         /* positions */
     int *row_of;   /* [n] row of M at position i */
     double *scale; /* [n] of that row */
     int *position; /* [n] of an unknown */
+    int *of_pair;  /* [n_pairs] position of a pair's lambda */
     int *wave_at;  /* [plan->n_waves] position of the entry's row, -1: not there */
 };
 
@@ -21,6 +23,7 @@ struct dalcs_stage_singular {
     double re[DALCS_STAGE_SYSTEMS], im[DALCS_STAGE_SYSTEMS]; /* mu / h */
 };
 
+/* Those of an update are its base's but for `pair`, `pair_scale` and where lambdas are. */
 struct dalcs_stage_factors {
     int n;
     int n_pairs; /* present: all in a singular mode */
@@ -28,9 +31,12 @@ struct dalcs_stage_factors {
     int n_systems;
     struct dalcs_lu lu[DALCS_STAGE_SYSTEMS]; /* the real one first */
     struct dalcs_stage_order order[DALCS_STAGE_SYSTEMS];
-    double *column_scale;                  /* [n] */
+    double *column_scale;                  /* [n_equations] */
+    double *pair_scale;                    /* [n_pairs] */
     double *function_share;                /* [functions][DALCS_N_SHARES] */
     struct dalcs_stage_singular *singular; /* NULL: regular */
+    struct dalcs_stage_update *update;     /* NULL: these are its own factors */
+    struct dalcs_stage_change **change;    /* [pairs of the system] NULL: none is known */
 };
 
 /* stage_singular.c: factors of a mode whose matrix is singular, into *f, which has none. */
@@ -53,7 +59,7 @@ void dalcs_stage_singular_destroy(struct dalcs_stage_singular *g);
 
 size_t dalcs_stage_singular_bytes(const struct dalcs_stage_singular *g);
 
-/* stage_factors.c: mu / h of a system. */
+/* stage_build.c: mu / h of a system. */
 void dalcs_stage_factors_eigenvalue(const struct dalcs_stages *stages, double h, int system,
                                     double *re, double *im);
 
@@ -62,5 +68,15 @@ enum dalcs_status dalcs_stage_factors_order(const struct dalcs_stage_plan *plan,
                                             const struct dalcs_stage_matrix *m,
                                             struct dalcs_stage_factors *f,
                                             int system) DALCS_MUST_CHECK;
+
+/* stage_build.c: entry->residual = the largest miss of the rows without derivatives over the largest
+ * of their terms, balanced, at the last stage of an arbitrary step. */
+enum dalcs_status dalcs_stage_factors_residual(struct dalcs_stages *stages,
+                                               struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
+
+/* stage_factors.c: lu[system].work = the balanced right-hand side in its order, plan->rhs and a
+ * share of the waves. */
+void dalcs_stage_factors_load(const struct dalcs_stage_plan *plan,
+                              const struct dalcs_stage_factors *f, int system, int share);
 
 #endif

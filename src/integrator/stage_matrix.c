@@ -42,9 +42,9 @@ static int put_column(struct dalcs_stage_matrix *m, const struct dalcs_stage_pla
     return out;
 }
 
-/* 2^-e for a number in 2^e [1/2, 1): what ldexp and frexp make of it, by the bits, as this is
- * done for all rows and columns of every new mode. */
-static double power_of_2(double largest) {
+/* What ldexp and frexp make of it, by the bits, as this is done for all rows and columns of every
+ * new mode. */
+double dalcs_stage_matrix_scale(double largest) {
     uint64_t bits;
     memcpy(&bits, &largest, sizeof(bits));
     uint64_t exponent = bits >> 52;
@@ -78,14 +78,14 @@ static void balance(struct dalcs_stage_matrix *m, double sigma) {
             }
         }
         for (int r = 0; r < m->n; r++) {
-            m->row_scale[r] = power_of_2(m->row_scale[r]);
+            m->row_scale[r] = dalcs_stage_matrix_scale(m->row_scale[r]);
         }
         for (int c = 0; c < m->n; c++) {
             double largest = 0.0;
             for (int k = m->p[c]; k < m->p[c + 1]; k++) {
                 largest = larger(largest, size[k] * m->row_scale[m->i[k]]);
             }
-            m->column_scale[c] = power_of_2(largest);
+            m->column_scale[c] = dalcs_stage_matrix_scale(largest);
         }
     }
     for (int c = 0; c < m->n; c++) {

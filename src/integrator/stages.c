@@ -1,5 +1,5 @@
 /* stages.c - entries by (mode, h), least recently used out first. */
-#include "stage_plan.h"
+#include "stage_update.h"
 #include "stage_workshop.h"
 
 #include <stdlib.h>
@@ -20,7 +20,8 @@ enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct d
                                     .n_words = (system->n_pairs + 63) / 64,
                                     .dense_limit = dense_limit,
                                     .rcond_min = rcond_min,
-                                    .most_bytes = most_bytes};
+                                    .most_bytes = most_bytes,
+                                    .update_trust = DALCS_STAGE_FIRST_TRUST};
     stages->method = dalcs_collocation_of(s);
     dalcs_lu_common_init(&stages->klu);
     dalcs_lu_common_init(&stages->klu_complex);
@@ -72,8 +73,28 @@ static void link_newest(struct dalcs_stages *stages, struct dalcs_stage_entry *e
     stages->newest = e;
 }
 
-static void entry_destroy(struct dalcs_stage_entry *e) {
-    dalcs_stage_factors_destroy(e->factors);
+static void offer_as_base(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
+    e->older_base = stages->newest_base;
+    if (stages->newest_base != NULL) {
+        stages->newest_base->newer_base = e;
+    }
+    stages->newest_base = e;
+}
+
+static void withdraw_as_base(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
+    if (e->newer_base != NULL) {
+        e->newer_base->older_base = e->older_base;
+    } else if (stages->newest_base == e) {
+        stages->newest_base = e->older_base;
+    }
+    if (e->older_base != NULL) {
+        e->older_base->newer_base = e->newer_base;
+    }
+}
+
+static void entry_destroy(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
+    withdraw_as_base(stages, e);
+    dalcs_stage_factors_destroy(stages, e->factors);
     free(e->key);
     free(e->on);
     free(e->map);
@@ -81,11 +102,17 @@ static void entry_destroy(struct dalcs_stage_entry *e) {
     free(e);
 }
 
+void dalcs_stages_release(struct dalcs_stages *stages, struct dalcs_stage_entry *entry) {
+    if (--entry->n_holders == 0) {
+        stages->bytes -= entry->bytes;
+        entry_destroy(stages, entry);
+    }
+}
+
 static void remove_entry(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
     HASH_DELETE(hh, stages->entries, e);
     unlink_entry(stages, e);
-    stages->bytes -= e->bytes;
-    entry_destroy(e);
+    dalcs_stages_release(stages, e);
 }
 
 void dalcs_stages_finish(struct dalcs_stages *stages) {
@@ -99,7 +126,8 @@ void dalcs_stages_finish(struct dalcs_stages *stages) {
     *stages = (struct dalcs_stages){0};
 }
 
-static enum dalcs_status entry_create(struct dalcs_stages *stages, double h,
+/* What stages->key asks for. */
+static enum dalcs_status entry_create(struct dalcs_stages *stages, double h, bool of_its_own,
                                       struct dalcs_stage_entry **entry) {
     struct dalcs_stage_entry *e = dalcs_alloc(1, sizeof(*e));
     *entry = NULL;
@@ -108,6 +136,7 @@ static enum dalcs_status entry_create(struct dalcs_stages *stages, double h,
     }
     int n_pairs = stages->system->n_pairs;
     e->h = h;
+    e->n_holders = 1;
     e->key = dalcs_alloc((size_t)stages->n_words + 1, sizeof(*e->key));
     e->on = dalcs_alloc((size_t)n_pairs, sizeof(*e->on));
     e->natural =
@@ -122,19 +151,22 @@ static enum dalcs_status entry_create(struct dalcs_stages *stages, double h,
             }
         }
         e->n = dalcs_system_n_equations(stages->system) + e->n_on;
-        stages->factorizations++;
         status = e->n <= stages->dense_limit ? dalcs_stage_map_build(stages, e)
-                                             : dalcs_stage_factors_build(stages, e);
+                                             : dalcs_stage_factors_build(stages, e, of_its_own);
+        stages->factorizations += dalcs_stage_is_update(e) ? 0 : 1;
         for (int c = 0, n = dalcs_system_n_equations(stages->system); c < n; c++) {
             e->natural[n + c] = 1.0 / e->natural[c];
         }
     }
     if (status != DALCS_OK) {
-        entry_destroy(e);
+        entry_destroy(stages, e);
         return status;
     }
     e->bytes += sizeof(*e) + ((size_t)stages->n_words + 1) * sizeof(uint64_t) +
                 (size_t)n_pairs * sizeof(int);
+    if (dalcs_stage_update_can_be_base(e)) {
+        offer_as_base(stages, e);
+    }
     *entry = e;
     return DALCS_OK;
 }
@@ -148,12 +180,16 @@ static bool is_key(const struct dalcs_stage_entry *e, const uint64_t *mode, size
     return different == 0;
 }
 
-static struct dalcs_stage_entry *find(struct dalcs_stages *stages, const uint64_t *mode, double h) {
+static void set_key(struct dalcs_stages *stages, const uint64_t *mode, double h) {
     size_t words = (size_t)stages->n_words;
     memcpy(stages->key, mode, words * sizeof(*mode));
     memcpy(stages->key + words, &h, sizeof(h));
+}
+
+static struct dalcs_stage_entry *find(struct dalcs_stages *stages, const uint64_t *mode, double h) {
+    set_key(stages, mode, h);
     struct dalcs_stage_entry *e;
-    HASH_FIND(hh, stages->entries, stages->key, (words + 1) * sizeof(*mode), e);
+    HASH_FIND(hh, stages->entries, stages->key, ((size_t)stages->n_words + 1) * sizeof(*mode), e);
     return e;
 }
 
@@ -171,7 +207,8 @@ enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *
     if (e == NULL || !is_key(e, mode, words, h)) {
         e = find(stages, mode, h);
     }
-    if (e != NULL) {
+    bool is_spent = e != NULL && dalcs_stage_update_is_spent(e);
+    if (e != NULL && !is_spent) {
         stages->cache_hits++;
         if (e != stages->newest) {
             unlink_entry(stages, e);
@@ -180,10 +217,14 @@ enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *
         *entry = e;
         return DALCS_OK;
     }
-    DALCS_TRY(entry_create(stages, h, &e));
+    set_key(stages, mode, h);
+    if (is_spent) {
+        remove_entry(stages, e);
+    }
+    DALCS_TRY(entry_create(stages, h, is_spent, &e));
     HASH_ADD_KEYPTR(hh, stages->entries, e->key, (words + 1) * sizeof(*mode), e);
     if (e->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
-        entry_destroy(e);
+        entry_destroy(stages, e);
         return DALCS_E_NOMEM;
     }
     link_newest(stages, e);

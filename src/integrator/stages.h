@@ -44,7 +44,9 @@ struct dalcs_stages {
     double rcond_min;
     size_t bytes, most_bytes;
     struct dalcs_stage_entry *entries, *newest, *oldest;
-    uint64_t *key; /* [n_words + 1] */
+    struct dalcs_stage_entry *newest_base; /* entries with factors that others may use */
+    int update_trust;                      /* updates that served against those that did not */
+    uint64_t *key;                         /* [n_words + 1] */
     long factorizations, cache_hits;
     klu_common klu, klu_complex;
     struct dalcs_stage_plan *plan;         /* what sparse factors share; NULL until there are any */

@@ -26,6 +26,10 @@ struct dalcs_stage_entry {
     int rows;    /* of map, padded to 8 */
     double *map; /* [rows][n_in] by columns; NULL: factors */
     struct dalcs_stage_factors *factors;
+    /* Entries with factors of their own, whose changes others may be. */
+    struct dalcs_stage_entry *newer_base, *older_base;
+    int n_holders; /* the store and the entries that are updates of this one */
+    int spent;     /* changes worked in so far, of an update */
     size_t bytes;
 };
 
@@ -33,18 +37,25 @@ static inline bool dalcs_stage_is_on(const struct dalcs_stage_entry *e, int pair
     return (e->mode[pair / 64] >> (pair % 64) & 1) != 0;
 }
 
+/* stages.c: one holder less; the last one destroys it. */
+void dalcs_stages_release(struct dalcs_stages *stages, struct dalcs_stage_entry *entry);
+
 /* stage_map.c: the dense matrix of an entry. */
 enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
                                         struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
 void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
                            const double *in, double *out);
 
-/* stage_factors.c: sparse factors of an entry. */
+/* stage_build.c: sparse factors of an entry, of its own or those of another entry as well, with a few
+ * changes. */
 enum dalcs_status dalcs_stage_factors_build(struct dalcs_stages *stages,
-                                            struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
+                                            struct dalcs_stage_entry *entry,
+                                            bool of_its_own) DALCS_MUST_CHECK;
+void dalcs_stage_factors_destroy(struct dalcs_stages *stages, struct dalcs_stage_factors *factors);
+
+/* stage_factors.c */
 enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
                                             const struct dalcs_stage_entry *entry, const double *in,
                                             double *out) DALCS_MUST_CHECK;
-void dalcs_stage_factors_destroy(struct dalcs_stage_factors *factors);
 
 #endif

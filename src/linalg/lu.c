@@ -72,7 +72,7 @@ static size_t lay_out(struct dalcs_lu *lu, const klu_numeric *numeric) {
     lu->lower_x = carve(lu->storage, &used, lower, number);
     lu->upper_x = carve(lu->storage, &used, upper, number);
     lu->pivot_inverse = carve(lu->storage, &used, n, number);
-    lu->work = carve(lu->storage, &used, n, number);
+    lu->work = carve(lu->storage, &used, n + DALCS_LU_SPARE, number);
     lu->lower_j = carve(lu->storage, &used, lower, sizeof(int));
     lu->upper_j = carve(lu->storage, &used, upper, sizeof(int));
     lu->from = carve(lu->storage, &used, n, sizeof(int));

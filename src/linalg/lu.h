@@ -14,6 +14,9 @@
 
 #include <stdbool.h>
 
+/* Room at the end of `work` for unknowns that a caller borders the matrix with. */
+enum { DALCS_LU_SPARE = 16 };
+
 /* P A Q = L U + F: F couples a diagonal block to the later ones, which are solved first. */
 struct dalcs_lu {
     int n;
@@ -26,7 +29,7 @@ struct dalcs_lu {
     int *upper_p, *upper_j; /* rows of U without its diagonal */
     double *upper_x;
     double *pivot_inverse; /* [n] */
-    double *work;          /* [n] */
+    double *work;          /* [n + DALCS_LU_SPARE] */
     void *storage;         /* of all of these */
 };
 

@@ -1,6 +1,6 @@
-/* test_stage_factors.c - steps on sparse factors against the dense map, which is solved in extended
- * precision and knows nothing of KLU. */
-#include "stages_internal.h"
+/* test_stage_factors.c - steps on sparse factors, and on those of another mode with a few changes,
+ * against the dense map, which is solved in extended precision and knows nothing of KLU. */
+#include "stage_update.h"
 
 #include "build_network.h"
 
@@ -23,7 +23,9 @@ struct both {
     struct text_network text;
     const struct dalcs_system *system;
     struct dalcs_excitation excitation;
-    struct dalcs_stages dense, sparse;
+    struct dalcs_stages dense;
+    struct dalcs_stages sparse;  /* each mode has its own factors */
+    struct dalcs_stages updated; /* some are updates of others */
 };
 
 /* Every row of F gets all inputs and C a few lambdas, which no netlist does. */
@@ -66,11 +68,16 @@ static void setup(struct both *b, const char *netlist, int s, bool general) {
         DALCS_OK);
     ck_assert_int_eq(
         dalcs_stages_setup(&b->sparse, b->system, &b->excitation, s, 0, 1e-14, SIZE_MAX), DALCS_OK);
+    ck_assert_int_eq(
+        dalcs_stages_setup(&b->updated, b->system, &b->excitation, s, 0, 1e-14, SIZE_MAX),
+        DALCS_OK);
+    b->sparse.update_trust = 0;
 }
 
 static void finish(struct both *b) {
     dalcs_stages_finish(&b->dense);
     dalcs_stages_finish(&b->sparse);
+    dalcs_stages_finish(&b->updated);
     dalcs_excitation_finish(&b->excitation);
     text_network_finish(&b->text);
 }
@@ -107,19 +114,36 @@ static void find_scales(const struct both *b, const struct dalcs_stage_entry *e,
     }
 }
 
+/* What has opened is first solved for as if it had not: then the start counts as well. */
+static void raise_to_start(const struct dalcs_system *s, const struct dalcs_stage_entry *e,
+                           const double *in, double *scale) {
+    for (int r = 0; r < s->n_x; r++) {
+        int u = unit_of(s, e, r);
+        scale[u] = fmax(scale[u], fabs(in[r]));
+        u = s->row_is_current[r];
+        for (int k = s->P.p[r]; k < s->P.p[r + 1]; k++) {
+            scale[u] = fmax(scale[u], fabs(s->P.x[k] * in[s->P.j[k]]) / e->h);
+        }
+    }
+}
+
 struct tally {
     int n_regular, n_singular, n_clashes;
+    int n_closings, n_openings, n_several; /* updates by what changes */
 };
 
 /* Everything is compared, with a name for the message. */
 static void compare(const struct both *b, const struct dalcs_stage_entry *dense,
-                    const struct dalcs_stage_entry *sparse, const double *x, const double *y,
-                    struct tally *tally) {
+                    const struct dalcs_stage_entry *sparse, const double *in, const double *x,
+                    const double *y, struct tally *tally) {
     const struct dalcs_stage_layout *l = &b->dense.layout;
     const struct dalcs_system *s = b->system;
     int stages = b->dense.method->s;
     double scale[2];
     find_scales(b, dense, x, scale);
+    if (dalcs_stage_is_update(sparse)) {
+        raise_to_start(s, dense, in, scale);
+    }
     double disagreement = 0.0;
     for (int k = 0; k < dense->n_clashes; k++) {
         disagreement = fmax(disagreement, fabs(x[l->n_fixed + k]));
@@ -156,21 +180,12 @@ static void compare(const struct both *b, const struct dalcs_stage_entry *dense,
     }
 }
 
-static void check_mode(struct both *b, const uint64_t *mode, double h, uint64_t *random,
-                       struct tally *tally) {
-    struct dalcs_stage_entry *dense;
-    struct dalcs_stage_entry *sparse;
-    enum dalcs_status status = dalcs_stages_get(&b->dense, mode, h, &dense);
-    ck_assert_int_eq(status, DALCS_OK);
-    ck_assert_int_eq(dalcs_stages_get(&b->sparse, mode, h, &sparse), DALCS_OK);
-    ck_assert_ptr_nonnull(sparse->factors);
-    ck_assert_uint_gt(sparse->bytes, (size_t)sparse->n * sizeof(double));
-    ck_assert_int_eq(sparse->n_clashes > 0, dense->n_clashes > 0);
-    ck_assert_double_le(dalcs_stage_residual(sparse), 1e-9);
+/* Two steps from anywhere. */
+static void check_steps(struct both *b, struct dalcs_stages *stages,
+                        const struct dalcs_stage_entry *dense,
+                        const struct dalcs_stage_entry *sparse, uint64_t *random,
+                        struct tally *tally) {
     int n_equations = dalcs_system_n_equations(b->system);
-    for (int k = 0; k < n_equations; k++) {
-        ck_assert_double_eq(dense->natural[k], sparse->natural[k]);
-    }
     size_t n_out = (size_t)b->dense.layout.n_fixed + 64 +
                    (size_t)(b->dense.method->s * dalcs_system_n_columns(b->system));
     double *in = dalcs_alloc((size_t)b->dense.n_in, sizeof(*in));
@@ -185,17 +200,54 @@ static void check_mode(struct both *b, const uint64_t *mode, double h, uint64_t 
             y[k] = 1e300; /* what is not written is seen */
         }
         ck_assert_int_eq(dalcs_stages_apply(&b->dense, dense, in, x), DALCS_OK);
-        ck_assert_int_eq(dalcs_stages_apply(&b->sparse, sparse, in, y), DALCS_OK);
+        ck_assert_int_eq(dalcs_stages_apply(stages, sparse, in, y), DALCS_OK);
         for (int d = 0; d < b->system->n_pairs; d++) {
             if (b->system->pair[d].kind == DALCS_PAIR_SWITCH && !dalcs_stage_is_on(sparse, d)) {
                 ck_assert_double_eq(y[n_equations + d], 0.0);
             }
         }
-        compare(b, dense, sparse, x, y, tally);
+        compare(b, dense, sparse, in, x, y, tally);
     }
     free(in);
     free(x);
     free(y);
+}
+
+static void count_changes(const struct dalcs_stage_entry *entry, struct tally *tally) {
+    if (!dalcs_stage_is_update(entry)) {
+        return;
+    }
+    const struct dalcs_stage_update *u = entry->factors->update;
+    ck_assert_int_eq(entry->n_clashes, 0);
+    tally->n_closings += u->n_closed;
+    tally->n_openings += u->n_changes - u->n_closed;
+    tally->n_several += u->n_changes > 1;
+}
+
+static void check_mode(struct both *b, const uint64_t *mode, double h, uint64_t *random,
+                       struct tally *tally) {
+    struct dalcs_stage_entry *dense;
+    struct dalcs_stage_entry *sparse;
+    struct dalcs_stage_entry *updated;
+    enum dalcs_status status = dalcs_stages_get(&b->dense, mode, h, &dense);
+    ck_assert_int_eq(status, DALCS_OK);
+    ck_assert_int_eq(dalcs_stages_get(&b->sparse, mode, h, &sparse), DALCS_OK);
+    b->updated.update_trust = DALCS_STAGE_FIRST_TRUST;
+    ck_assert_int_eq(dalcs_stages_get(&b->updated, mode, h, &updated), DALCS_OK);
+    ck_assert(!dalcs_stage_is_update(sparse));
+    ck_assert_ptr_nonnull(sparse->factors);
+    ck_assert_uint_gt(sparse->bytes, (size_t)sparse->n * sizeof(double));
+    ck_assert_int_eq(sparse->n_clashes > 0, dense->n_clashes > 0);
+    ck_assert_int_eq(updated->n_clashes > 0, dense->n_clashes > 0);
+    ck_assert_double_le(dalcs_stage_residual(sparse), 1e-9);
+    ck_assert_double_le(dalcs_stage_residual(updated), 1e-9);
+    int n_equations = dalcs_system_n_equations(b->system);
+    for (int k = 0; k < n_equations; k++) {
+        ck_assert_double_eq(dense->natural[k], sparse->natural[k]);
+    }
+    check_steps(b, &b->sparse, dense, sparse, random, tally);
+    check_steps(b, &b->updated, dense, updated, random, tally);
+    count_changes(updated, tally);
 }
 
 /* All modes of up to 6 pairs, many of more. */
@@ -208,7 +260,8 @@ static struct tally check_system(const char *netlist, double h, bool general) {
         uint64_t random = 17;
         int n_modes = n_pairs <= 6 ? 1 << n_pairs : 64;
         for (int k = 0; k < n_modes; k++) {
-            uint64_t mode[2] = {(uint64_t)k};
+            /* up or down, so that pairs close or open */
+            uint64_t mode[2] = {(uint64_t)(s % 4 == 1 ? k : n_modes - 1 - k)};
             for (int d = 0; d < n_pairs && n_pairs > 6; d++) {
                 bool on = next_random(&random) > (k % 8) * 0.25 - 1.0;
                 mode[d / 64] = (mode[d / 64] & ~((uint64_t)1 << (d % 64))) | (uint64_t)on
@@ -228,6 +281,13 @@ static struct tally check_netlist(const char *netlist, double h) {
     return check_system(netlist, h, false);
 }
 
+/* Updates that are wrong are refused, and thus missing. */
+static void check_updates(const struct tally *t) {
+    ck_assert_int_gt(t->n_closings, 20);
+    ck_assert_int_gt(t->n_openings, 20);
+    ck_assert_int_gt(t->n_several, 0);
+}
+
 START_TEST(test_ladder) {
     struct tally t = check_netlist("ladder\n"
                                    "v1 in 0 sin(0 10 1k)\n"
@@ -240,6 +300,7 @@ START_TEST(test_ladder) {
                                    1e-5);
     ck_assert_int_gt(t.n_regular, 0);
     ck_assert_int_eq(t.n_singular, 0);
+    check_updates(&t);
 }
 
 END_TEST
@@ -280,6 +341,7 @@ START_TEST(test_coupled_coils) {
                                    ".model di d(vfwd=0.7 ron=0.01)\n.tran 1u 1m uic\n.end\n",
                                    1e-5);
     ck_assert_int_gt(t.n_regular, 0);
+    ck_assert_int_gt(t.n_closings, 0);
 }
 
 END_TEST
@@ -300,6 +362,7 @@ START_TEST(test_controlled_sources) {
                                    ".model di d(vfwd=0.6)\n.tran 1u 1m uic\n.end\n",
                                    1e-6);
     ck_assert_int_gt(t.n_regular, 0);
+    check_updates(&t);
 }
 
 END_TEST
@@ -317,6 +380,7 @@ START_TEST(test_index_2) {
                       ".model di d\n.tran 1u 1m uic\n.end\n",
                       1e-5);
     ck_assert_int_gt(t.n_regular, 0);
+    check_updates(&t);
 }
 
 END_TEST
@@ -375,6 +439,7 @@ START_TEST(test_general_system) {
                                   1e-5, true);
     ck_assert_int_gt(t.n_regular, 0);
     ck_assert_int_eq(t.n_singular, 0);
+    check_updates(&t);
 }
 
 END_TEST
@@ -404,6 +469,73 @@ START_TEST(test_clashes) {
 
 END_TEST
 
-RUN_TESTS("stage factors", test_ladder, test_multiplier, test_coupled_coils,
-          test_controlled_sources, test_index_2, test_floating_bridge, test_shared_by_diodes,
-          test_shared_unequally, test_general_system, test_forced_to_zero, test_clashes)
+/* An update keeps the factors that it uses, and all bytes are accounted for. */
+START_TEST(test_base_is_evicted) {
+    struct both b;
+    struct tally tally = {0};
+    uint64_t random = 5;
+    setup(&b,
+          "peak detectors\n"
+          "v1 n0 0 sin(0 10 1k)\n"
+          "r1 n0 n1 1\nc1 n1 0 10n\nd1 n1 p1 di\ncp1 p1 0 10n\nrp1 p1 0 1meg\n"
+          "r2 n1 n2 1\nc2 n2 0 10n\nd2 n2 p2 di\ncp2 p2 0 10n\nrp2 p2 0 1meg\n"
+          ".model di d\n.tran 1u 1m uic\n.end\n",
+          5, false);
+    const uint64_t open = 0;
+    const uint64_t first = 1;
+    const double h = 1e-6;
+    struct dalcs_stage_entry *base;
+    struct dalcs_stage_entry *update;
+    ck_assert_int_eq(dalcs_stages_get(&b.updated, &open, h, &base), DALCS_OK);
+    ck_assert_int_eq(dalcs_stages_get(&b.updated, &first, h, &update), DALCS_OK);
+    ck_assert(dalcs_stage_is_update(update));
+    ck_assert_ptr_eq(update->factors->update->base, base);
+    ck_assert_int_eq(b.updated.factorizations, 1);
+    ck_assert_uint_eq(b.updated.bytes, base->bytes + update->bytes);
+    b.updated.most_bytes = 1; /* the next one is alone, with what it cannot do without */
+    for (uint64_t mode = 2; mode <= 3; mode++) {
+        check_mode(&b, &mode, h, &random, &tally);
+        ck_assert(!dalcs_stages_have(&b.updated, &open, h));
+        ck_assert(!dalcs_stages_have(&b.updated, &first, h));
+        ck_assert_uint_eq(b.updated.bytes, base->bytes + b.updated.newest->bytes);
+    }
+    check_mode(&b, &open, h, &random, &tally); /* nothing changes */
+    ck_assert_int_eq(b.updated.factorizations, 1);
+    check_mode(&b, &open, 2.0 * h, &random, &tally);
+    ck_assert_int_eq(b.updated.factorizations, 2);
+    ck_assert_uint_eq(b.updated.bytes, b.updated.newest->bytes);
+    finish(&b);
+    ck_assert_int_eq(tally.n_closings, 3);
+}
+
+END_TEST
+
+/* Where an update is used again and again, factors of its own are cheaper. */
+START_TEST(test_update_is_spent) {
+    struct both b;
+    setup(&b,
+          "peak detector\nv1 n0 0 sin(0 10 1k)\nr1 n0 n1 1\nc1 n1 0 10n\n"
+          "d1 n1 p1 di\ncp1 p1 0 10n\nrp1 p1 0 1meg\n.model di d\n.tran 1u 1m uic\n.end\n",
+          3, false);
+    struct dalcs_stage_entry *entry;
+    int n_steps = 0;
+    for (uint64_t mode = 0; mode < 2; mode++) {
+        ck_assert_int_eq(dalcs_stages_get(&b.updated, &mode, 1e-6, &entry), DALCS_OK);
+    }
+    ck_assert(dalcs_stage_is_update(entry));
+    for (uint64_t mode = 1; dalcs_stage_is_update(entry); n_steps++) {
+        ck_assert_int_lt(n_steps, 10000);
+        ck_assert_int_eq(dalcs_stages_get(&b.updated, &mode, 1e-6, &entry), DALCS_OK);
+    }
+    ck_assert_int_gt(n_steps, 10);
+    ck_assert_int_eq(b.updated.factorizations, 2);
+    ck_assert_int_eq(HASH_COUNT(b.updated.entries), 2);
+    finish(&b);
+}
+
+END_TEST
+
+RUN_TESTS("stage factors", test_base_is_evicted, test_update_is_spent, test_ladder, test_multiplier,
+          test_coupled_coils, test_controlled_sources, test_index_2, test_floating_bridge,
+          test_shared_by_diodes, test_shared_unequally, test_general_system, test_forced_to_zero,
+          test_clashes)

@@ -1,0 +1,290 @@
+/* stage_build.c - the factors of a mode and step length: made, tried out on a step, dropped. */
+#include "stage_update.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A factorisation that is worse than this has failed without saying so. */
+static const double largest_residual = 1e-6;
+
+void dalcs_stage_factors_eigenvalue(const struct dalcs_stages *stages, double h, int system,
+                                    double *re, double *im) {
+    const struct dalcs_collocation *m = stages->method;
+    *re = (system == 0 ? m->lambda : creal(m->mu[system - 1])) / h;
+    *im = (system == 0 ? 0.0 : cimag(m->mu[system - 1])) / h;
+}
+
+enum dalcs_status dalcs_stage_factors_order(const struct dalcs_stage_plan *plan,
+                                            const struct dalcs_stage_matrix *m,
+                                            struct dalcs_stage_factors *f, int system) {
+    const struct dalcs_lu *lu = &f->lu[system];
+    struct dalcs_stage_order *o = &f->order[system];
+    size_t n = (size_t)m->n;
+    int n_equations = m->n - m->n_pairs;
+    o->n = m->n;
+    o->row_of = dalcs_alloc(n, sizeof(int));
+    o->scale = dalcs_alloc(n, sizeof(double));
+    o->position = dalcs_alloc(n, sizeof(int));
+    o->wave_at = dalcs_alloc((size_t)plan->n_waves, sizeof(int));
+    int *at = dalcs_alloc((size_t)plan->n_rows, sizeof(int)); /* positions of the rows of M */
+    if (o->row_of == NULL || o->scale == NULL || o->position == NULL || o->wave_at == NULL ||
+        at == NULL) {
+        free(at);
+        return DALCS_E_NOMEM;
+    }
+    o->of_pair = o->position + n_equations;
+    for (int r = 0; r < plan->n_rows; r++) {
+        at[r] = -1;
+    }
+    for (int i = 0; i < m->n; i++) {
+        int row = lu->from[i];
+        o->row_of[i] = row < n_equations ? row : n_equations + m->pair[row - n_equations];
+        o->scale[i] = m->row_scale[row];
+        o->position[lu->to[i]] = i;
+        at[o->row_of[i]] = i;
+    }
+    for (int k = 0; k < plan->n_waves; k++) {
+        o->wave_at[k] = at[plan->wave_row[k]];
+    }
+    free(at);
+    return DALCS_OK;
+}
+
+/* What a function of unit size makes of the shares of its wave. */
+static void find_function_shares(const struct dalcs_stages *stages, double h,
+                                 const struct dalcs_excitation_function *function, double *share) {
+    const struct dalcs_collocation *m = stages->method;
+    for (int k = 0; k <= m->s; k++) {
+        share[k] = dalcs_excitation_function_at(function, h, m->node[k]);
+    }
+    long double real = 0.0L;
+    long double drift = share[0];
+    double missed = dalcs_excitation_missed(function, m, h, share);
+    for (int i = 1; i <= m->s; i++) {
+        real += m->exact_from[i - 1] * share[i];
+        drift -= m->exact_back[i - 1] * share[i];
+    }
+    share[DALCS_SHARE_REAL] = (double)real;
+    share[DALCS_SHARE_DRIFT] = (double)drift;
+    share[DALCS_SHARE_RIPPLE] = missed;
+    share[DALCS_SHARE_RIPPLE_RATE] = missed * m->test_factor;
+    for (int p = 0; p < m->n_pairs; p++) {
+        long double complex sum = 0.0L;
+        for (int i = 1; i <= m->s; i++) {
+            sum += m->exact_from_pair[p][i - 1] * share[i];
+        }
+        share[DALCS_SHARE_PAIR + 2 * p] = (double)creall(sum);
+        share[DALCS_SHARE_PAIR + 2 * p + 1] = (double)cimagl(sum);
+    }
+}
+
+static enum dalcs_status factor_regular(struct dalcs_stages *stages,
+                                        struct dalcs_stage_entry *entry,
+                                        struct dalcs_stage_factors *f,
+                                        struct dalcs_stage_matrix *m) {
+    struct dalcs_stage_analysis *a;
+    DALCS_TRY(
+        dalcs_stage_plan_analyze(stages, entry->mode, m->n, m->n_pairs, m->pair, m->p, m->i, &a));
+    for (int q = 0; q < f->n_systems; q++) {
+        double re;
+        double im;
+        dalcs_stage_factors_eigenvalue(stages, entry->h, q, &re, &im);
+        dalcs_stage_matrix_at(m, re, im, q > 0);
+        DALCS_TRY(dalcs_lu_factor_analyzed(&f->lu[q], q > 0 ? &stages->klu_complex : &stages->klu,
+                                           a->symbolic, &a->numeric[q], q > 0, m->p, m->i,
+                                           m->values, stages->rcond_min));
+        DALCS_TRY(dalcs_stage_factors_order(stages->plan, m, f, q));
+    }
+    return DALCS_OK;
+}
+
+static void remember_pivots(struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f) {
+    const int *row_of = f->order[0].row_of;
+    int n_equations = f->n - f->n_pairs;
+    for (int i = 0; i < f->n; i++) {
+        int u = f->lu[0].to[i];
+        plan->match[u < n_equations ? u : n_equations + f->pair[u - n_equations]] = row_of[i];
+    }
+}
+
+static void drop_systems(struct dalcs_stage_factors *f) {
+    for (int q = 0; q < DALCS_STAGE_SYSTEMS; q++) {
+        struct dalcs_stage_order *o = &f->order[q];
+        dalcs_lu_finish(&f->lu[q]);
+        free(o->row_of);
+        free(o->scale);
+        free(o->position);
+        free(o->wave_at);
+        *o = (struct dalcs_stage_order){0};
+    }
+}
+
+/* The miss of a row of M without derivatives, and the sum of its terms, at columns y at the last
+ * stage of a step from in. */
+static double miss_of_row(const struct dalcs_stages *stages, int r, const double *in,
+                          const double *y, double *terms) {
+    const struct dalcs_stage_plan *plan = stages->plan;
+    const struct dalcs_system *s = stages->system;
+    int n_equations = dalcs_system_n_equations(s);
+    bool is_pair = r >= n_equations;
+    const struct dalcs_csr *a = is_pair ? &s->C : &s->A;
+    int from = is_pair ? r - n_equations : r;
+    double missed = plan->constant[r];
+    *terms = fabs(missed);
+    for (int k = a->p[from]; k < a->p[from + 1]; k++) {
+        double term = (is_pair ? -a->x[k] : a->x[k]) * y[a->j[k]];
+        missed += term;
+        *terms += fabs(term);
+        if (a->j[k] < s->n_x) { /* solved for as an increment over this */
+            *terms += fabs(a->x[k] * in[a->j[k]]);
+        }
+    }
+    for (int k = plan->wave_begin[r]; k < plan->wave_begin[r + 1]; k++) {
+        double term =
+            plan->wave_x[k] * plan->share[plan->wave_of[k] * DALCS_N_SHARES + stages->method->s];
+        missed += term;
+        *terms += fabs(term);
+    }
+    return missed;
+}
+
+/* The largest miss and the largest terms of the rows of the entry, balanced. */
+static double relative_miss(const struct dalcs_stages *stages,
+                            const struct dalcs_stage_entry *entry, const double *in,
+                            const double *y) {
+    const struct dalcs_stage_factors *f = entry->factors;
+    const struct dalcs_stage_order *o = &f->order[0];
+    int n_x = stages->system->n_x;
+    int n_equations = dalcs_system_n_equations(stages->system);
+    int n_closed = f->update != NULL ? f->update->n_closed : 0;
+    double worst = 0.0;
+    double size = 0.0;
+    for (int i = 0; i < o->n + n_closed; i++) {
+        const struct dalcs_stage_change *c = i < o->n ? NULL : f->update->change[i - o->n];
+        int r = c == NULL ? o->row_of[i] : n_equations + c->pair;
+        double scale = c == NULL ? o->scale[i] : c->row_scale;
+        if (r < n_x || (r >= n_equations && !dalcs_stage_is_on(entry, r - n_equations))) {
+            continue;
+        }
+        double terms;
+        double missed = miss_of_row(stages, r, in, y, &terms);
+        worst = missed != missed ? INFINITY : fmax(worst, scale * fabs(missed));
+        size = fmax(size, scale * terms);
+    }
+    return size > 0.0 ? worst / size : 0.0;
+}
+
+enum dalcs_status dalcs_stage_factors_residual(struct dalcs_stages *stages,
+                                               struct dalcs_stage_entry *entry) {
+    const struct dalcs_system *s = stages->system;
+    const struct dalcs_stage_layout *l = &stages->layout;
+    double *in = dalcs_alloc((size_t)stages->n_in, sizeof(double));
+    double *out = dalcs_alloc((size_t)l->n_fixed, sizeof(double));
+    enum dalcs_status status = DALCS_E_NOMEM;
+    if (in != NULL && out != NULL) {
+        for (int k = 0; k < stages->n_in; k++) {
+            in[k] = k == s->n_x ? 1.0 : cos(1.0 + k * (double)k);
+        }
+        status = dalcs_stage_factors_apply(stages, entry, in, out);
+    }
+    if (status == DALCS_OK) {
+        double *y = out + stages->method->s * l->stride;
+        for (int d = 0; d < s->n_pairs; d++) {
+            y[dalcs_system_n_equations(s) + d] *= dalcs_stage_is_on(entry, d) ? 1.0 : 0.0;
+        }
+        entry->residual = relative_miss(stages, entry, in, y);
+    }
+    free(in);
+    free(out);
+    return status;
+}
+
+static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
+                               struct dalcs_stage_matrix *m) {
+    const struct dalcs_system *s = stages->system;
+    const struct dalcs_excitation *e = stages->excitation;
+    struct dalcs_stage_factors *f = entry->factors;
+    f->n = entry->n;
+    f->n_pairs = entry->n_on;
+    f->n_systems = 1 + stages->method->n_pairs;
+    f->pair = dalcs_alloc((size_t)s->n_pairs, sizeof(int));
+    f->column_scale = dalcs_alloc((size_t)dalcs_system_n_columns(s), sizeof(double));
+    f->function_share = dalcs_alloc((size_t)e->n_functions, DALCS_N_SHARES * sizeof(double));
+    if (f->pair == NULL || f->column_scale == NULL || f->function_share == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    f->pair_scale = f->column_scale + dalcs_system_n_equations(s);
+    memcpy(f->pair, entry->on, (size_t)entry->n_on * sizeof(int));
+    for (int k = 0; k < e->n_functions; k++) {
+        find_function_shares(stages, entry->h, &e->function[k],
+                             f->function_share + k * DALCS_N_SHARES);
+    }
+    DALCS_TRY(dalcs_stage_matrix_build(m, stages->plan, f->n_pairs, f->pair, entry->h));
+    memcpy(f->column_scale, m->column_scale, (size_t)m->n * sizeof(double));
+    memcpy(entry->natural, m->column_scale, (size_t)dalcs_system_n_equations(s) * sizeof(double));
+    enum dalcs_status status = factor_regular(stages, entry, f, m);
+    if (status == DALCS_OK) {
+        remember_pivots(stages->plan, f);
+        DALCS_TRY(dalcs_stage_factors_residual(stages, entry));
+    } else if (status == DALCS_SINGULAR && s->n_pairs > 0) {
+        drop_systems(f);
+        DALCS_TRY(dalcs_stage_singular_build(stages, entry, f));
+        entry->n_clashes = stages->method->s;
+        entry->residual = dalcs_stage_singular_residual(stages->plan, entry, f);
+    } else {
+        return status;
+    }
+    return entry->residual <= largest_residual ? DALCS_OK : DALCS_SINGULAR;
+}
+
+static enum dalcs_status build_own(struct dalcs_stages *stages, struct dalcs_stage_entry *entry) {
+    struct dalcs_stage_factors *f = dalcs_alloc(1, sizeof(*f));
+    if (f == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    entry->factors = f;
+    struct dalcs_stage_matrix m = {0};
+    enum dalcs_status status = build(stages, entry, &m);
+    dalcs_stage_matrix_finish(&m);
+    DALCS_TRY(status);
+    size_t n = (size_t)f->n;
+    entry->bytes += sizeof(*f) + dalcs_stage_singular_bytes(f->singular) +
+                    (size_t)stages->system->n_pairs * sizeof(int) + n * sizeof(double) +
+                    (size_t)stages->excitation->n_functions * DALCS_N_SHARES * sizeof(double);
+    for (int q = 0; q < f->n_systems; q++) {
+        entry->bytes += dalcs_lu_bytes(&f->lu[q]) + n * (2 * sizeof(int) + sizeof(double)) +
+                        (size_t)stages->plan->n_waves * sizeof(int);
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_stage_factors_build(struct dalcs_stages *stages,
+                                            struct dalcs_stage_entry *entry, bool of_its_own) {
+    DALCS_TRY(dalcs_stage_plan_get(stages));
+    if (!of_its_own) {
+        DALCS_TRY(dalcs_stage_update_build(stages, entry));
+    }
+    if (entry->factors != NULL) {
+        entry->bytes += dalcs_stage_update_bytes(entry->factors);
+        return DALCS_OK;
+    }
+    return build_own(stages, entry);
+}
+
+void dalcs_stage_factors_destroy(struct dalcs_stages *stages, struct dalcs_stage_factors *factors) {
+    if (factors == NULL) {
+        return;
+    }
+    if (factors->update != NULL) {
+        dalcs_stage_update_destroy(stages, factors);
+    } else {
+        drop_systems(factors);
+        dalcs_stage_singular_destroy(factors->singular);
+        dalcs_stage_changes_destroy(stages, factors->change);
+        free(factors->pair);
+        free(factors->column_scale);
+        free(factors->function_share);
+    }
+    free(factors);
+}
