@@ -76,6 +76,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->in = dalcs_alloc((size_t)part->stages.n_in, sizeof(double));
     part->out = dalcs_alloc(n_out, sizeof(double));
     part->out_before = dalcs_alloc(n_out, sizeof(double));
+    part->out_tried = dalcs_alloc(n_out, sizeof(double));
     part->scale = dalcs_alloc(n_columns, sizeof(double));
     part->magnitude = dalcs_alloc(n_columns, sizeof(double));
     part->armed = dalcs_alloc(n_guards, sizeof(bool));
@@ -88,10 +89,10 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->after = dalcs_alloc((size_t)s->n_x, sizeof(double));
     part->used_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
-                    part->out_before != NULL && part->scale != NULL && part->magnitude != NULL &&
-                    part->armed != NULL && part->crossed != NULL && part->tied != NULL &&
-                    part->u != NULL && part->y1 != NULL && part->y2 != NULL && part->w1 != NULL &&
-                    part->after != NULL && part->used_input != NULL;
+                    part->out_before != NULL && part->out_tried != NULL && part->scale != NULL &&
+                    part->magnitude != NULL && part->armed != NULL && part->crossed != NULL &&
+                    part->tied != NULL && part->u != NULL && part->y1 != NULL && part->y2 != NULL &&
+                    part->w1 != NULL && part->after != NULL && part->used_input != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -196,6 +197,7 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->in);
     free(part->out);
     free(part->out_before);
+    free(part->out_tried);
     free(part->scale);
     free(part->magnitude);
     free(part->armed);

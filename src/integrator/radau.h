@@ -61,6 +61,7 @@ struct dalcs_radau_part {
     double *in, *out;
     double *out_before; /* the segment before, which ended there, in its steps */
     double end_before;
+    double *out_tried; /* a step put aside while the state is projected */
     double rounding;   /* of out, over that of a dense map */
     double *scale;     /* [n_columns] largest magnitudes so far */
     double *magnitude; /* [n_columns] in the present step up to magnitude_end, in steps */

@@ -81,15 +81,20 @@ double dalcs_segment_promising(const struct dalcs_radau *r, const struct dalcs_r
     return angle * part->excitation.shortest_period / 6.283185307179586;
 }
 
-static enum dalcs_status solve_step(struct dalcs_radau_part *part,
-                                    struct dalcs_stage_entry **entry) {
+static void set_inputs(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
-    DALCS_TRY(dalcs_stages_get(&part->stages, part->component->osnsp.mode, part->h, entry));
     memcpy(part->in, part->x, (size_t)s->n_x * sizeof(double));
     part->in[s->n_x] = 1.0;
     dalcs_excitation_coefficients(&part->excitation, part->t, part->h, part->in + s->n_x + 1);
+}
+
+static enum dalcs_status solve_step(struct dalcs_radau_part *part,
+                                    struct dalcs_stage_entry **entry) {
+    set_inputs(part);
+    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->h, part->in,
+                                part->out, entry));
     part->rounding = dalcs_stage_rounding(*entry);
-    return dalcs_stages_apply(&part->stages, *entry, part->in, part->out);
+    return DALCS_OK;
 }
 
 /* The search for a segment from one point. */
@@ -108,42 +113,60 @@ struct search {
     double tolerated; /* the ratio that is let pass */
 };
 
-/* Puts a state that is a little off, as interpolation leaves it at an event, on what its mode allows:
- * that is where the stages of a step in the mode are, here so short a step that only such a defect
- * moves the state, and where their polynomial starts. */
-static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                 struct search *search, bool *moved) {
+static void swap_steps(struct dalcs_radau_part *part) {
+    double *out = part->out;
+    part->out = part->out_tried;
+    part->out_tried = out;
+}
+
+/* Where the polynomial of a step begins. *moves: that is elsewhere, farther than the step goes. */
+static void find_beginning(struct dalcs_radau_part *part, bool *moves) {
     const struct dalcs_collocation *m = part->stages.method;
-    int n_x = part->component->system->n_x;
     int stride = part->stages.layout.stride;
-    struct dalcs_stage_entry *entry;
-    *moved = false;
-    search->projected = true;
-    part->h = search->fixed ? ldexp(part->h, -PROJECTION)
-                            : dalcs_radau_ladder(part, (part->level & ~7) + PROJECTION);
-    if (n_x == 0 || part->h > search->limit - part->t) {
-        return DALCS_OK;
-    }
-    enum dalcs_status status = solve_step(part, &entry);
-    if (status != DALCS_OK) {
-        return status < DALCS_OK ? status : DALCS_OK;
-    }
-    for (int x = 0; x < n_x; x++) {
+    for (int x = 0; x < part->component->system->n_x; x++) {
         part->after[x] = 0.0;
         for (int i = 1; i <= m->s; i++) {
             part->after[x] += m->back[i - 1] * part->out[i * stride + x];
         }
         double defect = fabs(part->after[x] - part->x[x]);
         double regular = fabs(part->out[m->s * stride + x] - part->after[x]);
-        *moved = *moved || defect > 4.0 * regular;
+        *moves = *moves || defect > 4.0 * regular;
+    }
+}
+
+/* Puts a state that is a little off, as interpolation leaves it at an event, on what its mode allows:
+ * that is where the stages of a step in the mode are, here so short a step that only such a defect
+ * moves the state, and where their polynomial starts. If there is nothing to move, the step that was
+ * tried before is there again. */
+static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                 struct search *search, bool *moved) {
+    int n_x = part->component->system->n_x;
+    double tried = part->h;
+    double h = search->fixed ? ldexp(part->h, -PROJECTION)
+                             : dalcs_radau_ladder(part, (part->level & ~7) + PROJECTION);
+    *moved = false;
+    search->projected = true;
+    if (n_x == 0 || h > search->limit - part->t) {
+        return DALCS_OK;
+    }
+    struct dalcs_stage_entry *entry;
+    swap_steps(part);
+    part->h = h;
+    enum dalcs_status status = solve_step(part, &entry);
+    if (status == DALCS_OK) {
+        find_beginning(part, moved);
     }
     if (*moved) {
         if (r->base->energy != NULL) {
             dalcs_energy_move(r->base->energy, part, part->after);
         }
         memcpy(part->x, part->after, (size_t)n_x * sizeof(double));
+        return DALCS_OK;
     }
-    return DALCS_OK;
+    swap_steps(part);
+    part->h = tried;
+    set_inputs(part);
+    return status < DALCS_OK ? status : DALCS_OK;
 }
 
 static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -409,7 +432,10 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         quality.drift > (search->fixed ? 0.0 : worth_projecting)) {
         bool moved;
         DALCS_TRY(project(r, part, search, &moved));
-        return DALCS_OK;
+        if (moved) {
+            return DALCS_OK;
+        }
+        DALCS_TRY(dalcs_stages_get(&part->stages, part->component->osnsp.mode, part->h, &entry));
     }
     if (part->fresh) {
         dalcs_guards_arm(r, part, 0.0, quality.unit);

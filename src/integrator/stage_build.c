@@ -122,17 +122,20 @@ static void drop_systems(struct dalcs_stage_factors *f) {
 
 /* The miss of a row of M without derivatives, and the sum of its terms, at columns y at the last
  * stage of a step from in. */
-static double miss_of_row(const struct dalcs_stages *stages, int r, const double *in,
-                          const double *y, double *terms) {
+static double miss_of_row(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
+                          int r, const double *in, const double *y, double *terms) {
     const struct dalcs_stage_plan *plan = stages->plan;
     const struct dalcs_system *s = stages->system;
     int n_equations = dalcs_system_n_equations(s);
     bool is_pair = r >= n_equations;
     const struct dalcs_csr *a = is_pair ? &s->C : &s->A;
     int from = is_pair ? r - n_equations : r;
-    double missed = plan->constant[r];
+    double missed = in[s->n_x] * plan->constant[r];
     *terms = fabs(missed);
     for (int k = a->p[from]; k < a->p[from + 1]; k++) {
+        if (a->j[k] >= n_equations && !dalcs_stage_is_on(entry, a->j[k] - n_equations)) {
+            continue; /* y has its w there */
+        }
         double term = (is_pair ? -a->x[k] : a->x[k]) * y[a->j[k]];
         missed += term;
         *terms += fabs(term);
@@ -149,11 +152,11 @@ static double miss_of_row(const struct dalcs_stages *stages, int r, const double
     return missed;
 }
 
-/* The largest miss and the largest terms of the rows of the entry, balanced. */
-static double relative_miss(const struct dalcs_stages *stages,
-                            const struct dalcs_stage_entry *entry, const double *in,
-                            const double *y) {
+double dalcs_stage_factors_miss(const struct dalcs_stages *stages,
+                                const struct dalcs_stage_entry *entry, const double *in,
+                                const double *out) {
     const struct dalcs_stage_factors *f = entry->factors;
+    const double *y = out + stages->method->s * stages->layout.stride;
     const struct dalcs_stage_order *o = &f->order[0];
     int n_x = stages->system->n_x;
     int n_equations = dalcs_system_n_equations(stages->system);
@@ -168,15 +171,16 @@ static double relative_miss(const struct dalcs_stages *stages,
             continue;
         }
         double terms;
-        double missed = miss_of_row(stages, r, in, y, &terms);
+        double missed = miss_of_row(stages, entry, r, in, y, &terms);
         worst = missed != missed ? INFINITY : fmax(worst, scale * fabs(missed));
         size = fmax(size, scale * terms);
     }
     return size > 0.0 ? worst / size : 0.0;
 }
 
-enum dalcs_status dalcs_stage_factors_residual(struct dalcs_stages *stages,
-                                               struct dalcs_stage_entry *entry) {
+/* entry->residual of an arbitrary step. */
+static enum dalcs_status find_residual(struct dalcs_stages *stages,
+                                       struct dalcs_stage_entry *entry) {
     const struct dalcs_system *s = stages->system;
     const struct dalcs_stage_layout *l = &stages->layout;
     double *in = dalcs_alloc((size_t)stages->n_in, sizeof(double));
@@ -189,11 +193,7 @@ enum dalcs_status dalcs_stage_factors_residual(struct dalcs_stages *stages,
         status = dalcs_stage_factors_apply(stages, entry, in, out);
     }
     if (status == DALCS_OK) {
-        double *y = out + stages->method->s * l->stride;
-        for (int d = 0; d < s->n_pairs; d++) {
-            y[dalcs_system_n_equations(s) + d] *= dalcs_stage_is_on(entry, d) ? 1.0 : 0.0;
-        }
-        entry->residual = relative_miss(stages, entry, in, y);
+        entry->residual = dalcs_stage_factors_miss(stages, entry, in, out);
     }
     free(in);
     free(out);
@@ -226,7 +226,7 @@ static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_e
     enum dalcs_status status = factor_regular(stages, entry, f, m);
     if (status == DALCS_OK) {
         remember_pivots(stages->plan, f);
-        DALCS_TRY(dalcs_stage_factors_residual(stages, entry));
+        DALCS_TRY(find_residual(stages, entry));
     } else if (status == DALCS_SINGULAR && s->n_pairs > 0) {
         drop_systems(f);
         DALCS_TRY(dalcs_stage_singular_build(stages, entry, f));

@@ -69,10 +69,11 @@ enum dalcs_status dalcs_stage_factors_order(const struct dalcs_stage_plan *plan,
                                             struct dalcs_stage_factors *f,
                                             int system) DALCS_MUST_CHECK;
 
-/* stage_build.c: entry->residual = the largest miss of the rows without derivatives over the largest
- * of their terms, balanced, at the last stage of an arbitrary step. */
-enum dalcs_status dalcs_stage_factors_residual(struct dalcs_stages *stages,
-                                               struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
+/* stage_build.c: the largest miss of the rows without derivatives over the largest of their terms,
+ * balanced, at the last stage of the step from in[n_in] to out that was made last. */
+double dalcs_stage_factors_miss(const struct dalcs_stages *stages,
+                                const struct dalcs_stage_entry *entry, const double *in,
+                                const double *out);
 
 /* stage_factors.c: lu[system].work = the balanced right-hand side in its order, plan->rhs and a
  * share of the waves. */

@@ -49,12 +49,27 @@ bool dalcs_stage_is_update(const struct dalcs_stage_entry *entry) {
     return entry->factors != NULL && entry->factors->update != NULL;
 }
 
+bool dalcs_stage_update_is_doubtful(const struct dalcs_stage_entry *entry) {
+    return dalcs_stage_is_update(entry) &&
+           !(entry->residual <=
+             fmax(residual_growth * entry->factors->update->base->residual, residual_of_rounding));
+}
+
+void dalcs_stage_update_check(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
+                              const double *in, const double *out) {
+    double miss = dalcs_stage_factors_miss(stages, entry, in, out);
+    entry->residual = miss > entry->residual || miss != miss ? miss : entry->residual;
+    if (dalcs_stage_update_is_doubtful(entry)) {
+        stages->update_trust += REFUSED;
+    }
+}
+
 bool dalcs_stage_update_is_spent(struct dalcs_stage_entry *entry) {
     if (!dalcs_stage_is_update(entry)) {
         return false;
     }
     entry->spent += entry->factors->update->n_changes;
-    return entry->spent > WORTH_FACTORING;
+    return entry->spent > WORTH_FACTORING || dalcs_stage_update_is_doubtful(entry);
 }
 
 static int count_changes(const struct dalcs_stages *stages, const struct dalcs_stage_entry *a,
@@ -265,10 +280,7 @@ enum dalcs_status dalcs_stage_update_build(struct dalcs_stages *stages,
     if (status == DALCS_OK && good) {
         status = place_pairs(entry, f);
     }
-    if (status == DALCS_OK && good) {
-        status = dalcs_stage_factors_residual(stages, entry);
-        good = entry->residual <= fmax(residual_growth * base->residual, residual_of_rounding);
-    }
+    entry->residual = base->residual;
     stages->update_trust += good ? SERVED : REFUSED;
     stages->update_trust = stages->update_trust < MOST_TRUST ? stages->update_trust : MOST_TRUST;
     if (status != DALCS_OK || !good) {

@@ -20,11 +20,18 @@ bool dalcs_stage_update_can_be_base(const struct dalcs_stage_entry *entry);
 
 bool dalcs_stage_is_update(const struct dalcs_stage_entry *entry);
 
-/* One more step on this entry; has it cost so much that it had better have factors of its own? */
+/* Does a step of length h from in[n_in], which gave out, satisfy its equations as well as one of the
+ * base? If not the entry is doubtful. */
+void dalcs_stage_update_check(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
+                              const double *in, const double *out);
+bool dalcs_stage_update_is_doubtful(const struct dalcs_stage_entry *entry);
+
+/* One more step on this entry; had it better have factors of its own, as a doubtful one or one that has
+ * cost so much? */
 bool dalcs_stage_update_is_spent(struct dalcs_stage_entry *entry);
 
-/* entry->factors as an update of a base that is near, if there is one and it serves as well as
- * factors of the entry's own would; else they stay NULL. */
+/* entry->factors as an update of a base that is near, if there is one and its digits promise to serve as
+ * well as factors of the entry's own would; else they stay NULL. */
 enum dalcs_status dalcs_stage_update_build(struct dalcs_stages *stages,
                                            struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
 

@@ -236,14 +236,29 @@ enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages,
-                                     const struct dalcs_stage_entry *entry, const double *in,
-                                     double *out) {
+enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
+                                     const double *in, double *out) {
     if (entry->map != NULL) {
         dalcs_stage_map_apply(stages, entry, in, out);
         return DALCS_OK;
     }
-    return dalcs_stage_factors_apply(stages, entry, in, out);
+    DALCS_TRY(dalcs_stage_factors_apply(stages, entry, in, out));
+    if (dalcs_stage_is_update(entry)) {
+        dalcs_stage_update_check(stages, entry, in, out);
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t *mode, double h,
+                                    const double *in, double *out,
+                                    struct dalcs_stage_entry **entry) {
+    DALCS_TRY(dalcs_stages_get(stages, mode, h, entry));
+    DALCS_TRY(dalcs_stages_apply(stages, *entry, in, out));
+    if (!dalcs_stage_update_is_doubtful(*entry)) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_stages_get(stages, mode, h, entry)); /* with factors of its own */
+    return dalcs_stages_apply(stages, *entry, in, out);
 }
 
 int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry) {

@@ -69,9 +69,13 @@ enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *
 bool dalcs_stages_have(struct dalcs_stages *stages, const uint64_t *mode, double h);
 
 /* in[n_in] to out[n_fixed + n_clashes]. */
-enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages,
-                                     const struct dalcs_stage_entry *entry, const double *in,
-                                     double *out) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
+                                     const double *in, double *out) DALCS_MUST_CHECK;
+
+/* Both at once. An entry on the factors of a mode nearby that serve badly is given its own. */
+enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t *mode, double h,
+                                    const double *in, double *out,
+                                    struct dalcs_stage_entry **entry) DALCS_MUST_CHECK;
 
 int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry);
 

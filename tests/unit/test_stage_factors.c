@@ -181,10 +181,8 @@ static void compare(const struct both *b, const struct dalcs_stage_entry *dense,
 }
 
 /* Two steps from anywhere. */
-static void check_steps(struct both *b, struct dalcs_stages *stages,
-                        const struct dalcs_stage_entry *dense,
-                        const struct dalcs_stage_entry *sparse, uint64_t *random,
-                        struct tally *tally) {
+static void check_steps(struct both *b, struct dalcs_stages *stages, const uint64_t *mode, double h,
+                        struct dalcs_stage_entry *dense, uint64_t *random, struct tally *tally) {
     int n_equations = dalcs_system_n_equations(b->system);
     size_t n_out = (size_t)b->dense.layout.n_fixed + 64 +
                    (size_t)(b->dense.method->s * dalcs_system_n_columns(b->system));
@@ -200,7 +198,9 @@ static void check_steps(struct both *b, struct dalcs_stages *stages,
             y[k] = 1e300; /* what is not written is seen */
         }
         ck_assert_int_eq(dalcs_stages_apply(&b->dense, dense, in, x), DALCS_OK);
-        ck_assert_int_eq(dalcs_stages_apply(stages, sparse, in, y), DALCS_OK);
+        struct dalcs_stage_entry *sparse;
+        ck_assert_int_eq(dalcs_stages_step(stages, mode, h, in, y, &sparse), DALCS_OK);
+        ck_assert_double_le(dalcs_stage_residual(sparse), 1e-9);
         for (int d = 0; d < b->system->n_pairs; d++) {
             if (b->system->pair[d].kind == DALCS_PAIR_SWITCH && !dalcs_stage_is_on(sparse, d)) {
                 ck_assert_double_eq(y[n_equations + d], 0.0);
@@ -245,8 +245,9 @@ static void check_mode(struct both *b, const uint64_t *mode, double h, uint64_t 
     for (int k = 0; k < n_equations; k++) {
         ck_assert_double_eq(dense->natural[k], sparse->natural[k]);
     }
-    check_steps(b, &b->sparse, dense, sparse, random, tally);
-    check_steps(b, &b->updated, dense, updated, random, tally);
+    check_steps(b, &b->sparse, mode, h, dense, random, tally);
+    check_steps(b, &b->updated, mode, h, dense, random, tally);
+    ck_assert_int_eq(dalcs_stages_get(&b->updated, mode, h, &updated), DALCS_OK);
     count_changes(updated, tally);
 }
 
@@ -283,8 +284,8 @@ static struct tally check_netlist(const char *netlist, double h) {
 
 /* Updates that are wrong are refused, and thus missing. */
 static void check_updates(const struct tally *t) {
-    ck_assert_int_gt(t->n_closings, 20);
-    ck_assert_int_gt(t->n_openings, 20);
+    ck_assert_int_gt(t->n_closings, 15);
+    ck_assert_int_gt(t->n_openings, 15);
     ck_assert_int_gt(t->n_several, 0);
 }
 
@@ -535,7 +536,37 @@ START_TEST(test_update_is_spent) {
 
 END_TEST
 
-RUN_TESTS("stage factors", test_base_is_evicted, test_update_is_spent, test_ladder, test_multiplier,
-          test_coupled_coils, test_controlled_sources, test_index_2, test_floating_bridge,
-          test_shared_by_diodes, test_shared_unequally, test_general_system, test_forced_to_zero,
-          test_clashes)
+/* A step that misses its equations is not believed: the mode gets factors of its own. */
+START_TEST(test_update_is_doubtful) {
+    struct both b;
+    setup(&b,
+          "peak detector\nv1 n0 0 sin(0 10 1k)\nr1 n0 n1 1\nc1 n1 0 10n\n"
+          "d1 n1 p1 di\ncp1 p1 0 10n\nrp1 p1 0 1meg\n.model di d\n.tran 1u 1m uic\n.end\n",
+          3, false);
+    struct dalcs_stage_entry *entry;
+    struct tally tally = {0};
+    uint64_t random = 7;
+    for (uint64_t mode = 0; mode < 2; mode++) {
+        check_mode(&b, &mode, 1e-6, &random, &tally);
+    }
+    const uint64_t closed = 1;
+    ck_assert_int_eq(dalcs_stages_get(&b.updated, &closed, 1e-6, &entry), DALCS_OK);
+    ck_assert(dalcs_stage_is_update(entry));
+    ck_assert_int_eq(b.updated.factorizations, 1);
+    entry->factors->update->inverse[0][0] *= 1.0L + 1e-9L;
+    entry->factors->update->inverse[1][0] *= 1.0L + 1e-9L;
+    struct dalcs_stage_entry *dense;
+    ck_assert_int_eq(dalcs_stages_get(&b.dense, &closed, 1e-6, &dense), DALCS_OK);
+    check_steps(&b, &b.updated, &closed, 1e-6, dense, &random, &tally);
+    ck_assert_int_eq(b.updated.factorizations, 2);
+    ck_assert_int_eq(dalcs_stages_get(&b.updated, &closed, 1e-6, &entry), DALCS_OK);
+    ck_assert(!dalcs_stage_is_update(entry));
+    finish(&b);
+}
+
+END_TEST
+
+RUN_TESTS("stage factors", test_update_is_doubtful, test_base_is_evicted, test_update_is_spent,
+          test_ladder, test_multiplier, test_coupled_coils, test_controlled_sources, test_index_2,
+          test_floating_bridge, test_shared_by_diodes, test_shared_unequally, test_general_system,
+          test_forced_to_zero, test_clashes)

@@ -31,7 +31,7 @@ static void finish(void) {
     text_network_finish(&t);
 }
 
-static const struct dalcs_stage_entry *get(uint64_t mode, double h) {
+static struct dalcs_stage_entry *get(uint64_t mode, double h) {
     struct dalcs_stage_entry *entry;
     ck_assert_int_eq(dalcs_stages_get(&stages, &mode, h, &entry), DALCS_OK);
     return entry;
@@ -44,7 +44,7 @@ static double out[MOST_OUT];
 /* A step from `at` and state[n_x] to out; the number of clashes. */
 static int step(uint64_t mode, double at, double h, const double *state) {
     double in[40];
-    const struct dalcs_stage_entry *entry = get(mode, h);
+    struct dalcs_stage_entry *entry = get(mode, h);
     int n_clashes = dalcs_stage_n_clashes(entry);
     ck_assert_int_le(stages.layout.n_fixed + n_clashes + 8, MOST_OUT);
     for (int k = 0; k < s->n_x; k++) {

@@ -98,8 +98,8 @@ static double time_ours(const struct dalcs_stage_factors *f, int system, int rou
     return (2.0 * end - begin - bench_now()) / rounds;
 }
 
-static double time_step(struct dalcs_stages *st, const struct dalcs_stage_entry *e,
-                        const double *in, double *out, int rounds) {
+static double time_step(struct dalcs_stages *st, struct dalcs_stage_entry *e, const double *in,
+                        double *out, int rounds) {
     double begin = bench_now();
     for (int r = 0; r < rounds; r++) {
         bench_must(dalcs_stages_apply(st, e, in, out), "apply");
