@@ -342,7 +342,7 @@ double dalcs_radau_bystander(const struct dalcs_radau_part *part, int bystander,
                              enum dalcs_side side) {
     const struct dalcs_component *c = part->component;
     const struct dalcs_system *s = c->system;
-    const double *gain = &part->excitation.bystanders.gain[bystander * s->n_inputs];
+    const double *gain = part->excitation.bystanders.gain + bystander * s->n_inputs;
     double sum = 0.0;
     for (int k = 0; k < s->n_inputs; k++) {
         if (gain[k] != 0.0) {
