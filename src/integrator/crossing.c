@@ -88,10 +88,11 @@ static double only_root(int n, const double *coefficient) {
         }
     }
     double weighted[DALCS_MAX_NODES];
+    weighted[0] = coefficient[0];
     double binomial = 1.0;
-    for (int i = 0; i < n; i++) {
+    for (int i = 1; i < n; i++) {
+        binomial = binomial * (n - i) / i;
         weighted[i] = binomial * coefficient[i];
-        binomial = binomial * (n - 1 - i) / (i + 1);
     }
     struct probe a = {0.0, coefficient[0]}; /* the latest */
     struct probe b = {1.0, coefficient[n - 1]};
