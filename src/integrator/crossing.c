@@ -187,9 +187,10 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
         subdivide(n, b, end, b, rest);
     }
     if (b[n - 1] < -depth && b[0] > 0.0 && sign_changes(n, b) == 1) {
-        found.theta = only_root(n, b) * end;
-        if (found.theta > early) {
+        double theta = only_root(n, b) * end;
+        if (theta > early) {
             found.falls = true;
+            found.theta = theta;
             for (int i = 0; i < n; i++) {
                 found.peak = b[i] > found.peak ? b[i] : found.peak;
             }

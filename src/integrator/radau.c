@@ -279,13 +279,6 @@ static void count_crowd(const struct dalcs_radau *r, struct dalcs_radau_part *pa
     part->crowd++;
 }
 
-/* The last segment is kept while the next one is looked for: there may be none. */
-static void swap_segments(struct dalcs_radau_part *part) {
-    double *last = part->out;
-    part->out = part->out_before;
-    part->out_before = last;
-}
-
 static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
     part->jumped = false;
@@ -322,7 +315,8 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     if (part->t >= r->options.stop) {
         return DALCS_OK;
     }
-    swap_segments(part);
+    /* The last segment is kept while the next one is looked for: there may be none. */
+    dalcs_radau_swap_out(part, &part->out_before);
     part->end_before = part->end;
     return dalcs_segment_begin(r, part);
 }
@@ -438,7 +432,7 @@ enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t, enum dal
 
 static void evaluate_end_of_last(struct dalcs_radau_part *part) {
     struct dalcs_component *c = part->component;
-    swap_segments(part);
+    dalcs_radau_swap_out(part, &part->out_before);
     dalcs_step_values(part, part->end_before, part->y1);
     memcpy(c->y, part->y1, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
 }

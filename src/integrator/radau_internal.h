@@ -61,4 +61,11 @@ static inline double dalcs_radau_ladder(const struct dalcs_radau_part *part, int
     return part->rung * power;
 }
 
+/* part->out is put aside, and what was aside is part->out. */
+static inline void dalcs_radau_swap_out(struct dalcs_radau_part *part, double **aside) {
+    double *out = part->out;
+    part->out = *aside;
+    *aside = out;
+}
+
 #endif

@@ -113,12 +113,6 @@ struct search {
     double tolerated; /* the ratio that is let pass */
 };
 
-static void swap_steps(struct dalcs_radau_part *part) {
-    double *out = part->out;
-    part->out = part->out_tried;
-    part->out_tried = out;
-}
-
 /* Where the polynomial of a step begins. *moves: that is elsewhere, farther than the step goes. */
 static void find_beginning(struct dalcs_radau_part *part, bool *moves) {
     const struct dalcs_collocation *m = part->stages.method;
@@ -150,7 +144,7 @@ static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part 
         return DALCS_OK;
     }
     struct dalcs_stage_entry *entry;
-    swap_steps(part);
+    dalcs_radau_swap_out(part, &part->out_tried);
     part->h = h;
     enum dalcs_status status = solve_step(part, &entry);
     if (status == DALCS_OK) {
@@ -163,7 +157,7 @@ static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part 
         memcpy(part->x, part->after, (size_t)n_x * sizeof(double));
         return DALCS_OK;
     }
-    swap_steps(part);
+    dalcs_radau_swap_out(part, &part->out_tried);
     part->h = tried;
     set_inputs(part);
     return status < DALCS_OK ? status : DALCS_OK;

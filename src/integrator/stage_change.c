@@ -1,6 +1,8 @@
 /* stage_change.c - columns of G = M0^-1 U, found when they are first asked for (see stage_update.c). */
 #include "stage_change.h"
 
+#include "extremes.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,14 +61,10 @@ static enum dalcs_status list_terms(const struct dalcs_system *s,
     return DALCS_OK;
 }
 
-static double larger(double a, double b) {
-    return a > b ? a : b;
-}
-
 static double largest_of(const double *v, int n) {
     double largest = 0.0;
     for (int k = 0; k < n; k++) {
-        largest = larger(fabs(v[k]), largest);
+        largest = dalcs_larger(fabs(v[k]), largest);
     }
     return largest;
 }
@@ -94,7 +92,7 @@ static void load_change(const struct dalcs_stage_plan *plan, const struct dalcs_
     }
     double largest = 0.0;
     for (int i = 0; i < o->n; i++) {
-        largest = larger(largest, fabs(o->scale[i] * plan->rhs[o->row_of[i]]));
+        largest = dalcs_larger(largest, fabs(o->scale[i] * plan->rhs[o->row_of[i]]));
     }
     c->column_scale = dalcs_stage_matrix_scale(largest);
     for (int i = 0; i < o->n; i++) {

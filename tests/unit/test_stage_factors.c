@@ -511,13 +511,14 @@ START_TEST(test_base_is_evicted) {
 
 END_TEST
 
+static const char *const peak_detector =
+    "peak detector\nv1 n0 0 sin(0 10 1k)\nr1 n0 n1 1\nc1 n1 0 10n\n"
+    "d1 n1 p1 di\ncp1 p1 0 10n\nrp1 p1 0 1meg\n.model di d\n.tran 1u 1m uic\n.end\n";
+
 /* Where an update is used again and again, factors of its own are cheaper. */
 START_TEST(test_update_is_spent) {
     struct both b;
-    setup(&b,
-          "peak detector\nv1 n0 0 sin(0 10 1k)\nr1 n0 n1 1\nc1 n1 0 10n\n"
-          "d1 n1 p1 di\ncp1 p1 0 10n\nrp1 p1 0 1meg\n.model di d\n.tran 1u 1m uic\n.end\n",
-          3, false);
+    setup(&b, peak_detector, 3, false);
     struct dalcs_stage_entry *entry;
     int n_steps = 0;
     for (uint64_t mode = 0; mode < 2; mode++) {
@@ -539,10 +540,7 @@ END_TEST
 /* A step that misses its equations is not believed: the mode gets factors of its own. */
 START_TEST(test_update_is_doubtful) {
     struct both b;
-    setup(&b,
-          "peak detector\nv1 n0 0 sin(0 10 1k)\nr1 n0 n1 1\nc1 n1 0 10n\n"
-          "d1 n1 p1 di\ncp1 p1 0 10n\nrp1 p1 0 1meg\n.model di d\n.tran 1u 1m uic\n.end\n",
-          3, false);
+    setup(&b, peak_detector, 3, false);
     struct dalcs_stage_entry *entry;
     struct tally tally = {0};
     uint64_t random = 7;
