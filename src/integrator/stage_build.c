@@ -21,11 +21,12 @@ enum dalcs_status dalcs_stage_factors_order(const struct dalcs_stage_plan *plan,
     const struct dalcs_lu *lu = &f->lu[system];
     struct dalcs_stage_order *o = &f->order[system];
     size_t n = (size_t)m->n;
-    int n_equations = m->n - m->n_pairs;
+    int n_equations = f->n - f->n_pairs;
+    int n_awake = m->n - m->n_pairs;
     o->n = m->n;
     o->row_of = dalcs_alloc(n, sizeof(int));
     o->scale = dalcs_alloc(n, sizeof(double));
-    o->position = dalcs_alloc(n, sizeof(int));
+    o->position = dalcs_alloc((size_t)f->n, sizeof(int));
     o->wave_at = dalcs_alloc((size_t)plan->n_waves, sizeof(int));
     int *at = dalcs_alloc((size_t)plan->n_rows, sizeof(int)); /* positions of the rows of M */
     if (o->row_of == NULL || o->scale == NULL || o->position == NULL || o->wave_at == NULL ||
@@ -39,9 +40,10 @@ enum dalcs_status dalcs_stage_factors_order(const struct dalcs_stage_plan *plan,
     }
     for (int i = 0; i < m->n; i++) {
         int row = lu->from[i];
-        o->row_of[i] = row < n_equations ? row : n_equations + m->pair[row - n_equations];
+        int unknown = lu->to[i];
+        o->row_of[i] = m->row[row];
         o->scale[i] = m->row_scale[row];
-        o->position[lu->to[i]] = i;
+        o->position[unknown < n_awake ? m->column[unknown] : unknown - n_awake + n_equations] = i;
         at[o->row_of[i]] = i;
     }
     for (int k = 0; k < plan->n_waves; k++) {
@@ -85,7 +87,7 @@ static enum dalcs_status factor_regular(struct dalcs_stages *stages,
                                         struct dalcs_stage_matrix *m) {
     struct dalcs_stage_analysis *a;
     DALCS_TRY(
-        dalcs_stage_plan_analyze(stages, entry->mode, m->n, m->n_pairs, m->pair, m->p, m->i, &a));
+        dalcs_stage_plan_analyze(stages, entry->mode, m->n, m->row, m->column, m->p, m->i, &a));
     for (int q = 0; q < f->n_systems; q++) {
         double re;
         double im;
@@ -99,12 +101,21 @@ static enum dalcs_status factor_regular(struct dalcs_stages *stages,
     return DALCS_OK;
 }
 
-static void remember_pivots(struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f) {
-    const int *row_of = f->order[0].row_of;
-    int n_equations = f->n - f->n_pairs;
-    for (int i = 0; i < f->n; i++) {
-        int u = f->lu[0].to[i];
-        plan->match[u < n_equations ? u : n_equations + f->pair[u - n_equations]] = row_of[i];
+static void remember_pivots(struct dalcs_stage_plan *plan, const struct dalcs_stage_matrix *m,
+                            const struct dalcs_stage_factors *f) {
+    for (int i = 0; i < m->n; i++) {
+        plan->match[m->column[f->lu[0].to[i]]] = f->order[0].row_of[i];
+    }
+}
+
+/* Scales of the columns that are awake, 1 for the others. */
+static void spread_scales(const struct dalcs_stage_matrix *m, int n_equations, double *scale) {
+    int n_awake = m->n - m->n_pairs;
+    for (int c = 0; c < n_equations; c++) {
+        scale[c] = 1.0;
+    }
+    for (int c = 0; c < n_awake; c++) {
+        scale[m->column[c]] = m->column_scale[c];
     }
 }
 
@@ -204,6 +215,7 @@ static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_e
                                struct dalcs_stage_matrix *m) {
     const struct dalcs_system *s = stages->system;
     const struct dalcs_excitation *e = stages->excitation;
+    struct dalcs_stage_plan *plan = stages->plan;
     struct dalcs_stage_factors *f = entry->factors;
     f->n = entry->n;
     f->n_pairs = entry->n_on;
@@ -220,18 +232,22 @@ static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_e
         find_function_shares(stages, entry->h, &e->function[k],
                              f->function_share + k * DALCS_N_SHARES);
     }
-    DALCS_TRY(dalcs_stage_matrix_build(m, stages->plan, f->n_pairs, f->pair, entry->h));
-    memcpy(f->column_scale, m->column_scale, (size_t)m->n * sizeof(double));
-    memcpy(entry->natural, m->column_scale, (size_t)dalcs_system_n_equations(s) * sizeof(double));
+    DALCS_TRY(dalcs_stage_matrix_build(m, plan, f->n_pairs, f->pair, entry->h));
+    int n_equations = dalcs_system_n_equations(s);
+    spread_scales(m, n_equations, f->column_scale);
+    memcpy(f->pair_scale, m->column_scale + plan->rest.n_awake,
+           (size_t)f->n_pairs * sizeof(double));
+    memcpy(entry->natural, f->column_scale, (size_t)n_equations * sizeof(double));
     enum dalcs_status status = factor_regular(stages, entry, f, m);
     if (status == DALCS_OK) {
-        remember_pivots(stages->plan, f);
+        remember_pivots(plan, m, f);
+        entry->frees_states = dalcs_stage_freedom_of_mode(plan, entry);
         DALCS_TRY(find_residual(stages, entry));
-    } else if (status == DALCS_SINGULAR && s->n_pairs > 0) {
+    } else if (status == DALCS_SINGULAR && s->n_pairs > 0 && !plan->rest.any) {
         drop_systems(f);
         DALCS_TRY(dalcs_stage_singular_build(stages, entry, f));
         entry->n_clashes = stages->method->s;
-        entry->residual = dalcs_stage_singular_residual(stages->plan, entry, f);
+        entry->residual = dalcs_stage_singular_residual(plan, entry, f);
     } else {
         return status;
     }

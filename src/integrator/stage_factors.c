@@ -29,13 +29,20 @@ static void find_shares(const struct dalcs_stages *stages, const struct dalcs_st
     }
 }
 
+static void find_drive_of_row(const struct dalcs_stage_plan *plan, int r, const double *x,
+                              double factor) {
+    plan->rhs[r] = factor * plan->constant[r] + dalcs_csr_row_dot(&plan->drive, r, x);
+}
+
 /* plan->rhs = drive x + factor * constant, of the rows that are present. */
 static void find_drive(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
                        const double *x, double factor) {
     int n_equations = f->n - f->n_pairs;
-    for (int k = 0; k < f->n; k++) {
-        int r = k < n_equations ? k : n_equations + f->pair[k - n_equations];
-        plan->rhs[r] = factor * plan->constant[r] + dalcs_csr_row_dot(&plan->drive, r, x);
+    for (int k = 0; k < plan->rest.n_awake; k++) {
+        find_drive_of_row(plan, plan->rest.row[k], x, factor);
+    }
+    for (int k = 0; k < f->n_pairs; k++) {
+        find_drive_of_row(plan, n_equations + f->pair[k], x, factor);
     }
 }
 
@@ -116,48 +123,76 @@ static void unload(const struct dalcs_stage_factors *f, int first, int count, st
     }
 }
 
+enum kind { STATES, WITHOUT_MEMORY, PAIRS };
+
+/* Puts count unknowns of one kind at one node into y. */
+static void put_piece(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
+                      const struct piece *piece, enum kind kind, int first, int count, int node,
+                      const double *x, double *y) {
+    const struct dalcs_stage_factors *f = entry->factors;
+    int n_equations = f->n - f->n_pairs;
+    if (kind == STATES && node == 0) {
+        for (int k = 0; k < count; k++) {
+            y[first + k] = x[first + k];
+            plan->missed[first + k] = -piece->y[k];
+        }
+    } else if (kind == STATES) {
+        for (int k = 0; k < count; k++) {
+            y[first + k] = x[first + k] + piece->y[k];
+        }
+    } else if (kind == WITHOUT_MEMORY) {
+        memcpy(y + first, piece->y, (size_t)count * sizeof(double));
+    } else {
+        for (int k = 0; k < count; k++) {
+            int d = f->pair[first + k - n_equations];
+            bool is_on = f->singular == NULL || dalcs_stage_is_on(entry, d);
+            y[n_equations + d] = is_on ? piece->y[k] : 0.0;
+        }
+    }
+}
+
+static void put_run(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
+                    struct dalcs_stage_run run, enum kind kind, const double *x,
+                    struct piece *piece, double *out) {
+    const struct dalcs_stage_layout *l = &plan->stages->layout;
+    for (int first = run.begin; first < run.end; first += DALCS_STAGE_PIECE) {
+        int count = run.end - first;
+        count = count < DALCS_STAGE_PIECE ? count : DALCS_STAGE_PIECE;
+        unload(entry->factors, first, count, piece);
+        for (int node = 0; node < l->n_nodes; node++) {
+            dalcs_dense_map_apply(piece->n_rows, plan->n_parts, piece->part, plan->to[node],
+                                  piece->y);
+            put_piece(plan, entry, piece, kind, first, count, node, x, out + node * l->stride);
+        }
+    }
+}
+
 /* Columns at all nodes; the start still without its defect. plan->missed = what the states miss
  * there. */
 static void put_columns(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
-                        const struct dalcs_stage_factors *f, const double *x, double *out) {
-    const struct dalcs_stage_layout *l = &plan->stages->layout;
-    int n_x = plan->stages->system->n_x;
-    int n_equations = f->n - f->n_pairs;
+                        const double *x, double *out) {
+    const struct dalcs_stage_rest *rest = &plan->rest;
+    const struct dalcs_stage_factors *f = entry->factors;
     struct piece piece;
     memset(&piece, 0, sizeof(piece));
-    const int end[3] = {n_x, n_equations, f->n};
-    int first = 0;
-    for (int kind = 0; kind < 3; kind++) {
-        for (; first < end[kind]; first += DALCS_STAGE_PIECE) {
-            int count = end[kind] - first;
-            count = count < DALCS_STAGE_PIECE ? count : DALCS_STAGE_PIECE;
-            unload(f, first, count, &piece);
-            for (int node = 0; node < l->n_nodes; node++) {
-                double *y = out + node * l->stride;
-                dalcs_dense_map_apply(piece.n_rows, plan->n_parts, piece.part, plan->to[node],
-                                      piece.y);
-                if (kind == 0 && node == 0) {
-                    for (int k = 0; k < count; k++) {
-                        y[first + k] = x[first + k];
-                        plan->missed[first + k] = -piece.y[k];
-                    }
-                } else if (kind == 0) {
-                    for (int k = 0; k < count; k++) {
-                        y[first + k] = x[first + k] + piece.y[k];
-                    }
-                } else if (kind == 1) {
-                    memcpy(y + first, piece.y, (size_t)count * sizeof(double));
-                } else {
-                    for (int k = 0; k < count; k++) {
-                        int d = f->pair[first + k - n_equations];
-                        bool is_on = f->singular == NULL || dalcs_stage_is_on(entry, d);
-                        y[n_equations + d] = is_on ? piece.y[k] : 0.0;
-                    }
-                }
-            }
-        }
-        first = end[kind];
+    for (int k = 0; k < rest->states.n; k++) {
+        put_run(plan, entry, rest->states.run[k], STATES, x, &piece, out);
     }
+    for (int k = 0; k < rest->without.n; k++) {
+        put_run(plan, entry, rest->without.run[k], WITHOUT_MEMORY, x, &piece, out);
+    }
+    put_run(plan, entry, (struct dalcs_stage_run){f->n - f->n_pairs, f->n}, PAIRS, x, &piece, out);
+}
+
+static double find_w(const struct dalcs_stage_plan *plan, int pair, double constant, int share,
+                     const double *columns) {
+    const struct dalcs_system *s = plan->stages->system;
+    int row = dalcs_system_n_equations(s) + pair;
+    double w = dalcs_csr_row_dot(&s->C, pair, columns) - constant * plan->constant[row];
+    for (int k = plan->wave_begin[row]; k < plan->wave_begin[row + 1]; k++) {
+        w -= plan->wave_x[k] * plan->share[plan->wave_of[k] * DALCS_N_SHARES + share];
+    }
+    return w;
 }
 
 /* Puts w of the open diodes in the place of their lambda, which is 0 so far, and the watched
@@ -169,17 +204,13 @@ static void put_other_sides(const struct dalcs_stage_plan *plan,
     const struct dalcs_system *s = stages->system;
     int n_equations = dalcs_system_n_equations(s);
     double *lambda = columns + n_equations;
-    for (int d = 0; d < s->n_pairs; d++) {
-        plan->guard[d] = lambda[d];
-        if (dalcs_stage_is_on(entry, d) || s->pair[d].kind != DALCS_PAIR_DIODE) {
-            continue;
+    const struct dalcs_stage_runs *seen = &plan->rest.pairs;
+    for (int k = 0; k < seen->n; k++) {
+        for (int d = seen->run[k].begin; d < seen->run[k].end; d++) {
+            plan->guard[d] = dalcs_stage_is_on(entry, d) || s->pair[d].kind != DALCS_PAIR_DIODE
+                                 ? lambda[d]
+                                 : find_w(plan, d, constant, share, columns);
         }
-        int row = n_equations + d;
-        double w = dalcs_csr_row_dot(&s->C, d, columns) - constant * plan->constant[row];
-        for (int k = plan->wave_begin[row]; k < plan->wave_begin[row + 1]; k++) {
-            w -= plan->wave_x[k] * plan->share[plan->wave_of[k] * DALCS_N_SHARES + share];
-        }
-        plan->guard[d] = w;
     }
     for (int i = 0; with_watched && i < stages->n_watched; i++) {
         int d = stages->watched[i];
@@ -196,7 +227,10 @@ static void put_other_sides(const struct dalcs_stage_plan *plan,
         }
         columns[dalcs_system_n_columns(s) + i] = v;
     }
-    memcpy(lambda, plan->guard, (size_t)s->n_pairs * sizeof(double));
+    for (int k = 0; k < seen->n; k++) {
+        memcpy(lambda + seen->run[k].begin, plan->guard + seen->run[k].begin,
+               (size_t)(seen->run[k].end - seen->run[k].begin) * sizeof(double));
+    }
 }
 
 /* How far the equations disagree at each stage, from what the solutions have left. */
@@ -215,15 +249,37 @@ static void put_clashes(const struct dalcs_stage_plan *plan, double *clash) {
     }
 }
 
-/* The real system's unknowns to the places of columns, where they are added. */
-static void add_real(const struct dalcs_stage_entry *entry, const struct dalcs_stage_factors *f,
-                     int first, double *columns) {
+/* columns = factor times the real system's unknowns. */
+static void put_runs(const struct dalcs_stage_factors *f, const struct dalcs_stage_runs *runs,
+                     double factor, double *columns) {
     const int *position = f->order[0].position;
     const double *work = f->lu[0].work;
-    int n_equations = f->n - f->n_pairs;
-    for (int u = first; u < n_equations; u++) {
-        columns[u] += f->column_scale[u] * work[position[u]];
+    for (int k = 0; k < runs->n; k++) {
+        for (int u = runs->run[k].begin; u < runs->run[k].end; u++) {
+            columns[u] = factor * f->column_scale[u] * work[position[u]];
+        }
     }
+}
+
+/* columns += the real system's unknowns. */
+static void add_runs(const struct dalcs_stage_factors *f, const struct dalcs_stage_runs *runs,
+                     double *columns) {
+    const int *position = f->order[0].position;
+    const double *work = f->lu[0].work;
+    for (int k = 0; k < runs->n; k++) {
+        for (int u = runs->run[k].begin; u < runs->run[k].end; u++) {
+            columns[u] += f->column_scale[u] * work[position[u]];
+        }
+    }
+}
+
+/* The same with those that have no memory and with lambda. */
+static void add_real(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
+                     double *columns) {
+    const struct dalcs_stage_factors *f = entry->factors;
+    const double *work = f->lu[0].work;
+    int n_equations = f->n - f->n_pairs;
+    add_runs(f, &plan->rest.without, columns);
     for (int k = 0; k < f->n_pairs; k++) {
         if (dalcs_stage_is_on(entry, f->pair[k])) {
             columns[n_equations + f->pair[k]] += f->pair_scale[k] * work[f->order[0].of_pair[k]];
@@ -245,24 +301,20 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
     for (int q = 0; q < f->n_systems; q++) {
         solve(plan, entry, f, q, q == 0 ? DALCS_SHARE_REAL : DALCS_SHARE_PAIR + 2 * (q - 1));
     }
-    put_columns(plan, entry, f, in, out);
+    put_columns(plan, entry, in, out);
     if (f->singular != NULL) {
         put_clashes(plan, out + l->n_fixed);
     }
     find_drive(plan, f, plan->missed, 0.0);
     solve(plan, entry, f, 0, DALCS_SHARE_DRIFT);
-    for (int x = 0; x < n_x; x++) {
-        out[l->drift + x] = f->column_scale[x] * f->lu[0].work[f->order[0].position[x]];
-    }
-    add_real(entry, f, n_x, out);
+    put_runs(f, &plan->rest.states, 1.0, out + l->drift);
+    add_real(plan, entry, out);
     if (n_x > 0) {
         /* What was added goes with states that are off by the drift: take that back as well. */
-        for (int x = 0; x < n_x; x++) {
-            plan->missed[x] = -out[l->drift + x];
-        }
+        put_runs(f, &plan->rest.states, -1.0, plan->missed);
         find_drive(plan, f, plan->missed, 0.0);
         solve(plan, entry, f, 0, DALCS_SHARE_NONE);
-        add_real(entry, f, n_x, out);
+        add_real(plan, entry, out);
     }
     for (int node = 0; node < l->n_nodes; node++) {
         put_other_sides(plan, entry, in[n_x], node, true, out + node * l->stride);
@@ -270,7 +322,8 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
     if (stages->excitation->is_curved) {
         memset(plan->rhs, 0, (size_t)n_columns * sizeof(double));
         solve(plan, entry, f, 0, DALCS_SHARE_RIPPLE_RATE);
-        add_real(entry, f, 0, out + l->ripple);
+        add_runs(f, &plan->rest.states, out + l->ripple);
+        add_real(plan, entry, out + l->ripple);
         put_other_sides(plan, entry, 0.0, DALCS_SHARE_RIPPLE, false, out + l->ripple);
     }
     return DALCS_OK;

@@ -7,15 +7,26 @@
 
 enum { BALANCING_ROUNDS = 3 };
 
-/* Row r of M is row place[r] of the mode's, -1: none; columns alike. */
+static void list_rows(struct dalcs_stage_matrix *m, const struct dalcs_stage_plan *plan,
+                      const int *pair) {
+    const struct dalcs_stage_rest *rest = &plan->rest;
+    memcpy(m->row, rest->row, (size_t)rest->n_awake * sizeof(int));
+    memcpy(m->column, rest->column, (size_t)rest->n_awake * sizeof(int));
+    for (int k = 0; k < m->n_pairs; k++) {
+        int at = dalcs_system_n_equations(plan->stages->system) + pair[k];
+        m->row[rest->n_awake + k] = at;
+        m->column[rest->n_awake + k] = at;
+    }
+}
+
+/* Row r of M is row place[r] of the mode's, -1: none. */
 static void place_rows(const struct dalcs_stage_matrix *m, const struct dalcs_stage_plan *plan,
                        int *place) {
-    int n_equations = m->n - m->n_pairs;
     for (int r = 0; r < plan->n_rows; r++) {
-        place[r] = r < n_equations ? r : -1;
+        place[r] = -1;
     }
-    for (int k = 0; k < m->n_pairs; k++) {
-        place[n_equations + m->pair[k]] = n_equations + k;
+    for (int i = 0; i < m->n; i++) {
+        place[m->row[i]] = i;
     }
 }
 
@@ -98,10 +109,12 @@ static void balance(struct dalcs_stage_matrix *m, double sigma) {
 }
 
 static enum dalcs_status fill(struct dalcs_stage_matrix *m, const struct dalcs_stage_plan *plan,
-                              double sigma) {
+                              const int *pair, double sigma) {
     size_t n = (size_t)m->n;
     size_t capacity = (size_t)plan->base.p[plan->n_rows] + (size_t)plan->P.p[plan->n_rows];
     int *place = dalcs_alloc((size_t)plan->n_rows, sizeof(*place));
+    m->row = dalcs_alloc(n, sizeof(*m->row));
+    m->column = dalcs_alloc(n, sizeof(*m->column));
     m->p = dalcs_alloc(n + 1, sizeof(*m->p));
     m->i = dalcs_alloc(capacity, sizeof(*m->i));
     m->base = dalcs_alloc(capacity, sizeof(double));
@@ -109,18 +122,18 @@ static enum dalcs_status fill(struct dalcs_stage_matrix *m, const struct dalcs_s
     m->values = dalcs_alloc(capacity, 2 * sizeof(double));
     m->row_scale = dalcs_alloc(n, sizeof(double));
     m->column_scale = dalcs_alloc(n, sizeof(double));
-    if (place == NULL || m->p == NULL || m->i == NULL || m->base == NULL || m->P == NULL ||
-        m->values == NULL || m->row_scale == NULL || m->column_scale == NULL) {
+    if (place == NULL || m->row == NULL || m->column == NULL || m->p == NULL || m->i == NULL ||
+        m->base == NULL || m->P == NULL || m->values == NULL || m->row_scale == NULL ||
+        m->column_scale == NULL) {
         free(place);
         return DALCS_E_NOMEM;
     }
+    list_rows(m, plan, pair);
     place_rows(m, plan, place);
     int out = 0;
-    for (int c = 0; c < plan->n_rows; c++) {
-        if (place[c] >= 0) {
-            out = put_column(m, plan, c, place, out);
-            m->p[place[c] + 1] = out;
-        }
+    for (int c = 0; c < m->n; c++) {
+        out = put_column(m, plan, m->column[c], place, out);
+        m->p[c + 1] = out;
     }
     free(place);
     balance(m, sigma);
@@ -129,10 +142,9 @@ static enum dalcs_status fill(struct dalcs_stage_matrix *m, const struct dalcs_s
 
 enum dalcs_status dalcs_stage_matrix_build(struct dalcs_stage_matrix *m,
                                            const struct dalcs_stage_plan *plan, int n_pairs,
-                                           int *pair, double h) {
-    int n_equations = dalcs_system_n_equations(plan->stages->system);
-    *m = (struct dalcs_stage_matrix){.n = n_equations + n_pairs, .n_pairs = n_pairs, .pair = pair};
-    enum dalcs_status status = fill(m, plan, plan->stages->method->lambda / h);
+                                           const int *pair, double h) {
+    *m = (struct dalcs_stage_matrix){.n = plan->rest.n_awake + n_pairs, .n_pairs = n_pairs};
+    enum dalcs_status status = fill(m, plan, pair, plan->stages->method->lambda / h);
     if (status != DALCS_OK) {
         dalcs_stage_matrix_finish(m);
     }
@@ -157,10 +169,12 @@ size_t dalcs_stage_matrix_bytes(const struct dalcs_stage_matrix *m) {
     }
     size_t n = (size_t)m->n;
     size_t per_entry = sizeof(int) + 4 * sizeof(double);
-    return (size_t)m->p[m->n] * per_entry + n * (sizeof(int) + 2 * sizeof(double));
+    return (size_t)m->p[m->n] * per_entry + n * (3 * sizeof(int) + 2 * sizeof(double));
 }
 
 void dalcs_stage_matrix_finish(struct dalcs_stage_matrix *m) {
+    free(m->row);
+    free(m->column);
     free(m->p);
     free(m->i);
     free(m->base);

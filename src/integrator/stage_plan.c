@@ -156,7 +156,9 @@ static enum dalcs_status setup(struct dalcs_stage_plan *plan, const struct dalcs
     fill_combination(plan);
     DALCS_TRY(fill_base(plan, s));
     DALCS_TRY(fill_P(plan, s));
-    return fill_drive(plan, s);
+    DALCS_TRY(fill_drive(plan, s));
+    DALCS_TRY(dalcs_stage_rest_setup(plan));
+    return dalcs_stage_freedom_setup(plan);
 }
 
 enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) {
@@ -188,15 +190,22 @@ static void forget(struct dalcs_stages *stages, struct dalcs_stage_analysis *a) 
     *a = (struct dalcs_stage_analysis){0};
 }
 
+void dalcs_stage_plan_forget(struct dalcs_stages *stages) {
+    struct dalcs_stage_plan *plan = stages->plan;
+    while (plan->n_analyses > 0) {
+        forget(stages, &plan->analysis[--plan->n_analyses]);
+    }
+}
+
 void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
     struct dalcs_stage_plan *plan = stages->plan;
-    stages->plan = NULL;
     if (plan == NULL) {
         return;
     }
-    for (int k = 0; k < plan->n_analyses; k++) {
-        forget(stages, &plan->analysis[k]);
-    }
+    dalcs_stage_plan_forget(stages);
+    stages->plan = NULL;
+    dalcs_stage_rest_finish(&plan->rest);
+    dalcs_stage_freedom_finish(&plan->freedom);
     dalcs_csr_finish(&plan->base);
     dalcs_csr_finish(&plan->P);
     dalcs_csr_finish(&plan->drive);
@@ -221,16 +230,14 @@ void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
 }
 
 /* A copy of i with each column's match first; NULL when out of memory. */
-static int *list_matches_first(const struct dalcs_stage_plan *plan, int n, int n_pairs,
-                               const int *pair, const int *p, const int *i) {
-    int n_equations = n - n_pairs;
+static int *list_matches_first(const struct dalcs_stage_plan *plan, int n, const int *row,
+                               const int *column, const int *p, const int *i) {
     int *first = dalcs_alloc((size_t)p[n], sizeof(int));
     for (int c = 0; first != NULL && c < n; c++) {
-        int match = plan->match[c < n_equations ? c : n_equations + pair[c - n_equations]];
+        int match = plan->match[column[c]];
         for (int k = p[c]; k < p[c + 1]; k++) {
-            int row = i[k] < n_equations ? i[k] : n_equations + pair[i[k] - n_equations];
             first[k] = i[k];
-            if (row == match) {
+            if (row[i[k]] == match) {
                 first[k] = first[p[c]];
                 first[p[c]] = i[k];
             }
@@ -240,10 +247,10 @@ static int *list_matches_first(const struct dalcs_stage_plan *plan, int n, int n
 }
 
 static enum dalcs_status analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
-                                 int n_pairs, const int *pair, int *p, const int *i,
+                                 const int *row, const int *column, int *p, const int *i,
                                  struct dalcs_stage_analysis *a) {
     size_t words = (size_t)stages->n_words;
-    int *first = list_matches_first(stages->plan, n, n_pairs, pair, p, i);
+    int *first = list_matches_first(stages->plan, n, row, column, p, i);
     *a = (struct dalcs_stage_analysis){.mode = mode != NULL ? dalcs_alloc(words + 1, sizeof(*mode))
                                                             : NULL};
     enum dalcs_status status = DALCS_E_NOMEM;
@@ -262,7 +269,7 @@ static enum dalcs_status analyze(struct dalcs_stages *stages, const uint64_t *mo
 }
 
 enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
-                                           int n_pairs, const int *pair, int *p, int *i,
+                                           const int *row, const int *column, int *p, int *i,
                                            struct dalcs_stage_analysis **analysis) {
     struct dalcs_stage_plan *plan = stages->plan;
     size_t bytes = (size_t)stages->n_words * sizeof(*mode);
@@ -277,7 +284,7 @@ enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const ui
     if (at < plan->n_analyses) {
         found = plan->analysis[at];
     } else {
-        DALCS_TRY(analyze(stages, mode, n, n_pairs, pair, p, i, &found));
+        DALCS_TRY(analyze(stages, mode, n, row, column, p, i, &found));
         if (at == plan->most_analyses) {
             forget(stages, &plan->analysis[--at]);
         } else {

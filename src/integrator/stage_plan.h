@@ -8,6 +8,8 @@
 #ifndef DALCS_STAGE_PLAN_H
 #define DALCS_STAGE_PLAN_H
 
+#include "stage_freedom.h"
+#include "stage_rest.h"
 #include "stages.h"
 
 /* Unknowns are turned into stages in pieces of this many, which stay in the fastest cache. */
@@ -57,6 +59,9 @@ struct dalcs_stage_plan {
      * it hardly has to search, which takes quadratic time in a long multiplier. */
     int *match; /* [n_rows] */
 
+    struct dalcs_stage_rest rest;
+    struct dalcs_stage_freedom freedom;
+
     int n_analyses, most_analyses, most_kept;
     struct dalcs_stage_analysis *analysis; /* newest first */
 
@@ -77,11 +82,13 @@ enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) DALCS_MUST_C
 
 void dalcs_stage_plan_destroy(struct dalcs_stages *stages);
 
-/* KLU's analysis of a mode's pattern (p, i), whose last rows and columns are those of
- * pair[n_pairs]; mode NULL: of the matrix with all pairs. It belongs to the plan and stays until
- * the next call. */
+/* KLU's analysis of a mode's pattern (p, i), whose rows and columns are row[n] and column[n] of M;
+ * mode NULL: of the matrix with all pairs. It belongs to the plan and stays until the next call. */
 enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
-                                           int n_pairs, const int *pair, int *p, int *i,
+                                           const int *row, const int *column, int *p, int *i,
                                            struct dalcs_stage_analysis **analysis) DALCS_MUST_CHECK;
+
+/* Forgets all of them: other rows and columns are at rest. */
+void dalcs_stage_plan_forget(struct dalcs_stages *stages);
 
 #endif

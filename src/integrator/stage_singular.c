@@ -127,8 +127,8 @@ static enum dalcs_status factor_all(struct dalcs_stages *stages, struct dalcs_st
         dalcs_stage_matrix_at(&g->matrix, g->re[q], g->im[q], q > 0);
         put_weights(stages->system, entry, g, row_of, q > 0 ? 2 : 1, a);
         if (q == 0) {
-            DALCS_TRY(dalcs_stage_plan_analyze(stages, NULL, f->n, f->n_pairs, f->pair, a->p, a->i,
-                                               &known));
+            DALCS_TRY(dalcs_stage_plan_analyze(stages, NULL, f->n, g->matrix.row, g->matrix.column,
+                                               a->p, a->i, &known));
         }
         DALCS_TRY(dalcs_lu_factor_analyzed(&f->lu[q], q > 0 ? &stages->klu_complex : &stages->klu,
                                            known->symbolic, NULL, q > 0, a->p, a->i, a->x, 0.0));

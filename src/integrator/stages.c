@@ -115,10 +115,14 @@ static void remove_entry(struct dalcs_stages *stages, struct dalcs_stage_entry *
     dalcs_stages_release(stages, e);
 }
 
-void dalcs_stages_finish(struct dalcs_stages *stages) {
+static void remove_all(struct dalcs_stages *stages) {
     while (stages->oldest != NULL) {
         remove_entry(stages, stages->oldest);
     }
+}
+
+void dalcs_stages_finish(struct dalcs_stages *stages) {
+    remove_all(stages);
     dalcs_stage_plan_destroy(stages);
     dalcs_stage_workshop_destroy(stages->workshop);
     free(stages->watched);
@@ -197,6 +201,51 @@ bool dalcs_stages_have(struct dalcs_stages *stages, const uint64_t *mode, double
     return find(stages, mode, h) != NULL;
 }
 
+/* Factors serve as long as the same is at rest. */
+static void forget_all(struct dalcs_stages *stages) {
+    remove_all(stages);
+    dalcs_stage_plan_forget(stages);
+}
+
+static void wake_all(struct dalcs_stages *stages) {
+    forget_all(stages);
+    dalcs_stage_rest_end(stages->plan);
+}
+
+/* From the states x on, whatever stays 0 in the mode is left out, once the whole has been factored in
+ * it, and what moves is awake. */
+static enum dalcs_status choose_rest(struct dalcs_stages *stages, const uint64_t *mode,
+                                     const double *x) {
+    struct dalcs_stage_plan *plan = stages->plan;
+    const struct dalcs_stage_entry *e = stages->newest;
+    if (plan == NULL || plan->rest.settled ||
+        (plan->rest.any && dalcs_stage_rest_allows(plan, mode, x))) {
+        return DALCS_OK;
+    }
+    bool is_known = e != NULL && dalcs_stage_update_can_be_base(e) &&
+                    is_key(e, mode, (size_t)stages->n_words, e->h);
+    if (!plan->rest.any && !is_known) {
+        return DALCS_OK;
+    }
+    bool was_any = plan->rest.any;
+    DALCS_TRY(dalcs_stage_rest_choose(plan, mode, x));
+    if (was_any || plan->rest.any) {
+        forget_all(stages);
+    }
+    return DALCS_OK;
+}
+
+/* A new entry of stages->key, which may need what is at rest. */
+static enum dalcs_status entry_make(struct dalcs_stages *stages, double h, bool of_its_own,
+                                    struct dalcs_stage_entry **entry) {
+    enum dalcs_status status = entry_create(stages, h, of_its_own, entry);
+    if (status == DALCS_SINGULAR && stages->plan != NULL && stages->plan->rest.any) {
+        wake_all(stages);
+        status = entry_create(stages, h, of_its_own, entry);
+    }
+    return status;
+}
+
 enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *mode, double h,
                                    struct dalcs_stage_entry **entry) {
     size_t words = (size_t)stages->n_words;
@@ -221,7 +270,10 @@ enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *
     if (is_spent) {
         remove_entry(stages, e);
     }
-    DALCS_TRY(entry_create(stages, h, is_spent, &e));
+    if (stages->plan != NULL && !dalcs_stage_rest_allows(stages->plan, mode, NULL)) {
+        wake_all(stages);
+    }
+    DALCS_TRY(entry_make(stages, h, is_spent, &e));
     HASH_ADD_KEYPTR(hh, stages->entries, e->key, (words + 1) * sizeof(*mode), e);
     if (e->hh.tbl == NULL) { /* uthash ran out of memory and left the entry out */
         entry_destroy(stages, e);
@@ -252,6 +304,7 @@ enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages, struct dalcs_s
 enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t *mode, double h,
                                     const double *in, double *out,
                                     struct dalcs_stage_entry **entry) {
+    DALCS_TRY(choose_rest(stages, mode, in));
     DALCS_TRY(dalcs_stages_get(stages, mode, h, entry));
     DALCS_TRY(dalcs_stages_apply(stages, *entry, in, out));
     if (!dalcs_stage_update_is_doubtful(*entry)) {

@@ -130,6 +130,7 @@ static void raise_to_start(const struct dalcs_system *s, const struct dalcs_stag
 struct tally {
     int n_regular, n_singular, n_clashes;
     int n_closings, n_openings, n_several; /* updates by what changes */
+    int n_free, n_found_free;              /* entries that free the states, and those told so */
 };
 
 /* Everything is compared, with a name for the message. */
@@ -213,6 +214,27 @@ static void check_steps(struct both *b, struct dalcs_stages *stages, const uint6
     free(y);
 }
 
+/* Wherever the states are, a vanishing step leaves them there. */
+static void check_freedom(struct both *b, const uint64_t *mode, double h, uint64_t *random) {
+    struct dalcs_stage_entry *dense;
+    const struct dalcs_stage_layout *l = &b->dense.layout;
+    double *in = dalcs_alloc((size_t)b->dense.n_in, sizeof(*in));
+    double *out = dalcs_alloc((size_t)l->n_fixed + 64, sizeof(*out));
+    ck_assert(in != NULL && out != NULL);
+    ck_assert_int_eq(dalcs_stages_get(&b->dense, mode, ldexp(h, -40), &dense), DALCS_OK);
+    for (int k = 0; k < b->dense.n_in; k++) {
+        in[k] = next_random(random);
+    }
+    ck_assert_int_eq(dalcs_stages_apply(&b->dense, dense, in, out), DALCS_OK);
+    for (int node = 0; node < l->n_nodes; node++) {
+        for (int k = 0; k < b->system->n_x; k++) {
+            ck_assert_double_le(fabs(out[node * l->stride + k] - in[k]), 1e-5);
+        }
+    }
+    free(in);
+    free(out);
+}
+
 static void count_changes(const struct dalcs_stage_entry *entry, struct tally *tally) {
     if (!dalcs_stage_is_update(entry)) {
         return;
@@ -245,6 +267,11 @@ static void check_mode(struct both *b, const uint64_t *mode, double h, uint64_t 
     for (int k = 0; k < n_equations; k++) {
         ck_assert_double_eq(dense->natural[k], sparse->natural[k]);
     }
+    if (dalcs_stage_frees_states(sparse) || dalcs_stage_frees_states(updated)) {
+        check_freedom(b, mode, h, random);
+    }
+    tally->n_free += 2 * dalcs_stage_frees_states(dense);
+    tally->n_found_free += dalcs_stage_frees_states(sparse) + dalcs_stage_frees_states(updated);
     check_steps(b, &b->sparse, mode, h, dense, random, tally);
     check_steps(b, &b->updated, mode, h, dense, random, tally);
     ck_assert_int_eq(dalcs_stages_get(&b->updated, mode, h, &updated), DALCS_OK);
@@ -301,6 +328,8 @@ START_TEST(test_ladder) {
                                    1e-5);
     ck_assert_int_gt(t.n_regular, 0);
     ck_assert_int_eq(t.n_singular, 0);
+    ck_assert_int_gt(t.n_free, 0);
+    ck_assert_int_eq(t.n_found_free, t.n_free);
     check_updates(&t);
 }
 
