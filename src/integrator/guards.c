@@ -18,7 +18,7 @@ static const double band_over_tolerance = 10.0;
  * the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. */
 static const double falling_part = 1e-3;
 
-/* What rounding leaves of a zero, over the unit's scale. */
+/* What rounding leaves of a zero on dense maps, over the unit's scale. */
 static const double noise = 2e-13;
 
 /* Digits of a voltage over what the capacitors at a diode make of them in a step: a current that only
@@ -32,9 +32,13 @@ static const double same_on_factors = 1e-9;
 /* A fall this early in a step is one from the start. */
 static const double soon_after = 1e-6;
 
+double dalcs_guards_noise(const struct dalcs_radau_part *part) {
+    return noise * part->rounding;
+}
+
 static double band_of(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
     double band = band_over_tolerance * r->inner_tolerance;
-    double least = 4.0 * noise * part->rounding;
+    double least = 4.0 * dalcs_guards_noise(part);
     return band > least ? band : least;
 }
 
@@ -252,7 +256,7 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
             continue;
         }
         double scale = scale_of(part, g, unit);
-        double depth = (part->armed[g] && !stops ? noise * part->rounding : band) * scale;
+        double depth = (part->armed[g] && !stops ? dalcs_guards_noise(part) : band) * scale;
         if (!part->armed[g] && !part->fresh && !stops && value[last * stride] < value[0]) {
             depth *= falling_part;
         }
@@ -278,7 +282,7 @@ bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const d
     double work[DALCS_MAX_NODES];
     int stride;
     const double *value = values_of(part, pair, work, &stride);
-    double limit = noise * part->rounding * scale_of(part, pair, unit);
+    double limit = dalcs_guards_noise(part) * scale_of(part, pair, unit);
     limit += rounding_of(part, pair, unit);
     bool tied = value != NULL;
     for (int k = 0; k < part->stages.layout.n_nodes && tied; k++) {

@@ -89,6 +89,7 @@ struct dalcs_radau_part {
 
     uint64_t *transition_modes;
     int level_before;
+    int fronts_refused;     /* guesses that a front goes on, which were wrong */
     uint64_t *modes_before; /* the one that held, the one after pairs changed sides */
     uint64_t *mode_tied;
     long crowd; /* events since `crowd_since` */

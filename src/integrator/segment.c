@@ -8,6 +8,7 @@
  * in finite time, implicit Euler goes on by itself for a while, certified and a little at a time. */
 #include "energy.h"
 #include "extremes.h"
+#include "front.h"
 #include "guards.h"
 #include "radau_internal.h"
 
@@ -46,7 +47,9 @@ enum {
     MOST_PATIENCE = 4096,
     FALL_BACK_LEAST = 5,
     FALL_BACK = 14, /* steps of implicit Euler start this many rungs below */
-    CROWD = 40
+    CROWD = 40,
+    MOST_FRONTS_REFUSED = 16,
+    MOST_REOPENED = 8
 };
 
 /* The longest step over the shortest period of a source, by stages: fewer nodes see less. */
@@ -103,7 +106,9 @@ struct search {
     int first_level; /* where the ladder stood */
     bool fixed;      /* the step is given: no error control */
     int restarts, flips;
-    bool guessed; /* the mode is one remembered from the last time */
+    bool guessed; /* the mode is one remembered from the last time, or that of a front */
+    bool front;   /* the latter */
+    int reopened; /* times that diodes of a front were opened again */
     bool untied;  /* tied diodes have been looked at */
     bool opened;  /* and are open now, to try */
     bool projected;
@@ -257,6 +262,8 @@ static enum dalcs_status refuse(struct dalcs_radau_part *part, struct search *se
     dalcs_transition_refuse(part);
     search->first_level = part->level;
     search->guessed = false;
+    part->fronts_refused += search->front ? 1 : 0;
+    search->front = false;
     return DALCS_OK;
 }
 
@@ -265,7 +272,10 @@ static enum dalcs_status refuse(struct dalcs_radau_part *part, struct search *se
 static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                  struct search *search, const struct dalcs_step_quality *quality,
                                  bool *done) {
-    if (search->guessed) {
+    /* The step that suits a front is not remembered: it may have to be shorter. */
+    bool may_shorten =
+        search->front && !search->fixed && search->stuck == 0 && quality->ratio < most_projected;
+    if (search->guessed && !may_shorten) {
         return refuse(part, search);
     }
     if (search->opened) {
@@ -411,7 +421,8 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         *done = true; /* no length mends it */
         return fall_back(r, part, search);
     }
-    bool means_something = status == DALCS_OK;
+    bool means_something =
+        status == DALCS_OK && !(search->front && dalcs_stage_n_clashes(entry) > 0);
     if (means_something) {
         dalcs_step_judge(r, part, entry, end, &quality);
         means_something =
@@ -421,6 +432,9 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (!means_something || (controlled && !(quality.ratio <= search->tolerated))) {
         quality.ratio = means_something ? quality.ratio : INFINITY;
         return recover(r, part, search, &quality, done);
+    }
+    if (search->front && search->reopened++ < MOST_REOPENED && dalcs_front_reopen(part)) {
+        return DALCS_OK;
     }
     if (part->fresh && !search->projected && !dalcs_stage_frees_states(entry) &&
         quality.drift > (search->fixed ? 0.0 : worth_projecting)) {
@@ -465,6 +479,10 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
     }
     if (part->fresh && part->flipped) {
         search.guessed = dalcs_transition_guess(part);
+        if (!search.guessed && part->fronts_refused < MOST_FRONTS_REFUSED) {
+            DALCS_TRY(dalcs_front_close(part, &search.front));
+            search.guessed = search.front;
+        }
         search.first_level = part->level;
     }
     bool done = false;

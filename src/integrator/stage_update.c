@@ -27,7 +27,7 @@ static const double least_pivot = 1e-9;
 
 /* The residual may be so many times the base's, or rounding in any case. */
 static const double residual_growth = 4.0;
-static const double residual_of_rounding = 1e-15;
+static const double residual_of_rounding = 5e-15;
 
 /* So many bases are looked at, the latest first. */
 enum { MOST_BASES = 64 };

@@ -314,6 +314,11 @@ enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t 
     return dalcs_stages_apply(stages, *entry, in, out);
 }
 
+bool dalcs_stages_is_awake(const struct dalcs_stages *stages, int pair) {
+    const struct dalcs_stage_plan *plan = stages->plan;
+    return plan == NULL || (plan->rest.may_close[pair / 64] >> (pair % 64) & 1) != 0;
+}
+
 int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry) {
     return entry->n_clashes;
 }

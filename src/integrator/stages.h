@@ -79,6 +79,9 @@ enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t 
 
 int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry);
 
+/* Is what is next to this pair awake? (stage_rest.h) */
+bool dalcs_stages_is_awake(const struct dalcs_stages *stages, int pair);
+
 /* How much more of the answer is rounding than in one from a dense map: 1 for those. */
 double dalcs_stage_rounding(const struct dalcs_stage_entry *entry);
 
