@@ -145,9 +145,10 @@ void dalcs_rows_finish(struct dalcs_rows *rows) {
 
 /* ---- The nodes' weights ------------------------------------------------------------------------ */
 
-DALCS_FOR_WIDE_VECTORS
-static void divide(const struct dalcs_collocation *c, const union dalcs_row_values *theta,
-                   int n_groups, union dalcs_row_values *weight, union dalcs_row_values *sum) {
+DALCS_TWICE(void, divide,
+            (const struct dalcs_collocation *c, const union dalcs_row_values *theta, int n_groups,
+             union dalcs_row_values *weight, union dalcs_row_values *sum),
+            (c, theta, n_groups, weight, sum)) {
     for (int g = 0; g < n_groups; g++) {
         dalcs_four total = {0.0};
         for (int k = 0; k <= c->s; k++) {
@@ -181,10 +182,10 @@ static void weigh(const struct dalcs_collocation *c, const union dalcs_row_value
 /* ---- Values ------------------------------------------------------------------------------------ */
 
 /* sum += coefficient * column, whose values at the nodes are y[stride * node]. */
-DALCS_FOR_WIDE_VECTORS
-static void add_column(const struct dalcs_stage_layout *l, const union dalcs_row_values *weight,
-                       const double *y, double coefficient, int n_groups,
-                       union dalcs_row_values *sum) {
+DALCS_TWICE(void, add_column,
+            (const struct dalcs_stage_layout *l, const union dalcs_row_values *weight,
+             const double *y, double coefficient, int n_groups, union dalcs_row_values *sum),
+            (l, weight, y, coefficient, n_groups, sum)) {
     for (int g = 0; g < n_groups; g++) {
         dalcs_four column = {0.0};
         for (int k = 0; k < l->n_nodes; k++) {
