@@ -17,20 +17,21 @@
 
 #define POINTS_FIELD "%-20zu"
 
-enum { BLOCK_DOUBLES = 1 << 10 }; /* and of a large circuit one point */
+enum { BLOCK_DOUBLES = 1 << 9 }; /* and of a large circuit one point */
 
 struct raw {
     size_t n_columns, n_points;
     size_t n_signals, n_parameters;
     bool has_scale, is_complex, is_ascii;
     off_t plot_at, points_at, rows_at; /* file positions: of the plot, of its number of points */
-    size_t width;  /* doubles of a point: n_columns, of pairs where it is complex; at least 1 */
-    double *block; /* [most_held][width] points that the stream does not have yet */
+    size_t width; /* doubles of a point: n_columns, of pairs where it is complex; at least 1 */
+    size_t n_before, n_values; /* of them, before the signals, and theirs */
+    double *block;             /* [most_held][width] points that the stream does not have yet */
     size_t n_held, most_held;
     bool is_stepped;
-    size_t n_of_step; /* points */
-    double *constant; /* [n_parameters] of this step */
-    struct dalcs_decimal decimal;
+    size_t n_of_step;              /* rows, where it is stepped */
+    double *constant;              /* [n_parameters] of this step */
+    struct dalcs_decimal *decimal; /* of text; heap */
 };
 
 /* SOURCE_DATE_EPOCH, where set, makes two runs give the same bytes. */
@@ -121,7 +122,9 @@ static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plo
     raw->n_columns = n_columns;
     raw->is_stepped = plot->n_steps > 1 && has_scale;
     raw->n_of_step = 0;
-    raw->width = (plot->is_complex ? 2 : 1) * (n_columns > 0 ? n_columns : 1);
+    raw->n_values = (plot->is_complex ? 2 : 1) * plot->n_signals;
+    raw->n_before = (plot->is_complex ? 2 : 1) * n_columns - raw->n_values;
+    raw->width = n_columns > 0 ? raw->n_before + raw->n_values : 1;
     raw->most_held = 1 + BLOCK_DOUBLES / raw->width;
     free(raw->block);
     free(raw->constant);
@@ -143,13 +146,19 @@ static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plo
 static enum dalcs_status begin_ascii(void *state, FILE *stream, const struct dalcs_plot *plot) {
     struct raw *raw = state;
     raw->is_ascii = true;
-    dalcs_decimal_init(&raw->decimal);
+    if (raw->decimal == NULL) {
+        raw->decimal = dalcs_alloc(1, sizeof *raw->decimal);
+        if (raw->decimal == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        dalcs_decimal_init(raw->decimal);
+    }
     return begin(state, stream, plot);
 }
 
 static void write_number(struct raw *raw, FILE *stream, double number) {
     char text[DALCS_DECIMAL_SIZE];
-    size_t n = dalcs_decimal_write(&raw->decimal, number, text);
+    size_t n = dalcs_decimal_write(raw->decimal, number, text);
     fwrite(text, 1, n, stream);
 }
 
@@ -185,31 +194,26 @@ static void release(struct raw *raw, FILE *stream) {
 /* A row as it stands in the file. */
 static void fill_point(const struct raw *raw, double *point, double time, const double *value) {
     const size_t stride = raw->is_complex ? 2 : 1;
-    double *next = point;
     if (raw->has_scale) {
-        *next = time;
-        next += stride;
+        point[0] = time;
     }
     for (size_t i = 0; i < raw->n_parameters; i++) {
-        *next = raw->constant[i];
-        next += stride;
+        point[((raw->has_scale ? 1 : 0) + i) * stride] = raw->constant[i];
     }
-    memcpy(next, value, stride * raw->n_signals * sizeof(double));
+    memcpy(point + raw->n_before, value, raw->n_values * sizeof(double));
 }
 
 /* Readers count the steps by how often the scale is what it is at first. So of two rows there, before
  * and behind an edge at tstart, only the second one is written. The first is still held. */
 static void row(void *state, FILE *stream, double time, const double *value) {
     struct raw *raw = state;
-    const bool is_second = raw->is_stepped && raw->n_of_step == 1;
-    if (is_second && raw->block[(raw->n_held - 1) * raw->width] == time) {
+    if (raw->is_stepped && raw->n_of_step++ == 1 &&
+        raw->block[(raw->n_held - 1) * raw->width] == time) {
         raw->n_held--;
     } else if (raw->n_held == raw->most_held) {
         release(raw, stream);
     }
-    fill_point(raw, raw->block + raw->n_held * raw->width, time, value);
-    raw->n_held++;
-    raw->n_of_step++;
+    fill_point(raw, raw->block + raw->n_held++ * raw->width, time, value);
 }
 
 static bool write_points(const struct raw *raw, int descriptor, size_t n_points) {
@@ -272,6 +276,7 @@ static void finish(void *state) {
     struct raw *raw = state;
     free(raw->block);
     free(raw->constant);
+    free(raw->decimal);
 }
 
 const struct dalcs_table_format dalcs_raw_format = {
