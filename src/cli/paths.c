@@ -102,6 +102,9 @@ enum dalcs_status dalcs_paths_check(const struct dalcs_cli *cli,
     struct place input[N_INPUTS] = {{.known = false}};
     struct place *result = dalcs_alloc(n_results, sizeof *result);
     enum dalcs_status status = result ? DALCS_OK : DALCS_E_NOMEM;
+    if (!result) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+    }
     for (size_t i = 0; status == DALCS_OK && i < N_INPUTS; i++) {
         status = path[i] ? check_readable(cli, path[i], &input[i]) : DALCS_OK;
     }
