@@ -33,11 +33,12 @@ static void catch_signals(void) {
 /* Where the caller closed a standard stream, the next file would take its number and what is meant
  * for a terminal would end up in a waveform. A stream that refuses to be written is put there. */
 static bool keep_standard_streams(void) {
-    int descriptor = open("/dev/null", O_RDONLY);
-    while (descriptor >= 0 && descriptor <= STDERR_FILENO) {
-        descriptor = dup(descriptor);
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++) {
+        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDONLY) != stream) {
+            return false;
+        }
     }
-    return descriptor >= 0 && close(descriptor) == 0;
+    return true;
 }
 
 int main(int argc, char **argv) {

@@ -20,7 +20,7 @@ struct dalcs_arena_block {
 
 /* Blocks double from the first size to the last, so that a small netlist stays small and a huge one
  * makes few calls to the allocator. */
-enum { FIRST_BLOCK = 4096, LAST_BLOCK = 1 << 24 };
+enum { FIRST_BLOCK = 1024, LAST_BLOCK = 1 << 24 };
 
 /* A netlist of a million elements spends a quarter of its time on touching pages of 4 kB first. Where the
  * system has pages of 2 MB it is asked for them; where not, nothing happens. */

@@ -1,15 +1,41 @@
 /* wide_vectors.h - functions compiled twice, for the machine at hand and for any.
  *
- * The clones differ in vector width only, not in any bit of their results: without contraction every
- * element is computed by the same operations in the same order. */
+ *     DALCS_TWICE(double, sum, (int n, const double *a), (n, a)) { ... }
+ *
+ * defines `static double sum(int n, const double *a)`. The two differ in vector width only, not in any
+ * bit of their results: without contraction every element is computed by the same operations in the
+ * same order.
+ *
+ * Which one it is is asked at each call, of what the C library found out when the program started: a
+ * compiler's own clones ask the processor at each start, and in a virtual machine that is as long as
+ * reading a netlist. */
 #ifndef DALCS_WIDE_VECTORS_H
 #define DALCS_WIDE_VECTORS_H
 
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) &&                             \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define DALCS_FOR_WIDE_VECTORS __attribute__((target_clones("avx2", "default")))
+#include <stdbool.h>
+
+#if defined(__x86_64__) && !defined(__AVX2__) && defined(__has_include)
+#if __has_include(<sys/platform/x86.h>)
+#include <sys/platform/x86.h>
+#endif
+#endif
+
+#ifdef CPU_FEATURE_ACTIVE
+static inline bool dalcs_has_wide_vectors(void) {
+    return CPU_FEATURE_ACTIVE(AVX2);
+}
+
+#define DALCS_TWICE(type, name, parameters, arguments)                                             \
+    static inline __attribute__((always_inline)) type name##_body parameters;                      \
+    __attribute__((target("avx2"))) static type name##_wide parameters {                           \
+        return name##_body arguments;                                                              \
+    }                                                                                              \
+    static type name parameters {                                                                  \
+        return dalcs_has_wide_vectors() ? name##_wide arguments : name##_body arguments;           \
+    }                                                                                              \
+    static inline __attribute__((always_inline)) type name##_body parameters
 #else
-#define DALCS_FOR_WIDE_VECTORS
+#define DALCS_TWICE(type, name, parameters, arguments) static type name parameters
 #endif
 
 #endif

@@ -23,8 +23,10 @@ void dalcs_measure_row(struct dalcs_measure *measure, double time, const double 
         measure->first_time = time;
     }
     measure->last_time = time;
+    const bool is_complex = measure->plot->is_complex;
     for (size_t i = 0; i < measure->plot->n_signals; i++) {
-        double v = value[i], before = signal[i].final;
+        double v = is_complex ? hypot(value[2 * i], value[2 * i + 1]) : value[i];
+        double before = signal[i].final;
         signal[i].final = v;
         if (first) {
             signal[i].min = signal[i].max = v;

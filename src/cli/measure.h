@@ -1,4 +1,5 @@
-/* measure.h - minimum, maximum, average and rms of every signal, over the streamed rows. */
+/* measure.h - minimum, maximum, average and rms of every signal, over the streamed rows; of complex signals,
+ * of their magnitude. */
 #ifndef DALCS_MEASURE_H
 #define DALCS_MEASURE_H
 

@@ -4,7 +4,6 @@
 #include "memory.h"
 #include "report.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -44,8 +43,12 @@ enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
         return status;
     }
     if (arguments->plot && main == DALCS_TRANSIENT && stop > start) {
-        outputs->has_figure = true;
-        dalcs_figure_init(&outputs->figure, arguments->plot, start, stop);
+        outputs->figure = dalcs_alloc(1, sizeof *outputs->figure);
+        if (!outputs->figure) {
+            dalcs_outputs_finish(outputs);
+            return DALCS_E_NOMEM;
+        }
+        dalcs_figure_init(outputs->figure, arguments->plot, start, stop);
     }
     return DALCS_OK;
 }
@@ -59,8 +62,8 @@ enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs,
             return status;
         }
     }
-    if (outputs->has_figure && plot->analysis == DALCS_TRANSIENT && !outputs->drawn) {
-        enum dalcs_status status = dalcs_figure_begin(&outputs->figure, plot);
+    if (outputs->figure && plot->analysis == DALCS_TRANSIENT && !outputs->drawn) {
+        enum dalcs_status status = dalcs_figure_begin(outputs->figure, plot);
         outputs->drawn = plot;
         if (status != DALCS_OK) {
             return status;
@@ -72,42 +75,20 @@ enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs,
             return status;
         }
     }
-    if (plot->is_complex) {
-        free(outputs->magnitude);
-        outputs->magnitude = dalcs_alloc(plot->n_signals, sizeof(double));
-        if (!outputs->magnitude) {
-            return DALCS_E_NOMEM;
-        }
-    }
     return dalcs_measure_begin(&outputs->measure[plot->analysis], plot);
-}
-
-static void measure_row(struct dalcs_outputs *outputs, struct dalcs_measure *measure, double time,
-                        const double *value) {
-    const struct dalcs_plot *plot = measure->plot;
-    if (plot->is_complex) {
-        for (size_t i = 0; i < plot->n_signals; i++) {
-            outputs->magnitude[i] = hypot(value[2 * i], value[2 * i + 1]);
-        }
-    }
-    dalcs_measure_row(measure, time, plot->is_complex ? outputs->magnitude : value);
 }
 
 enum dalcs_status dalcs_outputs_row(struct dalcs_outputs *outputs, double time,
                                     const double *value) {
-    struct dalcs_measure *measure = &outputs->measure[outputs->analysis];
     outputs->n_rows++;
     if (outputs->has_summary) {
-        measure_row(outputs, measure, time, value);
+        dalcs_measure_row(&outputs->measure[outputs->analysis], time, value);
     }
-    if (outputs->drawn == measure->plot) {
-        dalcs_figure_row(&outputs->figure, time, value);
+    if (outputs->drawn && outputs->drawn == outputs->measure[outputs->analysis].plot) {
+        dalcs_figure_row(outputs->figure, time, value);
     }
     for (size_t i = 0; i < outputs->n_tables; i++) {
-        enum dalcs_status status = dalcs_table_row(&outputs->table[i], time, value);
-        if (status != DALCS_OK) {
-            return status;
-        }
+        DALCS_TRY(dalcs_table_row(&outputs->table[i], time, value));
     }
     return DALCS_OK;
 }
@@ -206,8 +187,8 @@ enum dalcs_status dalcs_outputs_close(struct dalcs_outputs *outputs, const struc
         enum dalcs_status status = close_table(&outputs->table[i], cli, out, complete);
         worst = status != DALCS_OK ? status : worst;
     }
-    if (outputs->has_figure) {
-        enum dalcs_status status = close_figure(&outputs->figure, cli, out, report, complete);
+    if (outputs->figure) {
+        enum dalcs_status status = close_figure(outputs->figure, cli, out, report, complete);
         worst = status != DALCS_OK ? status : worst;
     }
     if (outputs->report_path) {
@@ -222,14 +203,14 @@ void dalcs_outputs_finish(struct dalcs_outputs *outputs) {
         dalcs_table_finish(&outputs->table[i]);
     }
     free(outputs->table);
-    if (outputs->has_figure) {
-        dalcs_figure_finish(&outputs->figure);
+    if (outputs->figure) {
+        dalcs_figure_finish(outputs->figure);
     }
+    free(outputs->figure);
     dalcs_atomic_file_discard(&outputs->report);
     for (size_t i = 0; i < DALCS_N_ANALYSES; i++) {
         dalcs_measure_finish(&outputs->measure[i]);
     }
     dalcs_step_lines_finish(&outputs->steps);
-    free(outputs->magnitude);
     *outputs = (struct dalcs_outputs){0};
 }

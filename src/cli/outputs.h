@@ -11,8 +11,7 @@
 struct dalcs_outputs {
     struct dalcs_table *table; /* [n_tables] */
     size_t n_tables;
-    bool has_figure;
-    struct dalcs_figure figure;
+    struct dalcs_figure *figure;    /* heap; NULL: none */
     const struct dalcs_plot *drawn; /* in the figure: the first transient; NULL: not yet */
     const char *report_path;        /* NULL: none */
     struct dalcs_atomic_file report;
@@ -20,7 +19,6 @@ struct dalcs_outputs {
     struct dalcs_measure measure[DALCS_N_ANALYSES];
     struct dalcs_step_lines steps; /* of .step */
     enum dalcs_analysis analysis;  /* of the plot being received */
-    double *magnitude;             /* of complex signals; heap */
     size_t n_rows;
 };
 

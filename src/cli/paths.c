@@ -2,9 +2,11 @@
  * a link is what it leads to. */
 #include "paths.h"
 
+#include "memory.h"
+
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -19,37 +21,32 @@ struct place {
     const char *name; /* "" for a file that exists */
 };
 
-static struct place find_place(const char *path) {
+static void take_place(struct place *place, const struct stat *status, const char *name) {
+    *place = (struct place){true, status->st_dev, status->st_ino, name};
+}
+
+static void find_place(const char *path, struct place *place) {
     struct stat status;
-    struct place place = {.name = ""};
-    bool exists = stat(path, &status) == 0;
-    if (!exists) {
-        const char *slash = strrchr(path, '/');
-        char folder[PATH_MAX] = ".";
-        size_t length = slash ? (size_t)(slash + 1 - path) : 1;
-        if (length >= sizeof folder) {
-            return place;
-        }
-        memcpy(folder, slash ? path : ".", length);
-        folder[length] = '\0';
-        if (stat(folder, &status) != 0) {
-            return place;
-        }
-        place.name = slash ? slash + 1 : path;
+    *place = (struct place){.name = ""};
+    if (stat(path, &status) == 0) {
+        take_place(place, &status, "");
+        return;
     }
-    place.known = true;
-    place.device = status.st_dev;
-    place.inode = status.st_ino;
-    return place;
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? strndup(path, (size_t)(slash + 1 - path)) : NULL;
+    if ((folder || !slash) && stat(folder ? folder : ".", &status) == 0) {
+        take_place(place, &status, slash ? slash + 1 : path);
+    }
+    free(folder);
 }
 
-static bool is_same(const char *a, const char *b) {
-    struct place p = find_place(a), q = find_place(b);
-    return p.known && q.known && p.device == q.device && p.inode == q.inode &&
-           strcmp(p.name, q.name) == 0;
+static bool is_same(const struct place *p, const struct place *q) {
+    return p->known && q->known && p->device == q->device && p->inode == q->inode &&
+           strcmp(p->name, q->name) == 0;
 }
 
-static enum dalcs_status check_readable(const struct dalcs_cli *cli, const char *path) {
+static enum dalcs_status check_readable(const struct dalcs_cli *cli, const char *path,
+                                        struct place *place) {
     struct stat status;
     int descriptor = open(path, O_RDONLY | O_CLOEXEC);
     int error = descriptor < 0 ? errno : 0;
@@ -65,6 +62,7 @@ static enum dalcs_status check_readable(const struct dalcs_cli *cli, const char 
         dalcs_cli_error(cli, "cannot read '%s': %s", path, strerror(error));
         return DALCS_E_IO;
     }
+    take_place(place, &status, "");
     return DALCS_OK;
 }
 
@@ -76,19 +74,20 @@ static const char *result_path(const struct dalcs_arguments *arguments, size_t i
 
 /* Result i against what is read and against the results before it. */
 static enum dalcs_status check_result(const struct dalcs_cli *cli,
-                                      const struct dalcs_arguments *arguments, size_t i) {
+                                      const struct dalcs_arguments *arguments,
+                                      const struct place *input, struct place *result, size_t i) {
     const char *path = result_path(arguments, i);
-    if (is_same(path, arguments->netlist)) {
+    find_place(path, &result[i]);
+    if (is_same(&result[i], &input[0])) {
         dalcs_cli_error(cli, "'%s' is the netlist itself: give another name with -o", path);
         return DALCS_E_OPTION;
     }
-    if (arguments->at && is_same(path, arguments->at)) {
+    if (is_same(&result[i], &input[1])) {
         dalcs_cli_error(cli, "'%s' holds the times of --at: it would be overwritten", path);
         return DALCS_E_OPTION;
     }
     for (size_t j = 0; j < i; j++) {
-        const char *other = result_path(arguments, j);
-        if (other && is_same(path, other)) {
+        if (is_same(&result[i], &result[j])) {
             dalcs_cli_error(cli, "'%s' is given for two results", path);
             return DALCS_E_OPTION;
         }
@@ -98,13 +97,21 @@ static enum dalcs_status check_result(const struct dalcs_cli *cli,
 
 enum dalcs_status dalcs_paths_check(const struct dalcs_cli *cli,
                                     const struct dalcs_arguments *arguments) {
-    const char *const input[N_INPUTS] = {arguments->netlist, arguments->at};
-    enum dalcs_status status = DALCS_OK;
+    const char *const path[N_INPUTS] = {arguments->netlist, arguments->at};
+    const size_t n_results = arguments->n_outputs + N_OTHER_RESULTS;
+    struct place input[N_INPUTS] = {{.known = false}};
+    struct place *result = dalcs_alloc(n_results, sizeof *result);
+    enum dalcs_status status = result ? DALCS_OK : DALCS_E_NOMEM;
+    if (!result) {
+        dalcs_cli_error(cli, "%s", dalcs_status_text(status));
+    }
     for (size_t i = 0; status == DALCS_OK && i < N_INPUTS; i++) {
-        status = input[i] ? check_readable(cli, input[i]) : DALCS_OK;
+        status = path[i] ? check_readable(cli, path[i], &input[i]) : DALCS_OK;
     }
-    for (size_t i = 0; status == DALCS_OK && i < arguments->n_outputs + N_OTHER_RESULTS; i++) {
-        status = result_path(arguments, i) ? check_result(cli, arguments, i) : DALCS_OK;
+    for (size_t i = 0; status == DALCS_OK && i < n_results; i++) {
+        status =
+            result_path(arguments, i) ? check_result(cli, arguments, input, result, i) : DALCS_OK;
     }
+    free(result);
     return status;
 }

@@ -17,19 +17,11 @@ struct dalcs_description {
 /* Is this the text of a system file, or of its JSON form? */
 bool dalcs_description_is_text(const char *text, size_t length);
 
-/* The same of the file at `path`; false where it cannot be read. */
-bool dalcs_description_is_file(const char *path);
-
 /* Reads *description from text[0..length-1], which messages call `name`; files that it names lie
  * relative to the folder of `name`. What is wrong goes to diag with DALCS_E_NETLIST, and
  * *description is zeroed. */
 enum dalcs_status dalcs_description_read_text(struct dalcs_description *description,
                                               const char *name, const char *text, size_t length,
-                                              struct dalcs_diag *diag) DALCS_MUST_CHECK;
-
-/* The same from a file. DALCS_E_IO, with a message, when it cannot be read. */
-enum dalcs_status dalcs_description_read_file(struct dalcs_description *description,
-                                              const char *path,
                                               struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
 void dalcs_description_finish(struct dalcs_description *description);

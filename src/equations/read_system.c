@@ -10,12 +10,8 @@
  * dalcs_description_read_text at the end is the table of contents. */
 #include "reading.h"
 
-#include "text_file.h"
-
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static const char MAGIC[] = "dalcs-system 2";
 static const char JSON_MAGIC[] = "\"dalcs-system\"";
@@ -43,21 +39,6 @@ bool dalcs_description_is_text(const char *text, size_t length) {
 static bool is_json(const char *text, size_t length) {
     return dalcs_description_is_text(text, length) && memchr(text, '{', length) != NULL &&
            strspn(text, " \t\r\n\xEF\xBB\xBF") == (size_t)(strchr(text, '{') - text);
-}
-
-bool dalcs_description_is_file(const char *path) {
-    struct dalcs_diag said = {0};
-    struct stat file;
-    char *text;
-    size_t length;
-    if (stat(path, &file) != 0 || !S_ISREG(file.st_mode)) {
-        return false; /* what is read from a pipe is gone */
-    }
-    bool is_one = dalcs_text_file_read(path, 4096, &text, &length, NULL, &said) == DALCS_OK &&
-                  dalcs_description_is_text(text, length);
-    free(text);
-    dalcs_diag_finish(&said);
-    return is_one;
 }
 
 /* ---- Inputs -------------------------------------------------------------------------------- */
@@ -573,19 +554,6 @@ enum dalcs_status dalcs_description_read_text(struct dalcs_description *descript
         status = read_cards(description, name, cards, n, diag);
     }
     free(cards);
-    return status;
-}
-
-enum dalcs_status dalcs_description_read_file(struct dalcs_description *description,
-                                              const char *path, struct dalcs_diag *diag) {
-    char *text;
-    size_t length;
-    *description = (struct dalcs_description){0};
-    enum dalcs_status status = dalcs_text_file_read(path, INT_MAX, &text, &length, NULL, diag);
-    if (status == DALCS_OK) {
-        status = dalcs_description_read_text(description, path, text, length, diag);
-    }
-    free(text);
     return status;
 }
 

@@ -4,7 +4,6 @@
 #include "radau_internal.h"
 #include "wide_vectors.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -145,32 +144,56 @@ void dalcs_rows_finish(struct dalcs_rows *rows) {
 
 /* ---- The nodes' weights ------------------------------------------------------------------------ */
 
-DALCS_FOR_WIDE_VECTORS
-static void divide(const struct dalcs_collocation *c, const union dalcs_row_values *theta,
-                   int n_groups, union dalcs_row_values *weight, union dalcs_row_values *sum) {
+/* dalcs_radau_theta of each time. */
+static inline void find_thetas(const struct dalcs_radau_part *part, const dalcs_four *time,
+                               dalcs_four *theta) {
+    const dalcs_four raw = (*time - part->t) / part->h;
+    const dalcs_four end = {1.0, 1.0, 1.0, 1.0};
+    const dalcs_mask_of_four is_before = raw < end;
+    *theta = (dalcs_four)((is_before & (dalcs_mask_of_four)raw) |
+                          (~is_before & (dalcs_mask_of_four)end));
+}
+
+/* Is every sum of quotients finite? At a node it is not. */
+DALCS_TWICE(bool, divide,
+            (const struct dalcs_radau_part *part, const union dalcs_row_values *time, int n_groups,
+             union dalcs_row_values *weight),
+            (part, time, n_groups, weight)) {
+    const struct dalcs_collocation *c = part->stages.method;
+    dalcs_mask_of_four is_finite = {-1, -1, -1, -1};
     for (int g = 0; g < n_groups; g++) {
+        dalcs_four theta;
+        find_thetas(part, &time->group[g], &theta);
         dalcs_four total = {0.0};
         for (int k = 0; k <= c->s; k++) {
-            dalcs_four w = c->barycentric[k] / (theta->group[g] - c->node[k]);
+            dalcs_four w = c->barycentric[k] / (theta - c->node[k]);
             weight[k].group[g] = w;
             total += w;
         }
         for (int k = 0; k <= c->s; k++) {
             weight[k].group[g] /= total;
         }
-        sum->group[g] = total;
+        is_finite &= total - total == 0.0;
     }
+    return (is_finite[0] & is_finite[1] & is_finite[2] & is_finite[3]) != 0;
 }
 
 /* At a node the quotients mean nothing, and where they are not finite it is one. */
-static void weigh(const struct dalcs_collocation *c, const union dalcs_row_values *theta, int n,
+static void weigh(const struct dalcs_radau_part *part, const union dalcs_row_values *time, int n,
                   union dalcs_row_values *weight) {
-    union dalcs_row_values sum;
-    divide(c, theta, (n + 3) / 4, weight, &sum);
+    if (divide(part, time, (n + 3) / 4, weight)) {
+        return;
+    }
+    const struct dalcs_collocation *c = part->stages.method;
     for (int i = 0; i < n; i++) {
-        if (!(fabs(sum.at[i]) <= DBL_MAX)) {
+        const double theta = dalcs_radau_theta(part, time->at[i]);
+        double sum = 0.0;
+        for (int k = 0; k <= c->s; k++) {
+            sum += c->barycentric[k] / (theta - c->node[k]);
+        }
+        if (!isfinite(sum)) {
             double single[DALCS_MAX_NODES];
-            dalcs_collocation_weights(c, theta->at[i], single);
+            dalcs_collocation_weights(c, theta, single);
             for (int k = 0; k <= c->s; k++) {
                 weight[k].at[i] = single[k];
             }
@@ -181,10 +204,10 @@ static void weigh(const struct dalcs_collocation *c, const union dalcs_row_value
 /* ---- Values ------------------------------------------------------------------------------------ */
 
 /* sum += coefficient * column, whose values at the nodes are y[stride * node]. */
-DALCS_FOR_WIDE_VECTORS
-static void add_column(const struct dalcs_stage_layout *l, const union dalcs_row_values *weight,
-                       const double *y, double coefficient, int n_groups,
-                       union dalcs_row_values *sum) {
+DALCS_TWICE(void, add_column,
+            (const struct dalcs_stage_layout *l, const union dalcs_row_values *weight,
+             const double *y, double coefficient, int n_groups, union dalcs_row_values *sum),
+            (l, weight, y, coefficient, n_groups, sum)) {
     for (int g = 0; g < n_groups; g++) {
         dalcs_four column = {0.0};
         for (int k = 0; k < l->n_nodes; k++) {
@@ -255,10 +278,7 @@ static void interpolate(struct dalcs_rows *rows, const struct dalcs_radau_part *
                         enum dalcs_side side) {
     struct dalcs_rows_part *p = &rows->part[part->index];
     int n_groups = (n + 3) / 4;
-    for (int i = 0; i < 4 * n_groups; i++) {
-        rows->theta.at[i] = dalcs_radau_theta(part, rows->time.at[i]);
-    }
-    weigh(part->stages.method, &rows->theta, n, rows->weight);
+    weigh(part, &rows->time, n, rows->weight);
     ask_sources(p, part, &rows->time, n, side);
     for (int i = 0; i < p->n_signals; i++) {
         union dalcs_row_values sum;
@@ -285,8 +305,9 @@ enum dalcs_status dalcs_rows_fill(struct dalcs_rows *rows, const double *time, i
                                   enum dalcs_side side, int *n_done) {
     n = rows->one_by_one ? 1 : n;
     int n_groups = (n + 3) / 4;
-    for (int i = 0; i < 4 * n_groups; i++) {
-        rows->time.at[i] = time[i < n ? i : n - 1];
+    memcpy(rows->time.at, time, (size_t)n * sizeof(double));
+    for (int i = n; i < 4 * n_groups; i++) {
+        rows->time.at[i] = time[n - 1];
     }
     for (int i = 0; i < rows->n_outputs; i++) {
         memset(rows->value[i].group, 0, (size_t)n_groups * sizeof(dalcs_four));

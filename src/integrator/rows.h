@@ -8,10 +8,13 @@
 
 #include "radau.h"
 
+#include <stdint.h>
+
 enum { DALCS_MOST_ROWS = 32, DALCS_ROW_GROUPS = DALCS_MOST_ROWS / 4 };
 
 /* Something at all times, which are taken by fours. */
 typedef double dalcs_four __attribute__((vector_size(32), aligned(8)));
+typedef int64_t dalcs_mask_of_four __attribute__((vector_size(32), aligned(8)));
 
 union dalcs_row_values {
     double at[DALCS_MOST_ROWS];
@@ -46,7 +49,7 @@ struct dalcs_rows {
     int n_asked, *asked;           /* parts that are read or have to be solved */
     bool one_by_one;               /* one of them is */
     union dalcs_row_values time;   /* the last one again where its group is not full */
-    union dalcs_row_values theta, weight[DALCS_MAX_NODES]; /* work: of one part */
+    union dalcs_row_values weight[DALCS_MAX_NODES]; /* work: of one part */
 };
 
 /* output[n_outputs]: which of the network's. NULL: all of them, and parts without memory are solved though

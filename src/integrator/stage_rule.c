@@ -15,8 +15,9 @@ static inline double weigh(const struct dalcs_stage_rule *rule, const dalcs_poin
     return sum[0] + sum[1];
 }
 
-DALCS_FOR_WIDE_VECTORS
-static void set_cut(struct dalcs_stage_rule *rule, const struct dalcs_collocation *m, double end) {
+DALCS_TWICE(void, set_cut,
+            (struct dalcs_stage_rule * rule, const struct dalcs_collocation *m, double end),
+            (rule, m, end)) {
     dalcs_points point[DALCS_POINT_GROUPS];
     dalcs_points before[DALCS_POINT_GROUPS]; /* products of the distances from the stages before */
     dalcs_points behind[DALCS_POINT_GROUPS];
@@ -74,16 +75,15 @@ static inline void spread(const struct dalcs_stage_rule *rule, const double *a,
     memcpy(value, sum, sizeof(sum));
 }
 
-DALCS_FOR_WIDE_VECTORS
-static double integral_of_cut(const struct dalcs_stage_rule *rule, const double *a) {
+DALCS_TWICE(double, integral_of_cut, (const struct dalcs_stage_rule *rule, const double *a),
+            (rule, a)) {
     dalcs_points at_points[DALCS_POINT_GROUPS];
     spread(rule, a, at_points);
     return weigh(rule, at_points);
 }
 
-DALCS_FOR_WIDE_VECTORS
-static double product_of_cut(const struct dalcs_stage_rule *rule, const double *a,
-                             const double *b) {
+DALCS_TWICE(double, product_of_cut,
+            (const struct dalcs_stage_rule *rule, const double *a, const double *b), (rule, a, b)) {
     dalcs_points at_points[DALCS_POINT_GROUPS];
     dalcs_points other[DALCS_POINT_GROUPS];
     spread(rule, a, at_points);
@@ -124,9 +124,10 @@ double dalcs_stage_rule_product(const struct dalcs_stage_rule *rule, const doubl
 /* With x - x~ = miss(theta) defect, and by parts,
  *     integral of miss defect' storage (x~' + miss' defect)
  *         = [miss along] - integral of miss' along + 1/2 [miss^2] square. */
-DALCS_FOR_WIDE_VECTORS
-static double loss_of_cut(const struct dalcs_stage_rule *rule, double square, const double *along,
-                          double along_start) {
+DALCS_TWICE(double, loss_of_cut,
+            (const struct dalcs_stage_rule *rule, double square, const double *along,
+             double along_start),
+            (rule, square, along, along_start)) {
     dalcs_points at_points[DALCS_POINT_GROUPS];
     spread(rule, along, at_points);
     double sum = rule->miss_at_end * at_points[DALCS_POINT_GROUPS - 1][3] - along_start;

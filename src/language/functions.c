@@ -104,41 +104,79 @@ static double clip(double x) {
     return x < 0 ? 0 : x > 1 ? 1 : x;
 }
 
+/* A function of the C library that a table names is searched for whenever the program starts; one that is
+ * called, when it is called first. */
+#define CALL(f)                                                                                    \
+    static double call_##f(double x) {                                                             \
+        return f(x);                                                                               \
+    }
+#define CALL_OF_TWO(f)                                                                             \
+    static double call_##f(double x, double y) {                                                   \
+        return f(x, y);                                                                            \
+    }
+CALL(sin)
+CALL(cos)
+CALL(tan)
+CALL(asin)
+CALL(acos)
+CALL(atan)
+CALL(sinh)
+CALL(cosh)
+CALL(tanh)
+CALL(asinh)
+CALL(acosh)
+CALL(atanh)
+CALL(sqrt)
+CALL(cbrt)
+CALL(exp)
+CALL(log)
+CALL(log10)
+CALL(fabs)
+CALL(trunc)
+CALL(floor)
+CALL(ceil)
+CALL(rint)
+CALL(round)
+CALL_OF_TWO(atan2)
+CALL_OF_TWO(hypot)
+CALL_OF_TWO(fmod)
+CALL_OF_TWO(pow)
+
 static const struct dalcs_function FUNCTIONS[] = {
-    {"sin", 1, 1, sin, NULL, NULL},
-    {"cos", 1, 1, cos, NULL, NULL},
-    {"tan", 1, 1, tan, NULL, NULL},
-    {"asin", 1, 1, asin, NULL, NULL},
-    {"acos", 1, 1, acos, NULL, NULL},
-    {"atan", 1, 1, atan, NULL, NULL},
-    {"arcsin", 1, 1, asin, NULL, NULL},
-    {"arccos", 1, 1, acos, NULL, NULL},
-    {"arctan", 1, 1, atan, NULL, NULL},
-    {"atan2", 2, 2, NULL, atan2, NULL},
-    {"sinh", 1, 1, sinh, NULL, NULL},
-    {"cosh", 1, 1, cosh, NULL, NULL},
-    {"tanh", 1, 1, tanh, NULL, NULL},
-    {"asinh", 1, 1, asinh, NULL, NULL},
-    {"acosh", 1, 1, acosh, NULL, NULL},
-    {"atanh", 1, 1, atanh, NULL, NULL},
-    {"sqrt", 1, 1, sqrt, NULL, NULL},
+    {"sin", 1, 1, call_sin, NULL, NULL},
+    {"cos", 1, 1, call_cos, NULL, NULL},
+    {"tan", 1, 1, call_tan, NULL, NULL},
+    {"asin", 1, 1, call_asin, NULL, NULL},
+    {"acos", 1, 1, call_acos, NULL, NULL},
+    {"atan", 1, 1, call_atan, NULL, NULL},
+    {"arcsin", 1, 1, call_asin, NULL, NULL},
+    {"arccos", 1, 1, call_acos, NULL, NULL},
+    {"arctan", 1, 1, call_atan, NULL, NULL},
+    {"atan2", 2, 2, NULL, call_atan2, NULL},
+    {"sinh", 1, 1, call_sinh, NULL, NULL},
+    {"cosh", 1, 1, call_cosh, NULL, NULL},
+    {"tanh", 1, 1, call_tanh, NULL, NULL},
+    {"asinh", 1, 1, call_asinh, NULL, NULL},
+    {"acosh", 1, 1, call_acosh, NULL, NULL},
+    {"atanh", 1, 1, call_atanh, NULL, NULL},
+    {"sqrt", 1, 1, call_sqrt, NULL, NULL},
     {"sqr", 1, 1, square, NULL, NULL},
     {"square", 1, 1, square, NULL, NULL},
-    {"cbrt", 1, 1, cbrt, NULL, NULL},
-    {"hypot", 2, 2, NULL, hypot, NULL},
-    {"exp", 1, 1, exp, NULL, NULL},
-    {"ln", 1, 1, log, NULL, NULL},
-    {"log", 1, 1, log, NULL, NULL},
-    {"log10", 1, 1, log10, NULL, NULL},
-    {"abs", 1, 1, fabs, NULL, NULL},
+    {"cbrt", 1, 1, call_cbrt, NULL, NULL},
+    {"hypot", 2, 2, NULL, call_hypot, NULL},
+    {"exp", 1, 1, call_exp, NULL, NULL},
+    {"ln", 1, 1, call_log, NULL, NULL},
+    {"log", 1, 1, call_log, NULL, NULL},
+    {"log10", 1, 1, call_log10, NULL, NULL},
+    {"abs", 1, 1, call_fabs, NULL, NULL},
     {"sgn", 1, 1, sign, NULL, NULL},
-    {"int", 1, 1, trunc, NULL, NULL},
-    {"floor", 1, 1, floor, NULL, NULL},
-    {"ceil", 1, 1, ceil, NULL, NULL},
-    {"nint", 1, 1, rint, NULL, NULL},
-    {"round", 1, 1, round, NULL, NULL},
-    {"fmod", 2, 2, NULL, fmod, NULL},
-    {"pow", 2, 2, NULL, pow, NULL},
+    {"int", 1, 1, call_trunc, NULL, NULL},
+    {"floor", 1, 1, call_floor, NULL, NULL},
+    {"ceil", 1, 1, call_ceil, NULL, NULL},
+    {"nint", 1, 1, call_rint, NULL, NULL},
+    {"round", 1, 1, call_round, NULL, NULL},
+    {"fmod", 2, 2, NULL, call_fmod, NULL},
+    {"pow", 2, 2, NULL, call_pow, NULL},
     {"pwr", 2, 2, NULL, magnitude_power, NULL},
     {"pwrs", 2, 2, NULL, signed_power, NULL},
     {"min", 1, 1000, NULL, NULL, least},

@@ -18,9 +18,10 @@ double *dalcs_dense_map_alloc(int rows, int columns) {
 
 typedef double vector4 __attribute__((vector_size(32), aligned(32)));
 
-DALCS_FOR_WIDE_VECTORS
-static void multiply(int rows, int columns, const double *restrict map, const double *restrict x,
-                     double *restrict y) {
+DALCS_TWICE(void, multiply,
+            (int rows, int columns, const double *restrict map, const double *restrict x,
+             double *restrict y),
+            (rows, columns, map, x, y)) {
     int i = 0;
     for (; i + 16 <= rows; i += 16) {
         vector4 a = {0.0};

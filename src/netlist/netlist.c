@@ -135,6 +135,15 @@ enum dalcs_status dalcs_netlist_read_text(struct dalcs_netlist *netlist, const c
     return read_first(netlist, name, NULL, text, length, diag);
 }
 
+enum dalcs_status dalcs_netlist_read_file_text(struct dalcs_netlist *netlist, const char *path,
+                                               const char *text, size_t length,
+                                               struct dalcs_diag *diag) {
+    char *real = realpath(path, NULL); /* NULL: a pipe, say, which cannot include itself */
+    enum dalcs_status status = read_first(netlist, path, real, text, length, diag);
+    free(real);
+    return status;
+}
+
 enum dalcs_status dalcs_netlist_read_file(struct dalcs_netlist *netlist, const char *path,
                                           struct dalcs_diag *diag) {
     char *text;
@@ -142,9 +151,7 @@ enum dalcs_status dalcs_netlist_read_file(struct dalcs_netlist *netlist, const c
     /* Beyond the limit, dalcs_source_read says that it is too large. */
     enum dalcs_status status = dalcs_text_file_read(path, INT_MAX, &text, &length, NULL, diag);
     if (status == DALCS_OK) {
-        char *real = realpath(path, NULL); /* NULL: a pipe, say, which cannot include itself */
-        status = read_first(netlist, path, real, text, length, diag);
-        free(real);
+        status = dalcs_netlist_read_file_text(netlist, path, text, length, diag);
     }
     free(text);
     return status;

@@ -95,6 +95,11 @@ enum dalcs_status dalcs_netlist_read_text(struct dalcs_netlist *netlist, const c
                                           const char *text, size_t length,
                                           struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
+/* The same where the text is that of the file at `path`, which must not include itself. */
+enum dalcs_status dalcs_netlist_read_file_text(struct dalcs_netlist *netlist, const char *path,
+                                               const char *text, size_t length,
+                                               struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
 /* The same from a file. DALCS_E_IO, with a message, when it cannot be read. */
 enum dalcs_status dalcs_netlist_read_file(struct dalcs_netlist *netlist, const char *path,
                                           struct dalcs_diag *diag) DALCS_MUST_CHECK;

@@ -17,20 +17,20 @@
 
 #define POINTS_FIELD "%-20zu"
 
-enum { BLOCK_DOUBLES = 1 << 10 }; /* and of a large circuit one point */
+enum { BLOCK_DOUBLES = 1 << 9 }; /* and of a large circuit one point */
 
 struct raw {
     size_t n_columns, n_points;
-    size_t n_signals, n_parameters;
     bool has_scale, is_complex, is_ascii;
     off_t plot_at, points_at, rows_at; /* file positions: of the plot, of its number of points */
-    size_t width;  /* doubles of a point: n_columns, of pairs where it is complex; at least 1 */
-    double *block; /* [most_held][width] points that the stream does not have yet */
-    size_t n_held, most_held;
+    size_t width; /* doubles of a point: n_columns, of pairs where it is complex; at least 1 */
+    size_t n_before, n_values; /* of them, before the signals, and theirs */
+    /* Points that the stream does not have yet, up to `next`; what steps leave as it is stands in all of
+     * them, up to `end`. */
+    double *block, *next, *end;
     bool is_stepped;
-    size_t n_of_step; /* points */
-    double *constant; /* [n_parameters] of this step */
-    struct dalcs_decimal decimal;
+    size_t n_of_step;              /* rows, where it is stepped */
+    struct dalcs_decimal *decimal; /* of text; heap */
 };
 
 /* SOURCE_DATE_EPOCH, where set, makes two runs give the same bytes. */
@@ -107,6 +107,22 @@ static void write_header(struct raw *raw, FILE *stream, const struct dalcs_plot 
     raw->rows_at = ftello(stream);
 }
 
+/* Empty, with the values of the step. */
+static bool make_block(struct raw *raw, const struct dalcs_plot *plot) {
+    const size_t stride = raw->is_complex ? 2 : 1;
+    const size_t n_points = 1 + BLOCK_DOUBLES / raw->width;
+    free(raw->block);
+    raw->block = dalcs_alloc(n_points * raw->width, sizeof(double));
+    raw->next = raw->block;
+    raw->end = raw->block ? raw->block + n_points * raw->width : NULL;
+    for (double *point = raw->block; point < raw->end; point += raw->width) {
+        for (size_t i = 0; i < plot->n_parameters; i++) {
+            point[((raw->has_scale ? 1 : 0) + i) * stride] = plot->parameter_value[i];
+        }
+    }
+    return raw->block != NULL;
+}
+
 /* The steps of .step follow one another in one plot, whose scale starts again with each; the values of
  * the step are columns of their own. */
 static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plot *plot) {
@@ -116,22 +132,14 @@ static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plo
     const bool goes_on = plot->step > 0 && n_columns == raw->n_columns;
     raw->has_scale = has_scale;
     raw->is_complex = plot->is_complex;
-    raw->n_signals = plot->n_signals;
-    raw->n_parameters = plot->n_parameters;
     raw->n_columns = n_columns;
     raw->is_stepped = plot->n_steps > 1 && has_scale;
     raw->n_of_step = 0;
-    raw->width = (plot->is_complex ? 2 : 1) * (n_columns > 0 ? n_columns : 1);
-    raw->most_held = 1 + BLOCK_DOUBLES / raw->width;
-    free(raw->block);
-    free(raw->constant);
-    raw->block = dalcs_alloc(raw->most_held * raw->width, sizeof(double));
-    raw->constant = dalcs_alloc(plot->n_parameters, sizeof(double));
-    if (!raw->block || !raw->constant) {
+    raw->n_values = (plot->is_complex ? 2 : 1) * plot->n_signals;
+    raw->n_before = (plot->is_complex ? 2 : 1) * n_columns - raw->n_values;
+    raw->width = n_columns > 0 ? raw->n_before + raw->n_values : 1;
+    if (!make_block(raw, plot)) {
         return DALCS_E_NOMEM;
-    }
-    for (size_t i = 0; i < plot->n_parameters; i++) {
-        raw->constant[i] = plot->parameter_value[i];
     }
     if (!goes_on) {
         raw->n_points = 0;
@@ -143,13 +151,19 @@ static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plo
 static enum dalcs_status begin_ascii(void *state, FILE *stream, const struct dalcs_plot *plot) {
     struct raw *raw = state;
     raw->is_ascii = true;
-    dalcs_decimal_init(&raw->decimal);
+    if (raw->decimal == NULL) {
+        raw->decimal = dalcs_alloc(1, sizeof *raw->decimal);
+        if (raw->decimal == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        dalcs_decimal_init(raw->decimal);
+    }
     return begin(state, stream, plot);
 }
 
 static void write_number(struct raw *raw, FILE *stream, double number) {
     char text[DALCS_DECIMAL_SIZE];
-    size_t n = dalcs_decimal_write(&raw->decimal, number, text);
+    size_t n = dalcs_decimal_write(raw->decimal, number, text);
     fwrite(text, 1, n, stream);
 }
 
@@ -171,45 +185,32 @@ static void write_text(struct raw *raw, FILE *stream, const double *point, size_
 
 /* What is held goes into the stream. */
 static void release(struct raw *raw, FILE *stream) {
+    const size_t n_held = (size_t)(raw->next - raw->block) / raw->width;
     if (!raw->is_ascii) {
-        fwrite(raw->block, raw->width * sizeof(double), raw->n_columns > 0 ? raw->n_held : 0,
-               stream);
+        fwrite(raw->block, raw->width * sizeof(double), raw->n_columns > 0 ? n_held : 0, stream);
     }
-    for (size_t k = 0; k < raw->n_held && raw->is_ascii; k++) {
+    for (size_t k = 0; k < n_held && raw->is_ascii; k++) {
         write_text(raw, stream, raw->block + k * raw->width, raw->n_points + k);
     }
-    raw->n_points += raw->n_held;
-    raw->n_held = 0;
-}
-
-/* A row as it stands in the file. */
-static void fill_point(const struct raw *raw, double *point, double time, const double *value) {
-    const size_t stride = raw->is_complex ? 2 : 1;
-    double *next = point;
-    if (raw->has_scale) {
-        *next = time;
-        next += stride;
-    }
-    for (size_t i = 0; i < raw->n_parameters; i++) {
-        *next = raw->constant[i];
-        next += stride;
-    }
-    memcpy(next, value, stride * raw->n_signals * sizeof(double));
+    raw->n_points += n_held;
+    raw->next = raw->block;
 }
 
 /* Readers count the steps by how often the scale is what it is at first. So of two rows there, before
  * and behind an edge at tstart, only the second one is written. The first is still held. */
 static void row(void *state, FILE *stream, double time, const double *value) {
     struct raw *raw = state;
-    const bool is_second = raw->is_stepped && raw->n_of_step == 1;
-    if (is_second && raw->block[(raw->n_held - 1) * raw->width] == time) {
-        raw->n_held--;
-    } else if (raw->n_held == raw->most_held) {
+    if (raw->is_stepped && raw->n_of_step++ == 1 && raw->next[-(ptrdiff_t)raw->width] == time) {
+        raw->next -= raw->width;
+    } else if (raw->next == raw->end) {
         release(raw, stream);
     }
-    fill_point(raw, raw->block + raw->n_held * raw->width, time, value);
-    raw->n_held++;
-    raw->n_of_step++;
+    double *point = raw->next;
+    raw->next += raw->width;
+    if (raw->has_scale) {
+        point[0] = time;
+    }
+    memcpy(point + raw->n_before, value, raw->n_values * sizeof(double));
 }
 
 static bool write_points(const struct raw *raw, int descriptor, size_t n_points) {
@@ -271,7 +272,7 @@ static off_t recover_ascii(const void *state, int descriptor, off_t size) {
 static void finish(void *state) {
     struct raw *raw = state;
     free(raw->block);
-    free(raw->constant);
+    free(raw->decimal);
 }
 
 const struct dalcs_table_format dalcs_raw_format = {

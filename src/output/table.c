@@ -47,14 +47,15 @@ enum dalcs_status dalcs_table_init(struct dalcs_table *table, const char *path,
     return dalcs_table_init_as(table, path, dalcs_table_find_format(path), main);
 }
 
-static enum dalcs_status check_stream(struct dalcs_table *table) {
-    if (!ferror(table->file.stream)) {
-        return DALCS_OK;
-    }
+enum dalcs_status dalcs_table_note_error(struct dalcs_table *table) {
     if (table->file.error == 0) {
         table->file.error = errno != 0 ? errno : EIO;
     }
     return DALCS_E_IO;
+}
+
+static enum dalcs_status check_stream(struct dalcs_table *table) {
+    return ferror(table->file.stream) ? dalcs_table_note_error(table) : DALCS_OK;
 }
 
 /* Has this file no room for the plot? */
@@ -104,15 +105,6 @@ enum dalcs_status dalcs_table_begin(struct dalcs_table *table, const struct dalc
     enum dalcs_status status = table->format->begin(table->state, table->file.stream, plot);
     table->in_plot = status == DALCS_OK;
     return status == DALCS_OK ? check_stream(table) : status;
-}
-
-enum dalcs_status dalcs_table_row(struct dalcs_table *table, double time, const double *value) {
-    if (table->skipping) {
-        return DALCS_OK;
-    }
-    table->format->row(table->state, table->file.stream, time, value);
-    table->n_rows++;
-    return check_stream(table);
 }
 
 enum dalcs_status dalcs_table_end(struct dalcs_table *table) {

@@ -56,8 +56,21 @@ enum dalcs_status dalcs_table_init_as(struct dalcs_table *table, const char *pat
 
 /* The callbacks of struct dalcs_sink. After DALCS_E_IO, table->file.error is the errno. */
 enum dalcs_status dalcs_table_begin(struct dalcs_table *table, const struct dalcs_plot *plot);
-enum dalcs_status dalcs_table_row(struct dalcs_table *table, double time, const double *value);
 enum dalcs_status dalcs_table_end(struct dalcs_table *table);
+
+/* What a stream that failed means; the first errno stays. */
+enum dalcs_status dalcs_table_note_error(struct dalcs_table *table);
+
+/* Here, for it is called for each row. No other thread has the stream. */
+static inline enum dalcs_status dalcs_table_row(struct dalcs_table *table, double time,
+                                                const double *value) {
+    if (table->skipping) {
+        return DALCS_OK;
+    }
+    table->format->row(table->state, table->file.stream, time, value);
+    table->n_rows++;
+    return ferror_unlocked(table->file.stream) ? dalcs_table_note_error(table) : DALCS_OK;
+}
 
 /* All rows are with the system. */
 enum dalcs_status dalcs_table_flush(struct dalcs_table *table) DALCS_MUST_CHECK;

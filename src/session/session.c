@@ -5,7 +5,9 @@
 #include "netlist.h"
 #include "number.h"
 #include "source_conflicts.h"
+#include "text_file.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,11 +67,10 @@ static bool is_built_again(const struct dalcs_circuit *circuit,
     return again;
 }
 
-static enum dalcs_status read_system(struct dalcs_session *s, const char *path, const char *text,
+static enum dalcs_status read_system(struct dalcs_session *s, const char *name, const char *text,
                                      size_t length) {
     struct dalcs_description d;
-    DALCS_TRY(text == NULL ? dalcs_description_read_file(&d, path, &s->diag)
-                           : dalcs_description_read_text(&d, path, text, length, &s->diag));
+    DALCS_TRY(dalcs_description_read_text(&d, name, text, length, &s->diag));
     s->circuit = d.circuit;
     s->network = d.network;
     s->circuit.n_shown = d.network.n_outputs;
@@ -78,31 +79,26 @@ static enum dalcs_status read_system(struct dalcs_session *s, const char *path, 
     return DALCS_OK;
 }
 
-static enum dalcs_status read_netlist(struct dalcs_session *s, const char *path, const char *text,
-                                      size_t length) {
+static enum dalcs_status take_name(struct dalcs_session *s, const char *name) {
     if (s->name != NULL) {
         return DALCS_E_OPTION; /* a session reads one netlist */
     }
-    s->name = dalcs_arena_copy(&s->arena, path, strlen(path));
-    if (s->name == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    if (text == NULL ? dalcs_description_is_file(path) : dalcs_description_is_text(text, length)) {
-        return read_system(s, path, text, length);
-    }
-    struct dalcs_netlist netlist = {.dialect = s->dialect};
-    enum dalcs_status status =
-        text == NULL ? dalcs_netlist_read_file(&netlist, path, &s->diag)
-                     : dalcs_netlist_read_text(&netlist, path, text, length, &s->diag);
+    s->name = dalcs_arena_copy(&s->arena, name, strlen(name));
+    return s->name != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* Of a netlist that was read with this status; it is kept or finished. */
+static enum dalcs_status build(struct dalcs_session *s, struct dalcs_netlist *netlist,
+                               enum dalcs_status status) {
     if (status == DALCS_OK) {
-        status = dalcs_circuit_build(&s->circuit, &netlist, &s->diag);
+        status = dalcs_circuit_build(&s->circuit, netlist, &s->diag);
         s->has_circuit = status == DALCS_OK;
     }
-    if (status == DALCS_OK && is_built_again(&s->circuit, &netlist)) {
-        s->netlist = netlist;
+    if (status == DALCS_OK && is_built_again(&s->circuit, netlist)) {
+        s->netlist = *netlist;
         s->has_netlist = true;
     } else {
-        dalcs_netlist_finish(&netlist);
+        dalcs_netlist_finish(netlist);
     }
     if (status == DALCS_OK) {
         status = dalcs_source_conflicts(&s->circuit, &s->diag);
@@ -130,12 +126,28 @@ enum dalcs_status dalcs_session_set_dialect(struct dalcs_session *session, const
 }
 
 enum dalcs_status dalcs_session_read_file(struct dalcs_session *session, const char *path) {
-    return read_netlist(session, path, NULL, 0);
+    char *text;
+    size_t length;
+    DALCS_TRY(take_name(session, path));
+    DALCS_TRY(dalcs_text_file_read(path, INT_MAX, &text, &length, NULL, &session->diag));
+    struct dalcs_netlist netlist = {.dialect = session->dialect};
+    const bool is_system = dalcs_description_is_text(text, length);
+    const enum dalcs_status status =
+        is_system ? read_system(session, path, text, length)
+                  : dalcs_netlist_read_file_text(&netlist, path, text, length, &session->diag);
+    free(text);
+    return is_system ? status : build(session, &netlist, status);
 }
 
 enum dalcs_status dalcs_session_read_text(struct dalcs_session *session, const char *name,
                                           const char *text, size_t length) {
-    return read_netlist(session, name, text, length);
+    DALCS_TRY(take_name(session, name));
+    if (dalcs_description_is_text(text, length)) {
+        return read_system(session, name, text, length);
+    }
+    struct dalcs_netlist netlist = {.dialect = session->dialect};
+    return build(session, &netlist,
+                 dalcs_netlist_read_text(&netlist, name, text, length, &session->diag));
 }
 
 size_t dalcs_session_n_messages(const struct dalcs_session *session) {

@@ -233,10 +233,27 @@ double dalcs_recorder_due(const struct dalcs_recorder *r) {
     return due_before_stop(&r->schedule);
 }
 
+/* Those of a grid before both `until` and the stop time. */
+static int list_grid(const struct dalcs_schedule *s, double until, double near, double *due,
+                     int most) {
+    const double start = s->start;
+    const double step = s->step;
+    const double stop = s->stop;
+    const long long next = (long long)s->next;
+    for (int n = 0; n < most; n++) {
+        due[n] = start + (double)(next + n) * step;
+        if (!(due[n] + near < until && due[n] <= stop)) {
+            return n;
+        }
+    }
+    return most;
+}
+
 int dalcs_recorder_list_due(const struct dalcs_recorder *r, double until, double near, double *due,
                             int most) {
     struct dalcs_schedule s = r->schedule;
-    int n = 0;
+    int n = s.kind == DALCS_ON_GRID ? list_grid(&s, until, near, due, most) : 0;
+    s.next += (size_t)n;
     for (; n < most; n++, s.next++) {
         due[n] = due_before_stop(&s);
         if (!(due[n] + near < until)) {
