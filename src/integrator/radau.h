@@ -69,6 +69,9 @@ struct dalcs_radau_part {
     double unit_scale[2]; /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
+    double *bound;   /* [n_pairs + n_watched] in whole quads: none is below it in the present step */
+    int n_doubtful;
+    int *doubtful; /* [n_pairs + n_watched] those whose bound is below 0 */
     int n_crossed;
     int *crossed; /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
     double *held_charge, *held_flux; /* [n_pairs] F, H: storage next to a pair; guards.c */
