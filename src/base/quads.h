@@ -44,6 +44,19 @@ static inline void dalcs_quad_unsign(dalcs_quad *q) {
     *q = (dalcs_quad)((dalcs_quad_bits)*q & all_but_sign);
 }
 
+/* The first n as they are, 0 beyond. */
+static inline void dalcs_quad_keep(dalcs_quad *q, int n) {
+    const dalcs_quad_bits index = {0, 1, 2, 3};
+    *q = (dalcs_quad)((dalcs_quad_bits)*q & (index < (int64_t)n));
+}
+
+/* The bits that mask[] has. */
+static inline void dalcs_quad_mask(dalcs_quad *q, const uint64_t *mask) {
+    dalcs_quad_bits bits;
+    memcpy(&bits, mask, sizeof(bits));
+    *q = (dalcs_quad)((dalcs_quad_bits)*q & bits);
+}
+
 static inline double dalcs_quad_largest(const dalcs_quad *q) {
     double a = (*q)[0] > (*q)[1] ? (*q)[0] : (*q)[1];
     double b = (*q)[2] > (*q)[3] ? (*q)[2] : (*q)[3];

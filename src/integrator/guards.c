@@ -162,8 +162,9 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     part->cluster_charge = dalcs_alloc(n_equations, sizeof(double));
     part->bound = dalcs_alloc((size_t)dalcs_quads_of(n_guards(part)) + DALCS_QUAD, sizeof(double));
     part->doubtful = dalcs_alloc((size_t)n_guards(part), sizeof(int));
-    if (part->bound == NULL || part->doubtful == NULL || part->held_charge == NULL || part->held_flux == NULL || part->pair_row == NULL ||
-        part->cluster == NULL || part->cluster_charge == NULL) {
+    if (part->bound == NULL || part->doubtful == NULL || part->held_charge == NULL ||
+        part->held_flux == NULL || part->pair_row == NULL || part->cluster == NULL ||
+        part->cluster_charge == NULL) {
         return DALCS_E_NOMEM;
     }
     find_charges(part);

@@ -63,13 +63,14 @@ struct dalcs_radau_part {
     double end_before;
     double *out_tried; /* a step put aside while the state is projected */
     double rounding;   /* of out, over that of a dense map */
-    double *scale;     /* [n_columns] largest magnitudes so far */
+    double *scale;     /* [n_columns] largest magnitudes so far; this and the next in whole quads */
     double *magnitude; /* [n_columns] in the present step up to magnitude_end, in steps */
     double magnitude_end;
-    double unit_scale[2]; /* V, A: the largest of each */
+    struct dalcs_column_kinds *kinds; /* see step_error.c */
+    double unit_scale[2];             /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
-    double *bound;   /* [n_pairs + n_watched] in whole quads: none is below it in the present step */
+    double *bound; /* [n_pairs + n_watched] in whole quads: none is below it in the present step */
     int n_doubtful;
     int *doubtful; /* [n_pairs + n_watched] those whose bound is below 0 */
     int n_crossed;
