@@ -180,10 +180,9 @@ static void find_factors(const struct dalcs_stage_workshop *b, const double *sha
             im += cimagl(m->exact_from_pair[p][q]) * share[q + 1];
         }
         for (int i = 0; i < m->s; i++) {
-            long double to_re = 2.0L * creall(m->exact_to_pair[i][p]);
-            long double to_im = 2.0L * cimagl(m->exact_to_pair[i][p]);
-            factor[i][1 + 2 * p] = to_re * re - to_im * im;
-            factor[i][2 + 2 * p] = -(to_re * im + to_im * re);
+            const long double *of_pair = b->constant_factor[i] + 1 + 2 * p;
+            factor[i][1 + 2 * p] = of_pair[0] * re + of_pair[1] * im;
+            factor[i][2 + 2 * p] = of_pair[1] * re - of_pair[0] * im;
         }
     }
 }
@@ -236,55 +235,43 @@ static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_colu
     }
 }
 
-/* What the filter makes of a state that is off by `missed`. */
-static void add_defect(const struct dalcs_stage_workshop *b, int x, long double missed) {
-    const long double *real = b->real + x * b->n;
-    for (int r = 0; r < b->n && missed != 0.0L; r++) {
-        b->defect[r] += real[r] * missed;
-    }
-}
-
-/* The start into b->lanes, and the defect there after the filter into b->defect. */
+/* The start and what sources do between the nodes into b->lanes, and the defect at the start after the
+ * filter into b->defect. */
 static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_column,
                        const double *share) {
     const struct dalcs_collocation *m = b->stages->method;
     int n = b->n;
-    bool is_state = column < b->n_x;
+    int n_x = b->n_x;
+    bool is_state = column < n_x;
     const long double *real = b->real + rhs_column * n;
     long double source_drift = share[0];
     for (int i = 1; i <= m->s; i++) {
         source_drift -= m->exact_back[i - 1] * share[i];
     }
-    for (int r = 0; r < n; r++) {
-        b->defect[r] = is_state ? 0.0L : real[r] * source_drift;
-    }
-    for (int x = 0; x < b->n_x; x++) {
-        long double given = x == column ? 1.0L : 0.0L;
-        add_defect(b, x, given - b->start[x]);
-        b->start[x] = given;
+    for (int x = 0; x < n_x; x++) {
+        b->missed[x] = (x == column ? 1.0L : 0.0L) - b->start[x];
     }
     for (int r = 0; r < n; r++) {
-        b->defect[r] *= b->column_scale[r];
-        b->start[r] += r < b->n_x ? 0.0L : b->defect[r];
-    }
-    /* What was added goes with states that are off by the defect: take that back as well. */
-    for (int x = 0; x < b->n_x; x++) {
-        const long double *of_state = b->real + x * n;
-        for (int r = b->n_x; r < n; r++) {
-            b->start[r] -= of_state[r] * b->column_scale[r] * b->defect[x];
+        double *lane = b->lanes + r * DALCS_LANES;
+        long double scale = b->column_scale[r];
+        long double defect = is_state ? 0.0L : real[r] * source_drift;
+        for (int x = 0; x < n_x; x++) {
+            defect += b->real[x * n + r] * b->missed[x];
         }
-    }
-    for (int r = 0; r < n; r++) {
-        b->lanes[r * DALCS_LANES] = (double)b->start[r];
-    }
-}
-
-/* What sources do between the nodes, into its lane. */
-static void fill_ripple(const struct dalcs_stage_workshop *b, int rhs_column, double missed) {
-    const long double *real = b->real + rhs_column * b->n;
-    for (int r = 0; r < b->n; r++) {
-        b->lanes[r * DALCS_LANES + DALCS_RIPPLE_LANE] =
-            (double)real[r] * b->column_scale[r] * missed * b->stages->method->test_factor;
+        defect *= scale;
+        lane[0] = r == column ? 1.0 : 0.0;
+        if (r < n_x) {
+            b->defect[r] = defect;
+        } else {
+            /* What is added goes with states that are off by their defects: less that. */
+            long double start = b->start[r] + defect;
+            for (int x = 0; x < n_x; x++) {
+                start -= b->real[x * n + r] * scale * b->defect[x];
+            }
+            lane[0] = (double)start;
+        }
+        lane[DALCS_RIPPLE_LANE] =
+            (double)real[r] * b->column_scale[r] * share[DALCS_RIPPLE_LANE] * m->test_factor;
     }
 }
 
@@ -298,7 +285,6 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
     bool is_state = column < b->n_x;
     fill_stages(b, column, rhs_column, share);
     fill_start(b, column, rhs_column, share);
-    fill_ripple(b, rhs_column, share[DALCS_RIPPLE_LANE]);
     find_guards(b, rhs_column, share);
     if (b->nullity > 0) {
         choose(b);
@@ -326,6 +312,9 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
         for (int i = 1; i <= m->s; i++) {
             out[l->n_fixed + k * m->s + i - 1] = clash * share[i];
         }
+    }
+    for (int i = l->n_fixed + b->entry->n_clashes; i < b->entry->rows; i++) {
+        out[i] = 0.0;
     }
 }
 

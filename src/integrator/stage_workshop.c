@@ -55,7 +55,8 @@ static bool allocate(struct dalcs_stage_workshop *b) {
     b->is_used = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(*b->is_used));
     b->lanes = dalcs_stage_workshop_reals(kept, n * DALCS_LANES);
     b->start = extendeds(kept, n);
-    b->defect = extendeds(kept, n);
+    b->missed = extendeds(kept, b->n_x);
+    b->defect = extendeds(kept, b->n_x);
     b->guard = dalcs_stage_workshop_reals(kept, s->n_pairs * DALCS_LANES);
     b->residual = dalcs_stage_workshop_reals(kept, n);
     return b->wave_column != NULL && b->place != NULL && b->row_scale != NULL &&
@@ -64,7 +65,7 @@ static bool allocate(struct dalcs_stage_workshop *b) {
            b->real != NULL && b->stage != NULL && b->follows_x != NULL && b->follows_j != NULL &&
            b->follows_p != NULL && b->follower != NULL && b->kept != NULL && b->kept_row != NULL &&
            b->row_of != NULL && b->is_used != NULL && b->lanes != NULL && b->start != NULL &&
-           b->defect != NULL && b->guard != NULL && b->residual != NULL;
+           b->missed != NULL && b->defect != NULL && b->guard != NULL && b->residual != NULL;
 }
 
 static bool is_driven(const struct dalcs_csr *a, const double *constant) {

@@ -38,15 +38,16 @@ struct dalcs_stage_workshop {
     bool *is_used;              /* [n] */
     int *follows_p, *follows_j; /* what followers take of the kept, by rows */
     long double *follows_x;
-    long double *re, *im;        /* [n_kept][n_kept + n_rhs] a system by rows, then its solutions */
-    long double *part;           /* [n_rhs][n_kept][parts] the solutions, balanced */
-    long double *real;           /* [n_rhs][n] those of the real eigenvalue */
-    long double *stage;          /* [n_kept][stages] increments */
-    double *lanes;               /* [n][lanes] the answer */
-    long double *start, *defect; /* [n] at the start, before rounding */
-    double *guard;               /* [n_pairs][lanes] */
-    double *residual;            /* [n] */
-    bool has_constants;          /* inputs that do not vary drive something */
+    long double *re, *im; /* [n_kept][n_kept + n_rhs] a system by rows, then its solutions */
+    long double *part;    /* [n_rhs][n_kept][parts] the solutions, balanced */
+    long double *real;    /* [n_rhs][n] those of the real eigenvalue */
+    long double *stage;   /* [n_kept][stages] increments */
+    double *lanes;        /* [n][lanes] the answer */
+    long double *start;   /* [n] what the stages alone say of the start */
+    long double *missed, *defect; /* [n_x] what they miss there, and what the filter leaves of it */
+    double *guard;                /* [n_pairs][lanes] */
+    double *residual;             /* [n] */
+    bool has_constants;           /* inputs that do not vary drive something */
     long double factor[DALCS_MAX_STAGES][DALCS_SOLUTION_PARTS]; /* of a solution, at the stages */
     long double constant_factor[DALCS_MAX_STAGES][DALCS_SOLUTION_PARTS];
     int nullity;

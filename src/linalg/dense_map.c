@@ -9,11 +9,7 @@
 double *dalcs_dense_map_alloc(int rows, int columns) {
     size_t bytes = (size_t)rows * (size_t)(columns > 0 ? columns : 1) * sizeof(double);
     bytes = (bytes + 63) / 64 * 64;
-    double *map = aligned_alloc(64, bytes > 0 ? bytes : 64);
-    if (map != NULL) {
-        memset(map, 0, bytes);
-    }
-    return map;
+    return aligned_alloc(64, bytes > 0 ? bytes : 64);
 }
 
 typedef double vector4 __attribute__((vector_size(32), aligned(32)));
