@@ -220,14 +220,20 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
         gather_charges(part);
     }
     int node = at_end ? part->stages.layout.n_nodes - 1 : 0;
+    const struct dalcs_osnsp *p = &part->component->osnsp;
     const double *value =
         part->out + node * part->stages.layout.stride + dalcs_system_n_equations(s);
-    for (int g = 0; g < n_guards(part); g++) {
-        if ((at_end && part->armed[g]) || !is_guarded(part, g)) {
-            continue;
+    bool *armed = part->armed;
+    int n_pairs = s->n_pairs;
+    for (int d = 0; d < n_pairs; d++) {
+        if (!(at_end && armed[d]) && p->is_diode[d]) {
+            armed[d] = value[d] > band * unit[dalcs_osnsp_is_on(p, d)];
         }
-        double now = g < s->n_pairs ? value[g] : control_at(part, g, node);
-        part->armed[g] = now > band * scale_of(part, g, unit);
+    }
+    for (int g = n_pairs; g < n_guards(part); g++) {
+        if (!(at_end && armed[g])) {
+            armed[g] = control_at(part, g, node) > band * control_scale(part, g, unit);
+        }
     }
 }
 

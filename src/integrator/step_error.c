@@ -93,11 +93,12 @@ static void find_kinds(const struct dalcs_radau_part *part) {
         uint64_t mode = p->mode[first / 64];
         uint64_t changed = mode ^ kinds->mode[first / 64];
         kinds->mode[first / 64] = mode;
-        for (int d = first; changed != 0; d++, changed >>= 1, mode >>= 1) {
+        for (int k = c + first; changed != 0; k++, changed >>= 1, mode >>= 1) {
             if ((changed & 1) != 0) {
-                kinds->is_volt[c + d] = (mode & 1) != 0 ? 0.0 : 1.0;
-                kinds->is_closed[c + d] = (mode & 1) != 0 ? 1.0 : 0.0;
-                kinds->counts[c + d] = (mode & 1) != 0 ? UINT64_MAX : 0;
+                double closed = (double)(int)(mode & 1);
+                kinds->is_volt[k] = 1.0 - closed;
+                kinds->is_closed[k] = closed;
+                kinds->counts[k] = -(mode & 1);
             }
         }
     }
@@ -150,17 +151,31 @@ static int last_node(const struct dalcs_radau_part *part, double end) {
     return last;
 }
 
+/* value[n] = the columns of `out` at the nodes, weighted. */
+DALCS_FOR_WIDE_VECTORS
+static void weigh(const struct dalcs_stage_layout *l, const double *weight, const double *out,
+                  int n, double *value) {
+    for (int c = 0; c < n; c += DALCS_QUAD) {
+        dalcs_quad sum = {0.0};
+        for (int k = 0; k < l->n_nodes; k++) {
+            dalcs_quad y;
+            dalcs_quad_load(&y, out + k * l->stride + c);
+            sum += weight[k] * y;
+        }
+        if (c + DALCS_QUAD <= n) {
+            dalcs_quad_store(value + c, &sum);
+        } else {
+            for (int i = 0; i < n - c; i++) {
+                value[c + i] = sum[i];
+            }
+        }
+    }
+}
+
 void dalcs_step_states(const struct dalcs_radau_part *part, double theta, double *x) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
     double weight[DALCS_MAX_NODES];
     dalcs_collocation_weights(part->stages.method, theta, weight);
-    for (int i = 0; i < part->component->system->n_x; i++) {
-        double sum = 0.0;
-        for (int k = 0; k < l->n_nodes; k++) {
-            sum += weight[k] * part->out[k * l->stride + i];
-        }
-        x[i] = sum;
-    }
+    weigh(&part->stages.layout, weight, part->out, part->component->system->n_x, x);
 }
 
 void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double *value) {
@@ -172,28 +187,7 @@ void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double
     }
     double weight[DALCS_MAX_NODES];
     dalcs_collocation_weights(part->stages.method, theta, weight);
-
-    /* Sums stay in registers; each is made in the same order, whatever the width. */
-    enum { WIDTH = 4 };
-
-    int c = 0;
-    for (; c + WIDTH <= l->stride; c += WIDTH) {
-        double sum[WIDTH] = {0.0};
-        for (int k = 0; k < l->n_nodes; k++) {
-            const double *y = part->out + k * l->stride + c;
-            for (int j = 0; j < WIDTH; j++) {
-                sum[j] += weight[k] * y[j];
-            }
-        }
-        memcpy(value + c, sum, sizeof(sum));
-    }
-    for (; c < l->stride; c++) {
-        double sum = 0.0;
-        for (int k = 0; k < l->n_nodes; k++) {
-            sum += weight[k] * part->out[k * l->stride + c];
-        }
-        value[c] = sum;
-    }
+    weigh(l, weight, part->out, l->stride, value);
 }
 
 /* magnitude: the larger of |first| and |last|; raises unit[2] to the largest of them. */
