@@ -212,60 +212,70 @@ static void gather_charges(struct dalcs_radau_part *part) {
     }
 }
 
+static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band,
+                         const double *unit) {
+    int node = at_end ? part->stages.layout.n_nodes - 1 : 0;
+    for (int g = part->component->system->n_pairs; g < n_guards(part); g++) {
+        if (!(at_end && part->armed[g])) {
+            part->armed[g] = control_at(part, g, node) > band * control_scale(part, g, unit);
+        }
+    }
+}
+
 void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, bool at_end,
                       const double *unit) {
-    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    int n_pairs = p->system->n_pairs;
     double band = band_of(r, part);
-    if (!at_end && s->n_pairs > MANY_PAIRS) {
+    if (!at_end && n_pairs > MANY_PAIRS) {
         gather_charges(part);
     }
-    int node = at_end ? part->stages.layout.n_nodes - 1 : 0;
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    const double *value =
-        part->out + node * part->stages.layout.stride + dalcs_system_n_equations(s);
+    const double *value = part->out + (at_end ? (l->n_nodes - 1) * l->stride : 0) +
+                          dalcs_system_n_equations(p->system);
     bool *armed = part->armed;
-    int n_pairs = s->n_pairs;
     for (int d = 0; d < n_pairs; d++) {
-        if (!(at_end && armed[d]) && p->is_diode[d]) {
+        if (p->is_diode[d] && !(at_end && armed[d])) {
             armed[d] = value[d] > band * unit[dalcs_osnsp_is_on(p, d)];
         }
     }
-    for (int g = n_pairs; g < n_guards(part); g++) {
-        if (!(at_end && armed[g])) {
-            armed[g] = control_at(part, g, node) > band * control_scale(part, g, unit);
-        }
+    if (part->stages.n_watched > 0) {
+        arm_controls(part, at_end, band, unit);
+    }
+}
+
+static void bound_controls(const struct dalcs_radau_part *part) {
+    for (int g = part->component->system->n_pairs; g < n_guards(part); g++) {
+        double work[DALCS_MAX_NODES + DALCS_QUAD] = {0.0};
+        int stride;
+        const double *value = values_of(part, g, work, &stride);
+        dalcs_crossing_bounds(part->stages.method, 1, value, stride, part->bound + g);
     }
 }
 
 /* The guards that bounds do not clear. */
 static void find_doubtful(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
-    const struct dalcs_collocation *m = part->stages.method;
-    dalcs_crossing_bounds(m, s->n_pairs, part->out + dalcs_system_n_equations(s),
+    dalcs_crossing_bounds(part->stages.method, s->n_pairs, part->out + dalcs_system_n_equations(s),
                           part->stages.layout.stride, part->bound);
-    for (int g = s->n_pairs; g < n_guards(part); g++) {
-        double work[DALCS_MAX_NODES + DALCS_QUAD] = {0.0};
-        int stride;
-        const double *value = values_of(part, g, work, &stride);
-        dalcs_crossing_bounds(m, 1, value, stride, part->bound + g);
+    if (part->stages.n_watched > 0) {
+        bound_controls(part);
     }
-    part->n_doubtful = 0;
-    for (int g = 0; g < n_guards(part); g++) {
-        if (!(part->bound[g] >= 0.0) && is_guarded(part, g)) {
-            part->doubtful[part->n_doubtful++] = g;
+    const double *bound = part->bound;
+    int n = n_guards(part);
+    int n_doubtful = 0;
+    for (int g = 0; g < n; g++) {
+        if (!(bound[g] >= 0.0) && is_guarded(part, g)) {
+            part->doubtful[n_doubtful++] = g;
         }
     }
+    part->n_doubtful = n_doubtful;
 }
 
-double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                               double end, const double *unit, bool *at_once) {
+/* The first of the doubtful ones. */
+static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *part, double end,
+                         const double *unit, bool *at_once) {
     double first = INFINITY;
-    part->n_crossed = 0;
-    *at_once = false;
-    find_doubtful(part);
-    if (part->n_doubtful == 0) {
-        return first;
-    }
     double same = part->rounding > 1.0 ? same_on_factors : same_on_maps;
     double together = dalcs_larger(same, 2.0 * r->resolution / part->h);
     double band = band_of(r, part);
@@ -301,6 +311,14 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
         part->crossed[part->n_crossed++] = g;
     }
     return first;
+}
+
+double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                               double end, const double *unit, bool *at_once) {
+    part->n_crossed = 0;
+    *at_once = false;
+    find_doubtful(part);
+    return part->n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;
 }
 
 bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {

@@ -352,6 +352,10 @@ static void check_column(struct dalcs_stage_workshop *b, int column, int rhs_col
     b->entry->residual = fmax(b->entry->residual, largest > 0.0 ? worst / largest : 0.0);
 }
 
+static int n_columns(const struct dalcs_stage_workshop *b) {
+    return b->has_constants ? b->stages->n_in : b->stages->n_in - 1;
+}
+
 static void fill_map(struct dalcs_stage_workshop *b) {
     const struct dalcs_excitation *e = b->stages->excitation;
     const struct dalcs_collocation *m = b->stages->method;
@@ -368,10 +372,8 @@ static void fill_map(struct dalcs_stage_workshop *b) {
     if (b->has_constants) {
         fill_column(b, b->n_x, b->n_x, share, out);
         check_column(b, b->n_x, b->n_x, 1.0);
-    } else {
-        memset(out, 0, (size_t)b->entry->rows * sizeof(double));
+        out += b->entry->rows;
     }
-    out += b->entry->rows;
     for (int f = 0; f < e->n_functions; f++, out += b->entry->rows) {
         const struct dalcs_excitation_function *function = &e->function[f];
         for (int k = 0; k <= m->s; k++) {
@@ -394,16 +396,26 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
     DALCS_TRY(prepare_choice(b));
     entry->n_clashes = b->nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
-    entry->map = dalcs_dense_map_alloc(entry->rows, stages->n_in);
+    entry->map = dalcs_dense_map_alloc(entry->rows, n_columns(b));
     if (entry->map == NULL) {
         return DALCS_E_NOMEM;
     }
-    entry->bytes += (size_t)entry->rows * (size_t)stages->n_in * sizeof(double);
+    entry->bytes += (size_t)entry->rows * (size_t)n_columns(b) * sizeof(double);
     fill_map(b);
     return DALCS_OK;
 }
 
 void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
                            const double *in, double *out) {
-    dalcs_dense_map_apply(entry->rows, stages->n_in, entry->map, in, out);
+    const struct dalcs_stage_workshop *b = stages->workshop;
+    if (!b->has_constants) {
+        for (int k = 0; k < b->n_x; k++) {
+            b->in[k] = in[k];
+        }
+        for (int k = b->n_x + 1; k < stages->n_in; k++) {
+            b->in[k - 1] = in[k];
+        }
+        in = b->in;
+    }
+    dalcs_dense_map_apply(entry->rows, n_columns(b), entry->map, in, out);
 }

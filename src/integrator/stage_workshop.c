@@ -59,13 +59,15 @@ static bool allocate(struct dalcs_stage_workshop *b) {
     b->defect = extendeds(kept, b->n_x);
     b->guard = dalcs_stage_workshop_reals(kept, s->n_pairs * DALCS_LANES);
     b->residual = dalcs_stage_workshop_reals(kept, n);
+    b->in = dalcs_stage_workshop_reals(kept, b->stages->n_in);
     return b->wave_column != NULL && b->place != NULL && b->row_scale != NULL &&
            b->column_scale != NULL && b->base != NULL && b->P != NULL && b->rhs != NULL &&
            b->S != NULL && b->re != NULL && b->im != NULL && b->whole != NULL && b->part != NULL &&
            b->real != NULL && b->stage != NULL && b->follows_x != NULL && b->follows_j != NULL &&
            b->follows_p != NULL && b->follower != NULL && b->kept != NULL && b->kept_row != NULL &&
            b->row_of != NULL && b->is_used != NULL && b->lanes != NULL && b->start != NULL &&
-           b->missed != NULL && b->defect != NULL && b->guard != NULL && b->residual != NULL;
+           b->missed != NULL && b->defect != NULL && b->guard != NULL && b->residual != NULL &&
+           b->in != NULL;
 }
 
 static bool is_driven(const struct dalcs_csr *a, const double *constant) {

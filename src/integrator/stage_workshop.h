@@ -47,7 +47,8 @@ struct dalcs_stage_workshop {
     long double *missed, *defect; /* [n_x] what they miss there, and what the filter leaves of it */
     double *guard;                /* [n_pairs][lanes] */
     double *residual;             /* [n] */
-    bool has_constants;           /* inputs that do not vary drive something */
+    bool has_constants; /* inputs that do not vary drive something: else maps lack their column */
+    double *in;         /* [n_in] of such a map */
     long double factor[DALCS_MAX_STAGES][DALCS_SOLUTION_PARTS]; /* of a solution, at the stages */
     long double constant_factor[DALCS_MAX_STAGES][DALCS_SOLUTION_PARTS];
     int nullity;
