@@ -29,13 +29,19 @@ static inline void dalcs_quad_store(double *to, const dalcs_quad *q) {
 
 /* Where `with` is smaller: that; so with larger. NaN in `with` changes nothing. */
 static inline void dalcs_quad_lower(dalcs_quad *q, const dalcs_quad *with) {
-    dalcs_quad_bits use = *with < *q;
-    *q = (dalcs_quad)((use & (dalcs_quad_bits)*with) | (~use & (dalcs_quad_bits)*q));
+    dalcs_quad least = *q;
+    for (int i = 0; i < DALCS_QUAD; i++) {
+        least[i] = (*with)[i] < least[i] ? (*with)[i] : least[i];
+    }
+    *q = least;
 }
 
 static inline void dalcs_quad_raise(dalcs_quad *q, const dalcs_quad *with) {
-    dalcs_quad_bits use = *with > *q;
-    *q = (dalcs_quad)((use & (dalcs_quad_bits)*with) | (~use & (dalcs_quad_bits)*q));
+    dalcs_quad largest = *q;
+    for (int i = 0; i < DALCS_QUAD; i++) {
+        largest[i] = (*with)[i] > largest[i] ? (*with)[i] : largest[i];
+    }
+    *q = largest;
 }
 
 /* Its absolute values. */
