@@ -177,18 +177,31 @@ void dalcs_crossing_bounds(const struct dalcs_collocation *c, int n, const doubl
     bound_below(c, n, value, stride, bound);
 }
 
+/* In Bernstein's basis. All of them, for the sake of vectors. */
+DALCS_FOR_WIDE_VECTORS
+static void find_coefficients(const struct dalcs_collocation *c, const double *value, int stride,
+                              double *coefficient) {
+    dalcs_quad sum[DALCS_MAX_NODES / DALCS_QUAD] = {{0.0}};
+    for (int k = 0; k <= c->s; k++) {
+        for (int i = 0; i < DALCS_MAX_NODES / DALCS_QUAD; i++) {
+            dalcs_quad of_node;
+            dalcs_quad_load(&of_node, c->to_bernstein[k] + i * DALCS_QUAD);
+            sum[i] += value[k * stride] * of_node;
+        }
+    }
+    memcpy(coefficient, sum, sizeof(sum));
+}
+
 struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, const double *value,
                                           int stride, double end, double depth) {
     int n = c->s + 1;
     struct dalcs_crossing found = {.falls = false};
-    double b[DALCS_MAX_NODES] = {0.0};
+    double b[DALCS_MAX_NODES];
+    find_coefficients(c, value, stride, b);
     double largest = 0.0;
     for (int k = 0; k < n; k++) {
-        double v = value[k * stride];
-        largest = fabs(v) > largest ? fabs(v) : largest;
-        for (int i = 0; i < DALCS_MAX_NODES; i++) { /* all, for the sake of vectors */
-            b[i] += c->to_bernstein[k][i] * v;
-        }
+        double v = fabs(value[k * stride]);
+        largest = v > largest ? v : largest;
     }
     double rounding = 4.0 * DBL_EPSILON * (1.0 + c->bernstein_spread) * largest;
     depth = depth > rounding ? depth : rounding;

@@ -1,6 +1,7 @@
 /* radau.c - the parts of a run: set up, started, passed from segment to segment, evaluated. */
 #include "energy.h"
 #include "guards.h"
+#include "quads.h"
 #include "radau_internal.h"
 
 #include <math.h>
@@ -72,7 +73,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     size_t n_columns = (size_t)dalcs_system_n_columns(s);
     size_t n_guards = (size_t)(s->n_pairs + part->stages.n_watched);
     size_t n_out = (size_t)l->n_fixed + (size_t)part->stages.method->s * n_columns + 8;
-    part->x = dalcs_alloc((size_t)s->n_x, sizeof(double));
+    part->x = dalcs_alloc((size_t)dalcs_quads_of(s->n_x), sizeof(double));
     part->in = dalcs_alloc((size_t)part->stages.n_in, sizeof(double));
     part->out = dalcs_alloc(n_out, sizeof(double));
     part->out_before = dalcs_alloc(n_out, sizeof(double));
@@ -81,8 +82,8 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->crossed = dalcs_alloc(n_guards, sizeof(int));
     part->tied = dalcs_alloc((size_t)s->n_pairs, sizeof(bool));
     part->u = dalcs_alloc((size_t)(s->n_x + s->n_inputs), sizeof(double));
-    part->y1 = dalcs_alloc((size_t)l->stride, sizeof(double));
-    part->y2 = dalcs_alloc((size_t)l->stride, sizeof(double));
+    part->y1 = dalcs_alloc((size_t)dalcs_quads_of(l->stride), sizeof(double));
+    part->y2 = dalcs_alloc((size_t)dalcs_quads_of(l->stride), sizeof(double));
     part->w1 = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
     part->after = dalcs_alloc((size_t)s->n_x, sizeof(double));
     part->used_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));

@@ -57,7 +57,7 @@ struct dalcs_radau_part {
     double fell_back;     /* s, length of the last */
     bool fresh;           /* something just happened at t: nothing is known of how pairs start */
     bool flipped;         /* and it is that pairs changed sides */
-    double *x;            /* [n_x] at t */
+    double *x;            /* [n_x] at t, in whole quads */
     double *in, *out;
     double *out_before; /* the segment before, which ended there, in its steps */
     double end_before;
@@ -83,7 +83,7 @@ struct dalcs_radau_part {
     bool by_euler;                   /* the segment is a step of implicit Euler */
     bool open;                       /* its mode leaves something open, and nobody was told */
     bool *tied;                      /* [n_pairs] work */
-    double *u, *y1, *y2, *w1, *after; /* work */
+    double *u, *y1, *y2, *w1, *after; /* work; y1 and y2 in whole quads */
     int n_used_inputs, *used_input;   /* that probes read */
 
     struct dalcs_transition { /* see transition.h */

@@ -151,7 +151,7 @@ static int last_node(const struct dalcs_radau_part *part, double end) {
     return last;
 }
 
-/* value[n] = the columns of `out` at the nodes, weighted. */
+/* value[n], in whole quads, = the columns of `out` at the nodes, weighted. */
 DALCS_FOR_WIDE_VECTORS
 static void weigh(const struct dalcs_stage_layout *l, const double *weight, const double *out,
                   int n, double *value) {
@@ -162,13 +162,7 @@ static void weigh(const struct dalcs_stage_layout *l, const double *weight, cons
             dalcs_quad_load(&y, out + k * l->stride + c);
             sum += weight[k] * y;
         }
-        if (c + DALCS_QUAD <= n) {
-            dalcs_quad_store(value + c, &sum);
-        } else {
-            for (int i = 0; i < n - c; i++) {
-                value[c + i] = sum[i];
-            }
-        }
+        dalcs_quad_store(value + c, &sum);
     }
 }
 
