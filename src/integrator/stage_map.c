@@ -161,6 +161,19 @@ static double watched_voltage(const struct dalcs_stage_workshop *b, int d, const
     return v;
 }
 
+/* Of what is the same at all stages, as states and constants are: each coordinate sees the constant 1
+ * as 1. */
+static void find_constant_factors(struct dalcs_stage_workshop *b) {
+    const struct dalcs_collocation *m = b->stages->method;
+    for (int i = 0; i < m->s; i++) {
+        b->constant_factor[i][0] = m->exact_to[i];
+        for (int p = 0; p < m->n_pairs; p++) {
+            b->constant_factor[i][1 + 2 * p] = 2.0L * creall(m->exact_to_pair[i][p]);
+            b->constant_factor[i][2 + 2 * p] = -2.0L * cimagl(m->exact_to_pair[i][p]);
+        }
+    }
+}
+
 /* What the stages take of each part of a solution: factor[s][parts]. */
 static void find_factors(const struct dalcs_stage_workshop *b, const double *share,
                          long double factor[][DALCS_SOLUTION_PARTS]) {
@@ -390,6 +403,7 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
                                         struct dalcs_stage_entry *entry) {
     if (stages->workshop == NULL) {
         DALCS_TRY(dalcs_stage_workshop_create(&stages->workshop, stages));
+        find_constant_factors(stages->workshop);
     }
     struct dalcs_stage_workshop *b = stages->workshop;
     DALCS_TRY(dalcs_stage_workshop_solve(b, entry));

@@ -78,19 +78,6 @@ static bool is_driven(const struct dalcs_csr *a, const double *constant) {
     return found;
 }
 
-/* Of what is the same at all stages, as states and constants are: each coordinate sees the constant 1
- * as 1. */
-static void find_constant_factors(struct dalcs_stage_workshop *b) {
-    const struct dalcs_collocation *m = b->stages->method;
-    for (int i = 0; i < m->s; i++) {
-        b->constant_factor[i][0] = m->exact_to[i];
-        for (int p = 0; p < m->n_pairs; p++) {
-            b->constant_factor[i][1 + 2 * p] = 2.0L * creall(m->exact_to_pair[i][p]);
-            b->constant_factor[i][2 + 2 * p] = -2.0L * cimagl(m->exact_to_pair[i][p]);
-        }
-    }
-}
-
 enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **workshop,
                                               const struct dalcs_stages *stages) {
     const struct dalcs_excitation *e = stages->excitation;
@@ -117,7 +104,6 @@ enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **work
     const struct dalcs_system *s = b->system;
     b->has_constants = is_driven(&s->E, e->constant) || is_driven(&s->F, e->constant) ||
                        is_driven(&s->direct_control, e->constant);
-    find_constant_factors(b);
     return DALCS_OK;
 }
 
