@@ -360,23 +360,31 @@ bool dalcs_stimulus_jumps_at(const struct dalcs_stimulus *s, double t) {
     return dalcs_stimulus_value(s, t, DALCS_LEFT) != dalcs_stimulus_value(s, t, DALCS_RIGHT);
 }
 
-static void sine_piece(const struct dalcs_stimulus *s, double t,
-                       struct dalcs_stimulus_piece *piece) {
-    const double since = t - s->u.sine.delay;
-    struct dalcs_stimulus_term *term = piece->term;
-    *term = (struct dalcs_stimulus_term){.decay = s->u.sine.damping,
-                                         .omega = 2 * PI * s->u.sine.frequency};
-    piece->level = s->u.sine.offset;
-    const bool is_over = since >= sine_length(s) - tolerance(t, 0);
-    if (piece->to == s->u.sine.delay || is_over) {
-        piece->level = sine_value(s, t);
-        return;
-    }
+static void sine_term(const struct dalcs_stimulus *s, double since,
+                      struct dalcs_stimulus_term *term) {
     const double cycles = cycles_of(s, since);
     double amplitude = s->u.sine.amplitude;
     amplitude *= s->u.sine.damping != 0 ? exp(-s->u.sine.damping * since) : 1;
-    term->cosine = amplitude * sin_of_cycles(cycles);
-    term->sine = amplitude * sin_of_cycles(cycles + 0.25);
+    *term = (struct dalcs_stimulus_term){.decay = s->u.sine.damping,
+                                         .omega = 2 * PI * s->u.sine.frequency,
+                                         .cosine = amplitude * sin_of_cycles(cycles),
+                                         .sine = amplitude * sin_of_cycles(cycles + 0.25)};
+}
+
+static bool sine_is_over(const struct dalcs_stimulus *s, double t) {
+    return t - s->u.sine.delay >= sine_length(s) - tolerance(t, 0);
+}
+
+static void sine_piece(const struct dalcs_stimulus *s, double t,
+                       struct dalcs_stimulus_piece *piece) {
+    if (piece->to == s->u.sine.delay || sine_is_over(s, t)) {
+        piece->level = sine_value(s, t);
+        *piece->term = (struct dalcs_stimulus_term){.decay = s->u.sine.damping,
+                                                    .omega = 2 * PI * s->u.sine.frequency};
+        return;
+    }
+    piece->level = s->u.sine.offset;
+    sine_term(s, t - s->u.sine.delay, piece->term);
 }
 
 static void exponential_piece(const struct dalcs_stimulus *s, double t,
@@ -454,6 +462,16 @@ void dalcs_stimulus_piece_at(const struct dalcs_stimulus *s, double t,
         }
         return;
     }
+}
+
+void dalcs_stimulus_terms_at(const struct dalcs_stimulus *s, double t,
+                             struct dalcs_stimulus_term *term) {
+    if (s->kind == DALCS_STIMULUS_SIN && s->u.sine.n_cycles == 0) {
+        sine_term(s, t - s->u.sine.delay, term);
+        return;
+    }
+    struct dalcs_stimulus_piece piece = {.term = term};
+    dalcs_stimulus_piece_at(s, t, &piece);
 }
 
 double dalcs_stimulus_operating_value(const struct dalcs_stimulus *s, bool transient_follows) {

@@ -110,6 +110,10 @@ int dalcs_stimulus_n_terms(const struct dalcs_stimulus *s);
 void dalcs_stimulus_piece_at(const struct dalcs_stimulus *s, double t,
                              struct dalcs_stimulus_piece *piece);
 
+/* The terms alone of a piece that has no end, at a t in it. */
+void dalcs_stimulus_terms_at(const struct dalcs_stimulus *s, double t,
+                             struct dalcs_stimulus_term *term);
+
 /* The value for the operating point, as ngspice chooses it: for a plain .op the card's DC value
  * when it has one; for the start of a transient, or without a DC value, the right limit at 0. */
 double dalcs_stimulus_operating_value(const struct dalcs_stimulus *s, bool transient_follows);

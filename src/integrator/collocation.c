@@ -1,7 +1,11 @@
 /* collocation.c - the methods, as computed when dalcs was built, and their polynomials. */
 #include "collocation.h"
 
-#include <string.h>
+#include "quads.h"
+#include "wide_vectors.h"
+
+#include <float.h>
+#include <math.h>
 
 /* Of C11, but glibc has them for gcc alone. */
 #ifndef CMPLX
@@ -17,19 +21,44 @@ const struct dalcs_collocation *dalcs_collocation_of(int s) {
     return &METHODS[(s - 1) / 2];
 }
 
+/* Barycentric weights over the distances from theta. */
+DALCS_TWICE(void, divide_by_distances,
+            (const struct dalcs_collocation *c, double theta, double *weight), (c, theta, weight)) {
+    for (int k = 0; k <= c->s; k += DALCS_QUAD) {
+        dalcs_quad node;
+        dalcs_quad of;
+        dalcs_quad_load(&node, c->node + k);
+        dalcs_quad_load(&of, c->barycentric + k);
+        of /= theta - node;
+        dalcs_quad_store(weight + k, &of);
+    }
+}
+
+DALCS_TWICE(void, divide_by_sum, (int n, double sum, double *weight), (n, sum, weight)) {
+    for (int k = 0; k < n; k += DALCS_QUAD) {
+        dalcs_quad of;
+        dalcs_quad_load(&of, weight + k);
+        of /= sum;
+        dalcs_quad_store(weight + k, &of);
+    }
+}
+
+/* At a node the quotients mean nothing. */
+static void take_node(const struct dalcs_collocation *c, double theta, double *weight) {
+    for (int k = 0; k <= c->s; k++) {
+        weight[k] = theta == c->node[k] ? 1.0 : 0.0;
+    }
+}
+
 void dalcs_collocation_weights(const struct dalcs_collocation *c, double theta, double *weight) {
+    divide_by_distances(c, theta, weight);
     double sum = 0.0;
     for (int k = 0; k <= c->s; k++) {
-        double distance = theta - c->node[k];
-        if (distance == 0.0) {
-            memset(weight, 0, (size_t)(c->s + 1) * sizeof(*weight));
-            weight[k] = 1.0;
-            return;
-        }
-        weight[k] = c->barycentric[k] / distance;
         sum += weight[k];
     }
-    for (int k = 0; k <= c->s; k++) {
-        weight[k] /= sum;
+    if (fabs(sum) <= DBL_MAX) {
+        divide_by_sum(c->s + 1, sum, weight);
+    } else {
+        take_node(c, theta, weight);
     }
 }

@@ -55,7 +55,8 @@ struct dalcs_collocation {
 /* s must be 1, 3, 5 or 7. */
 const struct dalcs_collocation *dalcs_collocation_of(int s);
 
-/* weight[s + 1] such that a quantity at theta (in steps) is the sum of weight * value at node. */
+/* weight[s + 1], with room for all, such that a quantity at a finite theta (in steps) is the sum of
+ * weight * value at node. */
 void dalcs_collocation_weights(const struct dalcs_collocation *c, double theta, double *weight);
 
 #endif

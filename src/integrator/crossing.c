@@ -1,6 +1,9 @@
 /* crossing.c - subdivision in Bernstein's basis, then interpolation that keeps a bracket. */
 #include "crossing.h"
 
+#include "quads.h"
+#include "wide_vectors.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -139,39 +142,68 @@ static double find_root(int n, const double *coefficient, double from, double le
     return -1.0;
 }
 
-/* Is that clear from the straight line between the ends and how far the values are from it? What
- * remains is 0 at the ends, and leaves the range of its values by little. */
-static bool stays_above(const struct dalcs_collocation *c, const double *value, int stride,
-                        double depth) {
-    double first = value[0];
-    double rise = value[c->s * stride] - first;
-    double lowest = 0.0;
-    double highest = 0.0;
-    for (int k = 1; k < c->s; k++) {
-        double off = value[k * stride] - first - c->node[k] * rise;
-        lowest = off < lowest ? off : lowest;
-        highest = off > highest ? off : highest;
+/* By the straight line between the ends and how far the values are from it: what remains is 0 at the
+ * ends, and leaves the range of its values by little. */
+DALCS_TWICE(void, bound_below,
+            (const struct dalcs_collocation *c, int n, const double *value, int stride,
+             double *bound),
+            (c, n, value, stride, bound)) {
+    for (int i = 0; i < n; i += DALCS_QUAD) {
+        dalcs_quad first;
+        dalcs_quad rise;
+        dalcs_quad_load(&first, value + i);
+        dalcs_quad_load(&rise, value + c->s * stride + i);
+        rise -= first;
+        dalcs_quad lowest = {0.0};
+        dalcs_quad highest = {0.0};
+        for (int k = 1; k < c->s; k++) {
+            dalcs_quad off;
+            dalcs_quad_load(&off, value + k * stride + i);
+            off = off - first - c->node[k] * rise;
+            dalcs_quad_lower(&lowest, &off);
+            dalcs_quad_raise(&highest, &off);
+        }
+        dalcs_quad least = first + rise;
+        dalcs_quad_lower(&least, &first);
+        dalcs_quad_unsign(&first);
+        dalcs_quad_unsign(&rise);
+        double rounding = 4.0 * DBL_EPSILON * (1.0 + 2.0 * c->spread);
+        least += lowest - c->spread * (highest - lowest) - rounding * (first + rise);
+        dalcs_quad_store(bound + i, &least);
     }
-    double rounding = 4.0 * DBL_EPSILON * (1.0 + 2.0 * c->spread) * (fabs(first) + fabs(rise));
-    double least = rise < 0.0 ? first + rise : first;
-    return least + lowest - c->spread * (highest - lowest) - rounding >= -depth;
+}
+
+void dalcs_crossing_bounds(const struct dalcs_collocation *c, int n, const double *value,
+                           int stride, double *bound) {
+    bound_below(c, n, value, stride, bound);
+}
+
+/* In Bernstein's basis. All of them, for the sake of vectors. */
+DALCS_TWICE(void, find_coefficients,
+            (const struct dalcs_collocation *c, const double *value, int stride,
+             double *coefficient),
+            (c, value, stride, coefficient)) {
+    dalcs_quad sum[DALCS_MAX_NODES / DALCS_QUAD] = {{0.0}};
+    for (int k = 0; k <= c->s; k++) {
+        for (int i = 0; i < DALCS_MAX_NODES / DALCS_QUAD; i++) {
+            dalcs_quad of_node;
+            dalcs_quad_load(&of_node, c->to_bernstein[k] + i * DALCS_QUAD);
+            sum[i] += value[k * stride] * of_node;
+        }
+    }
+    memcpy(coefficient, sum, sizeof(sum));
 }
 
 struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, const double *value,
                                           int stride, double end, double depth) {
     int n = c->s + 1;
     struct dalcs_crossing found = {.falls = false};
-    if (stays_above(c, value, stride, depth)) {
-        return found;
-    }
-    double b[DALCS_MAX_NODES] = {0.0};
+    double b[DALCS_MAX_NODES];
+    find_coefficients(c, value, stride, b);
     double largest = 0.0;
     for (int k = 0; k < n; k++) {
-        double v = value[k * stride];
-        largest = fabs(v) > largest ? fabs(v) : largest;
-        for (int i = 0; i < DALCS_MAX_NODES; i++) { /* all, for the sake of vectors */
-            b[i] += c->to_bernstein[k][i] * v;
-        }
+        double v = fabs(value[k * stride]);
+        largest = v > largest ? v : largest;
     }
     double rounding = 4.0 * DBL_EPSILON * (1.0 + c->bernstein_spread) * largest;
     depth = depth > rounding ? depth : rounding;

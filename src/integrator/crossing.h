@@ -8,6 +8,11 @@
 
 #include "collocation.h"
 
+/* value[k * stride + i] is quantity i of n at node k: none falls below bound[i] on [0, 1]. Whole quads
+ * (quads.h) are read and written. */
+void dalcs_crossing_bounds(const struct dalcs_collocation *c, int n, const double *value,
+                           int stride, double *bound);
+
 struct dalcs_crossing {
     bool falls;   /* below -depth somewhere on [0, end] */
     double theta; /* the last zero before that; 0 when it is never positive before */

@@ -46,7 +46,10 @@ static void add_wave(struct dalcs_excitation *excitation, int input,
     excitation->n_terms += wave->piece.n_terms;
     wave->is_curved = wave->piece.n_terms > 0;
     excitation->is_curved = excitation->is_curved || wave->is_curved;
-    add_function(excitation, wave, DALCS_EXCITATION_LEVEL, NULL);
+    wave->has_level = !wave->is_curved || isfinite(wave->piece.to) || wave->piece.level != 0.0;
+    if (wave->has_level) {
+        add_function(excitation, wave, DALCS_EXCITATION_LEVEL, NULL);
+    }
     if (!wave->is_curved) {
         add_function(excitation, wave, DALCS_EXCITATION_RAMP, NULL);
     }
@@ -129,6 +132,24 @@ void dalcs_excitation_enter(struct dalcs_excitation *excitation, double t) {
     }
 }
 
+/* Those of the present piece, not of the neighbour that rounding may put t into. */
+static void find_terms(const struct dalcs_excitation_wave *wave, double t,
+                       struct dalcs_stimulus_term *term) {
+    if (isinf(wave->piece.to)) {
+        dalcs_stimulus_terms_at(wave->stimulus, t, term);
+        return;
+    }
+    for (int i = 0; i < wave->piece.n_terms; i++, term++) {
+        *term = wave->piece.term[i];
+        double factor = exp(-term->decay * (t - wave->from));
+        double c = cos(term->omega * (t - wave->from));
+        double s = sin(term->omega * (t - wave->from));
+        double cosine = factor * (term->cosine * c + term->sine * s);
+        term->sine = factor * (term->sine * c - term->cosine * s);
+        term->cosine = cosine;
+    }
+}
+
 void dalcs_excitation_coefficients(const struct dalcs_excitation *excitation, double t, double h,
                                    double *coefficient) {
     for (int k = 0; k < excitation->n_waves; k++) {
@@ -139,30 +160,18 @@ void dalcs_excitation_coefficients(const struct dalcs_excitation *excitation, do
             out[1] = wave->piece.slope * h;
             continue;
         }
-        struct dalcs_stimulus_piece now = wave->piece;
-        if (t != wave->from) {
-            /* the piece, not the neighbour that rounding may put t into */
-            now.term = excitation->scratch;
-            if (isinf(wave->piece.to)) {
-                dalcs_stimulus_piece_at(wave->stimulus, t, &now);
-            } else {
-                for (int i = 0; i < now.n_terms; i++) {
-                    struct dalcs_stimulus_term *term = &now.term[i];
-                    *term = wave->piece.term[i];
-                    double factor = exp(-term->decay * (t - wave->from));
-                    double c = cos(term->omega * (t - wave->from));
-                    double s = sin(term->omega * (t - wave->from));
-                    double cosine = factor * (term->cosine * c + term->sine * s);
-                    term->sine = factor * (term->sine * c - term->cosine * s);
-                    term->cosine = cosine;
-                }
-            }
+        if (wave->has_level) {
+            *out++ = wave->piece.level;
         }
-        *out++ = now.level;
-        for (int i = 0; i < now.n_terms; i++) {
-            *out++ = now.term[i].cosine;
-            if (now.term[i].omega != 0.0) {
-                *out++ = now.term[i].sine;
+        const struct dalcs_stimulus_term *now = wave->piece.term;
+        if (t != wave->from) {
+            find_terms(wave, t, excitation->scratch);
+            now = excitation->scratch;
+        }
+        for (int i = 0; i < wave->piece.n_terms; i++) {
+            *out++ = now[i].cosine;
+            if (now[i].omega != 0.0) {
+                *out++ = now[i].sine;
             }
         }
     }

@@ -30,6 +30,7 @@ struct dalcs_excitation_wave {
     int first; /* function */
     int n_functions;
     bool is_curved; /* has oscillations: asked anew for every step */
+    bool has_level; /* at any time */
     double from;    /* s, where `piece` was taken */
     struct dalcs_stimulus_piece piece;
 };

@@ -3,6 +3,7 @@
 
 #include "crossing.h"
 #include "extremes.h"
+#include "quads.h"
 #include "union_find.h"
 
 #include <float.h>
@@ -52,31 +53,35 @@ static int pair_of(const struct dalcs_radau_part *part, int guard) {
     return guard < n_pairs ? guard : part->stages.watched[guard - n_pairs];
 }
 
-/* A voltage that moves a switch, less its threshold. */
-static const double *control_values(const struct dalcs_radau_part *part, int guard, double *work) {
+/* A voltage that moves a switch, less its threshold, at a node. */
+static double control_at(const struct dalcs_radau_part *part, int guard, int node) {
     const struct dalcs_system *s = part->component->system;
-    const struct dalcs_stage_layout *l = &part->stages.layout;
     int d = pair_of(part, guard);
+    double v = part->out[node * part->stages.layout.stride + dalcs_system_n_columns(s) + guard -
+                         s->n_pairs];
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, d);
-    const double *v = part->out + dalcs_system_n_columns(s) + guard - s->n_pairs;
-    for (int k = 0; k < l->n_nodes; k++) {
-        work[k] =
-            is_on ? v[k * l->stride] - s->pair[d].turn_off : s->pair[d].turn_on - v[k * l->stride];
-    }
-    return work;
+    return is_on ? v - s->pair[d].turn_off : s->pair[d].turn_on - v;
 }
 
-/* Values at the nodes, with their stride; NULL for a switch, which has no sign to keep. */
+/* Values at the nodes, with their stride; of a pair they are in the answer itself. */
 static inline const double *values_of(const struct dalcs_radau_part *part, int guard, double *work,
                                       int *stride) {
     const struct dalcs_system *s = part->component->system;
-    if (guard >= s->n_pairs) {
-        *stride = 1;
-        return control_values(part, guard, work);
-    }
     *stride = part->stages.layout.stride;
-    bool is_diode = s->pair[guard].kind == DALCS_PAIR_DIODE;
-    return is_diode ? part->out + dalcs_system_n_equations(s) + guard : NULL;
+    if (guard < s->n_pairs) {
+        return part->out + dalcs_system_n_equations(s) + guard;
+    }
+    for (int k = 0; k < part->stages.layout.n_nodes; k++) {
+        work[k] = control_at(part, guard, k);
+    }
+    *stride = 1;
+    return work;
+}
+
+/* A switch has no sign to keep. */
+static inline bool is_guarded(const struct dalcs_radau_part *part, int guard) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    return guard >= p->system->n_pairs || p->is_diode[guard];
 }
 
 static double control_scale(const struct dalcs_radau_part *part, int guard, const double *unit) {
@@ -159,8 +164,11 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     part->pair_row = dalcs_alloc(2 * (size_t)s->n_pairs, sizeof(int));
     part->cluster = dalcs_alloc(n_equations, sizeof(int));
     part->cluster_charge = dalcs_alloc(n_equations, sizeof(double));
-    if (part->held_charge == NULL || part->held_flux == NULL || part->pair_row == NULL ||
-        part->cluster == NULL || part->cluster_charge == NULL) {
+    part->bound = dalcs_alloc((size_t)dalcs_quads_of(n_guards(part)) + DALCS_QUAD, sizeof(double));
+    part->doubtful = dalcs_alloc((size_t)n_guards(part), sizeof(int));
+    if (part->bound == NULL || part->doubtful == NULL || part->held_charge == NULL ||
+        part->held_flux == NULL || part->pair_row == NULL || part->cluster == NULL ||
+        part->cluster_charge == NULL) {
         return DALCS_E_NOMEM;
     }
     find_charges(part);
@@ -174,6 +182,8 @@ void dalcs_guards_finish(struct dalcs_radau_part *part) {
     free(part->pair_row);
     free(part->cluster);
     free(part->cluster_charge);
+    free(part->bound);
+    free(part->doubtful);
 }
 
 /* Components with more pairs than this are large. */
@@ -206,39 +216,69 @@ static void gather_charges(struct dalcs_radau_part *part) {
     }
 }
 
-void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
-                      const double *unit) {
-    int n_nodes = part->stages.layout.n_nodes;
-    double band = band_of(r, part);
-    double weight[DALCS_MAX_NODES];
-    if (theta == 0.0 && part->component->system->n_pairs > MANY_PAIRS) {
-        gather_charges(part);
-    }
-    bool at_node = theta == 0.0 || theta == 1.0;
-    int node = theta == 0.0 ? 0 : n_nodes - 1;
-    if (!at_node) {
-        dalcs_collocation_weights(part->stages.method, theta, weight);
-    }
-    for (int g = 0; g < n_guards(part); g++) {
-        if (theta > 0.0 && part->armed[g]) {
-            continue;
+static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band,
+                         const double *unit) {
+    int node = at_end ? part->stages.layout.n_nodes - 1 : 0;
+    for (int g = part->component->system->n_pairs; g < n_guards(part); g++) {
+        if (!(at_end && part->armed[g])) {
+            part->armed[g] = control_at(part, g, node) > band * control_scale(part, g, unit);
         }
-        double work[DALCS_MAX_NODES];
-        int stride;
-        const double *value = values_of(part, g, work, &stride);
-        if (value == NULL) {
-            continue;
-        }
-        double now = at_node ? value[node * stride] : 0.0;
-        for (int k = 0; k < n_nodes && !at_node; k++) {
-            now += weight[k] * value[k * stride];
-        }
-        part->armed[g] = now > band * scale_of(part, g, unit);
     }
 }
 
-double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                               double end, const double *unit, bool *at_once) {
+void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, bool at_end,
+                      const double *unit) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    int n_pairs = p->system->n_pairs;
+    double band = band_of(r, part);
+    if (!at_end && n_pairs > MANY_PAIRS) {
+        gather_charges(part);
+    }
+    const double *value = part->out + (at_end ? (l->n_nodes - 1) * l->stride : 0) +
+                          dalcs_system_n_equations(p->system);
+    bool *armed = part->armed;
+    for (int d = 0; d < n_pairs; d++) {
+        if (p->is_diode[d] && !(at_end && armed[d])) {
+            armed[d] = value[d] > band * unit[dalcs_osnsp_is_on(p, d)];
+        }
+    }
+    if (part->stages.n_watched > 0) {
+        arm_controls(part, at_end, band, unit);
+    }
+}
+
+static void bound_controls(const struct dalcs_radau_part *part) {
+    for (int g = part->component->system->n_pairs; g < n_guards(part); g++) {
+        double work[DALCS_MAX_NODES + DALCS_QUAD] = {0.0};
+        int stride;
+        const double *value = values_of(part, g, work, &stride);
+        dalcs_crossing_bounds(part->stages.method, 1, value, stride, part->bound + g);
+    }
+}
+
+/* The guards that bounds do not clear. */
+static void find_doubtful(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    dalcs_crossing_bounds(part->stages.method, s->n_pairs, part->out + dalcs_system_n_equations(s),
+                          part->stages.layout.stride, part->bound);
+    if (part->stages.n_watched > 0) {
+        bound_controls(part);
+    }
+    const double *bound = part->bound;
+    int n = n_guards(part);
+    int n_doubtful = 0;
+    for (int g = 0; g < n; g++) {
+        if (!(bound[g] >= 0.0) && is_guarded(part, g)) {
+            part->doubtful[n_doubtful++] = g;
+        }
+    }
+    part->n_doubtful = n_doubtful;
+}
+
+/* The first of the doubtful ones. */
+static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *part, double end,
+                         const double *unit, bool *at_once) {
     double first = INFINITY;
     double same = part->rounding > 1.0 ? same_on_factors : same_on_maps;
     double together = dalcs_larger(same, 2.0 * r->resolution / part->h);
@@ -246,21 +286,20 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
     /* What crosses at the stop time, up to the error, is left to a longer run. */
     bool stops = end <= 1.0 && part->t + end * part->h >= r->options.stop - r->resolution;
     int last = part->stages.layout.n_nodes - 1;
-    part->n_crossed = 0;
-    *at_once = false;
-    for (int g = 0; g < n_guards(part); g++) {
+    for (int k = 0; k < part->n_doubtful; k++) {
+        int g = part->doubtful[k];
         double work[DALCS_MAX_NODES];
         int stride;
         const double *value = values_of(part, g, work, &stride);
-        if (value == NULL) {
-            continue;
-        }
         double scale = scale_of(part, g, unit);
         double depth = (part->armed[g] && !stops ? dalcs_guards_noise(part) : band) * scale;
         if (!part->armed[g] && !part->fresh && !stops && value[last * stride] < value[0]) {
             depth *= falling_part;
         }
         depth += rounding_of(part, g, unit);
+        if (part->bound[g] >= -depth) {
+            continue;
+        }
         struct dalcs_crossing c =
             dalcs_crossing_find(part->stages.method, value, stride, end, depth);
         if (!c.falls || c.theta > first + together) {
@@ -278,13 +317,21 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
     return first;
 }
 
+double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                               double end, const double *unit, bool *at_once) {
+    part->n_crossed = 0;
+    *at_once = false;
+    find_doubtful(part);
+    return part->n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;
+}
+
 bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
     double work[DALCS_MAX_NODES];
     int stride;
     const double *value = values_of(part, pair, work, &stride);
     double limit = dalcs_guards_noise(part) * scale_of(part, pair, unit);
     limit += rounding_of(part, pair, unit);
-    bool tied = value != NULL;
+    bool tied = is_guarded(part, pair);
     for (int k = 0; k < part->stages.layout.n_nodes && tied; k++) {
         tied = fabs(value[k * stride]) <= limit;
     }
@@ -315,17 +362,14 @@ bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit) {
 double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end,
                                const double *unit) {
     const struct dalcs_system *s = part->component->system;
-    int stride = part->stages.layout.stride;
-    int n_known = 0;
-    while (n_known < part->stages.layout.n_nodes && part->stages.method->node[n_known] <= end) {
-        n_known++;
-    }
+    const struct dalcs_stage_layout *l = &part->stages.layout;
     double worst = 0.0;
-    for (int d = 0; d < s->n_pairs; d++) {
+    for (int i = 0; i < part->n_doubtful && part->doubtful[i] < s->n_pairs; i++) {
+        int d = part->doubtful[i];
         const double *value = part->out + dalcs_system_n_equations(s) + d;
         double least = 0.0;
-        for (int k = 0; k < n_known && s->pair[d].kind == DALCS_PAIR_DIODE; k++, value += stride) {
-            least = *value < least ? *value : least;
+        for (int k = 0; k < l->n_nodes && part->stages.method->node[k] <= end; k++) {
+            least = dalcs_smaller(least, value[k * l->stride]);
         }
         if (least < 0.0) {
             worst = dalcs_larger(worst, -least / scale_of(part, d, unit));

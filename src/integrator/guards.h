@@ -14,9 +14,10 @@ void dalcs_guards_finish(struct dalcs_radau_part *part);
 /* What rounding leaves of a zero, over its unit's scale. */
 double dalcs_guards_noise(const struct dalcs_radau_part *part);
 
-/* Guards that are clear of 0 at theta are armed: from then on every fall below 0 counts. Those that
- * start within the error of 0, because they have just crossed it, count when they leave it downwards. */
-void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
+/* Guards that are clear of 0 at the start, or at the end, of a step are armed: from then on every fall
+ * below 0 counts. Those that start within the error of 0, because they have just crossed it, count when
+ * they leave it downwards. */
+void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, bool at_end,
                       const double *unit);
 
 /* The first to fall up to `end`, listed in part->crossed; INFINITY when none does. *at_once: one that
@@ -36,7 +37,8 @@ bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const d
 /* Opens the closed diodes among them. False: there is none. */
 bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit);
 
-/* The most negative lambda or w at the nodes up to `end`, over the largest of its unit; 0 when none. */
+/* The most negative lambda or w at the nodes up to `end`, over the largest of its unit; 0 when none. Of
+ * a step in which a first fall has been looked for. */
 double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end, const double *unit);
 
 /* What crossed changes sides. */

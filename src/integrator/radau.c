@@ -1,6 +1,7 @@
 /* radau.c - the parts of a run: set up, started, passed from segment to segment, evaluated. */
 #include "energy.h"
 #include "guards.h"
+#include "quads.h"
 #include "radau_internal.h"
 
 #include <math.h>
@@ -72,27 +73,25 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     size_t n_columns = (size_t)dalcs_system_n_columns(s);
     size_t n_guards = (size_t)(s->n_pairs + part->stages.n_watched);
     size_t n_out = (size_t)l->n_fixed + (size_t)part->stages.method->s * n_columns + 8;
-    part->x = dalcs_alloc((size_t)s->n_x, sizeof(double));
+    part->x = dalcs_alloc((size_t)dalcs_quads_of(s->n_x), sizeof(double));
     part->in = dalcs_alloc((size_t)part->stages.n_in, sizeof(double));
     part->out = dalcs_alloc(n_out, sizeof(double));
     part->out_before = dalcs_alloc(n_out, sizeof(double));
     part->out_tried = dalcs_alloc(n_out, sizeof(double));
-    part->scale = dalcs_alloc(n_columns, sizeof(double));
-    part->magnitude = dalcs_alloc(n_columns, sizeof(double));
     part->armed = dalcs_alloc(n_guards, sizeof(bool));
     part->crossed = dalcs_alloc(n_guards, sizeof(int));
     part->tied = dalcs_alloc((size_t)s->n_pairs, sizeof(bool));
     part->u = dalcs_alloc((size_t)(s->n_x + s->n_inputs), sizeof(double));
-    part->y1 = dalcs_alloc((size_t)l->stride, sizeof(double));
-    part->y2 = dalcs_alloc((size_t)l->stride, sizeof(double));
+    part->y1 = dalcs_alloc((size_t)dalcs_quads_of(l->stride), sizeof(double));
+    part->y2 = dalcs_alloc((size_t)dalcs_quads_of(l->stride), sizeof(double));
     part->w1 = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
     part->after = dalcs_alloc((size_t)s->n_x, sizeof(double));
     part->used_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
-                    part->out_before != NULL && part->out_tried != NULL && part->scale != NULL &&
-                    part->magnitude != NULL && part->armed != NULL && part->crossed != NULL &&
-                    part->tied != NULL && part->u != NULL && part->y1 != NULL && part->y2 != NULL &&
-                    part->w1 != NULL && part->after != NULL && part->used_input != NULL;
+                    part->out_before != NULL && part->out_tried != NULL && part->armed != NULL &&
+                    part->crossed != NULL && part->tied != NULL && part->u != NULL &&
+                    part->y1 != NULL && part->y2 != NULL && part->w1 != NULL &&
+                    part->after != NULL && part->used_input != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -150,6 +149,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     DALCS_TRY(allocate(part));
     DALCS_TRY(dalcs_transition_setup(part));
     DALCS_TRY(dalcs_guards_setup(part));
+    DALCS_TRY(dalcs_step_setup(part));
     bool *used = dalcs_alloc((size_t)c->system->n_inputs, sizeof(bool));
     if (used == NULL) {
         return DALCS_E_NOMEM;
@@ -198,8 +198,6 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->out);
     free(part->out_before);
     free(part->out_tried);
-    free(part->scale);
-    free(part->magnitude);
     free(part->armed);
     free(part->crossed);
     free(part->tied);
@@ -211,6 +209,7 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->used_input);
     dalcs_transition_finish(part);
     dalcs_guards_finish(part);
+    dalcs_step_finish(part);
 }
 
 void dalcs_radau_finish(struct dalcs_radau *r) {

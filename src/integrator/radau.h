@@ -57,18 +57,22 @@ struct dalcs_radau_part {
     double fell_back;     /* s, length of the last */
     bool fresh;           /* something just happened at t: nothing is known of how pairs start */
     bool flipped;         /* and it is that pairs changed sides */
-    double *x;            /* [n_x] at t */
+    double *x;            /* [n_x] at t, in whole quads */
     double *in, *out;
     double *out_before; /* the segment before, which ended there, in its steps */
     double end_before;
     double *out_tried; /* a step put aside while the state is projected */
     double rounding;   /* of out, over that of a dense map */
-    double *scale;     /* [n_columns] largest magnitudes so far */
+    double *scale;     /* [n_columns] largest magnitudes so far; this and the next in whole quads */
     double *magnitude; /* [n_columns] in the present step up to magnitude_end, in steps */
     double magnitude_end;
-    double unit_scale[2]; /* V, A: the largest of each */
+    struct dalcs_column_kinds *kinds; /* see step_error.c */
+    double unit_scale[2];             /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
+    double *bound; /* [n_pairs + n_watched] in whole quads: none is below it in the present step */
+    int n_doubtful;
+    int *doubtful; /* [n_pairs + n_watched] those whose bound is below 0 */
     int n_crossed;
     int *crossed; /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
     double *held_charge, *held_flux; /* [n_pairs] F, H: storage next to a pair; guards.c */
@@ -79,7 +83,7 @@ struct dalcs_radau_part {
     bool by_euler;                   /* the segment is a step of implicit Euler */
     bool open;                       /* its mode leaves something open, and nobody was told */
     bool *tied;                      /* [n_pairs] work */
-    double *u, *y1, *y2, *w1, *after; /* work */
+    double *u, *y1, *y2, *w1, *after; /* work; y1 and y2 in whole quads */
     int n_used_inputs, *used_input;   /* that probes read */
 
     struct dalcs_transition { /* see transition.h */

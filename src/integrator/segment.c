@@ -375,7 +375,7 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
     }
     dalcs_step_remember(part, theta, quality->unit);
     if (theta == 1.0) {
-        dalcs_guards_arm(r, part, theta, quality->unit);
+        dalcs_guards_arm(r, part, true, quality->unit);
     }
     r->steps++;
     r->wrong_sign =
@@ -446,7 +446,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         DALCS_TRY(dalcs_stages_get(&part->stages, part->component->osnsp.mode, part->h, &entry));
     }
     if (part->fresh) {
-        dalcs_guards_arm(r, part, 0.0, quality.unit);
+        dalcs_guards_arm(r, part, false, quality.unit);
     }
     bool at_once;
     double theta = dalcs_guards_first_fall(r, part, end, quality.unit, &at_once);

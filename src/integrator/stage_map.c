@@ -2,6 +2,7 @@
  * of the few solutions that the workshop has for unit states and unit inputs. */
 #include "dense_map.h"
 #include "stage_workshop.h"
+#include "wide_vectors.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -12,38 +13,50 @@
  * loop of sources are nothing to diodes. */
 static const double null_rounding = 1e-10;
 
-/* The other side of pair d: lambda where it is closed, w where it is open, from unknowns and from the
- * share of the source column (wave < 0: none) at this node. */
-static double other_side(const struct dalcs_stage_workshop *b, int d, const double *y,
-                         int rhs_column, double share) {
-    const struct dalcs_system *s = b->system;
-    double w = 0.0;
-    for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
-        int c = b->place[s->C.j[k]];
-        w += c >= 0 ? s->C.x[k] * y[c] : 0.0;
+/* Adds factor times a row of lanes. */
+static inline void add_lanes(double *to, double factor, const double *from) {
+    for (int i = 0; i < DALCS_LANES; i += DALCS_QUAD) {
+        dalcs_quad sum;
+        dalcs_quad term;
+        dalcs_quad_load(&sum, to + i);
+        dalcs_quad_load(&term, from + i);
+        sum += factor * term;
+        dalcs_quad_store(to + i, &sum);
     }
-    for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
-        int wave = b->wave_column[s->F.j[k]];
-        if (wave == rhs_column && wave >= 0) {
-            w += s->F.x[k] * share;
-        } else if (wave < 0 && rhs_column == b->n_x) {
-            w += s->F.x[k] * share * b->stages->excitation->constant[s->F.j[k]];
-        }
-    }
-    return w;
 }
 
-static void find_guards(const struct dalcs_stage_workshop *b, const double *y, int rhs_column,
-                        double share) {
-    int n_equations = dalcs_system_n_equations(b->system);
-    for (int d = 0; d < b->system->n_pairs; d++) {
-        b->guard[d] = 0.0;
-        if (!dalcs_stage_is_on(b->entry, d) && b->system->pair[d].kind == DALCS_PAIR_DIODE) {
-            b->guard[d] = other_side(b, d, y, rhs_column, share);
+/* The other side of the pairs, b->guard: lambda where closed, w where open, from the unknowns in b->lanes
+ * and from the share of the source column (rhs_column < 0: none) in the lanes. */
+DALCS_TWICE(void, find_guards,
+            (const struct dalcs_stage_workshop *b, int rhs_column, const double *share),
+            (b, rhs_column, share)) {
+    const struct dalcs_system *s = b->system;
+    const double *constant = b->stages->excitation->constant;
+    memset(b->guard, 0, (size_t)(s->n_pairs * DALCS_LANES) * sizeof(double));
+    for (int d = 0; d < s->n_pairs; d++) {
+        if (dalcs_stage_is_on(b->entry, d) || s->pair[d].kind != DALCS_PAIR_DIODE) {
+            continue;
+        }
+        double *w = b->guard + d * DALCS_LANES;
+        for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
+            int c = b->place[s->C.j[k]];
+            if (c >= 0) {
+                add_lanes(w, s->C.x[k], b->lanes + c * DALCS_LANES);
+            }
+        }
+        for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
+            int wave = b->wave_column[s->F.j[k]];
+            if (wave >= 0 && wave == rhs_column) {
+                add_lanes(w, s->F.x[k], share);
+            } else if (wave < 0 && rhs_column == b->n_x) {
+                add_lanes(w, s->F.x[k] * constant[s->F.j[k]], share);
+            }
         }
     }
+    const double *lambda = b->lanes + dalcs_system_n_equations(s) * DALCS_LANES;
     for (int k = 0; k < b->entry->n_on; k++) {
-        b->guard[b->entry->on[k]] = y[n_equations + k];
+        memcpy(b->guard + b->entry->on[k] * DALCS_LANES, lambda + k * DALCS_LANES,
+               DALCS_LANES * sizeof(double));
     }
 }
 
@@ -62,6 +75,8 @@ static enum dalcs_status prepare_choice(struct dalcs_stage_workshop *b) {
     if (guards == NULL || identity == NULL || singular == NULL || b->choice == NULL) {
         return DALCS_E_NOMEM;
     }
+    const double no_share[DALCS_LANES] = {0.0};
+    memset(b->lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
     for (int k = 0; k < b->nullity; k++) {
         double largest = 0.0;
         for (int i = 0; i < b->n; i++) {
@@ -71,9 +86,13 @@ static enum dalcs_status prepare_choice(struct dalcs_stage_workshop *b) {
         for (int i = 0; i < b->n; i++) {
             b->right[k * b->n + i] /= largest;
         }
-        find_guards(b, b->right + k * b->n, -1, 0.0);
+        for (int i = 0; i < b->n; i++) {
+            b->lanes[i * DALCS_LANES] = b->right[k * b->n + i];
+        }
+        find_guards(b, -1, no_share);
         for (int d = 0; d < n_pairs; d++) {
-            guards[k * n_pairs + d] = fabs(b->guard[d]) > null_rounding ? b->guard[d] : 0.0;
+            double guard = b->guard[d * DALCS_LANES];
+            guards[k * n_pairs + d] = fabs(guard) > null_rounding ? guard : 0.0;
         }
     }
     for (int d = 0; d < n_pairs; d++) {
@@ -92,27 +111,30 @@ static enum dalcs_status prepare_choice(struct dalcs_stage_workshop *b) {
     return DALCS_OK;
 }
 
-static void choose(const struct dalcs_stage_workshop *b, double *y, int rhs_column, double share) {
-    find_guards(b, y, rhs_column, share);
+/* Adds what is to be added of the null vectors at the nodes. */
+static void choose(const struct dalcs_stage_workshop *b) {
+    int n_pairs = b->system->n_pairs;
     for (int k = 0; k < b->nullity && b->choice != NULL; k++) {
-        double amount = 0.0;
-        for (int d = 0; d < b->system->n_pairs; d++) {
-            amount += b->choice[k * b->system->n_pairs + d] * b->guard[d];
+        double amount[DALCS_LANES] = {0.0};
+        for (int d = 0; d < n_pairs; d++) {
+            add_lanes(amount, b->choice[k * n_pairs + d], b->guard + d * DALCS_LANES);
         }
+        amount[DALCS_RIPPLE_LANE] = 0.0;
         for (int i = 0; i < b->n; i++) {
-            y[i] += amount * b->right[k * b->n + i];
+            add_lanes(b->lanes + i * DALCS_LANES, b->right[k * b->n + i], amount);
         }
-    }
-    if (b->nullity > 0) {
-        find_guards(b, y, rhs_column, share);
     }
 }
 
-/* Unknowns y to the columns of the system, b->guard in the place of lambda. */
-static void put_columns(const struct dalcs_stage_workshop *b, const double *y, double *out) {
+/* Unknowns in a lane to the columns of the system, guards in the place of lambda. */
+static void put_columns(const struct dalcs_stage_workshop *b, int lane, double *out) {
     int n_equations = dalcs_system_n_equations(b->system);
-    memcpy(out, y, (size_t)n_equations * sizeof(double));
-    memcpy(out + n_equations, b->guard, (size_t)b->system->n_pairs * sizeof(double));
+    for (int c = 0; c < n_equations; c++) {
+        out[c] = b->lanes[c * DALCS_LANES + lane];
+    }
+    for (int d = 0; d < b->system->n_pairs; d++) {
+        out[n_equations + d] = b->guard[d * DALCS_LANES + lane];
+    }
 }
 
 /* A watched voltage from columns and the share of a source. */
@@ -140,6 +162,19 @@ static double watched_voltage(const struct dalcs_stage_workshop *b, int d, const
     return v;
 }
 
+/* Of what is the same at all stages, as states and constants are: each coordinate sees the constant 1
+ * as 1. */
+static void find_constant_factors(struct dalcs_stage_workshop *b) {
+    const struct dalcs_collocation *m = b->stages->method;
+    for (int i = 0; i < m->s; i++) {
+        b->constant_factor[i][0] = m->exact_to[i];
+        for (int p = 0; p < m->n_pairs; p++) {
+            b->constant_factor[i][1 + 2 * p] = 2.0L * creall(m->exact_to_pair[i][p]);
+            b->constant_factor[i][2 + 2 * p] = -2.0L * cimagl(m->exact_to_pair[i][p]);
+        }
+    }
+}
+
 /* What the stages take of each part of a solution: factor[s][parts]. */
 static void find_factors(const struct dalcs_stage_workshop *b, const double *share,
                          long double factor[][DALCS_SOLUTION_PARTS]) {
@@ -159,171 +194,148 @@ static void find_factors(const struct dalcs_stage_workshop *b, const double *sha
             im += cimagl(m->exact_from_pair[p][q]) * share[q + 1];
         }
         for (int i = 0; i < m->s; i++) {
-            long double to_re = 2.0L * creall(m->exact_to_pair[i][p]);
-            long double to_im = 2.0L * cimagl(m->exact_to_pair[i][p]);
-            factor[i][1 + 2 * p] = to_re * re - to_im * im;
-            factor[i][2 + 2 * p] = -(to_re * im + to_im * re);
+            const long double *of_pair = b->constant_factor[i] + 1 + 2 * p;
+            factor[i][1 + 2 * p] = of_pair[0] * re + of_pair[1] * im;
+            factor[i][2 + 2 * p] = of_pair[1] * re - of_pair[0] * im;
         }
     }
 }
 
-/* Those of what is the same at all stages, as states and constants are: each coordinate sees the
- * constant 1 as 1. */
-static void find_constant_factors(const struct dalcs_stage_workshop *b,
-                                  long double factor[][DALCS_SOLUTION_PARTS]) {
-    const struct dalcs_collocation *m = b->stages->method;
-    for (int i = 0; i < m->s; i++) {
-        factor[i][0] = m->exact_to[i];
-        for (int p = 0; p < m->n_pairs; p++) {
-            factor[i][1 + 2 * p] = 2.0L * creall(m->exact_to_pair[i][p]);
-            factor[i][2 + 2 * p] = -2.0L * cimagl(m->exact_to_pair[i][p]);
-        }
-    }
-}
-
-/* Unknown r at the stages from its increments in balanced units, into b->node and b->start. */
-static void put_stages(struct dalcs_stage_workshop *b, int r, const long double *increment,
-                       bool is_column) {
-    const struct dalcs_collocation *m = b->stages->method;
-    long double scale = b->column_scale[r];
-    long double unit = is_column ? 1.0L : 0.0L;
-    long double start = 0.0L;
-    for (int i = 0; i < m->s; i++) {
-        long double y = increment[i] * scale + unit;
-        start += m->exact_back[i] * y;
-        b->node[(i + 1) * b->n + r] = (double)y;
-    }
-    b->start[r] = start;
-}
-
-/* The stages, and how far the polynomial through them alone misses the start, into b->node, b->start
- * and, before the filter, b->defect. */
+/* The stages, into b->lanes, and, before the filter, how far the polynomial through them alone misses
+ * the start, into b->start. */
 static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_column,
                         const double *share) {
     const struct dalcs_collocation *m = b->stages->method;
     bool is_state = column < b->n_x;
-    long double factor[DALCS_MAX_STAGES][DALCS_SOLUTION_PARTS] = {{0.0L}};
-    if (column <= b->n_x) {
-        find_constant_factors(b, factor);
-    } else {
-        find_factors(b, share, factor);
+    const long double(*factor)[DALCS_SOLUTION_PARTS] = (const void *)b->constant_factor;
+    if (column > b->n_x) {
+        find_factors(b, share, b->factor);
+        factor = (const void *)b->factor;
     }
     const long double *part = b->part + rhs_column * b->n_kept * DALCS_SOLUTION_PARTS;
     long double *stage = b->stage;
     for (int r = 0; r < b->n_kept; r++, part += DALCS_SOLUTION_PARTS, stage += DALCS_MAX_STAGES) {
+        long double scale = b->column_scale[b->kept[r]];
+        long double unit = is_state && b->kept[r] == column ? 1.0L : 0.0L;
+        long double start = 0.0L;
+        double *lane = b->lanes + b->kept[r] * DALCS_LANES;
         for (int i = 0; i < m->s; i++) {
             long double sum = factor[i][0] * part[0];
             for (int k = 1; k < DALCS_SOLUTION_PARTS; k++) {
                 sum += factor[i][k] * part[k];
             }
             stage[i] = sum;
+            long double y = sum * scale + unit;
+            start += m->exact_back[i] * y;
+            lane[i + 1] = (double)y;
         }
-        put_stages(b, b->kept[r], stage, is_state && b->kept[r] == column);
+        b->start[b->kept[r]] = start;
     }
     for (int f = 0; f < b->n_followers; f++) {
-        long double increment[DALCS_MAX_STAGES];
+        long double scale = b->column_scale[b->follower[f]];
         long double drive = dalcs_stage_workshop_drive(b, f, rhs_column);
+        long double start = 0.0L;
+        double *lane = b->lanes + b->follower[f] * DALCS_LANES;
         for (int i = 0; i < m->s; i++) {
-            increment[i] = is_state ? drive : drive * share[i + 1];
-        }
-        for (int k = b->follows_p[f]; k < b->follows_p[f + 1]; k++) {
-            stage = b->stage + b->follows_j[k] * DALCS_MAX_STAGES;
-            for (int i = 0; i < m->s; i++) {
-                increment[i] -= b->follows_x[k] * stage[i];
+            long double sum = is_state ? drive : drive * share[i + 1];
+            for (int k = b->follows_p[f]; k < b->follows_p[f + 1]; k++) {
+                sum -= b->follows_x[k] * b->stage[b->follows_j[k] * DALCS_MAX_STAGES + i];
             }
+            long double y = sum * scale;
+            start += m->exact_back[i] * y;
+            lane[i + 1] = (double)y;
         }
-        put_stages(b, b->follower[f], increment, false);
+        b->start[b->follower[f]] = start;
     }
 }
 
-/* What the filter makes of a state that is off by `missed`. */
-static void add_defect(const struct dalcs_stage_workshop *b, int x, long double missed) {
-    const long double *real = b->real + x * b->n;
-    for (int r = 0; r < b->n && missed != 0.0L; r++) {
-        b->defect[r] += real[r] * missed;
-    }
-}
-
-/* The start, and the defect of the states there after the filter, into b->node and b->drift. */
+/* The start and what sources do between the nodes into b->lanes, and the defect at the start after the
+ * filter into b->defect. */
 static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_column,
                        const double *share) {
     const struct dalcs_collocation *m = b->stages->method;
     int n = b->n;
-    bool is_state = column < b->n_x;
+    int n_x = b->n_x;
+    bool is_state = column < n_x;
     const long double *real = b->real + rhs_column * n;
     long double source_drift = share[0];
     for (int i = 1; i <= m->s; i++) {
         source_drift -= m->exact_back[i - 1] * share[i];
     }
-    for (int r = 0; r < n; r++) {
-        b->defect[r] = is_state ? 0.0L : real[r] * source_drift;
-    }
-    for (int x = 0; x < b->n_x; x++) {
-        long double given = x == column ? 1.0L : 0.0L;
-        add_defect(b, x, given - b->start[x]);
-        b->start[x] = given;
+    for (int x = 0; x < n_x; x++) {
+        b->missed[x] = (x == column ? 1.0L : 0.0L) - b->start[x];
     }
     for (int r = 0; r < n; r++) {
-        b->defect[r] *= b->column_scale[r];
-        b->drift[r] = (double)b->defect[r];
-        b->start[r] += r < b->n_x ? 0.0L : b->defect[r];
-    }
-    /* What was added goes with states that are off by the defect: take that back as well. */
-    for (int x = 0; x < b->n_x; x++) {
-        const long double *of_state = b->real + x * n;
-        for (int r = b->n_x; r < n; r++) {
-            b->start[r] -= of_state[r] * b->column_scale[r] * b->defect[x];
+        double *lane = b->lanes + r * DALCS_LANES;
+        long double scale = b->column_scale[r];
+        long double defect = is_state ? 0.0L : real[r] * source_drift;
+        for (int x = 0; x < n_x; x++) {
+            defect += b->real[x * n + r] * b->missed[x];
         }
-    }
-    for (int r = 0; r < n; r++) {
-        b->node[r] = (double)b->start[r];
+        defect *= scale;
+        lane[0] = r == column ? 1.0 : 0.0;
+        if (r < n_x) {
+            b->defect[r] = defect;
+        } else {
+            /* What is added goes with states that are off by their defects: less that. */
+            long double start = b->start[r] + defect;
+            for (int x = 0; x < n_x; x++) {
+                start -= b->real[x * n + r] * scale * b->defect[x];
+            }
+            lane[0] = (double)start;
+        }
+        lane[DALCS_RIPPLE_LANE] =
+            (double)real[r] * b->column_scale[r] * share[DALCS_RIPPLE_LANE] * m->test_factor;
     }
 }
 
-/* One column of the map: the answer to in[column] = 1. share[s + 1] are the values of the source
- * there, `missed` is what they miss of it in between; for a state all are 0. */
+/* One column of the map, with its clashes: the answer to in[column] = 1. In the lanes of share are the
+ * values of the source at the nodes and what they miss of it in between; for a state all are 0. */
 static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_column,
-                        const double *share, double missed, double *out) {
+                        const double *share, double *out) {
     const struct dalcs_collocation *m = b->stages->method;
     const struct dalcs_stage_layout *l = &b->stages->layout;
     const struct dalcs_system *s = b->system;
-    int n = b->n;
     bool is_state = column < b->n_x;
     fill_stages(b, column, rhs_column, share);
     fill_start(b, column, rhs_column, share);
+    find_guards(b, rhs_column, share);
+    if (b->nullity > 0) {
+        choose(b);
+        find_guards(b, rhs_column, share);
+    }
     for (int k = 0; k <= m->s; k++) {
         double *columns = out + k * l->stride;
-        choose(b, b->node + k * n, rhs_column, is_state ? 0.0 : share[k]);
-        put_columns(b, b->node + k * n, columns);
+        put_columns(b, k, columns);
         for (int i = 0; i < b->stages->n_watched; i++) {
-            columns[dalcs_system_n_columns(s) + i] = watched_voltage(
-                b, b->stages->watched[i], columns, rhs_column, is_state ? 0.0 : share[k]);
+            columns[dalcs_system_n_columns(s) + i] =
+                watched_voltage(b, b->stages->watched[i], columns, rhs_column, share[k]);
         }
     }
-    memcpy(out + l->drift, b->drift, (size_t)b->n_x * sizeof(double));
-    if (b->stages->excitation->is_curved && !is_state) {
-        const long double *real = b->real + rhs_column * n;
-        for (int r = 0; r < n; r++) {
-            b->drift[r] = (double)real[r] * b->column_scale[r] * missed * m->test_factor;
-        }
-        find_guards(b, b->drift, rhs_column, missed);
-        put_columns(b, b->drift, out + l->ripple);
+    for (int x = 0; x < b->n_x; x++) {
+        out[l->drift + x] = (double)b->defect[x];
+    }
+    if (b->stages->excitation->is_curved) {
+        put_columns(b, DALCS_RIPPLE_LANE, out + l->ripple);
     }
     for (int k = 0; k < b->nullity; k++) {
         double clash = 0.0;
-        for (int i = s->n_x; i < n && !is_state; i++) {
-            clash += b->left[k * n + i] * b->rhs[rhs_column * n + i];
+        for (int i = s->n_x; i < b->n && !is_state; i++) {
+            clash += b->left[k * b->n + i] * b->rhs[rhs_column * b->n + i];
         }
         for (int i = 1; i <= m->s; i++) {
             out[l->n_fixed + k * m->s + i - 1] = clash * share[i];
         }
+    }
+    for (int i = l->n_fixed + b->entry->n_clashes; i < b->entry->rows; i++) {
+        out[i] = 0.0;
     }
 }
 
 /* How well the rounded answer at the last stage satisfies the equations without derivatives, in
  * balanced units. In a singular mode sources may disagree, which is for the clashes to tell. */
 static void check_column(struct dalcs_stage_workshop *b, int column, int rhs_column, double share) {
-    const double *y = b->node + b->stages->method->s * b->n;
+    int last = b->stages->method->s;
     bool is_state = column < b->n_x;
     if (b->nullity > 0 && !is_state) {
         return;
@@ -337,7 +349,7 @@ static void check_column(struct dalcs_stage_workshop *b, int column, int rhs_col
         largest = drive > largest ? drive : largest;
     }
     for (int c = 0; c < b->n; c++) {
-        double increment = y[c] - (is_state && c == column ? 1.0 : 0.0);
+        double increment = b->lanes[c * DALCS_LANES + last] - (is_state && c == column ? 1.0 : 0.0);
         double balanced = increment / b->column_scale[c];
         const double *base = b->base + c * b->n;
         for (int r = b->n_x; r < b->n && balanced != 0.0; r++) {
@@ -354,29 +366,36 @@ static void check_column(struct dalcs_stage_workshop *b, int column, int rhs_col
     b->entry->residual = fmax(b->entry->residual, largest > 0.0 ? worst / largest : 0.0);
 }
 
+static int n_columns(const struct dalcs_stage_workshop *b) {
+    return b->has_constants ? b->stages->n_in : b->stages->n_in - 1;
+}
+
 static void fill_map(struct dalcs_stage_workshop *b) {
     const struct dalcs_excitation *e = b->stages->excitation;
     const struct dalcs_collocation *m = b->stages->method;
-    double share[DALCS_MAX_NODES] = {0.0};
+    double share[DALCS_LANES] = {0.0};
     double *out = b->entry->map;
+    memset(b->lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
     for (int x = 0; x < b->n_x; x++, out += b->entry->rows) {
-        fill_column(b, x, x, share, 0.0, out);
+        fill_column(b, x, x, share, out);
         check_column(b, x, x, 0.0);
     }
     for (int k = 0; k <= m->s; k++) {
         share[k] = 1.0;
     }
-    fill_column(b, b->n_x, b->n_x, share, 0.0, out);
-    check_column(b, b->n_x, b->n_x, 1.0);
-    out += b->entry->rows;
+    if (b->has_constants) {
+        fill_column(b, b->n_x, b->n_x, share, out);
+        check_column(b, b->n_x, b->n_x, 1.0);
+        out += b->entry->rows;
+    }
     for (int f = 0; f < e->n_functions; f++, out += b->entry->rows) {
         const struct dalcs_excitation_function *function = &e->function[f];
         for (int k = 0; k <= m->s; k++) {
             share[k] = dalcs_excitation_function_at(function, b->entry->h, m->node[k]);
         }
+        share[DALCS_RIPPLE_LANE] = dalcs_excitation_missed(function, m, b->entry->h, share);
         int rhs_column = b->wave_column[function->input];
-        fill_column(b, b->n_x + 1 + f, rhs_column, share,
-                    dalcs_excitation_missed(function, m, b->entry->h, share), out);
+        fill_column(b, b->n_x + 1 + f, rhs_column, share, out);
         check_column(b, b->n_x + 1 + f, rhs_column, share[m->s]);
     }
 }
@@ -385,22 +404,33 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
                                         struct dalcs_stage_entry *entry) {
     if (stages->workshop == NULL) {
         DALCS_TRY(dalcs_stage_workshop_create(&stages->workshop, stages));
+        find_constant_factors(stages->workshop);
     }
     struct dalcs_stage_workshop *b = stages->workshop;
     DALCS_TRY(dalcs_stage_workshop_solve(b, entry));
     DALCS_TRY(prepare_choice(b));
     entry->n_clashes = b->nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
-    entry->map = dalcs_dense_map_alloc(entry->rows, stages->n_in);
+    entry->map = dalcs_dense_map_alloc(entry->rows, n_columns(b));
     if (entry->map == NULL) {
         return DALCS_E_NOMEM;
     }
-    entry->bytes += (size_t)entry->rows * (size_t)stages->n_in * sizeof(double);
+    entry->bytes += (size_t)entry->rows * (size_t)n_columns(b) * sizeof(double);
     fill_map(b);
     return DALCS_OK;
 }
 
 void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
                            const double *in, double *out) {
-    dalcs_dense_map_apply(entry->rows, stages->n_in, entry->map, in, out);
+    const struct dalcs_stage_workshop *b = stages->workshop;
+    if (!b->has_constants) {
+        for (int k = 0; k < b->n_x; k++) {
+            b->in[k] = in[k];
+        }
+        for (int k = b->n_x + 1; k < stages->n_in; k++) {
+            b->in[k - 1] = in[k];
+        }
+        in = b->in;
+    }
+    dalcs_dense_map_apply(entry->rows, n_columns(b), entry->map, in, out);
 }

@@ -2,6 +2,7 @@
 #include "stage_workshop.h"
 
 #include "extended.h"
+#include "wide_vectors.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -32,12 +33,12 @@ static bool allocate(struct dalcs_stage_workshop *b) {
     int n = all < b->stages->dense_limit ? all : b->stages->dense_limit;
     b->wave_column = dalcs_arena_alloc(kept, (size_t)s->n_inputs + 1, sizeof(int));
     b->place = dalcs_arena_alloc(kept, (size_t)all + 1, sizeof(int));
-    b->row_scale = dalcs_stage_workshop_reals(kept, n);
+    b->row_scale = dalcs_stage_workshop_reals(kept, n + DALCS_QUAD);
     b->column_scale = dalcs_stage_workshop_reals(kept, n);
     b->base = dalcs_stage_workshop_reals(kept, n * n);
     b->P = dalcs_stage_workshop_reals(kept, b->n_x * b->n_x);
     b->rhs = dalcs_stage_workshop_reals(kept, n * b->n_rhs);
-    b->S = dalcs_stage_workshop_reals(kept, n * n);
+    b->S = dalcs_stage_workshop_reals(kept, n * n + DALCS_QUAD);
     b->re = extendeds(kept, n * (n + b->n_rhs));
     b->im = extendeds(kept, n * (n + b->n_rhs));
     b->whole = extendeds(kept, n * (n + b->n_rhs));
@@ -52,19 +53,29 @@ static bool allocate(struct dalcs_stage_workshop *b) {
     b->kept_row = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
     b->row_of = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
     b->is_used = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(*b->is_used));
-    b->node = dalcs_stage_workshop_reals(kept, n * b->stages->layout.n_nodes);
+    b->lanes = dalcs_stage_workshop_reals(kept, n * DALCS_LANES);
     b->start = extendeds(kept, n);
-    b->defect = extendeds(kept, n);
-    b->guard = dalcs_stage_workshop_reals(kept, s->n_pairs);
-    b->drift = dalcs_stage_workshop_reals(kept, n);
+    b->missed = extendeds(kept, b->n_x);
+    b->defect = extendeds(kept, b->n_x);
+    b->guard = dalcs_stage_workshop_reals(kept, s->n_pairs * DALCS_LANES);
     b->residual = dalcs_stage_workshop_reals(kept, n);
+    b->in = dalcs_stage_workshop_reals(kept, b->stages->n_in);
     return b->wave_column != NULL && b->place != NULL && b->row_scale != NULL &&
            b->column_scale != NULL && b->base != NULL && b->P != NULL && b->rhs != NULL &&
            b->S != NULL && b->re != NULL && b->im != NULL && b->whole != NULL && b->part != NULL &&
            b->real != NULL && b->stage != NULL && b->follows_x != NULL && b->follows_j != NULL &&
            b->follows_p != NULL && b->follower != NULL && b->kept != NULL && b->kept_row != NULL &&
-           b->row_of != NULL && b->is_used != NULL && b->node != NULL && b->start != NULL &&
-           b->defect != NULL && b->guard != NULL && b->drift != NULL && b->residual != NULL;
+           b->row_of != NULL && b->is_used != NULL && b->lanes != NULL && b->start != NULL &&
+           b->missed != NULL && b->defect != NULL && b->guard != NULL && b->residual != NULL &&
+           b->in != NULL;
+}
+
+static bool is_driven(const struct dalcs_csr *a, const double *constant) {
+    bool found = false;
+    for (int k = 0; k < a->p[a->n_rows] && !found; k++) {
+        found = a->x[k] != 0.0 && constant[a->j[k]] != 0.0;
+    }
+    return found;
 }
 
 enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **workshop,
@@ -90,6 +101,9 @@ enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **work
     for (int w = e->n_waves - 1; w >= 0; w--) {
         b->wave_column[e->wave[w].input] = b->n_x + 1 + w;
     }
+    const struct dalcs_system *s = b->system;
+    b->has_constants = is_driven(&s->E, e->constant) || is_driven(&s->F, e->constant) ||
+                       is_driven(&s->direct_control, e->constant);
     return DALCS_OK;
 }
 
@@ -168,9 +182,58 @@ static void fill(struct dalcs_stage_workshop *b) {
 }
 
 static double power_of_2(double largest) {
+    enum { BIAS = 1023, FRACTION_BITS = 52 };
+
+    uint64_t bits;
+    memcpy(&bits, &largest, sizeof(bits));
+    uint64_t biased = bits >> FRACTION_BITS; /* of largest >= 0 */
+    if (biased > 0 && biased < 2 * BIAS - 1) {
+        bits = (2 * BIAS - 1 - biased) << FRACTION_BITS;
+        double power;
+        memcpy(&power, &bits, sizeof(power));
+        return power;
+    }
     int exponent;
     (void)frexp(largest, &exponent);
     return largest > 0.0 && isfinite(largest) ? ldexp(1.0, -exponent) : 1.0;
+}
+
+/* Both with room for whole quads in S and in row_scale. */
+DALCS_TWICE(void, balance_rows,
+            (int n, const double *S, const double *column_scale, double *row_scale),
+            (n, S, column_scale, row_scale)) {
+    for (int i = 0; i < n; i += DALCS_QUAD) {
+        dalcs_quad largest = {0.0};
+        for (int j = 0; j < n; j++) {
+            dalcs_quad a;
+            dalcs_quad_load(&a, S + j * n + i);
+            dalcs_quad_unsign(&a);
+            a *= column_scale[j];
+            dalcs_quad_raise(&largest, &a);
+        }
+        dalcs_quad_store(row_scale + i, &largest);
+    }
+    for (int i = 0; i < dalcs_quads_of(n); i++) {
+        row_scale[i] = i < n ? power_of_2(row_scale[i]) : 0.0;
+    }
+}
+
+DALCS_TWICE(void, balance_columns,
+            (int n, const double *S, const double *row_scale, double *column_scale),
+            (n, S, row_scale, column_scale)) {
+    for (int j = 0; j < n; j++) {
+        dalcs_quad largest = {0.0};
+        for (int i = 0; i < n; i += DALCS_QUAD) {
+            dalcs_quad a;
+            dalcs_quad scale;
+            dalcs_quad_load(&a, S + j * n + i);
+            dalcs_quad_load(&scale, row_scale + i);
+            dalcs_quad_unsign(&a);
+            a *= scale;
+            dalcs_quad_raise(&largest, &a);
+        }
+        column_scale[j] = power_of_2(dalcs_quad_largest(&largest));
+    }
 }
 
 /* Rows and columns of |S| at the real eigenvalue get a largest entry near 1. */
@@ -188,22 +251,8 @@ static void balance(struct dalcs_stage_workshop *b) {
         }
     }
     for (int round = 0; round < BALANCING_ROUNDS; round++) {
-        for (int i = 0; i < n; i++) {
-            double largest = 0.0;
-            for (int j = 0; j < n; j++) {
-                double a = fabs(b->S[j * n + i]) * b->column_scale[j];
-                largest = a > largest ? a : largest;
-            }
-            b->row_scale[i] = power_of_2(largest);
-        }
-        for (int j = 0; j < n; j++) {
-            double largest = 0.0;
-            for (int i = 0; i < n; i++) {
-                double a = fabs(b->S[j * n + i]) * b->row_scale[i];
-                largest = a > largest ? a : largest;
-            }
-            b->column_scale[j] = power_of_2(largest);
-        }
+        balance_rows(n, b->S, b->column_scale, b->row_scale);
+        balance_columns(n, b->S, b->row_scale, b->column_scale);
     }
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < n; i++) {

@@ -8,11 +8,15 @@
 #ifndef DALCS_STAGE_WORKSHOP_H
 #define DALCS_STAGE_WORKSHOP_H
 
+#include "quads.h"
 #include "stages_internal.h"
 
 /* Solutions of one unknown side by side: the real eigenvalue's, then (re, im) of each complex one's, 0
  * where there are fewer: loops of known length are worth more than what they skip. */
 enum { DALCS_SOLUTION_PARTS = 1 + 2 * DALCS_MAX_CONJUGATES };
+
+/* An answer at all nodes side by side, behind them what sources do between the nodes. */
+enum { DALCS_RIPPLE_LANE = DALCS_MAX_NODES, DALCS_LANES = DALCS_MAX_NODES + DALCS_QUAD };
 
 /* Kept from map to map; what a map needs apart from it is in the arena. */
 struct dalcs_stage_workshop {
@@ -34,15 +38,19 @@ struct dalcs_stage_workshop {
     bool *is_used;              /* [n] */
     int *follows_p, *follows_j; /* what followers take of the kept, by rows */
     long double *follows_x;
-    long double *re, *im;        /* [n_kept][n_kept + n_rhs] a system by rows, then its solutions */
-    long double *part;           /* [n_rhs][n_kept][parts] the solutions, balanced */
-    long double *real;           /* [n_rhs][n] those of the real eigenvalue */
-    long double *stage;          /* [n_kept][stages] increments */
-    double *node;                /* [s + 1][n] the answer at the nodes */
-    long double *start, *defect; /* [n] at the start, before rounding */
-    double *guard;               /* [n_pairs] */
-    double *drift;               /* [n] */
-    double *residual;            /* [n] */
+    long double *re, *im; /* [n_kept][n_kept + n_rhs] a system by rows, then its solutions */
+    long double *part;    /* [n_rhs][n_kept][parts] the solutions, balanced */
+    long double *real;    /* [n_rhs][n] those of the real eigenvalue */
+    long double *stage;   /* [n_kept][stages] increments */
+    double *lanes;        /* [n][lanes] the answer */
+    long double *start;   /* [n] what the stages alone say of the start */
+    long double *missed, *defect; /* [n_x] what they miss there, and what the filter leaves of it */
+    double *guard;                /* [n_pairs][lanes] */
+    double *residual;             /* [n] */
+    bool has_constants; /* inputs that do not vary drive something: else maps lack their column */
+    double *in;         /* [n_in] of such a map */
+    long double factor[DALCS_MAX_STAGES][DALCS_SOLUTION_PARTS]; /* of a solution, at the stages */
+    long double constant_factor[DALCS_MAX_STAGES][DALCS_SOLUTION_PARTS];
     int nullity;
     double *left, *right; /* [nullity][n] null vectors, balanced */
     double *choice;       /* [nullity][n_pairs] what the other sides of pairs add of them */

@@ -8,8 +8,11 @@
 #include "step_error.h"
 
 #include "extremes.h"
+#include "quads.h"
+#include "wide_vectors.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Signals smaller than this part of the largest of their unit are held to that one's scale; the
@@ -30,6 +33,75 @@ static const double clash_part = 1e-9;
 
 static bool is_on(const struct dalcs_radau_part *part, int pair) {
     return dalcs_osnsp_is_on(&part->component->osnsp, pair);
+}
+
+/* What the columns are in a mode, in whole quads. A pair is a voltage while it is open. */
+struct dalcs_column_kinds {
+    uint64_t *mode;
+    double *is_volt, *is_ampere, *is_closed; /* 1 or 0: V or A of an equation, A of a closed pair */
+    uint64_t *counts; /* all bits, but none of an open pair, whose voltage is one of the columns */
+};
+
+enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    size_t n = (size_t)dalcs_quads_of(dalcs_system_n_columns(s));
+    part->scale = dalcs_alloc(n, sizeof(double));
+    part->magnitude = dalcs_alloc(n, sizeof(double));
+    part->kinds = dalcs_alloc(1, sizeof(*part->kinds));
+    if (part->scale == NULL || part->magnitude == NULL || part->kinds == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    struct dalcs_column_kinds *kinds = part->kinds;
+    kinds->mode = dalcs_alloc((size_t)part->component->osnsp.n_words, sizeof(*kinds->mode));
+    kinds->is_volt = dalcs_alloc(n, sizeof(double));
+    kinds->is_ampere = dalcs_alloc(n, sizeof(double));
+    kinds->is_closed = dalcs_alloc(n, sizeof(double));
+    kinds->counts = dalcs_alloc(n, sizeof(*kinds->counts));
+    if (kinds->mode == NULL || kinds->is_volt == NULL || kinds->is_ampere == NULL ||
+        kinds->is_closed == NULL || kinds->counts == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int c = 0; c < dalcs_system_n_columns(s); c++) { /* of the mode with all pairs open */
+        bool is_pair = c >= dalcs_system_n_equations(s);
+        kinds->is_ampere[c] = !is_pair && s->column_is_current[c] ? 1.0 : 0.0;
+        kinds->is_volt[c] = 1.0 - kinds->is_ampere[c];
+        kinds->counts[c] = is_pair ? 0 : UINT64_MAX;
+    }
+    return DALCS_OK;
+}
+
+void dalcs_step_finish(struct dalcs_radau_part *part) {
+    if (part->kinds != NULL) {
+        free(part->kinds->mode);
+        free(part->kinds->is_volt);
+        free(part->kinds->is_ampere);
+        free(part->kinds->is_closed);
+        free(part->kinds->counts);
+    }
+    free(part->kinds);
+    free(part->scale);
+    free(part->magnitude);
+}
+
+/* Brings what pairs are up to the present mode. */
+static void find_kinds(const struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const struct dalcs_column_kinds *kinds = part->kinds;
+    int n_pairs = p->system->n_pairs;
+    int c = dalcs_system_n_equations(p->system);
+    for (int first = 0; first < n_pairs; first += 64) {
+        uint64_t mode = p->mode[first / 64];
+        uint64_t changed = mode ^ kinds->mode[first / 64];
+        kinds->mode[first / 64] = mode;
+        for (int k = c + first; changed != 0; k++, changed >>= 1, mode >>= 1) {
+            if ((changed & 1) != 0) {
+                double closed = (double)(int)(mode & 1);
+                kinds->is_volt[k] = 1.0 - closed;
+                kinds->is_closed[k] = closed;
+                kinds->counts[k] = -(mode & 1);
+            }
+        }
+    }
 }
 
 /* The largest |y[begin..end-1]|: two running maxima, one alone would wait for itself. */
@@ -79,17 +151,26 @@ static int last_node(const struct dalcs_radau_part *part, double end) {
     return last;
 }
 
+/* value[n], in whole quads, = the columns of `out` at the nodes, weighted. */
+DALCS_TWICE(void, weigh,
+            (const struct dalcs_stage_layout *l, const double *weight, const double *out, int n,
+             double *value),
+            (l, weight, out, n, value)) {
+    for (int c = 0; c < n; c += DALCS_QUAD) {
+        dalcs_quad sum = {0.0};
+        for (int k = 0; k < l->n_nodes; k++) {
+            dalcs_quad y;
+            dalcs_quad_load(&y, out + k * l->stride + c);
+            sum += weight[k] * y;
+        }
+        dalcs_quad_store(value + c, &sum);
+    }
+}
+
 void dalcs_step_states(const struct dalcs_radau_part *part, double theta, double *x) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
     double weight[DALCS_MAX_NODES];
     dalcs_collocation_weights(part->stages.method, theta, weight);
-    for (int i = 0; i < part->component->system->n_x; i++) {
-        double sum = 0.0;
-        for (int k = 0; k < l->n_nodes; k++) {
-            sum += weight[k] * part->out[k * l->stride + i];
-        }
-        x[i] = sum;
-    }
+    weigh(&part->stages.layout, weight, part->out, part->component->system->n_x, x);
 }
 
 void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double *value) {
@@ -101,54 +182,45 @@ void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double
     }
     double weight[DALCS_MAX_NODES];
     dalcs_collocation_weights(part->stages.method, theta, weight);
+    weigh(l, weight, part->out, l->stride, value);
+}
 
-    /* Sums stay in registers; each is made in the same order, whatever the width. */
-    enum { WIDTH = 4 };
-
-    int c = 0;
-    for (; c + WIDTH <= l->stride; c += WIDTH) {
-        double sum[WIDTH] = {0.0};
-        for (int k = 0; k < l->n_nodes; k++) {
-            const double *y = part->out + k * l->stride + c;
-            for (int j = 0; j < WIDTH; j++) {
-                sum[j] += weight[k] * y[j];
-            }
-        }
-        memcpy(value + c, sum, sizeof(sum));
+/* magnitude: the larger of |first| and |last|; raises unit[2] to the largest of them. */
+DALCS_TWICE(void, compare_ends,
+            (const struct dalcs_column_kinds *kinds, int n, const double *first, const double *last,
+             double *magnitude, double *unit),
+            (kinds, n, first, last, magnitude, unit)) {
+    dalcs_quad volts = {unit[0]};
+    dalcs_quad amperes = {unit[1]};
+    for (int c = 0; c < n; c += DALCS_QUAD) {
+        dalcs_quad m;
+        dalcs_quad other;
+        dalcs_quad is_closed;
+        dalcs_quad_load(&m, first + c);
+        dalcs_quad_load(&other, last + c);
+        dalcs_quad_unsign(&m);
+        dalcs_quad_unsign(&other);
+        dalcs_quad_raise(&m, &other);
+        dalcs_quad_store(magnitude + c, &m);
+        dalcs_quad_load(&other, kinds->is_volt + c);
+        other *= m;
+        dalcs_quad_raise(&volts, &other);
+        dalcs_quad_load(&other, kinds->is_ampere + c);
+        dalcs_quad_load(&is_closed, kinds->is_closed + c);
+        other = m * (other + is_closed);
+        dalcs_quad_raise(&amperes, &other);
     }
-    for (; c < l->stride; c++) {
-        double sum = 0.0;
-        for (int k = 0; k < l->n_nodes; k++) {
-            sum += weight[k] * part->out[k * l->stride + c];
-        }
-        value[c] = sum;
-    }
+    unit[0] = dalcs_quad_largest(&volts);
+    unit[1] = dalcs_quad_largest(&amperes);
 }
 
 /* The larger of what a column is at the first and at the last known node of a segment; raises the
  * units to the largest of them. */
 static void find_magnitudes(struct dalcs_radau_part *part, double end, double *unit) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    int n_equations = dalcs_system_n_equations(p->system);
-    const double *first = part->out;
     const double *known = part->out + last_node(part, end) * part->stages.layout.stride;
-    double *restrict magnitude = part->magnitude;
-    for (int k = 0; k < p->n_runs && p->run[k].begin < n_equations; k++) {
-        int run_end = p->run[k].end < n_equations ? p->run[k].end : n_equations;
-        double largest = unit[p->run[k].is_current];
-        for (int c = p->run[k].begin; c < run_end; c++) {
-            double m = dalcs_larger(fabs(first[c]), fabs(known[c]));
-            magnitude[c] = m;
-            largest = dalcs_larger(largest, m);
-        }
-        unit[p->run[k].is_current] = largest;
-    }
-    for (int d = 0; d < p->system->n_pairs; d++) {
-        int c = n_equations + d;
-        int of = is_on(part, d);
-        magnitude[c] = dalcs_larger(fabs(first[c]), fabs(known[c]));
-        unit[of] = dalcs_larger(unit[of], magnitude[c]);
-    }
+    find_kinds(part);
+    compare_ends(part->kinds, dalcs_system_n_columns(part->component->system), part->out, known,
+                 part->magnitude, unit);
     part->magnitude_end = end;
 }
 
@@ -176,60 +248,120 @@ static inline void judge(struct dalcs_step_quality *q, double error, double allo
     }
 }
 
+/* What is allowed by kind (V, A, A of pairs): the tolerance times the scale of a column, which is at
+ * least `least`, and `besides`. */
+struct allowance {
+    double tolerance, least[3], besides[3];
+};
+
+static void find_allowance(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                           const struct dalcs_step_quality *q, struct allowance *a) {
+    a->tolerance = r->inner_tolerance;
+    a->least[0] = smallest_scale * q->unit[0];
+    a->least[1] = smallest_scale * q->unit[1];
+    a->least[2] = smallest_pair * q->unit[1];
+    a->besides[0] = 0.1 * r->options.vntol + crossed * part->cross[0] * q->here[1];
+    a->besides[1] = 0.1 * r->options.abstol + crossed * part->cross[1] * q->here[0];
+    a->besides[2] = rounding_part * part->rounding * q->unit[1] + a->besides[1];
+}
+
 /* The errors over what is allowed, with `rounding` besides. */
-static void compare(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+static void compare(const struct dalcs_radau_part *part, const struct allowance *a,
                     const double *natural, double rounding, struct dalcs_step_quality *q) {
     const struct dalcs_system *s = part->component->system;
     const double *drift = part->out + part->stages.layout.drift;
     const double *ripple = part->out + part->stages.layout.ripple;
     bool curved = part->excitation.is_curved;
-    double besides[2] = {0.1 * r->options.vntol + crossed * part->cross[0] * q->here[1],
-                         0.1 * r->options.abstol + crossed * part->cross[1] * q->here[0]};
-    double least[2] = {smallest_scale * q->unit[0], smallest_scale * q->unit[1]};
     q->ratio = 0.0;
     q->drift = 0.0;
     q->of_unit = 0.0;
-    int c = 0;
-    for (; c < s->n_x; c++) {
+    int n_equations = dalcs_system_n_equations(s);
+    for (int c = 0; c < (curved ? n_equations : s->n_x); c++) {
         int of = s->column_is_current[c] ? 1 : 0;
-        double scale = dalcs_larger(dalcs_larger(part->scale[c], part->magnitude[c]), least[of]);
-        double allowed = r->inner_tolerance * scale + rounding * natural[c] + besides[of];
-        double error = fabs(drift[c]);
+        double scale = dalcs_larger(dalcs_larger(part->scale[c], part->magnitude[c]), a->least[of]);
+        double allowed = a->tolerance * scale + rounding * natural[c] + a->besides[of];
+        double error = c < s->n_x ? fabs(drift[c]) : 0.0;
         if (error > q->drift * allowed) {
             q->drift = error / allowed;
         }
         judge(q, curved ? dalcs_larger(error, fabs(ripple[c])) : error, allowed, of);
     }
-    int n_equations = dalcs_system_n_equations(s);
-    for (; curved && c < n_equations; c++) {
-        int of = s->column_is_current[c] ? 1 : 0;
-        double scale = dalcs_larger(dalcs_larger(part->scale[c], part->magnitude[c]), least[of]);
-        judge(q, fabs(ripple[c]), r->inner_tolerance * scale + rounding * natural[c] + besides[of],
-              of);
-    }
-    double floor = rounding_part * part->rounding * q->unit[1] + besides[1];
-    double least_pair = smallest_pair * q->unit[1];
-    for (int d = 0; curved && d < s->n_pairs; d++, c++) {
-        if (is_on(part, d)) { /* the voltage of the others is one of the columns */
+    for (int c = n_equations; curved && c < n_equations + s->n_pairs; c++) {
+        if (is_on(part, c - n_equations)) { /* the voltage of the others is one of the columns */
             double scale =
-                dalcs_larger(dalcs_larger(part->scale[c], part->magnitude[c]), least_pair);
-            judge(q, fabs(ripple[c]), r->inner_tolerance * scale + floor, 1);
+                dalcs_larger(dalcs_larger(part->scale[c], part->magnitude[c]), a->least[2]);
+            judge(q, fabs(ripple[c]), a->tolerance * scale + a->besides[2], 1);
         }
     }
+}
+
+/* The errors of n columns over what is allowed, without rounding, and the part of the n_x drifts in
+ * them: numbers up to 1, or that a closer look is due. ripple may be NULL. */
+DALCS_TWICE(void, compare_all,
+            (const struct dalcs_radau_part *part, const struct allowance *a, int n, int n_x,
+             const double *drift, const double *ripple, struct dalcs_step_quality *q),
+            (part, a, n, n_x, drift, ripple, q)) {
+    const struct dalcs_column_kinds *kinds = part->kinds;
+    dalcs_quad worst = {0.0};
+    dalcs_quad worst_drift = {0.0};
+    dalcs_quad sum = {0.0}; /* shows NaN, which comparisons hide */
+    for (int c = 0; c < n; c += DALCS_QUAD) {
+        dalcs_quad is_volt;
+        dalcs_quad is_ampere;
+        dalcs_quad is_closed;
+        dalcs_quad scale;
+        dalcs_quad magnitude;
+        dalcs_quad_load(&is_volt, kinds->is_volt + c);
+        dalcs_quad_load(&is_ampere, kinds->is_ampere + c);
+        dalcs_quad_load(&is_closed, kinds->is_closed + c);
+        dalcs_quad_load(&scale, part->scale + c);
+        dalcs_quad_load(&magnitude, part->magnitude + c);
+        dalcs_quad_raise(&scale, &magnitude);
+        magnitude = a->least[0] * is_volt + a->least[1] * is_ampere + a->least[2] * is_closed;
+        dalcs_quad_raise(&scale, &magnitude);
+        dalcs_quad allowed =
+            a->tolerance * scale +
+            (a->besides[0] * is_volt + a->besides[1] * is_ampere + a->besides[2] * is_closed);
+        dalcs_quad error;
+        if (ripple != NULL) {
+            dalcs_quad_load(&error, ripple + c);
+            dalcs_quad_unsign(&error);
+            error /= allowed;
+            dalcs_quad_mask(&error, kinds->counts + c);
+            sum += error;
+            dalcs_quad_raise(&worst, &error);
+        }
+        if (c < n_x) {
+            dalcs_quad_load(&error, drift + c);
+            dalcs_quad_unsign(&error);
+            error /= allowed;
+            dalcs_quad_keep(&error, n_x - c);
+            sum += error;
+            dalcs_quad_raise(&worst_drift, &error);
+        }
+    }
+    double all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    q->drift = dalcs_quad_largest(&worst_drift);
+    q->ratio = all == all ? dalcs_larger(q->drift, dalcs_quad_largest(&worst)) : all;
 }
 
 void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                       const struct dalcs_stage_entry *entry, double end,
                       struct dalcs_step_quality *q) {
+    const struct dalcs_system *s = part->component->system;
+    bool curved = part->excitation.is_curved;
+    const double *drift = part->out + part->stages.layout.drift;
+    const double *ripple = curved ? part->out + part->stages.layout.ripple : NULL;
+    struct allowance a;
     *q = (struct dalcs_step_quality){0};
     find_magnitudes(part, end, q->here);
     q->unit[0] = dalcs_larger(q->here[0], part->unit_scale[0]);
     q->unit[1] = dalcs_larger(q->here[1], part->unit_scale[1]);
     cross_units(part, q->unit);
-    const double *natural = dalcs_stage_natural_units(entry);
-    compare(r, part, natural, 0.0, q);
+    find_allowance(r, part, q, &a);
+    compare_all(part, &a, curved ? dalcs_system_n_columns(s) : s->n_x, s->n_x, drift, ripple, q);
     if (!(q->ratio <= 1.0)) { /* is it rounding? Few steps have to ask. */
-        compare(r, part, natural, rounding_of_step(part, entry), q);
+        compare(part, &a, dalcs_stage_natural_units(entry), rounding_of_step(part, entry), q);
     }
 }
 
@@ -239,23 +371,28 @@ void dalcs_step_reach(struct dalcs_radau_part *part, double end, double *unit) {
     cross_units(part, unit);
 }
 
+/* Those of n columns, but of a current only since its pair closed. */
+DALCS_TWICE(void, raise_scales,
+            (int n, const double *magnitude, const uint64_t *counts, double *scale),
+            (n, magnitude, counts, scale)) {
+    for (int c = 0; c < n; c += DALCS_QUAD) {
+        dalcs_quad now;
+        dalcs_quad most;
+        dalcs_quad_load(&most, scale + c);
+        dalcs_quad_load(&now, magnitude + c);
+        dalcs_quad_raise(&most, &now);
+        dalcs_quad_mask(&most, counts + c);
+        dalcs_quad_store(scale + c, &most);
+    }
+}
+
 void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double *unit) {
-    const struct dalcs_system *s = part->component->system;
-    int n_equations = dalcs_system_n_equations(s);
     if (end != part->magnitude_end) {
         double here[2] = {0.0, 0.0};
         find_magnitudes(part, end, here);
     }
-    const double *restrict magnitude = part->magnitude;
-    double *restrict scale = part->scale;
-    for (int c = 0; c < n_equations + s->n_pairs; c++) {
-        scale[c] = scale[c] > magnitude[c] ? scale[c] : magnitude[c];
-    }
-    for (int d = 0; d < s->n_pairs; d++) {
-        if (!is_on(part, d)) {
-            scale[n_equations + d] = 0.0; /* of a current: since it closed */
-        }
-    }
+    raise_scales(dalcs_system_n_columns(part->component->system), part->magnitude,
+                 part->kinds->counts, part->scale);
     part->unit_scale[0] = unit[0];
     part->unit_scale[1] = unit[1];
 }

@@ -13,7 +13,13 @@ struct dalcs_step_quality {
     double unit[2]; /* V, A: so far */
 };
 
-/* x[n_x], or value[n_columns + n_watched], at theta of the present step. */
+/* Of a part that is otherwise set up; finish also after a failure. */
+enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) DALCS_MUST_CHECK;
+
+void dalcs_step_finish(struct dalcs_radau_part *part);
+
+/* x[n_x], or value[n_columns + n_watched], with room for whole quads (quads.h), at theta of the present
+ * step. */
 void dalcs_step_states(const struct dalcs_radau_part *part, double theta, double *x);
 void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double *value);
 

@@ -2,7 +2,6 @@
 #include "transition.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* An entry has three modes: the one that held, the one after pairs changed sides, what followed. */
 enum { SLOTS = 64, MODES = 3 };
@@ -35,30 +34,44 @@ static size_t find_slot(const struct dalcs_radau_part *part) {
     return (size_t)(hash % SLOTS);
 }
 
+/* Modes are a word or two, which calls would cost more than. */
+static void copy_mode(uint64_t *to, const uint64_t *from, size_t words) {
+    for (size_t k = 0; k < words; k++) {
+        to[k] = from[k];
+    }
+}
+
+static bool is_same(const uint64_t *a, const uint64_t *b, size_t words) {
+    uint64_t different = 0;
+    for (size_t k = 0; k < words; k++) {
+        different |= a[k] ^ b[k];
+    }
+    return different == 0;
+}
+
 void dalcs_transition_hold(struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    memcpy(part->modes_before, p->mode, (size_t)p->n_words * sizeof(uint64_t));
+    copy_mode(part->modes_before, p->mode, (size_t)p->n_words);
 }
 
 bool dalcs_transition_guess(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     size_t words = (size_t)p->n_words;
-    memcpy(part->modes_before + words, p->mode, words * sizeof(uint64_t));
+    copy_mode(part->modes_before + words, p->mode, words);
     part->level_before = part->level;
     size_t slot = find_slot(part);
     const uint64_t *known = part->transition_modes + slot * MODES * words;
-    if (!part->transition[slot].is_known ||
-        memcmp(known, part->modes_before, 2 * words * sizeof(uint64_t)) != 0) {
+    if (!part->transition[slot].is_known || !is_same(known, part->modes_before, 2 * words)) {
         return false;
     }
-    memcpy(p->mode, known + 2 * words, words * sizeof(uint64_t));
+    copy_mode(p->mode, known + 2 * words, words);
     part->level = part->transition[slot].level;
     return true;
 }
 
 void dalcs_transition_refuse(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
-    memcpy(p->mode, part->modes_before + p->n_words, (size_t)p->n_words * sizeof(uint64_t));
+    copy_mode(p->mode, part->modes_before + p->n_words, (size_t)p->n_words);
     part->level = part->level_before;
 }
 
@@ -67,8 +80,8 @@ void dalcs_transition_learn(struct dalcs_radau_part *part, int level) {
     size_t words = (size_t)p->n_words;
     size_t slot = find_slot(part);
     uint64_t *known = part->transition_modes + slot * MODES * words;
-    memcpy(known, part->modes_before, 2 * words * sizeof(uint64_t));
-    memcpy(known + 2 * words, p->mode, words * sizeof(uint64_t));
+    copy_mode(known, part->modes_before, 2 * words);
+    copy_mode(known + 2 * words, p->mode, words);
     part->transition[slot].is_known = true;
     part->transition[slot].level = level;
 }

@@ -11,7 +11,7 @@ static inline int dalcs_dense_map_rows(int n) {
     return (n + 7) / 8 * 8;
 }
 
-/* Zeroed, for dalcs_dense_map_rows(n) x columns elements; NULL when out of memory; free() it. */
+/* For dalcs_dense_map_rows(n) x columns elements, not zeroed; NULL when out of memory; free() it. */
 double *dalcs_dense_map_alloc(int rows, int columns);
 
 /* y[rows] = map x[columns]; rows is a multiple of 8. */

@@ -4,6 +4,8 @@
  * along, so that one elimination gives K, R and the recovery of x+ at once. */
 #include "step_form.h"
 
+#include "extremes.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -183,6 +185,15 @@ static enum dalcs_status eliminate_states(struct elimination *e, const int *row_
     return DALCS_OK;
 }
 
+/* By half the powers of 2 in the largest entry. False: there are none. */
+static bool lower_scale(double *scale, double largest) {
+    int powers = largest > 0.0 ? (int)lrint(0.5 * log2(largest)) : 0;
+    if (powers != 0) {
+        *scale = ldexp(*scale, -powers);
+    }
+    return powers != 0;
+}
+
 /* Equilibration by powers of 2 (Ruiz 2001): exact, and it makes a conductance of 1e9 S next to one of
  * 1e-12 S, or volts next to amperes, look alike to KLU's pivoting and to rcond. Rows and columns
  * have their own scales: the KCL of a floating group of capacitors, summed over the group, has none
@@ -197,23 +208,21 @@ static enum dalcs_status balance(struct dalcs_step_form *f) {
         f->scale[i] = 1.0;
         f->row_scale[i] = 1.0;
     }
-    for (int pass = 0; pass < 8; pass++) {
+    bool changed = true;
+    for (int pass = 0; pass < 8 && changed; pass++) {
+        changed = false;
         memset(largest, 0, 2 * (size_t)n * sizeof(*largest));
         for (int c = 0; c < n; c++) {
             for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
                 int r = f->K.j[k];
                 double a = fabs(f->K.x[k]) * f->scale[c] * f->row_scale[r];
-                largest[c] = fmax(largest[c], a);
-                largest[n + r] = fmax(largest[n + r], a);
+                largest[c] = dalcs_larger(largest[c], a);
+                largest[n + r] = dalcs_larger(largest[n + r], a);
             }
         }
         for (int i = 0; i < n; i++) {
-            if (largest[i] > 0.0) {
-                f->scale[i] = ldexp(f->scale[i], -(int)lrint(0.5 * log2(largest[i])));
-            }
-            if (largest[n + i] > 0.0) {
-                f->row_scale[i] = ldexp(f->row_scale[i], -(int)lrint(0.5 * log2(largest[n + i])));
-            }
+            changed = lower_scale(&f->scale[i], largest[i]) || changed;
+            changed = lower_scale(&f->row_scale[i], largest[n + i]) || changed;
         }
     }
     free(largest);

@@ -80,6 +80,7 @@ enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_
         }
         solve_unit(p, factors, kind);
         double *column = map + rows * (size_t)j;
+        memset(column, 0, rows * sizeof(double));
         for (int i = 0; i < n; i++) {
             column[i] = f->scale[i] * p->scaled[i];
         }

@@ -5,6 +5,7 @@
 #include "measures.h"
 
 #include "energy.h"
+#include "extremes.h"
 #include "rows.h"
 
 #include <math.h>
@@ -195,10 +196,11 @@ static enum dalcs_status advance(struct transient *c) {
     double stop = radau->options.stop;
     bool happens;
     double end = dalcs_radau_next_stop(radau, &happens);
-    double t = fmin(fmin(end, stop), fmin(c->next_edge, c->measures->next_edge));
+    double t = dalcs_smaller(dalcs_smaller(end, stop),
+                             dalcs_smaller(c->next_edge, c->measures->next_edge));
     DALCS_TRY(rows(c, t));
     double due = dalcs_recorder_due(c->recorder);
-    t = fmin(t, due);
+    t = dalcs_smaller(t, due);
     bool ends = end <= t + near;
     bool edge = c->next_edge <= t + near;
     if (ends) {
@@ -207,7 +209,7 @@ static enum dalcs_status advance(struct transient *c) {
         t = c->next_edge;
     }
     c->t = t;
-    DALCS_TRY(dalcs_measures_reach(c->measures, radau, fmin(t, stop), near));
+    DALCS_TRY(dalcs_measures_reach(c->measures, radau, dalcs_smaller(t, stop), near));
     bool sides = dalcs_recorder_wants_sides(c->recorder, t);
     bool is_due = due <= t + near;
     bool written = is_due || (sides && (edge || (ends && happens)));

@@ -212,4 +212,35 @@ START_TEST(test_random) {
 
 END_TEST
 
-RUN_TESTS("crossing", test_straight, test_at_once, test_grazing, test_last_zero_before, test_random)
+/* Six side by side: no polynomial goes below its bound, and of a straight line that is its lower end. */
+START_TEST(test_bounds) {
+    enum { N = 6, STRIDE = 7, N_TRIALS = 200, SCAN = 100 };
+
+    for (int trial = 0; trial < N_TRIALS; trial++) {
+        const struct dalcs_collocation *c = dalcs_collocation_of(1 + 2 * (trial % 4));
+        double value[DALCS_MAX_NODES * STRIDE + 8] = {0.0};
+        double bound[8];
+        for (int k = 0; k <= c->s; k++) {
+            for (int i = 0; i < N - 1; i++) {
+                value[k * STRIDE + i] = uniform() - 0.3;
+            }
+            value[k * STRIDE + N - 1] = 2.0 - c->node[k];
+        }
+        dalcs_crossing_bounds(c, N, value, STRIDE, bound);
+        ck_assert_double_eq_tol(bound[N - 1], 1.0, 1e-13);
+        for (int i = 0; i < N; i++) {
+            double of_one[DALCS_MAX_NODES];
+            for (int k = 0; k <= c->s; k++) {
+                of_one[k] = value[k * STRIDE + i];
+            }
+            for (int k = 0; k <= SCAN; k++) {
+                ck_assert_double_ge(at(c, of_one, (double)k / SCAN), bound[i]);
+            }
+        }
+    }
+}
+
+END_TEST
+
+RUN_TESTS("crossing", test_straight, test_at_once, test_grazing, test_last_zero_before, test_random,
+          test_bounds)

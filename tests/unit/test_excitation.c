@@ -172,4 +172,17 @@ START_TEST(test_left_out) {
 
 END_TEST
 
-RUN_TESTS("excitation", test_all_kinds, test_modulated, test_over_edges, test_left_out)
+/* A level that is 0 at all times is no function; one before a delay or behind the last cycle is. */
+START_TEST(test_levels) {
+    start("levels\nV1 a 0 SIN(0 1 2)\nR1 a o 1\nV2 b 0 SIN(1 1 2)\nR2 b o 1\n"
+          "V3 c 0 SIN(0 1 2 3)\nR3 c o 1\nC1 o 0 1\n.tran 1 10\n");
+    ck_assert_int_eq(wave_named("v1")->n_functions, 2);
+    ck_assert_int_eq(wave_named("v2")->n_functions, 3);
+    ck_assert_int_eq(wave_named("v3")->n_functions, 3);
+    ck_assert_int_gt(check_steps(), 0);
+    finish();
+}
+
+END_TEST
+
+RUN_TESTS("excitation", test_all_kinds, test_modulated, test_over_edges, test_left_out, test_levels)

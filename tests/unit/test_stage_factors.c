@@ -450,7 +450,7 @@ END_TEST
 /* The same where surroundings differ by a thousand. */
 START_TEST(test_shared_unequally) {
     struct tally t = check_netlist("loops and chains of diodes\n"
-                                   "v1 a 0 sin(0 10 50)\nr1 a b 10\nr2 a c 1k\nr3 c 0 10k\n"
+                                   "v1 a 0 sin(1 10 50)\nr1 a b 10\nr2 a c 1k\nr3 c 0 10k\n"
                                    "d1 b c di\nd2 c d di\nd3 b d di\nr4 d 0 300\n"
                                    "d4 b e di\nd5 e c di\nd6 e d di\nc1 c 0 1u\n"
                                    ".model di d\n.tran 1u 1m uic\n.end\n",
