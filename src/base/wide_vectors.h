@@ -6,7 +6,7 @@
  * bit of their results: without contraction every element is computed by the same operations in the
  * same order.
  *
- * Which one it is is asked at each call, of what the C library found out when the program started: a
+ * Which one it is was asked when the program was loaded, of what the C library had found out by then: a
  * compiler's own clones ask the processor at each start, and in a virtual machine that is as long as
  * reading a netlist. */
 #ifndef DALCS_WIDE_VECTORS_H
@@ -21,9 +21,8 @@
 #endif
 
 #ifdef CPU_FEATURE_ACTIVE
-static inline bool dalcs_has_wide_vectors(void) {
-    return CPU_FEATURE_ACTIVE(AVX2);
-}
+#define DALCS_MAY_BE_WIDE
+extern bool dalcs_is_wide;
 
 #define DALCS_TWICE(type, name, parameters, arguments)                                             \
     static inline __attribute__((always_inline)) type name##_body parameters;                      \
@@ -31,7 +30,7 @@ static inline bool dalcs_has_wide_vectors(void) {
         return name##_body arguments;                                                              \
     }                                                                                              \
     static type name parameters {                                                                  \
-        return dalcs_has_wide_vectors() ? name##_wide arguments : name##_body arguments;           \
+        return dalcs_is_wide ? name##_wide arguments : name##_body arguments;                      \
     }                                                                                              \
     static inline __attribute__((always_inline)) type name##_body parameters
 #else
