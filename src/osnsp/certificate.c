@@ -119,6 +119,40 @@ static inline double row_size(const struct dalcs_step_form *f, struct scales sca
     return f->row_volts[r] * scale.volt + f->row_amperes[r] * scale.ampere;
 }
 
+/* The most nodes in a row that only pairs enter. */
+enum { MOST_BARE = 32 };
+
+static bool is_among(const int *list, int n, int i) {
+    for (int k = 0; k < n; k++) {
+        if (list[k] == i) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The largest of the KCL that pairs lead to from the node of this row, if only pairs enter it. */
+static double size_beyond(const struct dalcs_osnsp *p, struct scales scale, int row) {
+    const struct dalcs_system *s = p->system;
+    const struct dalcs_step_form *f = p->form[0];
+    int bare[MOST_BARE] = {row};
+    int n = p->looks_beyond && s->row_is_current[row] && f->row_volts[row] == 0.0 ? 1 : 0;
+    double size = 0.0;
+    for (int i = 0; i < n; i++) {
+        for (int k = s->A.p[bare[i]]; k < s->A.p[bare[i] + 1]; k++) {
+            int d = s->A.j[k] - dalcs_system_n_equations(s);
+            for (int e = d < 0 ? 0 : p->pair_rows_p[d]; d >= 0 && e < p->pair_rows_p[d + 1]; e++) {
+                int r = p->pair_rows[e];
+                size = fmax(size, row_size(f, scale, r));
+                if (f->row_volts[r] == 0.0 && n < MOST_BARE && !is_among(bare, n, r)) {
+                    bare[n++] = r;
+                }
+            }
+        }
+    }
+    return size;
+}
+
 static void check_equations(struct dalcs_osnsp *p, const double *u, const double *y,
                             struct scales scale) {
     const struct dalcs_system *s = p->system;
@@ -133,12 +167,27 @@ static void check_equations(struct dalcs_osnsp *p, const double *u, const double
         double residual = fabs(dalcs_csr_row_dot(&check, i, v));
         double size = row_size(f, scale, f->checked[i]);
         if (!(residual <= worst * size)) {
+            if (residual > p->options.certificate_tolerance * size) {
+                size = fmax(size, size_beyond(p, scale, f->checked[i]));
+            }
+            if (residual <= worst * size) {
+                continue;
+            }
             /* A NaN must stay the worst: it compares with nothing that follows. */
             worst = size > 0.0 && residual < INFINITY ? residual / size : INFINITY;
             where = f->checked[i];
         }
     }
     note(&p->certificate, worst, 1.0, where);
+}
+
+/* The same for a diode between such nodes. */
+static double pair_size_beyond(const struct dalcs_osnsp *p, int pair, struct scales scale) {
+    double size = 0.0;
+    for (int k = p->pair_rows_p[pair]; k < p->pair_rows_p[pair + 1]; k++) {
+        size = fmax(size, size_beyond(p, scale, p->pair_rows[k]));
+    }
+    return size;
 }
 
 /* The current of a diode is known no better than the KCL that it enters. */
@@ -207,7 +256,11 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
             p->w[d] = 0.0;
             p->tied[d] = is_diode && lambda[d] <= tolerance * scale.ampere;
             if (is_diode && lambda[d] < 0.0) {
-                judge_sign(p, d, -lambda[d], current_scale(p, d, scale));
+                double of_current = current_scale(p, d, scale);
+                if (-lambda[d] > tolerance * of_current) {
+                    of_current = fmax(of_current, pair_size_beyond(p, d, scale));
+                }
+                judge_sign(p, d, -lambda[d], of_current);
             }
         } else {
             p->w[d] = w;

@@ -373,6 +373,11 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
         DALCS_TRY(dalcs_forms_get(p, sigma));
     }
     enum dalcs_status status = solve_somehow(p, u, y);
+    if (status == DALCS_NOT_CONVERGED) {
+        p->looks_beyond = true;
+        status = solve_somehow(p, u, y);
+        p->looks_beyond = false;
+    }
     if (status == DALCS_INFEASIBLE) {
         dalcs_witness_complete(p);
     }
