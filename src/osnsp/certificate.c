@@ -119,8 +119,8 @@ static inline double row_size(const struct dalcs_step_form *f, struct scales sca
     return f->row_volts[r] * scale.volt + f->row_amperes[r] * scale.ampere;
 }
 
-/* The most nodes in a row that only pairs enter. */
-enum { MOST_BARE = 32 };
+/* So many nodes of a chain are looked at. */
+enum { MOST_AROUND = 32 };
 
 static bool is_among(const int *list, int n, int i) {
     for (int k = 0; k < n; k++) {
@@ -131,21 +131,27 @@ static bool is_among(const int *list, int n, int i) {
     return false;
 }
 
-/* The largest of the KCL that pairs lead to from the node of this row, if only pairs enter it. */
-static double size_beyond(const struct dalcs_osnsp *p, struct scales scale, int row) {
+static bool is_bare(const struct dalcs_osnsp *p, int row) {
+    return p->system->row_is_current[row] && p->form[0]->row_volts[row] == 0.0;
+}
+
+/* The KCL that closed pairs tie to that of this row, and any pairs to those that only pairs enter,
+ * together: their rounding flows along the chain. */
+static double size_around(const struct dalcs_osnsp *p, struct scales scale, int row) {
     const struct dalcs_system *s = p->system;
-    const struct dalcs_step_form *f = p->form[0];
-    int bare[MOST_BARE] = {row};
-    int n = p->looks_beyond && s->row_is_current[row] && f->row_volts[row] == 0.0 ? 1 : 0;
+    int reached[MOST_AROUND] = {row};
+    int n = 1;
     double size = 0.0;
     for (int i = 0; i < n; i++) {
-        for (int k = s->A.p[bare[i]]; k < s->A.p[bare[i] + 1]; k++) {
+        size += row_size(p->form[0], scale, reached[i]);
+        for (int k = s->A.p[reached[i]]; k < s->A.p[reached[i] + 1]; k++) {
             int d = s->A.j[k] - dalcs_system_n_equations(s);
-            for (int e = d < 0 ? 0 : p->pair_rows_p[d]; d >= 0 && e < p->pair_rows_p[d + 1]; e++) {
-                int r = p->pair_rows[e];
-                size = fmax(size, row_size(f, scale, r));
-                if (f->row_volts[r] == 0.0 && n < MOST_BARE && !is_among(bare, n, r)) {
-                    bare[n++] = r;
+            if (d < 0 || !(is_bare(p, reached[i]) || dalcs_osnsp_is_on(p, d))) {
+                continue;
+            }
+            for (int e = p->pair_rows_p[d]; e < p->pair_rows_p[d + 1]; e++) {
+                if (n < MOST_AROUND && !is_among(reached, n, p->pair_rows[e])) {
+                    reached[n++] = p->pair_rows[e];
                 }
             }
         }
@@ -167,8 +173,8 @@ static void check_equations(struct dalcs_osnsp *p, const double *u, const double
         double residual = fabs(dalcs_csr_row_dot(&check, i, v));
         double size = row_size(f, scale, f->checked[i]);
         if (!(residual <= worst * size)) {
-            if (residual > p->options.certificate_tolerance * size) {
-                size = fmax(size, size_beyond(p, scale, f->checked[i]));
+            if (p->looks_around && is_bare(p, f->checked[i])) {
+                size = fmax(size, size_around(p, scale, f->checked[i]));
             }
             if (residual <= worst * size) {
                 continue;
@@ -181,20 +187,13 @@ static void check_equations(struct dalcs_osnsp *p, const double *u, const double
     note(&p->certificate, worst, 1.0, where);
 }
 
-/* The same for a diode between such nodes. */
-static double pair_size_beyond(const struct dalcs_osnsp *p, int pair, struct scales scale) {
-    double size = 0.0;
-    for (int k = p->pair_rows_p[pair]; k < p->pair_rows_p[pair + 1]; k++) {
-        size = fmax(size, size_beyond(p, scale, p->pair_rows[k]));
-    }
-    return size;
-}
-
 /* The current of a diode is known no better than the KCL that it enters. */
 static double current_scale(const struct dalcs_osnsp *p, int pair, struct scales scale) {
     double size = scale.ampere;
     for (int k = p->pair_rows_p[pair]; k < p->pair_rows_p[pair + 1]; k++) {
-        size = fmax(size, row_size(p->form[0], scale, p->pair_rows[k]));
+        int r = p->pair_rows[k];
+        size =
+            fmax(size, p->looks_around ? size_around(p, scale, r) : row_size(p->form[0], scale, r));
     }
     return size;
 }
@@ -256,11 +255,7 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
             p->w[d] = 0.0;
             p->tied[d] = is_diode && lambda[d] <= tolerance * scale.ampere;
             if (is_diode && lambda[d] < 0.0) {
-                double of_current = current_scale(p, d, scale);
-                if (-lambda[d] > tolerance * of_current) {
-                    of_current = fmax(of_current, pair_size_beyond(p, d, scale));
-                }
-                judge_sign(p, d, -lambda[d], of_current);
+                judge_sign(p, d, -lambda[d], current_scale(p, d, scale));
             }
         } else {
             p->w[d] = w;

@@ -374,9 +374,9 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
     }
     enum dalcs_status status = solve_somehow(p, u, y);
     if (status == DALCS_NOT_CONVERGED) {
-        p->looks_beyond = true;
+        p->looks_around = true;
         status = solve_somehow(p, u, y);
-        p->looks_beyond = false;
+        p->looks_around = false;
     }
     if (status == DALCS_INFEASIBLE) {
         dalcs_witness_complete(p);

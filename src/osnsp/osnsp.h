@@ -72,7 +72,7 @@ struct dalcs_osnsp {
     bool least_norm; /* the last answer is the least-norm one of several */
     bool refines;    /* set by the caller: each answer of a regular mode is refined once, for small
                         currents next to large ones, which the certificate lets be off */
-    bool looks_beyond; /* nothing was certified: KCL that only pairs enter are measured anew */
+    bool looks_around; /* nothing was certified: currents are measured against whole chains */
 
     struct dalcs_step_form **form; /* most recently used first */
     int n_forms;
