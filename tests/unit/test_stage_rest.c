@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { SECTIONS = 70, TEXT = 20000 };
+enum { SECTIONS = 60, AT_ONCE = 4, TEXT = 20000 };
 
 static struct text_network text;
 static struct dalcs_excitation excitation;
@@ -127,7 +127,7 @@ START_TEST(test_front) {
     int n_chosen = 0;
     int awake = 0;
     setup("");
-    for (int front = 1; front <= SECTIONS; front++) {
+    for (int front = 1; front <= SECTIONS; front += AT_ONCE) {
         close_first(front, mode);
         for (int step = 0; step < 2; step++) {
             set_states(front, &random);
