@@ -19,7 +19,7 @@ static enum side side_of(const struct dalcs_view *view, int pair) {
     if (view->at->tied[pair]) {
         return TIED;
     }
-    return (view->at->mode[pair / 64] >> (pair % 64) & 1) != 0 ? CONDUCTS : BLOCKS;
+    return dalcs_mode_has(view->at->mode, pair) ? CONDUCTS : BLOCKS;
 }
 
 /* A branch of a diode; `resistance` in series with it. */

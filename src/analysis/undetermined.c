@@ -100,7 +100,7 @@ static uint64_t name_of(const struct dalcs_open_instant *at) {
     uint64_t name = 14695981039346656037u ^ (at->at_operating_point ? 1u : 0u);
     name = (name ^ (uint64_t)at->system) * 1099511628211u;
     for (int d = 0; d < s->n_pairs; d++) {
-        uint64_t is_on = at->mode[d / 64] >> (d % 64) & 1;
+        uint64_t is_on = dalcs_mode_has(at->mode, d) ? 1 : 0;
         name = (name ^ (2 * is_on + (at->tied[d] ? 1 : 0))) * 1099511628211u;
     }
     return name != 0 ? name : 1;

@@ -19,6 +19,8 @@
 
 #include "sparse.h"
 
+#include <stdint.h>
+
 enum dalcs_pair_kind { DALCS_PAIR_DIODE, DALCS_PAIR_SWITCH };
 
 /* A labelled column or row. `element` is the name a person knows: an element or, for voltages and
@@ -79,6 +81,19 @@ struct dalcs_system {
     bool monotone;              /* R, L, C, K, independent sources, diodes and switches only, all
                                    passive: the OSNSP is solvable iff feasible */
 };
+
+/* Is this pair's bit set in mode[(n_pairs + 63) / 64]? */
+static inline bool dalcs_mode_has(const uint64_t *mode, int pair) {
+    return (mode[pair / 64] >> (pair % 64) & 1) != 0;
+}
+
+static inline bool dalcs_mode_is(const uint64_t *mode, const uint64_t *other, int n_words) {
+    uint64_t different = 0;
+    for (int k = 0; k < n_words; k++) {
+        different |= mode[k] ^ other[k];
+    }
+    return different == 0;
+}
 
 static inline int dalcs_system_n_equations(const struct dalcs_system *s) {
     return s->n_x + s->n_z;

@@ -123,7 +123,7 @@ static void write_step(FILE *f, const struct dalcs_system *s,
         write_number(f, step->u[i], "\n");
     }
     for (int d = 0; d < s->n_pairs; d++) {
-        fprintf(f, "mode %d\n", (int)(step->mode[d / 64] >> (d % 64) & 1));
+        fprintf(f, "mode %d\n", dalcs_mode_has(step->mode, d) ? 1 : 0);
     }
     fputs("end\n", f);
 }

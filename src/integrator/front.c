@@ -100,7 +100,7 @@ enum dalcs_status dalcs_front_close(struct dalcs_radau_part *part, bool *found) 
     }
     const uint64_t *held = part->modes_before;
     for (int d = 0; d < s->n_pairs; d++) {
-        bool was_open = (held[d / 64] >> (d % 64) & 1) == 0;
+        bool was_open = !dalcs_mode_has(held, d);
         if (was_open && dalcs_osnsp_is_on(&part->component->osnsp, d)) {
             feed(&f, d);
         }
@@ -117,7 +117,7 @@ static bool reopen(struct dalcs_osnsp *p, const uint64_t *before, const double *
                    bool negative) {
     bool found = false;
     for (int d = 0; d < p->system->n_pairs; d++) {
-        bool was_open = (before[d / 64] >> (d % 64) & 1) == 0;
+        bool was_open = !dalcs_mode_has(before, d);
         if (was_open && dalcs_osnsp_is_on(p, d) &&
             (negative ? lambda[d] < 0.0 : lambda[d] == 0.0)) {
             dalcs_osnsp_command(p, d, false);

@@ -245,13 +245,9 @@ enum dalcs_status dalcs_jumps_build(struct dalcs_jumps *j, const struct dalcs_ci
 
 /* ---- Solving ------------------------------------------------------------------------------- */
 
-static bool bit(const uint64_t *mode, int pair) {
-    return (mode[pair / 64] >> (pair % 64) & 1) != 0;
-}
-
 static void command(struct dalcs_jump_part *part, const uint64_t *mode) {
     for (int d = 0; d < part->osnsp.system->n_pairs; d++) {
-        dalcs_osnsp_command(&part->osnsp, d, bit(mode, part->pair[d]));
+        dalcs_osnsp_command(&part->osnsp, d, dalcs_mode_has(mode, part->pair[d]));
     }
 }
 

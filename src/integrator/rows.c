@@ -146,12 +146,10 @@ void dalcs_rows_finish(struct dalcs_rows *rows) {
 
 /* dalcs_radau_theta of each time. */
 static inline void find_thetas(const struct dalcs_radau_part *part, const dalcs_four *time,
-                               dalcs_four *theta) {
-    const dalcs_four raw = (*time - part->t) / part->h;
-    const dalcs_four end = {1.0, 1.0, 1.0, 1.0};
-    const dalcs_mask_of_four is_before = raw < end;
-    *theta = (dalcs_four)((is_before & (dalcs_mask_of_four)raw) |
-                          (~is_before & (dalcs_mask_of_four)end));
+                               dalcs_quad *theta) {
+    const dalcs_quad raw = (*time - part->t) / part->h;
+    *theta = (dalcs_quad){1.0, 1.0, 1.0, 1.0};
+    dalcs_quad_lower(theta, &raw);
 }
 
 /* Is every sum of quotients finite? At a node it is not. */
@@ -160,9 +158,9 @@ DALCS_TWICE(bool, divide,
              union dalcs_row_values *weight),
             (part, time, n_groups, weight)) {
     const struct dalcs_collocation *c = part->stages.method;
-    dalcs_mask_of_four is_finite = {-1, -1, -1, -1};
+    dalcs_quad_bits is_finite = {-1, -1, -1, -1};
     for (int g = 0; g < n_groups; g++) {
-        dalcs_four theta;
+        dalcs_quad theta;
         find_thetas(part, &time->group[g], &theta);
         dalcs_four total = {0.0};
         for (int k = 0; k <= c->s; k++) {

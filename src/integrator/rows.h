@@ -6,15 +6,13 @@
 #ifndef DALCS_ROWS_H
 #define DALCS_ROWS_H
 
+#include "quads.h"
 #include "radau.h"
-
-#include <stdint.h>
 
 enum { DALCS_MOST_ROWS = 32, DALCS_ROW_GROUPS = DALCS_MOST_ROWS / 4 };
 
 /* Something at all times, which are taken by fours. */
-typedef double dalcs_four __attribute__((vector_size(32), aligned(8)));
-typedef int64_t dalcs_mask_of_four __attribute__((vector_size(32), aligned(8)));
+typedef dalcs_quad dalcs_four __attribute__((aligned(8)));
 
 union dalcs_row_values {
     double at[DALCS_MOST_ROWS];

@@ -16,14 +16,10 @@ static const long double least_pivot = 1e-6L;
 /* Passes over the rows that look for given columns: in most circuits nothing is found in the second. */
 enum { MOST = DALCS_STAGE_MOST_PIECE, BALANCING_ROUNDS = 3, PASSES = 4 };
 
-static int n_equations_of(const struct dalcs_stage_plan *plan) {
-    return dalcs_system_n_equations(plan->stages->system);
-}
-
 /* The columns of a row of M. */
 static const int *columns_of(const struct dalcs_stage_plan *plan, int row, int *n) {
     const struct dalcs_system *s = plan->stages->system;
-    int n_equations = n_equations_of(plan);
+    int n_equations = dalcs_stage_plan_n_equations(plan);
     const struct dalcs_csr *a = row < n_equations ? &s->A : &s->C;
     int from = row < n_equations ? row : row - n_equations;
     *n = a->p[from + 1] - a->p[from];
@@ -49,7 +45,7 @@ static int only_open_column(const struct dalcs_stage_plan *plan, int row) {
 /* Rows with a single open column give it, in all modes; and so on. */
 static void give_columns(struct dalcs_stage_plan *plan) {
     struct dalcs_stage_freedom *f = &plan->freedom;
-    int n_equations = n_equations_of(plan);
+    int n_equations = dalcs_stage_plan_n_equations(plan);
     for (int pass = 0; pass < PASSES; pass++) {
         for (int r = plan->stages->system->n_x; r < n_equations; r++) {
             int column = f->is_used[r] ? -1 : only_open_column(plan, r);
@@ -95,7 +91,7 @@ void dalcs_stage_freedom_finish(struct dalcs_stage_freedom *freedom) {
 /* Equations are in K in every mode, pairs if they are closed. */
 static bool is_present(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
                        int i) {
-    int n_equations = n_equations_of(plan);
+    int n_equations = dalcs_stage_plan_n_equations(plan);
     return i < n_equations || dalcs_stage_is_on(entry, i - n_equations);
 }
 
@@ -239,7 +235,7 @@ static bool are_regular(struct dalcs_stage_plan *plan, const struct dalcs_stage_
 bool dalcs_stage_freedom_of_mode(struct dalcs_stage_plan *plan,
                                  const struct dalcs_stage_entry *entry) {
     const struct dalcs_stage_rest *rest = &plan->rest;
-    int n_equations = n_equations_of(plan);
+    int n_equations = dalcs_stage_plan_n_equations(plan);
     plan->freedom.search++;
     if (!are_regular(plan, entry, rest->row, rest->n_awake, rest->column, rest->n_awake)) {
         return false;
@@ -256,7 +252,7 @@ bool dalcs_stage_freedom_of_mode(struct dalcs_stage_plan *plan,
 bool dalcs_stage_freedom_of_change(struct dalcs_stage_plan *plan,
                                    const struct dalcs_stage_entry *entry, int pair) {
     const struct dalcs_csr *lambda = &plan->base;
-    int at = n_equations_of(plan) + pair;
+    int at = dalcs_stage_plan_n_equations(plan) + pair;
     plan->freedom.search++;
     if (dalcs_stage_is_on(entry, pair)) {
         return are_regular(plan, entry, &at, 1, &at, 1);

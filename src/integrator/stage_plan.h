@@ -77,6 +77,10 @@ struct dalcs_stage_plan {
     double *left;     /* [parts][n_rows] what its equations disagree by */
 };
 
+static inline int dalcs_stage_plan_n_equations(const struct dalcs_stage_plan *plan) {
+    return dalcs_system_n_equations(plan->stages->system);
+}
+
 /* Allocates stages->plan if it is not there yet. */
 enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) DALCS_MUST_CHECK;
 

@@ -13,14 +13,6 @@ enum { LEAST_AHEAD = 64, PART_AHEAD = 4 };
 /* Rest is worth its bookkeeping from one column in so many on. */
 enum { LEAST_PART_AT_REST = 4 };
 
-static int n_equations_of(const struct dalcs_stage_plan *plan) {
-    return dalcs_system_n_equations(plan->stages->system);
-}
-
-static bool is_on(const uint64_t *mode, int pair) {
-    return (mode[pair / 64] >> (pair % 64) & 1) != 0;
-}
-
 /* ---- All awake --------------------------------------------------------------------------------- */
 
 static void put_run(struct dalcs_stage_runs *runs, int i) {
@@ -35,7 +27,7 @@ static void wake_all(struct dalcs_stage_plan *plan) {
     struct dalcs_stage_rest *rest = &plan->rest;
     const struct dalcs_system *s = plan->stages->system;
     rest->any = false;
-    rest->n_awake = n_equations_of(plan);
+    rest->n_awake = dalcs_stage_plan_n_equations(plan);
     for (int k = 0; k < rest->n_awake; k++) {
         rest->row[k] = k;
         rest->column[k] = k;
@@ -50,7 +42,7 @@ static void wake_all(struct dalcs_stage_plan *plan) {
 enum dalcs_status dalcs_stage_rest_setup(struct dalcs_stage_plan *plan) {
     struct dalcs_stage_rest *rest = &plan->rest;
     const struct dalcs_system *s = plan->stages->system;
-    size_t n = (size_t)n_equations_of(plan);
+    size_t n = (size_t)dalcs_stage_plan_n_equations(plan);
     rest->row = dalcs_alloc(n, sizeof(int));
     rest->column = dalcs_alloc(n, sizeof(int));
     rest->may_close = dalcs_alloc((size_t)plan->stages->n_words, sizeof(*rest->may_close));
@@ -128,7 +120,7 @@ struct islands {
 static enum dalcs_status islands_init(struct islands *a, const struct dalcs_stage_plan *plan,
                                       const uint64_t *mode) {
     size_t n = 2 * (size_t)plan->n_rows;
-    *a = (struct islands){plan, mode, .n_equations = n_equations_of(plan)};
+    *a = (struct islands){plan, mode, .n_equations = dalcs_stage_plan_n_equations(plan)};
     a->of = dalcs_alloc(n, sizeof(int));
     a->level = dalcs_alloc(n, sizeof(int));
     a->n_columns = dalcs_alloc(n, sizeof(int));
@@ -143,7 +135,7 @@ static void islands_finish(struct islands *a) {
 
 /* Row or column i of M is in the mode's matrix. */
 static bool is_present(const struct islands *a, int i) {
-    return i < a->n_equations || is_on(a->mode, i - a->n_equations);
+    return i < a->n_equations || dalcs_mode_has(a->mode, i - a->n_equations);
 }
 
 static void join_column(struct islands *a, const struct dalcs_csr *m, int c) {
@@ -202,19 +194,27 @@ static void wake_what_moves(struct islands *a, const double *x) {
     }
 }
 
-/* The shores of an open pair: what its w is made of, and where its current would go. */
-static bool touches(const struct islands *a, int pair, int level) {
+/* Item k of the shores of an open pair: the columns that its w is made of, then the rows where its
+ * current would go. -1: there are no more. */
+static int shore(const struct islands *a, int pair, int k) {
     const struct dalcs_csr *C = &a->plan->stages->system->C;
     const struct dalcs_csr *lambda = &a->plan->base;
     int column = a->n_equations + pair;
-    for (int k = C->p[pair]; k < C->p[pair + 1]; k++) {
-        int of = a->level[a->of[a->plan->n_rows + C->j[k]]];
-        if (of >= 0 && of <= level) {
-            return true;
-        }
+    int n_columns = C->p[pair + 1] - C->p[pair];
+    if (k < n_columns) {
+        return a->plan->n_rows + C->j[C->p[pair] + k];
     }
-    for (int k = lambda->p[column]; k < lambda->p[column + 1]; k++) {
-        int of = a->level[a->of[lambda->j[k]]];
+    k += lambda->p[column] - n_columns;
+    return k < lambda->p[column + 1] ? lambda->j[k] : -1;
+}
+
+static bool is_of_equation(const struct islands *a, int item) {
+    return item % a->plan->n_rows < a->n_equations;
+}
+
+static bool touches(const struct islands *a, int pair, int level) {
+    for (int k = 0, item; (item = shore(a, pair, k)) >= 0; k++) {
+        int of = a->level[a->of[item]];
         if (of >= 0 && of <= level) {
             return true;
         }
@@ -223,17 +223,9 @@ static bool touches(const struct islands *a, int pair, int level) {
 }
 
 static void wake_shores(struct islands *a, int pair, int level) {
-    const struct dalcs_csr *C = &a->plan->stages->system->C;
-    const struct dalcs_csr *lambda = &a->plan->base;
-    int column = a->n_equations + pair;
-    for (int k = C->p[pair]; k < C->p[pair + 1]; k++) {
-        if (C->j[k] < a->n_equations) {
-            wake(a, a->plan->n_rows + C->j[k], level);
-        }
-    }
-    for (int k = lambda->p[column]; k < lambda->p[column + 1]; k++) {
-        if (lambda->j[k] < a->n_equations) {
-            wake(a, lambda->j[k], level);
+    for (int k = 0, item; (item = shore(a, pair, k)) >= 0; k++) {
+        if (is_of_equation(a, item)) {
+            wake(a, item, level);
         }
     }
 }
@@ -245,7 +237,7 @@ static void wake_ahead(struct islands *a) {
     for (int level = 0; a->n_awake < enough && a->n_awake > before; level++) {
         before = a->n_awake;
         for (int d = 0; d < a->plan->stages->system->n_pairs; d++) {
-            if (!is_on(a->mode, d) && touches(a, d, level)) {
+            if (!dalcs_mode_has(a->mode, d) && touches(a, d, level)) {
                 wake_shores(a, d, level + 1);
             }
         }
@@ -260,18 +252,12 @@ static bool is_awake(const struct islands *a, int item) {
 
 /* Could the pair close? Does its w depend on anything that is awake? */
 static void look_at_pair(const struct islands *a, int pair, bool *may_close, bool *is_seen) {
-    const struct dalcs_csr *C = &a->plan->stages->system->C;
-    const struct dalcs_csr *lambda = &a->plan->base;
-    int row = a->n_equations + pair;
     *may_close = true;
-    *is_seen = has_source(a->plan, row);
-    for (int k = C->p[pair]; k < C->p[pair + 1]; k++) {
-        bool awake = is_awake(a, a->plan->n_rows + C->j[k]);
-        *is_seen = *is_seen || awake;
-        *may_close = *may_close && (awake || C->j[k] >= a->n_equations);
-    }
-    for (int k = lambda->p[row]; k < lambda->p[row + 1]; k++) {
-        *may_close = *may_close && (lambda->j[k] >= a->n_equations || is_awake(a, lambda->j[k]));
+    *is_seen = has_source(a->plan, a->n_equations + pair);
+    for (int k = 0, item; (item = shore(a, pair, k)) >= 0; k++) {
+        bool awake = is_awake(a, item);
+        *may_close = *may_close && (awake || !is_of_equation(a, item));
+        *is_seen = *is_seen || (awake && item >= a->plan->n_rows);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "stage_workshop.h"
 
 #include "extended.h"
+#include "stage_matrix.h"
 #include "wide_vectors.h"
 
 #include <lapacke.h>
@@ -181,23 +182,6 @@ static void fill(struct dalcs_stage_workshop *b) {
     }
 }
 
-static double power_of_2(double largest) {
-    enum { BIAS = 1023, FRACTION_BITS = 52 };
-
-    uint64_t bits;
-    memcpy(&bits, &largest, sizeof(bits));
-    uint64_t biased = bits >> FRACTION_BITS; /* of largest >= 0 */
-    if (biased > 0 && biased < 2 * BIAS - 1) {
-        bits = (2 * BIAS - 1 - biased) << FRACTION_BITS;
-        double power;
-        memcpy(&power, &bits, sizeof(power));
-        return power;
-    }
-    int exponent;
-    (void)frexp(largest, &exponent);
-    return largest > 0.0 && isfinite(largest) ? ldexp(1.0, -exponent) : 1.0;
-}
-
 /* Both with room for whole quads in S and in row_scale. */
 DALCS_TWICE(void, balance_rows,
             (int n, const double *S, const double *column_scale, double *row_scale),
@@ -214,7 +198,7 @@ DALCS_TWICE(void, balance_rows,
         dalcs_quad_store(row_scale + i, &largest);
     }
     for (int i = 0; i < dalcs_quads_of(n); i++) {
-        row_scale[i] = i < n ? power_of_2(row_scale[i]) : 0.0;
+        row_scale[i] = i < n ? dalcs_stage_matrix_scale(row_scale[i]) : 0.0;
     }
 }
 
@@ -232,7 +216,7 @@ DALCS_TWICE(void, balance_columns,
             a *= scale;
             dalcs_quad_raise(&largest, &a);
         }
-        column_scale[j] = power_of_2(dalcs_quad_largest(&largest));
+        column_scale[j] = dalcs_stage_matrix_scale(dalcs_quad_largest(&largest));
     }
 }
 

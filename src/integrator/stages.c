@@ -175,13 +175,9 @@ static enum dalcs_status entry_create(struct dalcs_stages *stages, double h, boo
     return DALCS_OK;
 }
 
-static bool is_key(const struct dalcs_stage_entry *e, const uint64_t *mode, size_t words,
-                   double h) {
-    uint64_t different = e->h != h;
-    for (size_t i = 0; i < words; i++) {
-        different |= e->mode[i] ^ mode[i];
-    }
-    return different == 0;
+static bool is_key(const struct dalcs_stages *stages, const struct dalcs_stage_entry *e,
+                   const uint64_t *mode, double h) {
+    return e->h == h && dalcs_mode_is(e->mode, mode, stages->n_words);
 }
 
 static void set_key(struct dalcs_stages *stages, const uint64_t *mode, double h) {
@@ -222,8 +218,7 @@ static enum dalcs_status choose_rest(struct dalcs_stages *stages, const uint64_t
         (plan->rest.any && dalcs_stage_rest_allows(plan, mode, x))) {
         return DALCS_OK;
     }
-    bool is_known = e != NULL && dalcs_stage_update_can_be_base(e) &&
-                    is_key(e, mode, (size_t)stages->n_words, e->h);
+    bool is_known = e != NULL && dalcs_stage_update_can_be_base(e) && is_key(stages, e, mode, e->h);
     if (!plan->rest.any && !is_known) {
         return DALCS_OK;
     }
@@ -250,10 +245,10 @@ enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *
                                    struct dalcs_stage_entry **entry) {
     size_t words = (size_t)stages->n_words;
     struct dalcs_stage_entry *e = stages->newest;
-    for (int k = 0; k < RECENT && e != NULL && !is_key(e, mode, words, h); k++) {
+    for (int k = 0; k < RECENT && e != NULL && !is_key(stages, e, mode, h); k++) {
         e = e->older;
     }
-    if (e == NULL || !is_key(e, mode, words, h)) {
+    if (e == NULL || !is_key(stages, e, mode, h)) {
         e = find(stages, mode, h);
     }
     bool is_spent = e != NULL && dalcs_stage_update_is_spent(e);
@@ -316,7 +311,7 @@ enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t 
 
 bool dalcs_stages_is_awake(const struct dalcs_stages *stages, int pair) {
     const struct dalcs_stage_plan *plan = stages->plan;
-    return plan == NULL || (plan->rest.may_close[pair / 64] >> (pair % 64) & 1) != 0;
+    return plan == NULL || dalcs_mode_has(plan->rest.may_close, pair);
 }
 
 int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry) {

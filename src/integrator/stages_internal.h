@@ -34,7 +34,7 @@ struct dalcs_stage_entry {
 };
 
 static inline bool dalcs_stage_is_on(const struct dalcs_stage_entry *e, int pair) {
-    return (e->mode[pair / 64] >> (pair % 64) & 1) != 0;
+    return dalcs_mode_has(e->mode, pair);
 }
 
 /* stages.c: one holder less; the last one destroys it. */

@@ -41,14 +41,6 @@ static void copy_mode(uint64_t *to, const uint64_t *from, size_t words) {
     }
 }
 
-static bool is_same(const uint64_t *a, const uint64_t *b, size_t words) {
-    uint64_t different = 0;
-    for (size_t k = 0; k < words; k++) {
-        different |= a[k] ^ b[k];
-    }
-    return different == 0;
-}
-
 void dalcs_transition_hold(struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     copy_mode(part->modes_before, p->mode, (size_t)p->n_words);
@@ -61,7 +53,8 @@ bool dalcs_transition_guess(struct dalcs_radau_part *part) {
     part->level_before = part->level;
     size_t slot = find_slot(part);
     const uint64_t *known = part->transition_modes + slot * MODES * words;
-    if (!part->transition[slot].is_known || !is_same(known, part->modes_before, 2 * words)) {
+    if (!part->transition[slot].is_known ||
+        !dalcs_mode_is(known, part->modes_before, 2 * p->n_words)) {
         return false;
     }
     copy_mode(p->mode, known + 2 * words, words);

@@ -154,7 +154,7 @@ static inline bool dalcs_osnsp_is_open(const struct dalcs_osnsp *p) {
 }
 
 static inline bool dalcs_osnsp_is_on(const struct dalcs_osnsp *p, int pair) {
-    return (p->mode[pair / 64] >> (pair % 64) & 1) != 0;
+    return dalcs_mode_has(p->mode, pair);
 }
 
 static inline void dalcs_osnsp_command(struct dalcs_osnsp *p, int pair, bool on) {
