@@ -274,12 +274,15 @@ const char *dalcs_method_name(size_t index);
 #define DALCS_TOLERANCE_MIN 1e-13
 #define DALCS_TOLERANCE_MAX 0.1
 
+/* Are there Radau IIA methods with so many stages in dalcs? 1, 3, 5, 7 and 9. */
+#define DALCS_HAS_STAGES(n) ((n) >= 1 && (n) <= 9 && (n) % 2 == 1)
+
 struct dalcs_run_options {
     const char *method; /* "auto", "radau" or "euler", the papers' implicit Euler; NULL: the
                            netlist's or the default */
     double tolerance; /* of radau and auto: largest error of a waveform over its scale; 0: .options
                            reltol, else 1e-6 */
-    int stages;       /* of radau, auto: 1, 3, 5 or 7; 0: .options stages, else chosen */
+    int stages;       /* of radau, auto: 1, 3, 5, 7 or 9; 0: .options stages, else chosen */
     double step;      /* s; the fixed step of euler and radau, the largest of auto; 0: .options
                            step; without either euler takes the tmax of .tran, else its tstep, and
                            radau controls its error with steps of at most tmax */

@@ -42,6 +42,8 @@ static void add_pair(struct dalcs_view *view, int device, int pair, double resis
     if (side != BLOCKS && resistance == 0.0) {
         f->may_carry = true;
         f->back = side == TIED ? 0.0 : fmax(lambda, 0.0);
+        /* A current that has not begun is rounding of either sign; what it shares is seen later. */
+        view->has_narrow = view->has_narrow || (side == CONDUCTS && !(lambda > 0.0));
     }
 }
 

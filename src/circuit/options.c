@@ -76,12 +76,13 @@ static bool read_stages(struct dalcs_reader *reader, int *stages) {
     if (!dalcs_reader_number(reader, DALCS_PLAIN, "a number of stages", &value)) {
         return false;
     }
-    if (value != 1 && value != 3 && value != 5 && value != 7) {
+    int n = value >= 0.0 && value < 100.0 ? (int)value : 0;
+    if (value != n || !DALCS_HAS_STAGES(n)) {
         dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
-                            "stages must be 1, 3, 5 or 7");
+                            "stages must be 1, 3, 5, 7 or 9");
         return false;
     }
-    *stages = (int)value;
+    *stages = n;
     return true;
 }
 

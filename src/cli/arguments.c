@@ -98,12 +98,13 @@ static enum dalcs_status parse_tolerance(struct dalcs_arguments *arguments,
 static enum dalcs_status parse_stages(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *text) {
     double value = 0.0;
-    if (dalcs_parse_number(text, &value) != DALCS_OK ||
-        (value != 1.0 && value != 3.0 && value != 5.0 && value != 7.0)) {
-        dalcs_cli_error(cli, "--stages: '%s' is none of 1, 3, 5, 7", text);
+    bool is_number = dalcs_parse_number(text, &value) == DALCS_OK;
+    int n = is_number && value >= 0.0 && value < 100.0 ? (int)value : 0;
+    if (value != n || !DALCS_HAS_STAGES(n)) {
+        dalcs_cli_error(cli, "--stages: '%s' is none of 1, 3, 5, 7, 9", text);
         return DALCS_E_OPTION;
     }
-    arguments->stages = (int)value;
+    arguments->stages = n;
     return DALCS_OK;
 }
 

@@ -27,7 +27,7 @@ static const char help[] =
     "                        whole part of the largest\n"
     "      --methods LIST    euler, radau (with 3, 5 and 7 stages), radau1, radau3, radau5, "
     "radau7,\n"
-    "                        separated by commas (default: euler,radau)\n"
+    "                        radau9, separated by commas (default: euler,radau)\n"
     "      --dialect ngspice|ltspice|xyce\n"
     "                        for which simulator the netlist was written (default: what it shows)\n"
     "  -o, --output FILE     write a page with a figure, drawn by gnuplot, .html, or the table, "
@@ -164,8 +164,8 @@ static bool add_method(struct arguments *a, const char *word) {
         return add_stepping(a, "radau", 3) && add_stepping(a, "radau", 5) &&
                add_stepping(a, "radau", 7);
     }
-    bool known = strlen(word) == 6 && strncmp(word, "radau", 5) == 0 && strchr("1357", word[5]);
-    return known && add_stepping(a, "radau", word[5] - '0');
+    int stages = strlen(word) == 6 && strncmp(word, "radau", 5) == 0 ? word[5] - '0' : 0;
+    return DALCS_HAS_STAGES(stages) && add_stepping(a, "radau", stages);
 }
 
 static enum dalcs_status take_methods(struct arguments *a, const struct dalcs_cli *cli,
@@ -179,8 +179,8 @@ static enum dalcs_status take_methods(struct arguments *a, const struct dalcs_cl
     }
     if (!fine) {
         dalcs_cli_error(cli,
-                        "--methods: write euler, radau, radau1, radau3, radau5, radau7 or several "
-                        "of them, each once, separated by commas");
+                        "--methods: write euler, radau, radau1, radau3, radau5, radau7, radau9 or "
+                        "several of them, each once, separated by commas");
         return DALCS_E_OPTION;
     }
     return DALCS_OK;

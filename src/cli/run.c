@@ -46,7 +46,7 @@ static const char help[] =
     "                      step; auto chooses for each part (default: the netlist's, else auto)\n"
     "      --tol X         how far a waveform may be wrong, over its largest value; 1e-13 to 0.1\n"
     "                      (default: .options reltol, else 1e-6)\n"
-    "      --stages 1|3|5|7\n"
+    "      --stages 1|3|5|7|9\n"
     "                      stages of radau (default: by size and tolerance)\n"
     "      --step H        time step in s, SPICE suffixes allowed: 1u. The largest one with auto,\n"
     "                      fixed with radau and euler (default: from .tran)\n"

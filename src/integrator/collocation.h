@@ -16,10 +16,14 @@
 
 #include <complex.h>
 
-enum { DALCS_MAX_STAGES = 7, DALCS_MAX_NODES = DALCS_MAX_STAGES + 1, DALCS_MAX_CONJUGATES = 3 };
+enum {
+    DALCS_MAX_STAGES = 9,
+    DALCS_MAX_NODES = 12, /* s + 1, in whole quads */
+    DALCS_MAX_CONJUGATES = DALCS_MAX_STAGES / 2
+};
 
 struct dalcs_collocation {
-    int s;                        /* stages: 1, 3, 5 or 7 */
+    int s;                        /* stages: 1, 3, 5, 7 or 9 */
     int n_pairs;                  /* conjugate pairs of eigenvalues */
     double node[DALCS_MAX_NODES]; /* 0, c_1, ..., c_s */
     double lambda;                /* the real eigenvalue of A^-1 */
@@ -30,7 +34,7 @@ struct dalcs_collocation {
     double complex to_pair[DALCS_MAX_STAGES][DALCS_MAX_CONJUGATES];
     double complex from_pair[DALCS_MAX_CONJUGATES][DALCS_MAX_STAGES];
 
-    /* the same with the digits that their large elements (25 for s = 5, 300 for s = 7) cost */
+    /* the same with the digits that their large elements (300 for s = 7, 3500 for 9) cost */
     long double exact_back[DALCS_MAX_STAGES];
     long double exact_lambda, exact_to[DALCS_MAX_STAGES], exact_from[DALCS_MAX_STAGES];
     long double complex exact_mu[DALCS_MAX_CONJUGATES];
@@ -52,7 +56,7 @@ struct dalcs_collocation {
     double bernstein_spread; /* coefficients leave the range of the values by at most this part */
 };
 
-/* s must be 1, 3, 5 or 7. */
+/* s must be 1, 3, 5, 7 or 9. */
 const struct dalcs_collocation *dalcs_collocation_of(int s);
 
 /* weight[s + 1], with room for all, such that a quantity at a finite theta (in steps) is the sum of

@@ -2,13 +2,42 @@
  * in extended precision, printed as the table that collocation.c includes. */
 #include "collocation.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 
-enum { MAX = DALCS_MAX_NODES, NEWTON_ROUNDS = 60, INVERSE_ROUNDS = 4, SCAN = 2000 };
+enum { MAX = DALCS_MAX_NODES, INVERSE_ROUNDS = 4, SCAN = 2000 };
 
+/* More digits than the table has: of an eigenvector as many are lost as those of A and of its transpose
+ * are at right angles to each other, six for s = 9. */
+#if LDBL_MANT_DIG >= 113
 typedef long double real;
 typedef long double complex complex_real;
+#else
+typedef __float128 real;
+typedef _Complex float complex_real __attribute__((mode(TC)));
+#endif
+
+static real size_of(real x) {
+    return x < 0 ? -x : x;
+}
+
+static real larger(real a, real b) {
+    return a > b ? a : b;
+}
+
+/* Of a complex number, up to a factor of sqrt(2). */
+static real extent(complex_real x) {
+    return larger(size_of(__real__ x), size_of(__imag__ x));
+}
+
+static real power(real x, int n) {
+    real product = 1;
+    for (int k = 0; k < n; k++) {
+        product *= x;
+    }
+    return product;
+}
 
 /* Legendre polynomials of degree n and n - 1 at t. */
 static void legendre(int n, real t, real *p, real *before) {
@@ -47,7 +76,7 @@ static int roots_in_unit_interval(int n, bool radau, real *root) {
         if (k == SCAN - 1 || at_a * node_polynomial(n, radau, 2 * b - 1) >= 0.0L) {
             continue;
         }
-        for (int round = 0; round < 80; round++) {
+        for (int round = 0; round < 130; round++) {
             real middle = 0.5L * (a + b);
             bool left = at_a * node_polynomial(n, radau, 2 * middle - 1) <= 0.0L;
             *(left ? &b : &a) = middle;
@@ -107,7 +136,7 @@ static void eigenvalues(int s, complex_real *mu) {
     }
     complex_real start = 0.4L + 0.9L * I;
     for (int i = 0; i < s; i++) {
-        mu[i] = (real)s * cpowl(start, i);
+        mu[i] = i > 0 ? mu[i - 1] * start : (real)s;
     }
     for (int round = 0; round < 500; round++) {
         for (int i = 0; i < s; i++) {
@@ -130,7 +159,7 @@ static void solve_small(int n, complex_real a[MAX][MAX], complex_real *b) {
     for (int k = 0; k < n; k++) {
         int pivot = k;
         for (int i = k + 1; i < n; i++) {
-            pivot = cabsl(a[i][k]) > cabsl(a[pivot][k]) ? i : pivot;
+            pivot = extent(a[i][k]) > extent(a[pivot][k]) ? i : pivot;
         }
         for (int j = 0; j < n; j++) {
             complex_real swap = a[k][j];
@@ -140,8 +169,8 @@ static void solve_small(int n, complex_real a[MAX][MAX], complex_real *b) {
         complex_real swap = b[k];
         b[k] = b[pivot];
         b[pivot] = swap;
-        if (cabsl(a[k][k]) < 1e-22L) {
-            a[k][k] = 1e-22L;
+        if (extent(a[k][k]) < (real)1e-40L) {
+            a[k][k] = (real)1e-40L;
         }
         for (int i = k + 1; i < n; i++) {
             complex_real factor = a[i][k] / a[k][k];
@@ -175,7 +204,7 @@ static void eigenvector(int s, real A[MAX][MAX], complex_real mu, bool transpose
         solve_small(s, a, v);
         real largest = 0.0L;
         for (int i = 0; i < s; i++) {
-            largest = fmaxl(largest, cabsl(v[i]));
+            largest = larger(largest, extent(v[i]));
         }
         for (int i = 0; i < s; i++) {
             v[i] /= largest;
@@ -188,7 +217,7 @@ static void diagonalise(struct dalcs_collocation *c, real A[MAX][MAX]) {
     complex_real mu[MAX];
     eigenvalues(s, mu);
     for (int k = 0; k < s; k++) {
-        if (cimagl(mu[k]) < -1e-9L) {
+        if (__imag__(mu[k]) < -1e-9L) {
             continue; /* the conjugate of another */
         }
         complex_real right[MAX];
@@ -201,25 +230,25 @@ static void diagonalise(struct dalcs_collocation *c, real A[MAX][MAX]) {
             of_one += left[i];
             product += left[i] * right[i];
         }
-        bool is_real = cimagl(mu[k]) <= 1e-9L;
+        bool is_real = __imag__(mu[k]) <= 1e-9L;
         for (int i = 0; i < s; i++) {
             complex_real back = left[i] / of_one;
             complex_real forth = right[i] * of_one / product;
             if (is_real) {
-                c->exact_from[i] = creall(back);
-                c->exact_to[i] = creall(forth);
-                c->from[i] = (double)creall(back);
-                c->to[i] = (double)creall(forth);
+                c->exact_from[i] = __real__(back);
+                c->exact_to[i] = __real__(forth);
+                c->from[i] = (double)__real__(back);
+                c->to[i] = (double)__real__(forth);
             } else {
-                c->exact_from_pair[c->n_pairs][i] = back;
-                c->exact_to_pair[i][c->n_pairs] = forth;
+                c->exact_from_pair[c->n_pairs][i] = (long double complex)back;
+                c->exact_to_pair[i][c->n_pairs] = (long double complex)forth;
                 c->from_pair[c->n_pairs][i] = (double complex)back;
                 c->to_pair[i][c->n_pairs] = (double complex)forth;
             }
         }
         if (is_real) {
-            c->exact_lambda = creall(mu[k]);
-            c->lambda = (double)creall(mu[k]);
+            c->exact_lambda = __real__(mu[k]);
+            c->lambda = (double)__real__(mu[k]);
         } else {
             c->exact_mu[c->n_pairs] = mu[k];
             c->mu[c->n_pairs++] = (double complex)mu[k];
@@ -240,7 +269,7 @@ static void choose_test_node(struct dalcs_collocation *c, const real *node) {
     real worst = 0.0L;
     for (int k = 1; k < SCAN; k++) {
         real x = (real)k / SCAN;
-        real size = fabsl(product_of_differences(n, node, x));
+        real size = size_of(product_of_differences(n, node, x));
         if (size > worst) {
             worst = size;
             c->test_size = (double)size;
@@ -256,7 +285,7 @@ static void choose_test_node(struct dalcs_collocation *c, const real *node) {
         for (int k = 0; k < n; k++) {
             slope *= k != i ? node[i] - node[k] : 1.0L;
         }
-        steepest = i > 0 ? fmaxl(steepest, fabsl(slope)) : 0.0L;
+        steepest = i > 0 ? larger(steepest, size_of(slope)) : 0.0L;
     }
     c->test_factor = fmax(1.0, (double)(steepest / worst) / c->lambda);
 }
@@ -272,22 +301,22 @@ static void bernstein_matrix(struct dalcs_collocation *c, const real *node) {
         for (int i = 0; i < n; i++) {
             real binomial = 1.0L;
             for (int j = 0; j < n; j++) {
-                a[i][j] = binomial * powl(node[i], j) * powl(1 - node[i], n - 1 - j);
+                a[i][j] = binomial * power(node[i], j) * power(1 - node[i], n - 1 - j);
                 binomial = binomial * (real)(n - 1 - j) / (real)(j + 1);
             }
             b[i] = i == k ? 1.0L : 0.0L;
         }
         solve_small(n, a, b);
         for (int j = 0; j < n; j++) {
-            c->to_bernstein[k][j] = (double)creall(b[j]);
+            c->to_bernstein[k][j] = (double)__real__(b[j]);
         }
     }
     for (int j = 0; j < n; j++) {
         real sum = 0.0L;
         for (int k = 0; k < n; k++) {
-            sum += fabs(c->to_bernstein[k][j]);
+            sum += size_of(c->to_bernstein[k][j]);
         }
-        spread = fmaxl(spread, 0.5L * (sum - 1.0L));
+        spread = larger(spread, 0.5L * (sum - 1.0L));
     }
     c->bernstein_spread = (double)spread;
 }
@@ -301,9 +330,9 @@ static void find_spread(struct dalcs_collocation *c, const real *node) {
         real sum = 0.0L;
         lagrange(c->s + 1, node, (real)i / SCAN, value);
         for (int k = 0; k <= c->s; k++) {
-            sum += fabsl(value[k]);
+            sum += size_of(value[k]);
         }
-        largest = fmaxl(largest, sum);
+        largest = larger(largest, sum);
     }
     c->spread = (double)(0.5L * (1.001L * largest - 1.0L));
 }
@@ -372,7 +401,7 @@ static void print_complexes(int n, const double complex *x) {
 static void print_exact_complexes(int n, const long double complex *x) {
     printf("{");
     for (int i = 0; i < n; i++) {
-        printf("%sCMPLXL(%.21LgL, %.21LgL)", i > 0 ? ", " : "", creall(x[i]), cimagl(x[i]));
+        printf("%sCMPLXL(%.21LgL, %.21LgL)", i > 0 ? ", " : "", __real__(x[i]), __imag__(x[i]));
     }
     printf("}");
 }

@@ -31,13 +31,26 @@ static int map_limit(const struct dalcs_radau_options *o, int dense_limit) {
     return (int)((o->tolerance < tight ? maps_when_tight : maps_when_not) * dense_limit);
 }
 
+static bool is_pulsed(const struct dalcs_component *c) {
+    bool found = false;
+    for (int k = 1; k < c->system->n_inputs && !found; k++) {
+        found = c->circuit->stimulus[c->system->stimulus[k]].kind == DALCS_STIMULUS_PULSE;
+    }
+    return found;
+}
+
 /* Small components pay little for more stages, mostly as dense maps, and save steps and
- * maps; large ones pay for each stage with a factorisation in every new mode. */
-static int choose_stages(const struct dalcs_radau_options *o, const struct dalcs_system *system,
+ * maps; nine are too many where pulses end steps before errors do. Large ones pay for each stage with a
+ * factorisation in every new mode. */
+static int choose_stages(const struct dalcs_radau_options *o, const struct dalcs_component *c,
                          int dense_limit, const char **because) {
-    bool small = dalcs_system_n_columns(system) <= dense_limit;
-    *because = small ? "small" : o->tolerance >= loose ? "large, loose tolerance" : "large";
-    return small ? 7 : o->tolerance >= loose ? 3 : 5;
+    if (dalcs_system_n_columns(c->system) > dense_limit) {
+        *because = o->tolerance >= loose ? "large, loose tolerance" : "large";
+        return o->tolerance >= loose ? 3 : 5;
+    }
+    bool many = o->tolerance < tight && !is_pulsed(c);
+    *because = many ? "small, tight tolerance" : "small";
+    return many ? 9 : 7;
 }
 
 static bool has_memory_or_sides(const struct dalcs_system *s) {
@@ -138,7 +151,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->kind = steps ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
     int stages = r->options.stages;
     if (stages == 0) {
-        stages = choose_stages(&r->options, c->system, osnsp->dense_limit, &part->because);
+        stages = choose_stages(&r->options, c, osnsp->dense_limit, &part->because);
     }
     part->because = steps ? part->because : "no state, no diode and no switch";
     DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system));

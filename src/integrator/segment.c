@@ -18,6 +18,11 @@
 /* The error estimate may be this much smaller than what is allowed before the step is doubled. */
 static const double safety = 0.8;
 
+/* An error below this, over the signal, is rounding: the true one may be far smaller, and the step grows
+ * by at least so many powers of 2 to see. */
+static const double unseen = 1e-15;
+static const double rungs_unseen = 3.0;
+
 /* Defects of a state, over what is allowed, that interpolation may leave; more is a jump. */
 static const double most_projected = 1e4;
 
@@ -54,7 +59,7 @@ enum {
 
 /* The longest step over the shortest period of a source, by stages: fewer nodes see less. */
 static double most_periods(int stages) {
-    return stages >= 7 ? 0.6 : stages >= 5 ? 0.45 : 0.25;
+    return stages >= 9 ? 0.75 : stages >= 7 ? 0.6 : stages >= 5 ? 0.45 : 0.25;
 }
 
 double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
@@ -222,14 +227,16 @@ static void shorten(struct dalcs_radau_part *part, double ratio, int stuck) {
     part->grew = false;
 }
 
-static double rungs_promised(const struct dalcs_radau_part *part, double ratio) {
-    return log2(safety / ratio) / (double)(part->stages.method->s + 1);
+static double rungs_promised(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                             double ratio) {
+    double rungs = log2(safety / ratio) / (double)(part->stages.method->s + 1);
+    return ratio * r->inner_tolerance < unseen ? dalcs_larger(rungs, rungs_unseen) : rungs;
 }
 
 /* A longer step next time if the error promises it, or, as errors near rounding promise nothing, now
  * and then to see. */
-static void lengthen(struct dalcs_radau_part *part, double ratio) {
-    double rungs = rungs_promised(part, ratio);
+static void lengthen(const struct dalcs_radau *r, struct dalcs_radau_part *part, double ratio) {
+    double rungs = rungs_promised(r, part, ratio);
     bool promising = rungs > 1.0;
     int up = rungs > MOST_RUNGS ? MOST_RUNGS : promising ? (int)rungs : 1;
     while (up > 0 && dalcs_radau_ladder(part, part->level - up) > part->longest) {
@@ -388,7 +395,7 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         if (part->flipped) {
             double ratio = quality->ratio * fmax(1.0, r->inner_tolerance / fine);
             bool longer = !search->fixed && part->end == 1.0 && part->n_crossed == 0 &&
-                          rungs_promised(part, ratio) > 1.0 &&
+                          rungs_promised(r, part, ratio) > 1.0 &&
                           dalcs_radau_ladder(part, part->level - 1) <= part->longest;
             if (longer || !search->guessed) {
                 dalcs_transition_learn(part, longer ? part->level - 1 : part->level);
@@ -399,7 +406,7 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         part->flipped = false;
     }
     if (!search->fixed && part->end == 1.0) {
-        lengthen(part, quality->ratio);
+        lengthen(r, part, quality->ratio);
     }
 }
 

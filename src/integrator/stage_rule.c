@@ -7,12 +7,12 @@
 
 /* Integral of what has these values at the points. */
 static inline double weigh(const struct dalcs_stage_rule *rule, const dalcs_points *value) {
-    double sum[DALCS_POINT_GROUPS];
+    double sum = 0.0;
     for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
         dalcs_points a = rule->weight[g] * value[g];
-        sum[g] = (a[0] + a[1]) + (a[2] + a[3]);
+        sum += (a[0] + a[1]) + (a[2] + a[3]);
     }
-    return sum[0] + sum[1];
+    return sum;
 }
 
 DALCS_TWICE(void, set_cut,

@@ -87,8 +87,8 @@ static enum dalcs_status choose_accuracy(struct dalcs_run *r) {
                        DALCS_TOLERANCE_MAX);
         return DALCS_E_OPTION;
     }
-    if (o->stages != 0 && o->stages != 1 && o->stages != 3 && o->stages != 5 && o->stages != 7) {
-        return option_error(r->s, "the number of stages must be 1, 3, 5 or 7");
+    if (o->stages != 0 && !DALCS_HAS_STAGES(o->stages)) {
+        return option_error(r->s, "the number of stages must be 1, 3, 5, 7 or 9");
     }
     r->tolerance = o->tolerance > 0.0      ? o->tolerance
                    : netlist->reltol > 0.0 ? netlist->reltol

@@ -103,8 +103,8 @@ class Converge(unittest.TestCase):
             (("--steps", "1m..1f"),
              "--steps: 1.81899e-15 s would take 5e+12 steps; the most is 2e+07"),
             (("--steps", "1u", "--methods", "gear"),
-             "--methods: write euler, radau, radau1, radau3, radau5, radau7 or several of them, each "
-             "once, separated by commas"),
+             "--methods: write euler, radau, radau1, radau3, radau5, radau7, radau9 or several of "
+             "them, each once, separated by commas"),
             (("--steps", "1u", "-o", "a.txt"),
              "cannot tell the format of 'a.txt': name it .html or .csv"),
         ]

@@ -130,8 +130,8 @@ class Usage(Case):
         for value in "0.9e-13", "0.11", "0", "-1u":
             self.assertIn(f"--tol: '{value}' does not lie between 1e-13 and 0.1",
                           self.refused("run", "a.cir", "--tol", value))
-        for value in "0", "2", "9", "3.5", "-1", "five":
-            self.assertIn(f"--stages: '{value}' is none of 1, 3, 5, 7",
+        for value in "0", "2", "11", "3.5", "-1", "five":
+            self.assertIn(f"--stages: '{value}' is none of 1, 3, 5, 7, 9",
                           self.refused("run", "a.cir", "--stages", value))
         for value in "0", "1", "-1m":
             self.assertIn(f"--compress: '{value}' must be greater than 0 and less than 1",

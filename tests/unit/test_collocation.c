@@ -7,7 +7,7 @@
 #include <float.h>
 #include <math.h>
 
-static const int STAGES[] = {1, 3, 5, 7};
+static const int STAGES[] = {1, 3, 5, 7, 9};
 
 #define FOR_ALL_METHODS(c)                                                                         \
     for (const struct dalcs_collocation *c = dalcs_collocation_of(1), *last_method = NULL;         \

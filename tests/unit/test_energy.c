@@ -110,7 +110,7 @@ static void check_balance(void) {
 }
 
 START_TEST(test_radau) {
-    static const int STAGES[] = {1, 3, 5, 7};
+    static const int STAGES[] = {1, 3, 5, 7, 9};
     for (int k = 0; k < 4; k++) {
         run_radau(ALL, STAGES[k], 2e-6, 2e-3);
         check_balance();

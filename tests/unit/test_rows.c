@@ -118,7 +118,7 @@ static int count_sources(bool bystanders) {
 }
 
 START_TEST(test_all_outputs) {
-    static const int STAGES[] = {3, 5, 7};
+    static const int STAGES[] = {3, 5, 7, 9};
     for (int k = 0; k < 3; k++) {
         start(STEPPED, STAGES[k], NULL, 15);
         ck_assert(!rows.one_by_one);

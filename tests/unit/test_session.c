@@ -93,7 +93,7 @@ START_TEST(test_wrong_options) {
     wrong[n++].tolerance = -1e-6;
     wrong[n++].tolerance = NAN;
     wrong[n++].stages = 2;
-    wrong[n++].stages = 9;
+    wrong[n++].stages = 11;
     wrong[n++].stages = -1;
     wrong[n++].compress = -1e-3;
     wrong[n++].compress = 1.0;

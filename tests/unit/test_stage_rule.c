@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-static const int STAGES[] = {1, 3, 5, 7};
+static const int STAGES[] = {1, 3, 5, 7, 9};
 static const double ENDS[] = {1.0, 0.9999, 0.7, 0.25, 1e-3, 0.0};
 
 enum { N_ENDS = sizeof ENDS / sizeof ENDS[0] };
