@@ -1,6 +1,7 @@
 /* stage_map.c - a step of a small system in one mode as one dense matrix: its columns are combinations
  * of the few solutions that the workshop has for unit states and unit inputs. */
 #include "dense_map.h"
+#include "extremes.h"
 #include "stage_workshop.h"
 #include "wide_vectors.h"
 
@@ -129,6 +130,7 @@ static void choose(const struct dalcs_stage_workshop *b) {
 /* Unknowns in a lane to the columns of the system, guards in the place of lambda. */
 static void put_columns(const struct dalcs_stage_workshop *b, int lane, double *out) {
     int n_equations = dalcs_system_n_equations(b->system);
+#pragma GCC unroll 4
     for (int c = 0; c < n_equations; c++) {
         out[c] = b->lanes[c * DALCS_LANES + lane];
     }
@@ -201,52 +203,97 @@ static void find_factors(const struct dalcs_stage_workshop *b, const double *sha
     }
 }
 
-/* The stages, into b->lanes, and, before the filter, how far the polynomial through them alone misses
- * the start, into b->start. */
+/* Adds up what a stage takes of the parts of a solution; n is known to the compiler where it matters. */
+static inline __attribute__((always_inline)) long double combine(int n, const long double *factor,
+                                                                 const long double *part) {
+    long double sum = factor[0] * part[0];
+#pragma GCC unroll 9
+    for (int k = 1; k < n; k++) {
+        sum += factor[k] * part[k];
+    }
+    return sum;
+}
+
+/* The stages of what is kept, into b->stage as increments and into b->lanes, and what they alone say of the
+ * start, likewise. */
+static inline __attribute__((always_inline)) void
+fill_kept(struct dalcs_stage_workshop *b, int n_parts, int column, int rhs_column,
+          const long double (*factor)[DALCS_SOLUTION_PARTS]) {
+    const struct dalcs_collocation *m = b->stages->method;
+    const long double *part = b->part + rhs_column * b->n_kept * DALCS_SOLUTION_PARTS;
+    long double *stage = b->stage;
+    for (int r = 0; r < b->n_kept; r++, part += DALCS_SOLUTION_PARTS, stage += DALCS_MAX_STAGES) {
+        long double scale = b->column_scale[b->kept[r]];
+        long double unit = column < b->n_x && b->kept[r] == column ? 1.0L : 0.0L;
+        long double start = 0.0L;
+        double *lane = b->lanes + b->kept[r] * DALCS_LANES;
+        for (int i = 0; i < m->s; i++) {
+            stage[i] = combine(n_parts, factor[i], part);
+            start += m->exact_back[i] * stage[i];
+            lane[i + 1] = (double)(stage[i] * scale + unit);
+        }
+        b->kept_start[r] = start;
+        b->start[b->kept[r]] = start * scale + unit;
+    }
+}
+
+/* The stages of a follower of n unknowns, unscaled. */
+static inline __attribute__((always_inline)) void
+fill_follower(const struct dalcs_stage_workshop *b, int n, const long double *x, const int *of,
+              long double drive, const double *share, long double scale, double *lane) {
+    for (int i = 0; i < b->stages->method->s; i++) {
+        long double sum = drive * share[i];
+        for (int k = 0; k < n; k++) {
+            sum -= x[k] * b->stage[of[k] * DALCS_MAX_STAGES + i];
+        }
+        lane[i] = (double)(sum * scale);
+    }
+}
+
+static void fill_followers(struct dalcs_stage_workshop *b, int rhs_column, const double *share) {
+    const struct dalcs_collocation *m = b->stages->method;
+    long double start_share = 0.0L;
+    for (int i = 0; i < m->s; i++) {
+        start_share += m->exact_back[i] * share[i];
+    }
+    for (int f = 0; f < b->n_followers; f++) {
+        int n = b->follows_p[f + 1] - b->follows_p[f];
+        const long double *x = b->follows_x + b->follows_p[f];
+        const int *of = b->follows_j + b->follows_p[f];
+        long double scale = b->column_scale[b->follower[f]];
+        long double drive = dalcs_stage_workshop_drive(b, f, rhs_column);
+        double *lane = b->lanes + b->follower[f] * DALCS_LANES + 1;
+        long double start = drive * start_share;
+        for (int k = 0; k < n; k++) {
+            start -= x[k] * b->kept_start[of[k]];
+        }
+        b->start[b->follower[f]] = start * scale;
+        if (n == 1) {
+            fill_follower(b, 1, x, of, drive, share, scale, lane);
+        } else if (n == 2) {
+            fill_follower(b, 2, x, of, drive, share, scale, lane);
+        } else {
+            fill_follower(b, n, x, of, drive, share, scale, lane);
+        }
+    }
+}
+
+/* The stages, into b->lanes, and, before the filter, where the polynomial through them alone starts, into
+ * b->start. */
 static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_column,
                         const double *share) {
-    const struct dalcs_collocation *m = b->stages->method;
-    bool is_state = column < b->n_x;
+    static const double constant[DALCS_MAX_STAGES] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
     const long double(*factor)[DALCS_SOLUTION_PARTS] = (const void *)b->constant_factor;
     if (column > b->n_x) {
         find_factors(b, share, b->factor);
         factor = (const void *)b->factor;
     }
-    const long double *part = b->part + rhs_column * b->n_kept * DALCS_SOLUTION_PARTS;
-    long double *stage = b->stage;
-    for (int r = 0; r < b->n_kept; r++, part += DALCS_SOLUTION_PARTS, stage += DALCS_MAX_STAGES) {
-        long double scale = b->column_scale[b->kept[r]];
-        long double unit = is_state && b->kept[r] == column ? 1.0L : 0.0L;
-        long double start = 0.0L;
-        double *lane = b->lanes + b->kept[r] * DALCS_LANES;
-        for (int i = 0; i < m->s; i++) {
-            long double sum = factor[i][0] * part[0];
-            for (int k = 1; k < DALCS_SOLUTION_PARTS; k++) {
-                sum += factor[i][k] * part[k];
-            }
-            stage[i] = sum;
-            long double y = sum * scale + unit;
-            start += m->exact_back[i] * y;
-            lane[i + 1] = (double)y;
-        }
-        b->start[b->kept[r]] = start;
+    if (b->stages->method->s == 7) {
+        fill_kept(b, 7, column, rhs_column, factor);
+    } else {
+        fill_kept(b, DALCS_SOLUTION_PARTS, column, rhs_column, factor);
     }
-    for (int f = 0; f < b->n_followers; f++) {
-        long double scale = b->column_scale[b->follower[f]];
-        long double drive = dalcs_stage_workshop_drive(b, f, rhs_column);
-        long double start = 0.0L;
-        double *lane = b->lanes + b->follower[f] * DALCS_LANES;
-        for (int i = 0; i < m->s; i++) {
-            long double sum = is_state ? drive : drive * share[i + 1];
-            for (int k = b->follows_p[f]; k < b->follows_p[f + 1]; k++) {
-                sum -= b->follows_x[k] * b->stage[b->follows_j[k] * DALCS_MAX_STAGES + i];
-            }
-            long double y = sum * scale;
-            start += m->exact_back[i] * y;
-            lane[i + 1] = (double)y;
-        }
-        b->start[b->follower[f]] = start;
-    }
+    fill_followers(b, rhs_column, column < b->n_x ? constant : share + 1);
 }
 
 /* The start and what sources do between the nodes into b->lanes, and the defect at the start after the
@@ -256,19 +303,19 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
     const struct dalcs_collocation *m = b->stages->method;
     int n = b->n;
     int n_x = b->n_x;
-    bool is_state = column < n_x;
     const long double *real = b->real + rhs_column * n;
     long double source_drift = share[0];
     for (int i = 1; i <= m->s; i++) {
         source_drift -= m->exact_back[i - 1] * share[i];
     }
+    source_drift = column < n_x ? 0.0L : source_drift;
     for (int x = 0; x < n_x; x++) {
         b->missed[x] = (x == column ? 1.0L : 0.0L) - b->start[x];
     }
     for (int r = 0; r < n; r++) {
         double *lane = b->lanes + r * DALCS_LANES;
         long double scale = b->column_scale[r];
-        long double defect = is_state ? 0.0L : real[r] * source_drift;
+        long double defect = real[r] * source_drift;
         for (int x = 0; x < n_x; x++) {
             defect += b->real[x * n + r] * b->missed[x];
         }
@@ -277,12 +324,14 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
         if (r < n_x) {
             b->defect[r] = defect;
         } else {
-            /* What is added goes with states that are off by their defects: less that. */
-            long double start = b->start[r] + defect;
+            lane[0] = (double)(b->start[r] + defect);
+        }
+        if (r ==
+            n_x -
+                1) { /* What is added goes with states that are off by their defects: less that. */
             for (int x = 0; x < n_x; x++) {
-                start -= b->real[x * n + r] * scale * b->defect[x];
+                b->missed[x] -= b->defect[x];
             }
-            lane[0] = (double)start;
         }
         lane[DALCS_RIPPLE_LANE] =
             (double)real[r] * b->column_scale[r] * share[DALCS_RIPPLE_LANE] * m->test_factor;
@@ -332,38 +381,55 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
     }
 }
 
+/* residual += value * column of n entries, with room for whole quads behind both. Returns the largest
+ * term, at least `largest`. */
+DALCS_TWICE(double, add_terms,
+            (int n, const double *column, double value, double *residual, double largest),
+            (n, column, value, residual, largest)) {
+    dalcs_quad most = {largest};
+    for (int r = 0; r < n; r += DALCS_QUAD) {
+        dalcs_quad term;
+        dalcs_quad sum;
+        dalcs_quad_load(&term, column + r);
+        dalcs_quad_load(&sum, residual + r);
+        term *= value;
+        dalcs_quad_keep(&term, n - r);
+        sum += term;
+        dalcs_quad_store(residual + r, &sum);
+        dalcs_quad_unsign(&term);
+        dalcs_quad_raise(&most, &term);
+    }
+    return dalcs_quad_largest(&most);
+}
+
 /* How well the rounded answer at the last stage satisfies the equations without derivatives, in
  * balanced units. In a singular mode sources may disagree, which is for the clashes to tell. */
 static void check_column(struct dalcs_stage_workshop *b, int column, int rhs_column, double share) {
     int last = b->stages->method->s;
+    int n_z = b->n - b->n_x;
     bool is_state = column < b->n_x;
     if (b->nullity > 0 && !is_state) {
         return;
     }
     /* what a state of 1 is in balanced units: where it stays as it is all else is rounding of that */
     double largest = is_state ? 1.0 / b->column_scale[column] : 0.0;
-    for (int r = b->n_x; r < b->n; r++) {
-        double drive = b->rhs[rhs_column * b->n + r];
+    for (int r = 0; r < n_z; r++) {
+        double drive = b->rhs[rhs_column * b->n + b->n_x + r];
         b->residual[r] = -drive * (is_state ? 1.0 : share);
-        drive = fabs(drive); /* a sine may be near 0 just there */
-        largest = drive > largest ? drive : largest;
+        largest = dalcs_larger(largest, fabs(drive)); /* a sine may be near 0 just there */
     }
     for (int c = 0; c < b->n; c++) {
         double increment = b->lanes[c * DALCS_LANES + last] - (is_state && c == column ? 1.0 : 0.0);
-        double balanced = increment / b->column_scale[c];
-        const double *base = b->base + c * b->n;
-        for (int r = b->n_x; r < b->n && balanced != 0.0; r++) {
-            double term = base[r] * balanced;
-            b->residual[r] += term;
-            term = fabs(term);
-            largest = term > largest ? term : largest;
+        if (increment != 0.0) {
+            largest = add_terms(n_z, b->base + c * b->n + b->n_x, increment / b->column_scale[c],
+                                b->residual, largest);
         }
     }
     double worst = 0.0;
-    for (int r = b->n_x; r < b->n; r++) {
-        worst = fmax(worst, fabs(b->residual[r]));
+    for (int r = 0; r < n_z; r++) {
+        worst = dalcs_larger(worst, fabs(b->residual[r]));
     }
-    b->entry->residual = fmax(b->entry->residual, largest > 0.0 ? worst / largest : 0.0);
+    b->entry->residual = dalcs_larger(b->entry->residual, largest > 0.0 ? worst / largest : 0.0);
 }
 
 static int n_columns(const struct dalcs_stage_workshop *b) {

@@ -36,7 +36,7 @@ static bool allocate(struct dalcs_stage_workshop *b) {
     b->place = dalcs_arena_alloc(kept, (size_t)all + 1, sizeof(int));
     b->row_scale = dalcs_stage_workshop_reals(kept, n + DALCS_QUAD);
     b->column_scale = dalcs_stage_workshop_reals(kept, n);
-    b->base = dalcs_stage_workshop_reals(kept, n * n);
+    b->base = dalcs_stage_workshop_reals(kept, n * n + DALCS_QUAD);
     b->P = dalcs_stage_workshop_reals(kept, b->n_x * b->n_x);
     b->rhs = dalcs_stage_workshop_reals(kept, n * b->n_rhs);
     b->S = dalcs_stage_workshop_reals(kept, n * n + DALCS_QUAD);
@@ -55,20 +55,21 @@ static bool allocate(struct dalcs_stage_workshop *b) {
     b->row_of = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
     b->is_used = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(*b->is_used));
     b->lanes = dalcs_stage_workshop_reals(kept, n * DALCS_LANES);
+    b->kept_start = extendeds(kept, n);
     b->start = extendeds(kept, n);
     b->missed = extendeds(kept, b->n_x);
     b->defect = extendeds(kept, b->n_x);
     b->guard = dalcs_stage_workshop_reals(kept, s->n_pairs * DALCS_LANES);
-    b->residual = dalcs_stage_workshop_reals(kept, n);
+    b->residual = dalcs_stage_workshop_reals(kept, n + DALCS_QUAD);
     b->in = dalcs_stage_workshop_reals(kept, b->stages->n_in);
     return b->wave_column != NULL && b->place != NULL && b->row_scale != NULL &&
            b->column_scale != NULL && b->base != NULL && b->P != NULL && b->rhs != NULL &&
            b->S != NULL && b->re != NULL && b->im != NULL && b->whole != NULL && b->part != NULL &&
            b->real != NULL && b->stage != NULL && b->follows_x != NULL && b->follows_j != NULL &&
            b->follows_p != NULL && b->follower != NULL && b->kept != NULL && b->kept_row != NULL &&
-           b->row_of != NULL && b->is_used != NULL && b->lanes != NULL && b->start != NULL &&
-           b->missed != NULL && b->defect != NULL && b->guard != NULL && b->residual != NULL &&
-           b->in != NULL;
+           b->row_of != NULL && b->is_used != NULL && b->lanes != NULL && b->kept_start != NULL &&
+           b->start != NULL && b->missed != NULL && b->defect != NULL && b->guard != NULL &&
+           b->residual != NULL && b->in != NULL;
 }
 
 static bool is_driven(const struct dalcs_csr *a, const double *constant) {

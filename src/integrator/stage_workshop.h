@@ -38,12 +38,13 @@ struct dalcs_stage_workshop {
     bool *is_used;              /* [n] */
     int *follows_p, *follows_j; /* what followers take of the kept, by rows */
     long double *follows_x;
-    long double *re, *im; /* [n_kept][n_kept + n_rhs] a system by rows, then its solutions */
-    long double *part;    /* [n_rhs][n_kept][parts] the solutions, balanced */
-    long double *real;    /* [n_rhs][n] those of the real eigenvalue */
-    long double *stage;   /* [n_kept][stages] increments */
-    double *lanes;        /* [n][lanes] the answer */
-    long double *start;   /* [n] what the stages alone say of the start */
+    long double *re, *im;    /* [n_kept][n_kept + n_rhs] a system by rows, then its solutions */
+    long double *part;       /* [n_rhs][n_kept][parts] the solutions, balanced */
+    long double *real;       /* [n_rhs][n] those of the real eigenvalue */
+    long double *stage;      /* [n_kept][stages] increments */
+    double *lanes;           /* [n][lanes] the answer */
+    long double *kept_start; /* [n_kept] what these alone say of the increment at the start */
+    long double *start;      /* [n] what the stages alone say of the start */
     long double *missed, *defect; /* [n_x] what they miss there, and what the filter leaves of it */
     double *guard;                /* [n_pairs][lanes] */
     double *residual;             /* [n] */
