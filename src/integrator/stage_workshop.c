@@ -36,9 +36,15 @@ static bool allocate(struct dalcs_stage_workshop *b) {
     b->place = dalcs_arena_alloc(kept, (size_t)all + 1, sizeof(int));
     b->row_scale = dalcs_stage_workshop_reals(kept, n + DALCS_QUAD);
     b->column_scale = dalcs_stage_workshop_reals(kept, n);
+    b->mode = dalcs_arena_alloc(kept, (size_t)b->stages->n_words + 1, sizeof(*b->mode));
+    b->plain_base = dalcs_stage_workshop_reals(kept, n * n);
+    b->plain_P = dalcs_stage_workshop_reals(kept, b->n_x * b->n_x);
+    b->plain_rhs = dalcs_stage_workshop_reals(kept, n * b->n_rhs);
     b->base = dalcs_stage_workshop_reals(kept, n * n + DALCS_QUAD);
     b->P = dalcs_stage_workshop_reals(kept, b->n_x * b->n_x);
     b->rhs = dalcs_stage_workshop_reals(kept, n * b->n_rhs);
+    b->whole_row_scale = dalcs_stage_workshop_reals(kept, n);
+    b->whole_column_scale = dalcs_stage_workshop_reals(kept, n);
     b->S = dalcs_stage_workshop_reals(kept, n * n + DALCS_QUAD);
     b->re = extendeds(kept, n * (n + b->n_rhs));
     b->im = extendeds(kept, n * (n + b->n_rhs));
@@ -53,7 +59,7 @@ static bool allocate(struct dalcs_stage_workshop *b) {
     b->kept = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
     b->kept_row = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
     b->row_of = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
-    b->is_used = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(*b->is_used));
+    b->owner = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
     b->lanes = dalcs_stage_workshop_reals(kept, n * DALCS_LANES);
     b->kept_start = extendeds(kept, n);
     b->start = extendeds(kept, n);
@@ -67,7 +73,9 @@ static bool allocate(struct dalcs_stage_workshop *b) {
            b->S != NULL && b->re != NULL && b->im != NULL && b->whole != NULL && b->part != NULL &&
            b->real != NULL && b->stage != NULL && b->follows_x != NULL && b->follows_j != NULL &&
            b->follows_p != NULL && b->follower != NULL && b->kept != NULL && b->kept_row != NULL &&
-           b->row_of != NULL && b->is_used != NULL && b->lanes != NULL && b->kept_start != NULL &&
+           b->row_of != NULL && b->owner != NULL && b->mode != NULL && b->plain_base != NULL &&
+           b->plain_P != NULL && b->plain_rhs != NULL && b->whole_row_scale != NULL &&
+           b->whole_column_scale != NULL && b->lanes != NULL && b->kept_start != NULL &&
            b->start != NULL && b->missed != NULL && b->defect != NULL && b->guard != NULL &&
            b->residual != NULL && b->in != NULL;
 }
@@ -142,9 +150,9 @@ static void add_row(const struct dalcs_stage_workshop *b, const struct dalcs_csr
         if (column < 0) {
             continue;
         }
-        b->base[column * b->n + to] += sign * a->x[k];
+        b->plain_base[column * b->n + to] += sign * a->x[k];
         if (column < b->n_x) {
-            b->rhs[column * b->n + to] -= sign * a->x[k];
+            b->plain_rhs[column * b->n + to] -= sign * a->x[k];
         }
     }
 }
@@ -154,9 +162,10 @@ static void add_inputs(const struct dalcs_stage_workshop *b, const struct dalcs_
     for (int k = a->p[from]; k < a->p[from + 1]; k++) {
         int wave = b->wave_column[a->j[k]];
         if (wave >= 0) {
-            b->rhs[wave * b->n + to] += sign * a->x[k];
+            b->plain_rhs[wave * b->n + to] += sign * a->x[k];
         } else {
-            b->rhs[b->n_x * b->n + to] += sign * a->x[k] * b->stages->excitation->constant[a->j[k]];
+            b->plain_rhs[b->n_x * b->n + to] +=
+                sign * a->x[k] * b->stages->excitation->constant[a->j[k]];
         }
     }
 }
@@ -164,9 +173,9 @@ static void add_inputs(const struct dalcs_stage_workshop *b, const struct dalcs_
 static void fill(struct dalcs_stage_workshop *b) {
     const struct dalcs_system *s = b->system;
     int n_equations = dalcs_system_n_equations(s);
-    memset(b->base, 0, (size_t)b->n * (size_t)b->n * sizeof(double));
-    memset(b->P, 0, (size_t)b->n_x * (size_t)b->n_x * sizeof(double));
-    memset(b->rhs, 0, (size_t)b->n * (size_t)b->n_rhs * sizeof(double));
+    memset(b->plain_base, 0, (size_t)b->n * (size_t)b->n * sizeof(double));
+    memset(b->plain_P, 0, (size_t)b->n_x * (size_t)b->n_x * sizeof(double));
+    memset(b->plain_rhs, 0, (size_t)b->n * (size_t)b->n_rhs * sizeof(double));
     place_columns(b);
     for (int r = 0; r < n_equations; r++) {
         add_row(b, &s->A, r, r, -1.0);
@@ -178,7 +187,7 @@ static void fill(struct dalcs_stage_workshop *b) {
     }
     for (int i = 0; i < b->n_x; i++) {
         for (int k = s->P.p[i]; k < s->P.p[i + 1]; k++) {
-            b->P[s->P.j[k] * b->n_x + i] = s->P.x[k];
+            b->plain_P[s->P.j[k] * b->n_x + i] = s->P.x[k];
         }
     }
 }
@@ -229,10 +238,10 @@ static void balance(struct dalcs_stage_workshop *b) {
         b->row_scale[i] = 1.0;
         b->column_scale[i] = 1.0;
     }
-    memcpy(b->S, b->base, (size_t)n * (size_t)n * sizeof(double));
+    memcpy(b->S, b->plain_base, (size_t)n * (size_t)n * sizeof(double));
     for (int j = 0; j < b->n_x; j++) {
         for (int i = 0; i < b->n_x; i++) {
-            b->S[j * n + i] += sigma * b->P[j * b->n_x + i];
+            b->S[j * n + i] += sigma * b->plain_P[j * b->n_x + i];
         }
     }
     for (int round = 0; round < BALANCING_ROUNDS; round++) {
@@ -242,10 +251,10 @@ static void balance(struct dalcs_stage_workshop *b) {
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < n; i++) {
             double scale = b->row_scale[i] * b->column_scale[j];
-            b->base[j * n + i] *= scale;
+            b->base[j * n + i] = b->plain_base[j * n + i] * scale;
             b->S[j * n + i] *= scale;
             if (j < b->n_x && i < b->n_x) {
-                b->P[j * b->n_x + i] *= scale;
+                b->P[j * b->n_x + i] = b->plain_P[j * b->n_x + i] * scale;
             }
         }
     }
@@ -253,7 +262,7 @@ static void balance(struct dalcs_stage_workshop *b) {
            (size_t)dalcs_system_n_equations(b->system) * sizeof(double));
     for (int j = 0; j < b->n_rhs; j++) {
         for (int i = 0; i < n; i++) {
-            b->rhs[j * n + i] *= b->row_scale[i];
+            b->rhs[j * n + i] = b->plain_rhs[j * n + i] * b->row_scale[i];
         }
     }
 }
@@ -321,8 +330,10 @@ static double border(const struct dalcs_stage_workshop *b, int i, int j) {
 }
 
 /* S without P and its right-hand sides, by rows. */
-static void fill_whole(const struct dalcs_stage_workshop *b) {
+static void fill_whole(struct dalcs_stage_workshop *b) {
     int n = b->n;
+    memcpy(b->whole_row_scale, b->row_scale, (size_t)n * sizeof(double));
+    memcpy(b->whole_column_scale, b->column_scale, (size_t)n * sizeof(double));
     for (int i = 0; i < n; i++) {
         long double *row = b->whole + i * (n + b->n_rhs);
         for (int j = 0; j < n; j++) {
@@ -337,37 +348,12 @@ static void fill_whole(const struct dalcs_stage_workshop *b) {
     }
 }
 
-/* What the equations without derivatives say of an unknown without memory is the same for every
- * eigenvalue: those that they determine are solved for once. What is kept are the states and, where the
- * index is 2, what only derivatives determine. */
-static void eliminate_followers(struct dalcs_stage_workshop *b) {
-    int n = b->n;
-    int width = n + b->n_rhs;
-    b->n_kept = b->n_x;
-    b->n_followers = 0;
-    dalcs_extended_eliminate(b->n_x, n, width, least_follower, b->whole, b->row_of);
-    for (int c = 0; c < b->n_x; c++) {
-        b->kept[c] = c;
-        b->kept_row[c] = c;
-    }
-    memset(b->is_used, 0, (size_t)n * sizeof(*b->is_used));
-    for (int c = b->n_x; c < n; c++) {
-        if (b->row_of[c] < 0) {
-            b->kept[b->n_kept++] = c;
-        } else {
-            b->is_used[b->row_of[c]] = true;
-            b->follower[b->n_followers++] = c;
-        }
-    }
-    for (int r = b->n_x, k = b->n_x; r < n; r++) {
-        if (!b->is_used[r]) {
-            b->kept_row[k++] = r;
-        }
-    }
+/* What followers take of what is kept. */
+static void list_followers(struct dalcs_stage_workshop *b) {
     int entries = 0;
     b->follows_p[0] = 0;
     for (int f = 0; f < b->n_followers; f++) {
-        const long double *row = b->whole + b->row_of[b->follower[f]] * width;
+        const long double *row = b->whole + b->row_of[b->follower[f]] * (b->n + b->n_rhs);
         for (int k = 0; k < b->n_kept; k++) {
             if (row[b->kept[k]] != 0.0L) {
                 b->follows_j[entries] = k;
@@ -376,6 +362,66 @@ static void eliminate_followers(struct dalcs_stage_workshop *b) {
         }
         b->follows_p[f + 1] = entries;
     }
+}
+
+/* What the equations without derivatives say of an unknown without memory is the same for every
+ * eigenvalue: those that they determine are solved for once. What is kept are the states and, where the
+ * index is 2, what only derivatives determine. */
+static void eliminate_followers(struct dalcs_stage_workshop *b) {
+    int n = b->n;
+    b->n_kept = b->n_x;
+    b->n_followers = 0;
+    dalcs_extended_eliminate(b->n_x, n, n + b->n_rhs, least_follower, b->whole, b->row_of);
+    for (int r = 0; r < n; r++) {
+        b->owner[r] = -1;
+    }
+    for (int c = 0; c < b->n_x; c++) {
+        b->kept[c] = c;
+        b->kept_row[c] = c;
+    }
+    for (int c = b->n_x; c < n; c++) {
+        if (b->row_of[c] < 0) {
+            b->kept[b->n_kept++] = c;
+        } else {
+            b->owner[b->row_of[c]] = c;
+            b->follower[b->n_followers++] = c;
+        }
+    }
+    for (int r = b->n_x, k = b->n_x; r < n; r++) {
+        if (b->owner[r] < 0) {
+            b->kept_row[k++] = r;
+        }
+    }
+    list_followers(b);
+}
+
+/* Brings what was eliminated for another step length to the present scales. All are powers of 2: no digit
+ * is lost. */
+static void rescale_followers(struct dalcs_stage_workshop *b) {
+    int n = b->n;
+    for (int i = 0; i < n; i++) {
+        b->whole_row_scale[i] = b->row_scale[i] / b->whole_row_scale[i];
+        b->whole_column_scale[i] = b->column_scale[i] / b->whole_column_scale[i];
+    }
+    for (int r = 0; r < n; r++) {
+        long double *row = b->whole + r * (n + b->n_rhs);
+        int of = b->owner[r];
+        double scale = of < 0 ? b->whole_row_scale[r] : 1.0 / b->whole_column_scale[of];
+        for (int k = 0; k < b->n_kept; k++) {
+            row[b->kept[k]] *= scale * b->whole_column_scale[b->kept[k]];
+        }
+        for (int j = n; j < n + b->n_rhs; j++) {
+            row[j] *= scale;
+        }
+    }
+    for (int k = 0; k < b->nullity; k++) {
+        for (int i = 0; i < n; i++) {
+            b->left[k * n + i] /= b->whole_row_scale[i];
+        }
+    }
+    memcpy(b->whole_row_scale, b->row_scale, (size_t)n * sizeof(double));
+    memcpy(b->whole_column_scale, b->column_scale, (size_t)n * sizeof(double));
+    list_followers(b);
 }
 
 static void keep_all(struct dalcs_stage_workshop *b) {
@@ -437,18 +483,25 @@ static void take_real(const struct dalcs_stage_workshop *b) {
     }
 }
 
+static long double solve_kept(struct dalcs_stage_workshop *b) {
+    fill_system(b, b->stages->method->exact_lambda / b->entry->h, 0.0L, NULL);
+    return dalcs_extended_solve(b->n_kept, b->n_rhs, b->re, NULL);
+}
+
 static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
-    long double sigma = b->stages->method->exact_lambda / b->entry->h;
-    fill_whole(b);
-    eliminate_followers(b);
-    fill_system(b, sigma, 0.0L, NULL);
-    long double pivot = dalcs_extended_solve(b->n_kept, b->n_rhs, b->re, NULL);
+    if (b->is_known) {
+        rescale_followers(b);
+    } else {
+        fill_whole(b);
+        eliminate_followers(b);
+    }
+    long double pivot = solve_kept(b);
     if (pivot < doubtful_pivot) {
+        b->is_known = false;
         DALCS_TRY(find_null_space(b, b->S));
         fill_whole(b);
         keep_all(b);
-        fill_system(b, sigma, 0.0L, NULL);
-        pivot = dalcs_extended_solve(b->n_kept, b->n_rhs, b->re, NULL);
+        pivot = solve_kept(b);
     }
     b->entry->frees_states = b->n_kept == b->n_x;
     take_real(b);
@@ -464,14 +517,26 @@ static enum dalcs_status solve_pair(struct dalcs_stage_workshop *b, int p) {
     return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
 }
 
-enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,
-                                             struct dalcs_stage_entry *entry) {
-    b->entry = entry;
-    b->n = entry->n;
+/* What does not depend on the step length is kept from the last map if that was of the same mode. */
+static void recall(struct dalcs_stage_workshop *b) {
+    bool is_same =
+        b->n == b->entry->n && dalcs_mode_is(b->mode, b->entry->mode, b->stages->n_words);
+    b->is_known = b->is_known && is_same;
+    if (b->is_known) {
+        return;
+    }
+    b->n = b->entry->n;
     b->nullity = 0;
     b->choice = NULL;
     dalcs_arena_finish(&b->arena);
+    memcpy(b->mode, b->entry->mode, (size_t)b->stages->n_words * sizeof(*b->mode));
     fill(b);
+}
+
+enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,
+                                             struct dalcs_stage_entry *entry) {
+    b->entry = entry;
+    recall(b);
     balance(b);
     if (b->n > 0) {
         DALCS_TRY(solve_real(b));
@@ -479,5 +544,6 @@ enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,
             DALCS_TRY(solve_pair(b, p));
         }
     }
+    b->is_known = b->n_followers > 0 && b->nullity == 0;
     return DALCS_OK;
 }

@@ -27,16 +27,20 @@ struct dalcs_stage_workshop {
     int *wave_column; /* [n_inputs] right-hand side of an input that varies, else -1 */
     int *place;       /* [n_columns] in the unknowns; -1: an open pair */
     double *row_scale, *column_scale; /* [n] */
-    double *base;                     /* [n][n] balanced S without P, by columns */
-    double *P;                        /* [n_x][n_x] balanced */
-    double *rhs;                      /* [n_rhs][n] balanced: unit states, constants, unit waves */
-    double *S;                        /* [n][n] the real one, balanced */
+    uint64_t *mode;                   /* of the last map */
+    bool is_known; /* what is eliminated below serves a map of this mode with another step length */
+    double *plain_base, *plain_P, *plain_rhs; /* base, P and rhs before they were balanced */
+    double *base;                             /* [n][n] balanced S without P, by columns */
+    double *P;                                /* [n_x][n_x] balanced */
+    double *rhs;        /* [n_rhs][n] balanced: unit states, constants, unit waves */
+    double *S;          /* [n][n] the real one, balanced */
     long double *whole; /* [n][n + n_rhs] S without P by rows, then followers as pivots */
     int n_kept, n_followers;
-    int *kept, *kept_row;       /* [n_kept] unknowns and rows of the systems: states first */
-    int *follower, *row_of;     /* [n_followers]; [n] row of `whole` of an unknown that follows */
-    bool *is_used;              /* [n] */
-    int *follows_p, *follows_j; /* what followers take of the kept, by rows */
+    int *kept, *kept_row;   /* [n_kept] unknowns and rows of the systems: states first */
+    int *follower, *row_of; /* [n_followers]; [n] row of `whole` of an unknown that follows */
+    int *owner;             /* [n] the follower of a row of `whole`, or -1 */
+    double *whole_row_scale, *whole_column_scale; /* [n] in which it is */
+    int *follows_p, *follows_j;                   /* what followers take of the kept, by rows */
     long double *follows_x;
     long double *re, *im;    /* [n_kept][n_kept + n_rhs] a system by rows, then its solutions */
     long double *part;       /* [n_rhs][n_kept][parts] the solutions, balanced */
