@@ -66,7 +66,7 @@ DALCS_TWICE(void, find_guards,
 static enum dalcs_status prepare_choice(struct dalcs_stage_workshop *b) {
     int n_pairs = b->system->n_pairs;
     int rows = n_pairs > b->nullity ? n_pairs : b->nullity;
-    if (b->nullity == 0 || n_pairs == 0) {
+    if (b->nullity == 0 || n_pairs == 0 || b->choice != NULL) {
         return DALCS_OK;
     }
     double *guards = dalcs_stage_workshop_reals(&b->arena, n_pairs * b->nullity);

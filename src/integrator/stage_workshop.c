@@ -496,14 +496,18 @@ static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
         eliminate_followers(b);
     }
     long double pivot = solve_kept(b);
-    if (pivot < doubtful_pivot) {
+    if (pivot < doubtful_pivot && b->nullity == 0) {
         b->is_known = false;
         DALCS_TRY(find_null_space(b, b->S));
         fill_whole(b);
-        keep_all(b);
+        eliminate_followers(b);
+        if (b->nullity == 0 || b->n_kept > b->n_x) { /* no step length less singular than this one */
+            fill_whole(b);
+            keep_all(b);
+        }
         pivot = solve_kept(b);
     }
-    b->entry->frees_states = b->n_kept == b->n_x;
+    b->entry->frees_states = b->n_kept == b->n_x && b->nullity == 0;
     take_real(b);
     return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
 }
@@ -544,6 +548,6 @@ enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,
             DALCS_TRY(solve_pair(b, p));
         }
     }
-    b->is_known = b->n_followers > 0 && b->nullity == 0;
+    b->is_known = b->n_followers > 0;
     return DALCS_OK;
 }
