@@ -117,6 +117,7 @@ struct search {
     bool untied;  /* tied diodes have been looked at */
     bool opened;  /* and are open now, to try */
     bool projected;
+    bool states_free; /* in the mode of the last step, which has nothing to project on */
     int stuck;
     double ratio_before;
     int level_before_stuck;
@@ -295,7 +296,8 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
         return restart(r, part, search, false);
     }
     bool asked = search->restarts > 0 || !part->fresh;
-    if (quality->ratio < most_projected && !search->fixed && !search->projected && asked) {
+    bool may_project = !search->fixed && !search->projected && !search->states_free && asked;
+    if (quality->ratio < most_projected && may_project) {
         bool moved;
         DALCS_TRY(project(r, part, search, &moved));
         if (moved) {
@@ -420,6 +422,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (status < DALCS_OK) {
         return status;
     }
+    search->states_free = status == DALCS_OK && dalcs_stage_frees_states(entry);
     double end = dalcs_smaller(1.0, (search->limit - part->t) / part->h);
     if (status == DALCS_OK && !(dalcs_stage_residual(entry) <= largest_residual)) {
         if (part->fresh && search->restarts == 0) {
@@ -443,7 +446,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (search->front && search->reopened++ < MOST_REOPENED && dalcs_front_reopen(part)) {
         return DALCS_OK;
     }
-    if (part->fresh && !search->projected && !dalcs_stage_frees_states(entry) &&
+    if (part->fresh && !search->projected && !search->states_free &&
         quality.drift > (search->fixed ? 0.0 : worth_projecting)) {
         bool moved;
         DALCS_TRY(project(r, part, search, &moved));
