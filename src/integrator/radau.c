@@ -27,6 +27,9 @@ enum { FIRST_STEPS = 64 };
 static const double maps_when_tight = 1.5, maps_when_not = 0.375;
 static const double tight = 1e-7;
 
+/* A part of so many unknowns, over the same limit, gains from nine stages: measured, doc/methods.md. */
+static const double very_small = 0.25;
+
 static int map_limit(const struct dalcs_radau_options *o, int dense_limit) {
     return (int)((o->tolerance < tight ? maps_when_tight : maps_when_not) * dense_limit);
 }
@@ -40,16 +43,17 @@ static bool is_pulsed(const struct dalcs_component *c) {
 }
 
 /* Small components pay little for more stages, mostly as dense maps, and save steps and
- * maps; nine are too many where pulses end steps before errors do. Large ones pay for each stage with a
- * factorisation in every new mode. */
+ * maps; nine are too many where pulses end steps before errors do, and where a map is dear. Large ones
+ * pay for each stage with a factorisation in every new mode. */
 static int choose_stages(const struct dalcs_radau_options *o, const struct dalcs_component *c,
                          int dense_limit, const char **because) {
-    if (dalcs_system_n_columns(c->system) > dense_limit) {
+    int n = dalcs_system_n_columns(c->system);
+    if (n > dense_limit) {
         *because = o->tolerance >= loose ? "large, loose tolerance" : "large";
         return o->tolerance >= loose ? 3 : 5;
     }
-    bool many = o->tolerance < tight && !is_pulsed(c);
-    *because = many ? "small, tight tolerance" : "small";
+    bool many = o->tolerance < tight && n <= (int)(very_small * dense_limit) && !is_pulsed(c);
+    *because = many ? "very small, tight tolerance" : "small";
     return many ? 9 : 7;
 }
 

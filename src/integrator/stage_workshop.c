@@ -15,6 +15,9 @@
 static const double doubtful_pivot = 1e-9;
 static const double rank_tolerance = 1e-12;
 
+/* What a null vector has to do with a state cancels to this part of its terms, or does not. */
+static const double exact_cancelling = 1e-9;
+
 /* The smallest pivot (balanced) that makes an unknown a follower. */
 static const long double least_follower = 1e-2L;
 
@@ -319,6 +322,34 @@ static enum dalcs_status find_null_space(struct dalcs_stage_workshop *b, const d
     return DALCS_OK;
 }
 
+static bool cancels(double sum, double size) {
+    return fabs(sum) <= exact_cancelling * size;
+}
+
+/* Have states no part in the null vectors, neither their equations nor they themselves? Then the mode is
+ * singular with any step length. A very short step hides what states have to do with the rest. */
+static bool is_singular_always(const struct dalcs_stage_workshop *b) {
+    bool always = true;
+    for (int k = 0; k < b->nullity; k++) {
+        const double *left = b->left + k * b->n;
+        const double *right = b->right + k * b->n;
+        for (int x = 0; x < b->n_x && always; x++) {
+            double sum[2] = {0.0, 0.0};
+            double size[2] = {0.0, 0.0};
+            for (int i = b->n_x; i < b->n; i++) {
+                double in_equation = b->base[i * b->n + x] * right[i];
+                double of_state = b->base[x * b->n + i] * left[i];
+                sum[0] += in_equation;
+                sum[1] += of_state;
+                size[0] += fabs(in_equation);
+                size[1] += fabs(of_state);
+            }
+            always = cancels(sum[0], size[0]) && cancels(sum[1], size[1]);
+        }
+    }
+    return always;
+}
+
 /* With left right^T added, S is regular and its solutions, where there are any, are those of S that
  * have nothing of the null vectors. */
 static double border(const struct dalcs_stage_workshop *b, int i, int j) {
@@ -500,9 +531,9 @@ static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
         b->is_known = false;
         DALCS_TRY(find_null_space(b, b->S));
         fill_whole(b);
-        eliminate_followers(b);
-        if (b->nullity == 0 || b->n_kept > b->n_x) { /* no step length less singular than this one */
-            fill_whole(b);
+        if (b->nullity > 0 && is_singular_always(b)) {
+            eliminate_followers(b);
+        } else {
             keep_all(b);
         }
         pivot = solve_kept(b);
