@@ -16,6 +16,10 @@ enum { MICRO = 20, COMMAND_ROUNDS = 20, LONGER_TRIES = 4 };
 /* States that move in the first micro-step by more than this many times the second have jumped. */
 static const double jump_ratio = 4.0;
 
+/* States that move in the second by less than this part of the first, and more than jump_ratio says, may
+ * have jumped by what a fast transient hides. */
+static const double steady = 0.99;
+
 /* A micro-step over a longer one that it is compared with, and how much farther a state goes in it that
  * has no limit. */
 static const double shorter = 1.0 / 1024.0, runaway = 4.0;
@@ -79,9 +83,9 @@ static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *p
 
 /* The states just after part->t from the micro-steps y1 and y2. Does any jump, and by more than the
  * error that the state of an event has? A fast transient moves in both micro-steps and is left to be
- * stepped through. */
+ * stepped through; it may hide a jump. */
 static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                        double *after, bool *noticeable) {
+                        double *after, bool *noticeable, bool *may_hide) {
     const struct dalcs_system *s = part->component->system;
     double largest[2] = {part->unit_scale[0], part->unit_scale[1]};
     for (int x = 0; x < s->n_x; x++) {
@@ -91,6 +95,7 @@ static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_pa
     double smallest = fmax(1e3 * r->inner_tolerance, smallest_jump);
     bool jumps = false;
     *noticeable = false;
+    *may_hide = false;
     for (int x = 0; x < s->n_x; x++) {
         double first = fabs(part->y1[x] - part->x[x]);
         double second = fabs(part->y2[x] - part->y1[x]);
@@ -98,6 +103,7 @@ static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_pa
         bool moved = first > jump_ratio * second && first > rounding * scale;
         jumps = jumps || moved;
         *noticeable = *noticeable || (moved && first > smallest * scale);
+        *may_hide = *may_hide || (!moved && first > smallest * scale && second < steady * first);
         after[x] = 2.0 * part->y1[x] - part->y2[x];
     }
     return jumps;
@@ -218,6 +224,7 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
     const struct dalcs_system *s = part->component->system;
     bool noticeable = true;
     bool moves = true;
+    bool may_hide;
     if (!s->monotone) {
         DALCS_TRY(check_limit(r, part, h));
     }
@@ -237,16 +244,35 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         enum dalcs_status status = micro_steps(r, part, shorter * h);
         if (status > DALCS_OK) { /* too short for a certificate: the last ones have to do */
             DALCS_TRY(micro_steps(r, part, h));
-            moves = extrapolate(r, part, part->after, &noticeable);
+            moves = extrapolate(r, part, part->after, &noticeable, &may_hide);
             break;
         }
         DALCS_TRY(status);
         h *= shorter;
-        moves = extrapolate(r, part, part->after, &noticeable);
+        moves = extrapolate(r, part, part->after, &noticeable, &may_hide);
     }
     if (moves) {
         go_after(r, part);
     }
+    return DALCS_OK;
+}
+
+/* After micro-steps of length *h that a transient may have hidden a jump in: much shorter ones, where it
+ * stands out, or, if there is none, the same again. */
+static enum dalcs_status look_closer(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                     double *h, bool *jumps, bool *noticeable) {
+    bool may_hide;
+    enum dalcs_status status = micro_steps(r, part, shorter * *h);
+    *jumps = status == DALCS_OK && extrapolate(r, part, part->after, noticeable, &may_hide);
+    if (status < DALCS_OK) {
+        return status;
+    }
+    if (*jumps && *noticeable) {
+        *h *= shorter;
+        return DALCS_OK;
+    }
+    DALCS_TRY(micro_steps(r, part, *h));
+    *jumps = extrapolate(r, part, part->after, noticeable, &may_hide);
     return DALCS_OK;
 }
 
@@ -265,7 +291,11 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
         return DALCS_OK;
     }
     bool noticeable;
-    bool jumps = extrapolate(r, part, part->after, &noticeable);
+    bool may_hide;
+    bool jumps = extrapolate(r, part, part->after, &noticeable, &may_hide);
+    if (may_hide && !noticeable && shorter * h >= 64.0 * r->resolution) {
+        DALCS_TRY(look_closer(r, part, &h, &jumps, &noticeable));
+    }
     *is_off = jumps && !noticeable && part->rounding == 1.0;
     if (jumps && !noticeable && !*is_off) {
         go_after(r, part);
