@@ -25,6 +25,10 @@ double dalcs_segment_promising(const struct dalcs_radau *r, const struct dalcs_r
 enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                       int longer, bool mode_only, bool *is_off) DALCS_MUST_CHECK;
 
+/* s; of one of them. */
+double dalcs_radau_micro_length(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                                int longer);
+
 /* One step of implicit Euler of length h as the present segment. */
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double h) DALCS_MUST_CHECK;

@@ -125,8 +125,8 @@ static void extrapolate_impulses(struct dalcs_radau *r, const struct dalcs_radau
     memcpy(e->after, part->after, (size_t)s->n_x * sizeof(double));
 }
 
-static double micro_length(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                           int longer) {
+double dalcs_radau_micro_length(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                                int longer) {
     double h = r->options.fixed_step > 0.0 ? ldexp(r->options.fixed_step, -MICRO)
                                            : dalcs_radau_ladder(part, (part->level & ~3) + MICRO);
     h = ldexp(h, 5 * longer);
@@ -283,7 +283,7 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     *is_off = false;
     double h = 0.0;
     for (int k = 0; k < LONGER_TRIES && status > DALCS_OK; k++) {
-        h = micro_length(r, part, longer + k);
+        h = dalcs_radau_micro_length(r, part, longer + k);
         status = micro_steps(r, part, h);
     }
     DALCS_TRY(status);

@@ -350,10 +350,13 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
 }
 
 /* A diode without current and voltage: the circuit is asked which of its sides is of least norm, and
- * where it does not know yet, as at the event itself, whether it can open. */
+ * where it does not know yet, as at the event itself, whether it can open. Not beyond the next event, in
+ * steps. */
 static enum dalcs_status untie(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                               struct search *search, const struct dalcs_step_quality *quality) {
-    if (search->restarts < TIED_RESTARTS) {
+                               struct search *search, double next,
+                               const struct dalcs_step_quality *quality) {
+    double micro = dalcs_radau_micro_length(r, part, search->restarts);
+    if (search->restarts < TIED_RESTARTS && 4.0 * micro < next * part->h) {
         return restart(r, part, search, search->restarts > 0);
     }
     search->untied = true;
@@ -469,7 +472,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     }
     if (part->fresh && !search->guessed && !search->untied &&
         dalcs_guards_stay_tied(part, quality.unit)) {
-        return untie(r, part, search, &quality);
+        return untie(r, part, search, dalcs_smaller(theta, end), &quality);
     }
     part->open = part->fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);
     accept(r, part, search, dalcs_smaller(theta, end), &quality, dalcs_stage_residual(entry));
