@@ -19,6 +19,10 @@ static const double band_over_tolerance = 10.0;
  * the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. */
 static const double falling_part = 1e-3;
 
+/* The value of a pair at the end of a segment and that at the start of the next, whose errors have nothing
+ * to do with each other, agree to this part of it: then it is known, however small it is. */
+static const double agreeing = 0.01;
+
 /* What rounding leaves of a zero on dense maps, over the unit's scale. */
 static const double noise = 2e-13;
 
@@ -226,12 +230,30 @@ static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band
     }
 }
 
+/* Is a pair on the side that it was on in the segment before, with the same value? */
+static bool goes_on(const struct dalcs_radau_part *part, int pair, double value) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    if (part->by_euler || dalcs_mode_has(part->modes_before, pair) != dalcs_osnsp_is_on(p, pair)) {
+        return false;
+    }
+    const double *before = part->out_before + dalcs_system_n_equations(p->system) + pair;
+    double weight[DALCS_MAX_NODES];
+    double last = 0.0;
+    dalcs_collocation_weights(part->stages.method, part->end_before, weight);
+    for (int k = 0; k < l->n_nodes; k++) {
+        last += weight[k] * before[k * l->stride];
+    }
+    return fabs(value - last) <= agreeing * value;
+}
+
 void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, bool at_end,
                       const double *unit) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     int n_pairs = p->system->n_pairs;
     double band = band_of(r, part);
+    double known = dalcs_guards_noise(part);
     if (!at_end && n_pairs > MANY_PAIRS) {
         gather_charges(part);
     }
@@ -240,7 +262,9 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
     bool *armed = part->armed;
     for (int d = 0; d < n_pairs; d++) {
         if (p->is_diode[d] && !(at_end && armed[d])) {
-            armed[d] = value[d] > band * unit[dalcs_osnsp_is_on(p, d)];
+            double scale = unit[dalcs_osnsp_is_on(p, d)];
+            armed[d] = value[d] > band * scale ||
+                       (!at_end && value[d] > known * scale && goes_on(part, d, value[d]));
         }
     }
     if (part->stages.n_watched > 0) {

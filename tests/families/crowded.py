@@ -7,9 +7,9 @@ closed: two capacitors in parallel start with different voltages, which jump to 
 capacitances, while a source charges both so fast that the jump is small beside what moves in a
 micro-step. v(t) = V - (V - v(0+)) exp(-t / (R C)), exactly.
 
-random: circuits that were drawn from R, L, C, diodes and a sine, chosen because they once fell back: diodes
-without current or voltage beside others that commutate, parallel capacitors, jumps within
-transients. Without a closed form 7 or 9 stages, with two tolerances, must agree with 5 stages and a
+random: circuits that were drawn from R, L, C, diodes and a sine, chosen because they once fell back or
+were wrong: diodes without current or voltage beside others that commutate, parallel capacitors,
+jumps within transients, a small current that ends soon after another event. Without a closed form 7 or 9 stages, with two tolerances, must agree with 5 stages and a
 much smaller one; signals that the circuit leaves open do not count.
 """
 
@@ -66,6 +66,25 @@ c7 n5 n2 10u ic=-2
 l8 n4 n1 1m
 l9 n4 n2 10m
 r10 n3 0 100
+.model di d
+.tran 20u 4m uic
+""",
+    "50 uA beside 100 A": """
+v1 s 0 sin(0 10 1k 0 0 90)
+rs s n1 0.1
+r1 n1 0 100
+r2 n2 0 10k
+r3 n3 0 100k
+r4 n4 0 100
+r5 n5 0 100
+d1 n5 n3 di
+d2 0 n2 di
+d3 n1 n5 di
+c4 n4 n5 100n ic=1
+c5 0 n4 1u ic=1
+c6 n5 n2 100n
+l7 n1 n5 10m
+r8 n5 n2 100
 .model di d
 .tran 20u 4m uic
 """,

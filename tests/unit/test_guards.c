@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { MOST = 400 };
 
@@ -15,6 +16,8 @@ static struct dalcs_excitation x;
 static struct dalcs_radau r;
 static struct dalcs_radau_part part;
 static double out[MOST];
+static double out_before[MOST];
+static uint64_t modes_before[2];
 static bool armed[8];
 static int crossed[8];
 static const double unit[2] = {1.0, 1.0};
@@ -34,6 +37,8 @@ static void start(void) {
                                      .h = 1.0,
                                      .rounding = 1.0,
                                      .out = out,
+                                     .out_before = out_before,
+                                     .modes_before = modes_before,
                                      .armed = armed,
                                      .crossed = crossed};
     ck_assert_int_eq(dalcs_excitation_setup(&x, &t.circuit, s), DALCS_OK);
@@ -43,6 +48,8 @@ static void start(void) {
     for (int k = 0; k < 8; k++) {
         armed[k] = false;
     }
+    memset(out_before, 0, sizeof(out_before));
+    modes_before[0] = component.osnsp.mode[0];
 }
 
 static void finish(void) {
@@ -156,6 +163,39 @@ START_TEST(test_arming) {
 
 END_TEST
 
+/* One that goes on where the segment before ended is known, be it within the error of 0. */
+START_TEST(test_goes_on) {
+    start();
+    const int d1 = find_pair(component.system, "d1");
+    draw("d1", 2e-9, -2e-9); /* the segment before, up to its middle */
+    memcpy(out_before, out, sizeof(out));
+    part.end_before = 0.25;
+    draw("d1", 1.001e-9, -0.5);
+    arm();
+    ck_assert(armed[d1]);
+    ck_assert_double_eq_tol(first_fall(1.0), 2e-9, 1e-11);
+    draw("d1", 1.03e-9, -0.5); /* elsewhere */
+    arm();
+    ck_assert(!armed[d1]);
+    draw("d1", 1.001e-9, -0.5);
+    modes_before[0] ^= UINT64_C(1) << d1; /* on the other side */
+    arm();
+    ck_assert(!armed[d1]);
+    modes_before[0] ^= UINT64_C(1) << d1;
+    part.by_euler = true; /* after a step of low order */
+    arm();
+    ck_assert(!armed[d1]);
+    part.by_euler = false;
+    draw("d1", 2e-14, -2e-14); /* rounding */
+    memcpy(out_before, out, sizeof(out));
+    draw("d1", 1e-14, -0.5);
+    arm();
+    ck_assert(!armed[d1]);
+    finish();
+}
+
+END_TEST
+
 START_TEST(test_signs_and_ties) {
     start();
     draw("d1", 0.5, -0.5);
@@ -200,4 +240,5 @@ START_TEST(test_rounding) {
 
 END_TEST
 
-RUN_TESTS("guards", test_rounding, test_pairs, test_watched, test_arming, test_signs_and_ties)
+RUN_TESTS("guards", test_rounding, test_pairs, test_watched, test_arming, test_goes_on,
+          test_signs_and_ties)
