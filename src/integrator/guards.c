@@ -362,6 +362,31 @@ bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const d
     return tied;
 }
 
+/* Is it below -least from the start on, and does not come back by half up to `end`? */
+static bool stays_below(const struct dalcs_radau_part *part, int pair, double end, double least) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
+    bool stays = value[0] < -least;
+    for (int k = 1; k < l->n_nodes && part->stages.method->node[k] <= end && stays; k++) {
+        stays = value[k * l->stride] < 0.5 * value[0];
+    }
+    return stays;
+}
+
+bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                                double end, const double *unit) {
+    int n_pairs = part->component->system->n_pairs;
+    double least = fmax(falling_part * band_of(r, part), 4.0 * dalcs_guards_noise(part));
+    bool negative = false;
+    for (int k = 0; k < part->n_doubtful && !negative && n_pairs <= MANY_PAIRS; k++) {
+        int d = part->doubtful[k];
+        negative =
+            d < n_pairs &&
+            stays_below(part, d, end, least * scale_of(part, d, unit) + rounding_of(part, d, unit));
+    }
+    return negative;
+}
+
 bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit) {
     int n_pairs = part->component->system->n_pairs;
     bool tied = false;

@@ -25,6 +25,12 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
 double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                                double end, const double *unit, bool *at_once);
 
+/* Is there a diode that is on the wrong side from the start of the step up to `end`, in steps? By no more
+ * than the error, or it would have ended the segment; but an error of 0 grows, or goes. Of the guards that
+ * dalcs_guards_first_fall looked at; large components are not asked. */
+bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                                double end, const double *unit);
+
 /* Is there a diode with neither current nor voltage during the whole step? It may change sides without
  * anything else, and where that leaves a choice (sources in parallel, floating nodes) only the OSNSP
  * knows which is of least norm. Large components, where that is dear, are asked only at their start and at

@@ -470,12 +470,17 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (at_once && part->fresh) {
         return change_mode(r, part, search, done);
     }
+    double next = dalcs_smaller(theta, end);
+    if (part->fresh && search->restarts == 0 &&
+        dalcs_guards_stay_negative(r, part, next, quality.unit)) {
+        return search->guessed ? refuse(part, search) : restart(r, part, search, true);
+    }
     if (part->fresh && !search->guessed && !search->untied &&
         dalcs_guards_stay_tied(part, quality.unit)) {
-        return untie(r, part, search, dalcs_smaller(theta, end), &quality);
+        return untie(r, part, search, next, &quality);
     }
     part->open = part->fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);
-    accept(r, part, search, dalcs_smaller(theta, end), &quality, dalcs_stage_residual(entry));
+    accept(r, part, search, next, &quality, dalcs_stage_residual(entry));
     *done = true;
     return DALCS_OK;
 }
