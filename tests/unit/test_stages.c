@@ -158,7 +158,7 @@ static void solve_directly(uint64_t mode, double at, double h, const double *sta
 /* false: a singular mode, which has more than one solution or none. */
 static bool check_stages(uint64_t mode, double at, double h, const double *state) {
     int n_columns = dalcs_system_n_columns(s);
-    double expected[7 * 40];
+    double expected[DALCS_MAX_STAGES * 40];
     ck_assert_int_le(n_columns, 40);
     if (step(mode, at, h, state) > 0) {
         return false;
@@ -189,7 +189,8 @@ static bool check_stages(uint64_t mode, double at, double h, const double *state
     return true;
 }
 
-/* Index 1, index 2, coupled, switched, with every kind of source and in every mode. */
+/* Index 1, index 2, coupled, switched, with every kind of source and in every mode; and with one step length
+ * after the other, whose maps share what does not depend on it. */
 START_TEST(test_against_direct_solution) {
     static const char *const text[] = {
         "rc\nV1 a 0 SIN(1 2 0.2 0 0 30)\nR1 a b 1\nC1 b 0 1\n.tran 1 1\n",
@@ -202,11 +203,12 @@ START_TEST(test_against_direct_solution) {
         "L1 e f 2\nR2 f 0 1\nF1 b 0 V1 0.5\nS1 f 0 g 0 sm\n.model sm SW(Vt=0.5)\n.tran 1 1\n",
     };
     for (size_t k = 0; k < sizeof text / sizeof *text; k++) {
-        for (int n_stages = 1; n_stages <= 7; n_stages += 2) {
+        for (int n_stages = 1; n_stages <= DALCS_MAX_STAGES; n_stages += 2) {
             const double state[4] = {0.5, -0.25, 1.0, 0.75};
             start(text[k], n_stages);
             int n_checked = 0;
             for (uint64_t mode = 0; mode < UINT64_C(1) << s->n_pairs; mode++) {
+                (void)get(mode, 1e-17); /* so short that states hide what depends on them */
                 n_checked += check_stages(mode, 0.0, 0.01, state) ? 1 : 0;
                 n_checked += check_stages(mode, 0.375, 0.0625, state) ? 1 : 0;
                 n_checked += check_stages(mode, 0.5, 0.125, state) ? 1 : 0;
@@ -228,10 +230,10 @@ static double exact_rc(double time) { /* v' = sin(w t) - v, v(0) = 0.5 */
 }
 
 START_TEST(test_rc) {
-    static const double error[] = {0.0, 2e-2, 0.0, 3e-7, 0.0, 1e-11, 0.0, 1e-14};
+    static const double error[] = {0.0, 2e-2, 0.0, 3e-7, 0.0, 1e-11, 0.0, 1e-14, 0.0, 1e-15};
     const double state[] = {0.5};
     const double h = 0.125;
-    for (int n_stages = 1; n_stages <= 7; n_stages += 2) {
+    for (int n_stages = 1; n_stages <= DALCS_MAX_STAGES; n_stages += 2) {
         start("rc\nV1 a 0 SIN(0 1 0.2)\nR1 a b 1\nC1 b 0 1\n.tran 1 1\n", n_stages);
         ck_assert_int_eq(step(0, 0.0, h, state), 0);
         double v = column_at(n_stages, DALCS_LABEL_STATE, "c1");
@@ -242,7 +244,7 @@ START_TEST(test_rc) {
         ck_assert_double_eq_tol(column_at(0, DALCS_LABEL_BRANCH, "v1"), 0.5, error[n_stages]);
         /* The drift is of the size of what the method of one order less is off by. */
         double drift = fabs(out[stages.layout.drift]);
-        ck_assert(drift >= fabs(v - exact_rc(h)) && drift < 0.1 * pow(0.2, n_stages - 1));
+        ck_assert(drift >= fabs(v - exact_rc(h)) - 1e-15 && drift < 0.1 * pow(0.2, n_stages - 1));
         finish();
     }
 }
@@ -272,7 +274,7 @@ END_TEST
 
 /* 5 mA through two diodes in parallel: half each. */
 START_TEST(test_parallel_diodes) {
-    for (int n_stages = 1; n_stages <= 7; n_stages += 2) {
+    for (int n_stages = 1; n_stages <= DALCS_MAX_STAGES; n_stages += 2) {
         start("parallel\nV1 in 0 PWL(0 5 1 6)\nR1 in a 1k\nD1 a 0\nD2 a 0\n.tran 1 1\n", n_stages);
         int n = step(DIODE("d1") | DIODE("d2"), 0.0, 0.5, NULL);
         ck_assert_int_eq(n, n_stages);
