@@ -42,9 +42,10 @@ static bool is_pulsed(const struct dalcs_component *c) {
     return found;
 }
 
-/* Small components pay little for more stages, mostly as dense maps, and save steps and
- * maps; nine are too many where pulses end steps before errors do, and where a map is dear. Large ones
- * pay for each stage with a factorisation in every new mode. */
+/* Small components pay little for more stages, mostly as dense maps, and save steps and maps. Nine are
+ * too many where pulses end steps before errors do, where a map is dear, and where controlled sources may
+ * make the index 3: second derivatives show ten times the rounding of seven. Large components pay for each
+ * stage with a factorisation in every new mode. */
 static int choose_stages(const struct dalcs_radau_options *o, const struct dalcs_component *c,
                          int dense_limit, const char **because) {
     int n = dalcs_system_n_columns(c->system);
@@ -52,7 +53,8 @@ static int choose_stages(const struct dalcs_radau_options *o, const struct dalcs
         *because = o->tolerance >= loose ? "large, loose tolerance" : "large";
         return o->tolerance >= loose ? 3 : 5;
     }
-    bool many = o->tolerance < tight && n <= (int)(very_small * dense_limit) && !is_pulsed(c);
+    bool many = o->tolerance < tight && n <= (int)(very_small * dense_limit) &&
+                c->system->monotone && !is_pulsed(c);
     *because = many ? "very small, tight tolerance" : "small";
     return many ? 9 : 7;
 }
