@@ -274,8 +274,8 @@ const char *dalcs_method_name(size_t index);
 #define DALCS_TOLERANCE_MIN 1e-13
 #define DALCS_TOLERANCE_MAX 0.1
 
-/* Are there Radau IIA methods with so many stages in dalcs? 1, 3, 5, 7 and 9. */
-#define DALCS_HAS_STAGES(n) ((n) >= 1 && (n) <= 9 && (n) % 2 == 1)
+/* Is there a method with so many stages? Of any number, whole or not. */
+#define DALCS_HAS_STAGES(n) ((n) == 1 || (n) == 3 || (n) == 5 || (n) == 7 || (n) == 9)
 
 struct dalcs_run_options {
     const char *method; /* "auto", "radau" or "euler", the papers' implicit Euler; NULL: the

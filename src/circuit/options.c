@@ -76,13 +76,12 @@ static bool read_stages(struct dalcs_reader *reader, int *stages) {
     if (!dalcs_reader_number(reader, DALCS_PLAIN, "a number of stages", &value)) {
         return false;
     }
-    int n = value >= 0.0 && value < 100.0 ? (int)value : 0;
-    if (value != n || !DALCS_HAS_STAGES(n)) {
+    if (!DALCS_HAS_STAGES(value)) {
         dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
                             "stages must be 1, 3, 5, 7 or 9");
         return false;
     }
-    *stages = n;
+    *stages = (int)value;
     return true;
 }
 

@@ -98,13 +98,11 @@ static enum dalcs_status parse_tolerance(struct dalcs_arguments *arguments,
 static enum dalcs_status parse_stages(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *text) {
     double value = 0.0;
-    bool is_number = dalcs_parse_number(text, &value) == DALCS_OK;
-    int n = is_number && value >= 0.0 && value < 100.0 ? (int)value : 0;
-    if (value != n || !DALCS_HAS_STAGES(n)) {
+    if (dalcs_parse_number(text, &value) != DALCS_OK || !DALCS_HAS_STAGES(value)) {
         dalcs_cli_error(cli, "--stages: '%s' is none of 1, 3, 5, 7, 9", text);
         return DALCS_E_OPTION;
     }
-    arguments->stages = n;
+    arguments->stages = (int)value;
     return DALCS_OK;
 }
 

@@ -314,24 +314,20 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
     }
     for (int r = 0; r < n; r++) {
         double *lane = b->lanes + r * DALCS_LANES;
-        long double scale = b->column_scale[r];
         long double defect = real[r] * source_drift;
         for (int x = 0; x < n_x; x++) {
             defect += b->real[x * n + r] * b->missed[x];
         }
-        defect *= scale;
-        lane[0] = r == column ? 1.0 : 0.0;
+        defect *= b->column_scale[r];
         if (r < n_x) {
+            lane[0] = r == column ? 1.0 : 0.0;
             b->defect[r] = defect;
         } else {
             lane[0] = (double)(b->start[r] + defect);
         }
-        if (r ==
-            n_x -
-                1) { /* What is added goes with states that are off by their defects: less that. */
-            for (int x = 0; x < n_x; x++) {
-                b->missed[x] -= b->defect[x];
-            }
+        /* What is added to the others goes with states that are off by their defects: less that. */
+        for (int x = 0; x < n_x && r == n_x - 1; x++) {
+            b->missed[x] -= b->defect[x];
         }
         lane[DALCS_RIPPLE_LANE] =
             (double)real[r] * b->column_scale[r] * share[DALCS_RIPPLE_LANE] * m->test_factor;
