@@ -52,6 +52,7 @@ struct dalcs_collocation {
                            estimate lets through */
     double
         spread; /* a polynomial leaves the range of its values at the nodes by at most this part */
+    double binomial[DALCS_MAX_NODES];                      /* s over 0..s */
     double to_bernstein[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* [node][coefficient] */
     double bernstein_spread; /* coefficients leave the range of the values by at most this part */
 };

@@ -1,4 +1,4 @@
-/* crossing.c - subdivision in Bernstein's basis, then interpolation that keeps a bracket. */
+/* crossing.c - subdivision in Bernstein's basis, then Newton's method in a bracket. */
 #include "crossing.h"
 
 #include "quads.h"
@@ -10,6 +10,9 @@
 
 /* Halvings of the step before a cluster of roots counts as one. */
 enum { MAX_DEPTH = 48, ROOT_ROUNDS = 60 };
+
+/* Where Newton's method no longer gains and moves by no more than this, rounding moves it. */
+static const double rounded = 1e-9;
 
 /* Of what falls as early as this it matters how far it was above 0 before. */
 static const double early = 1e-3;
@@ -27,17 +30,37 @@ static void subdivide(int n, const double *coefficient, double split, double *le
     }
 }
 
-/* Horner's scheme in Bernstein's basis, coefficients times their binomials: all weights are positive,
- * nothing cancels that did not before. */
-static double evaluate(int n, const double *coefficient, double theta) {
+/* A polynomial and its derivative in Bernstein's basis, coefficients times their binomials. */
+struct weighted {
+    int n;
+    double value[DALCS_MAX_NODES], slope[DALCS_MAX_NODES];
+};
+
+static void weigh(const struct dalcs_collocation *c, const double *coefficient,
+                  struct weighted *p) {
+    p->n = c->s + 1;
+    p->value[0] = coefficient[0];
+    for (int i = 0; i < c->s; i++) {
+        p->value[i + 1] = c->binomial[i + 1] * coefficient[i + 1];
+        p->slope[i] = c->binomial[i] * (c->s - i) * (coefficient[i + 1] - coefficient[i]);
+    }
+}
+
+/* Horner's scheme: all weights are positive, nothing cancels that did not before. */
+static double evaluate(const struct weighted *p, double theta, double *slope) {
     double other = 1.0 - theta;
     double power = theta;
-    double sum = coefficient[0];
-    for (int i = 1; i < n; i++) {
-        sum = sum * other + power * coefficient[i];
+    double value = p->value[0];
+    double rate = 0.0;
+    double before = 1.0;
+    for (int i = 1; i < p->n; i++) {
+        value = value * other + power * p->value[i];
+        rate = rate * other + before * p->slope[i - 1];
+        before = power;
         power *= theta;
     }
-    return sum;
+    *slope = rate;
+    return value;
 }
 
 static int sign_changes(int n, const double *coefficient) {
@@ -61,26 +84,11 @@ static double polygon_root(int n, const double *coefficient) {
     return (i - 1 + before / (before - coefficient[i])) / (n - 1);
 }
 
-/* One end of a bracket, or what was one. */
-struct probe {
-    double theta, value;
-};
-
-/* Inverse quadratic interpolation through three probes, as a part of the way from a to b; half of it
- * where the three are not on such a curve (Chandrupatla, Adv. Eng. Software 28, 1997). */
-static double next_part(struct probe a, struct probe b, struct probe old) {
-    double xi = (a.theta - b.theta) / (old.theta - b.theta);
-    double phi = (a.value - b.value) / (old.value - b.value);
-    if (!(phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi)) {
-        return 0.5;
-    }
-    double to_old = a.value / (old.value - a.value) * (old.theta - a.theta) / (b.theta - a.theta);
-    return a.value / (b.value - a.value) * old.value / (b.value - old.value) +
-           to_old * b.value / (old.value - b.value);
-}
-
-/* The one root on [0, 1], where the ends have different signs. */
-static double only_root(int n, const double *coefficient) {
+/* The one root on [0, 1], where the ends have different signs: Newton's method from `guess`, if that lies
+ * between them, and by halves where a step leaves the bracket or gains nothing. */
+static double only_root(const struct dalcs_collocation *c, const double *coefficient,
+                        double guess) {
+    int n = c->s + 1;
     if (coefficient[0] == 0.0) {
         int next = 1; /* which way does it leave? */
         while (next < n - 1 && coefficient[next] == 0.0) {
@@ -90,50 +98,51 @@ static double only_root(int n, const double *coefficient) {
             return 0.0;
         }
     }
-    double weighted[DALCS_MAX_NODES];
-    weighted[0] = coefficient[0];
-    double binomial = 1.0;
-    for (int i = 1; i < n; i++) {
-        binomial = binomial * (n - i) / i;
-        weighted[i] = binomial * coefficient[i];
-    }
-    struct probe a = {0.0, coefficient[0]}; /* the latest */
-    struct probe b = {1.0, coefficient[n - 1]};
-    double part = polygon_root(n, coefficient);
+    struct weighted p;
+    weigh(c, coefficient, &p);
+    bool begins_negative = coefficient[0] < 0.0;
+    double low = 0.0;
+    double high = 1.0;
+    double theta = guess > low && guess < high ? guess : polygon_root(n, coefficient);
+    double least = INFINITY;
     for (int round = 0; round < ROOT_ROUNDS; round++) {
-        struct probe at = {a.theta + part * (b.theta - a.theta), 0.0};
-        at.value = evaluate(n, weighted, at.theta);
-        bool same_side = (at.value < 0.0) == (a.value < 0.0);
-        struct probe old = same_side ? a : b;
-        b = same_side ? b : a;
-        a = at;
-        double least = DBL_EPSILON / fabs(b.theta - a.theta);
-        if (a.value == 0.0 || least > 0.5) {
+        double slope;
+        double value = evaluate(&p, theta, &slope);
+        double size = fabs(value);
+        double move = value / slope;
+        bool gains = 2.0 * size < least;
+        if (size == 0.0 || fabs(move) <= DBL_EPSILON || (!gains && fabs(move) < rounded)) {
             break;
         }
-        part = next_part(a, b, old);
-        part = part > least ? part : least;
-        part = part < 1.0 - least ? part : 1.0 - least;
+        least = size < least ? size : least;
+        if ((value < 0.0) == begins_negative) {
+            low = theta;
+        } else {
+            high = theta;
+        }
+        double next = theta - move;
+        theta = gains && next > low && next < high ? next : 0.5 * (low + high);
     }
-    return fabs(a.value) < fabs(b.value) ? a.theta : b.theta;
+    return theta;
 }
 
 /* The first (or last) root on [from, from + length], or -1. */
-static double find_root(int n, const double *coefficient, double from, double length, bool first,
-                        int depth) {
+static double find_root(const struct dalcs_collocation *c, const double *coefficient, double from,
+                        double length, bool first, int depth) {
+    int n = c->s + 1;
     int changes = sign_changes(n, coefficient);
     if (changes == 0) {
         return -1.0;
     }
     if (changes == 1 || depth == 0) {
         bool differ = (coefficient[0] < 0.0) != (coefficient[n - 1] < 0.0);
-        return differ ? from + length * only_root(n, coefficient) : changes == 1 ? from : -1.0;
+        return differ ? from + length * only_root(c, coefficient, 0.0) : changes == 1 ? from : -1.0;
     }
     double half[2][DALCS_MAX_NODES];
     subdivide(n, coefficient, 0.5, half[0], half[1]);
     for (int k = 0; k < 2; k++) {
         int side = first ? k : 1 - k;
-        double root = find_root(n, half[side], from + 0.5 * (double)side * length, 0.5 * length,
+        double root = find_root(c, half[side], from + 0.5 * (double)side * length, 0.5 * length,
                                 first, depth - 1);
         if (root >= 0.0) {
             return root;
@@ -195,7 +204,7 @@ DALCS_TWICE(void, find_coefficients,
 }
 
 struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, const double *value,
-                                          int stride, double end, double depth) {
+                                          int stride, double end, double depth, double guess) {
     int n = c->s + 1;
     struct dalcs_crossing found = {.falls = false};
     double b[DALCS_MAX_NODES];
@@ -219,7 +228,7 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
         subdivide(n, b, end, b, rest);
     }
     if (b[n - 1] < -depth && b[0] > 0.0 && sign_changes(n, b) == 1) {
-        double theta = only_root(n, b) * end;
+        double theta = only_root(c, b, guess / end) * end;
         if (theta > early) {
             found.falls = true;
             found.theta = theta;
@@ -233,7 +242,7 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
     for (int i = 0; i < n; i++) {
         shifted[i] = b[i] + depth;
     }
-    double below = shifted[0] < 0.0 ? 0.0 : find_root(n, shifted, 0.0, 1.0, true, MAX_DEPTH);
+    double below = shifted[0] < 0.0 ? 0.0 : find_root(c, shifted, 0.0, 1.0, true, MAX_DEPTH);
     if (below < 0.0) {
         return found;
     }
@@ -242,7 +251,7 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
     if (below > 0.0) {
         double before[DALCS_MAX_NODES];
         subdivide(n, b, below, before, rest);
-        root = find_root(n, before, 0.0, below, false, MAX_DEPTH);
+        root = find_root(c, before, 0.0, below, false, MAX_DEPTH);
         for (int i = 0; i < n; i++) {
             found.peak = fmax(found.peak, before[i]);
         }

@@ -21,8 +21,8 @@ struct dalcs_crossing {
 };
 
 /* value[k * stride] is the quantity at node k. Looks at theta in [0, end], end <= 1. Falls that stay
- * above -depth (>= 0) do not count. */
+ * above -depth (>= 0) do not count. Looks near `guess` first: 0 where nothing is known. */
 struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, const double *value,
-                                          int stride, double end, double depth);
+                                          int stride, double end, double depth, double guess);
 
 #endif

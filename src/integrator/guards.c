@@ -324,8 +324,8 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         if (part->bound[g] >= -depth) {
             continue;
         }
-        struct dalcs_crossing c =
-            dalcs_crossing_find(part->stages.method, value, stride, end, depth);
+        struct dalcs_crossing c = dalcs_crossing_find(part->stages.method, value, stride, end,
+                                                      depth, part->n_crossed > 0 ? first : 0.0);
         if (!c.falls || c.theta > first + together) {
             continue;
         }

@@ -319,6 +319,10 @@ static void bernstein_matrix(struct dalcs_collocation *c, const real *node) {
         spread = larger(spread, 0.5L * (sum - 1.0L));
     }
     c->bernstein_spread = (double)spread;
+    c->binomial[0] = 1.0;
+    for (int j = 0; j < c->s; j++) {
+        c->binomial[j + 1] = c->binomial[j] * (c->s - j) / (j + 1);
+    }
 }
 
 /* How far a polynomial leaves the range of its values at the nodes, by Lebesgue's constant, which the
@@ -443,6 +447,7 @@ static void print_method(const struct dalcs_collocation *c) {
         print_exact_complexes(s, c->exact_from_pair[p]);
     }
     printf("},\n");
+    print_reals("binomial", s + 1, c->binomial);
     print_reals("barycentric", s + 1, c->barycentric);
     print_reals("back", s, c->back);
     print_reals("weight", s, c->weight);

@@ -16,7 +16,7 @@ static struct dalcs_crossing find(int s, double (*f)(double), double end, double
     for (int k = 0; k <= s; k++) {
         value[3 * k] = f(c->node[k]);
     }
-    return dalcs_crossing_find(c, value, 3, end, depth);
+    return dalcs_crossing_find(c, value, 3, end, depth, 0.0);
 }
 
 static void check_falls(struct dalcs_crossing c, double theta, double tolerance) {
@@ -169,10 +169,11 @@ START_TEST(test_random) {
     int n_falls = 0;
     int n_hidden = 0;
     for (int trial = 0; trial < N_TRIALS; trial++) {
-        const struct dalcs_collocation *c = dalcs_collocation_of(1 + 2 * (trial % 4));
+        const struct dalcs_collocation *c = dalcs_collocation_of(1 + 2 * (trial % 5));
         double value[DALCS_MAX_NODES];
         double end = trial % 3 == 0 ? 1.0 : uniform();
         double depth = trial % 2 == 0 ? 0.0 : 0.3 * uniform();
+        double guess = trial % 7 == 0 ? uniform() : 0.0; /* any must do */
         bool hidden = true;
         for (int k = 0; k <= c->s; k++) {
             value[k] = uniform() - (trial % 5 == 0 ? 0.5 : 0.05);
@@ -186,7 +187,7 @@ START_TEST(test_random) {
             least = fmin(least, v);
             first = v < -depth - 1e-9 && isinf(first) ? theta : first;
         }
-        struct dalcs_crossing found = dalcs_crossing_find(c, value, 1, end, depth);
+        struct dalcs_crossing found = dalcs_crossing_find(c, value, 1, end, depth, guess);
         ck_assert(found.falls || isinf(first));
         if (!found.falls) {
             continue;
