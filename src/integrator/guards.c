@@ -23,6 +23,9 @@ static const double falling_part = 1e-3;
  * to do with each other, agree to this part of it: then it is known, however small it is. */
 static const double agreeing = 0.01;
 
+/* A guard above so many bands is beyond doubt, though the scales grow. */
+static const double clear = 4.0;
+
 /* What rounding leaves of a zero on dense maps, over the unit's scale. */
 static const double noise = 2e-13;
 
@@ -281,14 +284,18 @@ static void bound_controls(const struct dalcs_radau_part *part) {
     }
 }
 
-/* The guards that bounds do not clear. */
-static void find_doubtful(struct dalcs_radau_part *part) {
+static void bound_all(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     dalcs_crossing_bounds(part->stages.method, s->n_pairs, part->out + dalcs_system_n_equations(s),
                           part->stages.layout.stride, part->bound);
     if (part->stages.n_watched > 0) {
         bound_controls(part);
     }
+}
+
+/* The guards that bounds do not clear. */
+static void find_doubtful(struct dalcs_radau_part *part) {
+    bound_all(part);
     const double *bound = part->bound;
     int n = n_guards(part);
     int n_doubtful = 0;
@@ -347,6 +354,21 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
     *at_once = false;
     find_doubtful(part);
     return part->n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;
+}
+
+bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    const double *unit = part->unit_scale;
+    double band = clear * band_of(r, part);
+    bool all = true;
+    bound_all(part);
+    part->n_crossed = 0;
+    part->n_doubtful = 0;
+    for (int g = 0; g < n_guards(part) && all; g++) {
+        part->armed[g] = is_guarded(part, g);
+        all = !part->armed[g] ||
+              part->bound[g] > band * scale_of(part, g, unit) + clear * rounding_of(part, g, unit);
+    }
+    return all;
 }
 
 bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {

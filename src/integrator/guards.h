@@ -25,6 +25,10 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
 double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                                double end, const double *unit, bool *at_once);
 
+/* Is every guard so far above 0 during the whole step that it could be armed at its start and has no fall?
+ * Then all are armed. By the scales so far. */
+bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part);
+
 /* Is there a diode that is on the wrong side from the start of the step up to `end`, in steps? By no more
  * than the error, or it would have ended the segment; but an error of 0 grows, or goes. Of the guards that
  * dalcs_guards_first_fall looked at; large components are not asked. */

@@ -207,6 +207,7 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
 }
 
 static void part_finish(struct dalcs_radau_part *part) {
+    dalcs_transition_finish(part); /* first: it holds steps */
     if (part->stages.system != NULL) {
         dalcs_stages_finish(&part->stages);
     }
@@ -226,7 +227,6 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->w1);
     free(part->after);
     free(part->used_input);
-    dalcs_transition_finish(part);
     dalcs_guards_finish(part);
     dalcs_step_finish(part);
 }

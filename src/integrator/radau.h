@@ -89,7 +89,12 @@ struct dalcs_radau_part {
     struct dalcs_transition { /* see transition.h */
         bool is_known;
         int level;
+        double span;  /* s, from it to the next edge, the last time; recurrence.h */
+        int recurred; /* times in a row that it was the same */
+        struct dalcs_stage_entry *of_span; /* a step as long, held; NULL: none yet */
     } * transition;
+
+    int present_transition; /* the slot of the latest guess */
 
     uint64_t *transition_modes;
     int level_before;

@@ -12,6 +12,21 @@
 enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r,
                                       struct dalcs_radau_part *part) DALCS_MUST_CHECK;
 
+/* The present step up to theta is a segment; part->t_end and part->why are known. */
+void dalcs_segment_accept(struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
+                          double residual);
+
+/* part->in for a step of length part->h from part->t. */
+void dalcs_segment_inputs(struct dalcs_radau_part *part);
+
+/* Defects of a state, over what is allowed, that need no projection; of larger ones currents across
+ * capacitors are the derivatives. */
+static const double dalcs_worth_projecting = 1e-2;
+
+/* Equations without derivatives hold to rounding, even if it is rounding of large conductances, unless
+ * a mode is singular and the states contradict it, which takes a circuit that is not passive. */
+static const double dalcs_largest_residual = 1e-6;
+
 /* The longest step worth trying. */
 double dalcs_segment_longest(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
 

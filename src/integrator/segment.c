@@ -11,6 +11,7 @@
 #include "front.h"
 #include "guards.h"
 #include "radau_internal.h"
+#include "recurrence.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,19 +27,12 @@ static const double rungs_unseen = 3.0;
 /* Defects of a state, over what is allowed, that interpolation may leave; more is a jump. */
 static const double most_projected = 1e4;
 
-/* Smaller ones are allowed, but currents across capacitors are their derivatives. */
-static const double worth_projecting = 1e-2;
-
 /* A remembered first step gets longer the next time if its error, over the signal, is below this: for
  * a row more at each event waveforms would be worse than they need. */
 static const double fine = 3e-11;
 
 /* Errors over their unit that no smaller step mends are rounding's up to this. */
 static const double most_tolerated = 2e-13;
-
-/* Equations without derivatives hold to rounding, even if it is rounding of large conductances, unless
- * a mode is singular and the states contradict it, which takes a circuit that is not passive. */
-static const double largest_residual = 1e-6;
 
 enum {
     MOST_RUNGS = 6, /* of the ladder, down at once */
@@ -89,7 +83,7 @@ double dalcs_segment_promising(const struct dalcs_radau *r, const struct dalcs_r
     return angle * part->excitation.shortest_period / 6.283185307179586;
 }
 
-static void set_inputs(struct dalcs_radau_part *part) {
+void dalcs_segment_inputs(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     memcpy(part->in, part->x, (size_t)s->n_x * sizeof(double));
     part->in[s->n_x] = 1.0;
@@ -98,7 +92,7 @@ static void set_inputs(struct dalcs_radau_part *part) {
 
 static enum dalcs_status solve_step(struct dalcs_radau_part *part,
                                     struct dalcs_stage_entry **entry) {
-    set_inputs(part);
+    dalcs_segment_inputs(part);
     DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->h, part->in,
                                 part->out, entry));
     part->rounding = dalcs_stage_rounding(*entry);
@@ -170,7 +164,7 @@ static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part 
     }
     dalcs_radau_swap_out(part, &part->out_tried);
     part->h = tried;
-    set_inputs(part);
+    dalcs_segment_inputs(part);
     return status < DALCS_OK ? status : DALCS_OK;
 }
 
@@ -195,14 +189,15 @@ static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part 
 /* Implicit Euler instead. It is certified and takes every event and jump that the step covers. In a
  * row its steps double, up to a part of the ladder's: sliding and accumulating events pass in few. */
 static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                   struct search *search) {
-    part->level = search->first_level;
-    double whole = search->fixed ? r->options.fixed_step : dalcs_radau_ladder(part, part->level);
+                                   double limit, int level) {
+    double fixed = r->options.fixed_step;
+    double whole = fixed > 0.0 ? fixed : dalcs_radau_ladder(part, level);
+    part->level = level;
     double h = ldexp(whole, part->tries - FALL_BACK);
     h = fmin(h, ldexp(whole, -FALL_BACK_LEAST));
     h = fmax(h, 64.0 * r->resolution);
     part->tries++;
-    part->fell_back = fmin(h, search->limit - part->t);
+    part->fell_back = fmin(h, limit - part->t);
     r->euler_steps++;
     return dalcs_radau_euler_step(r, part, part->fell_back);
 }
@@ -323,7 +318,7 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     if (search->fixed || wrong_flip ||
         dalcs_radau_ladder(part, part->level) < 64.0 * r->resolution) {
         *done = true;
-        return fall_back(r, part, search);
+        return fall_back(r, part, search->limit, search->first_level);
     }
     shorten(part, quality->ratio, search->stuck);
     return DALCS_OK;
@@ -346,7 +341,7 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
         return DALCS_OK;
     }
     *done = true;
-    return fall_back(r, part, search);
+    return fall_back(r, part, search->limit, search->first_level);
 }
 
 /* A diode without current and voltage: the circuit is asked which of its sides is of least norm, and
@@ -366,11 +361,43 @@ static enum dalcs_status untie(struct dalcs_radau *r, struct dalcs_radau_part *p
     return DALCS_OK;
 }
 
+void dalcs_segment_accept(struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
+                          double residual) {
+    part->end = theta;
+    part->by_euler = false;
+    if (theta * part->h > 4.0 * part->fell_back) {
+        part->tries = 0;
+    }
+    r->steps++;
+    if (residual > r->worst_residual) {
+        r->worst_residual = residual;
+        r->worst_time = part->t;
+    }
+    if (part->fresh) {
+        dalcs_transition_hold(part);
+        part->fresh = false;
+        part->flipped = false;
+    }
+}
+
+/* What began after pairs changed sides. */
+static void learn(struct dalcs_radau *r, struct dalcs_radau_part *part, const struct search *search,
+                  double theta, double error) {
+    double ratio = error * fmax(1.0, r->inner_tolerance / fine);
+    bool longer = !search->fixed && theta == 1.0 && part->n_crossed == 0 &&
+                  rungs_promised(r, part, ratio) > 1.0 &&
+                  dalcs_radau_ladder(part, part->level - 1) <= part->longest;
+    if (longer || !search->guessed) {
+        dalcs_transition_learn(part, longer ? part->level - 1 : part->level);
+    }
+    if (!search->fixed && part->why == DALCS_END_AT_EDGE) {
+        dalcs_recurrence_note(r, part);
+    }
+}
+
 static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
                    const struct search *search, double theta,
                    const struct dalcs_step_quality *quality, double residual) {
-    part->end = theta;
-    part->by_euler = false;
     double t_end = part->t + theta * part->h;
     part->why = part->n_crossed > 0 ? DALCS_END_AT_EVENT : DALCS_END_OF_STEP;
     if (part->n_crossed == 0 && t_end >= search->limit - r->resolution) {
@@ -382,35 +409,17 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         t_end = fabs(t_end - whole) <= 4.0 * r->resolution ? whole : t_end;
     }
     part->t_end = dalcs_smaller(t_end, search->limit);
-    if (theta * part->h > 4.0 * part->fell_back) {
-        part->tries = 0;
-    }
     dalcs_step_remember(part, theta, quality->unit);
     if (theta == 1.0) {
         dalcs_guards_arm(r, part, true, quality->unit);
     }
-    r->steps++;
     r->wrong_sign =
         dalcs_larger(r->wrong_sign, dalcs_guards_wrong_sign(part, theta, quality->unit));
-    if (residual > r->worst_residual) {
-        r->worst_residual = residual;
-        r->worst_time = part->t;
+    if (part->fresh && part->flipped) {
+        learn(r, part, search, theta, quality->ratio);
     }
-    if (part->fresh) {
-        if (part->flipped) {
-            double ratio = quality->ratio * fmax(1.0, r->inner_tolerance / fine);
-            bool longer = !search->fixed && part->end == 1.0 && part->n_crossed == 0 &&
-                          rungs_promised(r, part, ratio) > 1.0 &&
-                          dalcs_radau_ladder(part, part->level - 1) <= part->longest;
-            if (longer || !search->guessed) {
-                dalcs_transition_learn(part, longer ? part->level - 1 : part->level);
-            }
-        }
-        dalcs_transition_hold(part);
-        part->fresh = false;
-        part->flipped = false;
-    }
-    if (!search->fixed && part->end == 1.0) {
+    dalcs_segment_accept(r, part, theta, residual);
+    if (!search->fixed && theta == 1.0) {
         lengthen(r, part, quality->ratio);
     }
 }
@@ -427,12 +436,12 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     }
     search->states_free = status == DALCS_OK && dalcs_stage_frees_states(entry);
     double end = dalcs_smaller(1.0, (search->limit - part->t) / part->h);
-    if (status == DALCS_OK && !(dalcs_stage_residual(entry) <= largest_residual)) {
+    if (status == DALCS_OK && !(dalcs_stage_residual(entry) <= dalcs_largest_residual)) {
         if (part->fresh && search->restarts == 0) {
             return restart(r, part, search, false);
         }
         *done = true; /* no length mends it */
-        return fall_back(r, part, search);
+        return fall_back(r, part, search->limit, search->first_level);
     }
     bool means_something =
         status == DALCS_OK && !(search->front && dalcs_stage_n_clashes(entry) > 0);
@@ -450,7 +459,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return DALCS_OK;
     }
     if (part->fresh && !search->projected && !search->states_free &&
-        quality.drift > (search->fixed ? 0.0 : worth_projecting)) {
+        quality.drift > (search->fixed ? 0.0 : dalcs_worth_projecting)) {
         bool moved;
         DALCS_TRY(project(r, part, search, &moved));
         if (moved) {
@@ -485,22 +494,18 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    struct search search = {.limit = dalcs_radau_limit(r, part),
+/* guessed: the mode is what followed the last time. */
+static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                          double limit, bool guessed) {
+    struct search search = {.limit = limit,
                             .first_level = part->level,
                             .fixed = r->options.fixed_step > 0.0,
+                            .guessed = guessed,
                             .ratio_before = INFINITY,
                             .tolerated = 1.0};
-    if (part->crowd > CROWD + 4 * part->component->system->n_pairs) {
-        part->fresh = true;
-        return fall_back(r, part, &search);
-    }
-    if (part->fresh && part->flipped) {
-        search.guessed = dalcs_transition_guess(part);
-        if (!search.guessed && part->fronts_refused < MOST_FRONTS_REFUSED) {
-            DALCS_TRY(dalcs_front_close(part, &search.front));
-            search.guessed = search.front;
-        }
+    if (part->fresh && part->flipped && !guessed && part->fronts_refused < MOST_FRONTS_REFUSED) {
+        DALCS_TRY(dalcs_front_close(part, &search.front));
+        search.guessed = search.front;
         search.first_level = part->level;
     }
     bool done = false;
@@ -508,4 +513,18 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
         DALCS_TRY(try_step(r, part, &search, &done));
     }
     return DALCS_OK;
+}
+
+enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    double limit = dalcs_radau_limit(r, part);
+    if (part->crowd > CROWD + 4 * part->component->system->n_pairs) {
+        part->fresh = true;
+        return fall_back(r, part, limit, part->level);
+    }
+    bool guessed = part->fresh && part->flipped && dalcs_transition_guess(part);
+    bool holds = false;
+    if (guessed && r->options.fixed_step == 0.0) {
+        DALCS_TRY(dalcs_recurrence_try(r, part, limit, &holds));
+    }
+    return holds ? DALCS_OK : look_for_segment(r, part, limit, guessed);
 }

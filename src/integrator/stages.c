@@ -102,6 +102,11 @@ static void entry_destroy(struct dalcs_stages *stages, struct dalcs_stage_entry 
     free(e);
 }
 
+void dalcs_stages_hold(struct dalcs_stage_entry *entry) {
+    entry->n_holders++;
+}
+
+/* The last one destroys it. */
 void dalcs_stages_release(struct dalcs_stages *stages, struct dalcs_stage_entry *entry) {
     if (--entry->n_holders == 0) {
         stages->bytes -= entry->bytes;

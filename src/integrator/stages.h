@@ -77,6 +77,10 @@ enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t 
                                     const double *in, double *out,
                                     struct dalcs_stage_entry **entry) DALCS_MUST_CHECK;
 
+/* Keeps an entry valid, whatever else is asked for, until it is released as often. */
+void dalcs_stages_hold(struct dalcs_stage_entry *entry);
+void dalcs_stages_release(struct dalcs_stages *stages, struct dalcs_stage_entry *entry);
+
 int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry);
 
 /* Is what is next to this pair awake? (stage_rest.h) */

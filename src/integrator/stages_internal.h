@@ -37,9 +37,6 @@ static inline bool dalcs_stage_is_on(const struct dalcs_stage_entry *e, int pair
     return dalcs_mode_has(e->mode, pair);
 }
 
-/* stages.c: one holder less; the last one destroys it. */
-void dalcs_stages_release(struct dalcs_stages *stages, struct dalcs_stage_entry *entry);
-
 /* stage_map.c: the dense matrix of an entry. */
 enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
                                         struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;

@@ -18,10 +18,26 @@ enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
 }
 
 void dalcs_transition_finish(struct dalcs_radau_part *part) {
+    for (int k = 0; k < SLOTS && part->transition != NULL; k++) {
+        dalcs_transition_forget_span(part, &part->transition[k]);
+    }
     free(part->transition);
     free(part->transition_modes);
     free(part->modes_before);
     free(part->mode_tied);
+}
+
+struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *part) {
+    return &part->transition[part->present_transition];
+}
+
+void dalcs_transition_forget_span(struct dalcs_radau_part *part, struct dalcs_transition *known) {
+    if (known->of_span != NULL) {
+        dalcs_stages_release(&part->stages, known->of_span);
+    }
+    known->of_span = NULL;
+    known->span = 0.0;
+    known->recurred = 0;
 }
 
 /* Of part->modes_before. */
@@ -52,6 +68,7 @@ bool dalcs_transition_guess(struct dalcs_radau_part *part) {
     copy_mode(part->modes_before + words, p->mode, words);
     part->level_before = part->level;
     size_t slot = find_slot(part);
+    part->present_transition = (int)slot;
     const uint64_t *known = part->transition_modes + slot * MODES * words;
     if (!part->transition[slot].is_known ||
         !dalcs_mode_is(known, part->modes_before, 2 * p->n_words)) {
@@ -71,10 +88,15 @@ void dalcs_transition_refuse(struct dalcs_radau_part *part) {
 void dalcs_transition_learn(struct dalcs_radau_part *part, int level) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     size_t words = (size_t)p->n_words;
-    size_t slot = find_slot(part);
-    uint64_t *known = part->transition_modes + slot * MODES * words;
-    copy_mode(known, part->modes_before, 2 * words);
-    copy_mode(known + 2 * words, p->mode, words);
-    part->transition[slot].is_known = true;
-    part->transition[slot].level = level;
+    uint64_t *modes = part->transition_modes + (size_t)part->present_transition * MODES * words;
+    struct dalcs_transition *known = dalcs_transition_known(part);
+    bool is_same = known->is_known && dalcs_mode_is(modes, part->modes_before, 2 * p->n_words) &&
+                   dalcs_mode_is(modes + 2 * words, p->mode, p->n_words);
+    if (!is_same) {
+        dalcs_transition_forget_span(part, known);
+    }
+    copy_mode(modes, part->modes_before, 2 * words);
+    copy_mode(modes + 2 * words, p->mode, words);
+    known->is_known = true;
+    known->level = level;
 }

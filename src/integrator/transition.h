@@ -22,6 +22,12 @@ bool dalcs_transition_guess(struct dalcs_radau_part *part);
 /* The guess did not pass: back to what was before it. */
 void dalcs_transition_refuse(struct dalcs_radau_part *part);
 
+/* What the latest guess was taken from, or what was learned instead of it. */
+struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *part);
+
+/* Another span follows, or another mode. */
+void dalcs_transition_forget_span(struct dalcs_radau_part *part, struct dalcs_transition *known);
+
 /* The present mode is what followed, and `level` the step to begin with. */
 void dalcs_transition_learn(struct dalcs_radau_part *part, int level);
 

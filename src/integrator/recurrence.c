@@ -1,0 +1,99 @@
+/* recurrence.c - the short way through a segment that has been met before.
+ *
+ * What segment.c asks of a step is asked here, too, by bounds that imply it: the error is small enough, no
+ * state needs to be projected or has outgrown its scale, and every guard is so far above 0 that it
+ * would be armed and clear of events. What is left out only raises scales and chooses the next length. */
+#include "recurrence.h"
+
+#include "guards.h"
+#include "radau_internal.h"
+
+#include <math.h>
+
+/* A map for a span costs as much as looking for some thirty segments; waiting for half of them to begin
+ * with wastes little where more follow, and nothing where none do. */
+enum { OFTEN = 16 };
+
+/* States within this many times their scale need no new one. */
+static const double most_growth = 2.0;
+
+/* The map of the span, if a step with it can be judged by its states and guards alone. */
+static enum dalcs_status find_map(struct dalcs_radau_part *part, struct dalcs_transition *known) {
+    struct dalcs_stage_entry *entry;
+    known->recurred = 0; /* if it cannot: as with count_from */
+    enum dalcs_status status =
+        dalcs_stages_get(&part->stages, part->component->osnsp.mode, known->span, &entry);
+    DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+    if (status == DALCS_OK && dalcs_stage_n_clashes(entry) == 0 &&
+        dalcs_stage_residual(entry) <= dalcs_largest_residual) {
+        dalcs_stages_hold(entry);
+        known->of_span = entry;
+    }
+    return DALCS_OK;
+}
+
+/* It has to recur as often again, for a step that failed once may always fail. */
+static void count_from(struct dalcs_radau_part *part, struct dalcs_transition *known, double span) {
+    dalcs_transition_forget_span(part, known);
+    known->span = span;
+}
+
+/* Errors as in step_error.c, of the states, beside no more than their own scales. */
+static bool is_accurate(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                        bool states_free) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const double *drift = part->out + l->drift;
+    const double *last = part->out + (l->n_nodes - 1) * l->stride;
+    double allowed = (states_free ? 1.0 : dalcs_worth_projecting) * r->inner_tolerance;
+    bool accurate = true;
+    for (int x = 0; x < part->component->system->n_x && accurate; x++) {
+        accurate = fabs(drift[x]) <= allowed * part->scale[x] &&
+                   fabs(last[x]) <= most_growth * part->scale[x];
+    }
+    return accurate;
+}
+
+enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       double limit, bool *holds) {
+    struct dalcs_transition *known = dalcs_transition_known(part);
+    *holds = false;
+    if (fabs(limit - part->t - known->span) > r->resolution) {
+        return DALCS_OK;
+    }
+    if (known->of_span == NULL && known->recurred >= OFTEN) {
+        DALCS_TRY(find_map(part, known));
+    }
+    if (known->of_span == NULL) {
+        return DALCS_OK;
+    }
+    part->h = known->span;
+    part->rounding = 1.0; /* a map's */
+    dalcs_segment_inputs(part);
+    DALCS_TRY(dalcs_stages_apply(&part->stages, known->of_span, part->in, part->out));
+    *holds = is_accurate(r, part, dalcs_stage_frees_states(known->of_span)) &&
+             dalcs_guards_clear(r, part);
+    if (!*holds) {
+        count_from(part, known, known->span);
+        return DALCS_OK;
+    }
+    part->stages.cache_hits++;
+    part->t_end = limit;
+    part->why = DALCS_END_AT_EDGE;
+    part->open = false;
+    dalcs_segment_accept(r, part, 1.0, dalcs_stage_residual(known->of_span));
+    return DALCS_OK;
+}
+
+void dalcs_recurrence_note(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    struct dalcs_transition *known = dalcs_transition_known(part);
+    double span = part->t_end - part->t;
+    bool on_map = part->rounding == 1.0;
+    if (!on_map || part->excitation.is_curved) {
+        return; /* factors for one span are too dear; what sources do between the nodes is not looked at */
+    }
+    if (fabs(span - known->span) <= r->resolution) {
+        known->recurred++;
+    } else {
+        count_from(part, known, span);
+    }
+}
