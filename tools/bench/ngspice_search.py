@@ -13,7 +13,8 @@ from ngspice_deck import Setting
 
 TARGETS = (1e-3, 5e-4, 1e-4, 1e-5, 1e-6)
 METHODS = ("trap", "gear")
-EMISSIONS = (1e-2, 1e-3, 1e-4, 1e-5)
+EMISSIONS = (1e-2, 1e-3, 1e-4, 3e-5, 1e-5)
+EDGES = (1e-9, 1e-11, 1e-12)  # s, of gates
 RELTOLS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 STEPS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000)  # in a period
 LONGEST = 3.0  # s; a setting that takes longer has no place in a table of milliseconds
@@ -40,7 +41,7 @@ class Search:
         self.tried = {}
 
     def edge(self, emission):
-        return (1e-9 if emission >= 1e-3 else 1e-11) if self.gated else 0.0
+        return EDGES[0 if emission >= 1e-3 else 1] if self.gated else 0.0
 
     def attempt(self, setting):
         if setting not in self.tried:
@@ -89,7 +90,8 @@ class Search:
             for order in (3, 4, 6):
                 yield change(setting, extra=with_option(setting.extra, "maxord", order))
         if self.gated:
-            yield change(setting, edge=1e-11 if setting.edge > 1e-10 else 1e-9)
+            for edge in EDGES:
+                yield change(setting, edge=edge)
 
     def time_again(self, target):
         """The likely ones, each among many runs of itself."""
