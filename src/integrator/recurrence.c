@@ -8,6 +8,7 @@
 #include "guards.h"
 #include "radau_internal.h"
 
+#include <float.h>
 #include <math.h>
 
 /* A map for a span costs as much as looking for some thirty segments; waiting for half of them to begin
@@ -16,6 +17,12 @@ enum { OFTEN = 16 };
 
 /* States within this many times their scale need no new one. */
 static const double most_growth = 2.0;
+
+/* As far as rounded times can tell. The first of equal spans is kept: it comes earliest, when times have most
+ * digits, and later ones, rounded up and down, are that one exactly. */
+static bool is_same(const struct dalcs_transition *known, double from, double to) {
+    return fabs(to - from - known->span) <= 4.0 * DBL_EPSILON * to;
+}
 
 /* The map of the span, if a step with it can be judged by its states and guards alone. */
 static enum dalcs_status find_map(struct dalcs_radau_part *part, struct dalcs_transition *known) {
@@ -57,7 +64,7 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
                                        double limit, bool *holds) {
     struct dalcs_transition *known = dalcs_transition_known(part);
     *holds = false;
-    if (fabs(limit - part->t - known->span) > r->resolution) {
+    if (!is_same(known, part->t, limit)) {
         return DALCS_OK;
     }
     if (known->of_span == NULL && known->recurred >= OFTEN) {
@@ -84,16 +91,15 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
     return DALCS_OK;
 }
 
-void dalcs_recurrence_note(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+void dalcs_recurrence_note(struct dalcs_radau_part *part) {
     struct dalcs_transition *known = dalcs_transition_known(part);
-    double span = part->t_end - part->t;
     bool on_map = part->rounding == 1.0;
     if (!on_map || part->excitation.is_curved) {
         return; /* factors for one span are too dear; what sources do between the nodes is not looked at */
     }
-    if (fabs(span - known->span) <= r->resolution) {
+    if (is_same(known, part->t, part->t_end)) {
         known->recurred++;
     } else {
-        count_from(part, known, span);
+        count_from(part, known, part->t_end - part->t);
     }
 }

@@ -14,6 +14,6 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
                                        double limit, bool *holds) DALCS_MUST_CHECK;
 
 /* After pairs changed sides, one step has reached the next edge; the transition is known. */
-void dalcs_recurrence_note(const struct dalcs_radau *r, struct dalcs_radau_part *part);
+void dalcs_recurrence_note(struct dalcs_radau_part *part);
 
 #endif

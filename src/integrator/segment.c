@@ -391,7 +391,7 @@ static void learn(struct dalcs_radau *r, struct dalcs_radau_part *part, const st
         dalcs_transition_learn(part, longer ? part->level - 1 : part->level);
     }
     if (!search->fixed && part->why == DALCS_END_AT_EDGE) {
-        dalcs_recurrence_note(r, part);
+        dalcs_recurrence_note(part);
     }
 }
 
