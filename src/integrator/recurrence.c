@@ -27,7 +27,7 @@ static bool is_same(const struct dalcs_transition *known, double from, double to
 /* The map of the span, if a step with it can be judged by its states and guards alone. */
 static enum dalcs_status find_map(struct dalcs_radau_part *part, struct dalcs_transition *known) {
     struct dalcs_stage_entry *entry;
-    known->recurred = 0; /* if it cannot: as with count_from */
+    known->recurred = 0; /* if it cannot, it takes as long again */
     enum dalcs_status status =
         dalcs_stages_get(&part->stages, part->component->osnsp.mode, known->span, &entry);
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
@@ -37,12 +37,6 @@ static enum dalcs_status find_map(struct dalcs_radau_part *part, struct dalcs_tr
         known->of_span = entry;
     }
     return DALCS_OK;
-}
-
-/* It has to recur as often again, for a step that failed once may always fail. */
-static void count_from(struct dalcs_radau_part *part, struct dalcs_transition *known, double span) {
-    dalcs_transition_forget_span(part, known);
-    known->span = span;
 }
 
 /* Errors as in step_error.c, of the states, beside no more than their own scales. */
@@ -79,8 +73,8 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
     DALCS_TRY(dalcs_stages_apply(&part->stages, known->of_span, part->in, part->out));
     *holds = is_accurate(r, part, dalcs_stage_frees_states(known->of_span)) &&
              dalcs_guards_clear(r, part);
-    if (!*holds) {
-        count_from(part, known, known->span);
+    if (!*holds) { /* a step that failed once may always fail */
+        dalcs_transition_begin_span(part, known, known->span);
         return DALCS_OK;
     }
     part->stages.cache_hits++;
@@ -100,6 +94,6 @@ void dalcs_recurrence_note(struct dalcs_radau_part *part) {
     if (is_same(known, part->t, part->t_end)) {
         known->recurred++;
     } else {
-        count_from(part, known, part->t_end - part->t);
+        dalcs_transition_begin_span(part, known, part->t_end - part->t);
     }
 }

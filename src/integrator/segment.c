@@ -506,7 +506,6 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
     if (part->fresh && part->flipped && !guessed && part->fronts_refused < MOST_FRONTS_REFUSED) {
         DALCS_TRY(dalcs_front_close(part, &search.front));
         search.guessed = search.front;
-        search.first_level = part->level;
     }
     bool done = false;
     while (!done) {

@@ -19,7 +19,7 @@ enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
 
 void dalcs_transition_finish(struct dalcs_radau_part *part) {
     for (int k = 0; k < SLOTS && part->transition != NULL; k++) {
-        dalcs_transition_forget_span(part, &part->transition[k]);
+        dalcs_transition_begin_span(part, &part->transition[k], 0.0);
     }
     free(part->transition);
     free(part->transition_modes);
@@ -31,12 +31,13 @@ struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *p
     return &part->transition[part->present_transition];
 }
 
-void dalcs_transition_forget_span(struct dalcs_radau_part *part, struct dalcs_transition *known) {
+void dalcs_transition_begin_span(struct dalcs_radau_part *part, struct dalcs_transition *known,
+                                 double span) {
     if (known->of_span != NULL) {
         dalcs_stages_release(&part->stages, known->of_span);
     }
     known->of_span = NULL;
-    known->span = 0.0;
+    known->span = span;
     known->recurred = 0;
 }
 
@@ -92,11 +93,11 @@ void dalcs_transition_learn(struct dalcs_radau_part *part, int level) {
     struct dalcs_transition *known = dalcs_transition_known(part);
     bool is_same = known->is_known && dalcs_mode_is(modes, part->modes_before, 2 * p->n_words) &&
                    dalcs_mode_is(modes + 2 * words, p->mode, p->n_words);
-    if (!is_same) {
-        dalcs_transition_forget_span(part, known);
-    }
-    copy_mode(modes, part->modes_before, 2 * words);
-    copy_mode(modes + 2 * words, p->mode, words);
-    known->is_known = true;
     known->level = level;
+    if (!is_same) {
+        known->is_known = true;
+        copy_mode(modes, part->modes_before, 2 * words);
+        copy_mode(modes + 2 * words, p->mode, words);
+        dalcs_transition_begin_span(part, known, 0.0);
+    }
 }

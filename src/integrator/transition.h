@@ -25,8 +25,9 @@ void dalcs_transition_refuse(struct dalcs_radau_part *part);
 /* What the latest guess was taken from, or what was learned instead of it. */
 struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *part);
 
-/* Another span follows, or another mode. */
-void dalcs_transition_forget_span(struct dalcs_radau_part *part, struct dalcs_transition *known);
+/* It is counted from here how often `span` (s; 0: none yet) recurs, and the step of the one before is let go. */
+void dalcs_transition_begin_span(struct dalcs_radau_part *part, struct dalcs_transition *known,
+                                 double span);
 
 /* The present mode is what followed, and `level` the step to begin with. */
 void dalcs_transition_learn(struct dalcs_radau_part *part, int level);

@@ -32,8 +32,8 @@ static bool is_whole_span(void) {
     return known->of_span != NULL && r.part->h == known->span && r.part->end == 1.0;
 }
 
-/* A chopper feeds a motor, whose voltage rises for a while: less, so that its current only jumps to another
- * mean, or so much that it ends in each period. */
+/* A chopper feeds a motor, whose voltage rises for a while: a little, so that its current only moves to
+ * another mean, or so much that it ends in each period. */
 static const double period = 100e-6, on = 40e-6, supply = 24.0, resistance = 1.0, inductance = 2e-3;
 static const double rises = 5.013e-3, falls = 10.017e-3, motor_stop = 15e-3;
 
