@@ -26,6 +26,9 @@ static const double agreeing = 0.01;
 /* A guard above so many bands is beyond doubt, though the scales grow. */
 static const double clear = 4.0;
 
+/* An error of the polynomial may be so many bands at its start. */
+static const double shallow = 100.0;
+
 /* What rounding leaves of a zero on dense maps, over the unit's scale. */
 static const double noise = 2e-13;
 
@@ -233,14 +236,23 @@ static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band
     }
 }
 
+/* Values at the nodes of a pair in the segment before, with their stride; NULL if they are not known or it
+ * was on the other side. */
+static const double *values_before(const struct dalcs_radau_part *part, int pair) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    if (part->by_euler || dalcs_mode_has(part->modes_before, pair) != dalcs_osnsp_is_on(p, pair)) {
+        return NULL;
+    }
+    return part->out_before + dalcs_system_n_equations(p->system) + pair;
+}
+
 /* Is a pair on the side that it was on in the segment before, with the same value? */
 static bool goes_on(const struct dalcs_radau_part *part, int pair, double value) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    if (part->by_euler || dalcs_mode_has(part->modes_before, pair) != dalcs_osnsp_is_on(p, pair)) {
+    const double *before = values_before(part, pair);
+    if (before == NULL) {
         return false;
     }
-    const double *before = part->out_before + dalcs_system_n_equations(p->system) + pair;
     double weight[DALCS_MAX_NODES];
     double last = 0.0;
     dalcs_collocation_weights(part->stages.method, part->end_before, weight);
@@ -323,6 +335,9 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         int stride;
         const double *value = values_of(part, g, work, &stride);
         double scale = scale_of(part, g, unit);
+        if (!part->fresh && value[0] <= falling_part * band * scale) {
+            part->armed[g] = false; /* what has died away has no sign any more */
+        }
         double depth = (part->armed[g] && !stops ? dalcs_guards_noise(part) : band) * scale;
         if (!part->armed[g] && !part->fresh && !stops && value[last * stride] < value[0]) {
             depth *= falling_part;
@@ -356,6 +371,20 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
     return part->n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;
 }
 
+bool dalcs_guards_recover(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                          const double *unit) {
+    int last = part->stages.layout.n_nodes - 1;
+    bool all = true;
+    for (int k = 0; k < part->n_crossed && all; k++) {
+        double work[DALCS_MAX_NODES];
+        int stride;
+        const double *value = values_of(part, part->crossed[k], work, &stride);
+        double band = band_of(r, part) * scale_of(part, part->crossed[k], unit);
+        all = value[0] >= -shallow * band && value[last * stride] > 0.0;
+    }
+    return all;
+}
+
 bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     const double *unit = part->unit_scale;
     double band = clear * band_of(r, part);
@@ -371,17 +400,23 @@ bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *pa
     return all;
 }
 
+/* Are all of these no more than rounding makes of 0? */
+static bool is_nothing(const struct dalcs_radau_part *part, int pair, const double *value,
+                       int stride, const double *unit) {
+    double limit = dalcs_guards_noise(part) * scale_of(part, pair, unit);
+    limit += rounding_of(part, pair, unit);
+    bool nothing = true;
+    for (int k = 0; k < part->stages.layout.n_nodes && nothing; k++) {
+        nothing = fabs(value[k * stride]) <= limit;
+    }
+    return nothing;
+}
+
 bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
     double work[DALCS_MAX_NODES];
     int stride;
     const double *value = values_of(part, pair, work, &stride);
-    double limit = dalcs_guards_noise(part) * scale_of(part, pair, unit);
-    limit += rounding_of(part, pair, unit);
-    bool tied = is_guarded(part, pair);
-    for (int k = 0; k < part->stages.layout.n_nodes && tied; k++) {
-        tied = fabs(value[k * stride]) <= limit;
-    }
-    return tied;
+    return is_guarded(part, pair) && is_nothing(part, pair, value, stride, unit);
 }
 
 /* Is it below -least from the start on, and does not come back by half up to `end`? */
@@ -409,11 +444,18 @@ bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_
     return negative;
 }
 
-bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit) {
+/* Neither current nor voltage in the whole segment before, on the same side? */
+static bool was_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    const double *before = part->flipped ? values_before(part, pair) : NULL;
+    return before != NULL && is_nothing(part, pair, before, part->stages.layout.stride, unit);
+}
+
+bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determined,
+                            const double *unit) {
     int n_pairs = part->component->system->n_pairs;
     bool tied = false;
     for (int d = 0; d < n_pairs && !tied && !(n_pairs > MANY_PAIRS && part->flipped); d++) {
-        tied = dalcs_guards_is_tied(part, d, unit);
+        tied = dalcs_guards_is_tied(part, d, unit) && !(is_determined && was_tied(part, d, unit));
     }
     return tied;
 }

@@ -25,6 +25,11 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
 double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                                double end, const double *unit, bool *at_once);
 
+/* Do the guards of a first fall at once come back within the step, and from no farther below 0 than an error
+ * of the polynomial may put them, which is least exact at its start? */
+bool dalcs_guards_recover(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                          const double *unit);
+
 /* Is every guard so far above 0 during the whole step that it could be armed at its start and has no fall?
  * Then all are armed. By the scales so far. */
 bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part);
@@ -37,9 +42,11 @@ bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_
 
 /* Is there a diode with neither current nor voltage during the whole step? It may change sides without
  * anything else, and where that leaves a choice (sources in parallel, floating nodes) only the OSNSP
- * knows which is of least norm. Large components, where that is dear, are asked only at their start and at
- * edges, not after every event. */
-bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, const double *unit);
+ * knows which is of least norm. One to which nothing happened, as it was like this before the event too, is
+ * none of them where the mode determines all. Large components, where that is dear, are asked only at
+ * their start and at edges, not after every event. */
+bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determined,
+                            const double *unit);
 
 /* Is this pair such a diode? */
 bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit);

@@ -98,6 +98,12 @@ struct dalcs_radau_part {
 
     uint64_t *transition_modes;
     int level_before;
+
+    struct dalcs_beginning {
+        int level;            /* to begin with where no transition is known, at least */
+        int waited, patience; /* times that it held; until a longer step is tried anyhow */
+    } beginning[2];           /* after pairs opened; after one closed */
+
     int fronts_refused;     /* guesses that a front goes on, which were wrong */
     uint64_t *modes_before; /* the one that held, the one after pairs changed sides */
     uint64_t *mode_tied;

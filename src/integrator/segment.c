@@ -35,13 +35,15 @@ static const double fine = 3e-11;
 static const double most_tolerated = 2e-13;
 
 enum {
-    MOST_RUNGS = 6, /* of the ladder, down at once */
-    STUCK = 3,      /* smaller steps without a smaller error */
+    MOST_RUNGS = 6,     /* of the ladder, down at once */
+    MOST_PREFERRED = 2, /* of them, for the sake of factors */
+    STUCK = 3,          /* smaller steps without a smaller error */
     VERY_STUCK = 8,
     PROJECTION = 30, /* a projecting step is this many rungs below */
     MOST_RESTARTS = 4,
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
     MOST_FLIPS = 12,
+    MOST_REFINED = 3,
     LEAST_PATIENCE = 32,
     MOST_PATIENCE = 4096,
     FALL_BACK_LEAST = 5,
@@ -108,6 +110,7 @@ struct search {
     bool guessed; /* the mode is one remembered from the last time, or that of a front */
     bool front;   /* the latter */
     int reopened; /* times that diodes of a front were opened again */
+    int refined;  /* times that a step was shortened for the signs at its start */
     bool untied;  /* tied diodes have been looked at */
     bool opened;  /* and are open now, to try */
     bool projected;
@@ -324,9 +327,18 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     return DALCS_OK;
 }
 
-/* The mode is wrong from the start: asks the circuit, then tries the other sides. */
+/* The mode is wrong from the start: asks the circuit, then tries the other sides. Unless it may be the
+ * polynomial that is wrong there, as a shorter step will tell. */
 static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                     struct search *search, bool *done) {
+                                     struct search *search, const double *unit, bool *done) {
+    bool is_remembered = search->guessed && !search->front;
+    if (!search->fixed && !is_remembered && search->refined < MOST_REFINED &&
+        dalcs_guards_recover(r, part, unit)) {
+        search->refined++;
+        r->rejected++;
+        part->level++;
+        return DALCS_OK;
+    }
     if (search->guessed) {
         return refuse(part, search);
     }
@@ -387,8 +399,15 @@ static void learn(struct dalcs_radau *r, struct dalcs_radau_part *part, const st
     bool longer = !search->fixed && theta == 1.0 && part->n_crossed == 0 &&
                   rungs_promised(r, part, ratio) > 1.0 &&
                   dalcs_radau_ladder(part, part->level - 1) <= part->longest;
-    if (longer || !search->guessed) {
-        dalcs_transition_learn(part, longer ? part->level - 1 : part->level);
+    int spare = longer ? 1 : 0; /* rungs that the first step may have more the next time */
+    if (!search->guessed) {
+        double promised = dalcs_smaller(rungs_promised(r, part, error), MOST_RUNGS);
+        int by_analogy = search->first_level - part->level_before;
+        dalcs_transition_began(part, search->first_level, (int)promised);
+        spare = (int)dalcs_larger(spare, dalcs_smaller(promised, by_analogy));
+    }
+    if (spare > 0 || !search->guessed) {
+        dalcs_transition_learn(part, part->level - spare);
     }
     if (!search->fixed && part->why == DALCS_END_AT_EDGE) {
         dalcs_recurrence_note(part);
@@ -477,7 +496,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         theta = dalcs_guards_first_fall(r, part, end, quality.unit, &at_once);
     }
     if (at_once && part->fresh) {
-        return change_mode(r, part, search, done);
+        return change_mode(r, part, search, quality.unit, done);
     }
     double next = dalcs_smaller(theta, end);
     if (part->fresh && search->restarts == 0 &&
@@ -485,13 +504,25 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return search->guessed ? refuse(part, search) : restart(r, part, search, true);
     }
     if (part->fresh && !search->guessed && !search->untied &&
-        dalcs_guards_stay_tied(part, quality.unit)) {
+        dalcs_guards_stay_tied(part, dalcs_stage_n_clashes(entry) == 0, quality.unit)) {
         return untie(r, part, search, next, &quality);
     }
     part->open = part->fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);
     accept(r, part, search, next, &quality, dalcs_stage_residual(entry));
     *done = true;
     return DALCS_OK;
+}
+
+/* A mode that has been before, though not after this one, may have the factors of a shorter step: it costs
+ * less to begin with that. */
+static int cheapest_level(struct dalcs_radau_part *part) {
+    for (int k = 0; k <= MOST_PREFERRED; k++) {
+        double h = dalcs_radau_ladder(part, part->level + k);
+        if (dalcs_stages_have(&part->stages, part->component->osnsp.mode, h)) {
+            return part->level + k;
+        }
+    }
+    return part->level;
 }
 
 /* guessed: the mode is what followed the last time. */
@@ -506,6 +537,9 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
     if (part->fresh && part->flipped && !guessed && part->fronts_refused < MOST_FRONTS_REFUSED) {
         DALCS_TRY(dalcs_front_close(part, &search.front));
         search.guessed = search.front;
+    }
+    if (part->fresh && part->flipped && !guessed && !search.fixed) {
+        part->level = search.first_level = cheapest_level(part);
     }
     bool done = false;
     while (!done) {

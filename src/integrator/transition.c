@@ -1,10 +1,14 @@
 /* transition.c - a small table, the place of an entry being the hash of the modes before. */
 #include "transition.h"
 
+#include <limits.h>
 #include <stdlib.h>
 
 /* An entry has three modes: the one that held, the one after pairs changed sides, what followed. */
 enum { SLOTS = 64, MODES = 3 };
+
+/* A length that held is begun with so many times at most before a longer one is tried. */
+enum { MOST_PATIENCE = 64 };
 
 enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
     size_t words = (size_t)part->component->osnsp.n_words;
@@ -12,6 +16,7 @@ enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
     part->transition_modes = dalcs_alloc(SLOTS * MODES * words, sizeof(uint64_t));
     part->modes_before = dalcs_alloc(2 * words, sizeof(uint64_t));
     part->mode_tied = dalcs_alloc(words, sizeof(uint64_t));
+    part->beginning[0] = part->beginning[1] = (struct dalcs_beginning){INT_MIN, 0, 1};
     bool complete = part->transition != NULL && part->transition_modes != NULL &&
                     part->modes_before != NULL && part->mode_tied != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
@@ -63,16 +68,28 @@ void dalcs_transition_hold(struct dalcs_radau_part *part) {
     copy_mode(part->modes_before, p->mode, (size_t)p->n_words);
 }
 
+/* What a pair joins has to become equal, often fast; one that opens only lets go. */
+static struct dalcs_beginning *find_beginning(struct dalcs_radau_part *part) {
+    int n_words = part->component->osnsp.n_words;
+    uint64_t closed = 0;
+    for (int k = 0; k < n_words; k++) {
+        closed |= part->modes_before[n_words + k] & ~part->modes_before[k];
+    }
+    return &part->beginning[closed != 0];
+}
+
 bool dalcs_transition_guess(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     size_t words = (size_t)p->n_words;
     copy_mode(part->modes_before + words, p->mode, words);
-    part->level_before = part->level;
     size_t slot = find_slot(part);
     part->present_transition = (int)slot;
     const uint64_t *known = part->transition_modes + slot * MODES * words;
+    part->level_before = part->level;
     if (!part->transition[slot].is_known ||
         !dalcs_mode_is(known, part->modes_before, 2 * p->n_words)) {
+        int level = find_beginning(part)->level;
+        part->level = level > part->level ? level : part->level;
         return false;
     }
     copy_mode(p->mode, known + 2 * words, words);
@@ -84,6 +101,17 @@ void dalcs_transition_refuse(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     copy_mode(p->mode, part->modes_before + p->n_words, (size_t)p->n_words);
     part->level = part->level_before;
+}
+
+void dalcs_transition_began(struct dalcs_radau_part *part, int tried, int promised) {
+    struct dalcs_beginning *b = find_beginning(part);
+    if (part->level > tried) {
+        bool in_vain = b->level == tried && b->patience < MOST_PATIENCE;
+        *b = (struct dalcs_beginning){part->level, 0, in_vain ? 2 * b->patience : b->patience};
+    } else if (b->level == tried) {
+        b->waited++;
+        b->level -= promised > 0 ? promised : b->waited >= b->patience ? 1 : 0;
+    }
 }
 
 void dalcs_transition_learn(struct dalcs_radau_part *part, int level) {

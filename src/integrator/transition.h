@@ -2,7 +2,8 @@
  *
  * In a converter the same switch opens again and again, and the same diode takes over. What was found
  * out once, the mode and a length of step that suits its beginning, is tried first the next time, and
- * has to pass like any other guess. */
+ * has to pass like any other guess. Where just this has not been before, as in a chain in which one diode
+ * after the other closes, the length is that of the last time that a pair closed, or that one opened. */
 #ifndef DALCS_TRANSITION_H
 #define DALCS_TRANSITION_H
 
@@ -16,7 +17,8 @@ void dalcs_transition_finish(struct dalcs_radau_part *part);
 void dalcs_transition_hold(struct dalcs_radau_part *part);
 
 /* At a fresh point, after pairs changed sides: takes the mode and the level of the ladder that
- * followed from the one that held and the present one. false: none is known, and nothing changed. */
+ * followed from the one that held and the present one. false: none is known, and no more than the level
+ * changed. */
 bool dalcs_transition_guess(struct dalcs_radau_part *part);
 
 /* The guess did not pass: back to what was before it. */
@@ -28,6 +30,10 @@ struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *p
 /* It is counted from here how often `span` (s; 0: none yet) recurs, and the step of the one before is let go. */
 void dalcs_transition_begin_span(struct dalcs_radau_part *part, struct dalcs_transition *known,
                                  double span);
+
+/* After a guess of false: the segment holds with the part's level, `tried` was the first that was tried,
+ * and the error promises steps longer by so many rungs. */
+void dalcs_transition_began(struct dalcs_radau_part *part, int tried, int promised);
 
 /* The present mode is what followed, and `level` the step to begin with. */
 void dalcs_transition_learn(struct dalcs_radau_part *part, int level);

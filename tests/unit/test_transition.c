@@ -102,4 +102,65 @@ START_TEST(test_many) {
 
 END_TEST
 
-RUN_TESTS("transition", test_learns, test_held, test_many)
+/* What has not been before begins with the length that suited the last pair that closed. */
+START_TEST(test_beginning) {
+    start();
+    hold(0, 0);
+    ck_assert(!guess(1, 0) && part.level == 10);
+    part.level = 14; /* it had to be shorter */
+    dalcs_transition_began(&part, 10, 0);
+    hold(1, 0);
+    part.level = 10;
+    ck_assert(!guess(3, 0) && part.level == 14);
+    dalcs_transition_refuse(&part);
+    ck_assert_int_eq(part.level, 10);
+    hold(3, 0);
+    ck_assert(!guess(2, 0) && part.level == 10); /* one opens: something else */
+    part.level = 16;
+    hold(2, 0);
+    ck_assert(!guess(2, 1) && part.level == 16); /* shorter anyhow */
+    dalcs_transition_began(&part, 16, 5);
+    part.level = 10;
+    ck_assert(!guess(2, 3) && part.level == 14);
+    dalcs_transition_began(&part, 14, 2); /* its error promises more */
+    part.level = 10;
+    ck_assert(!guess(2, 5) && part.level == 12);
+    dalcs_transition_finish(&part);
+}
+
+END_TEST
+
+/* After guesses of `patience` that held a longer step is tried; each that has to be taken back doubles it. */
+START_TEST(test_patience) {
+    start();
+    hold(0, 0);
+    ck_assert(!guess(1, 0));
+    part.level = 14;
+    dalcs_transition_began(&part, 10, 0);
+    for (int patience = 1; patience <= 8; patience *= 2) {
+        for (int k = 0; k < patience; k++) {
+            part.level = 10;
+            ck_assert(!guess(1, 0) && part.level == 14);
+            dalcs_transition_began(&part, 14, 0);
+        }
+        part.level = 10;
+        ck_assert(!guess(1, 0) && part.level == 13);
+        part.level = 14;
+        dalcs_transition_began(&part, 13, 0);
+    }
+    for (int k = 0; k < 16; k++) {
+        part.level = 10;
+        ck_assert(!guess(1, 0) && part.level == 14);
+        dalcs_transition_began(&part, 14, 0);
+    }
+    for (int level = 13; level > 10; level--) { /* those that hold go on */
+        part.level = 10;
+        ck_assert(!guess(1, 0) && part.level == level);
+        dalcs_transition_began(&part, level, 0);
+    }
+    dalcs_transition_finish(&part);
+}
+
+END_TEST
+
+RUN_TESTS("transition", test_learns, test_held, test_many, test_beginning, test_patience)
