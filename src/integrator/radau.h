@@ -89,6 +89,8 @@ struct dalcs_radau_part {
     struct dalcs_transition { /* see transition.h */
         bool is_known;
         int level;
+        int untried; /* rungs up to a length that was not tried when this one was found by analogy */
+        int held;    /* times that `level` did */
         double span;  /* s, from it to the next edge, the last time; recurrence.h */
         int recurred; /* times in a row that it was the same */
         struct dalcs_stage_entry *of_span; /* a step as long, held; NULL: none yet */
@@ -98,6 +100,7 @@ struct dalcs_radau_part {
 
     uint64_t *transition_modes;
     int level_before;
+    bool tries_longer; /* the guess is a rung above what is known */
 
     struct dalcs_beginning {
         int level;            /* to begin with where no transition is known, at least */

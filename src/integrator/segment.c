@@ -265,8 +265,11 @@ static enum dalcs_status tie_again(struct dalcs_radau_part *part, struct search 
 }
 
 static enum dalcs_status refuse(struct dalcs_radau_part *part, struct search *search) {
-    dalcs_transition_refuse(part);
+    bool stands = dalcs_transition_refuse(part);
     search->first_level = part->level;
+    if (stands) {
+        return DALCS_OK;
+    }
     search->guessed = false;
     part->fronts_refused += search->front ? 1 : 0;
     search->front = false;
@@ -405,9 +408,11 @@ static void learn(struct dalcs_radau *r, struct dalcs_radau_part *part, const st
         int by_analogy = search->first_level - part->level_before;
         dalcs_transition_began(part, search->first_level, (int)promised);
         spare = (int)dalcs_larger(spare, dalcs_smaller(promised, by_analogy));
-    }
-    if (spare > 0 || !search->guessed) {
-        dalcs_transition_learn(part, part->level - spare);
+        dalcs_transition_learn(part, part->level - spare, by_analogy - spare);
+    } else if (!search->front) {
+        dalcs_transition_pass(part, spare);
+    } else if (spare > 0) {
+        dalcs_transition_learn(part, part->level - spare, 0);
     }
     if (!search->fixed && part->why == DALCS_END_AT_EDGE) {
         dalcs_recurrence_note(part);

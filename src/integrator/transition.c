@@ -7,6 +7,9 @@
 /* An entry has three modes: the one that held, the one after pairs changed sides, what followed. */
 enum { SLOTS = 64, MODES = 3 };
 
+/* Transitions that come back so often are worth a try of a longer step. */
+enum { OFTEN = 16 };
+
 /* A length that held is begun with so many times at most before a longer one is tried. */
 enum { MOST_PATIENCE = 64 };
 
@@ -86,6 +89,7 @@ bool dalcs_transition_guess(struct dalcs_radau_part *part) {
     part->present_transition = (int)slot;
     const uint64_t *known = part->transition_modes + slot * MODES * words;
     part->level_before = part->level;
+    part->tries_longer = false;
     if (!part->transition[slot].is_known ||
         !dalcs_mode_is(known, part->modes_before, 2 * p->n_words)) {
         int level = find_beginning(part)->level;
@@ -93,14 +97,32 @@ bool dalcs_transition_guess(struct dalcs_radau_part *part) {
         return false;
     }
     copy_mode(p->mode, known + 2 * words, words);
-    part->level = part->transition[slot].level;
+    const struct dalcs_transition *t = dalcs_transition_known(part);
+    part->tries_longer = t->untried > 0 && t->held >= OFTEN;
+    part->level = t->level - (part->tries_longer ? 1 : 0);
     return true;
 }
 
-void dalcs_transition_refuse(struct dalcs_radau_part *part) {
+void dalcs_transition_pass(struct dalcs_radau_part *part, int spare) {
+    struct dalcs_transition *known = dalcs_transition_known(part);
+    known->held++;
+    known->untried -= part->tries_longer ? 1 : 0;
+    known->level = part->level - spare;
+    part->tries_longer = false;
+}
+
+bool dalcs_transition_refuse(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
+    if (part->tries_longer) {
+        struct dalcs_transition *known = dalcs_transition_known(part);
+        part->tries_longer = false;
+        part->level = known->level;
+        known->untried = 0;
+        return true;
+    }
     copy_mode(p->mode, part->modes_before + p->n_words, (size_t)p->n_words);
     part->level = part->level_before;
+    return false;
 }
 
 void dalcs_transition_began(struct dalcs_radau_part *part, int tried, int promised) {
@@ -114,7 +136,7 @@ void dalcs_transition_began(struct dalcs_radau_part *part, int tried, int promis
     }
 }
 
-void dalcs_transition_learn(struct dalcs_radau_part *part, int level) {
+void dalcs_transition_learn(struct dalcs_radau_part *part, int level, int untried) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     size_t words = (size_t)p->n_words;
     uint64_t *modes = part->transition_modes + (size_t)part->present_transition * MODES * words;
@@ -122,6 +144,8 @@ void dalcs_transition_learn(struct dalcs_radau_part *part, int level) {
     bool is_same = known->is_known && dalcs_mode_is(modes, part->modes_before, 2 * p->n_words) &&
                    dalcs_mode_is(modes + 2 * words, p->mode, p->n_words);
     known->level = level;
+    known->untried = untried;
+    known->held = 0;
     if (!is_same) {
         known->is_known = true;
         copy_mode(modes, part->modes_before, 2 * words);

@@ -21,8 +21,12 @@ void dalcs_transition_hold(struct dalcs_radau_part *part);
  * changed. */
 bool dalcs_transition_guess(struct dalcs_radau_part *part);
 
-/* The guess did not pass: back to what was before it. */
-void dalcs_transition_refuse(struct dalcs_radau_part *part);
+/* The guess holds, and its step may be longer the next time by `spare` rungs. */
+void dalcs_transition_pass(struct dalcs_radau_part *part, int spare);
+
+/* The guess did not pass: back to what was before it. true: it was only that a longer step was tried than
+ * is known to suit, and the guess stands with that. */
+bool dalcs_transition_refuse(struct dalcs_radau_part *part);
 
 /* What the latest guess was taken from, or what was learned instead of it. */
 struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *part);
@@ -35,7 +39,8 @@ void dalcs_transition_begin_span(struct dalcs_radau_part *part, struct dalcs_tra
  * and the error promises steps longer by so many rungs. */
 void dalcs_transition_began(struct dalcs_radau_part *part, int tried, int promised);
 
-/* The present mode is what followed, and `level` the step to begin with. */
-void dalcs_transition_learn(struct dalcs_radau_part *part, int level);
+/* The present mode is what followed, and `level` the step to begin with. It may be longer by so many
+ * `untried` rungs, which is tried if the transition comes back often. */
+void dalcs_transition_learn(struct dalcs_radau_part *part, int level, int untried);
 
 #endif
