@@ -29,6 +29,10 @@ static const double clear = 4.0;
 /* An error of the polynomial may be so many bands at its start. */
 static const double shallow = 100.0;
 
+/* And so much is let be in any case, over the unit's scale, where it is over at once; so much, where time
+ * does not tell it from nothing. */
+static const double slight = 1e-8, unresolved = 1e-5;
+
 /* What rounding leaves of a zero on dense maps, over the unit's scale. */
 static const double noise = 2e-13;
 
@@ -236,6 +240,17 @@ static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band
     }
 }
 
+static double value_at(const struct dalcs_radau_part *part, const double *value, int stride,
+                       double theta) {
+    double weight[DALCS_MAX_NODES];
+    double sum = 0.0;
+    dalcs_collocation_weights(part->stages.method, theta, weight);
+    for (int k = 0; k < part->stages.layout.n_nodes; k++) {
+        sum += weight[k] * value[k * stride];
+    }
+    return sum;
+}
+
 /* Values at the nodes of a pair in the segment before, with their stride; NULL if they are not known or it
  * was on the other side. */
 static const double *values_before(const struct dalcs_radau_part *part, int pair) {
@@ -248,17 +263,11 @@ static const double *values_before(const struct dalcs_radau_part *part, int pair
 
 /* Is a pair on the side that it was on in the segment before, with the same value? */
 static bool goes_on(const struct dalcs_radau_part *part, int pair, double value) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
     const double *before = values_before(part, pair);
     if (before == NULL) {
         return false;
     }
-    double weight[DALCS_MAX_NODES];
-    double last = 0.0;
-    dalcs_collocation_weights(part->stages.method, part->end_before, weight);
-    for (int k = 0; k < l->n_nodes; k++) {
-        last += weight[k] * before[k * l->stride];
-    }
+    double last = value_at(part, before, part->stages.layout.stride, part->end_before);
     return fabs(value - last) <= agreeing * value;
 }
 
@@ -319,6 +328,17 @@ static void find_doubtful(struct dalcs_radau_part *part) {
     part->n_doubtful = n_doubtful;
 }
 
+/* A guard that starts a little below 0 and is above after next to no time: the flank of a source, when it
+ * begins, may take over from a current within 1e-16 s. Or after less than times can be told apart: the
+ * last digit of a time makes volts of a current that has nowhere to go but a leak. */
+static bool is_over_soon(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                         const double *value, int stride, double scale) {
+    double little = fmax(shallow * band_of(r, part), slight) * scale;
+    double instant = dalcs_smaller(1.0, 64.0 * r->resolution / part->h);
+    return (value[0] >= -little && value_at(part, value, stride, soon_after) > 0.0) ||
+           (value[0] >= -unresolved * scale && value_at(part, value, stride, instant) > 0.0);
+}
+
 /* The first of the doubtful ones. */
 static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *part, double end,
                          const double *unit, bool *at_once) {
@@ -345,6 +365,9 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         depth += rounding_of(part, g, unit);
         if (part->bound[g] >= -depth) {
             continue;
+        }
+        if (part->fresh && value[0] < -depth && is_over_soon(r, part, value, stride, scale)) {
+            depth = -2.0 * value[0];
         }
         struct dalcs_crossing c = dalcs_crossing_find(part->stages.method, value, stride, end,
                                                       depth, part->n_crossed > 0 ? first : 0.0);
@@ -444,9 +467,11 @@ bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_
     return negative;
 }
 
-/* Neither current nor voltage in the whole segment before, on the same side? */
+/* A closed pair that had no current in the whole segment before either? An open one without voltage may
+ * have got another in parallel. */
 static bool was_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
-    const double *before = part->flipped ? values_before(part, pair) : NULL;
+    bool is_closed = part->flipped && dalcs_osnsp_is_on(&part->component->osnsp, pair);
+    const double *before = is_closed ? values_before(part, pair) : NULL;
     return before != NULL && is_nothing(part, pair, before, part->stages.layout.stride, unit);
 }
 
@@ -472,20 +497,23 @@ bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit) {
     return found;
 }
 
-double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end,
-                               const double *unit) {
+double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                               double end, const double *unit) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     double worst = 0.0;
     for (int i = 0; i < part->n_doubtful && part->doubtful[i] < s->n_pairs; i++) {
         int d = part->doubtful[i];
         const double *value = part->out + dalcs_system_n_equations(s) + d;
+        double scale = scale_of(part, d, unit);
+        bool skips =
+            part->fresh && value[0] < 0.0 && is_over_soon(r, part, value, l->stride, scale);
         double least = 0.0;
-        for (int k = 0; k < l->n_nodes && part->stages.method->node[k] <= end; k++) {
+        for (int k = skips ? 1 : 0; k < l->n_nodes && part->stages.method->node[k] <= end; k++) {
             least = dalcs_smaller(least, value[k * l->stride]);
         }
         if (least < 0.0) {
-            worst = dalcs_larger(worst, -least / scale_of(part, d, unit));
+            worst = dalcs_larger(worst, -least / scale);
         }
     }
     return worst;

@@ -42,9 +42,9 @@ bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_
 
 /* Is there a diode with neither current nor voltage during the whole step? It may change sides without
  * anything else, and where that leaves a choice (sources in parallel, floating nodes) only the OSNSP
- * knows which is of least norm. One to which nothing happened, as it was like this before the event too, is
- * none of them where the mode determines all. Large components, where that is dear, are asked only at
- * their start and at edges, not after every event. */
+ * knows which is of least norm. A closed one that had no current before the event either is none of them
+ * where the mode determines all: nothing happened to it. Large components, where that is dear, are asked
+ * only at their start and at edges, not after every event. */
 bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determined,
                             const double *unit);
 
@@ -55,8 +55,9 @@ bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const d
 bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit);
 
 /* The most negative lambda or w at the nodes up to `end`, over the largest of its unit; 0 when none. Of
- * a step in which a first fall has been looked for. */
-double dalcs_guards_wrong_sign(const struct dalcs_radau_part *part, double end, const double *unit);
+ * a step in which a first fall has been looked for. The start does not count for what is over at once. */
+double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                               double end, const double *unit);
 
 /* What crossed changes sides. */
 void dalcs_guards_flip(struct dalcs_radau_part *part);

@@ -43,7 +43,7 @@ enum {
     MOST_RESTARTS = 4,
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
     MOST_FLIPS = 12,
-    MOST_REFINED = 3,
+    MOST_REFINED = 1,
     LEAST_PATIENCE = 32,
     MOST_PATIENCE = 4096,
     FALL_BACK_LEAST = 5,
@@ -438,7 +438,7 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         dalcs_guards_arm(r, part, true, quality->unit);
     }
     r->wrong_sign =
-        dalcs_larger(r->wrong_sign, dalcs_guards_wrong_sign(part, theta, quality->unit));
+        dalcs_larger(r->wrong_sign, dalcs_guards_wrong_sign(r, part, theta, quality->unit));
     if (part->fresh && part->flipped) {
         learn(r, part, search, theta, quality->ratio);
     }

@@ -9,8 +9,9 @@ micro-step. v(t) = V - (V - v(0+)) exp(-t / (R C)), exactly.
 
 random: circuits that were drawn from R, L, C, diodes and a sine, chosen because they once fell back or
 were wrong: diodes without current or voltage beside others that commutate, parallel capacitors,
-jumps within transients, small currents that end soon after or together with another event. Without a closed form 7 or 9 stages, with two tolerances, must agree with 5 stages and a
-much smaller one; signals that the circuit leaves open do not count.
+jumps within transients, small currents that end soon after or together with another event, signs that are
+wrong for less than times can be told apart. Without a closed form 7 or 9 stages, with two tolerances, must
+agree with 5 stages and a much smaller one; signals that the circuit leaves open do not count.
 """
 
 import math
@@ -103,6 +104,33 @@ s6 s 0 g 0 sm
 .model sm sw(vt=0.5 vh=0 ron=0.01)
 .model di d
 .tran 2u 0.8m uic
+""",
+    "a flank that takes over from 50 nA within 1e-16 s": """
+v1 s 0 pulse(-5 10 0 0.1u 0.1u 40u 100u)
+rs s n1 1
+r1 n1 0 10k
+r2 n2 0 10k
+d1 n2 n1 di
+d2 n2 n1 di
+c6 0 n2 10n
+l7 n1 0 100u
+vg g 0 pulse(0 1 0 0.1u 0.1u 50u 100u)
+s8 n2 s g 0 sm
+.model sm sw(vt=0.5)
+.model di d
+.tran 2u 0.8m uic
+""",
+    "a choke that is left with a leak of 1 Mohm": """
+v1 in 0 5
+vg g 0 pulse(0 1 2.6u 20n 20n 10u 20u)
+s1 in sw g 0 sm
+d1 0 sw di
+l1 sw out 30u
+c1 out 0 40u
+r1 out 0 20
+.model sm sw(vt=0.5 roff=1meg)
+.model di d
+.tran 1u 2.4m uic
 """,
 }
 

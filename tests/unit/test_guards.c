@@ -251,21 +251,72 @@ START_TEST(test_signs_and_ties) {
     draw("d1", 0.5, -0.5);
     draw("d2", 1.0, 1.0);
     (void)first_fall(1.0);
-    ck_assert_double_eq_tol(dalcs_guards_wrong_sign(&part, 1.0, unit), 0.5, 1e-15);
+    ck_assert_double_eq_tol(dalcs_guards_wrong_sign(&r, &part, 1.0, unit), 0.5, 1e-15);
     double last = 0.0; /* the last node before the end */
     for (int k = 0; k <= 5; k++) {
         last = part.stages.method->node[k] <= 0.8 ? part.stages.method->node[k] : last;
     }
-    ck_assert_double_eq_tol(dalcs_guards_wrong_sign(&part, 0.8, unit), last - 0.5, 1e-15);
-    ck_assert_double_eq(dalcs_guards_wrong_sign(&part, 0.3, unit), 0.0);
+    ck_assert_double_eq_tol(dalcs_guards_wrong_sign(&r, &part, 0.8, unit), last - 0.5, 1e-15);
+    ck_assert_double_eq(dalcs_guards_wrong_sign(&r, &part, 0.3, unit), 0.0);
     draw("s1", -1.0, -1.0);
     (void)first_fall(1.0);
-    ck_assert_double_eq(dalcs_guards_wrong_sign(&part, 0.3, unit), 0.0);
+    ck_assert_double_eq(dalcs_guards_wrong_sign(&r, &part, 0.3, unit), 0.0);
     ck_assert(!dalcs_guards_stay_tied(&part, true, unit));
     draw("d1", 0.0, 1e-14);
     ck_assert(dalcs_guards_stay_tied(&part, true, unit));
     draw("d1", 0.0, 1e-9);
     ck_assert(!dalcs_guards_stay_tied(&part, true, unit));
+    finish();
+}
+
+END_TEST
+
+/* A closed diode that has died away keeps its side at the event of another, an open one is asked for: it may
+ * have got a closed one in parallel. */
+START_TEST(test_stays) {
+    start();
+    const int d1 = find_pair(component.system, "d1");
+    draw("d1", 0.0, 1e-14);
+    draw("d2", 1.0, 1.0);
+    memset(out_before, 0, sizeof(out_before));
+    part.flipped = true;
+    ck_assert(dalcs_guards_stay_tied(&part, true, unit));
+    dalcs_osnsp_command(&component.osnsp, d1, true);
+    ck_assert(dalcs_guards_stay_tied(&part, true, unit)); /* it was open */
+    modes_before[0] = component.osnsp.mode[0];
+    ck_assert(!dalcs_guards_stay_tied(&part, true, unit));
+    ck_assert(dalcs_guards_stay_tied(&part, false, unit));
+    draw("d1", 1.0, 0.0);
+    memcpy(out_before, out, sizeof(out)); /* it had a current */
+    draw("d1", 0.0, 1e-14);
+    ck_assert(dalcs_guards_stay_tied(&part, true, unit));
+    memset(out_before, 0, sizeof(out_before));
+    part.flipped = false; /* at an edge */
+    ck_assert(dalcs_guards_stay_tied(&part, true, unit));
+    finish();
+}
+
+END_TEST
+
+/* What starts below 0 and is above it at once, or sooner than times can be told apart, is no event; a fall
+ * after that is. */
+START_TEST(test_over_soon) {
+    bool at_once;
+    start();
+    draw("d1", -5e-7, 1.0);
+    draw("d2", 1.0, 1.0);
+    draw(NULL, 0.5, 0.5);
+    arm();
+    part.fresh = true;
+    ck_assert(isinf(first_fall(1.0)));
+    ck_assert_double_eq(dalcs_guards_wrong_sign(&r, &part, 1.0, unit), 0.0);
+    draw("d1", -2e-6, 1.0); /* above it after 2e-6 steps */
+    ck_assert_double_eq(dalcs_guards_first_fall(&r, &part, 1.0, unit, &at_once), 0.0);
+    ck_assert(at_once);
+    part.h = 1e-6; /* of which 6.4e-6 is no time */
+    ck_assert(isinf(first_fall(1.0)));
+    draw("d1", -2e-5, 10.0);
+    ck_assert_double_eq(dalcs_guards_first_fall(&r, &part, 1.0, unit, &at_once), 0.0);
     finish();
 }
 
@@ -291,4 +342,4 @@ START_TEST(test_rounding) {
 END_TEST
 
 RUN_TESTS("guards", test_rounding, test_pairs, test_watched, test_arming, test_faint, test_recover,
-          test_goes_on, test_signs_and_ties)
+          test_goes_on, test_signs_and_ties, test_stays, test_over_soon)
