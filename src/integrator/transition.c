@@ -105,7 +105,7 @@ bool dalcs_transition_guess(struct dalcs_radau_part *part) {
 
 void dalcs_transition_pass(struct dalcs_radau_part *part, int spare) {
     struct dalcs_transition *known = dalcs_transition_known(part);
-    known->held++;
+    known->held += known->held < OFTEN ? 1 : 0;
     known->untried -= part->tries_longer ? 1 : 0;
     known->level = part->level - spare;
     part->tries_longer = false;
@@ -131,8 +131,8 @@ void dalcs_transition_began(struct dalcs_radau_part *part, int tried, int promis
         bool in_vain = b->level == tried && b->patience < MOST_PATIENCE;
         *b = (struct dalcs_beginning){part->level, 0, in_vain ? 2 * b->patience : b->patience};
     } else if (b->level == tried) {
-        b->waited++;
-        b->level -= promised > 0 ? promised : b->waited >= b->patience ? 1 : 0;
+        b->waited += b->waited < b->patience ? 1 : 0;
+        b->level -= promised > 0 ? promised : b->waited == b->patience ? 1 : 0;
     }
 }
 
