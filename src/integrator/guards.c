@@ -33,6 +33,9 @@ static const double shallow = 100.0;
  * does not tell it from nothing. */
 static const double slight = 1e-8, unresolved = 1e-5;
 
+/* What dies away between two nodes leaves so much of itself, of either sign, at those behind. */
+static const double swing = 0.1;
+
 /* What rounding leaves of a zero on dense maps, over the unit's scale. */
 static const double noise = 2e-13;
 
@@ -404,6 +407,22 @@ bool dalcs_guards_recover(const struct dalcs_radau *r, const struct dalcs_radau_
         const double *value = values_of(part, part->crossed[k], work, &stride);
         double band = band_of(r, part) * scale_of(part, part->crossed[k], unit);
         all = value[0] >= -shallow * band && value[last * stride] > 0.0;
+    }
+    return all;
+}
+
+bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
+    int last = part->stages.layout.n_nodes - 1;
+    bool all = part->n_crossed > 0;
+    for (int k = 0; k < part->n_crossed && all; k++) {
+        double work[DALCS_MAX_NODES];
+        int stride;
+        const double *value = values_of(part, part->crossed[k], work, &stride);
+        double least = 0.0;
+        for (int i = 1; i < last; i++) {
+            least = dalcs_smaller(least, value[i * stride]);
+        }
+        all = value[last * stride] > 0.0 && least > -swing * value[0];
     }
     return all;
 }

@@ -30,6 +30,10 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
 bool dalcs_guards_recover(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                           const double *unit);
 
+/* Did what crossed only dip below 0, by a part of what it began with, and is it above at the end? That may be
+ * two crossings, or the polynomial, which swings where something has died away between two nodes. */
+bool dalcs_guards_swing(const struct dalcs_radau_part *part);
+
 /* Is every guard so far above 0 during the whole step that it could be armed at its start and has no fall?
  * Then all are armed. By the scales so far. */
 bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part);

@@ -43,7 +43,7 @@ enum {
     MOST_RESTARTS = 4,
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
     MOST_FLIPS = 12,
-    MOST_REFINED = 1,
+    MOST_REFINED = 2,
     LEAST_PATIENCE = 32,
     MOST_PATIENCE = 4096,
     FALL_BACK_LEAST = 5,
@@ -330,17 +330,26 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     return DALCS_OK;
 }
 
+/* A shorter step, for signs that may be those of the polynomial alone. */
+static bool may_refine(const struct search *search) {
+    return !search->fixed && search->refined < MOST_REFINED;
+}
+
+static enum dalcs_status refine(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                struct search *search) {
+    search->refined++;
+    r->rejected++;
+    part->level++;
+    return DALCS_OK;
+}
+
 /* The mode is wrong from the start: asks the circuit, then tries the other sides. Unless it may be the
  * polynomial that is wrong there, as a shorter step will tell. */
 static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                      struct search *search, const double *unit, bool *done) {
     bool is_remembered = search->guessed && !search->front;
-    if (!search->fixed && !is_remembered && search->refined < MOST_REFINED &&
-        dalcs_guards_recover(r, part, unit)) {
-        search->refined++;
-        r->rejected++;
-        part->level++;
-        return DALCS_OK;
+    if (!is_remembered && may_refine(search) && dalcs_guards_recover(r, part, unit)) {
+        return refine(r, part, search);
     }
     if (search->guessed) {
         return refuse(part, search);
@@ -511,6 +520,9 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (part->fresh && !search->guessed && !search->untied &&
         dalcs_guards_stay_tied(part, dalcs_stage_n_clashes(entry) == 0, quality.unit)) {
         return untie(r, part, search, next, &quality);
+    }
+    if (part->fresh && may_refine(search) && dalcs_guards_swing(part)) {
+        return refine(r, part, search);
     }
     part->open = part->fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);
     accept(r, part, search, next, &quality, dalcs_stage_residual(entry));

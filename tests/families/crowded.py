@@ -120,6 +120,22 @@ s8 n2 s g 0 sm
 .model di d
 .tran 2u 0.8m uic
 """,
+    "a voltage that dies away between two nodes": """
+v1 s 0 sin(1 10 50)
+rs s n1 10
+r1 n1 0 10k
+r2 n2 0 100
+r3 n3 0 10k
+r4 n4 0 100k
+d1 n4 n3 di
+d2 n4 n1 di
+c3 n1 n2 100n ic=1
+l4 n4 n2 1m
+l5 0 n2 100u
+r6 0 n3 1k
+.model di d
+.tran 400u 80m uic
+""",
     "a choke that is left with a leak of 1 Mohm": """
 v1 in 0 5
 vg g 0 pulse(0 1 2.6u 20n 20n 10u 20u)

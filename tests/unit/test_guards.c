@@ -322,6 +322,32 @@ START_TEST(test_over_soon) {
 
 END_TEST
 
+/* What has died away before the second node and is above 0 at the end may have dipped as the polynomial does;
+ * what dips deep, or ends below, has not. */
+START_TEST(test_swing) {
+    start();
+    const struct dalcs_stage_layout *l = &part.stages.layout;
+    double *d1 =
+        out + dalcs_system_n_equations(component.system) + find_pair(component.system, "d1");
+    draw("d1", 1e-3, 1e-3);
+    draw("d2", 1.0, 1.0);
+    draw(NULL, 0.5, 0.5);
+    arm();
+    for (int k = 1; k < l->n_nodes; k++) {
+        d1[k * l->stride] = k % 2 == 0 ? -4e-5 : 4e-5;
+    }
+    d1[(l->n_nodes - 1) * l->stride] = 3e-5;
+    ck_assert(first_fall(1.0) < 1.0 && dalcs_guards_swing(&part));
+    d1[2 * l->stride] = -4e-4;
+    ck_assert(first_fall(1.0) < 1.0 && !dalcs_guards_swing(&part));
+    d1[2 * l->stride] = -4e-5;
+    d1[(l->n_nodes - 1) * l->stride] = -3e-5;
+    ck_assert(first_fall(1.0) < 1.0 && !dalcs_guards_swing(&part));
+    finish();
+}
+
+END_TEST
+
 /* In a short step a capacitor makes a current of the last digits of its voltage: d1 leads to 1 F. The
  * longer the step, the less of it is rounding. */
 START_TEST(test_rounding) {
@@ -342,4 +368,4 @@ START_TEST(test_rounding) {
 END_TEST
 
 RUN_TESTS("guards", test_rounding, test_pairs, test_watched, test_arming, test_faint, test_recover,
-          test_goes_on, test_signs_and_ties, test_stays, test_over_soon)
+          test_goes_on, test_signs_and_ties, test_stays, test_over_soon, test_swing)
