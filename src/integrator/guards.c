@@ -358,7 +358,9 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         int stride;
         const double *value = values_of(part, g, work, &stride);
         double scale = scale_of(part, g, unit);
-        if (!part->fresh && value[0] <= falling_part * band * scale) {
+        double nothing = dalcs_guards_noise(part) * scale + rounding_of(part, g, unit);
+        if (!part->fresh && value[0] <= falling_part * band * scale &&
+            fabs(value[last * stride]) <= nothing) {
             part->armed[g] = false; /* what has died away has no sign any more */
         }
         double depth = (part->armed[g] && !stops ? dalcs_guards_noise(part) : band) * scale;

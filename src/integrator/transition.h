@@ -3,7 +3,7 @@
  * In a converter the same switch opens again and again, and the same diode takes over. What was found
  * out once, the mode and a length of step that suits its beginning, is tried first the next time, and
  * has to pass like any other guess. Where just this has not been before, as in a chain in which one diode
- * after the other closes, the length is that of the last time that a pair closed, or that one opened. */
+ * after the other closes, the length is, on factors, that of the last time that a pair closed, or opened. */
 #ifndef DALCS_TRANSITION_H
 #define DALCS_TRANSITION_H
 

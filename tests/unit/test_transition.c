@@ -11,7 +11,7 @@ static struct dalcs_radau_part part;
 
 static void start(void) {
     component = (struct dalcs_component){.osnsp = {.n_words = N_WORDS, .mode = mode}};
-    part = (struct dalcs_radau_part){.component = &component, .level = 10};
+    part = (struct dalcs_radau_part){.component = &component, .level = 10, .rounding = 10.0};
     mode[0] = 0;
     mode[1] = 0;
     ck_assert_int_eq(dalcs_transition_setup(&part), DALCS_OK);
@@ -125,6 +125,9 @@ START_TEST(test_beginning) {
     dalcs_transition_began(&part, 14, 2); /* its error promises more */
     part.level = 10;
     ck_assert(!guess(2, 5) && part.level == 12);
+    part.level = 10;
+    part.rounding = 1.0; /* on dense maps the circuit is asked */
+    ck_assert(!guess(2, 7) && part.level == 10);
     dalcs_transition_finish(&part);
 }
 
