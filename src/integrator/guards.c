@@ -358,16 +358,17 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         int stride;
         const double *value = values_of(part, g, work, &stride);
         double scale = scale_of(part, g, unit);
-        double nothing = dalcs_guards_noise(part) * scale + rounding_of(part, g, unit);
+        double rounding = rounding_of(part, g, unit);
+        double zero = dalcs_guards_noise(part) * scale;
         if (!part->fresh && value[0] <= falling_part * band * scale &&
-            fabs(value[last * stride]) <= nothing) {
+            fabs(value[last * stride]) <= zero + rounding) {
             part->armed[g] = false; /* what has died away has no sign any more */
         }
-        double depth = (part->armed[g] && !stops ? dalcs_guards_noise(part) : band) * scale;
+        double depth = part->armed[g] && !stops ? zero : band * scale;
         if (!part->armed[g] && !part->fresh && !stops && value[last * stride] < value[0]) {
             depth *= falling_part;
         }
-        depth += rounding_of(part, g, unit);
+        depth += rounding;
         if (part->bound[g] >= -depth) {
             continue;
         }

@@ -93,8 +93,10 @@ bool dalcs_transition_guess(struct dalcs_radau_part *part) {
     if (!part->transition[slot].is_known ||
         !dalcs_mode_is(known, part->modes_before, 2 * p->n_words)) {
         /* On dense maps to ask the circuit costs little, and tells more than a step that is short. */
-        int level = part->rounding > 1.0 ? find_beginning(part)->level : part->level;
-        part->level = level > part->level ? level : part->level;
+        int level = find_beginning(part)->level;
+        if (part->rounding > 1.0 && level > part->level) {
+            part->level = level;
+        }
         return false;
     }
     copy_mode(p->mode, known + 2 * words, words);

@@ -78,6 +78,13 @@ static double first_fall(double end) {
     return theta;
 }
 
+/* Is there a fall, and is it one from the start? */
+static bool falls_at_once(void) {
+    bool at_once;
+    ck_assert_double_eq(dalcs_guards_first_fall(&r, &part, 1.0, unit, &at_once), 0.0);
+    return at_once;
+}
+
 static void arm(void) {
     dalcs_guards_arm(&r, &part, false, unit);
 }
@@ -191,21 +198,17 @@ END_TEST
 
 /* What starts below 0 by an error and comes back may be the polynomial's, what stays is not. */
 START_TEST(test_recover) {
-    bool at_once;
     start();
     draw("d1", -1e-6, 0.5);
     draw("d2", 1.0, 1.0);
     draw(NULL, 0.5, 0.5);
     arm();
-    ck_assert_double_eq(dalcs_guards_first_fall(&r, &part, 1.0, unit, &at_once), 0.0);
-    ck_assert(at_once && dalcs_guards_recover(&r, &part, unit));
+    ck_assert(falls_at_once() && dalcs_guards_recover(&r, &part, unit));
     draw("d2", -1e-6, -1e-7);
-    ck_assert_double_eq(dalcs_guards_first_fall(&r, &part, 1.0, unit, &at_once), 0.0);
-    ck_assert(at_once && !dalcs_guards_recover(&r, &part, unit));
+    ck_assert(falls_at_once() && !dalcs_guards_recover(&r, &part, unit));
     draw("d2", 1.0, 1.0);
     draw("d1", -1e-4, 0.5);
-    ck_assert_double_eq(dalcs_guards_first_fall(&r, &part, 1.0, unit, &at_once), 0.0);
-    ck_assert(at_once && !dalcs_guards_recover(&r, &part, unit));
+    ck_assert(falls_at_once() && !dalcs_guards_recover(&r, &part, unit));
     finish();
 }
 
@@ -299,7 +302,6 @@ END_TEST
 /* What starts below 0 and is above it at once, or sooner than times can be told apart, is no event; a fall
  * after that is. */
 START_TEST(test_over_soon) {
-    bool at_once;
     start();
     draw("d1", -5e-7, 1.0);
     draw("d2", 1.0, 1.0);
@@ -309,12 +311,11 @@ START_TEST(test_over_soon) {
     ck_assert(isinf(first_fall(1.0)));
     ck_assert_double_eq(dalcs_guards_wrong_sign(&r, &part, 1.0, unit), 0.0);
     draw("d1", -2e-6, 1.0); /* above it after 2e-6 steps */
-    ck_assert_double_eq(dalcs_guards_first_fall(&r, &part, 1.0, unit, &at_once), 0.0);
-    ck_assert(at_once);
+    ck_assert(falls_at_once());
     part.h = 1e-6; /* of which 6.4e-6 is no time */
     ck_assert(isinf(first_fall(1.0)));
     draw("d1", -2e-5, 10.0);
-    ck_assert_double_eq(dalcs_guards_first_fall(&r, &part, 1.0, unit, &at_once), 0.0);
+    ck_assert(falls_at_once());
     finish();
 }
 

@@ -1,31 +1,10 @@
 /* test_recurrence.c - spans that recur are stepped at once, and only where nothing happens in them. Whatever
  * the steps, the waveforms are those of closed forms. */
-#include "radau.h"
 #include "transition.h"
 
-#include "build_network.h"
+#include "run_radau.h"
 
 #include <math.h>
-
-static struct text_network t;
-static struct dalcs_euler e;
-static struct dalcs_radau r;
-
-static void start(const char *text, double stop) {
-    const struct dalcs_osnsp_options options = usual_osnsp_options();
-    const struct dalcs_radau_options o = {.tolerance = 1e-9, .stop = stop};
-    build_good_network(&t, text);
-    ck_assert_int_eq(t.network.n_systems, 1);
-    ck_assert_int_eq(dalcs_euler_setup(&e, &t.circuit, &t.network, &options, stop, stop), DALCS_OK);
-    ck_assert_int_eq(dalcs_radau_setup(&r, &e, &o, &options), DALCS_OK);
-    ck_assert_int_eq(dalcs_radau_start(&r, t.network.initial), DALCS_OK);
-}
-
-static void finish(void) {
-    dalcs_radau_finish(&r);
-    dalcs_euler_finish(&e);
-    text_network_finish(&t);
-}
 
 static bool is_whole_span(void) {
     const struct dalcs_transition *known = dalcs_transition_known(r.part);
@@ -123,10 +102,7 @@ START_TEST(test_long_run) {
     const double exact =
         ((1.0 - e_on) * (supply - 5.0) * e_off - (1.0 - e_off) * 5.0) / (1.0 - e_on * e_off);
     start(CHOPPER("5 6"), 10.0);
-    bool happens;
-    for (double to; (to = dalcs_radau_next_stop(&r, &happens)) < last + 1e-9;) {
-        ck_assert_int_eq(dalcs_radau_pass(&r, to), DALCS_OK);
-    }
+    walk_to(last + 1e-9);
     ck_assert_double_eq_tol(r.part->t, last, 1e-12);
     ck_assert_msg(fabs(r.part->x[0] - exact) < 1e-11, "%.17g instead of %.17g", r.part->x[0],
                   exact);
