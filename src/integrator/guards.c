@@ -243,6 +243,26 @@ static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band
     }
 }
 
+/* What a guard that is not armed may be off by, in V or A: what errors of the states and sources, and of
+ * the polynomial, make of it, at most `band`, that of its unit. A current that leaks is known far better
+ * than one that works. */
+static double doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                          int guard, double band, double scale) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const struct dalcs_system *s = part->component->system;
+    if (guard >= s->n_pairs) {
+        return band;
+    }
+    int row = dalcs_system_n_equations(s) + guard;
+    double size = 0.0;
+    for (int k = 0; k < l->n_nodes; k++) {
+        size = dalcs_larger(size, fabs(part->out[k * l->stride + row]));
+    }
+    double spread = dalcs_stage_spread(&part->stages, part->entry, row, part->in, part->scale);
+    double own = band_over_tolerance * r->inner_tolerance * (size + spread);
+    return dalcs_smaller(own + 4.0 * dalcs_guards_noise(part) * scale, band);
+}
+
 static double value_at(const struct dalcs_radau_part *part, const double *value, int stride,
                        double theta) {
     double weight[DALCS_MAX_NODES];
@@ -291,7 +311,9 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
         if (p->is_diode[d] && !(at_end && armed[d])) {
             double scale = unit[dalcs_osnsp_is_on(p, d)];
             armed[d] = value[d] > band * scale ||
-                       (!at_end && value[d] > known * scale && goes_on(part, d, value[d]));
+                       (value[d] > known * scale &&
+                        ((!at_end && goes_on(part, d, value[d])) ||
+                         value[d] > doubt_about(r, part, d, band * scale, scale)));
         }
     }
     if (part->stages.n_watched > 0) {
@@ -342,6 +364,13 @@ static bool is_over_soon(const struct dalcs_radau *r, const struct dalcs_radau_p
            (value[0] >= -unresolved * scale && value_at(part, value, stride, instant) > 0.0);
 }
 
+/* What crosses at the stop time, up to the error, is left to a longer run: where in the step that begins. */
+static double end_of_events(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                            double end, double band) {
+    bool stops = end <= 1.0 && part->t + end * part->h >= r->options.stop - r->resolution;
+    return stops ? end - band * r->options.stop / part->h : INFINITY;
+}
+
 /* The first of the doubtful ones. */
 static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *part, double end,
                          const double *unit, bool *at_once) {
@@ -349,8 +378,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
     double same = part->rounding > 1.0 ? same_on_factors : same_on_maps;
     double together = dalcs_larger(same, 2.0 * r->resolution / part->h);
     double band = band_of(r, part);
-    /* What crosses at the stop time, up to the error, is left to a longer run. */
-    bool stops = end <= 1.0 && part->t + end * part->h >= r->options.stop - r->resolution;
+    double too_late = end_of_events(r, part, end, band);
     int last = part->stages.layout.n_nodes - 1;
     for (int k = 0; k < part->n_doubtful; k++) {
         int g = part->doubtful[k];
@@ -364,9 +392,14 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
             fabs(value[last * stride]) <= zero + rounding) {
             part->armed[g] = false; /* what has died away has no sign any more */
         }
-        double depth = part->armed[g] && !stops ? zero : band * scale;
-        if (!part->armed[g] && !part->fresh && !stops && value[last * stride] < value[0]) {
-            depth *= falling_part;
+        if (part->bound[g] >= -zero - rounding) {
+            continue;
+        }
+        double depth = zero;
+        if (!part->armed[g]) {
+            depth = doubt_about(r, part, g, band * scale, scale);
+            bool falls = !part->fresh && value[last * stride] < value[0];
+            depth *= falls ? falling_part : 1.0;
         }
         depth += rounding;
         if (part->bound[g] >= -depth) {
@@ -377,7 +410,8 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         }
         struct dalcs_crossing c = dalcs_crossing_find(part->stages.method, value, stride, end,
                                                       depth, part->n_crossed > 0 ? first : 0.0);
-        if (!c.falls || c.theta > first + together) {
+        bool is_late = c.theta >= too_late && value_at(part, value, stride, end) >= -band * scale;
+        if (!c.falls || is_late || c.theta > first + together) {
             continue;
         }
         if (c.theta < first - together) {
@@ -412,6 +446,24 @@ bool dalcs_guards_recover(const struct dalcs_radau *r, const struct dalcs_radau_
         all = value[0] >= -shallow * band && value[last * stride] > 0.0;
     }
     return all;
+}
+
+double dalcs_guards_recovery(const struct dalcs_radau_part *part) {
+    const struct dalcs_collocation *m = part->stages.method;
+    double latest = 0.0;
+    for (int k = 0; k < part->n_crossed; k++) {
+        double work[DALCS_MAX_NODES];
+        double negative[DALCS_MAX_NODES];
+        int stride;
+        const double *value = values_of(part, part->crossed[k], work, &stride);
+        for (int i = 0; i < part->stages.layout.n_nodes; i++) {
+            negative[i] = -value[i * stride];
+        }
+        struct dalcs_crossing rise = dalcs_crossing_find(m, negative, 1, 1.0, 0.0, 0.0);
+        bool recovers = value[0] < 0.0 && rise.falls;
+        latest = dalcs_larger(latest, recovers ? rise.theta : INFINITY);
+    }
+    return latest;
 }
 
 bool dalcs_guards_swing(const struct dalcs_radau_part *part) {

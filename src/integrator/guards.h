@@ -16,7 +16,8 @@ double dalcs_guards_noise(const struct dalcs_radau_part *part);
 
 /* Guards that are clear of 0 at the start, or at the end, of a step are armed: from then on every fall
  * below 0 counts. Those that start within the error of 0, because they have just crossed it, count when
- * they leave it downwards. */
+ * they leave it downwards. On dense maps that error is what errors of the states and sources make of it, by
+ * part->entry, elsewhere that of the largest voltage or current. */
 void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, bool at_end,
                       const double *unit);
 
@@ -29,6 +30,10 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
  * of the polynomial may put them, which is least exact at its start? */
 bool dalcs_guards_recover(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                           const double *unit);
+
+/* Where in the step the guards that have just fallen, all below 0 from the start, are above it again;
+ * INFINITY if one is not. */
+double dalcs_guards_recovery(const struct dalcs_radau_part *part);
 
 /* Did what crossed only dip below 0, by a part of what it began with, and is it above at the end? That may be
  * two crossings, or the polynomial, which swings where something has died away between two nodes. */

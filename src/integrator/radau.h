@@ -61,8 +61,9 @@ struct dalcs_radau_part {
     double *in, *out;
     double *out_before; /* the segment before, which ended there, in its steps */
     double end_before;
-    double *out_tried; /* a step put aside while the state is projected */
-    double rounding;   /* of out, over that of a dense map */
+    double *out_tried;               /* a step put aside while the state is projected */
+    struct dalcs_stage_entry *entry; /* that gave out, where guards are looked at */
+    double rounding;                 /* of out, over that of a dense map */
     double *scale;     /* [n_columns] largest magnitudes so far; this and the next in whole quads */
     double *magnitude; /* [n_columns] in the present step up to magnitude_end, in steps */
     double magnitude_end;

@@ -34,6 +34,9 @@ static const double fine = 3e-11;
 /* Errors over their unit that no smaller step mends are rounding's up to this. */
 static const double most_tolerated = 2e-13;
 
+/* A mode may be over after so little of a step. */
+static const double briefly = 1.0 / 64.0;
+
 enum {
     MOST_RUNGS = 6,     /* of the ladder, down at once */
     MOST_PREFERRED = 2, /* of them, for the sake of factors */
@@ -111,6 +114,7 @@ struct search {
     bool front;   /* the latter */
     int reopened; /* times that diodes of a front were opened again */
     int refined;  /* times that a step was shortened for the signs at its start */
+    bool closer;  /* micro-steps have looked for a mode that lasts for a small part of the step */
     bool untied;  /* tied diodes have been looked at */
     bool opened;  /* and are open now, to try */
     bool projected;
@@ -343,6 +347,27 @@ static enum dalcs_status refine(struct dalcs_radau *r, struct dalcs_radau_part *
     return DALCS_OK;
 }
 
+/* Is what is wrong from the start over so soon that micro-steps saw what comes after it? Where a source
+ * begins to fall there may be a current that it has to take down first. */
+static bool is_brief(const struct dalcs_radau_part *part, const struct search *search,
+                     double *recovery) {
+    bool may_be = search->restarts > 0 && search->flips == 0 && !search->closer && !search->fixed;
+    *recovery = may_be ? dalcs_guards_recovery(part) : INFINITY;
+    return *recovery > 0.0 && *recovery < briefly;
+}
+
+/* Asks the circuit by micro-steps that are shorter still, for a segment about as long as that. */
+static enum dalcs_status look_closer(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                     struct search *search, double recovery) {
+    int level = part->level - 2 - ilogb(recovery);
+    search->closer = true;
+    search->projected = false;
+    part->level = level;
+    DALCS_TRY(restart(r, part, search, false));
+    part->level = level;
+    return DALCS_OK;
+}
+
 /* The mode is wrong from the start: asks the circuit, then tries the other sides. Unless it may be the
  * polynomial that is wrong there, as a shorter step will tell. */
 static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -356,6 +381,10 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
     }
     if (search->opened) {
         return tie_again(part, search);
+    }
+    double recovery;
+    if (is_brief(part, search, &recovery)) {
+        return look_closer(r, part, search, recovery);
     }
     if (search->restarts < MOST_RESTARTS && search->flips == 0) {
         return restart(r, part, search, false);
@@ -500,6 +529,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         }
         DALCS_TRY(dalcs_stages_get(&part->stages, part->component->osnsp.mode, part->h, &entry));
     }
+    part->entry = entry;
     if (part->fresh) {
         dalcs_guards_arm(r, part, false, quality.unit);
     }

@@ -496,3 +496,22 @@ void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs
     }
     dalcs_dense_map_apply(entry->rows, n_columns(b), entry->map, in, out);
 }
+
+double dalcs_stage_spread(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
+                          int row, const double *in, const double *scale) {
+    if (entry == NULL || entry->map == NULL) {
+        return INFINITY;
+    }
+    const struct dalcs_stage_workshop *b = stages->workshop;
+    const double *element = entry->map + row;
+    double spread = 0.0;
+    for (int k = 0; k < stages->n_in; k++) {
+        if (k == b->n_x && !b->has_constants) {
+            continue;
+        }
+        double size = fabs(in[k]);
+        spread += fabs(*element) * (k < b->n_x ? dalcs_larger(scale[k], size) : size);
+        element += entry->rows;
+    }
+    return spread;
+}

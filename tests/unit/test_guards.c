@@ -366,5 +366,73 @@ START_TEST(test_rounding) {
 
 END_TEST
 
-RUN_TESTS("guards", test_rounding, test_pairs, test_watched, test_arming, test_faint, test_recover,
-          test_goes_on, test_signs_and_ties, test_stays, test_over_soon, test_swing)
+/* A pair that starts within the error of its unit, but not within its own, keeps its sign: a leak where all that
+ * drives it is small. */
+START_TEST(test_own_doubt) {
+    double in[8] = {0.0};
+    double scale[8] = {0.0};
+    start();
+    ck_assert_int_le(part.stages.n_in, 8);
+    part.fresh = true;
+    draw("d1", 5e-8, -5e-8);
+    draw("d2", 1.0, 1.0);
+    draw(NULL, 0.5, 0.5);
+    arm();
+    ck_assert(isinf(first_fall(1.0)));
+    part.in = in;
+    part.scale = scale;
+    ck_assert_int_eq(dalcs_stages_get(&part.stages, osnsp.mode, part.h, &part.entry), DALCS_OK);
+    arm();
+    ck_assert_double_eq_tol(first_fall(1.0), 0.5, 1e-4);
+    scale[0] = 1.0; /* the voltage of c1 was that: so is its error */
+    arm();
+    ck_assert(isinf(first_fall(1.0)));
+    finish();
+}
+
+END_TEST
+
+/* What is within the error at the stop time, and crossed just there, is left to a longer run. */
+START_TEST(test_stop) {
+    start();
+    part.t = 99.0;
+    draw("d1", 1.0, -1e-7);
+    draw("d2", 1.0, 1.0);
+    draw(NULL, 0.5, 0.5);
+    arm();
+    ck_assert(isinf(first_fall(1.0)));
+    draw("d1", 1e-4, -1e-7); /* crossed before */
+    ck_assert_double_eq_tol(first_fall(1.0), 0.999, 1e-5);
+    draw("d1", 1.0, -1e-6); /* and is farther off */
+    ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-5);
+    part.t = 98.0;
+    draw("d1", 1.0, -1e-7);
+    ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-5);
+    finish();
+}
+
+END_TEST
+
+/* When what is wrong from the start is over. */
+START_TEST(test_recovery) {
+    start();
+    draw("d1", -1e-2, 1.0);
+    draw("d2", 1.0, 1.0);
+    draw(NULL, 0.5, 0.5);
+    arm();
+    ck_assert(falls_at_once());
+    ck_assert_double_eq_tol(dalcs_guards_recovery(&part), 0.01 / 1.01, 1e-12);
+    draw("d2", -2e-2, 1.0);
+    ck_assert(falls_at_once());
+    ck_assert_double_eq_tol(dalcs_guards_recovery(&part), 0.02 / 1.02, 1e-12);
+    draw("d2", -2e-2, -1e-2);
+    ck_assert(falls_at_once());
+    ck_assert(isinf(dalcs_guards_recovery(&part)));
+    finish();
+}
+
+END_TEST
+
+RUN_TESTS("guards", test_rounding, test_own_doubt, test_stop, test_recovery, test_pairs,
+          test_watched, test_arming, test_faint, test_recover, test_goes_on, test_signs_and_ties,
+          test_stays, test_over_soon, test_swing)

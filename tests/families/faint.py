@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Events that are faint beside what the circuit works with, against closed forms.
+
+usage: faint.py PROGRAM leak|flank
+
+leak: a switch connects a sine to a diode that clamps it, 1000 A; open, it leaks 10 uA, which the diode
+carries as long as the source is positive, and blocks after that: at the zero of the sine, and no volt is
+off by what 1000 A may be off by. v = sin: 0 while the diode conducts, else v_s R / (R + R_off).
+
+flank: a capacitor is charged through a resistor and a diode, and after w the source falls, so fast that it
+takes down what current is left within pico- and femtoseconds. With k the slope and i the current left,
+i(u) = C k (exp(-u/RC) - 1) + i exp(-u/RC), which is 0 at u = RC log(1 + i / (C k)); from then on the capacitor
+keeps its voltage. Micro-steps see the diode open at once; that it conducts first takes shorter ones.
+"""
+
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker, run  # noqa: E402
+
+TOLERANCES = 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10
+EVENT = 1e-11  # of the stop time, or the tolerance: times are as exact as what crosses
+
+
+def start(program, checker, case, netlist, at, tolerance):
+    result = run(program, netlist, at=at, method=None, tolerance=tolerance)
+    if not checker.check(result.status == 0, f"{case}: {result.stderr}"):
+        return None
+    checker.check(result.report["work"]["euler_steps"] == 0, f"{case}: fell back")
+    return result
+
+
+def events(result, element):
+    return [(e["time"], e["state"]) for e in result.report["events"] if e["element"] == element]
+
+
+def check_times(checker, case, found, wanted, stop, tolerance):
+    if checker.check([s for _, s in found] == [s for _, s in wanted],
+                     f"{case}: events {found} instead of {wanted}"):
+        off = max((abs(a - b) for (a, _), (b, _) in zip(found, wanted)), default=0.0)
+        checker.check(off <= max(EVENT, tolerance) * stop, f"{case}: an event is {off:.1e} s off")
+
+
+def check_signal(checker, case, result, signal, exact, tolerance):
+    off = max(abs(a - b) for a, b in zip(result.column(signal), exact)) / max(map(abs, exact))
+    print(f"{case}: {signal} {off:.1e}")
+    checker.check(off <= tolerance, f"{case}: {signal} is off by {off:.1e}")
+
+
+def leak(program, checker):
+    netlist = """a leak beside 1000 A
+v1 s 0 sin(0 10 1k)
+rs s a 10m
+s1 a n g 0 sm
+d1 n 0 di
+r1 n 0 1k
+vg g 0 pulse(0 1 0 0.1u 0.1u 30u 100u)
+.model sm sw(vt=0.5 roff=1meg)
+.model di d
+.tran 1u 1m uic
+.end
+"""
+    stop = 1e-3
+    share = 1e3 / (1e3 + 1e-2 + 1e6), 1e3 / (1e3 + 1e-2)
+    # not while the switch moves: it does where the gate passes 0.5 V
+    at = [(k + 0.37) * 1e-6 for k in range(1000) if k % 100 not in (0, 30)]
+    exact = [min(0.0, 10.0 * math.sin(2e3 * math.pi * t)) * share[t % 1e-4 < 30.15e-6] for t in at]
+    for tolerance in TOLERANCES:
+        case = f"leak, {tolerance}"
+        result = start(program, checker, case, netlist, at, tolerance)
+        if result is not None:
+            check_signal(checker, case, result, "v(n)", exact, tolerance)
+            check_times(checker, case, events(result, "d1"), [(0.5e-3, "off")], stop,
+                        tolerance)
+
+
+def flank(program, checker):
+    resistance, capacitance, slope = 0.1, 20e-6, 15.0 / 20e-9
+    rc = resistance * capacitance
+    stop = 160e-6
+    for width in 4e-6, 8e-6, 12e-6, 16e-6, 20e-6, 24e-6:
+        left = 10.0 * math.exp(-width / rc)  # V, across the resistor
+        u = rc * math.log1p(left / (slope * rc))
+        held = 10.0 - slope * u
+        netlist = f"""a flank takes down {left / resistance:.1e} A
+v1 s 0 pwl(0 10 {width!r} 10 {width + 20e-9!r} -5)
+r1 s a {resistance}
+d1 a c di
+c1 c 0 {capacitance} ic=0
+.model di d
+.tran 1u {stop} uic
+.end
+"""
+        at = [stop * (k + 0.37) / 200 for k in range(200)]
+        exact = [10.0 * -math.expm1(-t / rc) if t < width else held for t in at]
+        for tolerance in TOLERANCES:
+            case = f"{left / resistance:.1e} A for {u:.1e} s, {tolerance}"
+            result = start(program, checker, case, netlist, at, tolerance)
+            if result is not None:
+                check_signal(checker, case, result, "v(c)", exact, tolerance)
+                check_times(checker, case, events(result, "d1"), [(width + u, "off")], stop,
+                            tolerance)
+
+
+def main():
+    program, which = sys.argv[1:]
+    checker = Checker(f"faint {which}")
+    {"leak": leak, "flank": flank}[which](program, checker)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
