@@ -1,6 +1,7 @@
 /* front.c - signs, from column to column through rows and from pair to pair. */
 #include "front.h"
 
+#include "doubt.h"
 #include "guards.h"
 #include "stage_plan.h"
 
@@ -90,7 +91,7 @@ enum dalcs_status dalcs_front_close(struct dalcs_radau_part *part, bool *found) 
                       .s = s,
                       .M = &part->stages.plan->base,
                       .end = part->out_before + (l->n_nodes - 1) * l->stride,
-                      .nothing = dalcs_guards_noise(part) * part->unit_scale[0],
+                      .nothing = dalcs_doubt_noise(part) * part->unit_scale[0],
                       .direction = dalcs_alloc(n, sizeof(int)),
                       .queue = dalcs_alloc(n, sizeof(int))};
     if (f.direction == NULL || f.queue == NULL) {

@@ -2,6 +2,7 @@
 #include "guards.h"
 
 #include "crossing.h"
+#include "doubt.h"
 #include "extremes.h"
 #include "quads.h"
 #include "union_find.h"
@@ -11,11 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Errors up to this many times the inner tolerance in a pair that has just changed sides are no
- * event. */
-static const double band_over_tolerance = 10.0;
-
-/* The part of it that counts in later steps where such a pair goes on falling: a diode that waits for
+/* The part of its doubt that counts in later steps where such a pair goes on falling: a diode that waits for
  * the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. */
 static const double falling_part = 1e-3;
 
@@ -36,9 +33,6 @@ static const double slight = 1e-8, unresolved = 1e-5;
 /* What dies away between two nodes leaves so much of itself, of either sign, at those behind. */
 static const double swing = 0.1;
 
-/* What rounding leaves of a zero on dense maps, over the unit's scale. */
-static const double noise = 2e-13;
-
 /* Digits of a voltage over what the capacitors at a diode make of them in a step: a current that only
  * rounds their voltages is none, however small the others are. So for coils and their currents. */
 static const double rounded = 16.0 * DBL_EPSILON;
@@ -49,16 +43,6 @@ static const double same_on_factors = 1e-9;
 
 /* A fall this early in a step is one from the start. */
 static const double soon_after = 1e-6;
-
-double dalcs_guards_noise(const struct dalcs_radau_part *part) {
-    return noise * part->rounding;
-}
-
-static double band_of(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
-    double band = band_over_tolerance * r->inner_tolerance;
-    double least = 4.0 * dalcs_guards_noise(part);
-    return band > least ? band : least;
-}
 
 static int n_guards(const struct dalcs_radau_part *part) {
     return part->component->system->n_pairs + part->stages.n_watched;
@@ -243,26 +227,6 @@ static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band
     }
 }
 
-/* What a guard that is not armed may be off by, in V or A: what errors of the states and sources, and of
- * the polynomial, make of it, at most `band`, that of its unit. A current that leaks is known far better
- * than one that works. */
-static double doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                          int guard, double band, double scale) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    const struct dalcs_system *s = part->component->system;
-    if (guard >= s->n_pairs) {
-        return band;
-    }
-    int row = dalcs_system_n_equations(s) + guard;
-    double size = 0.0;
-    for (int k = 0; k < l->n_nodes; k++) {
-        size = dalcs_larger(size, fabs(part->out[k * l->stride + row]));
-    }
-    double spread = dalcs_stage_spread(&part->stages, part->entry, row, part->in, part->scale);
-    double own = band_over_tolerance * r->inner_tolerance * (size + spread);
-    return dalcs_smaller(own + 4.0 * dalcs_guards_noise(part) * scale, band);
-}
-
 static double value_at(const struct dalcs_radau_part *part, const double *value, int stride,
                        double theta) {
     double weight[DALCS_MAX_NODES];
@@ -299,8 +263,8 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
     const struct dalcs_osnsp *p = &part->component->osnsp;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     int n_pairs = p->system->n_pairs;
-    double band = band_of(r, part);
-    double known = dalcs_guards_noise(part);
+    double band = dalcs_doubt_band(r, part);
+    double known = dalcs_doubt_noise(part);
     if (!at_end && n_pairs > MANY_PAIRS) {
         gather_charges(part);
     }
@@ -313,7 +277,7 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
             armed[d] = value[d] > band * scale ||
                        (value[d] > known * scale &&
                         ((!at_end && goes_on(part, d, value[d])) ||
-                         value[d] > doubt_about(r, part, d, band * scale, scale)));
+                         value[d] > dalcs_doubt_about(r, part, d, scale, unit)));
         }
     }
     if (part->stages.n_watched > 0) {
@@ -358,7 +322,7 @@ static void find_doubtful(struct dalcs_radau_part *part) {
  * last digit of a time makes volts of a current that has nowhere to go but a leak. */
 static bool is_over_soon(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                          const double *value, int stride, double scale) {
-    double little = fmax(shallow * band_of(r, part), slight) * scale;
+    double little = fmax(shallow * dalcs_doubt_band(r, part), slight) * scale;
     double instant = dalcs_smaller(1.0, 64.0 * r->resolution / part->h);
     return (value[0] >= -little && value_at(part, value, stride, soon_after) > 0.0) ||
            (value[0] >= -unresolved * scale && value_at(part, value, stride, instant) > 0.0);
@@ -377,7 +341,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
     double first = INFINITY;
     double same = part->rounding > 1.0 ? same_on_factors : same_on_maps;
     double together = dalcs_larger(same, 2.0 * r->resolution / part->h);
-    double band = band_of(r, part);
+    double band = dalcs_doubt_band(r, part);
     double too_late = end_of_events(r, part, end, band);
     int last = part->stages.layout.n_nodes - 1;
     for (int k = 0; k < part->n_doubtful; k++) {
@@ -387,7 +351,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         const double *value = values_of(part, g, work, &stride);
         double scale = scale_of(part, g, unit);
         double rounding = rounding_of(part, g, unit);
-        double zero = dalcs_guards_noise(part) * scale;
+        double zero = dalcs_doubt_noise(part) * scale;
         if (!part->fresh && value[0] <= falling_part * band * scale &&
             fabs(value[last * stride]) <= zero + rounding) {
             part->armed[g] = false; /* what has died away has no sign any more */
@@ -397,7 +361,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         }
         double depth = zero;
         if (!part->armed[g]) {
-            depth = doubt_about(r, part, g, band * scale, scale);
+            depth = dalcs_doubt_about(r, part, g, scale, unit);
             bool falls = !part->fresh && value[last * stride] < value[0];
             depth *= falls ? falling_part : 1.0;
         }
@@ -442,7 +406,7 @@ bool dalcs_guards_recover(const struct dalcs_radau *r, const struct dalcs_radau_
         double work[DALCS_MAX_NODES];
         int stride;
         const double *value = values_of(part, part->crossed[k], work, &stride);
-        double band = band_of(r, part) * scale_of(part, part->crossed[k], unit);
+        double band = dalcs_doubt_band(r, part) * scale_of(part, part->crossed[k], unit);
         all = value[0] >= -shallow * band && value[last * stride] > 0.0;
     }
     return all;
@@ -484,7 +448,7 @@ bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
 
 bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     const double *unit = part->unit_scale;
-    double band = clear * band_of(r, part);
+    double band = clear * dalcs_doubt_band(r, part);
     bool all = true;
     bound_all(part);
     part->n_crossed = 0;
@@ -500,7 +464,7 @@ bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *pa
 /* Are all of these no more than rounding makes of 0? */
 static bool is_nothing(const struct dalcs_radau_part *part, int pair, const double *value,
                        int stride, const double *unit) {
-    double limit = dalcs_guards_noise(part) * scale_of(part, pair, unit);
+    double limit = dalcs_doubt_noise(part) * scale_of(part, pair, unit);
     limit += rounding_of(part, pair, unit);
     bool nothing = true;
     for (int k = 0; k < part->stages.layout.n_nodes && nothing; k++) {
@@ -530,7 +494,7 @@ static bool stays_below(const struct dalcs_radau_part *part, int pair, double en
 bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                                 double end, const double *unit) {
     int n_pairs = part->component->system->n_pairs;
-    double least = fmax(falling_part * band_of(r, part), 4.0 * dalcs_guards_noise(part));
+    double least = fmax(falling_part * dalcs_doubt_band(r, part), 4.0 * dalcs_doubt_noise(part));
     bool negative = false;
     for (int k = 0; k < part->n_doubtful && !negative && n_pairs <= MANY_PAIRS; k++) {
         int d = part->doubtful[k];

@@ -11,13 +11,9 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) DALCS_MUST_C
 
 void dalcs_guards_finish(struct dalcs_radau_part *part);
 
-/* What rounding leaves of a zero, over its unit's scale. */
-double dalcs_guards_noise(const struct dalcs_radau_part *part);
-
 /* Guards that are clear of 0 at the start, or at the end, of a step are armed: from then on every fall
  * below 0 counts. Those that start within the error of 0, because they have just crossed it, count when
- * they leave it downwards. On dense maps that error is what errors of the states and sources make of it, by
- * part->entry, elsewhere that of the largest voltage or current. */
+ * they leave it downwards (doubt.h). */
 void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, bool at_end,
                       const double *unit);
 

@@ -497,11 +497,12 @@ void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs
     dalcs_dense_map_apply(entry->rows, n_columns(b), entry->map, in, out);
 }
 
+bool dalcs_stage_has_map(const struct dalcs_stage_entry *entry) {
+    return entry->map != NULL;
+}
+
 double dalcs_stage_spread(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
                           int row, const double *in, const double *scale) {
-    if (entry == NULL || entry->map == NULL) {
-        return INFINITY;
-    }
     const struct dalcs_stage_workshop *b = stages->workshop;
     const double *element = entry->map + row;
     double spread = 0.0;

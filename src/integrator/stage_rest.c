@@ -298,8 +298,9 @@ enum dalcs_status dalcs_stage_rest_choose(struct dalcs_stage_plan *plan, const u
         wake_what_moves(&a, x);
         wake_ahead(&a);
         int at_rest = a.n_equations - a.n_awake;
-        plan->rest.any =
-            at_rest >= a.n_equations / LEAST_PART_AT_REST && list_awake(&a, &plan->rest);
+        /* where nothing moves at all there would be nothing to factor */
+        plan->rest.any = a.n_awake > 0 && at_rest >= a.n_equations / LEAST_PART_AT_REST &&
+                         list_awake(&a, &plan->rest);
         if (!plan->rest.any) {
             dalcs_stage_rest_end(plan);
         }

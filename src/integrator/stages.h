@@ -95,8 +95,10 @@ bool dalcs_stage_frees_states(const struct dalcs_stage_entry *entry);
 /* [2 n_equations] units in which the columns are in balance with each other, then their inverses. */
 const double *dalcs_stage_natural_units(const struct dalcs_stage_entry *entry);
 
+bool dalcs_stage_has_map(const struct dalcs_stage_entry *entry);
+
 /* What errors in the states and sources, each the same part of them, may make of element `row` of an
- * answer, over that part; a state is at least scale[n_x]. INFINITY for NULL and for factors. */
+ * answer, over that part, by an entry with a map; a state is at least scale[n_x]. */
 double dalcs_stage_spread(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
                           int row, const double *in, const double *scale);
 

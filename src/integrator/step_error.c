@@ -345,6 +345,18 @@ DALCS_TWICE(void, compare_all,
     q->ratio = all == all ? dalcs_larger(q->drift, dalcs_quad_largest(&worst)) : all;
 }
 
+double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    int pair = column - dalcs_system_n_equations(s);
+    if (pair >= 0 && !is_on(part, pair)) {
+        return 0.0;
+    }
+    double least = pair >= 0                      ? smallest_pair * unit[1]
+                   : s->column_is_current[column] ? smallest_scale * unit[1]
+                                                  : smallest_scale * unit[0];
+    return dalcs_larger(least, dalcs_larger(part->scale[column], part->magnitude[column]));
+}
+
 void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                       const struct dalcs_stage_entry *entry, double end,
                       struct dalcs_step_quality *q) {

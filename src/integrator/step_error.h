@@ -31,6 +31,10 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
 /* Raises unit[2] to the values at the end of the segment, which may lie between the nodes. */
 void dalcs_step_reach(struct dalcs_radau_part *part, double end, double *unit);
 
+/* What the errors of a column are held to, without its tolerance: its own scale, or a part of its unit's. 0 of an
+ * open pair, which has no current. */
+double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const double *unit);
+
 /* Remembers the largest magnitudes of an accepted segment. */
 void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double *unit);
 

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Events that are faint beside what the circuit works with, against closed forms.
 
-usage: faint.py PROGRAM leak|flank
+usage: faint.py PROGRAM leak|large_leak|flank
 
 leak: a switch connects a sine to a diode that clamps it, 1000 A; open, it leaks 10 uA, which the diode
 carries as long as the source is positive, and blocks after that: at the zero of the sine, and no volt is
-off by what 1000 A may be off by. v = sin: 0 while the diode conducts, else v_s R / (R + R_off).
+off by what 1000 A may be off by. v = sin: 0 while the diode conducts, else v_s R / (R + R_off). Large: the
+same with a line of 100 sections that listens to it, so that steps are solved on sparse factors.
 
 flank: a capacitor is charged through a resistor and a diode, and after w the source falls, so fast that it
 takes down what current is left within pico- and femtoseconds. With k the slope and i the current left,
@@ -49,15 +50,15 @@ def check_signal(checker, case, result, signal, exact, tolerance):
     checker.check(off <= tolerance, f"{case}: {signal} is off by {off:.1e}")
 
 
-def leak(program, checker):
-    netlist = """a leak beside 1000 A
+def leak(program, checker, more=""):
+    netlist = f"""a leak beside 1000 A
 v1 s 0 sin(0 10 1k)
 rs s a 10m
 s1 a n g 0 sm
 d1 n 0 di
 r1 n 0 1k
-vg g 0 pulse(0 1 0 0.1u 0.1u 30u 100u)
-.model sm sw(vt=0.5 roff=1meg)
+vg g 0 pulse(0 1 50u 0.1u 0.1u 30u 100u)
+{more}.model sm sw(vt=0.5 roff=1meg)
 .model di d
 .tran 1u 1m uic
 .end
@@ -65,15 +66,20 @@ vg g 0 pulse(0 1 0 0.1u 0.1u 30u 100u)
     stop = 1e-3
     share = 1e3 / (1e3 + 1e-2 + 1e6), 1e3 / (1e3 + 1e-2)
     # not while the switch moves: it does where the gate passes 0.5 V
-    at = [(k + 0.37) * 1e-6 for k in range(1000) if k % 100 not in (0, 30)]
-    exact = [min(0.0, 10.0 * math.sin(2e3 * math.pi * t)) * share[t % 1e-4 < 30.15e-6] for t in at]
+    at = [(k + 0.37) * 1e-6 for k in range(1000) if k % 100 not in (50, 80)]
+    exact = [min(0.0, 10.0 * math.sin(2e3 * math.pi * t)) * share[50.05e-6 < t % 1e-4 < 80.15e-6] for t in at]
     for tolerance in TOLERANCES:
-        case = f"leak, {tolerance}"
+        case = f"leak{' in a large part' if more else ''}, {tolerance}"
         result = start(program, checker, case, netlist, at, tolerance)
         if result is not None:
             check_signal(checker, case, result, "v(n)", exact, tolerance)
             check_times(checker, case, events(result, "d1"), [(0.5e-3, "off")], stop,
                         tolerance)
+
+
+def large_leak(program, checker):
+    line = "".join(f"rm{k} m{k} m{k + 1} 1k\ncm{k} m{k + 1} 0 1n\n" for k in range(100))
+    leak(program, checker, "em m0 0 a 0 1\n" + line)
 
 
 def flank(program, checker):
@@ -107,7 +113,7 @@ c1 c 0 {capacitance} ic=0
 def main():
     program, which = sys.argv[1:]
     checker = Checker(f"faint {which}")
-    {"leak": leak, "flank": flank}[which](program, checker)
+    {"leak": leak, "large_leak": large_leak, "flank": flank}[which](program, checker)
     return checker.finish()
 
 

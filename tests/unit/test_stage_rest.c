@@ -16,8 +16,8 @@ static struct dalcs_stages resting; /* what may be is */
 static double *in, *x, *y;
 
 /* A chain of sections behind diodes; every third has a coil, a controlled source or a switch too. */
-static void write_chain(char *to, const char *more) {
-    int at = snprintf(to, TEXT, "chain\nv1 in 0 sin(0 10 1k)\nrs in n0 10\n");
+static void write_chain(char *to, const char *feed, const char *more) {
+    int at = snprintf(to, TEXT, "chain\n%s\nrs in n0 10\n", feed);
     for (int k = 1; k <= SECTIONS; k++) {
         at += snprintf(to + at, TEXT - (size_t)at,
                        "d%d n%d m%d di\nr%d m%d n%d 1\nc%d n%d 0 1u\nrl%d n%d 0 10k\n", k, k - 1, k,
@@ -38,9 +38,9 @@ static void write_chain(char *to, const char *more) {
                    "%s.model di d\n.model sw sw(vt=100)\n.tran 1u 1m uic\n.end\n", more);
 }
 
-static void setup(const char *more) {
+static void setup_fed(const char *feed, const char *more) {
     static char netlist[TEXT];
-    write_chain(netlist, more);
+    write_chain(netlist, feed, more);
     build_good_network(&text, netlist);
     ck_assert_int_eq(text.network.n_systems, 1);
     const struct dalcs_system *s = &text.network.system[0];
@@ -55,6 +55,10 @@ static void setup(const char *more) {
     x = dalcs_alloc(n_out, sizeof(*x));
     y = dalcs_alloc(n_out, sizeof(*y));
     ck_assert(in != NULL && x != NULL && y != NULL);
+}
+
+static void setup(const char *more) {
+    setup_fed("v1 in 0 sin(0 10 1k)", more);
 }
 
 static void finish(void) {
@@ -239,4 +243,23 @@ START_TEST(test_all_moves) {
 
 END_TEST
 
-RUN_TESTS("stage rest", test_front, test_far_ahead, test_sources, test_singular, test_all_moves)
+/* Without a source and from 0 nothing moves, which is no reason to leave out everything. */
+START_TEST(test_nothing_moves) {
+    uint64_t mode[2];
+    uint64_t random = 16;
+    setup_fed("rin in 0 1k", "");
+    close_first(0, mode);
+    for (int step = 0; step < 3; step++) {
+        set_states(0, &random);
+        compare(mode, 1e-6);
+    }
+    ck_assert(!resting.plan->rest.any);
+    set_states(1, &random);
+    compare(mode, 1e-6);
+    finish();
+}
+
+END_TEST
+
+RUN_TESTS("stage rest", test_nothing_moves, test_front, test_far_ahead, test_sources, test_singular,
+          test_all_moves)

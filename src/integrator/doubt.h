@@ -1,0 +1,35 @@
+/* doubt.h - how far a guard may be off.
+ *
+ * A guard that has just crossed starts at 0 up to an error, and what is within it is no event. The error of
+ * the largest voltage or current is a bound for all, but a loose one for a leak beside a current that works.
+ * Its own is what the errors of all that it is made of come to: of states and sources by the map of the
+ * step, where there is one, else of its neighbours by Kirchhoff's law. */
+#ifndef DALCS_DOUBT_H
+#define DALCS_DOUBT_H
+
+#include "extremes.h"
+#include "step_error.h"
+
+/* Errors up to this many times the inner tolerance in a pair that has just changed sides are no event. */
+static const double dalcs_doubts_over_tolerance = 10.0;
+
+/* So many times what rounding leaves of a zero is beyond it. */
+static const double dalcs_beyond_noise = 4.0;
+
+/* What rounding leaves of a zero, over its unit's scale: of one on dense maps 2e-13. */
+static inline double dalcs_doubt_noise(const struct dalcs_radau_part *part) {
+    return 2e-13 * part->rounding;
+}
+
+/* The band of errors, over the unit's scale: no guard is in doubt beyond it. */
+static inline double dalcs_doubt_band(const struct dalcs_radau *r,
+                                      const struct dalcs_radau_part *part) {
+    return dalcs_larger(dalcs_doubts_over_tolerance * r->inner_tolerance,
+                        dalcs_beyond_noise * dalcs_doubt_noise(part));
+}
+
+/* V or A that a guard may be off by in the present step, of part->entry; scale: of its unit. */
+double dalcs_doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                         int guard, double scale, const double *unit);
+
+#endif
