@@ -203,6 +203,9 @@ static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_par
     double h = ldexp(whole, part->tries - FALL_BACK);
     h = fmin(h, ldexp(whole, -FALL_BACK_LEAST));
     h = fmax(h, 64.0 * r->resolution);
+    if (part->tries > 0 && fixed == 0.0) { /* however short the ladder's step has become */
+        h = fmax(h, fmin(2.0 * part->fell_back, ldexp(part->longest, -FALL_BACK)));
+    }
     part->tries++;
     part->fell_back = fmin(h, limit - part->t);
     r->euler_steps++;

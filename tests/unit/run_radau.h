@@ -10,15 +10,20 @@ static struct text_network t;
 static struct dalcs_euler e;
 static struct dalcs_radau r;
 
-/* From IC= at t = 0, to 1e-9. */
-static inline void start(const char *text, double stop) {
-    const struct dalcs_osnsp_options options = usual_osnsp_options();
-    const struct dalcs_radau_options o = {.tolerance = 1e-9, .stop = stop};
+/* From IC= at t = 0, to a tolerance; parts of more unknowns than dense_limit on factors. */
+static inline void start_with(const char *text, double stop, double tolerance, int dense_limit) {
+    struct dalcs_osnsp_options options = usual_osnsp_options();
+    const struct dalcs_radau_options o = {.tolerance = tolerance, .stop = stop};
+    options.dense_limit = dense_limit;
     build_good_network(&t, text);
     ck_assert_int_eq(t.network.n_systems, 1);
     ck_assert_int_eq(dalcs_euler_setup(&e, &t.circuit, &t.network, &options, stop, stop), DALCS_OK);
     ck_assert_int_eq(dalcs_radau_setup(&r, &e, &o, &options), DALCS_OK);
     ck_assert_int_eq(dalcs_radau_start(&r, t.network.initial), DALCS_OK);
+}
+
+static inline void start(const char *text, double stop) {
+    start_with(text, stop, 1e-9, usual_osnsp_options().dense_limit);
 }
 
 /* All segments that end before `end`. */
