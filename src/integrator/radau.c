@@ -182,6 +182,9 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->rung = fit_rung(promising);
     part->level = -ilogb(fmin(first, promising) / part->rung);
     part->patience = 32;
+    if (dalcs_system_n_columns(c->system) <= part->stages.dense_limit) {
+        part->rounding = 1.0; /* before there is a step, too */
+    }
     return DALCS_OK;
 }
 

@@ -88,9 +88,10 @@ static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_pa
                         double *after, bool *noticeable, bool *may_hide) {
     const struct dalcs_system *s = part->component->system;
     double largest[2] = {part->unit_scale[0], part->unit_scale[1]};
-    for (int x = 0; x < s->n_x; x++) {
-        int of = s->column_is_current[x];
-        largest[of] = fmax(largest[of], fmax(fabs(part->x[x]), fabs(part->y1[x])));
+    for (int c = 0; c < dalcs_system_n_equations(s); c++) {
+        int of = s->column_is_current[c];
+        double before = c < s->n_x ? fabs(part->x[c]) : 0.0;
+        largest[of] = fmax(largest[of], fmax(before, fabs(part->y1[c])));
     }
     double smallest = fmax(1e3 * r->inner_tolerance, smallest_jump);
     bool jumps = false;
@@ -280,7 +281,9 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
                                       int longer, bool mode_only, bool *is_off) {
     const struct dalcs_system *s = part->component->system;
     enum dalcs_status status = DALCS_NOT_CONVERGED;
-    *is_off = false;
+    if (is_off != NULL) {
+        *is_off = false;
+    }
     double h = 0.0;
     for (int k = 0; k < LONGER_TRIES && status > DALCS_OK; k++) {
         h = dalcs_radau_micro_length(r, part, longer + k);
@@ -296,8 +299,10 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     if (may_hide && !noticeable && shorter * h >= 64.0 * r->resolution) {
         DALCS_TRY(look_closer(r, part, &h, &jumps, &noticeable));
     }
-    *is_off = jumps && !noticeable && part->rounding == 1.0;
-    if (jumps && !noticeable && !*is_off) {
+    bool moves_little = jumps && !noticeable;
+    if (is_off != NULL && part->rounding == 1.0) {
+        *is_off = moves_little;
+    } else if (moves_little) {
         go_after(r, part);
     }
     return noticeable ? settle_jump(r, part, h) : DALCS_OK;

@@ -351,10 +351,13 @@ static enum dalcs_status refine(struct dalcs_radau *r, struct dalcs_radau_part *
 }
 
 /* Is what is wrong from the start over so soon that micro-steps saw what comes after it? Where a source
- * begins to fall there may be a current that it has to take down first. */
-static bool is_brief(const struct dalcs_radau_part *part, const struct search *search,
-                     double *recovery) {
-    bool may_be = search->restarts > 0 && search->flips == 0 && !search->closer && !search->fixed;
+ * begins to fall there may be a current that it has to take down first. Behind a jump that only they know
+ * it may be the state, which they left a little off. */
+static bool is_brief(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                     const struct search *search, double *recovery) {
+    bool asked = search->restarts > 0 && search->flips == 0 && !search->closer;
+    bool is_exact = !part->jumped || r->base->jump.is_known;
+    bool may_be = asked && is_exact && !search->fixed;
     *recovery = may_be ? dalcs_guards_recovery(part) : INFINITY;
     return *recovery > 0.0 && *recovery < briefly;
 }
@@ -365,10 +368,10 @@ static enum dalcs_status look_closer(struct dalcs_radau *r, struct dalcs_radau_p
     int level = part->level - 2 - ilogb(recovery);
     search->closer = true;
     search->projected = false;
+    search->stuck = 0;
+    search->ratio_before = INFINITY;
     part->level = level;
-    DALCS_TRY(restart(r, part, search, false));
-    part->level = level;
-    return DALCS_OK;
+    return dalcs_radau_restart(r, part, search->restarts++, false, NULL);
 }
 
 /* The mode is wrong from the start: asks the circuit, then tries the other sides. Unless it may be the
@@ -386,7 +389,7 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
         return tie_again(part, search);
     }
     double recovery;
-    if (is_brief(part, search, &recovery)) {
+    if (is_brief(r, part, search, &recovery)) {
         return look_closer(r, part, search, recovery);
     }
     if (search->restarts < MOST_RESTARTS && search->flips == 0) {
