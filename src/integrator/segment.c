@@ -175,6 +175,15 @@ static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part 
     return status < DALCS_OK ? status : DALCS_OK;
 }
 
+/* What was seen of errors in another mode, or from another state, does not count. */
+static void start_over(struct dalcs_radau_part *part, struct search *search, int level) {
+    if (!search->fixed) {
+        part->level = level;
+    }
+    search->stuck = 0;
+    search->ratio_before = INFINITY;
+}
+
 static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                  struct search *search, bool mode_only) {
     bool is_off;
@@ -185,11 +194,7 @@ static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part 
         bool moved;
         DALCS_TRY(project(r, part, search, &moved));
     }
-    if (!search->fixed) {
-        part->level = search->first_level;
-    }
-    search->stuck = 0;
-    search->ratio_before = INFINITY;
+    start_over(part, search, search->first_level);
     return DALCS_OK;
 }
 
@@ -350,27 +355,22 @@ static enum dalcs_status refine(struct dalcs_radau *r, struct dalcs_radau_part *
     return DALCS_OK;
 }
 
-/* Is what is wrong from the start over so soon that micro-steps saw what comes after it? Where a source
- * begins to fall there may be a current that it has to take down first. Behind a jump that only they know
- * it may be the state, which they left a little off. */
-static bool is_brief(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                     const struct search *search, double *recovery) {
+/* May what is wrong from the start be over so soon that micro-steps saw what comes after it? Where a
+ * source begins to fall there may be a current that it has to take down first. Behind a jump that only
+ * they know it is rather the state, which they left a little off. */
+static bool may_be_brief(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                         const struct search *search) {
     bool asked = search->restarts > 0 && search->flips == 0 && !search->closer;
     bool is_exact = !part->jumped || r->base->jump.is_known;
-    bool may_be = asked && is_exact && !search->fixed;
-    *recovery = may_be ? dalcs_guards_recovery(part) : INFINITY;
-    return *recovery > 0.0 && *recovery < briefly;
+    return asked && is_exact && !search->fixed;
 }
 
 /* Asks the circuit by micro-steps that are shorter still, for a segment about as long as that. */
-static enum dalcs_status look_closer(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                     struct search *search, double recovery) {
-    int level = part->level - 2 - ilogb(recovery);
+static enum dalcs_status ask_closer(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                    struct search *search, double recovery) {
     search->closer = true;
     search->projected = false;
-    search->stuck = 0;
-    search->ratio_before = INFINITY;
-    part->level = level;
+    start_over(part, search, part->level - 2 - ilogb(recovery));
     return dalcs_radau_restart(r, part, search->restarts++, false, NULL);
 }
 
@@ -388,9 +388,9 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
     if (search->opened) {
         return tie_again(part, search);
     }
-    double recovery;
-    if (is_brief(r, part, search, &recovery)) {
-        return look_closer(r, part, search, recovery);
+    double recovery = may_be_brief(r, part, search) ? dalcs_guards_recovery(part) : INFINITY;
+    if (recovery > 0.0 && recovery < briefly) {
+        return ask_closer(r, part, search, recovery);
     }
     if (search->restarts < MOST_RESTARTS && search->flips == 0) {
         return restart(r, part, search, false);

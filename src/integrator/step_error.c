@@ -265,6 +265,18 @@ static void find_allowance(const struct dalcs_radau *r, const struct dalcs_radau
     a->besides[2] = rounding_part * part->rounding * q->unit[1] + a->besides[1];
 }
 
+double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    int pair = column - dalcs_system_n_equations(s);
+    if (pair >= 0 && !is_on(part, pair)) {
+        return 0.0;
+    }
+    double least = pair >= 0                      ? smallest_pair * unit[1]
+                   : s->column_is_current[column] ? smallest_scale * unit[1]
+                                                  : smallest_scale * unit[0];
+    return dalcs_larger(least, dalcs_larger(part->scale[column], part->magnitude[column]));
+}
+
 /* The errors over what is allowed, with `rounding` besides. */
 static void compare(const struct dalcs_radau_part *part, const struct allowance *a,
                     const double *natural, double rounding, struct dalcs_step_quality *q) {
@@ -278,8 +290,8 @@ static void compare(const struct dalcs_radau_part *part, const struct allowance 
     int n_equations = dalcs_system_n_equations(s);
     for (int c = 0; c < (curved ? n_equations : s->n_x); c++) {
         int of = s->column_is_current[c] ? 1 : 0;
-        double scale = dalcs_larger(dalcs_larger(part->scale[c], part->magnitude[c]), a->least[of]);
-        double allowed = a->tolerance * scale + rounding * natural[c] + a->besides[of];
+        double allowed = a->tolerance * dalcs_step_scale(part, c, q->unit) + rounding * natural[c] +
+                         a->besides[of];
         double error = c < s->n_x ? fabs(drift[c]) : 0.0;
         if (error > q->drift * allowed) {
             q->drift = error / allowed;
@@ -288,8 +300,7 @@ static void compare(const struct dalcs_radau_part *part, const struct allowance 
     }
     for (int c = n_equations; curved && c < n_equations + s->n_pairs; c++) {
         if (is_on(part, c - n_equations)) { /* the voltage of the others is one of the columns */
-            double scale =
-                dalcs_larger(dalcs_larger(part->scale[c], part->magnitude[c]), a->least[2]);
+            double scale = dalcs_step_scale(part, c, q->unit);
             judge(q, fabs(ripple[c]), a->tolerance * scale + a->besides[2], 1);
         }
     }
@@ -343,18 +354,6 @@ DALCS_TWICE(void, compare_all,
     double all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
     q->drift = dalcs_quad_largest(&worst_drift);
     q->ratio = all == all ? dalcs_larger(q->drift, dalcs_quad_largest(&worst)) : all;
-}
-
-double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const double *unit) {
-    const struct dalcs_system *s = part->component->system;
-    int pair = column - dalcs_system_n_equations(s);
-    if (pair >= 0 && !is_on(part, pair)) {
-        return 0.0;
-    }
-    double least = pair >= 0                      ? smallest_pair * unit[1]
-                   : s->column_is_current[column] ? smallest_scale * unit[1]
-                                                  : smallest_scale * unit[0];
-    return dalcs_larger(least, dalcs_larger(part->scale[column], part->magnitude[column]));
 }
 
 void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part,

@@ -89,6 +89,14 @@ static void arm(void) {
     dalcs_guards_arm(&r, &part, false, unit);
 }
 
+/* One line for d1, all else far above 0. */
+static void arm_beside(double first, double last) {
+    draw("d1", first, last);
+    draw("d2", 1.0, 1.0);
+    draw(NULL, 0.5, 0.5);
+    arm();
+}
+
 START_TEST(test_pairs) {
     start();
     draw("d1", 0.3, -0.7);
@@ -141,10 +149,7 @@ END_TEST
 START_TEST(test_arming) {
     bool at_once;
     start();
-    draw("d1", 1e-9, -0.5);
-    draw("d2", 1.0, 1.0);
-    draw(NULL, 0.5, 0.5);
-    arm();
+    arm_beside(1e-9, -0.5);
     ck_assert(!armed[find_pair(component.system, "d1")]);
     ck_assert(armed[find_pair(component.system, "d2")]);
     ck_assert(!armed[find_pair(component.system, "s1")]);
@@ -178,10 +183,7 @@ START_TEST(test_faint) {
     const int d1 = find_pair(component.system, "d1");
     const struct dalcs_stage_layout *l = &part.stages.layout;
     double *value = out + dalcs_system_n_equations(component.system) + d1;
-    draw("d1", 1.0, 2e-10);
-    draw("d2", 1.0, 1.0);
-    draw(NULL, 0.5, 0.5);
-    arm();
+    arm_beside(1.0, 2e-10);
     ck_assert(isinf(first_fall(1.0)) && armed[d1]);
     draw("d1", 2e-10, -1e-10);
     ck_assert_double_eq_tol(first_fall(1.0), 2.0 / 3.0, 1e-14);
@@ -199,10 +201,7 @@ END_TEST
 /* What starts below 0 by an error and comes back may be the polynomial's, what stays is not. */
 START_TEST(test_recover) {
     start();
-    draw("d1", -1e-6, 0.5);
-    draw("d2", 1.0, 1.0);
-    draw(NULL, 0.5, 0.5);
-    arm();
+    arm_beside(-1e-6, 0.5);
     ck_assert(falls_at_once() && dalcs_guards_recover(&r, &part, unit));
     draw("d2", -1e-6, -1e-7);
     ck_assert(falls_at_once() && !dalcs_guards_recover(&r, &part, unit));
@@ -303,10 +302,7 @@ END_TEST
  * after that is. */
 START_TEST(test_over_soon) {
     start();
-    draw("d1", -5e-7, 1.0);
-    draw("d2", 1.0, 1.0);
-    draw(NULL, 0.5, 0.5);
-    arm();
+    arm_beside(-5e-7, 1.0);
     part.fresh = true;
     ck_assert(isinf(first_fall(1.0)));
     ck_assert_double_eq(dalcs_guards_wrong_sign(&r, &part, 1.0, unit), 0.0);
@@ -328,10 +324,7 @@ START_TEST(test_swing) {
     const struct dalcs_stage_layout *l = &part.stages.layout;
     double *d1 =
         out + dalcs_system_n_equations(component.system) + find_pair(component.system, "d1");
-    draw("d1", 1e-3, 1e-3);
-    draw("d2", 1.0, 1.0);
-    draw(NULL, 0.5, 0.5);
-    arm();
+    arm_beside(1e-3, 1e-3);
     for (int k = 1; k < l->n_nodes; k++) {
         d1[k * l->stride] = k % 2 == 0 ? -4e-5 : 4e-5;
     }
@@ -352,10 +345,7 @@ END_TEST
 START_TEST(test_rounding) {
     start();
     dalcs_osnsp_command(&component.osnsp, find_pair(component.system, "d1"), true);
-    draw("d1", 1.0, -1e-9);
-    draw("d2", 1.0, 1.0);
-    draw(NULL, 0.5, 0.5);
-    arm();
+    arm_beside(1.0, -1e-9);
     ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-8);
     part.h = 1e-6; /* 16 roundings of 1 V on 1 F in 1 us: 3.6 nA */
     ck_assert(isinf(first_fall(1.0)));
@@ -374,10 +364,7 @@ START_TEST(test_own_doubt) {
     start();
     ck_assert_int_le(part.stages.n_in, 8);
     part.fresh = true;
-    draw("d1", 5e-8, -5e-8);
-    draw("d2", 1.0, 1.0);
-    draw(NULL, 0.5, 0.5);
-    arm();
+    arm_beside(5e-8, -5e-8);
     ck_assert(isinf(first_fall(1.0)));
     part.in = in;
     part.scale = scale;
@@ -396,10 +383,7 @@ END_TEST
 START_TEST(test_stop) {
     start();
     part.t = 99.0;
-    draw("d1", 1.0, -1e-7);
-    draw("d2", 1.0, 1.0);
-    draw(NULL, 0.5, 0.5);
-    arm();
+    arm_beside(1.0, -1e-7);
     ck_assert(isinf(first_fall(1.0)));
     draw("d1", 1e-4, -1e-7); /* crossed before */
     ck_assert_double_eq_tol(first_fall(1.0), 0.999, 1e-5);
@@ -416,10 +400,7 @@ END_TEST
 /* When what is wrong from the start is over. */
 START_TEST(test_recovery) {
     start();
-    draw("d1", -1e-2, 1.0);
-    draw("d2", 1.0, 1.0);
-    draw(NULL, 0.5, 0.5);
-    arm();
+    arm_beside(-1e-2, 1.0);
     ck_assert(falls_at_once());
     ck_assert_double_eq_tol(dalcs_guards_recovery(&part), 0.01 / 1.01, 1e-12);
     draw("d2", -2e-2, 1.0);
