@@ -27,6 +27,9 @@ static const double shorter = 1.0 / 1024.0, runaway = 4.0;
 /* States that move by less, over the largest of their unit, have not jumped; by still less, not at all. */
 static const double smallest_jump = 1e-9, rounding = 1e-15;
 
+/* A state this small after a jump, over the largest of its unit before, is 0. */
+static const double remainder_of_jump = 1e-12;
+
 static enum dalcs_status fail(struct dalcs_radau *r, struct dalcs_radau_part *part, double sigma,
                               const double *u, enum dalcs_status status) {
     struct dalcs_euler *e = r->base;
@@ -199,9 +202,27 @@ static enum dalcs_status find_jump(struct dalcs_radau *r, struct dalcs_radau_par
     return dalcs_euler_find_jump(r->base, part->index, part->u);
 }
 
+/* What is left of a state that falls to 0, or of one that stays there, is as small as a certificate
+ * allows: it is 0, for where nothing else is it would be a signal. */
+static void drop_remainders(const struct dalcs_radau_part *part, double *after) {
+    const struct dalcs_system *s = part->component->system;
+    double largest[2] = {part->unit_scale[0], part->unit_scale[1]};
+    for (int x = 0; x < s->n_x; x++) {
+        int of = s->column_is_current[x];
+        largest[of] = fmax(largest[of], fabs(part->x[x]));
+    }
+    for (int x = 0; x < s->n_x; x++) {
+        bool is_moved = fabs(after[x] - part->x[x]) > 0.5 * fabs(after[x]);
+        if (is_moved && fabs(after[x]) < remainder_of_jump * largest[s->column_is_current[x]]) {
+            after[x] = 0.0;
+        }
+    }
+}
+
 static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     struct dalcs_euler *e = r->base;
     e->t = part->t;
+    drop_remainders(part, e->jump.after);
     DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->t, part->x));
     memcpy(part->x, e->jump.after, (size_t)part->component->system->n_x * sizeof(double));
     part->jumped = true;

@@ -28,14 +28,16 @@ enum dalcs_status dalcs_stage_factors_order(const struct dalcs_stage_plan *plan,
     o->scale = dalcs_alloc(n, sizeof(double));
     o->position = dalcs_alloc((size_t)f->n, sizeof(int));
     o->wave_at = dalcs_alloc((size_t)plan->n_waves, sizeof(int));
-    int *at = dalcs_alloc((size_t)plan->n_rows, sizeof(int)); /* positions of the rows of M */
+    o->choice_at = dalcs_alloc((size_t)f->singular.n, sizeof(int));
+    int n_rows = plan->n_rows + f->singular.n;
+    int *at = dalcs_alloc((size_t)n_rows, sizeof(int)); /* positions of rows of M and of choices */
     if (o->row_of == NULL || o->scale == NULL || o->position == NULL || o->wave_at == NULL ||
-        at == NULL) {
+        o->choice_at == NULL || at == NULL) {
         free(at);
         return DALCS_E_NOMEM;
     }
     o->of_pair = o->position + n_equations;
-    for (int r = 0; r < plan->n_rows; r++) {
+    for (int r = 0; r < n_rows; r++) {
         at[r] = -1;
     }
     for (int i = 0; i < m->n; i++) {
@@ -48,6 +50,9 @@ enum dalcs_status dalcs_stage_factors_order(const struct dalcs_stage_plan *plan,
     }
     for (int k = 0; k < plan->n_waves; k++) {
         o->wave_at[k] = at[plan->wave_row[k]];
+    }
+    for (int k = 0; k < f->singular.n; k++) {
+        o->choice_at[k] = at[plan->n_rows + k];
     }
     free(at);
     return DALCS_OK;
@@ -81,13 +86,11 @@ static void find_function_shares(const struct dalcs_stages *stages, double h,
     }
 }
 
-static enum dalcs_status factor_regular(struct dalcs_stages *stages,
-                                        struct dalcs_stage_entry *entry,
-                                        struct dalcs_stage_factors *f,
-                                        struct dalcs_stage_matrix *m) {
+static enum dalcs_status factor_all(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
+                                    struct dalcs_stage_factors *f, struct dalcs_stage_matrix *m) {
     struct dalcs_stage_analysis *a;
-    DALCS_TRY(
-        dalcs_stage_plan_analyze(stages, entry->mode, m->n, m->row, m->column, m->p, m->i, &a));
+    DALCS_TRY(dalcs_stage_plan_analyze(stages, entry->mode, f->singular.n > 0, m->n, m->row,
+                                       m->column, m->p, m->i, &a));
     for (int q = 0; q < f->n_systems; q++) {
         double re;
         double im;
@@ -127,14 +130,14 @@ static void drop_systems(struct dalcs_stage_factors *f) {
         free(o->scale);
         free(o->position);
         free(o->wave_at);
+        free(o->choice_at);
         *o = (struct dalcs_stage_order){0};
     }
 }
 
-/* The miss of a row of M without derivatives, and the sum of its terms, at columns y at the last
- * stage of a step from in. */
-static double miss_of_row(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
-                          int r, const double *in, const double *y, double *terms) {
+double dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
+                                       const struct dalcs_stage_entry *entry, int r, int node,
+                                       const double *in, const double *y, double *terms) {
     const struct dalcs_stage_plan *plan = stages->plan;
     const struct dalcs_system *s = stages->system;
     int n_equations = dalcs_system_n_equations(s);
@@ -155,8 +158,7 @@ static double miss_of_row(const struct dalcs_stages *stages, const struct dalcs_
         }
     }
     for (int k = plan->wave_begin[r]; k < plan->wave_begin[r + 1]; k++) {
-        double term =
-            plan->wave_x[k] * plan->share[plan->wave_of[k] * DALCS_N_SHARES + stages->method->s];
+        double term = plan->wave_x[k] * plan->share[plan->wave_of[k] * DALCS_N_SHARES + node];
         missed += term;
         *terms += fabs(term);
     }
@@ -178,11 +180,13 @@ double dalcs_stage_factors_miss(const struct dalcs_stages *stages,
         const struct dalcs_stage_change *c = i < o->n ? NULL : f->update->change[i - o->n];
         int r = c == NULL ? o->row_of[i] : n_equations + c->pair;
         double scale = c == NULL ? o->scale[i] : c->row_scale;
-        if (r < n_x || (r >= n_equations && !dalcs_stage_is_on(entry, r - n_equations))) {
+        if (r < n_x || r >= stages->plan->n_rows ||
+            (r >= n_equations && !dalcs_stage_is_on(entry, r - n_equations))) {
             continue;
         }
         double terms;
-        double missed = miss_of_row(stages, entry, r, in, y, &terms);
+        double missed =
+            dalcs_stage_factors_miss_of_row(stages, entry, r, stages->method->s, in, y, &terms);
         worst = missed != missed ? INFINITY : fmax(worst, scale * fabs(missed));
         size = fmax(size, scale * terms);
     }
@@ -195,7 +199,7 @@ static enum dalcs_status find_residual(struct dalcs_stages *stages,
     const struct dalcs_system *s = stages->system;
     const struct dalcs_stage_layout *l = &stages->layout;
     double *in = dalcs_alloc((size_t)stages->n_in, sizeof(double));
-    double *out = dalcs_alloc((size_t)l->n_fixed, sizeof(double));
+    double *out = dalcs_alloc((size_t)(l->n_fixed + entry->n_clashes), sizeof(double));
     enum dalcs_status status = DALCS_E_NOMEM;
     if (in != NULL && out != NULL) {
         for (int k = 0; k < stages->n_in; k++) {
@@ -209,6 +213,34 @@ static enum dalcs_status find_residual(struct dalcs_stages *stages,
     free(in);
     free(out);
     return status;
+}
+
+/* Scales of the mode's matrix, which its rows and columns are listed in. */
+static void keep_scales(const struct dalcs_stage_plan *plan, const struct dalcs_stage_matrix *m,
+                        struct dalcs_stage_factors *f) {
+    spread_scales(m, dalcs_stage_plan_n_equations(plan), f->column_scale);
+    memcpy(f->pair_scale, m->column_scale + plan->rest.n_awake,
+           (size_t)f->n_pairs * sizeof(double));
+}
+
+/* The same with choices in the place of rows that follow from others. */
+static enum dalcs_status factor_singular(struct dalcs_stages *stages,
+                                         struct dalcs_stage_entry *entry,
+                                         struct dalcs_stage_factors *f,
+                                         struct dalcs_stage_matrix *m) {
+    const struct dalcs_stage_plan *plan = stages->plan;
+    DALCS_TRY(dalcs_stage_singular_find(&f->singular, plan, entry));
+    for (int i = 0; i < m->n; i++) {
+        for (int k = 0; k < f->singular.n; k++) {
+            if (m->row[i] == f->singular.row[k]) {
+                f->singular.scale[k] = m->row_scale[i];
+            }
+        }
+    }
+    dalcs_stage_matrix_finish(m);
+    DALCS_TRY(dalcs_stage_matrix_build(m, plan, f->n_pairs, f->pair, &f->singular, entry->h));
+    keep_scales(plan, m, f);
+    return factor_all(stages, entry, f, m);
 }
 
 static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
@@ -232,25 +264,21 @@ static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_e
         find_function_shares(stages, entry->h, &e->function[k],
                              f->function_share + k * DALCS_N_SHARES);
     }
-    DALCS_TRY(dalcs_stage_matrix_build(m, plan, f->n_pairs, f->pair, entry->h));
-    int n_equations = dalcs_system_n_equations(s);
-    spread_scales(m, n_equations, f->column_scale);
-    memcpy(f->pair_scale, m->column_scale + plan->rest.n_awake,
-           (size_t)f->n_pairs * sizeof(double));
-    memcpy(entry->natural, f->column_scale, (size_t)n_equations * sizeof(double));
-    enum dalcs_status status = factor_regular(stages, entry, f, m);
+    DALCS_TRY(dalcs_stage_matrix_build(m, plan, f->n_pairs, f->pair, &f->singular, entry->h));
+    keep_scales(plan, m, f);
+    memcpy(entry->natural, f->column_scale, (size_t)dalcs_system_n_equations(s) * sizeof(double));
+    enum dalcs_status status = factor_all(stages, entry, f, m);
     if (status == DALCS_OK) {
         remember_pivots(plan, m, f);
         entry->frees_states = dalcs_stage_freedom_of_mode(plan, entry);
-        DALCS_TRY(find_residual(stages, entry));
     } else if (status == DALCS_SINGULAR && s->n_pairs > 0 && !plan->rest.any) {
         drop_systems(f);
-        DALCS_TRY(dalcs_stage_singular_build(stages, entry, f));
-        entry->n_clashes = stages->method->s;
-        entry->residual = dalcs_stage_singular_residual(plan, entry, f);
+        DALCS_TRY(factor_singular(stages, entry, f, m));
+        entry->n_clashes = f->singular.n * stages->method->s;
     } else {
         return status;
     }
+    DALCS_TRY(find_residual(stages, entry));
     return entry->residual <= largest_residual ? DALCS_OK : DALCS_SINGULAR;
 }
 
@@ -265,7 +293,7 @@ static enum dalcs_status build_own(struct dalcs_stages *stages, struct dalcs_sta
     dalcs_stage_matrix_finish(&m);
     DALCS_TRY(status);
     size_t n = (size_t)f->n;
-    entry->bytes += sizeof(*f) + dalcs_stage_singular_bytes(f->singular) +
+    entry->bytes += sizeof(*f) + dalcs_stage_singular_bytes(&f->singular) +
                     (size_t)stages->system->n_pairs * sizeof(int) + n * sizeof(double) +
                     (size_t)stages->excitation->n_functions * DALCS_N_SHARES * sizeof(double);
     for (int q = 0; q < f->n_systems; q++) {
@@ -296,7 +324,7 @@ void dalcs_stage_factors_destroy(struct dalcs_stages *stages, struct dalcs_stage
         dalcs_stage_update_destroy(stages, factors);
     } else {
         drop_systems(factors);
-        dalcs_stage_singular_destroy(factors->singular);
+        dalcs_stage_singular_finish(&factors->singular);
         dalcs_stage_changes_destroy(stages, factors->change);
         free(factors->pair);
         free(factors->column_scale);

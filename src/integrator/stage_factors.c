@@ -44,6 +44,34 @@ static void find_drive(const struct dalcs_stage_plan *plan, const struct dalcs_s
     for (int k = 0; k < f->n_pairs; k++) {
         find_drive_of_row(plan, n_equations + f->pair[k], x, factor);
     }
+    const struct dalcs_csr *shore = &f->singular.shore;
+    for (int k = 0; k < f->singular.n; k++) {
+        double sum = 0.0;
+        for (int e = shore->p[k]; e < shore->p[k + 1]; e++) {
+            find_drive_of_row(plan, n_equations + shore->j[e], x, factor);
+            sum += shore->x[e] * plan->rhs[n_equations + shore->j[e]];
+        }
+        plan->rhs[plan->n_rows + k] = sum;
+    }
+}
+
+/* Adds the waves in the reverse voltages of choice k. */
+static void load_choice(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
+                        int system, int share, int k) {
+    const struct dalcs_stage_order *o = &f->order[system];
+    const struct dalcs_csr *shore = &f->singular.shore;
+    int at = o->choice_at[k];
+    int stride = system > 0 ? 2 : 1;
+    for (int e = shore->p[k]; e < shore->p[k + 1]; e++) {
+        int row = f->n - f->n_pairs + shore->j[e];
+        for (int i = plan->wave_begin[row]; i < plan->wave_begin[row + 1]; i++) {
+            const double *of_wave = plan->share + plan->wave_of[i] * DALCS_N_SHARES + share;
+            for (int part = 0; part < stride; part++) {
+                f->lu[system].work[at * stride + part] +=
+                    o->scale[at] * shore->x[e] * plan->wave_x[i] * of_wave[part];
+            }
+        }
+    }
 }
 
 void dalcs_stage_factors_load(const struct dalcs_stage_plan *plan,
@@ -68,16 +96,17 @@ void dalcs_stage_factors_load(const struct dalcs_stage_plan *plan,
             work[at * stride + part] += o->scale[at] * plan->wave_x[k] * of_wave[part];
         }
     }
+    for (int k = 0; k < f->singular.n; k++) {
+        load_choice(plan, f, system, share, k);
+    }
 }
 
 /* Of plan->rhs and a share of the waves: the unknowns of a system, balanced, to lu.work. */
-static void solve(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
-                  const struct dalcs_stage_factors *f, int system, int share) {
+static void solve(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
+                  int system, int share) {
     dalcs_stage_factors_load(plan, f, system, share);
     if (f->update != NULL) {
         dalcs_stage_update_solve(plan, f, system, share);
-    } else if (f->singular != NULL) {
-        dalcs_stage_singular_solve(plan, entry, f, system);
     } else if (system == 0) {
         dalcs_lu_solve_ordered(&f->lu[0]);
     } else {
@@ -144,9 +173,7 @@ static void put_piece(const struct dalcs_stage_plan *plan, const struct dalcs_st
         memcpy(y + first, piece->y, (size_t)count * sizeof(double));
     } else {
         for (int k = 0; k < count; k++) {
-            int d = f->pair[first + k - n_equations];
-            bool is_on = f->singular == NULL || dalcs_stage_is_on(entry, d);
-            y[n_equations + d] = is_on ? piece->y[k] : 0.0;
+            y[n_equations + f->pair[first + k - n_equations]] = piece->y[k];
         }
     }
 }
@@ -233,19 +260,20 @@ static void put_other_sides(const struct dalcs_stage_plan *plan,
     }
 }
 
-/* How far the equations disagree at each stage, from what the solutions have left. */
-static void put_clashes(const struct dalcs_stage_plan *plan, double *clash) {
-    int n_x = plan->stages->system->n_x;
-    for (int i = 1; i <= plan->stages->method->s; i++) {
-        double largest = 0.0;
-        for (int r = n_x; r < plan->n_rows; r++) {
-            double sum = 0.0;
-            for (int q = 0; q < plan->n_parts; q++) {
-                sum += plan->to[i][q] * plan->left[q * plan->n_rows + r];
-            }
-            largest = fmax(largest, fabs(sum));
+/* How far the equations disagree at each stage: what is missed by those that should follow from the
+ * others. */
+static void put_clashes(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
+                        const double *in, double *out) {
+    const struct dalcs_stage_singular *g = &entry->factors->singular;
+    const struct dalcs_stage_layout *l = &stages->layout;
+    double *clash = out + l->n_fixed;
+    for (int k = 0; k < g->n; k++) {
+        for (int node = 1; node < l->n_nodes; node++) {
+            double terms;
+            *clash++ =
+                g->scale[k] * dalcs_stage_factors_miss_of_row(stages, entry, g->row[k], node, in,
+                                                              out + node * l->stride, &terms);
         }
-        clash[i - 1] = largest;
     }
 }
 
@@ -281,9 +309,7 @@ static void add_real(const struct dalcs_stage_plan *plan, const struct dalcs_sta
     int n_equations = f->n - f->n_pairs;
     add_runs(f, &plan->rest.without, columns);
     for (int k = 0; k < f->n_pairs; k++) {
-        if (dalcs_stage_is_on(entry, f->pair[k])) {
-            columns[n_equations + f->pair[k]] += f->pair_scale[k] * work[f->order[0].of_pair[k]];
-        }
+        columns[n_equations + f->pair[k]] += f->pair_scale[k] * work[f->order[0].of_pair[k]];
     }
 }
 
@@ -299,29 +325,27 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
     find_shares(stages, f, in + n_x + 1);
     find_drive(plan, f, in, in[n_x]);
     for (int q = 0; q < f->n_systems; q++) {
-        solve(plan, entry, f, q, q == 0 ? DALCS_SHARE_REAL : DALCS_SHARE_PAIR + 2 * (q - 1));
+        solve(plan, f, q, q == 0 ? DALCS_SHARE_REAL : DALCS_SHARE_PAIR + 2 * (q - 1));
     }
     put_columns(plan, entry, in, out);
-    if (f->singular != NULL) {
-        put_clashes(plan, out + l->n_fixed);
-    }
+    put_clashes(stages, entry, in, out);
     find_drive(plan, f, plan->missed, 0.0);
-    solve(plan, entry, f, 0, DALCS_SHARE_DRIFT);
+    solve(plan, f, 0, DALCS_SHARE_DRIFT);
     put_runs(f, &plan->rest.states, 1.0, out + l->drift);
     add_real(plan, entry, out);
     if (n_x > 0) {
         /* What was added goes with states that are off by the drift: take that back as well. */
         put_runs(f, &plan->rest.states, -1.0, plan->missed);
         find_drive(plan, f, plan->missed, 0.0);
-        solve(plan, entry, f, 0, DALCS_SHARE_NONE);
+        solve(plan, f, 0, DALCS_SHARE_NONE);
         add_real(plan, entry, out);
     }
     for (int node = 0; node < l->n_nodes; node++) {
         put_other_sides(plan, entry, in[n_x], node, true, out + node * l->stride);
     }
     if (stages->excitation->is_curved) {
-        memset(plan->rhs, 0, (size_t)n_columns * sizeof(double));
-        solve(plan, entry, f, 0, DALCS_SHARE_RIPPLE_RATE);
+        memset(plan->rhs, 0, (size_t)(n_columns + f->singular.n) * sizeof(double));
+        solve(plan, f, 0, DALCS_SHARE_RIPPLE_RATE);
         add_runs(f, &plan->rest.states, out + l->ripple);
         add_real(plan, entry, out + l->ripple);
         put_other_sides(plan, entry, 0.0, DALCS_SHARE_RIPPLE, false, out + l->ripple);

@@ -7,57 +7,30 @@
 
 /* Where a system's LU, which has its own order, takes what it solves from and leaves it. */
 struct dalcs_stage_order {
-    int n;         /* positions */
-    int *row_of;   /* [n] row of M at position i */
-    double *scale; /* [n] of that row */
-    int *position; /* [n] of an unknown */
-    int *of_pair;  /* [n_pairs] position of a pair's lambda */
-    int *wave_at;  /* [plan->n_waves] position of the entry's row, -1: not there */
-};
-
-/* A singular mode: all pairs present, with small weights that make it regular. */
-struct dalcs_stage_singular {
-    struct dalcs_stage_matrix matrix; /* M, without the weights */
-    double *weight;                   /* [n_pairs] closed: on lambda; open: on w */
-    int *unknown_of;                  /* [n_equations] column of a row's weight, -1: none */
-    double re[DALCS_STAGE_SYSTEMS], im[DALCS_STAGE_SYSTEMS]; /* mu / h */
+    int n;          /* positions */
+    int *row_of;    /* [n] row of M at position i; n_rows + k: choice k */
+    double *scale;  /* [n] of that row */
+    int *position;  /* [n] of an unknown */
+    int *of_pair;   /* [n_pairs] position of a pair's lambda */
+    int *wave_at;   /* [plan->n_waves] position of the entry's row, -1: not there */
+    int *choice_at; /* [singular.n] */
 };
 
 /* Those of an update are its base's but for `pair`, `pair_scale` and where lambdas are. */
 struct dalcs_stage_factors {
     int n;
-    int n_pairs; /* present: all in a singular mode */
+    int n_pairs; /* present */
     int *pair;   /* [n_pairs] */
     int n_systems;
     struct dalcs_lu lu[DALCS_STAGE_SYSTEMS]; /* the real one first */
     struct dalcs_stage_order order[DALCS_STAGE_SYSTEMS];
-    double *column_scale;                  /* [n_equations] */
-    double *pair_scale;                    /* [n_pairs] */
-    double *function_share;                /* [functions][DALCS_N_SHARES] */
-    struct dalcs_stage_singular *singular; /* NULL: regular */
-    struct dalcs_stage_update *update;     /* NULL: these are its own factors */
-    struct dalcs_stage_change **change;    /* [pairs of the system] NULL: none is known */
+    double *column_scale;                 /* [n_equations] */
+    double *pair_scale;                   /* [n_pairs] */
+    double *function_share;               /* [functions][DALCS_N_SHARES] */
+    struct dalcs_stage_singular singular; /* n is 0: regular */
+    struct dalcs_stage_update *update;    /* NULL: these are its own factors */
+    struct dalcs_stage_change **change;   /* [pairs of the system] NULL: none is known */
 };
-
-/* stage_singular.c: factors of a mode whose matrix is singular, into *f, which has none. */
-enum dalcs_status dalcs_stage_singular_build(struct dalcs_stages *stages,
-                                             struct dalcs_stage_entry *entry,
-                                             struct dalcs_stage_factors *f) DALCS_MUST_CHECK;
-
-/* lu[system].work, which holds the right-hand side in its order, becomes the solution of least
- * norm; plan->left gets what the equations disagree by. */
-void dalcs_stage_singular_solve(const struct dalcs_stage_plan *plan,
-                                const struct dalcs_stage_entry *entry,
-                                const struct dalcs_stage_factors *f, int system);
-
-/* Largest residual of the weighted systems, relative. */
-double dalcs_stage_singular_residual(const struct dalcs_stage_plan *plan,
-                                     const struct dalcs_stage_entry *entry,
-                                     const struct dalcs_stage_factors *f);
-
-void dalcs_stage_singular_destroy(struct dalcs_stage_singular *g);
-
-size_t dalcs_stage_singular_bytes(const struct dalcs_stage_singular *g);
 
 /* stage_build.c: mu / h of a system. */
 void dalcs_stage_factors_eigenvalue(const struct dalcs_stages *stages, double h, int system,
@@ -68,6 +41,12 @@ enum dalcs_status dalcs_stage_factors_order(const struct dalcs_stage_plan *plan,
                                             const struct dalcs_stage_matrix *m,
                                             struct dalcs_stage_factors *f,
                                             int system) DALCS_MUST_CHECK;
+
+/* stage_build.c: what row r of M without derivatives misses at y, an answer at a node, and the sum of
+ * its terms. */
+double dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
+                                       const struct dalcs_stage_entry *entry, int r, int node,
+                                       const double *in, const double *y, double *terms);
 
 /* stage_build.c: the largest miss of the rows without derivatives over the largest of their terms,
  * balanced, at the last stage of the step from in[n_in] to out that was made last. */

@@ -19,20 +19,26 @@ static void list_rows(struct dalcs_stage_matrix *m, const struct dalcs_stage_pla
     }
 }
 
-/* Row r of M is row place[r] of the mode's, -1: none. */
-static void place_rows(const struct dalcs_stage_matrix *m, const struct dalcs_stage_plan *plan,
-                       int *place) {
-    for (int r = 0; r < plan->n_rows; r++) {
+/* Row r of M, and choice r - n_rows, is row place[r] of the mode's, -1: none. */
+static void place_rows(struct dalcs_stage_matrix *m, int n_rows,
+                       const struct dalcs_stage_singular *choice, int *place) {
+    for (int r = 0; r < n_rows + choice->n; r++) {
         place[r] = -1;
     }
     for (int i = 0; i < m->n; i++) {
         place[m->row[i]] = i;
     }
+    for (int k = 0; k < choice->n; k++) {
+        int at = place[choice->row[k]];
+        place[choice->row[k]] = -1;
+        place[n_rows + k] = at;
+        m->row[at] = n_rows + k;
+    }
 }
 
-/* Merges a column of the base and of P. */
-static int put_column(struct dalcs_stage_matrix *m, const struct dalcs_stage_plan *plan, int c,
-                      const int *place, int out) {
+/* Merges a column of the base and of P, and adds those of choices. */
+static int put_column(struct dalcs_stage_matrix *m, const struct dalcs_stage_plan *plan,
+                      const struct dalcs_stage_singular *choice, int c, const int *place, int out) {
     const struct dalcs_csr *b = &plan->base;
     const struct dalcs_csr *P = &plan->P;
     int k = b->p[c];
@@ -49,6 +55,13 @@ static int put_column(struct dalcs_stage_matrix *m, const struct dalcs_stage_pla
         m->i[out] = place[row];
         m->base[out] = value;
         m->P[out++] = rate;
+    }
+    const struct dalcs_csr *chosen = &choice->of_column;
+    int end = choice->n > 0 ? chosen->p[c + 1] : 0;
+    for (int e = choice->n > 0 ? chosen->p[c] : 0; e < end; e++) {
+        m->i[out] = place[plan->n_rows + chosen->j[e]];
+        m->base[out] = chosen->x[e];
+        m->P[out++] = 0.0;
     }
     return out;
 }
@@ -109,10 +122,14 @@ static void balance(struct dalcs_stage_matrix *m, double sigma) {
 }
 
 static enum dalcs_status fill(struct dalcs_stage_matrix *m, const struct dalcs_stage_plan *plan,
-                              const int *pair, double sigma) {
+                              const int *pair, const struct dalcs_stage_singular *choice,
+                              double sigma) {
     size_t n = (size_t)m->n;
     size_t capacity = (size_t)plan->base.p[plan->n_rows] + (size_t)plan->P.p[plan->n_rows];
-    int *place = dalcs_alloc((size_t)plan->n_rows, sizeof(*place));
+    if (choice->n > 0) {
+        capacity += (size_t)choice->of_column.p[plan->n_rows];
+    }
+    int *place = dalcs_alloc((size_t)(plan->n_rows + choice->n), sizeof(*place));
     m->row = dalcs_alloc(n, sizeof(*m->row));
     m->column = dalcs_alloc(n, sizeof(*m->column));
     m->p = dalcs_alloc(n + 1, sizeof(*m->p));
@@ -129,10 +146,10 @@ static enum dalcs_status fill(struct dalcs_stage_matrix *m, const struct dalcs_s
         return DALCS_E_NOMEM;
     }
     list_rows(m, plan, pair);
-    place_rows(m, plan, place);
+    place_rows(m, plan->n_rows, choice, place);
     int out = 0;
     for (int c = 0; c < m->n; c++) {
-        out = put_column(m, plan, m->column[c], place, out);
+        out = put_column(m, plan, choice, m->column[c], place, out);
         m->p[c + 1] = out;
     }
     free(place);
@@ -142,9 +159,10 @@ static enum dalcs_status fill(struct dalcs_stage_matrix *m, const struct dalcs_s
 
 enum dalcs_status dalcs_stage_matrix_build(struct dalcs_stage_matrix *m,
                                            const struct dalcs_stage_plan *plan, int n_pairs,
-                                           const int *pair, double h) {
+                                           const int *pair,
+                                           const struct dalcs_stage_singular *choice, double h) {
     *m = (struct dalcs_stage_matrix){.n = plan->rest.n_awake + n_pairs, .n_pairs = n_pairs};
-    enum dalcs_status status = fill(m, plan, pair, plan->stages->method->lambda / h);
+    enum dalcs_status status = fill(m, plan, pair, choice, plan->stages->method->lambda / h);
     if (status != DALCS_OK) {
         dalcs_stage_matrix_finish(m);
     }

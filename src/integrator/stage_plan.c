@@ -119,22 +119,15 @@ static bool allocate(struct dalcs_stage_plan *plan, const struct dalcs_system *s
     plan->wave_of_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
     plan->match = dalcs_alloc(n, sizeof(int));
     plan->analysis = dalcs_alloc((size_t)plan->most_analyses, sizeof(*plan->analysis));
-    plan->rhs = dalcs_alloc(n, sizeof(double));
+    plan->rhs = dalcs_alloc(n, 2 * sizeof(double));
     plan->share =
         dalcs_alloc((size_t)plan->stages->excitation->n_waves, DALCS_N_SHARES * sizeof(double));
     plan->missed = dalcs_alloc((size_t)s->n_x, sizeof(double));
     plan->guard = dalcs_alloc((size_t)(s->n_pairs + plan->stages->n_watched), sizeof(double));
-    plan->right = dalcs_alloc(n, 2 * sizeof(double));
-    plan->solution = dalcs_alloc(n, 2 * sizeof(double));
-    plan->product = dalcs_alloc(n, 2 * sizeof(double));
-    plan->centre = dalcs_alloc((size_t)s->n_pairs, 2 * sizeof(double));
-    plan->left = dalcs_alloc(n, DALCS_STAGE_PARTS * sizeof(double));
     return plan->constant != NULL && plan->wave_row != NULL && plan->wave_of != NULL &&
            plan->wave_x != NULL && plan->wave_begin != NULL && plan->wave_of_input != NULL &&
            plan->match != NULL && plan->analysis != NULL && plan->rhs != NULL &&
-           plan->share != NULL && plan->missed != NULL && plan->guard != NULL &&
-           plan->right != NULL && plan->solution != NULL && plan->product != NULL &&
-           plan->centre != NULL && plan->left != NULL;
+           plan->share != NULL && plan->missed != NULL && plan->guard != NULL;
 }
 
 static int how_many(int unknowns, int n) {
@@ -221,11 +214,6 @@ void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
     free(plan->share);
     free(plan->missed);
     free(plan->guard);
-    free(plan->right);
-    free(plan->solution);
-    free(plan->product);
-    free(plan->centre);
-    free(plan->left);
     free(plan);
 }
 
@@ -246,15 +234,15 @@ static int *list_matches_first(const struct dalcs_stage_plan *plan, int n, const
     return first;
 }
 
-static enum dalcs_status analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
-                                 const int *row, const int *column, int *p, const int *i,
-                                 struct dalcs_stage_analysis *a) {
+static enum dalcs_status analyze(struct dalcs_stages *stages, const uint64_t *mode,
+                                 bool is_singular, int n, const int *row, const int *column, int *p,
+                                 const int *i, struct dalcs_stage_analysis *a) {
     size_t words = (size_t)stages->n_words;
     int *first = list_matches_first(stages->plan, n, row, column, p, i);
-    *a = (struct dalcs_stage_analysis){.mode = mode != NULL ? dalcs_alloc(words + 1, sizeof(*mode))
-                                                            : NULL};
+    *a = (struct dalcs_stage_analysis){.mode = dalcs_alloc(words, sizeof(*mode)),
+                                       .is_singular = is_singular};
     enum dalcs_status status = DALCS_E_NOMEM;
-    if (first != NULL && (mode == NULL || a->mode != NULL)) {
+    if (first != NULL && a->mode != NULL) {
         status = dalcs_lu_analyze(&a->symbolic, &stages->klu, n, p, first);
     }
     free(first);
@@ -262,21 +250,20 @@ static enum dalcs_status analyze(struct dalcs_stages *stages, const uint64_t *mo
         free(a->mode);
         return status;
     }
-    if (mode != NULL) {
-        memcpy(a->mode, mode, words * sizeof(*mode));
-    }
+    memcpy(a->mode, mode, words * sizeof(*mode));
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
-                                           const int *row, const int *column, int *p, int *i,
+enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode,
+                                           bool is_singular, int n, const int *row,
+                                           const int *column, int *p, int *i,
                                            struct dalcs_stage_analysis **analysis) {
     struct dalcs_stage_plan *plan = stages->plan;
     size_t bytes = (size_t)stages->n_words * sizeof(*mode);
     int at = 0;
     for (; at < plan->n_analyses; at++) {
-        const uint64_t *of = plan->analysis[at].mode;
-        if (mode == NULL || of == NULL ? mode == of : memcmp(of, mode, bytes) == 0) {
+        const struct dalcs_stage_analysis *a = &plan->analysis[at];
+        if (a->is_singular == is_singular && memcmp(a->mode, mode, bytes) == 0) {
             break;
         }
     }
@@ -284,7 +271,7 @@ enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const ui
     if (at < plan->n_analyses) {
         found = plan->analysis[at];
     } else {
-        DALCS_TRY(analyze(stages, mode, n, row, column, p, i, &found));
+        DALCS_TRY(analyze(stages, mode, is_singular, n, row, column, p, i, &found));
         if (at == plan->most_analyses) {
             forget(stages, &plan->analysis[--at]);
         } else {

@@ -32,7 +32,8 @@ enum {
 
 /* What KLU knows of a mode. */
 struct dalcs_stage_analysis {
-    uint64_t *mode; /* NULL: all pairs present */
+    uint64_t *mode;
+    bool is_singular; /* with choices in it */
     klu_symbolic *symbolic;
     klu_numeric *numeric[DALCS_STAGE_SYSTEMS]; /* of the last step length, or NULL */
 };
@@ -66,15 +67,10 @@ struct dalcs_stage_plan {
     struct dalcs_stage_analysis *analysis; /* newest first */
 
     /* work */
-    double *rhs;      /* [n_rows] */
-    double *share;    /* [waves][DALCS_N_SHARES] */
-    double *missed;   /* [n_x] */
-    double *guard;    /* [n_pairs + watched] */
-    double *right;    /* [2 n_rows] of a singular system */
-    double *solution; /* [2 n_rows] */
-    double *product;  /* [2 n_rows] */
-    double *centre;   /* [2 n_pairs] */
-    double *left;     /* [parts][n_rows] what its equations disagree by */
+    double *rhs;    /* [2 n_rows] of the rows of M, then of choices */
+    double *share;  /* [waves][DALCS_N_SHARES] */
+    double *missed; /* [n_x] */
+    double *guard;  /* [n_pairs + watched] */
 };
 
 static inline int dalcs_stage_plan_n_equations(const struct dalcs_stage_plan *plan) {
@@ -86,10 +82,11 @@ enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) DALCS_MUST_C
 
 void dalcs_stage_plan_destroy(struct dalcs_stages *stages);
 
-/* KLU's analysis of a mode's pattern (p, i), whose rows and columns are row[n] and column[n] of M;
- * mode NULL: of the matrix with all pairs. It belongs to the plan and stays until the next call. */
-enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode, int n,
-                                           const int *row, const int *column, int *p, int *i,
+/* KLU's analysis of a mode's pattern (p, i), whose rows and columns are row[n] and column[n] of M. It
+ * belongs to the plan and stays until the next call. */
+enum dalcs_status dalcs_stage_plan_analyze(struct dalcs_stages *stages, const uint64_t *mode,
+                                           bool is_singular, int n, const int *row,
+                                           const int *column, int *p, int *i,
                                            struct dalcs_stage_analysis **analysis) DALCS_MUST_CHECK;
 
 /* Forgets all of them: other rows and columns are at rest. */

@@ -1,349 +1,310 @@
-/* stage_singular.c - the stages of a mode that leaves something open.
+/* stage_singular.c - which equations of a mode follow from others, and what is chosen instead.
  *
- * All pairs are present, with small weights (as in the OSNSP, proximal.c),
- *     closed:  w + (eps/G) lambda = 0,     open:  lambda + (eps G) w = 0,
- * so that the matrix is regular; far smaller ones on the unknowns help where no pair does. The
- * solution is then moved until the weights no longer matter. Those of unknowns and switches are
- * taken away first, so that diodes alone decide what is open; then the diodes are pulled towards
- * where they are and no longer towards 0, which leaves in place what only they determined (the
- * proximal-point iteration of Rockafellar 1976, from 0). What is left of the residual says by
- * how much the equations disagree. */
-#include "stage_factors.h"
+ * Equations that follow are found among those without derivatives, in all columns; what is open among
+ * the columns without memory, in all rows (dalcs_null_space). Least norm means that of the currents
+ * of closed and the reverse voltages of open diodes: the limit of equal small on-resistances and equal
+ * small leaks. What is open and no diode's has the least norm of all unknowns. */
+#include "stage_singular.h"
+
+#include "null_space.h"
+#include "stages_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a pair, in balanced units; that of unknowns and switches is smaller by the second number,
- * which is also how far each round takes them away. */
-static const double pair_weight = 1e-6;
-static const double lesser_weight = 1e-4;
+/* Beside what it was, a vector this small is what rounding left of it. */
+static const double independent = 1e-9;
 
-/* How far the local conductance of a pair may pull its weight from the common one. */
-static const double weight_spread = 1e3;
-
-/* A residual this small, relatively, is rounding. */
-static const double rounding = 1e-14;
-
-/* Nor is it worth while to go on where the solution moves by less than this part. */
-static const double unmoved = 1e-12;
-
-enum { LESSER_ROUNDS = 5, FINAL_ROUNDS = 3 };
-
-static double weight_of_unknowns(void) {
-    return pair_weight * lesser_weight;
-}
-
-/* Equal diodes are weighted equally in amperes and volts, as far as the conductances around
- * allow. */
-static void choose_weights(const struct dalcs_system *s, const struct dalcs_stage_entry *entry,
-                           struct dalcs_stage_singular *g) {
-    int n_equations = dalcs_system_n_equations(s);
-    double sum = 0.0;
-    for (int d = 0; d < s->n_pairs; d++) {
-        int at = n_equations + d;
-        sum += ilogb(g->matrix.row_scale[at] * g->matrix.column_scale[at]);
-    }
-    double common = exp2(rint(sum / s->n_pairs));
-    for (int d = 0; d < s->n_pairs; d++) {
-        int at = n_equations + d;
-        double ratio = g->matrix.row_scale[at] * g->matrix.column_scale[at] / common;
-        ratio = fmin(fmax(ratio, 1.0 / weight_spread), weight_spread);
-        double kind = s->pair[d].kind == DALCS_PAIR_DIODE ? 1.0 : lesser_weight;
-        g->weight[d] = pair_weight * kind * (dalcs_stage_is_on(entry, d) ? ratio : 1.0 / ratio);
-    }
-}
-
-/* Unknowns without memory, paired with equations without. */
-static void list_unknowns(const struct dalcs_system *s, int *unknown_of) {
-    for (int r = 0; r < dalcs_system_n_equations(s); r++) {
-        unknown_of[r] = r >= s->n_x && s->dual[r] >= s->n_x ? s->dual[r] : -1;
-    }
-}
-
-struct weighted {
-    int *p, *i;
-    double *x;
+/* What a solution that is 0 on every right-hand side has in diodes. */
+struct trace {
+    int n;
+    int *pair;
+    double *value;
 };
 
-static void weighted_finish(struct weighted *a) {
-    free(a->p);
-    free(a->i);
-    free(a->x);
-}
+struct search {
+    const struct dalcs_system *system;
+    const struct dalcs_stage_entry *entry;
+    struct dalcs_arena arena;
+    int n_columns;       /* without memory: z, then lambda of closed pairs */
+    int n_open;          /* solutions */
+    double *vector;      /* [n_open][n_columns] */
+    struct trace *trace; /* [n_open] */
+    double *of_pair;     /* [n_pairs] work */
+    struct dalcs_triplets choice, shore;
+};
 
-/* The value at (row, column) of the weighted matrix; from m->values. */
-static double weighted_value(const struct dalcs_system *s, const struct dalcs_stage_entry *entry,
-                             const struct dalcs_stage_singular *g, int row, double value) {
-    int d = row - dalcs_system_n_equations(s);
-    return d >= 0 && !dalcs_stage_is_on(entry, d) ? g->weight[d] * value : value;
-}
-
-/* M with its weights, as a pattern that is the same in all modes. */
-static void put_weights(const struct dalcs_system *s, const struct dalcs_stage_entry *entry,
-                        const struct dalcs_stage_singular *g, const int *row_of, int stride,
-                        struct weighted *a) {
-    const struct dalcs_stage_matrix *m = &g->matrix;
-    int n_equations = dalcs_system_n_equations(s);
-    int out = 0;
-    for (int c = 0; c < m->n; c++) {
-        int extra = c < n_equations ? row_of[c] : c;
-        double diagonal = weight_of_unknowns();
-        if (c >= n_equations) {
-            int d = c - n_equations;
-            diagonal = dalcs_stage_is_on(entry, d) ? g->weight[d] : 1.0;
+/* Adds row `from` of a, its columns from `first` on, which closed pairs follow closely. */
+static enum dalcs_status add_row(struct dalcs_triplets *t, const struct dalcs_stage_entry *entry,
+                                 const struct dalcs_csr *a, int from, int first, int n_equations,
+                                 const int *closed, int row) {
+    for (int k = a->p[from]; k < a->p[from + 1]; k++) {
+        int c = a->j[k];
+        if (c < first || (c >= n_equations && !dalcs_stage_is_on(entry, c - n_equations))) {
+            continue;
         }
-        bool seen = extra < 0;
-        for (int k = m->p[c]; k < m->p[c + 1]; k++, out++) {
-            a->i[out] = m->i[k];
-            for (int part = 0; part < stride; part++) {
-                double value = m->values[stride * k + part];
-                a->x[stride * out + part] = weighted_value(s, entry, g, m->i[k], value);
-            }
-            if (m->i[k] == extra) {
-                a->x[stride * out] += diagonal;
-                seen = true;
-            }
-        }
-        if (!seen) {
-            a->i[out] = extra;
-            a->x[stride * out] = diagonal;
-            if (stride == 2) {
-                a->x[stride * out + 1] = 0.0;
-            }
-            out++;
-        }
-        a->p[c + 1] = out;
-    }
-}
-
-static enum dalcs_status factor_all(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
-                                    struct dalcs_stage_factors *f, const int *row_of,
-                                    struct weighted *a) {
-    struct dalcs_stage_singular *g = f->singular;
-    struct dalcs_stage_analysis *known = NULL;
-    for (int q = 0; q < f->n_systems; q++) {
-        dalcs_stage_factors_eigenvalue(stages, entry->h, q, &g->re[q], &g->im[q]);
-        dalcs_stage_matrix_at(&g->matrix, g->re[q], g->im[q], q > 0);
-        put_weights(stages->system, entry, g, row_of, q > 0 ? 2 : 1, a);
-        if (q == 0) {
-            DALCS_TRY(dalcs_stage_plan_analyze(stages, NULL, f->n, g->matrix.row, g->matrix.column,
-                                               a->p, a->i, &known));
-        }
-        DALCS_TRY(dalcs_lu_factor_analyzed(&f->lu[q], q > 0 ? &stages->klu_complex : &stages->klu,
-                                           known->symbolic, NULL, q > 0, a->p, a->i, a->x, 0.0));
-        DALCS_TRY(dalcs_stage_factors_order(stages->plan, &g->matrix, f, q));
+        int column = c < n_equations ? c - first : n_equations - first + closed[c - n_equations];
+        DALCS_TRY(dalcs_triplets_add(t, row, column, a->x[k]));
     }
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_stage_singular_build(struct dalcs_stages *stages,
-                                             struct dalcs_stage_entry *entry,
-                                             struct dalcs_stage_factors *f) {
-    const struct dalcs_system *s = stages->system;
-    int n_equations = dalcs_system_n_equations(s);
-    struct dalcs_stage_singular *g = dalcs_alloc(1, sizeof(*g));
-    if (g == NULL) {
-        return DALCS_E_NOMEM;
+/* The null space of the equations from `first_row` on and the closed pairs, in the columns from
+ * first_column on. */
+static enum dalcs_status find_null_space(const struct search *s, int first_row, int first_column,
+                                         const int *closed, struct dalcs_null_space *space) {
+    const struct dalcs_system *of = s->system;
+    int n_equations = dalcs_system_n_equations(of);
+    struct dalcs_triplets t = {0};
+    struct dalcs_csr a = {0};
+    enum dalcs_status status = DALCS_OK;
+    for (int r = first_row; status == DALCS_OK && r < n_equations; r++) {
+        status = add_row(&t, s->entry, &of->A, r, first_column, n_equations, closed, r - first_row);
     }
-    f->singular = g;
-    f->n = n_equations + s->n_pairs;
-    f->n_pairs = s->n_pairs;
-    for (int d = 0; d < s->n_pairs; d++) {
-        f->pair[d] = d;
+    for (int k = 0; status == DALCS_OK && k < s->entry->n_on; k++) {
+        status = add_row(&t, s->entry, &of->C, s->entry->on[k], first_column, n_equations, closed,
+                         n_equations - first_row + k);
     }
-    DALCS_TRY(dalcs_stage_matrix_build(&g->matrix, stages->plan, f->n_pairs, f->pair, entry->h));
-    g->weight = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
-    g->unknown_of = dalcs_alloc((size_t)n_equations, sizeof(int));
-    int *row_of = dalcs_alloc((size_t)n_equations, sizeof(int));
-    size_t capacity = (size_t)g->matrix.p[f->n] + (size_t)f->n;
-    struct weighted a = {.p = dalcs_alloc((size_t)f->n + 1, sizeof(int)),
-                         .i = dalcs_alloc(capacity, sizeof(int)),
-                         .x = dalcs_alloc(capacity, 2 * sizeof(double))};
-    enum dalcs_status status = DALCS_E_NOMEM;
-    if (g->weight != NULL && g->unknown_of != NULL && row_of != NULL && a.p != NULL &&
-        a.i != NULL && a.x != NULL) {
-        choose_weights(s, entry, g);
-        list_unknowns(s, g->unknown_of);
-        for (int r = 0; r < n_equations; r++) {
-            row_of[r] = -1;
-        }
-        for (int r = 0; r < n_equations; r++) {
-            if (g->unknown_of[r] >= 0) {
-                row_of[g->unknown_of[r]] = r;
-            }
-        }
-        memcpy(f->column_scale, g->matrix.column_scale, (size_t)f->n * sizeof(double));
-        status = factor_all(stages, entry, f, row_of, &a);
+    if (status == DALCS_OK) {
+        status = dalcs_csr_compress(&a, n_equations - first_row + s->entry->n_on,
+                                    n_equations - first_column + s->entry->n_on, &t);
     }
-    free(row_of);
-    weighted_finish(&a);
+    if (status == DALCS_OK) {
+        status = dalcs_null_space_find(space, &a);
+    }
+    dalcs_triplets_finish(&t);
+    dalcs_csr_finish(&a);
     return status;
 }
 
-/* plan->product = M plan->solution. */
-static void multiply(const struct dalcs_stage_plan *plan, const struct dalcs_stage_singular *g,
-                     int system) {
-    const struct dalcs_stage_matrix *m = &g->matrix;
-    const double *y = plan->solution;
-    double *t = plan->product;
-    int stride = system > 0 ? 2 : 1;
-    memset(t, 0, (size_t)(m->n * stride) * sizeof(double));
-    for (int c = 0; c < m->n; c++) {
-        for (int k = m->p[c]; k < m->p[c + 1]; k++) {
-            int r = m->i[k];
-            double re = m->base[k] + g->re[system] * m->P[k];
-            if (stride == 1) {
-                t[r] += re * y[c];
-            } else {
-                double im = g->im[system] * m->P[k];
-                t[2 * r] += re * y[2 * c] - im * y[2 * c + 1];
-                t[2 * r + 1] += re * y[2 * c + 1] + im * y[2 * c];
+/* w of an open pair, or lambda of a closed one, in a solution without states. */
+static double other_side(const struct search *s, int pair, const double *vector,
+                         const int *closed) {
+    const struct dalcs_csr *C = &s->system->C;
+    int n_x = s->system->n_x;
+    int n_equations = dalcs_system_n_equations(s->system);
+    if (dalcs_stage_is_on(s->entry, pair)) {
+        return vector[n_equations - n_x + closed[pair]];
+    }
+    double sum = 0.0;
+    double size = 0.0;
+    for (int k = C->p[pair]; k < C->p[pair + 1]; k++) {
+        int c = C->j[k];
+        if (c < n_x || (c >= n_equations && !dalcs_stage_is_on(s->entry, c - n_equations))) {
+            continue;
+        }
+        int at = c < n_equations ? c - n_x : n_equations - n_x + closed[c - n_equations];
+        sum += C->x[k] * vector[at];
+        size += fabs(C->x[k] * vector[at]);
+    }
+    return fabs(sum) > 1e-14 * size ? sum : 0.0;
+}
+
+static enum dalcs_status keep_trace(struct search *s, struct trace *trace) {
+    int n_pairs = s->system->n_pairs;
+    int n = 0;
+    for (int d = 0; d < n_pairs; d++) {
+        n += s->of_pair[d] != 0.0;
+    }
+    trace->pair = dalcs_arena_alloc(&s->arena, (size_t)n, sizeof(int));
+    trace->value = dalcs_arena_alloc(&s->arena, (size_t)n, sizeof(double));
+    if (trace->pair == NULL || trace->value == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int d = 0; d < n_pairs; d++) {
+        if (s->of_pair[d] != 0.0) {
+            trace->pair[trace->n] = d;
+            trace->value[trace->n++] = s->of_pair[d];
+        }
+    }
+    return DALCS_OK;
+}
+
+static double norm_of(const double *v, int n) {
+    double sum = 0.0;
+    for (int k = 0; k < n; k++) {
+        sum += v[k] * v[k];
+    }
+    return sqrt(sum);
+}
+
+static double product(const struct trace *trace, const double *of_pair) {
+    double sum = 0.0;
+    for (int k = 0; k < trace->n; k++) {
+        sum += trace->value[k] * of_pair[trace->pair[k]];
+    }
+    return sum;
+}
+
+/* Makes the traces orthogonal (Gram and Schmidt, twice), and those that vanish empty. */
+static enum dalcs_status find_traces(struct search *s, const int *closed) {
+    int n_pairs = s->system->n_pairs;
+    for (int k = 0; k < s->n_open; k++) {
+        double *vector = s->vector + k * s->n_columns;
+        for (int d = 0; d < n_pairs; d++) {
+            bool is_diode = s->system->pair[d].kind == DALCS_PAIR_DIODE;
+            s->of_pair[d] = is_diode ? other_side(s, d, vector, closed) : 0.0;
+        }
+        double before = norm_of(s->of_pair, n_pairs);
+        for (int i = 0; i < 2 * k; i++) {
+            const struct trace *other = &s->trace[i % k];
+            double share = product(other, s->of_pair);
+            for (int e = 0; share != 0.0 && e < other->n; e++) {
+                s->of_pair[other->pair[e]] -= share * other->value[e];
+            }
+            for (int c = 0; share != 0.0 && c < s->n_columns; c++) {
+                vector[c] -= share * s->vector[i % k * s->n_columns + c];
+            }
+        }
+        double norm = norm_of(s->of_pair, n_pairs);
+        if (!(norm > independent * before)) {
+            continue;
+        }
+        for (int d = 0; d < n_pairs; d++) {
+            s->of_pair[d] = fabs(s->of_pair[d]) > independent * norm ? s->of_pair[d] / norm : 0.0;
+        }
+        for (int c = 0; c < s->n_columns; c++) {
+            vector[c] /= norm;
+        }
+        DALCS_TRY(keep_trace(s, &s->trace[k]));
+    }
+    return DALCS_OK;
+}
+
+/* The choice that is orthogonal to solution k in diodes. */
+static enum dalcs_status choose_in_diodes(struct search *s, int k) {
+    const struct dalcs_csr *C = &s->system->C;
+    const struct trace *trace = &s->trace[k];
+    int n_equations = dalcs_system_n_equations(s->system);
+    for (int e = 0; e < trace->n; e++) {
+        int d = trace->pair[e];
+        if (dalcs_stage_is_on(s->entry, d)) {
+            DALCS_TRY(dalcs_triplets_add(&s->choice, n_equations + d, k, trace->value[e]));
+            continue;
+        }
+        DALCS_TRY(dalcs_triplets_add(&s->shore, k, d, trace->value[e]));
+        for (int i = C->p[d]; i < C->p[d + 1]; i++) {
+            int c = C->j[i];
+            if (c < n_equations || dalcs_stage_is_on(s->entry, c - n_equations)) {
+                DALCS_TRY(dalcs_triplets_add(&s->choice, c, k, trace->value[e] * C->x[i]));
             }
         }
     }
+    return DALCS_OK;
 }
 
-/* plan->product = what the equations, with the weights that are held, miss at plan->solution. Held
- * diodes are pulled towards their centre, which `recentre` first moves to where they are: then they
- * are not pulled at all. Returns the largest. */
-static double find_residual(const struct dalcs_stage_plan *plan,
-                            const struct dalcs_stage_entry *entry,
-                            const struct dalcs_stage_singular *g, int system, bool hold_all,
-                            bool recentre) {
-    const struct dalcs_system *s = plan->stages->system;
-    int n_equations = dalcs_system_n_equations(s);
-    int stride = system > 0 ? 2 : 1;
-    double largest = 0.0;
-    multiply(plan, g, system);
-    for (int k = 0; k < n_equations * stride; k++) {
-        int column = g->unknown_of[k / stride];
-        double missed = plan->right[k] - plan->product[k];
-        if (hold_all && column >= 0) {
-            missed -= weight_of_unknowns() * plan->solution[column * stride + k % stride];
+static enum dalcs_status choose_in_all(struct search *s, int k) {
+    int n_z = s->system->n_z;
+    int n_equations = dalcs_system_n_equations(s->system);
+    for (int c = 0; c < s->n_columns; c++) {
+        int column = c < n_z ? s->system->n_x + c : n_equations + s->entry->on[c - n_z];
+        double value = s->vector[k * s->n_columns + c];
+        if (value != 0.0) {
+            DALCS_TRY(dalcs_triplets_add(&s->choice, column, k, value));
         }
-        plan->product[k] = missed;
-        largest = fmax(largest, fabs(missed));
     }
-    for (int k = n_equations * stride; k < g->matrix.n * stride; k++) {
-        int d = k / stride - n_equations;
-        double *centre = plan->centre + k - n_equations * stride;
-        bool is_on = dalcs_stage_is_on(entry, d);
-        double w = plan->product[k] - plan->right[k];
-        double lambda = plan->solution[k];
-        double held = is_on ? lambda : w;
-        if (recentre) {
-            *centre = held;
-        }
-        double pull = hold_all || s->pair[d].kind == DALCS_PAIR_DIODE ? held - *centre : 0.0;
-        double missed = -(is_on ? w : lambda) - g->weight[d] * pull;
-        plan->product[k] = missed;
-        largest = fmax(largest, fabs(missed));
-    }
-    return largest;
+    return DALCS_OK;
 }
 
-static double largest_of(const double *v, int n) {
-    double largest = 0.0;
-    for (int k = 0; k < n; k++) {
-        largest = fmax(largest, fabs(v[k]));
+static enum dalcs_status list_redundant(struct dalcs_stage_singular *g, const struct search *s,
+                                        const struct dalcs_null_space *rows) {
+    int n_z = s->system->n_z;
+    g->n = rows->n_redundant;
+    g->row = dalcs_alloc((size_t)g->n, sizeof(int));
+    g->scale = dalcs_alloc((size_t)g->n, sizeof(double));
+    if (g->row == NULL || g->scale == NULL) {
+        return DALCS_E_NOMEM;
     }
-    return largest;
+    for (int k = 0; k < g->n; k++) {
+        int r = rows->redundant[k];
+        g->row[k] = s->system->n_x + (r < n_z ? r : n_z + s->entry->on[r - n_z]);
+    }
+    return DALCS_OK;
 }
 
-/* Solves for plan->product and adds that to the solution. Returns the largest change. */
-static double add_correction(const struct dalcs_stage_plan *plan,
-                             const struct dalcs_stage_factors *f, int system) {
-    const struct dalcs_lu *lu = &f->lu[system];
-    if (system == 0) {
-        for (int i = 0; i < f->n; i++) {
-            lu->work[i] = plan->product[lu->from[i]];
-        }
-        dalcs_lu_solve_ordered(lu);
-        for (int i = 0; i < f->n; i++) {
-            plan->solution[lu->to[i]] += lu->work[i];
-        }
-        return largest_of(lu->work, f->n);
+static enum dalcs_status fill(struct dalcs_stage_singular *g, struct search *s, const int *closed,
+                              const struct dalcs_null_space *rows,
+                              const struct dalcs_null_space *columns) {
+    if (rows->n_redundant == 0 || rows->n_redundant != columns->n_free) {
+        return DALCS_SINGULAR;
     }
-    for (int i = 0; i < f->n; i++) {
-        lu->work[2 * i] = plan->product[2 * lu->from[i]];
-        lu->work[2 * i + 1] = plan->product[2 * lu->from[i] + 1];
+    DALCS_TRY(list_redundant(g, s, rows));
+    size_t n = (size_t)g->n;
+    s->n_open = g->n;
+    s->vector = dalcs_arena_alloc(&s->arena, n * (size_t)s->n_columns, sizeof(double));
+    s->trace = dalcs_arena_alloc(&s->arena, n, sizeof(*s->trace));
+    s->of_pair = dalcs_arena_alloc(&s->arena, (size_t)s->system->n_pairs, sizeof(double));
+    if (s->vector == NULL || s->trace == NULL || s->of_pair == NULL) {
+        return DALCS_E_NOMEM;
     }
-    dalcs_lu_solve_ordered_complex(lu);
-    for (int i = 0; i < f->n; i++) {
-        plan->solution[2 * lu->to[i]] += lu->work[2 * i];
-        plan->solution[2 * lu->to[i] + 1] += lu->work[2 * i + 1];
+    for (int k = 0; k < g->n; k++) {
+        dalcs_null_space_vector(columns, k, s->vector + k * s->n_columns);
     }
-    return largest_of(lu->work, 2 * f->n);
+    DALCS_TRY(find_traces(s, closed));
+    for (int k = 0; k < g->n; k++) {
+        DALCS_TRY(s->trace[k].n > 0 ? choose_in_diodes(s, k) : choose_in_all(s, k));
+    }
+    int n_rows = dalcs_system_n_columns(s->system);
+    DALCS_TRY(dalcs_csr_compress(&g->of_column, n_rows, g->n, &s->choice));
+    return dalcs_csr_compress(&g->shore, g->n, s->system->n_pairs, &s->shore);
 }
 
-void dalcs_stage_singular_solve(const struct dalcs_stage_plan *plan,
-                                const struct dalcs_stage_entry *entry,
-                                const struct dalcs_stage_factors *f, int system) {
-    const struct dalcs_lu *lu = &f->lu[system];
-    int stride = system > 0 ? 2 : 1;
-    int n = f->n * stride;
-    for (int k = 0; k < n; k++) {
-        plan->right[lu->from[k / stride] * stride + k % stride] = lu->work[k];
+static enum dalcs_status find(struct dalcs_stage_singular *g, struct search *s) {
+    int n_pairs = s->system->n_pairs;
+    int *closed = dalcs_arena_alloc(&s->arena, (size_t)n_pairs, sizeof(int));
+    if (closed == NULL) {
+        return DALCS_E_NOMEM;
     }
-    memset(plan->solution, 0, (size_t)n * sizeof(double));
-    memset(plan->centre, 0, (size_t)(f->n_pairs * stride) * sizeof(double));
-    (void)find_residual(plan, entry, f->singular, system, true, false);
-    for (int round = 0;; round++) {
-        for (int inner = 0; inner < LESSER_ROUNDS; inner++) {
-            double moved = add_correction(plan, f, system);
-            if (inner > 0 && moved <= unmoved * largest_of(plan->solution, n)) {
-                break;
-            }
-            (void)find_residual(plan, entry, f->singular, system, false, false);
-        }
-        double residual = find_residual(plan, entry, f->singular, system, false, true);
-        double size = fmax(largest_of(plan->solution, n), largest_of(plan->right, n));
-        if (residual <= rounding * size || round == FINAL_ROUNDS) {
-            break;
-        }
+    for (int k = 0; k < s->entry->n_on; k++) {
+        closed[s->entry->on[k]] = k;
     }
-    int part = system > 0 ? 2 * system - 1 : 0;
-    for (int k = 0; k < n; k++) {
-        plan->left[(part + k % stride) * plan->n_rows + k / stride] = plan->product[k];
-        lu->work[k] = plan->solution[lu->to[k / stride] * stride + k % stride];
+    struct dalcs_null_space rows;
+    struct dalcs_null_space columns;
+    DALCS_TRY(find_null_space(s, s->system->n_x, 0, closed, &rows));
+    enum dalcs_status status = find_null_space(s, 0, s->system->n_x, closed, &columns);
+    if (status == DALCS_OK) {
+        status = fill(g, s, closed, &rows, &columns);
+        dalcs_null_space_finish(&columns);
     }
+    dalcs_null_space_finish(&rows);
+    return status;
 }
 
-double dalcs_stage_singular_residual(const struct dalcs_stage_plan *plan,
-                                     const struct dalcs_stage_entry *entry,
-                                     const struct dalcs_stage_factors *f) {
-    double worst = 0.0;
-    for (int q = 0; q < f->n_systems; q++) {
-        int n = f->n * (q > 0 ? 2 : 1);
-        for (int k = 0; k < n; k++) { /* anything that has all frequencies in it */
-            plan->right[k] = cos(1.0 + k * (double)k);
-        }
-        memset(plan->solution, 0, (size_t)n * sizeof(double));
-        memset(plan->centre, 0, (size_t)f->n_pairs * 2 * sizeof(double));
-        double before = find_residual(plan, entry, f->singular, q, true, false);
-        (void)add_correction(plan, f, q);
-        double after = find_residual(plan, entry, f->singular, q, true, false);
-        double size = fmax(before, largest_of(plan->solution, n));
-        worst = fmax(worst, after / size);
+enum dalcs_status dalcs_stage_singular_find(struct dalcs_stage_singular *g,
+                                            const struct dalcs_stage_plan *plan,
+                                            const struct dalcs_stage_entry *entry) {
+    const struct dalcs_system *system = plan->stages->system;
+    struct search s = {.system = system, .entry = entry, .n_columns = system->n_z + entry->n_on};
+    *g = (struct dalcs_stage_singular){0};
+    enum dalcs_status status = find(g, &s);
+    dalcs_triplets_finish(&s.choice);
+    dalcs_triplets_finish(&s.shore);
+    dalcs_arena_finish(&s.arena);
+    if (status != DALCS_OK) {
+        dalcs_stage_singular_finish(g);
     }
-    return worst;
+    return status;
 }
 
-void dalcs_stage_singular_destroy(struct dalcs_stage_singular *g) {
-    if (g == NULL) {
-        return;
-    }
-    dalcs_stage_matrix_finish(&g->matrix);
-    free(g->weight);
-    free(g->unknown_of);
-    free(g);
+void dalcs_stage_singular_finish(struct dalcs_stage_singular *g) {
+    free(g->row);
+    free(g->scale);
+    dalcs_csr_finish(&g->of_column);
+    dalcs_csr_finish(&g->shore);
+    *g = (struct dalcs_stage_singular){0};
 }
 
 size_t dalcs_stage_singular_bytes(const struct dalcs_stage_singular *g) {
-    if (g == NULL) {
+    if (g->n == 0) {
         return 0;
     }
-    return sizeof(*g) + dalcs_stage_matrix_bytes(&g->matrix) +
-           (size_t)g->matrix.n * (sizeof(double) + sizeof(int));
+    const struct dalcs_csr *part[] = {&g->of_column, &g->shore};
+    size_t bytes = (size_t)g->n * (sizeof(int) + sizeof(double));
+    for (int k = 0; k < 2; k++) {
+        size_t n_rows = (size_t)part[k]->n_rows;
+        bytes += (n_rows + 1) * sizeof(int) +
+                 (size_t)part[k]->p[n_rows] * (sizeof(int) + sizeof(double));
+    }
+    return bytes;
 }

@@ -42,7 +42,7 @@ enum { WORTH_FACTORING = 200 };
 
 bool dalcs_stage_update_can_be_base(const struct dalcs_stage_entry *entry) {
     const struct dalcs_stage_factors *f = entry->factors;
-    return f != NULL && f->update == NULL && f->singular == NULL;
+    return f != NULL && f->update == NULL && f->singular.n == 0;
 }
 
 bool dalcs_stage_is_update(const struct dalcs_stage_entry *entry) {

@@ -12,7 +12,7 @@
 /* Errors are measured against the largest quantity of their unit, and the largest term of an
  * equation in it: where nothing flows because of two large currents, their rounding remains. */
 static const double regular_tolerance = 1e-12;
-static const double singular_tolerance = 1e-9;
+static const double singular_tolerance = 1e-12;
 
 /* Digits that methods with more stages cost: their combinations cancel by 25 and by 300. */
 static double lost_digits(int s) {
@@ -152,7 +152,7 @@ static void compare(const struct both *b, const struct dalcs_stage_entry *dense,
     bool clashes = disagreement > 1e-9 * fmax(scale[0], scale[1]);
     double found = 0.0;
     for (int k = 0; k < sparse->n_clashes; k++) {
-        found = fmax(found, y[l->n_fixed + k]);
+        found = fmax(found, fabs(y[l->n_fixed + k]));
     }
     ck_assert_msg((found > 1e-9 * fmax(scale[0], scale[1])) == clashes, "clash %g for %g", found,
                   disagreement);

@@ -168,7 +168,9 @@ static void bench(const char *name, char *text, double h) {
         exit(1);
     }
     struct dalcs_stage_matrix m;
-    bench_must(dalcs_stage_matrix_build(&m, st.plan, entry->n_on, entry->on, h), name);
+    bench_must(
+        dalcs_stage_matrix_build(&m, st.plan, entry->n_on, entry->on, &entry->factors->singular, h),
+        name);
     struct bare bare;
     bare_setup(&bare, &st, &m, h);
     double v[10][REPEATS];

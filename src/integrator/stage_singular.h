@@ -1,0 +1,32 @@
+/* stage_singular.h - what a mode leaves open, and the choice of it.
+ *
+ * In a mode with currents in loops of diodes, or islands that float between blocking ones, some
+ * equations follow from the others and some solutions are 0 on every right-hand side. For a passive
+ * circuit neither depends on the step: such a solution stores nothing, for y' (sigma P - A) y = 0,
+ * so states have no part in it. Each equation that follows gives its row to an equation that makes
+ * the choice of least norm: orthogonal, in diodes, to one of these solutions. */
+#ifndef DALCS_STAGE_SINGULAR_H
+#define DALCS_STAGE_SINGULAR_H
+
+#include "stage_plan.h"
+
+struct dalcs_stage_singular {
+    int n;
+    int *row;                   /* [n] of M, that follow from others */
+    double *scale;              /* [n] of these, in the matrix that was balanced with them */
+    struct dalcs_csr of_column; /* [columns of M][n] the choices that take their place */
+    struct dalcs_csr shore;     /* [n][n_pairs] of open diodes, whose w have a right-hand side */
+};
+
+struct dalcs_stage_entry;
+
+/* DALCS_SINGULAR: the mode leaves nothing open, or in a way that no choice closes. */
+enum dalcs_status dalcs_stage_singular_find(struct dalcs_stage_singular *g,
+                                            const struct dalcs_stage_plan *plan,
+                                            const struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
+
+void dalcs_stage_singular_finish(struct dalcs_stage_singular *g);
+
+size_t dalcs_stage_singular_bytes(const struct dalcs_stage_singular *g);
+
+#endif

@@ -1,0 +1,312 @@
+/* null_space.c - rows that vanish under sparse elimination, and the columns that have no pivot. */
+#include "null_space.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* An entry so many times its bound is no rounding. */
+static const long double doubt = 8.0L;
+
+struct entry {
+    int column;
+    long double value, bound;
+};
+
+struct row {
+    size_t n, capacity;
+    struct entry *entry; /* columns ascending */
+    int next, previous;  /* among those of as many entries, -1: none */
+};
+
+struct column {
+    size_t n, capacity;
+    int *row; /* that have, or had, an entry here; a row may be there twice */
+};
+
+struct work {
+    struct row *row;
+    struct column *column;
+    int *first;      /* [n_columns + 1] row of so many entries, -1: none */
+    int fewest;      /* no row that is left has fewer */
+    int *eliminated; /* [rank] rows in their order */
+    int *pivot_of;   /* [n_rows] column, -1: none */
+    struct row scratch;
+};
+
+static void list_row(struct work *w, int r) {
+    struct row *row = &w->row[r];
+    int n = (int)row->n;
+    row->previous = -1;
+    row->next = w->first[n];
+    if (row->next >= 0) {
+        w->row[row->next].previous = r;
+    }
+    w->first[n] = r;
+    w->fewest = n < w->fewest ? n : w->fewest;
+}
+
+static void unlist_row(struct work *w, int r) {
+    const struct row *row = &w->row[r];
+    if (row->previous >= 0) {
+        w->row[row->previous].next = row->next;
+    } else {
+        w->first[row->n] = row->next;
+    }
+    if (row->next >= 0) {
+        w->row[row->next].previous = row->previous;
+    }
+}
+
+static enum dalcs_status note_row(struct column *column, int r) {
+    DALCS_TRY(dalcs_grow(&column->row, &column->capacity, column->n + 1, sizeof(int)));
+    column->row[column->n++] = r;
+    return DALCS_OK;
+}
+
+static enum dalcs_status add_entry(struct row *row, int column, long double value,
+                                   long double bound) {
+    DALCS_TRY(dalcs_grow(&row->entry, &row->capacity, row->n + 1, sizeof(*row->entry)));
+    row->entry[row->n++] = (struct entry){column, value, bound};
+    return DALCS_OK;
+}
+
+static enum dalcs_status load(struct work *w, const struct dalcs_csr *a) {
+    for (int r = 0; r < a->n_rows; r++) {
+        for (int k = a->p[r]; k < a->p[r + 1]; k++) {
+            long double size = fabs(a->x[k]);
+            DALCS_TRY(add_entry(&w->row[r], a->j[k], a->x[k], 0.5L * DBL_EPSILON * size));
+            DALCS_TRY(note_row(&w->column[a->j[k]], r));
+        }
+        list_row(w, r);
+    }
+    return DALCS_OK;
+}
+
+static int shortest_row(struct work *w) {
+    while (w->first[w->fewest] < 0) {
+        w->fewest++;
+    }
+    return w->first[w->fewest];
+}
+
+static const struct entry *find_entry(const struct row *row, int column) {
+    for (size_t k = 0; k < row->n; k++) {
+        if (row->entry[k].column == column) {
+            return &row->entry[k];
+        }
+    }
+    return NULL;
+}
+
+static long double largest_of(const struct work *w, const struct column *column, int index) {
+    long double largest = 0.0L;
+    for (size_t k = 0; k < column->n; k++) {
+        const struct entry *e =
+            w->pivot_of[column->row[k]] < 0 ? find_entry(&w->row[column->row[k]], index) : NULL;
+        largest = e != NULL ? fmaxl(largest, fabsl(e->value)) : largest;
+    }
+    return largest;
+}
+
+/* The largest of its column, as near as the row has it: with less, bounds would grow along a chain. */
+static struct entry choose_pivot(const struct work *w, const struct row *row) {
+    const struct entry *chosen = NULL;
+    long double best = 0.0L;
+    for (size_t k = 0; k < row->n; k++) {
+        const struct entry *e = &row->entry[k];
+        const struct column *column = &w->column[e->column];
+        long double part = fabsl(e->value) / largest_of(w, column, e->column);
+        if (part > best || (part == best && column->n < w->column[chosen->column].n)) {
+            chosen = e;
+            best = part;
+        }
+    }
+    return *chosen;
+}
+
+/* from - factor * by, where either may be missing; rounding included. */
+static struct entry subtract(const struct entry *from, const struct entry *by, long double factor,
+                             long double relative) {
+    struct entry e = from != NULL ? *from : (struct entry){by->column, 0.0L, 0.0L};
+    if (by != NULL) {
+        long double term = factor * by->value;
+        e.bound += fabsl(factor) * by->bound + relative * fabsl(term) +
+                   LDBL_EPSILON * (fabsl(e.value) + fabsl(term));
+        e.value -= term;
+    }
+    return e;
+}
+
+/* Row r loses its entry in the pivot's column. */
+static enum dalcs_status eliminate(struct work *w, int r, const struct row *by,
+                                   const struct entry *pivot) {
+    struct row *row = &w->row[r];
+    const struct entry *out = find_entry(row, pivot->column);
+    if (out == NULL) {
+        return DALCS_OK;
+    }
+    long double factor = out->value / pivot->value;
+    long double relative = out->bound / fabsl(out->value) + pivot->bound / fabsl(pivot->value);
+    unlist_row(w, r);
+    w->scratch.n = 0;
+    size_t k = 0;
+    size_t l = 0;
+    while (k < row->n || l < by->n) {
+        const struct entry *a = k < row->n ? &row->entry[k] : NULL;
+        const struct entry *b = l < by->n ? &by->entry[l] : NULL;
+        if (a != NULL && b != NULL && a->column != b->column) {
+            *(a->column < b->column ? &b : &a) = NULL;
+        }
+        k += a != NULL;
+        l += b != NULL;
+        struct entry e = subtract(a, b, factor, relative);
+        if (e.column == pivot->column || (b != NULL && fabsl(e.value) <= doubt * e.bound)) {
+            continue;
+        }
+        DALCS_TRY(add_entry(&w->scratch, e.column, e.value, e.bound));
+        if (a == NULL) {
+            DALCS_TRY(note_row(&w->column[e.column], r));
+        }
+    }
+    struct row done = *row;
+    row->n = w->scratch.n;
+    row->capacity = w->scratch.capacity;
+    row->entry = w->scratch.entry;
+    w->scratch = done;
+    list_row(w, r);
+    return DALCS_OK;
+}
+
+static enum dalcs_status eliminate_all(struct work *w, int n_rows, int *rank) {
+    for (int left = n_rows; left > 0; left--) {
+        int r = shortest_row(w);
+        struct row *row = &w->row[r];
+        unlist_row(w, r);
+        if (row->n == 0) {
+            continue;
+        }
+        struct entry pivot = choose_pivot(w, row);
+        w->pivot_of[r] = pivot.column;
+        w->eliminated[(*rank)++] = r;
+        struct column *column = &w->column[pivot.column];
+        for (size_t k = 0; k < column->n; k++) {
+            if (w->pivot_of[column->row[k]] < 0) {
+                DALCS_TRY(eliminate(w, column->row[k], row, &pivot));
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status keep(struct dalcs_null_space *s, const struct work *w) {
+    size_t n_entries = 0;
+    for (int k = 0; k < s->rank; k++) {
+        n_entries += w->row[w->eliminated[k]].n;
+    }
+    s->begin = dalcs_arena_alloc(&s->arena, (size_t)s->rank + 1, sizeof(int));
+    s->column = dalcs_arena_alloc(&s->arena, n_entries, sizeof(int));
+    s->value = dalcs_arena_alloc(&s->arena, n_entries, sizeof(double));
+    s->redundant = dalcs_arena_alloc(&s->arena, (size_t)(s->n_rows - s->rank), sizeof(int));
+    s->free_column = dalcs_arena_alloc(&s->arena, (size_t)s->n_columns, sizeof(int));
+    if (s->begin == NULL || s->column == NULL || s->value == NULL || s->redundant == NULL ||
+        s->free_column == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int r = 0; r < s->n_rows; r++) {
+        if (w->pivot_of[r] < 0) {
+            s->redundant[s->n_redundant++] = r;
+        }
+    }
+    int out = 0;
+    for (int k = 0; k < s->rank; k++) {
+        const struct row *row = &w->row[w->eliminated[k]];
+        int first = out;
+        for (size_t i = 0; i < row->n; i++, out++) {
+            s->column[out] = row->entry[i].column;
+            s->value[out] = (double)row->entry[i].value;
+            if (s->column[out] == w->pivot_of[w->eliminated[k]]) {
+                s->column[out] = s->column[first];
+                s->value[out] = s->value[first];
+                s->column[first] = row->entry[i].column;
+                s->value[first] = (double)row->entry[i].value;
+            }
+        }
+        s->begin[k + 1] = out;
+        s->free_column[s->column[first]] = 1; /* for now: it has a pivot */
+    }
+    for (int c = 0; c < s->n_columns; c++) {
+        if (s->free_column[c] == 0) {
+            s->free_column[s->n_free++] = c;
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status find(struct dalcs_null_space *s, struct work *w,
+                              const struct dalcs_csr *a) {
+    size_t n_rows = (size_t)a->n_rows;
+    size_t n_columns = (size_t)a->n_columns;
+    w->row = dalcs_alloc(n_rows, sizeof(*w->row));
+    w->column = dalcs_alloc(n_columns, sizeof(*w->column));
+    w->first = dalcs_alloc(n_columns + 1, sizeof(int));
+    w->eliminated = dalcs_alloc(n_rows, sizeof(int));
+    w->pivot_of = dalcs_alloc(n_rows, sizeof(int));
+    if (w->row == NULL || w->column == NULL || w->first == NULL || w->eliminated == NULL ||
+        w->pivot_of == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k <= a->n_columns; k++) {
+        w->first[k] = -1;
+    }
+    for (int r = 0; r < a->n_rows; r++) {
+        w->pivot_of[r] = -1;
+    }
+    DALCS_TRY(load(w, a));
+    DALCS_TRY(eliminate_all(w, a->n_rows, &s->rank));
+    return keep(s, w);
+}
+
+enum dalcs_status dalcs_null_space_find(struct dalcs_null_space *s, const struct dalcs_csr *a) {
+    struct work w = {0};
+    *s = (struct dalcs_null_space){.n_rows = a->n_rows, .n_columns = a->n_columns};
+    enum dalcs_status status = find(s, &w, a);
+    for (int r = 0; w.row != NULL && r < a->n_rows; r++) {
+        free(w.row[r].entry);
+    }
+    for (int c = 0; w.column != NULL && c < a->n_columns; c++) {
+        free(w.column[c].row);
+    }
+    free(w.row);
+    free(w.column);
+    free(w.first);
+    free(w.eliminated);
+    free(w.pivot_of);
+    free(w.scratch.entry);
+    if (status != DALCS_OK) {
+        dalcs_null_space_finish(s);
+    }
+    return status;
+}
+
+void dalcs_null_space_vector(const struct dalcs_null_space *s, int k, double *vector) {
+    memset(vector, 0, (size_t)s->n_columns * sizeof(*vector));
+    vector[s->free_column[k]] = 1.0;
+    for (int i = s->rank - 1; i >= 0; i--) {
+        double sum = 0.0;
+        double size = 0.0;
+        for (int at = s->begin[i] + 1; at < s->begin[i + 1]; at++) {
+            double term = s->value[at] * vector[s->column[at]];
+            sum -= term;
+            size += fabs(term);
+        }
+        bool is_rounding = fabs(sum) <= (double)doubt * DBL_EPSILON * size;
+        vector[s->column[s->begin[i]]] = is_rounding ? 0.0 : sum / s->value[s->begin[i]];
+    }
+}
+
+void dalcs_null_space_finish(struct dalcs_null_space *s) {
+    dalcs_arena_finish(&s->arena);
+    *s = (struct dalcs_null_space){0};
+}
