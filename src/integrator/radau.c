@@ -3,6 +3,7 @@
 #include "guards.h"
 #include "quads.h"
 #include "radau_internal.h"
+#include "step_length.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -176,9 +177,9 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     list_used_inputs(part, r->base->network, used);
     free(used);
     find_cross_scales(c->system, r->options.stop, part->cross);
-    part->longest = dalcs_segment_longest(r, part);
+    part->longest = dalcs_length_longest(r, part);
     double first = fmin(part->longest, r->options.stop / FIRST_STEPS);
-    double promising = dalcs_segment_promising(r, part);
+    double promising = dalcs_length_promising(r, part);
     part->rung = fit_rung(promising);
     part->level = -ilogb(fmin(first, promising) / part->rung);
     part->patience = 32;
@@ -312,6 +313,10 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     } else {
         dalcs_step_states(part, part->end, part->x);
         part->fresh = true; /* the next step starts inside this one */
+    }
+    if (part->stages.plan != NULL) {
+        dalcs_step_values(part, part->end, part->y1);
+        dalcs_stages_stay_near(&part->stages, part->component->osnsp.mode, part->y1);
     }
     if (r->base->energy != NULL) {
         dalcs_energy_segment(r->base->energy, part, part->after);

@@ -27,12 +27,6 @@ static const double dalcs_worth_projecting = 1e-2;
  * a mode is singular and the states contradict it, which takes a circuit that is not passive. */
 static const double dalcs_largest_residual = 1e-6;
 
-/* The longest step worth trying. */
-double dalcs_segment_longest(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
-
-/* The step at which the error of following the fastest source is about what is allowed. */
-double dalcs_segment_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
-
 /* restart.c: two micro-steps from part->t decide mode and state; a jump is reported. `longer` makes
  * them 2^(5 longer) times as long; mode_only leaves the state as it is. *is_off: it jumps by no
  * more than the error that the state of an event has, or so it seems, and was left where it is, for a

@@ -12,17 +12,10 @@
 #include "guards.h"
 #include "radau_internal.h"
 #include "recurrence.h"
+#include "step_length.h"
 
 #include <math.h>
 #include <string.h>
-
-/* The error estimate may be this much smaller than what is allowed before the step is doubled. */
-static const double safety = 0.8;
-
-/* An error below this, over the signal, is rounding: the true one may be far smaller, and the step grows
- * by at least so many powers of 2 to see. */
-static const double unseen = 1e-15;
-static const double rungs_unseen = 3.0;
 
 /* Defects of a state, over what is allowed, that interpolation may leave; more is a jump. */
 static const double most_projected = 1e4;
@@ -38,7 +31,6 @@ static const double most_tolerated = 2e-13;
 static const double briefly = 1.0 / 64.0;
 
 enum {
-    MOST_RUNGS = 6,     /* of the ladder, down at once */
     MOST_PREFERRED = 2, /* of them, for the sake of factors */
     STUCK = 3,          /* smaller steps without a smaller error */
     VERY_STUCK = 8,
@@ -47,8 +39,6 @@ enum {
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
     MOST_FLIPS = 12,
     MOST_REFINED = 2,
-    LEAST_PATIENCE = 32,
-    MOST_PATIENCE = 4096,
     FALL_BACK_LEAST = 5,
     FALL_BACK = 14, /* steps of implicit Euler start this many rungs below */
     CROWD = 40,
@@ -56,36 +46,9 @@ enum {
     MOST_REOPENED = 8
 };
 
-/* The longest step over the shortest period of a source, by stages: fewer nodes see less. */
-static double most_periods(int stages) {
-    return stages >= 9 ? 0.75 : stages >= 7 ? 0.6 : stages >= 5 ? 0.45 : 0.25;
-}
-
 double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
     return dalcs_smaller(dalcs_smaller(part->excitation.next_edge, part->commands.next),
                          r->options.stop);
-}
-
-double dalcs_segment_longest(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
-    double longest = r->options.stop;
-    if (r->options.max_step > 0.0) {
-        longest = fmin(longest, r->options.max_step);
-    }
-    return fmin(longest, most_periods(part->stages.method->s) * part->excitation.shortest_period);
-}
-
-double dalcs_segment_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
-    const struct dalcs_collocation *m = part->stages.method;
-    if (isinf(part->excitation.shortest_period)) {
-        return INFINITY;
-    }
-    double factorial = 1.0;
-    for (int k = 2; k <= m->s + 1; k++) {
-        factorial *= k;
-    }
-    double size = m->test_size * m->test_factor * m->lambda / factorial;
-    double angle = pow(r->inner_tolerance / size, 1.0 / (m->s + 1));
-    return angle * part->excitation.shortest_period / 6.283185307179586;
 }
 
 void dalcs_segment_inputs(struct dalcs_radau_part *part) {
@@ -217,57 +180,6 @@ static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_par
     return dalcs_radau_euler_step(r, part, part->fell_back);
 }
 
-/* Long moves end on every n-th rung, so that searches up and down the ladder meet on the same step
- * lengths, which have their factors already. Towards the shorter step. */
-static int shared_rung(int level, int n) {
-    int beyond = ((level % n) + n) % n;
-    return beyond > 0 ? level + n - beyond : level;
-}
-
-static void shorten(struct dalcs_radau_part *part, double ratio, int stuck) {
-    double rungs = log2(ratio) / (double)(part->stages.method->s + 1);
-    int down = rungs < MOST_RUNGS ? (int)ceil(rungs) : MOST_RUNGS;
-    part->level += down > 1 ? down : 1;
-    if (stuck > 0) { /* something much faster than the step has to die away */
-        int far = stuck == 1 ? 2 : 5;
-        part->level = shared_rung(part->level + (far > down ? far - down : 0), 3);
-    }
-    int patience = part->grew ? 2 * part->patience : part->patience;
-    part->patience = patience < MOST_PATIENCE ? patience : MOST_PATIENCE;
-    part->waited = 0;
-    part->grew = false;
-}
-
-static double rungs_promised(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                             double ratio) {
-    double rungs = log2(safety / ratio) / (double)(part->stages.method->s + 1);
-    return ratio * r->inner_tolerance < unseen ? dalcs_larger(rungs, rungs_unseen) : rungs;
-}
-
-/* A longer step next time if the error promises it, or, as errors near rounding promise nothing, now
- * and then to see. */
-static void lengthen(const struct dalcs_radau *r, struct dalcs_radau_part *part, double ratio) {
-    double rungs = rungs_promised(r, part, ratio);
-    bool promising = rungs > 1.0;
-    int up = rungs > MOST_RUNGS ? MOST_RUNGS : promising ? (int)rungs : 1;
-    while (up > 0 && dalcs_radau_ladder(part, part->level - up) > part->longest) {
-        up--;
-    }
-    part->waited++;
-    part->grew = false;
-    if (up == 0) {
-        return;
-    }
-    int level = up < 2 ? part->level - 1 : shared_rung(part->level - up, up < 3 ? 2 : 3);
-    bool is_far = level < part->level - 1;
-    if (!is_far && !(promising ? part->waited > 1 : part->waited > part->patience)) {
-        return;
-    }
-    part->level = is_far ? level : part->level - 1;
-    part->waited = 0;
-    part->grew = !promising;
-}
-
 /* A tied diode that was opened to try cannot open. */
 static enum dalcs_status tie_again(struct dalcs_radau_part *part, struct search *search) {
     search->opened = false;
@@ -338,7 +250,7 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
         *done = true;
         return fall_back(r, part, search->limit, search->first_level);
     }
-    shorten(part, quality->ratio, search->stuck);
+    dalcs_length_shorten(part, quality->ratio, search->stuck);
     return DALCS_OK;
 }
 
@@ -444,11 +356,12 @@ static void learn(struct dalcs_radau *r, struct dalcs_radau_part *part, const st
                   double theta, double error) {
     double ratio = error * fmax(1.0, r->inner_tolerance / fine);
     bool longer = !search->fixed && theta == 1.0 && part->n_crossed == 0 &&
-                  rungs_promised(r, part, ratio) > 1.0 &&
+                  dalcs_length_rungs_promised(r, part, ratio) > 1.0 &&
                   dalcs_radau_ladder(part, part->level - 1) <= part->longest;
     int spare = longer ? 1 : 0; /* rungs that the first step may have more the next time */
     if (!search->guessed) {
-        double promised = dalcs_smaller(rungs_promised(r, part, error), MOST_RUNGS);
+        double promised =
+            dalcs_smaller(dalcs_length_rungs_promised(r, part, error), DALCS_LENGTH_MOST_RUNGS);
         int by_analogy = search->first_level - part->level_before;
         dalcs_transition_began(part, search->first_level, (int)promised);
         spare = (int)dalcs_larger(spare, dalcs_smaller(promised, by_analogy));
@@ -488,7 +401,7 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
     }
     dalcs_segment_accept(r, part, theta, residual);
     if (!search->fixed && theta == 1.0) {
-        lengthen(r, part, quality->ratio);
+        dalcs_length_lengthen(r, part, quality->ratio);
     }
 }
 

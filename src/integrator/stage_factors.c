@@ -29,29 +29,45 @@ static void find_shares(const struct dalcs_stages *stages, const struct dalcs_st
     }
 }
 
-static void find_drive_of_row(const struct dalcs_stage_plan *plan, int r, const double *x,
+static void find_drive_of_row(const struct dalcs_stage_plan *plan, int r, const double *y,
                               double factor) {
-    plan->rhs[r] = factor * plan->constant[r] + dalcs_csr_row_dot(&plan->drive, r, x);
+    plan->rhs[r] = factor * plan->constant[r] + dalcs_csr_row_dot(&plan->drive, r, y);
 }
 
-/* plan->rhs = drive x + factor * constant, of the rows that are present. */
+/* plan->rhs = drive y + factor * constant, of the rows that are present. */
 static void find_drive(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
-                       const double *x, double factor) {
+                       const double *y, double factor) {
     int n_equations = f->n - f->n_pairs;
     for (int k = 0; k < plan->rest.n_awake; k++) {
-        find_drive_of_row(plan, plan->rest.row[k], x, factor);
+        find_drive_of_row(plan, plan->rest.row[k], y, factor);
     }
     for (int k = 0; k < f->n_pairs; k++) {
-        find_drive_of_row(plan, n_equations + f->pair[k], x, factor);
+        find_drive_of_row(plan, n_equations + f->pair[k], y, factor);
     }
-    const struct dalcs_csr *shore = &f->singular.shore;
+    const struct dalcs_stage_update *u = f->update;
+    for (int k = u != NULL ? u->n_closed : 0; u != NULL && k < u->n_changes; k++) { /* to a slack */
+        find_drive_of_row(plan, n_equations + u->change[k]->pair, y, factor);
+    }
     for (int k = 0; k < f->singular.n; k++) {
-        double sum = 0.0;
+        const struct dalcs_csr *shore = &f->singular.shore;
+        double sum = -dalcs_csr_row_dot(&f->singular.choice, k, y);
         for (int e = shore->p[k]; e < shore->p[k + 1]; e++) {
-            find_drive_of_row(plan, n_equations + shore->j[e], x, factor);
-            sum += shore->x[e] * plan->rhs[n_equations + shore->j[e]];
+            sum += factor * shore->x[e] * plan->constant[n_equations + shore->j[e]];
         }
         plan->rhs[plan->n_rows + k] = sum;
+    }
+}
+
+/* plan->from = the state and, of the rest, where the circuit was last: unknowns are increments over it. */
+static void find_start(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
+                       const double *x) {
+    int n_x = plan->stages->system->n_x;
+    int n_equations = f->n - f->n_pairs;
+    memcpy(plan->from, x, (size_t)n_x * sizeof(double));
+    memcpy(plan->from + n_x, plan->near + n_x, (size_t)(n_equations - n_x) * sizeof(double));
+    memset(plan->from + n_equations, 0, (size_t)(plan->n_rows - n_equations) * sizeof(double));
+    for (int k = 0; k < f->n_pairs; k++) {
+        plan->from[n_equations + f->pair[k]] = plan->near[n_equations + f->pair[k]];
     }
 }
 
@@ -157,30 +173,29 @@ enum kind { STATES, WITHOUT_MEMORY, PAIRS };
 /* Puts count unknowns of one kind at one node into y. */
 static void put_piece(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
                       const struct piece *piece, enum kind kind, int first, int count, int node,
-                      const double *x, double *y) {
+                      double *y) {
     const struct dalcs_stage_factors *f = entry->factors;
+    const double *from = plan->from;
     int n_equations = f->n - f->n_pairs;
     if (kind == STATES && node == 0) {
         for (int k = 0; k < count; k++) {
-            y[first + k] = x[first + k];
+            y[first + k] = from[first + k];
             plan->missed[first + k] = -piece->y[k];
         }
-    } else if (kind == STATES) {
+    } else if (kind != PAIRS) {
         for (int k = 0; k < count; k++) {
-            y[first + k] = x[first + k] + piece->y[k];
+            y[first + k] = from[first + k] + piece->y[k];
         }
-    } else if (kind == WITHOUT_MEMORY) {
-        memcpy(y + first, piece->y, (size_t)count * sizeof(double));
     } else {
         for (int k = 0; k < count; k++) {
-            y[n_equations + f->pair[first + k - n_equations]] = piece->y[k];
+            int at = n_equations + f->pair[first + k - n_equations];
+            y[at] = from[at] + piece->y[k];
         }
     }
 }
 
 static void put_run(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
-                    struct dalcs_stage_run run, enum kind kind, const double *x,
-                    struct piece *piece, double *out) {
+                    struct dalcs_stage_run run, enum kind kind, struct piece *piece, double *out) {
     const struct dalcs_stage_layout *l = &plan->stages->layout;
     for (int first = run.begin; first < run.end; first += DALCS_STAGE_PIECE) {
         int count = run.end - first;
@@ -189,7 +204,7 @@ static void put_run(const struct dalcs_stage_plan *plan, const struct dalcs_stag
         for (int node = 0; node < l->n_nodes; node++) {
             dalcs_dense_map_apply(piece->n_rows, plan->n_parts, piece->part, plan->to[node],
                                   piece->y);
-            put_piece(plan, entry, piece, kind, first, count, node, x, out + node * l->stride);
+            put_piece(plan, entry, piece, kind, first, count, node, out + node * l->stride);
         }
     }
 }
@@ -197,18 +212,18 @@ static void put_run(const struct dalcs_stage_plan *plan, const struct dalcs_stag
 /* Columns at all nodes; the start still without its defect. plan->missed = what the states miss
  * there. */
 static void put_columns(const struct dalcs_stage_plan *plan, const struct dalcs_stage_entry *entry,
-                        const double *x, double *out) {
+                        double *out) {
     const struct dalcs_stage_rest *rest = &plan->rest;
     const struct dalcs_stage_factors *f = entry->factors;
     struct piece piece;
     memset(&piece, 0, sizeof(piece));
     for (int k = 0; k < rest->states.n; k++) {
-        put_run(plan, entry, rest->states.run[k], STATES, x, &piece, out);
+        put_run(plan, entry, rest->states.run[k], STATES, &piece, out);
     }
     for (int k = 0; k < rest->without.n; k++) {
-        put_run(plan, entry, rest->without.run[k], WITHOUT_MEMORY, x, &piece, out);
+        put_run(plan, entry, rest->without.run[k], WITHOUT_MEMORY, &piece, out);
     }
-    put_run(plan, entry, (struct dalcs_stage_run){f->n - f->n_pairs, f->n}, PAIRS, x, &piece, out);
+    put_run(plan, entry, (struct dalcs_stage_run){f->n - f->n_pairs, f->n}, PAIRS, &piece, out);
 }
 
 static double find_w(const struct dalcs_stage_plan *plan, int pair, double constant, int share,
@@ -323,11 +338,12 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
     int n_columns = dalcs_system_n_columns(stages->system);
     memset(out, 0, (size_t)l->n_fixed * sizeof(double));
     find_shares(stages, f, in + n_x + 1);
-    find_drive(plan, f, in, in[n_x]);
+    find_start(plan, f, in);
+    find_drive(plan, f, plan->from, in[n_x]);
     for (int q = 0; q < f->n_systems; q++) {
         solve(plan, f, q, q == 0 ? DALCS_SHARE_REAL : DALCS_SHARE_PAIR + 2 * (q - 1));
     }
-    put_columns(plan, entry, in, out);
+    put_columns(plan, entry, out);
     put_clashes(stages, entry, in, out);
     find_drive(plan, f, plan->missed, 0.0);
     solve(plan, f, 0, DALCS_SHARE_DRIFT);

@@ -43,16 +43,16 @@ static enum dalcs_status fill_P(struct dalcs_stage_plan *plan, const struct dalc
     return status;
 }
 
-static enum dalcs_status fill_drive(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+static enum dalcs_status fill_drive(struct dalcs_stage_plan *plan) {
     struct dalcs_triplets t = {0};
     enum dalcs_status status = DALCS_OK;
-    for (int c = 0; c < s->n_x; c++) {
+    for (int c = 0; c < plan->n_rows; c++) {
         for (int k = plan->base.p[c]; k < plan->base.p[c + 1] && status == DALCS_OK; k++) {
             status = dalcs_triplets_add(&t, plan->base.j[k], c, -plan->base.x[k]);
         }
     }
     if (status == DALCS_OK) {
-        status = dalcs_csr_compress(&plan->drive, plan->n_rows, s->n_x, &t);
+        status = dalcs_csr_compress(&plan->drive, plan->n_rows, plan->n_rows, &t);
     }
     dalcs_triplets_finish(&t);
     return status;
@@ -122,12 +122,15 @@ static bool allocate(struct dalcs_stage_plan *plan, const struct dalcs_system *s
     plan->rhs = dalcs_alloc(n, 2 * sizeof(double));
     plan->share =
         dalcs_alloc((size_t)plan->stages->excitation->n_waves, DALCS_N_SHARES * sizeof(double));
-    plan->missed = dalcs_alloc((size_t)s->n_x, sizeof(double));
+    plan->missed = dalcs_alloc(n, sizeof(double));
+    plan->near = dalcs_alloc(n, sizeof(double));
+    plan->from = dalcs_alloc(n, sizeof(double));
     plan->guard = dalcs_alloc((size_t)(s->n_pairs + plan->stages->n_watched), sizeof(double));
     return plan->constant != NULL && plan->wave_row != NULL && plan->wave_of != NULL &&
            plan->wave_x != NULL && plan->wave_begin != NULL && plan->wave_of_input != NULL &&
            plan->match != NULL && plan->analysis != NULL && plan->rhs != NULL &&
-           plan->share != NULL && plan->missed != NULL && plan->guard != NULL;
+           plan->share != NULL && plan->missed != NULL && plan->near != NULL &&
+           plan->from != NULL && plan->guard != NULL;
 }
 
 static int how_many(int unknowns, int n) {
@@ -149,7 +152,7 @@ static enum dalcs_status setup(struct dalcs_stage_plan *plan, const struct dalcs
     fill_combination(plan);
     DALCS_TRY(fill_base(plan, s));
     DALCS_TRY(fill_P(plan, s));
-    DALCS_TRY(fill_drive(plan, s));
+    DALCS_TRY(fill_drive(plan));
     DALCS_TRY(dalcs_stage_rest_setup(plan));
     return dalcs_stage_freedom_setup(plan);
 }
@@ -213,6 +216,8 @@ void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
     free(plan->rhs);
     free(plan->share);
     free(plan->missed);
+    free(plan->near);
+    free(plan->from);
     free(plan->guard);
     free(plan);
 }

@@ -1,8 +1,9 @@
 /* stage_plan.h - what the sparse factors of all modes of one system have in common.
  *
  * With every pair present the matrix of an eigenvalue is
- *     M = [sigma P - A; C],     right-hand side  drive x_0 + constant + wave s~,
- * where drive = [A; -C] on the states and the sources are split into what is constant and what
+ *     M = [sigma P - A; C],     right-hand side  drive y_0 + constant + wave s~,
+ * where drive = [A; -C], unknowns are increments over y_0, the states and what the rest was last (any
+ * y_0 gives the same answer, but rounding is of the size of what is solved for), and the sources are split into what is constant and what
  * varies. The matrix of a mode is M without the rows and columns of open pairs, so its pattern, and
  * with it KLU's analysis, depends on the mode alone: the analyses of the last modes are kept. */
 #ifndef DALCS_STAGE_PLAN_H
@@ -43,7 +44,7 @@ struct dalcs_stage_plan {
     int n_rows;              /* n_equations + n_pairs: rows and columns of M */
     struct dalcs_csr base;   /* columns of M without P: row c lists column c */
     struct dalcs_csr P;      /* columns of P */
-    struct dalcs_csr drive;  /* [n_rows][n_x] */
+    struct dalcs_csr drive;  /* [n_rows][n_rows] */
     double *constant;        /* [n_rows] */
     int n_waves;             /* entries of wave, by rows */
     int *wave_row, *wave_of; /* [n_waves] */
@@ -69,7 +70,9 @@ struct dalcs_stage_plan {
     /* work */
     double *rhs;    /* [2 n_rows] of the rows of M, then of choices */
     double *share;  /* [waves][DALCS_N_SHARES] */
-    double *missed; /* [n_x] */
+    double *near;   /* [n_rows] columns where the circuit was last; lambda of open pairs 0 */
+    double *from;   /* [n_rows] of this step: y_0 */
+    double *missed; /* [n_rows] by states at the start; else 0 */
     double *guard;  /* [n_pairs + watched] */
 };
 

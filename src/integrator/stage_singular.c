@@ -32,7 +32,7 @@ struct search {
     double *vector;      /* [n_open][n_columns] */
     struct trace *trace; /* [n_open] */
     double *of_pair;     /* [n_pairs] work */
-    struct dalcs_triplets choice, shore;
+    struct dalcs_triplets choice, of_column, shore;
 };
 
 /* Adds row `from` of a, its columns from `first` on, which closed pairs follow closely. */
@@ -172,6 +172,11 @@ static enum dalcs_status find_traces(struct search *s, const int *closed) {
     return DALCS_OK;
 }
 
+static enum dalcs_status put(struct search *s, int k, int column, double value) {
+    DALCS_TRY(dalcs_triplets_add(&s->choice, k, column, value));
+    return dalcs_triplets_add(&s->of_column, column, k, value);
+}
+
 /* The choice that is orthogonal to solution k in diodes. */
 static enum dalcs_status choose_in_diodes(struct search *s, int k) {
     const struct dalcs_csr *C = &s->system->C;
@@ -180,14 +185,14 @@ static enum dalcs_status choose_in_diodes(struct search *s, int k) {
     for (int e = 0; e < trace->n; e++) {
         int d = trace->pair[e];
         if (dalcs_stage_is_on(s->entry, d)) {
-            DALCS_TRY(dalcs_triplets_add(&s->choice, n_equations + d, k, trace->value[e]));
+            DALCS_TRY(put(s, k, n_equations + d, trace->value[e]));
             continue;
         }
         DALCS_TRY(dalcs_triplets_add(&s->shore, k, d, trace->value[e]));
         for (int i = C->p[d]; i < C->p[d + 1]; i++) {
             int c = C->j[i];
             if (c < n_equations || dalcs_stage_is_on(s->entry, c - n_equations)) {
-                DALCS_TRY(dalcs_triplets_add(&s->choice, c, k, trace->value[e] * C->x[i]));
+                DALCS_TRY(put(s, k, c, trace->value[e] * C->x[i]));
             }
         }
     }
@@ -201,7 +206,7 @@ static enum dalcs_status choose_in_all(struct search *s, int k) {
         int column = c < n_z ? s->system->n_x + c : n_equations + s->entry->on[c - n_z];
         double value = s->vector[k * s->n_columns + c];
         if (value != 0.0) {
-            DALCS_TRY(dalcs_triplets_add(&s->choice, column, k, value));
+            DALCS_TRY(put(s, k, column, value));
         }
     }
     return DALCS_OK;
@@ -246,7 +251,8 @@ static enum dalcs_status fill(struct dalcs_stage_singular *g, struct search *s, 
         DALCS_TRY(s->trace[k].n > 0 ? choose_in_diodes(s, k) : choose_in_all(s, k));
     }
     int n_rows = dalcs_system_n_columns(s->system);
-    DALCS_TRY(dalcs_csr_compress(&g->of_column, n_rows, g->n, &s->choice));
+    DALCS_TRY(dalcs_csr_compress(&g->choice, g->n, n_rows, &s->choice));
+    DALCS_TRY(dalcs_csr_compress(&g->of_column, n_rows, g->n, &s->of_column));
     return dalcs_csr_compress(&g->shore, g->n, s->system->n_pairs, &s->shore);
 }
 
@@ -279,6 +285,7 @@ enum dalcs_status dalcs_stage_singular_find(struct dalcs_stage_singular *g,
     *g = (struct dalcs_stage_singular){0};
     enum dalcs_status status = find(g, &s);
     dalcs_triplets_finish(&s.choice);
+    dalcs_triplets_finish(&s.of_column);
     dalcs_triplets_finish(&s.shore);
     dalcs_arena_finish(&s.arena);
     if (status != DALCS_OK) {
@@ -290,6 +297,7 @@ enum dalcs_status dalcs_stage_singular_find(struct dalcs_stage_singular *g,
 void dalcs_stage_singular_finish(struct dalcs_stage_singular *g) {
     free(g->row);
     free(g->scale);
+    dalcs_csr_finish(&g->choice);
     dalcs_csr_finish(&g->of_column);
     dalcs_csr_finish(&g->shore);
     *g = (struct dalcs_stage_singular){0};
@@ -299,9 +307,9 @@ size_t dalcs_stage_singular_bytes(const struct dalcs_stage_singular *g) {
     if (g->n == 0) {
         return 0;
     }
-    const struct dalcs_csr *part[] = {&g->of_column, &g->shore};
+    const struct dalcs_csr *part[] = {&g->choice, &g->of_column, &g->shore};
     size_t bytes = (size_t)g->n * (sizeof(int) + sizeof(double));
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 3; k++) {
         size_t n_rows = (size_t)part[k]->n_rows;
         bytes += (n_rows + 1) * sizeof(int) +
                  (size_t)part[k]->p[n_rows] * (sizeof(int) + sizeof(double));

@@ -14,8 +14,9 @@ struct dalcs_stage_singular {
     int n;
     int *row;                   /* [n] of M, that follow from others */
     double *scale;              /* [n] of these, in the matrix that was balanced with them */
-    struct dalcs_csr of_column; /* [columns of M][n] the choices that take their place */
-    struct dalcs_csr shore;     /* [n][n_pairs] of open diodes, whose w have a right-hand side */
+    struct dalcs_csr choice;    /* [n][n_rows] in their place, by columns of M */
+    struct dalcs_csr of_column; /* [n_rows][n] the same, turned */
+    struct dalcs_csr shore;     /* [n][n_pairs] of it, w of open diodes: these have sources */
 };
 
 struct dalcs_stage_entry;

@@ -325,6 +325,20 @@ bool dalcs_stages_is_awake(const struct dalcs_stages *stages, int pair) {
     return plan == NULL || dalcs_mode_has(plan->rest.may_close, pair);
 }
 
+void dalcs_stages_stay_near(struct dalcs_stages *stages, const uint64_t *mode, const double *y) {
+    struct dalcs_stage_plan *plan = stages->plan;
+    if (plan == NULL) {
+        return;
+    }
+    int n_equations = dalcs_stage_plan_n_equations(plan);
+    memcpy(plan->near, y, (size_t)plan->n_rows * sizeof(double));
+    for (int d = 0; d < stages->system->n_pairs; d++) {
+        if (!dalcs_mode_has(mode, d)) { /* that is its w */
+            plan->near[n_equations + d] = 0.0;
+        }
+    }
+}
+
 int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry) {
     return entry->n_clashes;
 }

@@ -81,6 +81,10 @@ enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t 
 void dalcs_stages_hold(struct dalcs_stage_entry *entry);
 void dalcs_stages_release(struct dalcs_stages *stages, struct dalcs_stage_entry *entry);
 
+/* Where the circuit is, y[n_columns] in the layout of an answer, in this mode: on factors the steps to
+ * come are solved for what changes from there. */
+void dalcs_stages_stay_near(struct dalcs_stages *stages, const uint64_t *mode, const double *y);
+
 int dalcs_stage_n_clashes(const struct dalcs_stage_entry *entry);
 
 /* Is what is next to this pair awake? (stage_rest.h) */

@@ -26,6 +26,7 @@ struct both {
     struct dalcs_stages dense;
     struct dalcs_stages sparse;  /* each mode has its own factors */
     struct dalcs_stages updated; /* some are updates of others */
+    double near;                 /* the largest of what steps are solved from */
 };
 
 /* Every row of F gets all inputs and C a few lambdas, which no netlist does. */
@@ -145,6 +146,8 @@ static void compare(const struct both *b, const struct dalcs_stage_entry *dense,
     if (dalcs_stage_is_update(sparse)) {
         raise_to_start(s, dense, in, scale);
     }
+    scale[0] = fmax(scale[0], b->near);
+    scale[1] = fmax(scale[1], b->near);
     double disagreement = 0.0;
     for (int k = 0; k < dense->n_clashes; k++) {
         disagreement = fmax(disagreement, fabs(x[l->n_fixed + k]));
@@ -208,6 +211,14 @@ static void check_steps(struct both *b, struct dalcs_stages *stages, const uint6
             }
         }
         compare(b, dense, sparse, in, x, y, tally);
+        if (sparse->n_clashes == 0) { /* the next one, in whatever mode, is solved from here */
+            b->near = 0.0;
+            for (int k = 0; k < dalcs_system_n_columns(b->system); k++) {
+                y[k] *= 1e-3;
+                b->near = fmax(b->near, fabs(y[k]));
+            }
+            dalcs_stages_stay_near(stages, mode, y);
+        }
     }
     free(in);
     free(x);

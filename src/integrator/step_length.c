@@ -1,0 +1,95 @@
+/* step_length.c - rungs of the ladder: how long a step may be, and the next one after an error.
+ *
+ * Steps are powers of 2 of one length, so that few lengths occur and each keeps its factors. */
+#include "step_length.h"
+
+#include "extremes.h"
+#include "radau_internal.h"
+
+/* The error estimate may be this much smaller than what is allowed before the step is doubled. */
+static const double safety = 0.8;
+
+/* An error below this, over the signal, is rounding: the true one may be far smaller, and the step grows
+ * by at least so many powers of 2 to see. */
+static const double unseen = 1e-15;
+static const double rungs_unseen = 3.0;
+
+/* Steps until a longer one is tried to see, at most. */
+enum { MOST_PATIENCE = 4096 };
+
+/* The longest step over the shortest period of a source, by stages: fewer nodes see less. */
+static double most_periods(int stages) {
+    return stages >= 9 ? 0.75 : stages >= 7 ? 0.6 : stages >= 5 ? 0.45 : 0.25;
+}
+
+double dalcs_length_longest(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    double longest = r->options.stop;
+    if (r->options.max_step > 0.0) {
+        longest = fmin(longest, r->options.max_step);
+    }
+    return fmin(longest, most_periods(part->stages.method->s) * part->excitation.shortest_period);
+}
+
+double dalcs_length_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    const struct dalcs_collocation *m = part->stages.method;
+    if (isinf(part->excitation.shortest_period)) {
+        return INFINITY;
+    }
+    double factorial = 1.0;
+    for (int k = 2; k <= m->s + 1; k++) {
+        factorial *= k;
+    }
+    double size = m->test_size * m->test_factor * m->lambda / factorial;
+    double angle = pow(r->inner_tolerance / size, 1.0 / (m->s + 1));
+    return angle * part->excitation.shortest_period / 6.283185307179586;
+}
+
+/* Long moves end on every n-th rung, so that searches up and down the ladder meet on the same step
+ * lengths, which have their factors already. Towards the shorter step. */
+static int shared_rung(int level, int n) {
+    int beyond = ((level % n) + n) % n;
+    return beyond > 0 ? level + n - beyond : level;
+}
+
+void dalcs_length_shorten(struct dalcs_radau_part *part, double ratio, int stuck) {
+    double rungs = log2(ratio) / (double)(part->stages.method->s + 1);
+    int down = rungs < DALCS_LENGTH_MOST_RUNGS ? (int)ceil(rungs) : DALCS_LENGTH_MOST_RUNGS;
+    part->level += down > 1 ? down : 1;
+    if (stuck > 0) { /* something much faster than the step has to die away */
+        int far = stuck == 1 ? 2 : 5;
+        part->level = shared_rung(part->level + (far > down ? far - down : 0), 3);
+    }
+    int patience = part->grew ? 2 * part->patience : part->patience;
+    part->patience = patience < MOST_PATIENCE ? patience : MOST_PATIENCE;
+    part->waited = 0;
+    part->grew = false;
+}
+
+double dalcs_length_rungs_promised(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                                   double ratio) {
+    double rungs = log2(safety / ratio) / (double)(part->stages.method->s + 1);
+    return ratio * r->inner_tolerance < unseen ? dalcs_larger(rungs, rungs_unseen) : rungs;
+}
+
+void dalcs_length_lengthen(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                           double ratio) {
+    double rungs = dalcs_length_rungs_promised(r, part, ratio);
+    bool promising = rungs > 1.0;
+    int up = rungs > DALCS_LENGTH_MOST_RUNGS ? DALCS_LENGTH_MOST_RUNGS : promising ? (int)rungs : 1;
+    while (up > 0 && dalcs_radau_ladder(part, part->level - up) > part->longest) {
+        up--;
+    }
+    part->waited++;
+    part->grew = false;
+    if (up == 0) {
+        return;
+    }
+    int level = up < 2 ? part->level - 1 : shared_rung(part->level - up, up < 3 ? 2 : 3);
+    bool is_far = level < part->level - 1;
+    if (!is_far && !(promising ? part->waited > 1 : part->waited > part->patience)) {
+        return;
+    }
+    part->level = is_far ? level : part->level - 1;
+    part->waited = 0;
+    part->grew = !promising;
+}

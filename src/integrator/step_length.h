@@ -1,0 +1,30 @@
+/* step_length.h - how long a step is, on a ladder of powers of 2. */
+#ifndef DALCS_STEP_LENGTH_H
+#define DALCS_STEP_LENGTH_H
+
+#include "radau.h"
+
+/* Up or down at once. */
+enum { DALCS_LENGTH_MOST_RUNGS = 6 };
+
+/* s; the longest step worth trying. */
+double dalcs_length_longest(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
+
+/* s; the step at which the error of following the fastest source is about what is allowed. */
+double dalcs_length_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
+
+/* How many rungs longer a step would be as accurate as it need be; ratio: its error over what is
+ * allowed. */
+double dalcs_length_rungs_promised(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                                   double ratio);
+
+/* Moves part->level down after a step that is not accurate; stuck: so many in a row, before this one,
+ * that were no better for being shorter. */
+void dalcs_length_shorten(struct dalcs_radau_part *part, double ratio, int stuck);
+
+/* Moves part->level up after a step that is, if the error promises it, or, as errors near rounding
+ * promise nothing, now and then to see. */
+void dalcs_length_lengthen(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                           double ratio);
+
+#endif
