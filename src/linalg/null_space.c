@@ -3,7 +3,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* An entry so many times its bound is no rounding. */
@@ -15,29 +14,30 @@ struct entry {
 };
 
 struct row {
-    size_t n, capacity;
+    int n, capacity;
     struct entry *entry; /* columns ascending */
     int next, previous;  /* among those of as many entries, -1: none */
 };
 
 struct column {
-    size_t n, capacity;
+    int n, capacity;
     int *row; /* that have, or had, an entry here; a row may be there twice */
 };
 
 struct work {
     struct row *row;
     struct column *column;
-    int *first;      /* [n_columns + 1] row of so many entries, -1: none */
-    int fewest;      /* no row that is left has fewer */
-    int *eliminated; /* [rank] rows in their order */
-    int *pivot_of;   /* [n_rows] column, -1: none */
-    struct row scratch;
+    int *first;         /* [n_columns + 1] row of so many entries, -1: none */
+    int fewest;         /* no row that is left has fewer */
+    int *eliminated;    /* [rank] rows in their order */
+    int *pivot_of;      /* [n_rows] column, -1: none */
+    struct row scratch; /* for n_columns entries */
+    struct dalcs_arena arena;
 };
 
 static void list_row(struct work *w, int r) {
     struct row *row = &w->row[r];
-    int n = (int)row->n;
+    int n = row->n;
     row->previous = -1;
     row->next = w->first[n];
     if (row->next >= 0) {
@@ -59,27 +59,52 @@ static void unlist_row(struct work *w, int r) {
     }
 }
 
-static enum dalcs_status note_row(struct column *column, int r) {
-    DALCS_TRY(dalcs_grow(&column->row, &column->capacity, column->n + 1, sizeof(int)));
+static enum dalcs_status note_row(struct work *w, int c, int r) {
+    struct column *column = &w->column[c];
+    if (column->n == column->capacity) {
+        int capacity = 2 * column->n + 4;
+        int *larger = dalcs_arena_alloc(&w->arena, (size_t)capacity, sizeof(int));
+        if (larger == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        if (column->n > 0) {
+            memcpy(larger, column->row, (size_t)column->n * sizeof(int));
+        }
+        column->row = larger;
+        column->capacity = capacity;
+    }
     column->row[column->n++] = r;
     return DALCS_OK;
 }
 
-static enum dalcs_status add_entry(struct row *row, int column, long double value,
-                                   long double bound) {
-    DALCS_TRY(dalcs_grow(&row->entry, &row->capacity, row->n + 1, sizeof(*row->entry)));
-    row->entry[row->n++] = (struct entry){column, value, bound};
+/* Row r becomes what is in scratch. */
+static enum dalcs_status put_row(struct work *w, int r) {
+    struct row *row = &w->row[r];
+    const struct row *scratch = &w->scratch;
+    if (scratch->n > row->capacity) {
+        row->capacity = scratch->n + scratch->n / 2;
+        row->entry = dalcs_arena_alloc(&w->arena, (size_t)row->capacity, sizeof(*row->entry));
+        if (row->entry == NULL) {
+            return DALCS_E_NOMEM;
+        }
+    }
+    row->n = scratch->n;
+    if (row->n > 0) {
+        memcpy(row->entry, scratch->entry, (size_t)row->n * sizeof(*row->entry));
+    }
+    list_row(w, r);
     return DALCS_OK;
 }
 
 static enum dalcs_status load(struct work *w, const struct dalcs_csr *a) {
     for (int r = 0; r < a->n_rows; r++) {
+        w->scratch.n = 0;
         for (int k = a->p[r]; k < a->p[r + 1]; k++) {
-            long double size = fabs(a->x[k]);
-            DALCS_TRY(add_entry(&w->row[r], a->j[k], a->x[k], 0.5L * DBL_EPSILON * size));
-            DALCS_TRY(note_row(&w->column[a->j[k]], r));
+            long double bound = 0.5L * DBL_EPSILON * fabs(a->x[k]);
+            w->scratch.entry[w->scratch.n++] = (struct entry){a->j[k], a->x[k], bound};
+            DALCS_TRY(note_row(w, a->j[k], r));
         }
-        list_row(w, r);
+        DALCS_TRY(put_row(w, r));
     }
     return DALCS_OK;
 }
@@ -92,7 +117,7 @@ static int shortest_row(struct work *w) {
 }
 
 static const struct entry *find_entry(const struct row *row, int column) {
-    for (size_t k = 0; k < row->n; k++) {
+    for (int k = 0; k < row->n; k++) {
         if (row->entry[k].column == column) {
             return &row->entry[k];
         }
@@ -102,7 +127,7 @@ static const struct entry *find_entry(const struct row *row, int column) {
 
 static long double largest_of(const struct work *w, const struct column *column, int index) {
     long double largest = 0.0L;
-    for (size_t k = 0; k < column->n; k++) {
+    for (int k = 0; k < column->n; k++) {
         const struct entry *e =
             w->pivot_of[column->row[k]] < 0 ? find_entry(&w->row[column->row[k]], index) : NULL;
         largest = e != NULL ? fmaxl(largest, fabsl(e->value)) : largest;
@@ -114,7 +139,7 @@ static long double largest_of(const struct work *w, const struct column *column,
 static struct entry choose_pivot(const struct work *w, const struct row *row) {
     const struct entry *chosen = NULL;
     long double best = 0.0L;
-    for (size_t k = 0; k < row->n; k++) {
+    for (int k = 0; k < row->n; k++) {
         const struct entry *e = &row->entry[k];
         const struct column *column = &w->column[e->column];
         long double part = fabsl(e->value) / largest_of(w, column, e->column);
@@ -151,8 +176,8 @@ static enum dalcs_status eliminate(struct work *w, int r, const struct row *by,
     long double relative = out->bound / fabsl(out->value) + pivot->bound / fabsl(pivot->value);
     unlist_row(w, r);
     w->scratch.n = 0;
-    size_t k = 0;
-    size_t l = 0;
+    int k = 0;
+    int l = 0;
     while (k < row->n || l < by->n) {
         const struct entry *a = k < row->n ? &row->entry[k] : NULL;
         const struct entry *b = l < by->n ? &by->entry[l] : NULL;
@@ -165,18 +190,12 @@ static enum dalcs_status eliminate(struct work *w, int r, const struct row *by,
         if (e.column == pivot->column || (b != NULL && fabsl(e.value) <= doubt * e.bound)) {
             continue;
         }
-        DALCS_TRY(add_entry(&w->scratch, e.column, e.value, e.bound));
+        w->scratch.entry[w->scratch.n++] = e;
         if (a == NULL) {
-            DALCS_TRY(note_row(&w->column[e.column], r));
+            DALCS_TRY(note_row(w, e.column, r));
         }
     }
-    struct row done = *row;
-    row->n = w->scratch.n;
-    row->capacity = w->scratch.capacity;
-    row->entry = w->scratch.entry;
-    w->scratch = done;
-    list_row(w, r);
-    return DALCS_OK;
+    return put_row(w, r);
 }
 
 static enum dalcs_status eliminate_all(struct work *w, int n_rows, int *rank) {
@@ -190,8 +209,8 @@ static enum dalcs_status eliminate_all(struct work *w, int n_rows, int *rank) {
         struct entry pivot = choose_pivot(w, row);
         w->pivot_of[r] = pivot.column;
         w->eliminated[(*rank)++] = r;
-        struct column *column = &w->column[pivot.column];
-        for (size_t k = 0; k < column->n; k++) {
+        const struct column *column = &w->column[pivot.column];
+        for (int k = 0; k < column->n; k++) {
             if (w->pivot_of[column->row[k]] < 0) {
                 DALCS_TRY(eliminate(w, column->row[k], row, &pivot));
             }
@@ -203,7 +222,7 @@ static enum dalcs_status eliminate_all(struct work *w, int n_rows, int *rank) {
 static enum dalcs_status keep(struct dalcs_null_space *s, const struct work *w) {
     size_t n_entries = 0;
     for (int k = 0; k < s->rank; k++) {
-        n_entries += w->row[w->eliminated[k]].n;
+        n_entries += (size_t)w->row[w->eliminated[k]].n;
     }
     s->begin = dalcs_arena_alloc(&s->arena, (size_t)s->rank + 1, sizeof(int));
     s->column = dalcs_arena_alloc(&s->arena, n_entries, sizeof(int));
@@ -223,7 +242,7 @@ static enum dalcs_status keep(struct dalcs_null_space *s, const struct work *w) 
     for (int k = 0; k < s->rank; k++) {
         const struct row *row = &w->row[w->eliminated[k]];
         int first = out;
-        for (size_t i = 0; i < row->n; i++, out++) {
+        for (int i = 0; i < row->n; i++, out++) {
             s->column[out] = row->entry[i].column;
             s->value[out] = (double)row->entry[i].value;
             if (s->column[out] == w->pivot_of[w->eliminated[k]]) {
@@ -248,13 +267,14 @@ static enum dalcs_status find(struct dalcs_null_space *s, struct work *w,
                               const struct dalcs_csr *a) {
     size_t n_rows = (size_t)a->n_rows;
     size_t n_columns = (size_t)a->n_columns;
-    w->row = dalcs_alloc(n_rows, sizeof(*w->row));
-    w->column = dalcs_alloc(n_columns, sizeof(*w->column));
-    w->first = dalcs_alloc(n_columns + 1, sizeof(int));
-    w->eliminated = dalcs_alloc(n_rows, sizeof(int));
-    w->pivot_of = dalcs_alloc(n_rows, sizeof(int));
+    w->row = dalcs_arena_alloc(&w->arena, n_rows, sizeof(*w->row));
+    w->column = dalcs_arena_alloc(&w->arena, n_columns, sizeof(*w->column));
+    w->first = dalcs_arena_alloc(&w->arena, n_columns + 1, sizeof(int));
+    w->eliminated = dalcs_arena_alloc(&w->arena, n_rows, sizeof(int));
+    w->pivot_of = dalcs_arena_alloc(&w->arena, n_rows, sizeof(int));
+    w->scratch.entry = dalcs_arena_alloc(&w->arena, n_columns, sizeof(*w->scratch.entry));
     if (w->row == NULL || w->column == NULL || w->first == NULL || w->eliminated == NULL ||
-        w->pivot_of == NULL) {
+        w->pivot_of == NULL || w->scratch.entry == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int k = 0; k <= a->n_columns; k++) {
@@ -272,18 +292,7 @@ enum dalcs_status dalcs_null_space_find(struct dalcs_null_space *s, const struct
     struct work w = {0};
     *s = (struct dalcs_null_space){.n_rows = a->n_rows, .n_columns = a->n_columns};
     enum dalcs_status status = find(s, &w, a);
-    for (int r = 0; w.row != NULL && r < a->n_rows; r++) {
-        free(w.row[r].entry);
-    }
-    for (int c = 0; w.column != NULL && c < a->n_columns; c++) {
-        free(w.column[c].row);
-    }
-    free(w.row);
-    free(w.column);
-    free(w.first);
-    free(w.eliminated);
-    free(w.pivot_of);
-    free(w.scratch.entry);
+    dalcs_arena_finish(&w.arena);
     if (status != DALCS_OK) {
         dalcs_null_space_finish(s);
     }
