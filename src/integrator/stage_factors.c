@@ -29,24 +29,24 @@ static void find_shares(const struct dalcs_stages *stages, const struct dalcs_st
     }
 }
 
-static void find_drive_of_row(const struct dalcs_stage_plan *plan, int r, const double *y,
-                              double factor) {
-    plan->rhs[r] = factor * plan->constant[r] + dalcs_csr_row_dot(&plan->drive, r, y);
+static void find_drive_of_row(const struct dalcs_stage_plan *plan, const struct dalcs_csr *drive,
+                              int r, const double *y, double factor) {
+    plan->rhs[r] = factor * plan->constant[r] + dalcs_csr_row_dot(drive, r, y);
 }
 
 /* plan->rhs = drive y + factor * constant, of the rows that are present. */
 static void find_drive(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
-                       const double *y, double factor) {
+                       const struct dalcs_csr *drive, const double *y, double factor) {
     int n_equations = f->n - f->n_pairs;
     for (int k = 0; k < plan->rest.n_awake; k++) {
-        find_drive_of_row(plan, plan->rest.row[k], y, factor);
+        find_drive_of_row(plan, drive, plan->rest.row[k], y, factor);
     }
     for (int k = 0; k < f->n_pairs; k++) {
-        find_drive_of_row(plan, n_equations + f->pair[k], y, factor);
+        find_drive_of_row(plan, drive, n_equations + f->pair[k], y, factor);
     }
     const struct dalcs_stage_update *u = f->update;
     for (int k = u != NULL ? u->n_closed : 0; u != NULL && k < u->n_changes; k++) { /* to a slack */
-        find_drive_of_row(plan, n_equations + u->change[k]->pair, y, factor);
+        find_drive_of_row(plan, drive, n_equations + u->change[k]->pair, y, factor);
     }
     for (int k = 0; k < f->singular.n; k++) {
         const struct dalcs_csr *shore = &f->singular.shore;
@@ -339,20 +339,20 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
     memset(out, 0, (size_t)l->n_fixed * sizeof(double));
     find_shares(stages, f, in + n_x + 1);
     find_start(plan, f, in);
-    find_drive(plan, f, plan->from, in[n_x]);
+    find_drive(plan, f, &plan->drive, plan->from, in[n_x]);
     for (int q = 0; q < f->n_systems; q++) {
         solve(plan, f, q, q == 0 ? DALCS_SHARE_REAL : DALCS_SHARE_PAIR + 2 * (q - 1));
     }
     put_columns(plan, entry, out);
     put_clashes(stages, entry, in, out);
-    find_drive(plan, f, plan->missed, 0.0);
+    find_drive(plan, f, &plan->drive_of_states, plan->missed, 0.0);
     solve(plan, f, 0, DALCS_SHARE_DRIFT);
     put_runs(f, &plan->rest.states, 1.0, out + l->drift);
     add_real(plan, entry, out);
     if (n_x > 0) {
         /* What was added goes with states that are off by the drift: take that back as well. */
         put_runs(f, &plan->rest.states, -1.0, plan->missed);
-        find_drive(plan, f, plan->missed, 0.0);
+        find_drive(plan, f, &plan->drive_of_states, plan->missed, 0.0);
         solve(plan, f, 0, DALCS_SHARE_NONE);
         add_real(plan, entry, out);
     }

@@ -43,16 +43,18 @@ static enum dalcs_status fill_P(struct dalcs_stage_plan *plan, const struct dalc
     return status;
 }
 
-static enum dalcs_status fill_drive(struct dalcs_stage_plan *plan) {
+/* - base on its first n_columns columns, by rows. */
+static enum dalcs_status fill_drive(const struct dalcs_stage_plan *plan, int n_columns,
+                                    struct dalcs_csr *drive) {
     struct dalcs_triplets t = {0};
     enum dalcs_status status = DALCS_OK;
-    for (int c = 0; c < plan->n_rows; c++) {
+    for (int c = 0; c < n_columns; c++) {
         for (int k = plan->base.p[c]; k < plan->base.p[c + 1] && status == DALCS_OK; k++) {
             status = dalcs_triplets_add(&t, plan->base.j[k], c, -plan->base.x[k]);
         }
     }
     if (status == DALCS_OK) {
-        status = dalcs_csr_compress(&plan->drive, plan->n_rows, plan->n_rows, &t);
+        status = dalcs_csr_compress(drive, plan->n_rows, n_columns, &t);
     }
     dalcs_triplets_finish(&t);
     return status;
@@ -152,7 +154,8 @@ static enum dalcs_status setup(struct dalcs_stage_plan *plan, const struct dalcs
     fill_combination(plan);
     DALCS_TRY(fill_base(plan, s));
     DALCS_TRY(fill_P(plan, s));
-    DALCS_TRY(fill_drive(plan));
+    DALCS_TRY(fill_drive(plan, plan->n_rows, &plan->drive));
+    DALCS_TRY(fill_drive(plan, s->n_x, &plan->drive_of_states));
     DALCS_TRY(dalcs_stage_rest_setup(plan));
     return dalcs_stage_freedom_setup(plan);
 }
@@ -205,6 +208,7 @@ void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
     dalcs_csr_finish(&plan->base);
     dalcs_csr_finish(&plan->P);
     dalcs_csr_finish(&plan->drive);
+    dalcs_csr_finish(&plan->drive_of_states);
     free(plan->constant);
     free(plan->wave_row);
     free(plan->wave_of);

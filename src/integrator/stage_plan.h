@@ -41,16 +41,17 @@ struct dalcs_stage_analysis {
 
 struct dalcs_stage_plan {
     const struct dalcs_stages *stages;
-    int n_rows;              /* n_equations + n_pairs: rows and columns of M */
-    struct dalcs_csr base;   /* columns of M without P: row c lists column c */
-    struct dalcs_csr P;      /* columns of P */
-    struct dalcs_csr drive;  /* [n_rows][n_rows] */
-    double *constant;        /* [n_rows] */
-    int n_waves;             /* entries of wave, by rows */
-    int *wave_row, *wave_of; /* [n_waves] */
-    double *wave_x;          /* [n_waves] */
-    int *wave_begin;         /* [n_rows + 1] */
-    int *wave_of_input;      /* [n_inputs] -1: constant */
+    int n_rows;                       /* n_equations + n_pairs: rows and columns of M */
+    struct dalcs_csr base;            /* columns of M without P: row c lists column c */
+    struct dalcs_csr P;               /* columns of P */
+    struct dalcs_csr drive;           /* [n_rows][n_rows] */
+    struct dalcs_csr drive_of_states; /* [n_rows][n_x] its first columns */
+    double *constant;                 /* [n_rows] */
+    int n_waves;                      /* entries of wave, by rows */
+    int *wave_row, *wave_of;          /* [n_waves] */
+    double *wave_x;                   /* [n_waves] */
+    int *wave_begin;                  /* [n_rows + 1] */
+    int *wave_of_input;               /* [n_inputs] -1: constant */
     /* Y_i = x_0 + sum over the parts (real, re, im, re, ...) of to[i] * part; to[0]: the value at 0
      * of the polynomial through the stages */
     double to[DALCS_MAX_NODES][DALCS_STAGE_PARTS];
