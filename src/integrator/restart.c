@@ -279,21 +279,18 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
     return DALCS_OK;
 }
 
-/* After micro-steps of length *h that a transient may have hidden a jump in: much shorter ones, where it
- * stands out, or, if there is none, the same again. */
+/* After micro-steps of length *h in which a transient as fast as they are may have hidden a jump, or the
+ * mode that it is in: much shorter ones, or, where these have no certificate, the same again. */
 static enum dalcs_status look_closer(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                      double *h, bool *jumps, bool *noticeable) {
     bool may_hide;
     enum dalcs_status status = micro_steps(r, part, shorter * *h);
-    *jumps = status == DALCS_OK && extrapolate(r, part, part->after, noticeable, &may_hide);
-    if (status < DALCS_OK) {
-        return status;
-    }
-    if (*jumps && *noticeable) {
+    if (status == DALCS_OK) {
         *h *= shorter;
-        return DALCS_OK;
+    } else if (status > DALCS_OK) {
+        status = micro_steps(r, part, *h);
     }
-    DALCS_TRY(micro_steps(r, part, *h));
+    DALCS_TRY(status);
     *jumps = extrapolate(r, part, part->after, noticeable, &may_hide);
     return DALCS_OK;
 }
