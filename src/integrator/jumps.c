@@ -302,7 +302,8 @@ enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *j, const struct dalcs_ci
         DALCS_TRY(dalcs_jumps_build(j, circuit, network, options));
     }
     const struct dalcs_system *s = &network->system[k];
-    answer->is_known = j->is_covered[k];
+    answer->is_covered = j->is_covered[k];
+    answer->is_known = answer->is_covered;
     answer->moves = false;
     answer->source_work = 0.0;
     if (!answer->is_known) {

@@ -27,7 +27,8 @@ struct dalcs_jump_answer {
     double *charge;     /* [n_pairs] C through the pair */
     double *flux;       /* [n_pairs] Wb across it */
     double source_work; /* J, delivered by the sources */
-    bool is_known;      /* false: this component's jumps are not covered, nothing else is filled */
+    bool is_known;      /* false: nothing else is filled, for */
+    bool is_covered;    /* this component's jumps are not, or the problem was not solved */
     bool moves;         /* some state jumps by more than rounding */
 };
 

@@ -252,15 +252,17 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
     }
     while (moves && noticeable) {
         DALCS_TRY(find_jump(r, part, h));
-        bool is_whole = !e->jump.is_known ||
-                        dalcs_jumps_agree(s, part->x, part->after, part->y1, e->jump.after);
-        if (is_whole || is_noticeable(r, part)) {
+        bool is_last = shorter * h < 64.0 * r->resolution;
+        bool is_whole = e->jump.is_known
+                            ? dalcs_jumps_agree(s, part->x, part->after, part->y1, e->jump.after)
+                            : is_last || !e->jump.is_covered;
+        if (is_whole || (e->jump.is_known && is_noticeable(r, part))) {
             DALCS_TRY(take_jump(r, part));
         }
         if (is_whole) {
             return DALCS_OK;
         }
-        if (shorter * h < 64.0 * r->resolution) {
+        if (is_last) {
             break;
         }
         enum dalcs_status status = micro_steps(r, part, shorter * h);
