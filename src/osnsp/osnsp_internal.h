@@ -78,6 +78,9 @@ static inline bool dalcs_certificate_holds(const struct dalcs_osnsp *p, bool sou
 enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u,
                                        double *y) DALCS_MUST_CHECK;
 
+/* p->right = R u, and the centre is 0. */
+void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u);
+
 /* Factors the regularised matrix of p->mode; the columns are all n + n_pairs. */
 enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
                                         int rung) DALCS_MUST_CHECK;

@@ -291,6 +291,11 @@ static void restart(struct dalcs_osnsp *p) {
     memset(p->step_now, 0, (size_t)(f->n + 2 * f->n_pairs) * sizeof(double));
 }
 
+void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u) {
+    dalcs_csr_multiply(&p->form[0]->R, u, p->right);
+    restart(p);
+}
+
 static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const double *u, double *y) {
     restart(p);
     for (int outer = 0; outer < p->options.max_outer; outer++) {
@@ -331,10 +336,9 @@ static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const doubl
 }
 
 enum dalcs_status dalcs_proximal_in_mode(struct dalcs_osnsp *p, const double *u, double *y) {
-    dalcs_csr_multiply(&p->form[0]->R, u, p->right);
+    dalcs_proximal_begin(p, u);
     struct dalcs_mode_entry *e;
     DALCS_TRY(dalcs_modes_get(p, 1 + DALCS_N_WEIGHTS, &e));
-    restart(p);
     for (int outer = 0; outer < p->options.max_outer && !e->singular; outer++) {
         dalcs_proximal_step(p, e, DALCS_N_WEIGHTS);
         bool sources_clash;

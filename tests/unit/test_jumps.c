@@ -195,5 +195,21 @@ START_TEST(test_not_covered) {
 
 END_TEST
 
+/* Nothing has to move, but thirteen diodes, most of them between nodes without a capacitor, leave much open, and
+ * beside 1 uF the proximal iteration for 10 nF takes for ever: the singular modes are answered exactly. */
+START_TEST(test_far_apart) {
+    jump("t\nL8 n6 n9 10u\nD9 n6 n10\nR10 n9 n11 0.1\nD18 n15 n19\nD19 n19 n20\nD20 n20 n21\n"
+         "R21 n21 n22 100\nD22 n23 n21\nC27 n1 0 10n IC=0\nC28 n2 0 1u IC=1\nD38 0 n16\n"
+         "D39 n21 n19\nD42 n25 n1\nD43 n1 n20\nD44 n2 n10\nD45 n21 n10\nD47 n23 n10\nD48 n1 n20\n"
+         "C50 n23 n16 10n IC=0\nC51 n22 n4 1u IC=0\n.tran 1u 1m uic\n");
+    ck_assert(answer.is_known);
+    ck_assert_double_eq_tol(state("c27"), 0.0, 1e-12);
+    ck_assert_double_eq_tol(state("c28"), 1.0, 1e-12);
+    ck_assert_double_eq_tol(state("c50"), 0.0, 1e-12);
+    finish();
+}
+
+END_TEST
+
 RUN_TESTS("jumps", test_charge, test_resistance, test_source, test_breakdown, test_flux,
-          test_switch, test_coupling, test_transformer, test_not_covered)
+          test_switch, test_coupling, test_transformer, test_not_covered, test_far_apart)
