@@ -323,9 +323,6 @@ enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *j, const struct dalcs_ci
         }
         command(part, mode);
         enum dalcs_status status = dalcs_osnsp_solve(&part->osnsp, 1.0, part->u, part->y);
-        if (status == DALCS_NOT_CONVERGED) {
-            status = dalcs_osnsp_solve_singular(&part->osnsp, part->u, part->y);
-        }
         if (status < DALCS_OK) {
             return status;
         }

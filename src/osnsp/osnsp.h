@@ -136,11 +136,6 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
 enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
                                     double *y) DALCS_MUST_CHECK;
 
-/* The same after DALCS_NOT_CONVERGED, by singular modes answered exactly. What they leave open has the least
- * norm of all unknowns, balanced, which need not be that of diodes. */
-enum dalcs_status dalcs_osnsp_solve_singular(struct dalcs_osnsp *p, const double *u,
-                                             double *y) DALCS_MUST_CHECK;
-
 /* After an answer y to u that may be one of several: p->tied becomes all diodes whose current and
  * voltage no more than rounding tells from 0, and scale the size of what rounding is measured by (V, A).
  * The certificate is stricter: it asks by how much a pivot's sign may be wrong. */

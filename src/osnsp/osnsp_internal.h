@@ -119,6 +119,13 @@ enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p, int rung) DALCS_MUS
 enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u,
                                   double *y) DALCS_MUST_CHECK;
 
+/* ---- singular.c ---------------------------------------------------------------------------- */
+
+/* Where all else ends in DALCS_NOT_CONVERGED, for monotone systems: singular modes answered exactly. What they
+ * leave open has the least norm of all unknowns, balanced, in its mode, which need not be that of diodes. */
+enum dalcs_status dalcs_singular_solve(struct dalcs_osnsp *p, const double *u,
+                                       double *y) DALCS_MUST_CHECK;
+
 /* ---- ties.c -------------------------------------------------------------------------------- */
 
 /* Makes a certified answer y of a regular mode with ties the least-norm one if there are several. */

@@ -144,6 +144,7 @@ static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double
                                   bool *sources_clash) {
     struct dalcs_mode_entry *entry;
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &entry));
+    p->least_norm = entry->singular;
     if (!entry->singular) {
         return dalcs_osnsp_try_mode(p, u, y, sources_clash);
     }
@@ -173,7 +174,7 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, const double *u, double *y
     return DALCS_NOT_CONVERGED;
 }
 
-enum dalcs_status dalcs_osnsp_solve_singular(struct dalcs_osnsp *p, const double *u, double *y) {
+enum dalcs_status dalcs_singular_solve(struct dalcs_osnsp *p, const double *u, double *y) {
     enum dalcs_status status = DALCS_NOT_CONVERGED;
     for (int rung = 0; rung < DALCS_N_WEIGHTS && status > DALCS_OK; rung++) {
         dalcs_proximal_begin(p, u);
