@@ -137,8 +137,8 @@ static long double largest_of(const struct work *w, const struct column *column,
 
 /* The largest of its column, as near as the row has it: with less, bounds would grow along a chain. */
 static struct entry choose_pivot(const struct work *w, const struct row *row) {
-    const struct entry *chosen = NULL;
-    long double best = 0.0L;
+    const struct entry *chosen = row->entry;
+    long double best = -1.0L;
     for (int k = 0; k < row->n; k++) {
         const struct entry *e = &row->entry[k];
         const struct column *column = &w->column[e->column];
