@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 /* An entry so many times its bound is no rounding. */
@@ -151,17 +152,13 @@ static struct entry choose_pivot(const struct work *w, const struct row *row) {
     return *chosen;
 }
 
-/* from - factor * by, where either may be missing; rounding included. */
-static struct entry subtract(const struct entry *from, const struct entry *by, long double factor,
-                             long double relative) {
-    struct entry e = from != NULL ? *from : (struct entry){by->column, 0.0L, 0.0L};
-    if (by != NULL) {
-        long double term = factor * by->value;
-        e.bound += fabsl(factor) * by->bound + relative * fabsl(term) +
-                   LDBL_EPSILON * (fabsl(e.value) + fabsl(term));
-        e.value -= term;
-    }
-    return e;
+/* e -= factor * by; rounding included. */
+static void subtract(struct entry *e, const struct entry *by, long double factor,
+                     long double relative) {
+    long double term = factor * by->value;
+    e->bound += fabsl(factor) * by->bound + relative * fabsl(term) +
+                LDBL_EPSILON * (fabsl(e->value) + fabsl(term));
+    e->value -= term;
 }
 
 /* Row r loses its entry in the pivot's column. */
@@ -179,19 +176,17 @@ static enum dalcs_status eliminate(struct work *w, int r, const struct row *by,
     int k = 0;
     int l = 0;
     while (k < row->n || l < by->n) {
-        const struct entry *a = k < row->n ? &row->entry[k] : NULL;
-        const struct entry *b = l < by->n ? &by->entry[l] : NULL;
-        if (a != NULL && b != NULL && a->column != b->column) {
-            *(a->column < b->column ? &b : &a) = NULL;
+        bool is_old = k < row->n && (l == by->n || row->entry[k].column <= by->entry[l].column);
+        bool changes = l < by->n && (k == row->n || by->entry[l].column <= row->entry[k].column);
+        struct entry e = is_old ? row->entry[k++] : (struct entry){by->entry[l].column, 0.0L, 0.0L};
+        if (changes) {
+            subtract(&e, &by->entry[l++], factor, relative);
         }
-        k += a != NULL;
-        l += b != NULL;
-        struct entry e = subtract(a, b, factor, relative);
-        if (e.column == pivot->column || (b != NULL && fabsl(e.value) <= doubt * e.bound)) {
+        if (e.column == pivot->column || (changes && fabsl(e.value) <= doubt * e.bound)) {
             continue;
         }
         w->scratch.entry[w->scratch.n++] = e;
-        if (a == NULL) {
+        if (!is_old) {
             DALCS_TRY(note_row(w, e.column, r));
         }
     }
