@@ -57,6 +57,7 @@ static void generalise(struct dalcs_system *s) {
 }
 
 static void setup(struct both *b, const char *netlist, int s, bool general) {
+    b->near = 0.0;
     build_good_network(&b->text, netlist);
     if (general) {
         generalise(&b->text.network.system[0]);
