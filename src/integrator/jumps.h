@@ -27,8 +27,8 @@ struct dalcs_jump_answer {
     double *charge;     /* [n_pairs] C through the pair */
     double *flux;       /* [n_pairs] Wb across it */
     double source_work; /* J, delivered by the sources */
-    bool is_known;      /* false: nothing else is filled, for */
-    bool is_covered;    /* this component's jumps are not, or the problem was not solved */
+    bool is_covered;    /* jumps of this component are problems that can be put */
+    bool is_known;      /* and solved; false: nothing else is filled */
     bool moves;         /* some state jumps by more than rounding */
 };
 

@@ -301,23 +301,29 @@ static void count_crowd(const struct dalcs_radau *r, struct dalcs_radau_part *pa
     part->crowd++;
 }
 
+/* [n_columns] where the segment ends; inside the step by way of part->y1. */
+static const double *end_of_segment(struct dalcs_radau_part *part) {
+    if (part->end == 1.0) {
+        return part->out + part->stages.method->s * part->stages.layout.stride;
+    }
+    dalcs_step_values(part, part->end, part->y1);
+    return part->y1;
+}
+
 static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
     part->jumped = false;
     if (r->base->energy != NULL) {
         memcpy(part->after, part->x, state_bytes);
     }
-    if (part->end == 1.0) {
-        const double *end = part->out + part->stages.method->s * part->stages.layout.stride;
+    if (part->end == 1.0 || part->stages.plan != NULL) {
+        const double *end = end_of_segment(part);
         memcpy(part->x, end, state_bytes);
+        dalcs_stages_stay_near(&part->stages, part->component->osnsp.mode, end);
     } else {
         dalcs_step_states(part, part->end, part->x);
-        part->fresh = true; /* the next step starts inside this one */
     }
-    if (part->stages.plan != NULL) {
-        dalcs_step_values(part, part->end, part->y1);
-        dalcs_stages_stay_near(&part->stages, part->component->osnsp.mode, part->y1);
-    }
+    part->fresh = part->fresh || part->end != 1.0; /* the next step starts inside this one */
     if (r->base->energy != NULL) {
         dalcs_energy_segment(r->base->energy, part, part->after);
     }

@@ -84,17 +84,28 @@ static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *p
     return DALCS_OK;
 }
 
+/* V, A: the largest so far, and of the states. */
+static void find_largest(const struct dalcs_radau_part *part, double *largest) {
+    const struct dalcs_system *s = part->component->system;
+    largest[0] = part->unit_scale[0];
+    largest[1] = part->unit_scale[1];
+    for (int x = 0; x < s->n_x; x++) {
+        int of = s->column_is_current[x];
+        largest[of] = fmax(largest[of], fabs(part->x[x]));
+    }
+}
+
 /* The states just after part->t from the micro-steps y1 and y2. Does any jump, and by more than the
  * error that the state of an event has? A fast transient moves in both micro-steps and is left to be
  * stepped through; it may hide a jump. */
 static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                         double *after, bool *noticeable, bool *may_hide) {
     const struct dalcs_system *s = part->component->system;
-    double largest[2] = {part->unit_scale[0], part->unit_scale[1]};
+    double largest[2];
+    find_largest(part, largest);
     for (int c = 0; c < dalcs_system_n_equations(s); c++) {
         int of = s->column_is_current[c];
-        double before = c < s->n_x ? fabs(part->x[c]) : 0.0;
-        largest[of] = fmax(largest[of], fmax(before, fabs(part->y1[c])));
+        largest[of] = fmax(largest[of], fabs(part->y1[c]));
     }
     double smallest = fmax(1e3 * r->inner_tolerance, smallest_jump);
     bool jumps = false;
@@ -206,11 +217,8 @@ static enum dalcs_status find_jump(struct dalcs_radau *r, struct dalcs_radau_par
  * allows: it is 0, for where nothing else is it would be a signal. */
 static void drop_remainders(const struct dalcs_radau_part *part, double *after) {
     const struct dalcs_system *s = part->component->system;
-    double largest[2] = {part->unit_scale[0], part->unit_scale[1]};
-    for (int x = 0; x < s->n_x; x++) {
-        int of = s->column_is_current[x];
-        largest[of] = fmax(largest[of], fabs(part->x[x]));
-    }
+    double largest[2];
+    find_largest(part, largest);
     for (int x = 0; x < s->n_x; x++) {
         bool is_moved = fabs(after[x] - part->x[x]) > 0.5 * fabs(after[x]);
         if (is_moved && fabs(after[x]) < remainder_of_jump * largest[s->column_is_current[x]]) {

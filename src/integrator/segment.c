@@ -31,7 +31,7 @@ static const double most_tolerated = 2e-13;
 static const double briefly = 1.0 / 64.0;
 
 enum {
-    MOST_PREFERRED = 2, /* of them, for the sake of factors */
+    MOST_PREFERRED = 2, /* rungs of the ladder, for the sake of factors */
     STUCK = 3,          /* smaller steps without a smaller error */
     VERY_STUCK = 8,
     PROJECTION = 30, /* a projecting step is this many rungs below */

@@ -3,8 +3,8 @@
  * With every pair present the matrix of an eigenvalue is
  *     M = [sigma P - A; C],     right-hand side  drive y_0 + constant + wave s~,
  * where drive = [A; -C], unknowns are increments over y_0, the states and what the rest was last (any
- * y_0 gives the same answer, but rounding is of the size of what is solved for), and the sources are split into what is constant and what
- * varies. The matrix of a mode is M without the rows and columns of open pairs, so its pattern, and
+ * y_0 gives the same answer, but rounding is of the size of what is solved for), and the sources are
+ * split into what is constant and what varies. The matrix of a mode is M without the rows and columns of open pairs, so its pattern, and
  * with it KLU's analysis, depends on the mode alone: the analyses of the last modes are kept. */
 #ifndef DALCS_STAGE_PLAN_H
 #define DALCS_STAGE_PLAN_H

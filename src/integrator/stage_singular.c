@@ -16,6 +16,9 @@
 /* Beside what it was, a vector this small is what rounding left of it. */
 static const double independent = 1e-9;
 
+/* A sum this small beside its terms is rounding. */
+static const double rounding = 1e-14;
+
 /* What a solution that is 0 on every right-hand side has in diodes. */
 struct trace {
     int n;
@@ -27,6 +30,7 @@ struct search {
     const struct dalcs_system *system;
     const struct dalcs_stage_entry *entry;
     struct dalcs_arena arena;
+    int *closed;         /* [n_pairs] which of entry->on a closed pair is */
     int n_columns;       /* without memory: z, then lambda of closed pairs */
     int n_open;          /* solutions */
     double *vector;      /* [n_open][n_columns] */
@@ -35,17 +39,23 @@ struct search {
     struct dalcs_triplets choice, of_column, shore;
 };
 
-/* Adds row `from` of a, its columns from `first` on, which closed pairs follow closely. */
-static enum dalcs_status add_row(struct dalcs_triplets *t, const struct dalcs_stage_entry *entry,
-                                 const struct dalcs_csr *a, int from, int first, int n_equations,
-                                 const int *closed, int row) {
+/* The place of column c of M among those from `first` on, which closed pairs follow closely; -1: none. */
+static int place_of(const struct search *s, int c, int first) {
+    int pair = c - dalcs_system_n_equations(s->system);
+    if (c < first || (pair >= 0 && !dalcs_stage_is_on(s->entry, pair))) {
+        return -1;
+    }
+    return pair < 0 ? c - first : c - pair - first + s->closed[pair];
+}
+
+/* Adds row `from` of a, its columns from `first` on. */
+static enum dalcs_status add_row(const struct search *s, const struct dalcs_csr *a, int from,
+                                 int first, int row, struct dalcs_triplets *t) {
     for (int k = a->p[from]; k < a->p[from + 1]; k++) {
-        int c = a->j[k];
-        if (c < first || (c >= n_equations && !dalcs_stage_is_on(entry, c - n_equations))) {
-            continue;
+        int column = place_of(s, a->j[k], first);
+        if (column >= 0) {
+            DALCS_TRY(dalcs_triplets_add(t, row, column, a->x[k]));
         }
-        int column = c < n_equations ? c - first : n_equations - first + closed[c - n_equations];
-        DALCS_TRY(dalcs_triplets_add(t, row, column, a->x[k]));
     }
     return DALCS_OK;
 }
@@ -53,52 +63,41 @@ static enum dalcs_status add_row(struct dalcs_triplets *t, const struct dalcs_st
 /* The null space of the equations from `first_row` on and the closed pairs, in the columns from
  * first_column on. */
 static enum dalcs_status find_null_space(const struct search *s, int first_row, int first_column,
-                                         const int *closed, struct dalcs_null_space *space) {
+                                         struct dalcs_null_space *space) {
     const struct dalcs_system *of = s->system;
     int n_equations = dalcs_system_n_equations(of);
     struct dalcs_triplets t = {0};
-    struct dalcs_csr a = {0};
     enum dalcs_status status = DALCS_OK;
     for (int r = first_row; status == DALCS_OK && r < n_equations; r++) {
-        status = add_row(&t, s->entry, &of->A, r, first_column, n_equations, closed, r - first_row);
+        status = add_row(s, &of->A, r, first_column, r - first_row, &t);
     }
     for (int k = 0; status == DALCS_OK && k < s->entry->n_on; k++) {
-        status = add_row(&t, s->entry, &of->C, s->entry->on[k], first_column, n_equations, closed,
-                         n_equations - first_row + k);
+        status = add_row(s, &of->C, s->entry->on[k], first_column, n_equations - first_row + k, &t);
     }
     if (status == DALCS_OK) {
-        status = dalcs_csr_compress(&a, n_equations - first_row + s->entry->n_on,
-                                    n_equations - first_column + s->entry->n_on, &t);
-    }
-    if (status == DALCS_OK) {
-        status = dalcs_null_space_find(space, &a);
+        status = dalcs_null_space_find(space, n_equations - first_row + s->entry->n_on,
+                                       n_equations - first_column + s->entry->n_on, &t);
     }
     dalcs_triplets_finish(&t);
-    dalcs_csr_finish(&a);
     return status;
 }
 
 /* w of an open pair, or lambda of a closed one, in a solution without states. */
-static double other_side(const struct search *s, int pair, const double *vector,
-                         const int *closed) {
+static double other_side(const struct search *s, int pair, const double *vector) {
     const struct dalcs_csr *C = &s->system->C;
     int n_x = s->system->n_x;
-    int n_equations = dalcs_system_n_equations(s->system);
     if (dalcs_stage_is_on(s->entry, pair)) {
-        return vector[n_equations - n_x + closed[pair]];
+        return vector[place_of(s, dalcs_system_n_equations(s->system) + pair, n_x)];
     }
     double sum = 0.0;
     double size = 0.0;
     for (int k = C->p[pair]; k < C->p[pair + 1]; k++) {
-        int c = C->j[k];
-        if (c < n_x || (c >= n_equations && !dalcs_stage_is_on(s->entry, c - n_equations))) {
-            continue;
-        }
-        int at = c < n_equations ? c - n_x : n_equations - n_x + closed[c - n_equations];
-        sum += C->x[k] * vector[at];
-        size += fabs(C->x[k] * vector[at]);
+        int at = place_of(s, C->j[k], n_x);
+        double term = at >= 0 ? C->x[k] * vector[at] : 0.0;
+        sum += term;
+        size += fabs(term);
     }
-    return fabs(sum) > 1e-14 * size ? sum : 0.0;
+    return fabs(sum) > rounding * size ? sum : 0.0;
 }
 
 static enum dalcs_status keep_trace(struct search *s, struct trace *trace) {
@@ -138,13 +137,13 @@ static double product(const struct trace *trace, const double *of_pair) {
 }
 
 /* Makes the traces orthogonal (Gram and Schmidt, twice), and those that vanish empty. */
-static enum dalcs_status find_traces(struct search *s, const int *closed) {
+static enum dalcs_status find_traces(struct search *s) {
     int n_pairs = s->system->n_pairs;
     for (int k = 0; k < s->n_open; k++) {
         double *vector = s->vector + k * s->n_columns;
         for (int d = 0; d < n_pairs; d++) {
             bool is_diode = s->system->pair[d].kind == DALCS_PAIR_DIODE;
-            s->of_pair[d] = is_diode ? other_side(s, d, vector, closed) : 0.0;
+            s->of_pair[d] = is_diode ? other_side(s, d, vector) : 0.0;
         }
         double before = norm_of(s->of_pair, n_pairs);
         for (int i = 0; i < 2 * k; i++) {
@@ -228,7 +227,7 @@ static enum dalcs_status list_redundant(struct dalcs_stage_singular *g, const st
     return DALCS_OK;
 }
 
-static enum dalcs_status fill(struct dalcs_stage_singular *g, struct search *s, const int *closed,
+static enum dalcs_status fill(struct dalcs_stage_singular *g, struct search *s,
                               const struct dalcs_null_space *rows,
                               const struct dalcs_null_space *columns) {
     if (rows->n_redundant == 0 || rows->n_redundant != columns->n_free) {
@@ -246,7 +245,7 @@ static enum dalcs_status fill(struct dalcs_stage_singular *g, struct search *s, 
     for (int k = 0; k < g->n; k++) {
         dalcs_null_space_vector(columns, k, s->vector + k * s->n_columns);
     }
-    DALCS_TRY(find_traces(s, closed));
+    DALCS_TRY(find_traces(s));
     for (int k = 0; k < g->n; k++) {
         DALCS_TRY(s->trace[k].n > 0 ? choose_in_diodes(s, k) : choose_in_all(s, k));
     }
@@ -257,20 +256,19 @@ static enum dalcs_status fill(struct dalcs_stage_singular *g, struct search *s, 
 }
 
 static enum dalcs_status find(struct dalcs_stage_singular *g, struct search *s) {
-    int n_pairs = s->system->n_pairs;
-    int *closed = dalcs_arena_alloc(&s->arena, (size_t)n_pairs, sizeof(int));
-    if (closed == NULL) {
+    s->closed = dalcs_arena_alloc(&s->arena, (size_t)s->system->n_pairs, sizeof(int));
+    if (s->closed == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int k = 0; k < s->entry->n_on; k++) {
-        closed[s->entry->on[k]] = k;
+        s->closed[s->entry->on[k]] = k;
     }
     struct dalcs_null_space rows;
     struct dalcs_null_space columns;
-    DALCS_TRY(find_null_space(s, s->system->n_x, 0, closed, &rows));
-    enum dalcs_status status = find_null_space(s, 0, s->system->n_x, closed, &columns);
+    DALCS_TRY(find_null_space(s, s->system->n_x, 0, &rows));
+    enum dalcs_status status = find_null_space(s, 0, s->system->n_x, &columns);
     if (status == DALCS_OK) {
-        status = fill(g, s, closed, &rows, &columns);
+        status = fill(g, s, &rows, &columns);
         dalcs_null_space_finish(&columns);
     }
     dalcs_null_space_finish(&rows);

@@ -11,10 +11,6 @@ static const double FACTORS_ROUNDING = 50.0;
 /* The latest entries are looked at one by one before all are asked. */
 enum { RECENT = 3 };
 
-/* Of the largest entry in its column. With KLU's own 1e-3 elements may grow a thousandfold, and a
- * capacitor across a conducting diode turns what that costs, times C/h, into a current of the diode. */
-static const double least_pivot = 0.1;
-
 enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,
                                      const struct dalcs_excitation *excitation, int s,
                                      int dense_limit, double rcond_min, size_t most_bytes) {
@@ -29,8 +25,9 @@ enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct d
     stages->method = dalcs_collocation_of(s);
     dalcs_lu_common_init(&stages->klu);
     dalcs_lu_common_init(&stages->klu_complex);
-    stages->klu.tol = least_pivot;
-    stages->klu_complex.tol = least_pivot;
+    /* A capacitor across a conducting diode turns what digits cost, times C/h, into a current of it. */
+    dalcs_lu_pivot_carefully(&stages->klu);
+    dalcs_lu_pivot_carefully(&stages->klu_complex);
     stages->watched = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
     stages->key = dalcs_alloc((size_t)stages->n_words + 1, sizeof(*stages->key));
     if (stages->watched == NULL || stages->key == NULL) {

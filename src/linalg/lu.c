@@ -14,6 +14,10 @@ void dalcs_lu_common_init(klu_common *common) {
     common->scale = -1; /* the caller balances and knows its entries: neither scales nor a check */
 }
 
+void dalcs_lu_pivot_carefully(klu_common *common) {
+    common->tol = 0.1;
+}
+
 void dalcs_lu_keep_diagonal(klu_common *common, bool keep) {
     common->btf = keep ? 0 : 1;
 }

@@ -41,6 +41,10 @@ void dalcs_lu_common_init(klu_common *common);
  * relies on. */
 void dalcs_lu_keep_diagonal(klu_common *common, bool keep);
 
+/* Pivots of at least a tenth of the largest entry in their column. With KLU's own 1e-3, which keep more to the
+ * diagonal, elements may grow a thousandfold. */
+void dalcs_lu_pivot_carefully(klu_common *common);
+
 /* Factors the matrix of order n whose columns are (p[n+1], i[], x[]). DALCS_SINGULAR when KLU meets
  * a zero pivot, or when its cheap estimate of the reciprocal condition is below rcond_min and a pivot
  * may be what rounding left of its column: the caller balances rows and columns, so that this means

@@ -283,11 +283,15 @@ static enum dalcs_status find(struct dalcs_null_space *s, struct work *w,
     return keep(s, w);
 }
 
-enum dalcs_status dalcs_null_space_find(struct dalcs_null_space *s, const struct dalcs_csr *a) {
+enum dalcs_status dalcs_null_space_find(struct dalcs_null_space *s, int n_rows, int n_columns,
+                                        const struct dalcs_triplets *t) {
     struct work w = {0};
-    *s = (struct dalcs_null_space){.n_rows = a->n_rows, .n_columns = a->n_columns};
-    enum dalcs_status status = find(s, &w, a);
+    struct dalcs_csr a;
+    *s = (struct dalcs_null_space){.n_rows = n_rows, .n_columns = n_columns};
+    DALCS_TRY(dalcs_csr_compress(&a, n_rows, n_columns, t));
+    enum dalcs_status status = find(s, &w, &a);
     dalcs_arena_finish(&w.arena);
+    dalcs_csr_finish(&a);
     if (status != DALCS_OK) {
         dalcs_null_space_finish(s);
     }

@@ -24,9 +24,9 @@ struct dalcs_null_space {
     struct dalcs_arena arena; /* of the arrays */
 };
 
-/* On failure there is nothing to finish. */
-enum dalcs_status dalcs_null_space_find(struct dalcs_null_space *s,
-                                        const struct dalcs_csr *a) DALCS_MUST_CHECK;
+/* Of the matrix [n_rows][n_columns] that t collects. On failure there is nothing to finish. */
+enum dalcs_status dalcs_null_space_find(struct dalcs_null_space *s, int n_rows, int n_columns,
+                                        const struct dalcs_triplets *t) DALCS_MUST_CHECK;
 
 /* vector[n_columns]: the one with 1 in free_column[k] and 0 in the other free ones. */
 void dalcs_null_space_vector(const struct dalcs_null_space *s, int k, double *vector);

@@ -13,13 +13,9 @@
 /* Changes of the mode, and how many of them all at once. */
 enum { MOST_ROUNDS = 60, ROUNDS_AT_ONCE = 10 };
 
-/* Pivots are at least this part of their column: the certificate asks for all digits. */
-static const double least_pivot = 0.1;
-
 static enum dalcs_status find_null_space(const struct dalcs_columns *a,
                                          struct dalcs_null_space *space) {
     struct dalcs_triplets t = {0};
-    struct dalcs_csr rows = {0};
     enum dalcs_status status = DALCS_OK;
     for (int c = 0; c < a->n; c++) {
         for (int k = a->p[c]; k < a->p[c + 1] && status == DALCS_OK; k++) {
@@ -27,13 +23,9 @@ static enum dalcs_status find_null_space(const struct dalcs_columns *a,
         }
     }
     if (status == DALCS_OK) {
-        status = dalcs_csr_compress(&rows, a->n, a->n, &t);
-    }
-    if (status == DALCS_OK) {
-        status = dalcs_null_space_find(space, &rows);
+        status = dalcs_null_space_find(space, a->n, a->n, &t);
     }
     dalcs_triplets_finish(&t);
-    dalcs_csr_finish(&rows);
     return status;
 }
 
@@ -84,7 +76,7 @@ static enum dalcs_status solve(struct dalcs_osnsp *p, const struct dalcs_mode_en
     klu_common common;
     struct dalcs_lu lu;
     dalcs_lu_common_init(&common);
-    common.tol = least_pivot;
+    dalcs_lu_pivot_carefully(&common); /* the certificate asks for all digits */
     DALCS_TRY(dalcs_lu_factor(&lu, &common, a->n, a->p, a->i, a->x, NULL, 0.0));
     memcpy(b, p->right, (size_t)n * sizeof(double));
     for (int k = 0; k < entry->n_on; k++) {
@@ -148,6 +140,8 @@ static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double
     if (!entry->singular) {
         return dalcs_osnsp_try_mode(p, u, y, sources_clash);
     }
+    dalcs_csr_multiply(&p->form[0]->R, u,
+                       p->right); /* a regular mode's map leaves other things there */
     DALCS_TRY(answer(p, entry));
     dalcs_osnsp_unscale(p, y);
     dalcs_certificate_evaluate(p, u, y, sources_clash);
@@ -181,7 +175,6 @@ enum dalcs_status dalcs_singular_solve(struct dalcs_osnsp *p, const double *u, d
         bool mode_changed;
         status = dalcs_proximal_pivot(p, rung, &mode_changed);
         if (status == DALCS_OK) {
-            dalcs_csr_multiply(&p->form[0]->R, u, p->right);
             status = pivot(p, u, y);
         }
     }

@@ -15,7 +15,7 @@ static void find(struct dalcs_null_space *s, int n_rows, int n_columns, struct d
                  double tolerance) {
     struct dalcs_csr a;
     ck_assert_int_eq(dalcs_csr_compress(&a, n_rows, n_columns, t), DALCS_OK);
-    ck_assert_int_eq(dalcs_null_space_find(s, &a), DALCS_OK);
+    ck_assert_int_eq(dalcs_null_space_find(s, n_rows, n_columns, t), DALCS_OK);
     ck_assert_int_eq(s->rank + s->n_redundant, n_rows);
     ck_assert_int_eq(s->rank + s->n_free, n_columns);
     double *vector = calloc((size_t)n_columns + 1, sizeof(double));
