@@ -69,6 +69,12 @@ static bool takes_parasitic(struct dalcs_reader *reader, enum dalcs_quantity qua
            dalcs_reader_take_parameter(reader) != NULL;
 }
 
+/* SIN, PULSE, ... */
+static bool is_function(const struct dalcs_token *token) {
+    return token != NULL && token->kind == DALCS_TOKEN_WORD &&
+           dalcs_waveform_card_is_name(token->text);
+}
+
 static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantity,
                         struct dalcs_stimulus *stimulus, struct dalcs_parasitics *parasitics) {
     bool has_function = false;
@@ -77,6 +83,9 @@ static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantit
     while ((token = dalcs_reader_peek(reader, 0)) != NULL) {
         if (dalcs_reader_take_word(reader, "dc")) {
             dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+            if (is_function(dalcs_reader_peek(reader, 0))) {
+                continue; /* DC PWL(...), as ngspice takes it: no value of its own */
+            }
             if (!read_dc(reader, quantity, stimulus)) {
                 return;
             }
@@ -89,7 +98,7 @@ static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantit
                 return;
             }
             has_ac = true;
-        } else if (token->kind == DALCS_TOKEN_WORD && dalcs_waveform_card_is_name(token->text)) {
+        } else if (is_function(token)) {
             if (has_function) {
                 dalcs_builder_error(reader->builder, token, NULL, "a second source function");
                 return;

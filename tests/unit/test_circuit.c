@@ -185,7 +185,7 @@ START_TEST(test_sources) {
                                  "V2 b 0 dc=7 sine 0 5\n"
                                  "V3 c 0 PULSE 0 5\n"
                                  "I4 d 0 Pulse(1,2,3m,4u,5u,6u,70u) AC 1 0 DC 3\n"
-                                 "V5 e 0 PWL (0 0\n"
+                                 "V5 e 0 DC PWL (0 0\n"
                                  "+ 1m,5 1m 6\n"
                                  "+ 2m 7)\n"
                                  "V6 f 0 EXP(0 1 1m 2m)\n"
@@ -220,6 +220,7 @@ START_TEST(test_sources) {
     ck_assert_double_eq(s->u.pulse.width, 6e-6);
     ck_assert_double_eq(s->u.pulse.period, 70e-6);
     s = stimulus_of("v5");
+    ck_assert(!s->has_dc);
     ck_assert_int_eq(s->u.pwl.n, 4);
     ck_assert_double_eq(s->u.pwl.t[2], 1e-3);
     ck_assert_double_eq(s->u.pwl.v[1], 5);
