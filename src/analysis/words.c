@@ -22,10 +22,26 @@ static const char *join(const struct dalcs_view *view, const char *list, int k, 
     return dalcs_arena_printf(view->work, "%s%s%s", list, between, name);
 }
 
+/* A diode that breaks down has two branches, one after the other. */
+static bool is_first(const struct dalcs_view *view, const int *part, int k) {
+    return k == 0 || name_of(view, part, k - 1) != name_of(view, part, k);
+}
+
+static int count_names(const struct dalcs_view *view, int n, const int *part) {
+    int n_names = 0;
+    for (int k = 0; k < n; k++) {
+        n_names += is_first(view, part, k) ? 1 : 0;
+    }
+    return n_names;
+}
+
 static const char *list_names(const struct dalcs_view *view, int n, const int *part) {
     const char *list = "";
-    for (int k = 0; k < n; k++) {
-        list = join(view, list, k, n, name_of(view, part, k), false);
+    int n_names = count_names(view, n, part);
+    for (int k = 0, named = 0; k < n; k++) {
+        if (is_first(view, part, k)) {
+            list = join(view, list, named++, n_names, name_of(view, part, k), false);
+        }
     }
     return list;
 }
@@ -145,8 +161,9 @@ const char *dalcs_words_for_island(const struct dalcs_view *view, const int *isl
     if (stack == NULL || nodes == NULL || elements == NULL) {
         return NULL;
     }
-    return n == 0 ? dalcs_arena_printf(view->work, "nothing sets the voltage of %s", nodes)
-                  : dalcs_arena_printf(view->work,
-                                       "nothing conducts between %s and the rest: %s block%s",
-                                       nodes, elements, n == 1 ? "s" : "");
+    return n == 0
+               ? dalcs_arena_printf(view->work, "nothing sets the voltage of %s", nodes)
+               : dalcs_arena_printf(view->work,
+                                    "nothing conducts between %s and the rest: %s block%s", nodes,
+                                    elements, count_names(view, n, border) == 1 ? "s" : "");
 }

@@ -181,6 +181,13 @@ const char *dalcs_names_nearest_of(const char *const *candidate, size_t n, const
     return nearest.name;
 }
 
+size_t dalcs_names_current_of(const char *text) {
+    const char *bracket = text[0] == '@' ? strchr(text, '[') : NULL;
+    const bool is_current =
+        bracket != NULL && (strcmp(bracket, "[i]") == 0 || strcmp(bracket, "[id]") == 0);
+    return is_current ? (size_t)(bracket - text) - 1 : 0;
+}
+
 const char *dalcs_names_join(const struct dalcs_names *names, size_t most,
                              struct dalcs_arena *arena) {
     if (names->n == 0 || names->n > most) {

@@ -31,6 +31,10 @@ const char *dalcs_names_nearest(const struct dalcs_names *names, const char *nam
 /* The same among candidate[0..n-1]. */
 const char *dalcs_names_nearest_of(const char *const *candidate, size_t n, const char *name);
 
+/* Bytes of the element's name in @name[i] or, of a diode, @name[id], as ngspice calls its current; 0
+ * where `text` is something else. The name begins at text + 1. */
+size_t dalcs_names_current_of(const char *text);
+
 /* "a, b, c": the names in order of insertion, in `arena`; NULL when the table is empty, has more
  * than `most` names, or memory runs out. */
 const char *dalcs_names_join(const struct dalcs_names *names, size_t most,

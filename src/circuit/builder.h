@@ -13,8 +13,9 @@ enum dalcs_model_kind {
     DALCS_MODEL_DIODE,
     DALCS_MODEL_SWITCH,
     DALCS_MODEL_CURRENT_SWITCH,
-    DALCS_MODEL_OTHER, /* of a device that does not exist here */
-    DALCS_MODEL_WRONG  /* had errors: a use of it is no second error */
+    DALCS_MODEL_PASSIVE, /* of R, L or C, whose card has the value */
+    DALCS_MODEL_OTHER,   /* of a device that does not exist here */
+    DALCS_MODEL_WRONG    /* had errors: a use of it is no second error */
 };
 
 /* What a diode's model says besides its lines. */
@@ -32,6 +33,7 @@ struct dalcs_model {
     const struct dalcs_token *name;
     const struct dalcs_token *type;
     struct dalcs_diode_card diode;
+    const struct dalcs_token *beyond; /* of R, L or C: what would change values; else NULL */
 };
 
 enum dalcs_hidden {
@@ -376,6 +378,9 @@ bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_param
 /* The index (in diode_model or switch_model) of a model of this kind; else an error, and -1. */
 int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *name,
                      enum dalcs_model_kind kind);
+/* Takes the name of a model of R, L or C (letter), if one follows: nothing depends on it. False after
+ * an error. */
+bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter);
 void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* A second card of an analysis is an error. */

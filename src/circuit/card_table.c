@@ -9,6 +9,7 @@
 #include "number.h"
 
 #include <string.h>
+#include <strings.h>
 
 struct dot_card {
     const char *name;
@@ -270,7 +271,7 @@ void dalcs_card_table_check_title(struct dalcs_builder *builder) {
     const bool is_element = first[0] != '\0' && strchr("RLCVIrlcvi", first[0]) != NULL &&
                             strpbrk(first, "0123456789") != NULL &&
                             dalcs_number_parse(value, &number) == DALCS_NUMBER_OK;
-    const bool is_card = first[0] == '.' && first[1] >= 'A';
+    const bool is_card = first[0] == '.' && first[1] >= 'A' && strcasecmp(first, ".title") != 0;
     if (is_element || is_card) {
         const struct dalcs_token token = {.line = line, .length = (int)strlen(line->text)};
         dalcs_builder_warn(builder, &token, "put a title before it",

@@ -319,8 +319,10 @@ static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalc
         return a;
     }
     if (dalcs_builder_is_one_of(f->function, steps, sizeof steps / sizeof steps[0])) {
-        return refuse_name(c, f, "sums of u(...) make a staircase of so many steps",
-                           "%s(...) of a quantity that varies has steps without end");
+        return refuse_name(
+            c, f,
+            "sums of u(...) make a staircase of so many steps, and PULSE(0 1 0 T 0 0 T) a sawtooth",
+            "%s(...) of a quantity that varies has steps without end");
     }
     return refuse_name(c, f, NULL, "%s(...) of a quantity that varies is not piecewise linear");
 }

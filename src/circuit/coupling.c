@@ -90,9 +90,10 @@ static bool read_factor(struct dalcs_reader *reader, double *k) {
 }
 
 int dalcs_coupling_count_coils(const struct dalcs_card *card) {
+    const int first = card->n > 1 && card->token[1].kind == DALCS_TOKEN_OPEN ? 2 : 1;
     int n = 0;
-    while (n + 1 < card->n && card->token[n + 1].kind == DALCS_TOKEN_WORD &&
-           dalcs_builder_letter(&card->token[n + 1]) == 'l') {
+    while (n + first < card->n && card->token[n + first].kind == DALCS_TOKEN_WORD &&
+           dalcs_builder_letter(&card->token[n + first]) == 'l') {
         n++;
     }
     return n < 2 || n > MOST_COILS ? 2 : n;
@@ -120,7 +121,12 @@ void dalcs_coupling_parse(struct dalcs_builder *builder, const struct dalcs_card
         return;
     }
     const int n = dalcs_coupling_count_coils(card);
+    const bool opened = dalcs_reader_take(&reader, DALCS_TOKEN_OPEN); /* K1 (L1 L2) 0.9 */
     const int *coil = read_coils(&reader, n);
+    if (coil != NULL && opened && !dalcs_reader_take(&reader, DALCS_TOKEN_CLOSE)) {
+        dalcs_reader_missing(&reader, "')'");
+        return;
+    }
     const struct dalcs_token *next = dalcs_reader_peek(&reader, 0);
     if (coil != NULL && next != NULL && next->kind == DALCS_TOKEN_WORD &&
         dalcs_builder_letter(next) == 'l') {

@@ -53,8 +53,8 @@ static bool is_one_of(const struct dalcs_token *token, const char *const *list, 
 
 /* "from 1m to 2m", as LTspice also has it. */
 static bool is_bound(const struct dalcs_card *card, int k) {
-    static const char *const bounds[] = {"from", "to"};
-    return k + 1 < card->n && is_one_of(&card->token[k], bounds, 2) &&
+    static const char *const bounds[] = {"from", "to", "at"};
+    return k + 1 < card->n && is_one_of(&card->token[k], bounds, 3) &&
            card->token[k + 1].kind != DALCS_TOKEN_EQUAL &&
            dalcs_reader_is_number(&card->token[k + 1]);
 }

@@ -33,12 +33,12 @@ static const struct type *find_type(const char *name) {
         {"vdmos", DALCS_MODEL_OTHER, "transistor"},
         {"nmf", DALCS_MODEL_OTHER, "transistor"},
         {"pmf", DALCS_MODEL_OTHER, "transistor"},
-        {"r", DALCS_MODEL_OTHER, "resistor"},
-        {"res", DALCS_MODEL_OTHER, "resistor"},
-        {"c", DALCS_MODEL_OTHER, "capacitor"},
-        {"cap", DALCS_MODEL_OTHER, "capacitor"},
-        {"l", DALCS_MODEL_OTHER, "inductor"},
-        {"ind", DALCS_MODEL_OTHER, "inductor"},
+        {"r", DALCS_MODEL_PASSIVE, "resistor"},
+        {"res", DALCS_MODEL_PASSIVE, "resistor"},
+        {"c", DALCS_MODEL_PASSIVE, "capacitor"},
+        {"cap", DALCS_MODEL_PASSIVE, "capacitor"},
+        {"l", DALCS_MODEL_PASSIVE, "inductor"},
+        {"ind", DALCS_MODEL_PASSIVE, "inductor"},
         {"core", DALCS_MODEL_OTHER, "magnetic core"},
         {"ltra", DALCS_MODEL_OTHER, "transmission line"},
         {"urc", DALCS_MODEL_OTHER, "transmission line"},
@@ -99,6 +99,20 @@ bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_param
         }
     }
     return ok;
+}
+
+/* Of an R, L or C the card has the value; a model's temperature, noise and tolerance change nothing here. */
+static void read_passive(struct dalcs_reader *reader, struct dalcs_model *model) {
+    static const char *const nothing[] = {"tc",    "tc1", "tc2",    "tce",  "tnom", "temp",
+                                          "dtemp", "kf",  "af",     "ef",   "lf",   "wf",
+                                          "dev",   "lot", "bv_max", "level"};
+    (void)dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
+    const struct dalcs_token *name;
+    while ((name = dalcs_reader_take_parameter(reader)) != NULL && skip_value(reader)) {
+        if (!dalcs_builder_is_one_of(name->text, nothing, sizeof nothing / sizeof nothing[0])) {
+            model->beyond = model->beyond != NULL ? model->beyond : name;
+        }
+    }
 }
 
 /* Reads the parameters of a D or SW into the circuit; false when an error was reported. */
@@ -173,7 +187,9 @@ void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *c
         return;
     }
     model->kind = known->kind;
-    if (known->kind != DALCS_MODEL_OTHER && !read_parameters(&reader, model)) {
+    if (known->kind == DALCS_MODEL_PASSIVE) {
+        read_passive(&reader, model);
+    } else if (known->kind != DALCS_MODEL_OTHER && !read_parameters(&reader, model)) {
         model->kind = DALCS_MODEL_WRONG;
     }
 }
@@ -187,6 +203,34 @@ void dalcs_model_check(struct dalcs_builder *builder) {
                                find_type(model->type->text)->what, model->name->text);
         }
     }
+}
+
+/* R or RES, C or CAP, L or IND. */
+static bool is_type_of(const struct dalcs_model *model, char letter) {
+    const char first = model->type->text[0];
+    return first == letter || (letter == 'l' && first == 'i');
+}
+
+bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter) {
+    const struct dalcs_token *name = dalcs_reader_peek(reader, 0);
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    if (name == NULL || name->kind != DALCS_TOKEN_WORD ||
+        (next != NULL && next->kind == DALCS_TOKEN_EQUAL)) {
+        return true;
+    }
+    const int index = dalcs_names_find(&reader->builder->models, name->text);
+    if (index < 0 || reader->builder->model[index].kind != DALCS_MODEL_PASSIVE ||
+        !is_type_of(&reader->builder->model[index], letter)) {
+        return true;
+    }
+    const struct dalcs_model *model = &reader->builder->model[index];
+    reader->at++;
+    if (model->beyond != NULL) {
+        dalcs_builder_error(
+            reader->builder, name, "write the value on the card and leave out the model",
+            "model '%s' has %s=, which is not supported", name->text, model->beyond->text);
+    }
+    return model->beyond == NULL;
 }
 
 /* The type that a card must have. */

@@ -145,6 +145,10 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
         return;
     }
     struct values values = {.has_value = false};
+    const char letter = family->names[0][0];
+    if (!dalcs_model_take_passive(&reader, letter)) {
+        return;
+    }
     const struct dalcs_token *equal = dalcs_reader_peek(&reader, 1);
     if (equal == NULL || equal->kind != DALCS_TOKEN_EQUAL) {
         if (!dalcs_reader_number(&reader, family->quantity, family->value, &device->value)) {
@@ -153,6 +157,9 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
         values.has_value = true;
     }
     const struct dalcs_token *value = dalcs_reader_previous(&reader);
+    if (!dalcs_model_take_passive(&reader, letter)) {
+        return;
+    }
     const struct dalcs_token *name;
     while ((name = dalcs_reader_take_parameter(&reader)) != NULL) {
         const bool had_value = values.has_value;

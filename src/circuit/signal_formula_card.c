@@ -160,11 +160,14 @@ static int previous_byte(const char *text, int k) {
     return k > 0 ? (unsigned char)text[k - 1] : 0;
 }
 
-/* @r1[i] at t: how long it is; 0: something else. */
+/* @r1[i] or @d1[id] at t: how long it is; 0: something else. */
 static int device_current(const char *t) {
     int n = 1;
     while (t[0] == '@' && (is_name_byte(t[n]) || t[n] == ':')) {
         n++;
+    }
+    if (n > 1 && strncmp(t + n, "[id]", 4) == 0) {
+        return n + 4;
     }
     return n > 1 && strncmp(t + n, "[i]", 3) == 0 ? n + 3 : 0;
 }
@@ -203,8 +206,9 @@ static void mask_signals(struct dalcs_signal_compilation *c) {
             report(c, k, end - k, NULL, "more than %d signals in one formula", MOST_SIGNALS);
             return;
         }
-        const int signal = open > 0 ? find_signal(c, text[k] == 'i', k + open + 1, end - 1)
-                                    : find_signal(c, true, k + 1, end - (int)strlen("[i]"));
+        const int signal = open > 0
+                               ? find_signal(c, text[k] == 'i', k + open + 1, end - 1)
+                               : find_signal(c, true, k + 1, (int)(strchr(text + k, '[') - text));
         if (signal < 0) {
             c->failed = true;
             return;

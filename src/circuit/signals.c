@@ -252,13 +252,13 @@ static bool read_device_current(struct dalcs_reader *reader) {
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     struct dalcs_token name = *token;
-    const size_t n = strlen(token->text);
-    if (n <= 4 || strcmp(token->text + n - 3, "[i]") != 0) {
+    const size_t length = dalcs_names_current_of(token->text);
+    if (length == 0) {
         dalcs_builder_error(builder, token, "of an element its current is recorded: @name[i]",
                             "'%s' is not a signal", token->text);
         return false;
     }
-    name.text = dalcs_arena_copy(&builder->scratch, token->text + 1, n - 4);
+    name.text = dalcs_arena_copy(&builder->scratch, token->text + 1, length);
     if (name.text == NULL) {
         builder->out_of_memory = true;
         return false;

@@ -121,6 +121,7 @@ static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantit
     }
     if (!stimulus->has_dc && !has_function) {
         stimulus->has_dc = true;
+        stimulus->is_ac_alone = has_ac;
         if (has_ac) {
             return; /* a source for .ac: 0 is meant */
         }
@@ -191,6 +192,13 @@ void dalcs_source_check(struct dalcs_builder *builder) {
         if (device->stimulus >= 0) {
             dalcs_stimulus_check(builder, builder->device_token[k],
                                  &circuit->stimulus[device->stimulus]);
+        }
+        if (device->stimulus >= 0 && circuit->stimulus[device->stimulus].is_ac_alone &&
+            circuit->transient.present && circuit->ac.n == 0) {
+            dalcs_builder_warn(
+                builder, builder->device_token[k], "SIN(0 12 60) is a sine of 12 and 60 Hz",
+                "source '%s' has an AC value alone, which .tran does not see: it is 0",
+                device->name);
         }
     }
 }

@@ -33,6 +33,7 @@ struct dalcs_stimulus {
     double dc; /* the card's DC value; see has_dc */
     bool has_dc;
     double ac_real, ac_imaginary; /* of the card's AC magnitude and phase; V or A */
+    bool is_ac_alone;             /* the card has nothing else */
 
     union {
         /* offset + amplitude exp(-damping (t - delay)) sin(2 pi frequency (t - delay) + phase);

@@ -11,6 +11,8 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
+#include <unistd.h>
 
 /* Files that include nothing cost no bytes: they are counted too. */
 enum { MOST_SOURCES = 100000, DEEPEST = 200 };
@@ -78,6 +80,20 @@ static enum dalcs_status make_source(struct dalcs_lexer *lexer, const struct dal
     return DALCS_OK;
 }
 
+/* What LTspice writes into every netlist with a diode or a transistor: its own libraries, wherever it is
+ * installed. */
+static bool is_of_ltspice(const char *path) {
+    static const char *const names[] = {"standard.dio", "standard.bjt", "standard.mos",
+                                        "standard.jft"};
+    const size_t n = strlen(path);
+    bool found = false;
+    for (size_t k = 0; k < sizeof names / sizeof names[0] && !found; k++) {
+        const size_t length = strlen(names[k]);
+        found = n >= length && strcasecmp(path + n - length, names[k]) == 0;
+    }
+    return found;
+}
+
 static enum dalcs_status include(struct dalcs_lexer *lexer, const struct dalcs_token *token,
                                  const struct dalcs_token *section) {
     struct dalcs_netlist *netlist = lexer->netlist;
@@ -99,6 +115,12 @@ static enum dalcs_status include(struct dalcs_lexer *lexer, const struct dalcs_t
         return DALCS_OK;
     }
     const struct dalcs_location where = dalcs_token_location(token);
+    if (is_of_ltspice(path) && access(path, R_OK) != 0) {
+        dalcs_diag_add(lexer->diag, DALCS_WARNING, &where,
+                       "the models that elements name must stand in the netlist",
+                       "LTspice's library '%s' is not here: it is left out", name);
+        return DALCS_OK;
+    }
     char *text;
     size_t length;
     enum dalcs_status status =

@@ -261,7 +261,12 @@ bool dalcs_lexer_starts_with(const struct dalcs_lexer *lexer, size_t p, const ch
     return strncmp(lexer->low + p, word, length) == 0 && ends_word(lexer->raw[p + length]);
 }
 
+/* With or without .title before it. */
 static enum dalcs_status read_title(struct dalcs_lexer *lexer, size_t begin, size_t end) {
+    while (begin < end && is_blank(lexer->raw[begin])) {
+        begin++;
+    }
+    begin += dalcs_lexer_starts_with(lexer, begin, ".title") ? strlen(".title") : 0;
     while (begin < end && is_blank(lexer->raw[begin])) {
         begin++;
     }
@@ -271,6 +276,16 @@ static enum dalcs_status read_title(struct dalcs_lexer *lexer, size_t begin, siz
     lexer->netlist->title =
         dalcs_arena_copy(&lexer->netlist->arena, lexer->raw + begin, end - begin);
     return lexer->netlist->title != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* Does the card so far have a parenthesis that is not closed? */
+static bool is_open(const struct dalcs_lexer *lexer) {
+    int depth = 0;
+    for (size_t k = 0; k < lexer->n_tokens; k++) {
+        depth += lexer->token[k].kind == DALCS_TOKEN_OPEN ? 1 : 0;
+        depth -= lexer->token[k].kind == DALCS_TOKEN_CLOSE ? 1 : 0;
+    }
+    return depth > 0;
 }
 
 static enum dalcs_status continue_card(struct dalcs_lexer *lexer, size_t plus, size_t begin) {
@@ -320,6 +335,9 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
     if (lexer->raw[p] == '+' && !lexer->skipping) {
         return continue_card(lexer, p, begin);
     }
+    if (lexer->raw[p] == ')' && is_open(lexer)) {
+        return read_tokens(lexer, p, begin); /* of a model whose last line has lost its + */
+    }
     DALCS_TRY(dalcs_lexer_flush(lexer));
     if (lexer->skipping) {
         bool skips;
@@ -336,7 +354,7 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
         return DALCS_OK;
     }
     if (dalcs_lexer_starts_with(lexer, p, ".title")) {
-        return read_title(lexer, p + strlen(".title"), end);
+        return read_title(lexer, p, end);
     }
     lexer->in_control = dalcs_lexer_starts_with(lexer, p, ".control");
     return read_tokens(lexer, p, begin);

@@ -1,4 +1,5 @@
 /* command.c - statements that are no blocks. */
+#include "names.h"
 #include "script_internal.h"
 
 #include <errno.h>
@@ -128,11 +129,9 @@ static enum dalcs_status save(struct dalcs_script *script, const struct dalcs_st
     }
     const char *text = "";
     for (const char *word; text != NULL && (word = dalcs_script_word(script, &rest)) != NULL;) {
-        size_t n = strlen(word);
-        const bool is_device = word[0] == '@' && n > 4 && strcmp(word + n - 3, "[i]") == 0;
-        text = is_device
-                   ? dalcs_arena_printf(&script->arena, "%s i(%.*s)", text, (int)n - 4, word + 1)
-                   : dalcs_arena_printf(&script->arena, "%s %s", text, word);
+        const int n = (int)dalcs_names_current_of(word);
+        text = n > 0 ? dalcs_arena_printf(&script->arena, "%s i(%.*s)", text, n, word + 1)
+                     : dalcs_arena_printf(&script->arena, "%s %s", text, word);
     }
     return text != NULL ? add_card(script, s, "save", text) : DALCS_E_NOMEM;
 }
@@ -324,6 +323,25 @@ static enum dalcs_status print(struct dalcs_script *script, const struct dalcs_s
     return DALCS_OK;
 }
 
+/* ngspice takes for wrdata what it takes for plot. Bytes before the first word that only shapes a picture. */
+static size_t length_of_vectors(const char *text) {
+    static const char *const words[] = {
+        "xlimit", "xl",     "ylimit", "yl",      "xlabel", "ylabel", "title",   "xlog",
+        "ylog",   "loglog", "linear", "lingrid", "xdelta", "ydelta", "linplot", "pointplot"};
+    const char *p = text;
+    while (*p != '\0') {
+        p += strspn(p, " \t");
+        const size_t n = strcspn(p, " \t");
+        for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
+            if (strlen(words[k]) == n && strncmp(p, words[k], n) == 0) {
+                return (size_t)(p - text);
+            }
+        }
+        p += n;
+    }
+    return strlen(text);
+}
+
 static enum dalcs_status write_file(struct dalcs_script *script, const struct dalcs_statement *s) {
     const struct dalcs_vector **vector;
     const struct dalcs_writing how = writing(script);
@@ -343,6 +361,10 @@ static enum dalcs_status write_file(struct dalcs_script *script, const struct da
     struct dalcs_statement rest = *s;
     rest.rest = text;
     status = dalcs_script_expand_low(script, &rest, &text);
+    if (status == DALCS_OK && !is_raw) {
+        text = dalcs_arena_copy(&script->arena, text, length_of_vectors(text));
+        status = text == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    }
     status = status == DALCS_OK ? dalcs_script_vectors(script, s, text, &vector, &n) : status;
     if (status != DALCS_OK) {
         return status;

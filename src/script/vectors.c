@@ -1,6 +1,8 @@
 /* vectors.c - rows become columns. */
 #include "vectors.h"
 
+#include "names.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,14 +32,14 @@ static bool is_used(const struct dalcs_vectors *v, const char *name) {
            (inside_of(name, inside, sizeof inside)[0] != '\0' && names(v, inside));
 }
 
-/* v1#branch and @v1[i] are i(v1), a bare word is v(word). */
+/* v1#branch, @v1[i] and @d1[id] are currents, a bare word is v(word). */
 static const char *canonical(const char *name, char *text, size_t size) {
-    size_t n = strlen(name);
+    const int n = (int)dalcs_names_current_of(name);
     const char *branch = strstr(name, "#branch");
     if (branch != NULL && branch[7] == '\0') {
         snprintf(text, size, "i(%.*s)", (int)(branch - name), name);
-    } else if (name[0] == '@' && n > 4 && strcmp(name + n - 3, "[i]") == 0) {
-        snprintf(text, size, "i(%.*s)", (int)n - 4, name + 1);
+    } else if (n > 0) {
+        snprintf(text, size, "i(%.*s)", n, name + 1);
     } else {
         snprintf(text, size, "v(%s)", name);
     }

@@ -37,6 +37,23 @@ static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
     return schedule;
 }
 
+/* Rows further apart than half a period do not show a sine, nor do averages over them. */
+static void warn_of_coarse_rows(struct dalcs_run *r, const struct dalcs_schedule *schedule) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    for (int i = 0; i < c->n_devices && schedule->kind == DALCS_ON_GRID; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        const struct dalcs_stimulus *s = d->stimulus >= 0 ? &c->stimulus[d->stimulus] : NULL;
+        if (s != NULL && s->kind == DALCS_STIMULUS_SIN && s->u.sine.amplitude != 0.0 &&
+            schedule->step * s->u.sine.frequency > 0.5) {
+            dalcs_diag_add(&r->s->diag, DALCS_WARNING, &d->where, "a smaller tstep in .tran",
+                           "rows are %g s apart and a period of '%s' is %g s: they do not show it, "
+                           "nor what is computed from them",
+                           schedule->step, d->name, 1.0 / s->u.sine.frequency);
+            return;
+        }
+    }
+}
+
 /* From x(0-), or from the operating point (NULL). */
 static enum dalcs_status start_at(struct dalcs_euler *e, struct dalcs_radau *radau,
                                   double *const *initial) {
@@ -363,6 +380,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     struct dalcs_energy energy = {0};
     struct dalcs_measures measures = {0};
     struct dalcs_schedule schedule = choose_schedule(r);
+    warn_of_coarse_rows(r, &schedule);
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, r->h, stop));

@@ -57,7 +57,7 @@ unset wr_vecnames
 wrdata plain.txt v(out) v(in)
 dc V1 0 1 0.1
 set wr_vecnames
-wrdata dc.txt v(in) v(out)
+wrdata dc.txt v(in) v(out) xlimit 0 1
 .endc
 """, ["out.txt", "plain.txt", "dc.txt"], 1e-7),
     "formulas": ("""

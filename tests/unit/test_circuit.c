@@ -449,7 +449,38 @@ START_TEST(test_suffix_warnings) {
 
 END_TEST
 
+/* As ngspice and LTspice accept them. */
+START_TEST(test_spellings) {
+    build_good_circuit(&circuit, ".title A card as the title\n"
+                                 "V1 in 0 5\n"
+                                 "E1 e 0 in 0 2\n"
+                                 "R1 e a RM 1k\n"
+                                 "F1 in 0 E1 0.5\n"
+                                 "D1 a 0 DM\n"
+                                 "L1 a b 1m\n"
+                                 "L2 b 0 1m\n"
+                                 "K1 (L1 L2) .9\n"
+                                 ".model RM RES TC1=0 TC2=0\n"
+                                 ".model DM D(\n"
+                                 "+ Vfwd=0.7\n"
+                                 ")\n"
+                                 ".save @d1[id] @r1[i]\n"
+                                 ".meas tran x FIND @d1[id]+v(a) AT 1m\n"
+                                 ".tran 1u 2m\n");
+    ck_assert_str_eq(circuit.title, "A card as the title");
+    ck_assert_double_eq(circuit.device[2].value, 1000);
+    ck_assert_str_eq(circuit.device[circuit.device[3].control].name, "e1");
+    ck_assert_double_eq(circuit.diode_model[circuit.device[4].model].vfwd, 0.7);
+    ck_assert_int_eq(circuit.n_couplings, 1);
+    check_signals((const char *[]){"i(d1)", "i(r1)", "v(a)"}, 3);
+    ck_assert_int_eq(circuit.n_shown, 2);
+    ck_assert_int_eq(circuit.n_measures, 1);
+}
+
+END_TEST
+
 START_TEST(test_title_warnings) {
+    ck_assert_uint_eq(count_severity(".title A\nR2 a 0 1\nR3 a 0 1\n.op\n", DALCS_WARNING), 0);
     ck_assert_uint_eq(count_severity("R1 a 0 1k\nR2 a 0 1\nR3 a 0 1\n.op\n", DALCS_WARNING), 1);
     ck_assert_uint_eq(count_severity(".op\nR2 a 0 1\nR3 a 0 1\n.op\n", DALCS_WARNING), 1);
     ck_assert_uint_eq(count_severity("* R1 a 0 1k\nR2 a 0 1\nR3 a 0 1\n.op\n", DALCS_WARNING), 0);
@@ -463,4 +494,4 @@ END_TEST
 
 RUN_TESTS("circuit", test_elements, test_models, test_sources, test_no_states, test_signals,
           test_initial_conditions, test_options, test_unusual_networks, test_errors,
-          test_suffix_warnings, test_title_warnings)
+          test_suffix_warnings, test_spellings, test_title_warnings)
