@@ -75,6 +75,12 @@ struct dalcs_device {
 struct dalcs_diode_model {
     const char *name;
     double ron, roff, vfwd, vrev, rrev; /* ohm, ohm, V, V, ohm */
+
+    /* v = voltage log(1 + i / saturation) + series i, which the line above is the tangent of at the
+     * current `at`; voltage is 0 where the card has lines. */
+    struct dalcs_exponential {
+        double saturation, voltage, series, at; /* A, V, ohm, A */
+    } exponential;
 };
 
 /* Closes when the control (S: a voltage, W: a current) rises through vt + vh, opens when it falls

@@ -188,6 +188,7 @@ void dalcs_diode_model_map(const struct dalcs_diode_card *card, double current, 
     model->rrev = series;
     if (card->emission > IDEAL_EMISSION) {
         const double slope = nvt / (current + saturation);
+        model->exponential = (struct dalcs_exponential){saturation, nvt, series, current};
         model->ron += slope;
         model->vfwd = nvt * log1p(current / saturation) - slope * current;
     }

@@ -383,6 +383,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     warn_of_coarse_rows(r, &schedule);
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
+    DALCS_TRY(dalcs_tangents_watch(r));
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, r->h, stop));
     e.detect_jumps = r->options->record || dalcs_run_keeps_ledger(r);
     e.jump_user = r;
@@ -413,6 +414,9 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     }
     if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {
         status = close_ledger(r, &energy, &e, is_euler ? NULL : &radau);
+    }
+    if (status == DALCS_OK) {
+        dalcs_tangents_judge(r);
     }
     dalcs_explain_failure(r, &e, status);
     dalcs_run_add_work(r, &e);

@@ -104,6 +104,9 @@ static double next_output(const struct dalcs_schedule *s) {
 }
 
 static enum dalcs_status emit(struct dalcs_recorder *r, double time, const double *value) {
+    for (int k = 0; k < r->n_watched; k++) {
+        r->largest[k] = fmax(r->largest[k], value[r->watched[k]]);
+    }
     return r->sink->row(r->sink->user, time, value);
 }
 

@@ -25,6 +25,10 @@ struct dalcs_recorder {
     struct dalcs_schedule schedule;
     double *now, *before, *row; /* [n_outputs] at the end and the beginning of the step */
     bool have_before;
+    int n_watched;
+    const int
+        *watched;    /* [n_watched] outputs whose largest value in all rows is wanted; borrowed */
+    double *largest; /* [n_watched] borrowed */
 
     bool keep; /* events and jumps */
     size_t limit;

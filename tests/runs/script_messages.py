@@ -19,7 +19,7 @@ def main():
     expected_file = netlist.with_suffix(".err")
     with tempfile.TemporaryDirectory() as folder:
         output = pathlib.Path(folder) / "out.csv"
-        done = subprocess.run([program, "run", netlist.name, "-q", "-o", output],
+        done = subprocess.run([program, "run", netlist.name, "-o", output],
                               capture_output=True, timeout=60, check=False,
                               cwd=netlist.absolute().parent)
         left = output.exists()
