@@ -36,7 +36,7 @@ bool dalcs_expression_text(struct dalcs_arena *arena, const struct dalcs_token *
     for (int k = 0; k < n; n_pieces++) {
         const int end = end_of_line(token, k, n);
         const struct dalcs_token *last = &token[end - 1];
-        low[at] = ' ';
+        low[at] = token[k].after_comma ? ',' : ' '; /* the line before may end with one */
         at += n_pieces > 0;
         piece[n_pieces] = (struct dalcs_piece){token[k].line, at, token[k].offset + inside};
         const int stop = last->offset + last->length - inside;

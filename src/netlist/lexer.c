@@ -226,10 +226,10 @@ static bool starts_slashes(const char *text) {
 
 static enum dalcs_status read_tokens(struct dalcs_lexer *lexer, size_t p, size_t begin) {
     const char *raw = lexer->raw;
-    bool after_comma = false;
+    lexer->after_comma = lexer->after_comma && lexer->n_tokens > 0;
     for (;;) {
         while (is_blank(raw[p]) || raw[p] == ',') {
-            after_comma = after_comma || raw[p] == ',';
+            lexer->after_comma = lexer->after_comma || raw[p] == ',';
             p++;
         }
         if (raw[p] == '\0' || raw[p] == ';') {
@@ -246,8 +246,8 @@ static enum dalcs_status read_tokens(struct dalcs_lexer *lexer, size_t p, size_t
         DALCS_TRY(
             dalcs_grow(&lexer->token, &lexer->capacity, lexer->n_tokens + 1, sizeof *lexer->token));
         struct dalcs_token *token = &lexer->token[lexer->n_tokens++];
-        *token = (struct dalcs_token){.after_comma = after_comma};
-        after_comma = false;
+        *token = (struct dalcs_token){.after_comma = lexer->after_comma};
+        lexer->after_comma = false;
         const size_t end = read_token(lexer, p, begin, token);
         if (end - p > DALCS_LONGEST_TOKEN) {
             return DALCS_E_LIMIT;

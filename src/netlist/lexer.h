@@ -30,6 +30,7 @@ struct dalcs_lexer {
     const struct dalcs_source_line *line; /* the present one, made when first needed */
     struct dalcs_token *token;            /* of the card being read */
     size_t n_tokens;
+    bool after_comma; /* the card so far ends with one */
     size_t capacity;
 };
 

@@ -38,15 +38,74 @@ static bool is_no_text(struct dalcs_netlist *netlist, const struct dalcs_source 
     return true;
 }
 
+static size_t end_of_line(const struct dalcs_lexer *lexer, size_t begin) {
+    const char *newline = memchr(lexer->raw + begin, '\n', lexer->length - begin);
+    return newline != NULL ? (size_t)(newline - lexer->raw) : lexer->length;
+}
+
+/* Does the line begin an expression in braces or quotes that it does not end? */
+static bool is_open(const char *line, size_t length) {
+    if (memchr(line, '{', length) == NULL && memchr(line, '\'', length) == NULL) {
+        return false;
+    }
+    int depth = 0;
+    bool quoted = false;
+    for (size_t k = 0; k < length && line[k] != ';' && line[0] != '*'; k++) {
+        depth += (line[k] == '{') - (line[k] == '}');
+        quoted = quoted != (line[k] == '\'');
+    }
+    return depth > 0 || quoted;
+}
+
+/* Where the text of the next line that is neither blank nor a comment begins; it is *n_lines on. */
+static size_t next_text(const struct dalcs_lexer *lexer, size_t end, int *n_lines) {
+    for (;;) {
+        size_t p = end + 1;
+        ++*n_lines;
+        while (p < lexer->length && strchr(" \t\r", lexer->raw[p]) != NULL) {
+            p++;
+        }
+        if (p >= lexer->length) {
+            return p;
+        }
+        end = end_of_line(lexer, p);
+        if (p < end && lexer->raw[p] != '*') {
+            return p;
+        }
+    }
+}
+
+/* Such an expression may go on behind a + on the next line, as cards do: one line is made of both.
+ * *n_joined: how many were added. */
+static size_t join_lines(struct dalcs_lexer *lexer, size_t begin, size_t end, int *n_joined) {
+    while (end < lexer->length && is_open(lexer->raw + begin, end - begin)) {
+        int n_lines = 0;
+        const size_t next = next_text(lexer, end, &n_lines);
+        if (next >= lexer->length || lexer->raw[next] != '+') {
+            break;
+        }
+        const size_t first = lexer->raw[end - 1] == '\r' ? end - 1 : end;
+        memset(lexer->raw + first, ' ', next + 1 - first);
+        memset(lexer->low + first, ' ', next + 1 - first);
+        end = end_of_line(lexer, next);
+        *n_joined += n_lines;
+    }
+    return end;
+}
+
 static enum dalcs_status read_lines(struct dalcs_lexer *lexer, size_t begin) {
     dalcs_lexer_clean(lexer, begin);
     while (begin < lexer->length && !lexer->ended) {
-        const char *newline = memchr(lexer->raw + begin, '\n', lexer->length - begin);
-        const size_t end = newline != NULL ? (size_t)(newline - lexer->raw) : lexer->length;
+        size_t end = end_of_line(lexer, begin);
+        int n_joined = 0;
+        if (!lexer->in_control) {
+            end = join_lines(lexer, begin, end, &n_joined);
+        }
         /* The carriage return of a CRLF is no part of the line. */
         const bool crlf = end > begin && lexer->raw[end - 1] == '\r';
         lexer->at = begin;
         DALCS_TRY(dalcs_lexer_read_line(lexer, begin, crlf ? end - 1 : end));
+        lexer->line_number += n_joined;
         begin = end + 1;
     }
     lexer->at = lexer->length;

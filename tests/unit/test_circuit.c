@@ -464,6 +464,13 @@ START_TEST(test_spellings) {
                                  ".model DM D(\n"
                                  "+ Vfwd=0.7\n"
                                  ")\n"
+                                 ".param p={max(3,\n"
+                                 "+ -5)} q = '1 +\n"
+                                 "* a comment and a blank line\n"
+                                 "\n"
+                                 "+ p'\n"
+                                 "R2 a 0 {\n"
+                                 "+ p + 10*q}\n"
                                  ".save @d1[id] @r1[i]\n"
                                  ".meas tran x FIND @d1[id]+v(a) AT 1m\n"
                                  ".tran 1u 2m\n");
@@ -472,6 +479,7 @@ START_TEST(test_spellings) {
     ck_assert_str_eq(circuit.device[circuit.device[3].control].name, "e1");
     ck_assert_double_eq(circuit.diode_model[circuit.device[4].model].vfwd, 0.7);
     ck_assert_int_eq(circuit.n_couplings, 1);
+    ck_assert_double_eq(circuit.device[7].value, 43);
     check_signals((const char *[]){"i(d1)", "i(r1)", "v(a)"}, 3);
     ck_assert_int_eq(circuit.n_shown, 2);
     ck_assert_int_eq(circuit.n_measures, 1);
