@@ -99,6 +99,9 @@ static void recover_states(const struct dalcs_osnsp *p, const double *u, double 
             y[x] = y[ends[0]] - y[ends[1]];
             continue;
         }
+        if (p->keeps_states) {
+            continue;
+        }
         double sum = 0.0;
         for (int k = f->X.p[x]; k < f->X.p[x + 1]; k++) {
             sum += f->X.x[k] * y[f->X.j[k]];

@@ -379,6 +379,9 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
         if (status == DALCS_NOT_CONVERGED && p->system->monotone) {
             status = dalcs_singular_solve(p, u, y);
         }
+        if (status == DALCS_NOT_CONVERGED && p->system->monotone) {
+            status = dalcs_whole_solve(p, u, y);
+        }
         p->looks_around = false;
     }
     if (status == DALCS_INFEASIBLE) {

@@ -126,6 +126,13 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u,
 enum dalcs_status dalcs_singular_solve(struct dalcs_osnsp *p, const double *u,
                                        double *y) DALCS_MUST_CHECK;
 
+/* ---- whole.c ------------------------------------------------------------------------------- */
+
+/* And after that, where condensing the states cost the digits that the certificate asks for: regular modes,
+ * solved without. */
+enum dalcs_status dalcs_whole_solve(struct dalcs_osnsp *p, const double *u,
+                                    double *y) DALCS_MUST_CHECK;
+
 /* ---- ties.c -------------------------------------------------------------------------------- */
 
 /* Makes a certified answer y of a regular mode with ties the least-norm one if there are several. */

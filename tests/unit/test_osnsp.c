@@ -202,5 +202,33 @@ START_TEST(test_refines) {
 
 END_TEST
 
+/* A flyback that has run empty: its coils, coupled by 0.9999, carry 50 uA through the open switch, which is what
+ * is left of 6 S between their voltages. The primary and the leak alone are left of the equations. */
+START_TEST(test_coupled_coils) {
+    const double L = 25e-6;
+    const double sigma = 33554432.0;
+    const double before = 1.0378889097053092e-4;
+    setup("flyback\nVin in 0 48\nVg g 0 PULSE(0 1 1 0 0 1 2)\nS1 d 0 g 0 SW\n"
+          ".model SW SW(Vt=0.5 Ron=10m Roff=1Meg)\n.model DX D(Vfwd=0.5 Ron=36m)\nL0 in d 25u\nL1 "
+          "0 a 25u\n"
+          "D1 a o DX\nC1 o 0 100u\nR1 o 0 10\nK1 L1 L0 0.9999\n.tran 1u 1m\n");
+    for (int x = 0; x < s->n_x; x++) {
+        bool is_primary = strcmp(s->column[x].element, "l0") == 0;
+        u[x] = !s->column_is_current[x] ? 55.284329609691632 : is_primary ? before : 0.0;
+    }
+    solve(sigma);
+    double i = (48.0 + sigma * L * before) / (sigma * L + 1e6);
+    ck_assert_double_eq_tol(voltage("d") / (1e6 * i), 1.0, 1e-12);
+    for (int x = 0; x < s->n_x; x++) {
+        if (s->column_is_current[x]) {
+            double expected = strcmp(s->column[x].element, "l0") == 0 ? i : 0.0;
+            ck_assert_double_eq_tol(y[x], expected, 1e-12 * i);
+        }
+    }
+    finish();
+}
+
+END_TEST
+
 RUN_TESTS("osnsp", test_recurring, test_pivoting, test_commands, test_least_norm,
-          test_operating_point, test_same_bits, test_refines)
+          test_operating_point, test_same_bits, test_refines, test_coupled_coils)
