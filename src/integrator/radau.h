@@ -81,6 +81,7 @@ struct dalcs_radau_part {
     int *cluster;                    /* [n_equations] work of guards.c */
     double *cluster_charge;          /* [n_equations] work of guards.c */
     bool jumped;                     /* at t, when the segment began */
+    bool slides; /* micro-steps: a switch opens what closes it, and closes what opens it */
     bool by_euler;                   /* the segment is a step of implicit Euler */
     bool open;                       /* its mode leaves something open, and nobody was told */
     bool *tied;                      /* [n_pairs] work */

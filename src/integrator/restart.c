@@ -50,8 +50,9 @@ static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *p
     memmove(part->u, state, (size_t)s->n_x * sizeof(double));
     dalcs_excitation_inputs(&part->excitation, part->t, tau, part->u + s->n_x);
     enum dalcs_status status = dalcs_osnsp_solve(&c->osnsp, sigma, part->u, y);
-    for (int round = 0; status == DALCS_OK && round < COMMAND_ROUNDS; round++) {
-        bool moved = false;
+    bool moved = true;
+    for (int round = 0; status == DALCS_OK && round < COMMAND_ROUNDS && moved; round++) {
+        moved = false;
         for (int i = 0; i < part->stages.n_watched; i++) {
             int d = part->stages.watched[i];
             const struct dalcs_pair *p = &s->pair[d];
@@ -68,10 +69,13 @@ static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *p
                 moved = true;
             }
         }
-        if (!moved) {
-            break;
+        if (moved) {
+            status = dalcs_osnsp_solve(&c->osnsp, sigma, part->u, y);
         }
-        status = dalcs_osnsp_solve(&c->osnsp, sigma, part->u, y);
+    }
+    if (status == DALCS_OK && moved) {
+        part->slides = true;
+        c->delayed_commands++; /* the present command stands */
     }
     if (status != DALCS_OK) {
         return fail(r, part, sigma, part->u, status);
@@ -313,13 +317,14 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
         *is_off = false;
     }
     double h = 0.0;
+    part->slides = false;
     for (int k = 0; k < LONGER_TRIES && status > DALCS_OK; k++) {
         h = dalcs_radau_micro_length(r, part, longer + k);
         status = micro_steps(r, part, h);
     }
     DALCS_TRY(status);
-    if (s->n_x == 0 || mode_only) {
-        return DALCS_OK;
+    if (s->n_x == 0 || mode_only || part->slides) {
+        return DALCS_OK; /* between two sides of a switch nothing that moves is a jump */
     }
     bool noticeable;
     bool may_hide;

@@ -41,6 +41,7 @@ enum {
     MOST_REFINED = 2,
     FALL_BACK_LEAST = 5,
     FALL_BACK = 14, /* steps of implicit Euler start this many rungs below */
+    SLIDING = 12,   /* and are this many below the longest one where a switch slides */
     CROWD = 40,
     MOST_FRONTS_REFUSED = 16,
     MOST_REOPENED = 8
@@ -173,6 +174,10 @@ static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_par
     h = fmax(h, 64.0 * r->resolution);
     if (part->tries > 0 && fixed == 0.0) { /* however short the ladder's step has become */
         h = fmax(h, fmin(2.0 * part->fell_back, ldexp(part->longest, -FALL_BACK)));
+    }
+    if (part->slides) { /* between two sides of a switch, with ripple in proportion */
+        h = fmin(h, ldexp(fixed > 0.0 ? fixed : part->longest, -SLIDING));
+        part->slides = false;
     }
     part->tries++;
     part->fell_back = fmin(h, limit - part->t);
@@ -410,6 +415,10 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
                                   struct search *search, bool *done) {
     struct dalcs_stage_entry *entry = NULL;
     struct dalcs_step_quality quality = {.ratio = NAN};
+    if (part->slides) {
+        *done = true;
+        return fall_back(r, part, search->limit, search->first_level);
+    }
     part->h = search->fixed ? r->options.fixed_step : dalcs_radau_ladder(part, part->level);
     enum dalcs_status status = solve_step(part, &entry);
     if (status < DALCS_OK) {

@@ -68,12 +68,13 @@ static void warn_of_switches(struct dalcs_run *r, const struct dalcs_component *
     if (c->delayed_commands == 0) {
         return;
     }
-    if (steps == 0 || c->is_static) {
+    if ((steps == 0 && c->delayed_commands == 1) || c->is_static) {
         dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, NULL,
                        "a switch and the voltage that controls it do not agree, open or closed; "
                        "the values are those of its last command");
     } else {
-        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, NULL,
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL,
+                       "a hysteresis, Vh=, keeps it from switching without end",
                        "in %ld one-step problem%s a switch and the voltage that controls it did "
                        "not agree; its last command stood until the next one",
                        c->delayed_commands, c->delayed_commands == 1 ? "" : "s");

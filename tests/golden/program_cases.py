@@ -382,7 +382,8 @@ class Summary(Case):
         done = self.dalcs("run", "a.cir", "-q", "--method", "euler")
         self.assertRegex(done.stderr, r"^dalcs: warning: in \d+ one-step problems a switch and the "
                          r"voltage that controls it did not agree; its last command stood until "
-                         r"the next one\n$")
+                         r"the next one\n  hint: a hysteresis, Vh=, keeps it from switching "
+                         r"without end\n$")
 
     def test_warnings_are_for_quiet(self):
         done = self.dalcs("run", self.write(POINT), "-q", "--step", "1u")
