@@ -114,6 +114,7 @@ struct dalcs_builder {
     bool is_print;            /* the signals that are being read are those of the last card */
     const char *print_before; /* of the title of the next one */
     enum dalcs_signal_part print_part;
+    bool noted_power;                   /* p(r1) has been passed over */
     struct dalcs_fourier_card *fourier; /* heap */
     size_t n_fouriers;
     size_t fourier_capacity;

@@ -287,6 +287,23 @@ static bool is_formula(const struct dalcs_reader *reader) {
     return is_operator || is_par || token->kind == DALCS_TOKEN_EXPRESSION;
 }
 
+/* p(r1), which KiCad writes for every part. */
+static void skip_power(struct dalcs_reader *reader) {
+    if (!reader->builder->noted_power) {
+        dalcs_builder_note(reader->builder, dalcs_reader_peek(reader, 0),
+                           "a measurement may be of v(a,b)*i(r1)",
+                           "powers are not recorded: p(...) is left out");
+    }
+    reader->builder->noted_power = true;
+    int depth = 0;
+    do {
+        reader->at++;
+        depth += dalcs_reader_peek(reader, 0)->kind == DALCS_TOKEN_OPEN ? 1 : 0;
+        depth -= dalcs_reader_peek(reader, 0)->kind == DALCS_TOKEN_CLOSE ? 1 : 0;
+    } while (depth > 0 && dalcs_reader_peek(reader, 1) != NULL);
+    reader->at++;
+}
+
 static bool read_signal(struct dalcs_reader *reader) {
     struct dalcs_builder *builder = reader->builder;
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
@@ -324,6 +341,10 @@ static bool read_signal(struct dalcs_reader *reader) {
             builder->print_before = token->text;
         }
         return token->text[0] == 'v' ? read_voltage(reader) : read_current(reader);
+    }
+    if (strcmp(token->text, "p") == 0) {
+        skip_power(reader);
+        return true;
     }
     const struct part_name *function = function_of(token->text);
     if (function != NULL) {

@@ -471,7 +471,8 @@ START_TEST(test_spellings) {
                                  "+ p'\n"
                                  "R2 a 0 {\n"
                                  "+ p + 10*q}\n"
-                                 ".save @d1[id] @r1[i]\n"
+                                 ".save @d1[id] p(r1) @r1[i]\n"
+                                 ".probe p(Vc1)\n"
                                  ".meas tran x FIND @d1[id]+v(a) AT 1m\n"
                                  ".tran 1u 2m\n");
     ck_assert_str_eq(circuit.title, "A card as the title");
