@@ -81,10 +81,11 @@ struct dalcs_radau_part {
     int *cluster;                    /* [n_equations] work of guards.c */
     double *cluster_charge;          /* [n_equations] work of guards.c */
     bool jumped;                     /* at t, when the segment began */
-    bool slides; /* micro-steps: a switch opens what closes it, and closes what opens it */
-    bool by_euler;                   /* the segment is a step of implicit Euler */
-    bool open;                       /* its mode leaves something open, and nobody was told */
-    bool *tied;                      /* [n_pairs] work */
+    long held_back; /* steps that would have been longer, had the longest one been */
+    bool slides;    /* micro-steps: a switch opens what closes it, and closes what opens it */
+    bool by_euler;  /* the segment is a step of implicit Euler */
+    bool open;      /* its mode leaves something open, and nobody was told */
+    bool *tied;     /* [n_pairs] work */
     double *u, *y1, *y2, *w1, *after; /* work; y1 and y2 in whole quads */
     int n_used_inputs, *used_input;   /* that probes read */
 

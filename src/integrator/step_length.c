@@ -82,6 +82,7 @@ void dalcs_length_lengthen(const struct dalcs_radau *r, struct dalcs_radau_part 
     part->waited++;
     part->grew = false;
     if (up == 0) {
+        part->held_back += promising ? 1 : 0;
         return;
     }
     int level = up < 2 ? part->level - 1 : shared_rung(part->level - up, up < 3 ? 2 : 3);

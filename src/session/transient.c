@@ -15,6 +15,9 @@
  * more steps than that. */
 enum { PROGRESS_UNKNOWNS = 1 << 18, PROGRESS_STEPS = 4096 };
 
+/* Where more are cut short by a longest step than this, a note says so. */
+enum { MANY_STEPS = 1000 };
+
 /* Where .tran has no tstep. */
 static const double ROWS_WITHOUT_A_STEP = 1000.0;
 
@@ -318,6 +321,21 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct
     return r->sink->end(r->sink->user);
 }
 
+/* SPICE needs a tmax to be accurate, and people write one. */
+static void note_held_back(struct dalcs_run *r, const struct dalcs_radau *radau) {
+    long held_back = 0;
+    for (int k = 0; k < radau->n_parts; k++) {
+        held_back += radau->part[k].held_back;
+    }
+    if (r->max_step > 0.0 && r->fixed_step == 0.0 && held_back > MANY_STEPS &&
+        2 * held_back > radau->steps) {
+        dalcs_diag_add(&r->s->diag, DALCS_NOTE, NULL, "leave tmax out of .tran",
+                       "the longest step that is allowed, %g s, cut %ld of %ld steps short: the "
+                       "tolerance does not need it",
+                       r->max_step, held_back, radau->steps);
+    }
+}
+
 static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau) {
     struct dalcs_report *report = &r->s->report;
     report->work.steps += radau->steps;
@@ -328,6 +346,7 @@ static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau)
         report->work.factorizations += radau->part[k].stages.factorizations;
         report->work.cache_hits += radau->part[k].stages.cache_hits;
     }
+    note_held_back(r, radau);
     report->certificate.wrong_sign = radau->wrong_sign;
     if (radau->worst_residual > report->certificate.worst) {
         report->certificate.worst = radau->worst_residual;
