@@ -292,13 +292,19 @@ double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens) {
     return next;
 }
 
-/* Too many events in no time: an accumulation, or a mode that cannot be told. */
+/* Events closer upon each other than this part of the stop time are a flurry. */
+static const double close = 0x1p-30;
+
+/* Too many events in no time: an accumulation, or a mode that cannot be told. Or one upon the other without
+ * end: rounding of what is 0 goes to and fro. */
 static void count_crowd(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     if (part->t - part->crowd_since > 1e4 * r->resolution) {
         part->crowd_since = part->t;
         part->crowd = 0;
     }
     part->crowd++;
+    part->flurry = part->t - part->last_event > close * r->options.stop ? 1 : part->flurry + 1;
+    part->last_event = part->t;
 }
 
 /* [n_columns] where the segment ends; inside the step by way of part->y1. */

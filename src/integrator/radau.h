@@ -115,6 +115,8 @@ struct dalcs_radau_part {
     uint64_t *mode_tied;
     long crowd; /* events since `crowd_since` */
     double crowd_since;
+    long flurry; /* events, one close upon the other, up to the last one */
+    double last_event;
 };
 
 struct dalcs_radau {

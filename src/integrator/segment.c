@@ -43,6 +43,7 @@ enum {
     FALL_BACK = 14, /* steps of implicit Euler start this many rungs below */
     SLIDING = 12,   /* and are this many below the longest one where a switch slides */
     CROWD = 40,
+    FLURRY = 4096,
     MOST_FRONTS_REFUSED = 16,
     MOST_REOPENED = 8
 };
@@ -525,7 +526,7 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
 
 enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     double limit = dalcs_radau_limit(r, part);
-    if (part->crowd > CROWD + 4 * part->component->system->n_pairs) {
+    if (part->crowd > CROWD + 4 * part->component->system->n_pairs || part->flurry > FLURRY) {
         part->fresh = true;
         return fall_back(r, part, limit, part->level);
     }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Circuits in which much happens at nearly the same time: none may need steps of implicit Euler.
 
-usage: crowded.py PROGRAM closed|random
+usage: crowded.py PROGRAM closed|flurry|random
 
 closed: two capacitors in parallel start with different voltages, which jump to their mean weighted with the
 capacitances, while a source charges both so fast that the jump is small beside what moves in a
@@ -191,10 +191,43 @@ def random(program, checker):
             checker.check(result.report["work"]["euler_steps"] == 0, f"{case}: fell back")
 
 
+# Switches that cut off a coil on a floating source, and diodes that then carry nothing: rounding of what is 0
+# may go to and fro every 2e-13 s.
+NOTHING_LEFT = """switches open on a coil, and nothing flows any more
+Vac s b SIN(0 50 400)
+Rds s ds 0.005
+Ls ds a 0.0004
+Vgg2 g2 0 PULSE(0 1 0.0014 2e-07 2e-07 3e-05 0.003)
+S1 a i1 0 0 sw
+D1 i1 q dm
+D4 0 b dm
+S2 b i2 g2 0 sw
+D2 i2 q dm
+S3 0 i3 g2 0 sw
+D3 i3 a dm
+Cj3 i3 a 2e-11
+Dfw 0 q dm
+Ll q 0 0.03
+.model sw SW(VT=0.5)
+.model dm D(Vfwd=0.5 Ron=0.01)
+.tran 3e-06 0.0015
+"""
+
+
+def flurry(program, checker):
+    """The run ends; what the switches cut off is lost at once; nothing flows behind it."""
+    result = run(program, NOTHING_LEFT, method="auto")
+    if checker.check(result.status == 0, f"flurry: {result.stderr}"):
+        events = len(result.report["events"])
+        checker.check(events < 20000, f"flurry: {events} events")
+        late = [abs(i) for t, i in zip(result.time, result.column("i(ls)")) if t > 1.431e-3]
+        checker.check(max(late) < 1e-9, f"flurry: {max(late)} A behind the interruption")
+
+
 def main():
     program, which = sys.argv[1:]
     checker = Checker(f"crowded {which}")
-    {"closed": closed, "random": random}[which](program, checker)
+    {"closed": closed, "flurry": flurry, "random": random}[which](program, checker)
     return checker.finish()
 
 
