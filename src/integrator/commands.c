@@ -45,6 +45,12 @@ static bool wants(const struct dalcs_pair *s, bool is_on, double control) {
     return is_on ? !(control < s->turn_off) : control > s->turn_on;
 }
 
+/* A switch without hysteresis whose control comes to rest at its threshold is open there; at a control that
+ * only touches it nothing happens. */
+static bool comes_to_rest(const struct dalcs_pair *s, double first, double last) {
+    return s->turn_off == s->turn_on && first <= s->turn_on && last <= s->turn_on;
+}
+
 static void search(const struct dalcs_commands *c, struct dalcs_command *m) {
     const struct dalcs_pair *pair = &c->system->pair[m->pair];
     double t = m->searched;
@@ -59,11 +65,15 @@ static void search(const struct dalcs_commands *c, struct dalcs_command *m) {
             return;
         }
         double edge = edge_after(c, m->pair, t);
+        double last = isinf(edge) ? first : control_at(c, m->pair, edge, DALCS_LEFT);
+        if (m->is_on && comes_to_rest(pair, first, last)) {
+            m->next = t;
+            return;
+        }
         if (isinf(edge)) {
             m->next = INFINITY;
             return;
         }
-        double last = control_at(c, m->pair, edge, DALCS_LEFT);
         if (wants(pair, m->is_on, last) != m->is_on) {
             m->next = t + (edge - t) * fmax(0.0, (threshold - first) / (last - first));
             m->on_ramp = true;
@@ -103,10 +113,10 @@ static void recognise_pulse(const struct dalcs_commands *c, struct dalcs_command
     double low = level + factor * pulse->u.pulse.low;
     double high = level + factor * pulse->u.pulse.high;
     double fall_start = pulse->u.pulse.rise + pulse->u.pulse.width;
-    if (low < pair->turn_off && high > pair->turn_on) {
+    if ((low < pair->turn_off || comes_to_rest(pair, low, low)) && high > pair->turn_on) {
         m->offset[0] = pulse->u.pulse.rise * ((pair->turn_on - low) / (high - low));
         m->offset[1] = fall_start + pulse->u.pulse.fall * ((high - pair->turn_off) / (high - low));
-    } else if (high < pair->turn_off && low > pair->turn_on) {
+    } else if ((high < pair->turn_off || comes_to_rest(pair, high, high)) && low > pair->turn_on) {
         m->offset[1] = pulse->u.pulse.rise * ((low - pair->turn_off) / (low - high));
         m->offset[0] = fall_start + pulse->u.pulse.fall * ((pair->turn_on - high) / (low - high));
     } else {

@@ -127,7 +127,7 @@ void dalcs_component_sample_operating(const struct dalcs_component *c, bool tran
 static bool obey(struct dalcs_component *c, int pair, double control) {
     const struct dalcs_pair *s = &c->system->pair[pair];
     bool is_on = dalcs_osnsp_is_on(&c->osnsp, pair);
-    bool want = is_on ? !(control < s->turn_off) : control > s->turn_on;
+    bool want = dalcs_pair_wants(s, is_on, control);
     if (want != is_on) {
         dalcs_osnsp_command(&c->osnsp, pair, want);
         c->commanded = true;

@@ -107,7 +107,10 @@ START_TEST(test_sums) {
     CHECK_MOVES("PULSE(0 1 1 0 0 2 5)", "Vz z 0 PULSE(0 1 2 0 0 2 10)\n.model sm SW(Vt=1.5)", false,
                 2, 3, 12, 13);
     CHECK_MOVES("PWL(0 0 4 1 4 0 6 -1 10 1)", HARD, false, 2, 4, 9, INFINITY);
-    CHECK_MOVES("PWL(0 1 1 0.5 2 1 3 0.5 4 0.5)", HARD, true, INFINITY); /* touches */
+    CHECK_MOVES("PWL(0 1 1 0.5 2 1 3 0.5 4 0.5)", HARD, true, 3, INFINITY); /* touches, and rests */
+    CHECK_MOVES("PWL(0 0 1 1 2 0 3 0 4 -1 5 0 6 1)", "Vz z 0 0\n.model sm SW", false, 0, 2, 5);
+    CHECK_MOVES("PULSE(0 1 1 1 1 1 5)", "Vz z 0 0\n.model sm SW", false, 1, 4, 6, 9);
+    CHECK_MOVES("PULSE(0 1 1 0 0 1 5)", "Vz z 0 0\n.model sm SW", false, 1, 2, 6, 7);
     /* a saw tooth against a level that falls, as of a modulator */
     CHECK_MOVES("PWL(0 0.5 10 0)", "Vz 0 z PULSE(0 1 0 1 0 0 1)\n.model sm SW(Vt=0)", true,
                 0.5 / 1.05, 1, 1 + 0.45 / 1.05, 2, 2 + 0.4 / 1.05, 3);
