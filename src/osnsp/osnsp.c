@@ -366,6 +366,12 @@ static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, d
     return status;
 }
 
+/* By elimination, from the mode of a proximal problem. */
+static enum dalcs_status solve_exactly(struct dalcs_osnsp *p, const double *u, double *y) {
+    enum dalcs_status status = dalcs_singular_solve(p, u, y);
+    return status == DALCS_NOT_CONVERGED ? dalcs_whole_solve(p, u, y) : status;
+}
+
 enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
                                     double *y) {
     p->counters.solved++;
@@ -377,12 +383,14 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
         p->looks_around = true;
         status = solve_somehow(p, u, y);
         if (status == DALCS_NOT_CONVERGED && p->system->monotone) {
-            status = dalcs_singular_solve(p, u, y);
-        }
-        if (status == DALCS_NOT_CONVERGED && p->system->monotone) {
-            status = dalcs_whole_solve(p, u, y);
+            status = solve_exactly(p, u, y);
         }
         p->looks_around = false;
+    }
+    if (status == DALCS_INFEASIBLE && p->system->monotone) {
+        /* a ray may be no more than conductances 1e18 apart: an answer that is certified refutes it */
+        enum dalcs_status otherwise = solve_exactly(p, u, y);
+        status = otherwise <= DALCS_OK ? otherwise : status;
     }
     if (status == DALCS_INFEASIBLE) {
         dalcs_witness_complete(p);

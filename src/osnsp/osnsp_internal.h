@@ -128,8 +128,8 @@ enum dalcs_status dalcs_singular_solve(struct dalcs_osnsp *p, const double *u,
 
 /* ---- whole.c ------------------------------------------------------------------------------- */
 
-/* And after that, where condensing the states cost the digits that the certificate asks for: regular modes,
- * solved without. */
+/* And after that, where condensing the states cost the digits that the certificate asks for: modes solved
+ * without. */
 enum dalcs_status dalcs_whole_solve(struct dalcs_osnsp *p, const double *u,
                                     double *y) DALCS_MUST_CHECK;
 
