@@ -484,6 +484,7 @@ START_TEST(test_spellings) {
     check_signals((const char *[]){"i(d1)", "i(r1)", "v(a)"}, 3);
     ck_assert_int_eq(circuit.n_shown, 2);
     ck_assert_int_eq(circuit.n_measures, 1);
+    dalcs_circuit_finish(&circuit);
 }
 
 END_TEST
