@@ -387,8 +387,8 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
         }
         p->looks_around = false;
     }
-    if (status == DALCS_INFEASIBLE && p->system->monotone) {
-        /* a ray may be no more than conductances 1e18 apart: an answer that is certified refutes it */
+    if (status == DALCS_INFEASIBLE && p->system->monotone && sigma > 0.0) {
+        /* a ray may be no more than C/h beside a stray: an answer that is certified refutes it */
         enum dalcs_status otherwise = solve_exactly(p, u, y);
         status = otherwise <= DALCS_OK ? otherwise : status;
     }
