@@ -83,6 +83,8 @@ struct dalcs_diode_model {
     } exponential;
 };
 
+double dalcs_exponential_voltage(const struct dalcs_exponential *diode, double current);
+
 /* Closes when the control (S: a voltage, W: a current) rises through vt + vh, opens when it falls
  * through vt - vh; inverted, the control is minus that. Ron = 0 is a wire, Roff = INFINITY a cut. */
 struct dalcs_switch_model {

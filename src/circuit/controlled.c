@@ -82,7 +82,7 @@ static void resolve(struct dalcs_builder *builder, struct dalcs_device *device,
     if (kind != DALCS_VSOURCE && kind != DALCS_VCVS && kind != DALCS_CCVS) {
         dalcs_builder_error(builder, name, "put a source of 0 V in series and name that",
                             "'%s' is %s: a control current is that of a voltage source", name->text,
-                            dalcs_builder_kind_text(builder->circuit->device[control].kind));
+                            dalcs_builder_kind_text(kind));
         return;
     }
     device->control = control;

@@ -170,9 +170,8 @@ static bool set_ideal(struct dalcs_builder *builder, struct dalcs_parameter *p,
 
 /* ---- The exponential diode ----------------------------------------------------------------- */
 
-static double exponential_voltage(const struct dalcs_diode_card *card, double current) {
-    return card->emission * THERMAL_VOLTAGE * log1p(current / card->saturation) +
-           card->resistance * current;
+double dalcs_exponential_voltage(const struct dalcs_exponential *diode, double current) {
+    return diode->voltage * log1p(current / diode->saturation) + diode->series * current;
 }
 
 void dalcs_diode_model_map(const struct dalcs_diode_card *card, double current, double area,
@@ -253,10 +252,12 @@ static void note_mapping(struct dalcs_reader *reader, const struct dalcs_token *
                          const char *ignored) {
     struct dalcs_builder *builder = reader->builder;
     const double at = builder->diode_current;
+    const struct dalcs_exponential diode = {card->saturation, card->emission * THERMAL_VOLTAGE,
+                                            card->resistance, at};
     double above[3];
     for (int k = 0; k < 3; k++) {
         const double current = at * (k == 0 ? 0.1 : k == 1 ? 1 : 10);
-        above[k] = model->vfwd + model->ron * current - exponential_voltage(card, current);
+        above[k] = model->vfwd + model->ron * current - dalcs_exponential_voltage(&diode, current);
     }
     if (card->emission <= IDEAL_EMISSION) {
         dalcs_builder_note(builder, place, NULL,

@@ -50,13 +50,6 @@ struct dalcs_pair {
     double turn_on, turn_off; /* switches: control thresholds vt + vh and vt - vh, V or A */
 };
 
-/* Where a switch that is on, or not, wants to be at this control. Without hysteresis it is on above its
- * threshold alone: a gate that rests at 0 V opens a switch with Vt = 0. */
-static inline bool dalcs_pair_wants(const struct dalcs_pair *s, bool is_on, double control) {
-    bool stays = is_on && s->turn_off < s->turn_on;
-    return stays ? !(control < s->turn_off) : control > s->turn_on;
-}
-
 struct dalcs_system {
     int n_x, n_z, n_pairs, n_inputs;
     struct dalcs_csr P;       /* [n_x][n_x], nonsingular */

@@ -127,7 +127,8 @@ void dalcs_component_sample_operating(const struct dalcs_component *c, bool tran
 static bool obey(struct dalcs_component *c, int pair, double control) {
     const struct dalcs_pair *s = &c->system->pair[pair];
     bool is_on = dalcs_osnsp_is_on(&c->osnsp, pair);
-    bool want = dalcs_pair_wants(s, is_on, control);
+    bool stays = is_on && s->turn_off < s->turn_on; /* without hysteresis it is on above Vt alone */
+    bool want = stays ? !(control < s->turn_off) : control > s->turn_on;
     if (want != is_on) {
         dalcs_osnsp_command(&c->osnsp, pair, want);
         c->commanded = true;

@@ -333,14 +333,7 @@ enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, doub
         } else {
             patience--;
         }
-        if (patience > 0) {
-            for (int k = 0; k < p->n_violating; k++) {
-                dalcs_osnsp_flip(p, p->violating[k]);
-            }
-        } else {
-            /* Murty: the list ascends, the largest index changes */
-            dalcs_osnsp_flip(p, p->violating[p->n_violating - 1]);
-        }
+        dalcs_osnsp_flip_violating(p, patience > 0);
     }
     return DALCS_NOT_CONVERGED;
 }

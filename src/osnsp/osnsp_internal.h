@@ -174,6 +174,13 @@ static inline void dalcs_osnsp_flip(struct dalcs_osnsp *p, int pair) {
     p->mode[pair / 64] ^= (uint64_t)1 << (pair % 64);
 }
 
+/* What has a wrong sign changes sides: all of it, or the largest index alone (Murty; the list ascends). */
+static inline void dalcs_osnsp_flip_violating(struct dalcs_osnsp *p, bool all) {
+    for (int k = all ? 0 : p->n_violating - 1; k < p->n_violating; k++) {
+        dalcs_osnsp_flip(p, p->violating[k]);
+    }
+}
+
 /* From p->mode by block principal pivoting over regular modes, at most `limit` changes. DALCS_SINGULAR
  * or DALCS_NOT_CONVERGED: try otherwise. */
 enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, double *y,

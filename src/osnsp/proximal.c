@@ -193,11 +193,7 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, int rung, bool singly, boo
             *stalled = true;
             return DALCS_OK;
         }
-        int first = patience > 0 ? 0 : p->n_violating - 1;
-        for (int k = first; k < p->n_violating; k++) {
-            int d = p->violating[k];
-            dalcs_osnsp_flip(p, d);
-        }
+        dalcs_osnsp_flip_violating(p, patience > 0);
     }
     return DALCS_NOT_CONVERGED;
 }

@@ -159,10 +159,7 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, const double *u, double *y
         if (p->n_violating == 0) {
             break;
         }
-        int first = round < ROUNDS_AT_ONCE ? 0 : p->n_violating - 1;
-        for (int k = first; k < p->n_violating; k++) {
-            dalcs_osnsp_flip(p, p->violating[k]);
-        }
+        dalcs_osnsp_flip_violating(p, round < ROUNDS_AT_ONCE);
         p->counters.pivots++;
     }
     return DALCS_NOT_CONVERGED;

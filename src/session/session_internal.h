@@ -108,12 +108,12 @@ void dalcs_session_forget_run(struct dalcs_session *session);
 /* Runs .tran into r->sink. */
 enum dalcs_status dalcs_transient_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
-/* Hands a jump to the recorder, and warns once of each switch that interrupts a coil; user is the run.
- */
 /* Exponential diodes: watches their currents; after the run, says where the tangent was taken elsewhere. */
 enum dalcs_status dalcs_tangents_watch(struct dalcs_run *r) DALCS_MUST_CHECK;
 void dalcs_tangents_judge(struct dalcs_run *r);
 
+/* Hands a jump to the recorder, and warns once of each switch that interrupts a coil; user is the run.
+ */
 enum dalcs_status dalcs_note_jump(void *user, const struct dalcs_euler_jump *jump) DALCS_MUST_CHECK;
 
 /* Names and units of the signals into r; `copies`: they outlive the circuit. */

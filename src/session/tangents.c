@@ -51,9 +51,8 @@ void dalcs_tangents_judge(struct dalcs_run *r) {
     for (int k = 0; k < recorder->n_watched; k++) {
         int device = c->signal[recorder->watched[k]].device;
         const struct dalcs_diode_model *m = &c->diode_model[c->device[device].model];
-        const struct dalcs_exponential *e = &m->exponential;
         double i = recorder->largest[k];
-        double v = e->voltage * log1p(i / e->saturation) + e->series * i;
+        double v = dalcs_exponential_voltage(&m->exponential, i);
         double off = m->vfwd + m->ron * i - v;
         if (i > 0.0 && fabs(off) > most * v) {
             worst = k;

@@ -25,10 +25,9 @@ struct dalcs_recorder {
     struct dalcs_schedule schedule;
     double *now, *before, *row; /* [n_outputs] at the end and the beginning of the step */
     bool have_before;
-    int n_watched;
-    const int
-        *watched;    /* [n_watched] outputs whose largest value in all rows is wanted; borrowed */
-    double *largest; /* [n_watched] borrowed */
+    int n_watched; /* outputs whose largest value in all rows is wanted */
+    const int *watched;
+    double *largest; /* [n_watched] as `watched`; both borrowed */
 
     bool keep; /* events and jumps */
     size_t limit;
