@@ -3,9 +3,16 @@
 #define DALCS_TEST_RUN_TESTS_H
 
 #include <check.h>
+#include <stdlib.h>
 
 /* s; a busy machine may take this long for what takes a second. */
 enum { MOST_SECONDS = 60 };
+
+/* How many of equal cases to go through: `all`, or `few` where DALCS_TEST_FEW is set, as .ci/run does for
+ * valgrind: it is fifty times slower, and a value that nothing has set shows in few of them as in all. */
+static inline int of_cases(int all, int few) {
+    return getenv("DALCS_TEST_FEW") != NULL ? few : all;
+}
 
 static inline int run_tests(const char *name, const TTest *const *test, size_t n) {
     Suite *suite = suite_create(name);

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-enum { MOST_VERTICES = 7, MOST_BRANCHES = 10, N_RANDOM = 3000 };
+enum { MOST_VERTICES = 7, MOST_BRANCHES = 10 };
 
 static struct dalcs_arena arena;
 static struct dalcs_branch_graph graph;
@@ -102,7 +102,8 @@ static double least_cut(int from, int to) {
 }
 
 START_TEST(test_random_flow) {
-    for (int k = 0; k < N_RANDOM; k++) {
+    const int n_graphs = of_cases(3000, 300);
+    for (int k = 0; k < n_graphs; k++) {
         draw_graph();
         int from = draw(n_vertices);
         int to = (from + 1 + draw(n_vertices - 1)) % n_vertices;
@@ -131,7 +132,8 @@ static void reach_from(int from, int without, bool both_ways, bool *reach) {
 }
 
 START_TEST(test_random_circuits) {
-    for (int k = 0; k < N_RANDOM; k++) {
+    const int n_graphs = of_cases(3000, 300);
+    for (int k = 0; k < n_graphs; k++) {
         draw_graph();
         int part[MOST_VERTICES];
         int block[MOST_BRANCHES];
@@ -159,7 +161,8 @@ START_TEST(test_random_circuits) {
 END_TEST
 
 START_TEST(test_random_distances) {
-    for (int k = 0; k < N_RANDOM; k++) {
+    const int n_graphs = of_cases(3000, 300);
+    for (int k = 0; k < n_graphs; k++) {
         draw_graph();
         double length[MOST_BRANCHES];
         for (int e = 0; e < n_branches; e++) {

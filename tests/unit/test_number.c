@@ -76,7 +76,8 @@ START_TEST(test_rounding) {
 
     uint64_t state = 2385;
     int multiplying_differs = 0;
-    for (int k = 0; k < 100000; k++) {
+    const int n_values = of_cases(100000, 5000);
+    for (int k = 0; k < n_values; k++) {
         state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
         const unsigned whole = (unsigned)(state >> 40) % 1000;
         const unsigned part = (unsigned)(state >> 20) % 1000000;
@@ -89,7 +90,7 @@ START_TEST(test_rounding) {
         snprintf(plain, sizeof plain, "%u.%06u", whole, part);
         multiplying_differs += strtod(plain, NULL) * pow(10, table[s].power) != strtod(text, NULL);
     }
-    ck_assert_int_gt(multiplying_differs, 1000);
+    ck_assert_int_gt(multiplying_differs, n_values / 100);
 }
 
 END_TEST

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { SECTIONS = 60, AT_ONCE = 4, TEXT = 20000 };
+enum { SECTIONS = 60, TEXT = 20000 };
 
 static struct text_network text;
 static struct dalcs_excitation excitation;
@@ -130,8 +130,9 @@ START_TEST(test_front) {
     uint64_t random = 11;
     int n_chosen = 0;
     int awake = 0;
+    const int at_once = SECTIONS / of_cases(15, 5);
     setup("");
-    for (int front = 1; front <= SECTIONS; front += AT_ONCE) {
+    for (int front = 1; front <= SECTIONS; front += at_once) {
         close_first(front, mode);
         for (int step = 0; step < 2; step++) {
             set_states(front, &random);
