@@ -153,7 +153,8 @@ def check(program, netlist, *options):
 
 class Cases:
     def __init__(self, program, schema):
-        self.program, self.schema = program, schema
+        jsonschema.Draft202012Validator.check_schema(schema)
+        self.program, self.validator = program, jsonschema.Draft202012Validator(schema)
         self.n = self.failures = 0
 
     def fail(self, name, why):
@@ -168,7 +169,7 @@ class Cases:
             return None
         result = json.loads(done.stdout)
         try:
-            jsonschema.validate(result, self.schema)
+            self.validator.validate(result)
         except jsonschema.ValidationError as error:
             self.fail(name, error.message[:300])
         text = check(self.program, netlist)
