@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Stacks of diodes between equal sections: any number of them is one capacitor behind one diode.
 
-usage: stacks.py PROGRAM euler|auto
+usage: stacks.py PROGRAM euler|auto [MOST_SECTIONS]
 
 A chain of N nodes, each with C and R to ground, the first one fed through a resistor; between them
 stacks of M ideal diodes. All nodes have the same voltage at all times, that of N C and R/N behind a
@@ -29,12 +29,13 @@ def chain(source, sections, stack, capacitance, resistance):
 
 
 def main():
-    program, method = sys.argv[1:]
+    program, method = sys.argv[1:3]
+    most = int(sys.argv[3]) if sys.argv[3:] else 30
     options = {"method": "euler", "step": 1e-6} if method == "euler" else {"method": None}
     checker = Checker(f"stacks {method}")
     at = [(k + 0.382) * 1e-5 for k in range(99)] if method == "auto" else None
     for name, source in SOURCES.items():
-        for sections, stack in SIZES:
+        for sections, stack in (size for size in SIZES if size[0] <= most):
             case = f"{name}, {sections} sections, {stack} diodes each"
             whole = run(program, chain(source, 1, 1, 1e-7 * sections, 1e3 / sections), at=at, **options)
             result = run(program, chain(source, sections, stack, 1e-7, 1e3), at=at, **options)
