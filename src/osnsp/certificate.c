@@ -296,6 +296,9 @@ static void check_references(struct dalcs_osnsp *p, const double *y, struct scal
     }
 }
 
+/* V, A: rows of larger ones may overflow, and infinite rows would vouch for any residual. */
+static const double largest_scale = 1e250;
+
 void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *y,
                                 bool *sources_clash) {
     p->certificate.worst = 0.0;
@@ -307,6 +310,9 @@ void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *
     struct scales scale = physical_scales(p, drive, y);
     p->certificate.volt = scale.volt;
     p->certificate.ampere = scale.ampere;
+    if (!(scale.volt <= largest_scale && scale.ampere <= largest_scale)) {
+        note(&p->certificate, INFINITY, 1.0, 0);
+    }
     check_equations(p, u, y, scale);
     check_pairs(p, u, y, scale);
     check_references(p, y, scale, drive, sources_clash);
