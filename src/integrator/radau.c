@@ -1,4 +1,5 @@
 /* radau.c - the parts of a run: set up, started, passed from segment to segment, evaluated. */
+#include "dense_map.h"
 #include "energy.h"
 #include "guards.h"
 #include "quads.h"
@@ -107,11 +108,13 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->w1 = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
     part->after = dalcs_alloc((size_t)s->n_x, sizeof(double));
     part->used_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
+    part->current_drift =
+        dalcs_alloc((size_t)dalcs_dense_map_rows(part->stages.n_currents), sizeof(double));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
                     part->out_before != NULL && part->out_tried != NULL && part->armed != NULL &&
                     part->crossed != NULL && part->tied != NULL && part->u != NULL &&
                     part->y1 != NULL && part->y2 != NULL && part->w1 != NULL &&
-                    part->after != NULL && part->used_input != NULL;
+                    part->after != NULL && part->used_input != NULL && part->current_drift != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -231,6 +234,7 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->w1);
     free(part->after);
     free(part->used_input);
+    free(part->current_drift);
     dalcs_guards_finish(part);
     dalcs_step_finish(part);
 }

@@ -68,6 +68,7 @@ struct dalcs_radau_part {
     double *magnitude; /* [n_columns] in the present step up to magnitude_end, in steps */
     double magnitude_end;
     struct dalcs_column_kinds *kinds; /* see step_error.c */
+    double *current_drift;            /* [n_currents] in whole eights: see current_error.c */
     double unit_scale[2];             /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */

@@ -5,6 +5,7 @@
  * would be armed and clear of events. What is left out only raises scales and chooses the next length. */
 #include "recurrence.h"
 
+#include "current_error.h"
 #include "guards.h"
 #include "radau_internal.h"
 
@@ -72,7 +73,9 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
     dalcs_segment_inputs(part);
     DALCS_TRY(dalcs_stages_apply(&part->stages, known->of_span, part->in, part->out));
     *holds = is_accurate(r, part, dalcs_stage_frees_states(known->of_span)) &&
-             dalcs_guards_clear(r, part);
+             dalcs_guards_clear(r, part) &&
+             dalcs_current_error(r, part, known->of_span, part->unit_scale,
+                                 0.1 * r->options.abstol) <= 1.0;
     if (!*holds) { /* a step that failed once may always fail */
         dalcs_transition_begin_span(part, known, known->span);
         return DALCS_OK;

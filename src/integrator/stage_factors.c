@@ -355,6 +355,7 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
         find_drive(plan, f, &plan->drive_of_states, plan->missed, 0.0);
         solve(plan, f, 0, DALCS_SHARE_NONE);
         add_real(plan, entry, out);
+        put_runs(f, &plan->rest.states, -1.0, plan->missed); /* what the filter leaves of it */
     }
     for (int node = 0; node < l->n_nodes; node++) {
         put_other_sides(plan, entry, in[n_x], node, true, out + node * l->stride);
@@ -367,4 +368,18 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
         put_other_sides(plan, entry, 0.0, DALCS_SHARE_RIPPLE, false, out + l->ripple);
     }
     return DALCS_OK;
+}
+
+void dalcs_stage_factors_currents(const struct dalcs_stages *stages,
+                                  const struct dalcs_stage_entry *entry, double *drift) {
+    const struct dalcs_stage_plan *plan = stages->plan;
+    const struct dalcs_stage_factors *f = entry->factors;
+    find_drive(plan, f, &plan->drive_of_states, plan->missed, 0.0);
+    solve(plan, f, 0, DALCS_SHARE_NONE);
+    memset(plan->missed, 0, (size_t)plan->n_rows * sizeof(double));
+    add_runs(f, &plan->rest.without, plan->missed);
+    for (int k = 0; k < stages->n_currents; k++) {
+        drift[k] = plan->missed[stages->current[k]];
+    }
+    memset(plan->missed, 0, (size_t)plan->n_rows * sizeof(double));
 }

@@ -334,6 +334,27 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
     }
 }
 
+/* What implicit Euler makes of unknown r from the states v[n_x]. */
+static long double filtered(const struct dalcs_stage_workshop *b, const long double *v, int r) {
+    long double sum = 0.0L;
+    for (int x = 0; x < b->n_x; x++) {
+        sum += b->real[x * b->n + r] * v[x];
+    }
+    return sum * b->column_scale[r];
+}
+
+/* What goes with the defects that last: what dies away at once, or what equations without memory forbid,
+ * is no error of currents. */
+static void fill_currents(struct dalcs_stage_workshop *b, double *out) {
+    const struct dalcs_stages *stages = b->stages;
+    for (int x = 0; x < b->n_x && stages->n_currents > 0; x++) {
+        b->lasting[x] = filtered(b, b->defect, x);
+    }
+    for (int k = 0; k < b->entry->current_rows; k++) {
+        out[k] = k < stages->n_currents ? (double)filtered(b, b->lasting, stages->current[k]) : 0.0;
+    }
+}
+
 /* One column of the map, with its clashes: the answer to in[column] = 1. In the lanes of share are the
  * values of the source at the nodes and what they miss of it in between; for a state all are 0. */
 static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_column,
@@ -360,6 +381,8 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
     for (int x = 0; x < b->n_x; x++) {
         out[l->drift + x] = (double)b->defect[x];
     }
+    int map_column = (int)((out - b->entry->map) / b->entry->rows);
+    fill_currents(b, b->entry->current_map + (size_t)map_column * (size_t)b->entry->current_rows);
     if (b->stages->excitation->is_curved) {
         put_columns(b, DALCS_RIPPLE_LANE, out + l->ripple);
     }
@@ -474,45 +497,72 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
     entry->n_clashes = b->nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
     entry->map = dalcs_dense_map_alloc(entry->rows, n_columns(b));
-    if (entry->map == NULL) {
+    entry->current_rows = dalcs_dense_map_rows(stages->n_currents);
+    entry->current_map = dalcs_dense_map_alloc(entry->current_rows, n_columns(b));
+    if (entry->map == NULL || entry->current_map == NULL) {
         return DALCS_E_NOMEM;
     }
-    entry->bytes += (size_t)entry->rows * (size_t)n_columns(b) * sizeof(double);
+    entry->bytes +=
+        (size_t)(entry->rows + entry->current_rows) * (size_t)n_columns(b) * sizeof(double);
     fill_map(b);
     return DALCS_OK;
 }
 
+/* in[] without what maps lack. */
+static const double *map_input(const struct dalcs_stages *stages, const double *in) {
+    const struct dalcs_stage_workshop *b = stages->workshop;
+    if (b->has_constants) {
+        return in;
+    }
+    for (int k = 0; k < b->n_x; k++) {
+        b->in[k] = in[k];
+    }
+    for (int k = b->n_x + 1; k < stages->n_in; k++) {
+        b->in[k - 1] = in[k];
+    }
+    return b->in;
+}
+
 void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
                            const double *in, double *out) {
-    const struct dalcs_stage_workshop *b = stages->workshop;
-    if (!b->has_constants) {
-        for (int k = 0; k < b->n_x; k++) {
-            b->in[k] = in[k];
-        }
-        for (int k = b->n_x + 1; k < stages->n_in; k++) {
-            b->in[k - 1] = in[k];
-        }
-        in = b->in;
-    }
-    dalcs_dense_map_apply(entry->rows, n_columns(b), entry->map, in, out);
+    dalcs_dense_map_apply(entry->rows, n_columns(stages->workshop), entry->map,
+                          map_input(stages, in), out);
+}
+
+void dalcs_stage_map_currents(const struct dalcs_stages *stages,
+                              const struct dalcs_stage_entry *entry, const double *in,
+                              double *drift) {
+    dalcs_dense_map_apply(entry->current_rows, n_columns(stages->workshop), entry->current_map,
+                          map_input(stages, in), drift);
 }
 
 bool dalcs_stage_has_map(const struct dalcs_stage_entry *entry) {
     return entry->map != NULL;
 }
 
-double dalcs_stage_spread(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
-                          int row, const double *in, const double *scale) {
+/* Of a row of a map. */
+static double spread(const struct dalcs_stages *stages, const double *element, int rows,
+                     const double *in, const double *scale) {
     const struct dalcs_stage_workshop *b = stages->workshop;
-    const double *element = entry->map + row;
-    double spread = 0.0;
+    double sum = 0.0;
     for (int k = 0; k < stages->n_in; k++) {
         if (k == b->n_x && !b->has_constants) {
             continue;
         }
         double size = fabs(in[k]);
-        spread += fabs(*element) * (k < b->n_x ? dalcs_larger(scale[k], size) : size);
-        element += entry->rows;
+        sum += fabs(*element) * (k < b->n_x ? dalcs_larger(scale[k], size) : size);
+        element += rows;
     }
-    return spread;
+    return sum;
+}
+
+double dalcs_stage_spread(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
+                          int row, const double *in, const double *scale) {
+    return spread(stages, entry->map + row, entry->rows, in, scale);
+}
+
+double dalcs_stage_spread_of_current(const struct dalcs_stages *stages,
+                                     const struct dalcs_stage_entry *entry, int k, const double *in,
+                                     const double *scale) {
+    return spread(stages, entry->current_map + k, entry->current_rows, in, scale);
 }

@@ -68,6 +68,7 @@ static bool allocate(struct dalcs_stage_workshop *b) {
     b->start = extendeds(kept, n);
     b->missed = extendeds(kept, b->n_x);
     b->defect = extendeds(kept, b->n_x);
+    b->lasting = extendeds(kept, b->n_x);
     b->guard = dalcs_stage_workshop_reals(kept, s->n_pairs * DALCS_LANES);
     b->residual = dalcs_stage_workshop_reals(kept, n + DALCS_QUAD);
     b->in = dalcs_stage_workshop_reals(kept, b->stages->n_in);
@@ -79,8 +80,8 @@ static bool allocate(struct dalcs_stage_workshop *b) {
            b->row_of != NULL && b->owner != NULL && b->mode != NULL && b->plain_base != NULL &&
            b->plain_P != NULL && b->plain_rhs != NULL && b->whole_row_scale != NULL &&
            b->whole_column_scale != NULL && b->lanes != NULL && b->kept_start != NULL &&
-           b->start != NULL && b->missed != NULL && b->defect != NULL && b->guard != NULL &&
-           b->residual != NULL && b->in != NULL;
+           b->start != NULL && b->missed != NULL && b->defect != NULL && b->lasting != NULL &&
+           b->guard != NULL && b->residual != NULL && b->in != NULL;
 }
 
 static bool is_driven(const struct dalcs_csr *a, const double *constant) {

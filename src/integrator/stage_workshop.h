@@ -50,6 +50,7 @@ struct dalcs_stage_workshop {
     long double *kept_start; /* [n_kept] what these alone say of the increment at the start */
     long double *start;      /* [n] what the stages alone say of the start */
     long double *missed, *defect; /* [n_x] what they miss there, and what the filter leaves of it */
+    long double *lasting;         /* [n_x] and of that once more */
     double *guard;                /* [n_pairs][lanes] */
     double *residual;             /* [n] */
     bool has_constants; /* inputs that do not vary drive something: else maps lack their column */

@@ -30,9 +30,16 @@ enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct d
     dalcs_lu_pivot_carefully(&stages->klu_complex);
     stages->watched = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
     stages->key = dalcs_alloc((size_t)stages->n_words + 1, sizeof(*stages->key));
-    if (stages->watched == NULL || stages->key == NULL) {
+    int n_z = dalcs_system_n_equations(system) - system->n_x;
+    stages->current = dalcs_alloc((size_t)n_z, sizeof(int));
+    if (stages->watched == NULL || stages->key == NULL || stages->current == NULL) {
         dalcs_stages_finish(stages);
         return DALCS_E_NOMEM;
+    }
+    for (int c = system->n_x; c < system->n_x + n_z; c++) {
+        if (system->column_is_current[c]) {
+            stages->current[stages->n_currents++] = c;
+        }
     }
     for (int d = 0; d < system->n_pairs; d++) {
         const struct dalcs_pair *p = &system->pair[d];
@@ -101,6 +108,7 @@ static void entry_destroy(struct dalcs_stages *stages, struct dalcs_stage_entry 
     free(e->key);
     free(e->on);
     free(e->map);
+    free(e->current_map);
     free(e->natural);
     free(e);
 }
@@ -134,6 +142,7 @@ void dalcs_stages_finish(struct dalcs_stages *stages) {
     dalcs_stage_plan_destroy(stages);
     dalcs_stage_workshop_destroy(stages->workshop);
     free(stages->watched);
+    free(stages->current);
     free(stages->key);
     *stages = (struct dalcs_stages){0};
 }
@@ -302,6 +311,20 @@ enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages, struct dalcs_s
         dalcs_stage_update_check(stages, entry, in, out);
     }
     return DALCS_OK;
+}
+
+void dalcs_stages_drift_of_currents(struct dalcs_stages *stages,
+                                    const struct dalcs_stage_entry *entry, const double *in,
+                                    double *drift) {
+    if (entry->map != NULL) {
+        dalcs_stage_map_currents(stages, entry, in, drift);
+    } else {
+        dalcs_stage_factors_currents(stages, entry, drift);
+    }
+}
+
+int *dalcs_stage_note(struct dalcs_stage_entry *entry) {
+    return &entry->note;
 }
 
 enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t *mode, double h,

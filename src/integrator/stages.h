@@ -36,6 +36,8 @@ struct dalcs_stages {
     const struct dalcs_excitation *excitation;
     const struct dalcs_collocation *method;
     struct dalcs_stage_layout layout;
+    int n_currents; /* branch currents without memory */
+    int *current;   /* [n_currents] columns */
     int n_watched;
     int *watched; /* [n_watched] pairs: switches that follow a voltage, or a source along a curve */
     int n_in;     /* n_x + 1 + functions: (x_0, 1, coefficients) */
@@ -76,6 +78,20 @@ enum dalcs_status dalcs_stages_apply(struct dalcs_stages *stages, struct dalcs_s
 enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t *mode, double h,
                                     const double *in, double *out,
                                     struct dalcs_stage_entry **entry) DALCS_MUST_CHECK;
+
+/* drift[n_currents], A: what goes with the drift of the states of stages->current, in the step that was
+ * applied last. */
+void dalcs_stages_drift_of_currents(struct dalcs_stages *stages,
+                                    const struct dalcs_stage_entry *entry, const double *in,
+                                    double *drift);
+
+/* As dalcs_stage_spread, of drift[k] by an entry with a map. */
+double dalcs_stage_spread_of_current(const struct dalcs_stages *stages,
+                                     const struct dalcs_stage_entry *entry, int k, const double *in,
+                                     const double *scale);
+
+/* For who watches the drift of currents: 0 until it was set. */
+int *dalcs_stage_note(struct dalcs_stage_entry *entry);
 
 /* Keeps an entry valid, whatever else is asked for, until it is released as often. */
 void dalcs_stages_hold(struct dalcs_stage_entry *entry);

@@ -25,6 +25,9 @@ struct dalcs_stage_entry {
     double residual;
     int rows;    /* of map, padded to 8 */
     double *map; /* [rows][n_in] by columns; NULL: factors */
+    int current_rows;
+    double *current_map; /* [current_rows][n_in] the drift of currents, beside map */
+    int note;
     struct dalcs_stage_factors *factors;
     /* Entries with factors of their own, whose changes others may be. */
     struct dalcs_stage_entry *newer_base, *older_base;
@@ -43,6 +46,10 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
 void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
                            const double *in, double *out);
 
+void dalcs_stage_map_currents(const struct dalcs_stages *stages,
+                              const struct dalcs_stage_entry *entry, const double *in,
+                              double *drift);
+
 /* stage_build.c: sparse factors of an entry, of its own or those of another entry as well, with a few
  * changes. */
 enum dalcs_status dalcs_stage_factors_build(struct dalcs_stages *stages,
@@ -54,5 +61,7 @@ void dalcs_stage_factors_destroy(struct dalcs_stages *stages, struct dalcs_stage
 enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
                                             const struct dalcs_stage_entry *entry, const double *in,
                                             double *out) DALCS_MUST_CHECK;
+void dalcs_stage_factors_currents(const struct dalcs_stages *stages,
+                                  const struct dalcs_stage_entry *entry, double *drift);
 
 #endif

@@ -2,11 +2,12 @@
  *
  * Two things are looked at. The drift of the states is how far they miss, at the start of the step, a
  * polynomial one degree lower, filtered through one step of implicit Euler (Hairer and Wanner, Solving
- * ODEs II, sec. IV.8): of order s + 1 like the dense output. The ripple is what curved sources do
- * between the nodes, carried to every voltage and current; it alone sees variables of index 2, such as
- * the current of a source across a capacitor. */
+ * ODEs II, sec. IV.8): of order s + 1 like the dense output; current_error.c carries it on to currents.
+ * The ripple is what curved sources do between the nodes, carried to every voltage and current; it
+ * alone sees variables of index 2, such as the current of a source across a capacitor. */
 #include "step_error.h"
 
+#include "current_error.h"
 #include "extremes.h"
 #include "quads.h"
 #include "wide_vectors.h"
@@ -224,9 +225,8 @@ static void find_magnitudes(struct dalcs_radau_part *part, double end, double *u
     part->magnitude_end = end;
 }
 
-/* What a column of 1 in balanced units may be off by rounding in this step. */
-static double rounding_of_step(const struct dalcs_radau_part *part,
-                               const struct dalcs_stage_entry *entry) {
+double dalcs_step_rounding(const struct dalcs_radau_part *part,
+                           const struct dalcs_stage_entry *entry) {
     int n_equations = dalcs_system_n_equations(part->component->system);
     const double *final = part->out + part->stages.method->s * part->stages.layout.stride;
     const double *inverse = dalcs_stage_natural_units(entry) + n_equations;
@@ -357,8 +357,7 @@ DALCS_TWICE(void, compare_all,
 }
 
 void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                      const struct dalcs_stage_entry *entry, double end,
-                      struct dalcs_step_quality *q) {
+                      struct dalcs_stage_entry *entry, double end, struct dalcs_step_quality *q) {
     const struct dalcs_system *s = part->component->system;
     bool curved = part->excitation.is_curved;
     const double *drift = part->out + part->stages.layout.drift;
@@ -372,7 +371,11 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
     find_allowance(r, part, q, &a);
     compare_all(part, &a, curved ? dalcs_system_n_columns(s) : s->n_x, s->n_x, drift, ripple, q);
     if (!(q->ratio <= 1.0)) { /* is it rounding? Few steps have to ask. */
-        compare(part, &a, dalcs_stage_natural_units(entry), rounding_of_step(part, entry), q);
+        compare(part, &a, dalcs_stage_natural_units(entry), dalcs_step_rounding(part, entry), q);
+    }
+    if (q->ratio <= 1.0) {
+        q->ratio =
+            dalcs_larger(q->ratio, dalcs_current_error(r, part, entry, q->unit, a.besides[1]));
     }
 }
 

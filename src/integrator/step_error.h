@@ -25,8 +25,12 @@ void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double
 
 /* The segment ends at `end` (in steps). */
 void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                      const struct dalcs_stage_entry *entry, double end,
+                      struct dalcs_stage_entry *entry, double end,
                       struct dalcs_step_quality *quality);
+
+/* What a column of 1 in balanced units (dalcs_stage_natural_units) may be off by rounding in this step. */
+double dalcs_step_rounding(const struct dalcs_radau_part *part,
+                           const struct dalcs_stage_entry *entry);
 
 /* Raises unit[2] to the values at the end of the segment, which may lie between the nodes. */
 void dalcs_step_reach(struct dalcs_radau_part *part, double end, double *unit);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Events that are faint beside what the circuit works with, against closed forms.
 
-usage: faint.py PROGRAM leak|large_leak|flank
+usage: faint.py PROGRAM leak|large_leak|flank|difference|large_difference
 
 leak: a switch connects a sine to a diode that clamps it, 1000 A; open, it leaks 10 uA, which the diode
 carries as long as the source is positive, and blocks after that: at the zero of the sine, and no volt is
@@ -12,6 +12,10 @@ flank: a capacitor is charged through a resistor and a diode, and after w the so
 takes down what current is left within pico- and femtoseconds. With k the slope and i the current left,
 i(u) = C k (exp(-u/RC) - 1) + i exp(-u/RC), which is 0 at u = RC log(1 + i / (C k)); from then on the capacitor
 keeps its voltage. Micro-steps see the diode open at once; that it conducts first takes shorter ones.
+
+difference: 400 V feed 100 uF through 1 mohm, beside which a switch loads 10 ohm. A millivolt of the capacitor
+is an ampere of the source, and what is well within 1e-6 of 400 V is not so of 40 A. The current goes to
+V / (R + r), or 0, at the rate (1/r + 1/R) / C, or 1/(r C). Large: on sparse factors, where rounding ends at 1e-9.
 """
 
 import math
@@ -110,10 +114,47 @@ c1 c 0 {capacitance} ic=0
                             tolerance)
 
 
+def difference(program, checker, more=""):
+    volts, small, large, capacitance = 400.0, 1e-3, 10.0, 100e-6
+    netlist = f"""a current that is a small difference of voltages
+v1 s 0 {volts}
+r1 s c {small}
+c1 c 0 {capacitance} ic={volts}
+s1 c n g 0 sm
+r2 n 0 {large}
+vg g 0 pulse(0 1 5u 0 0 4u 10u)
+{more}.model sm sw(vt=0.5)
+.tran 1u 200u uic
+.end
+"""
+    at = [(k + 0.37) * 1e-7 for k in range(2000)]
+    settled = {True: volts / (small + large), False: 0.0}
+    rate = {True: (1 / small + 1 / large) / capacitance, False: 1 / (small * capacitance)}
+    exact = []
+    current, on, since = 0.0, False, 0.0  # at the last edge, at `since`
+    for t in at:
+        edge = since + (4e-6 if on else 6e-6 if since > 0.0 else 5e-6)
+        if edge < t:
+            current = settled[on] + (current - settled[on]) * math.exp(-rate[on] * (edge - since))
+            on, since = not on, edge
+        exact.append(-(settled[on] + (current - settled[on]) * math.exp(-rate[on] * (t - since))))
+    for tolerance in TOLERANCES:
+        case = f"difference{' in a large part' if more else ''}, {tolerance}"
+        result = start(program, checker, case, netlist, at, tolerance)
+        if result is not None:
+            check_signal(checker, case, result, "i(v1)", exact, max(tolerance, 1e-9 if more else 0.0))
+
+
+def large_difference(program, checker):
+    line = "".join(f"rm{k} m{k} m{k + 1} 1k\ncm{k} m{k + 1} 0 1n\n" for k in range(100))
+    difference(program, checker, "em m0 0 c 0 1\n" + line)
+
+
 def main():
     program, which = sys.argv[1:]
     checker = Checker(f"faint {which}")
-    {"leak": leak, "large_leak": large_leak, "flank": flank}[which](program, checker)
+    {"leak": leak, "large_leak": large_leak, "flank": flank, "difference": difference,
+     "large_difference": large_difference}[which](program, checker)
     return checker.finish()
 
 

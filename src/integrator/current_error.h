@@ -1,0 +1,13 @@
+/* current_error.h - errors of currents that are small differences of large voltages. */
+#ifndef DALCS_CURRENT_ERROR_H
+#define DALCS_CURRENT_ERROR_H
+
+#include "radau.h"
+
+/* The largest error of a branch current without memory in the step that was solved last, over what is
+ * allowed: the tolerance times its scale at these units (V, A), and `besides`, A. 0 if it is far less
+ * than that. */
+double dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                           struct dalcs_stage_entry *entry, const double unit[2], double besides);
+
+#endif
