@@ -359,10 +359,14 @@ static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, d
     return status;
 }
 
+static bool is_undecided(enum dalcs_status status) {
+    return status == DALCS_NOT_CONVERGED || status == DALCS_SINGULAR;
+}
+
 /* By elimination, from the mode of a proximal problem. */
 static enum dalcs_status solve_exactly(struct dalcs_osnsp *p, const double *u, double *y) {
     enum dalcs_status status = dalcs_singular_solve(p, u, y);
-    return status == DALCS_NOT_CONVERGED ? dalcs_whole_solve(p, u, y) : status;
+    return is_undecided(status) ? dalcs_whole_solve(p, u, y) : status;
 }
 
 enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
@@ -372,10 +376,10 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
         DALCS_TRY(dalcs_forms_get(p, sigma));
     }
     enum dalcs_status status = solve_somehow(p, u, y);
-    if (status == DALCS_NOT_CONVERGED) {
+    if (is_undecided(status)) {
         p->looks_around = true;
         status = solve_somehow(p, u, y);
-        if (status == DALCS_NOT_CONVERGED && p->system->monotone) {
+        if (is_undecided(status) && p->system->monotone) {
             status = solve_exactly(p, u, y);
         }
         p->looks_around = false;
