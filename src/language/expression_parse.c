@@ -107,16 +107,18 @@ static int number_length(const char *t) {
 /* 1M and 1F, where the line is not written in capitals anyway: what the number is for is not known
  * here, but whoever writes them so seldom means milli and femto. */
 static void warn_of_capital(struct parser *p, const struct dalcs_number *number) {
+    const bool is_last = number->tail == p->length;
+    if (!is_last || (number->suffix != 'm' && number->suffix != 'f')) {
+        return; /* before the place is counted, in all of a long line */
+    }
     const struct dalcs_location where = dalcs_expression_place(p->text, p->begin, p->length);
     const struct dalcs_piece *piece = p->text->piece;
     while (piece + 1 < p->text->piece + p->text->n_pieces && piece[1].begin <= p->begin) {
         piece++;
     }
     const char *raw = where.source_line + piece->offset + p->begin - piece->begin;
-    const bool is_last = number->tail == p->length;
     const char *capital = raw + number->digits;
-    if (!is_last || (number->suffix != 'm' && number->suffix != 'f') ||
-        (*capital != 'M' && *capital != 'F') ||
+    if ((*capital != 'M' && *capital != 'F') ||
         strpbrk(where.source_line, "abcdefghijklmnopqrstuvwxyz") == NULL) {
         return;
     }

@@ -43,18 +43,54 @@ static size_t end_of_line(const struct dalcs_lexer *lexer, size_t begin) {
     return newline != NULL ? (size_t)(newline - lexer->raw) : lexer->length;
 }
 
-/* Does the line begin an expression in braces or quotes that it does not end? */
-static bool is_open(const char *line, size_t length) {
+/* What of an expression in braces or quotes is still open where a line ends. */
+struct open_expression {
+    int depth;
+    bool quoted;
+    size_t end; /* of the text of the last line, before its comment */
+};
+
+static bool is_blank(char c) {
+    return c == ' ' || c == '\t';
+}
+
+/* Does a comment start at line[k], as dalcs_lexer_read_line sees it outside of expressions? */
+static bool starts_comment(const char *line, size_t k, size_t length) {
+    if (line[k] == ';') {
+        return true;
+    }
+    const char next = k + 1 < length ? line[k + 1] : ' ';
+    const bool is_sign =
+        (line[k] == '$' && (is_blank(next) || next == '\r')) || (line[k] == '/' && next == '/');
+    return is_sign && (k == 0 || is_blank(line[k - 1]));
+}
+
+/* Takes one more line, from `begin` on: what was open before it may end there. */
+static void follow(struct open_expression *open, const char *raw, size_t begin, size_t length) {
+    const char *line = raw + begin;
+    size_t k = 0;
+    for (; k < length && !starts_comment(line, k, length); k++) {
+        open->depth += (line[k] == '{') - (line[k] == '}');
+        open->quoted = open->quoted != (line[k] == '\'');
+    }
+    open->end = begin + k;
+}
+
+/* Does the line begin an expression that it does not end? */
+static bool begins_expression(struct open_expression *open, const char *raw, size_t begin,
+                              size_t length) {
+    const char *line = raw + begin;
     if (memchr(line, '{', length) == NULL && memchr(line, '\'', length) == NULL) {
         return false;
     }
-    int depth = 0;
-    bool quoted = false;
-    for (size_t k = 0; k < length && line[k] != ';' && line[0] != '*'; k++) {
-        depth += (line[k] == '{') - (line[k] == '}');
-        quoted = quoted != (line[k] == '\'');
+    size_t k = 0;
+    while (k < length && is_blank(line[k])) {
+        k++;
     }
-    return depth > 0 || quoted;
+    if (k < length && line[k] != '*') {
+        follow(open, raw, begin, length);
+    }
+    return open->depth > 0 || open->quoted;
 }
 
 /* Where the text of the next line that is neither blank nor a comment begins; it is *n_lines on. */
@@ -69,25 +105,28 @@ static size_t next_text(const struct dalcs_lexer *lexer, size_t end, int *n_line
             return p;
         }
         end = end_of_line(lexer, p);
-        if (p < end && lexer->raw[p] != '*') {
+        if (p < end && lexer->raw[p] != '*' && !starts_comment(lexer->raw + p, 0, end - p)) {
             return p;
         }
     }
 }
 
-/* Such an expression may go on behind a + on the next line, as cards do: one line is made of both.
- * *n_joined: how many were added. */
+/* Such an expression may go on behind a + on the next line, as cards do: one line is made of both,
+ * without the comment between them. *n_joined: how many were added. */
 static size_t join_lines(struct dalcs_lexer *lexer, size_t begin, size_t end, int *n_joined) {
-    while (end < lexer->length && is_open(lexer->raw + begin, end - begin)) {
+    struct open_expression open = {0};
+    bool is_open = end < lexer->length && begins_expression(&open, lexer->raw, begin, end - begin);
+    while (is_open && end < lexer->length) {
         int n_lines = 0;
         const size_t next = next_text(lexer, end, &n_lines);
         if (next >= lexer->length || lexer->raw[next] != '+') {
             break;
         }
-        const size_t first = lexer->raw[end - 1] == '\r' ? end - 1 : end;
-        memset(lexer->raw + first, ' ', next + 1 - first);
-        memset(lexer->low + first, ' ', next + 1 - first);
+        memset(lexer->raw + open.end, ' ', next + 1 - open.end);
+        memset(lexer->low + open.end, ' ', next + 1 - open.end);
         end = end_of_line(lexer, next);
+        follow(&open, lexer->raw, next + 1, end - next - 1);
+        is_open = open.depth > 0 || open.quoted;
         *n_joined += n_lines;
     }
     return end;

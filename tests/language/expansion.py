@@ -11,6 +11,7 @@ import math
 import pathlib
 import sys
 import tempfile
+import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import dalcs_program  # pylint: disable=wrong-import-position,import-error
@@ -313,6 +314,22 @@ def untouched(program, checker):
                       "included from" in run.stderr, run.stderr)
 
 
+def joined(program, checker):
+    """Braces over many lines: comments between them do not count, and the time is that of reading."""
+    run = dalcs_program.run(program, "t\n.param s={1 + ; one, it's {said\n+ 2*max(3, $ three\n"
+                            "; nothing\n// and\n* nothing\n+ 4) // four }\n+ - 6} ; all of it\n"
+                            "I1 0 a {s}\nR1 a 0 1\n.op\n.end\n", method=None)
+    checker.check(run.status == 0, run.stderr)
+    checker.close(run.column("v(a)")[0], 3.0, 1e-12, "comments in an expression of many lines")
+    n = 60000
+    begin = time.monotonic()
+    run = dalcs_program.run(program, "t\nV1 a 0 1\nR1 a 0 {max(0\n" +
+                            "+ , 1    , 2    , 3    , 4    , 5\n" * n + "+ )}\n.op\n.end\n",
+                            method=None)
+    checker.check("'max' takes at most 1000 arguments, not 300001" in run.stderr, run.stderr[-300:])
+    checker.check(time.monotonic() - begin < 20, f"{n} lines in one brace take too long")
+
+
 def large(program, checker):
     """Ten thousand instances, a chain of parameters in reverse, a deep tower of calls."""
     text = ["large", ".param r=1k", ".subckt s a b r=1", "R1 a m {r}", "R2 m b {r}", ".ends"]
@@ -332,7 +349,7 @@ def large(program, checker):
 
 def main():
     checker = dalcs_program.Checker("expansion")
-    for test in (same_bits, encodings, names, closed_form, untouched, large):
+    for test in (same_bits, encodings, names, closed_form, untouched, joined, large):
         test(sys.argv[1], checker)
     return checker.finish()
 
