@@ -362,6 +362,11 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
                                       const char *name, const char *field, double value,
                                       const char **nearest) DALCS_MUST_CHECK;
 
+/* The value of a parameter of .param outside of subcircuits, as the next run has it. Lower case.
+ * DALCS_E_OPTION: there is none of that name. Only for a netlist with a script. */
+enum dalcs_status dalcs_session_parameter(const struct dalcs_session *session, const char *name,
+                                          double *value) DALCS_MUST_CHECK;
+
 /* Forgets what dalcs_session_alter said of elements and models; parameters stay. */
 void dalcs_session_reset(struct dalcs_session *session);
 

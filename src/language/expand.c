@@ -535,14 +535,9 @@ static enum dalcs_status expand_scope(struct dalcs_language *language, struct da
 
 /* ---- The whole netlist --------------------------------------------------------------------------- */
 
-enum dalcs_status dalcs_deck_expand(struct dalcs_deck *deck, const struct dalcs_netlist *netlist,
-                                    struct dalcs_diag *diag) {
-    deck->hides_all = netlist->misses_file;
-    if (!netlist->has_language && deck->n_overrides == 0) {
-        deck->card = netlist->card;
-        deck->n_cards = netlist->n_cards;
-        return DALCS_OK;
-    }
+/* The netlist's own scope, whose parameters are known when it is settled. */
+static enum dalcs_status begin(struct dalcs_deck *deck, const struct dalcs_netlist *netlist,
+                               struct dalcs_diag *diag) {
     struct dalcs_language *language = dalcs_arena_alloc(&deck->arena, 1, sizeof *language);
     if (language == NULL) {
         return DALCS_E_NOMEM;
@@ -554,10 +549,26 @@ enum dalcs_status dalcs_deck_expand(struct dalcs_deck *deck, const struct dalcs_
     language->arena = &deck->arena;
     DALCS_TRY(dalcs_definition_collect(language));
     language->top = dalcs_scope_make(language, &language->root, NULL, NULL);
-    if (language->top == NULL) {
-        return DALCS_E_NOMEM;
+    return language->top != NULL ? dalcs_override_parameters(language) : DALCS_E_NOMEM;
+}
+
+enum dalcs_status dalcs_deck_settle(struct dalcs_deck *deck, const struct dalcs_netlist *netlist,
+                                    struct dalcs_diag *diag) {
+    DALCS_TRY(begin(deck, netlist, diag));
+    dalcs_scope_settle(deck->language, deck->language->top);
+    return deck->language->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
+}
+
+enum dalcs_status dalcs_deck_expand(struct dalcs_deck *deck, const struct dalcs_netlist *netlist,
+                                    struct dalcs_diag *diag) {
+    deck->hides_all = netlist->misses_file;
+    if (!netlist->has_language && deck->n_overrides == 0) {
+        deck->card = netlist->card;
+        deck->n_cards = netlist->n_cards;
+        return DALCS_OK;
     }
-    enum dalcs_status status = dalcs_override_parameters(language);
+    enum dalcs_status status = begin(deck, netlist, diag);
+    struct dalcs_language *language = deck->language;
     if (status == DALCS_OK) {
         status = expand_scope(language, language->top);
     }
@@ -565,7 +576,7 @@ enum dalcs_status dalcs_deck_expand(struct dalcs_deck *deck, const struct dalcs_
         status = dalcs_override_cards(language);
     }
     deck->card = deck->own;
-    return language->out_of_memory ? DALCS_E_NOMEM : status;
+    return status == DALCS_OK && language->out_of_memory ? DALCS_E_NOMEM : status;
 }
 
 const char *dalcs_deck_port(const struct dalcs_deck *deck, const char *name) {

@@ -35,6 +35,10 @@ struct dalcs_deck {
 enum dalcs_status dalcs_deck_expand(struct dalcs_deck *deck, const struct dalcs_netlist *netlist,
                                     struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
+/* Finds the values of the netlist's own parameters and does nothing else. */
+enum dalcs_status dalcs_deck_settle(struct dalcs_deck *deck, const struct dalcs_netlist *netlist,
+                                    struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
 /* The node outside that x1.a stands for, when a is a port of x1; else NULL. */
 const char *dalcs_deck_port(const struct dalcs_deck *deck, const char *name);
 

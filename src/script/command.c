@@ -34,8 +34,9 @@ static enum dalcs_status progress(void *user, double time, double stop) {
     return sink->progress != NULL ? sink->progress(sink->user, time, stop) : DALCS_OK;
 }
 
-static enum dalcs_status add_card(struct dalcs_script *script, const struct dalcs_statement *s,
-                                  const char *word, const char *rest) {
+enum dalcs_status dalcs_script_add_card(struct dalcs_script *script,
+                                        const struct dalcs_statement *s, const char *word,
+                                        const char *rest) {
     enum dalcs_status status = dalcs_grow(&script->card, &script->card_capacity,
                                           script->n_cards + 1, sizeof *script->card);
     const char *text = dalcs_arena_printf(&script->kept, "%s %s", word, rest);
@@ -43,28 +44,6 @@ static enum dalcs_status add_card(struct dalcs_script *script, const struct dalc
         return DALCS_E_NOMEM;
     }
     script->card[script->n_cards++] = (struct dalcs_extra_card){s->line, text};
-    return DALCS_OK;
-}
-
-/* Measurements that follow an analysis are made while it runs: their cards go with it. */
-static enum dalcs_status add_measurements(struct dalcs_script *script, size_t first) {
-    const struct dalcs_statements *all = &script->statements;
-    for (size_t k = first; k < all->n; k++) {
-        const struct dalcs_statement *s = &all->statement[k];
-        const bool ends = s->kind == DALCS_STATEMENT_ANALYSIS || s->kind == DALCS_STATEMENT_END ||
-                          s->kind == DALCS_STATEMENT_ELSE || s->kind == DALCS_STATEMENT_QUIT;
-        if (ends) {
-            return DALCS_OK;
-        }
-        if (s->kind == DALCS_STATEMENT_MEASURE) {
-            const char *rest;
-            enum dalcs_status status = dalcs_script_expand(script, s, &rest);
-            status = status == DALCS_OK ? add_card(script, s, "meas", rest) : status;
-            if (status != DALCS_OK) {
-                return status;
-            }
-        }
-    }
     return DALCS_OK;
 }
 
@@ -99,19 +78,20 @@ static enum dalcs_status run(struct dalcs_script *script, size_t index) {
     const char *rest;
     enum dalcs_status status = dalcs_script_expand(script, s, &rest);
     if (strcmp(s->word, "run") != 0) {
-        status = status == DALCS_OK ? add_card(script, s, s->word, rest) : status;
+        status = status == DALCS_OK ? dalcs_script_add_card(script, s, s->word, rest) : status;
     } else if (status == DALCS_OK && !script->has_cards) {
         return dalcs_script_refuse(script, s, "add a line before .control such as: .tran 10u 20m",
                                    "run: the netlist has no analysis");
     }
-    status = status == DALCS_OK ? add_measurements(script, index + 1) : status;
+    status = status == DALCS_OK ? dalcs_script_add_measurements(script, index + 1) : status;
     status = status == DALCS_OK ? run_session(script) : status;
     script->n_cards = n_kept;
     return status;
 }
 
 enum dalcs_status dalcs_script_run_cards(struct dalcs_script *script) {
-    enum dalcs_status status = script->has_cards ? add_measurements(script, 0) : DALCS_OK;
+    enum dalcs_status status =
+        script->has_cards ? dalcs_script_add_measurements(script, 0) : DALCS_OK;
     status = status == DALCS_OK && script->has_cards ? run_session(script) : status;
     script->n_cards = 0;
     return status;
@@ -125,7 +105,7 @@ static enum dalcs_status save(struct dalcs_script *script, const struct dalcs_st
         return status;
     }
     if (s->word[0] == 'o') {
-        return add_card(script, s, "options", rest);
+        return dalcs_script_add_card(script, s, "options", rest);
     }
     const char *text = "";
     for (const char *word; text != NULL && (word = dalcs_script_word(script, &rest)) != NULL;) {
@@ -133,7 +113,7 @@ static enum dalcs_status save(struct dalcs_script *script, const struct dalcs_st
         text = n > 0 ? dalcs_arena_printf(&script->arena, "%s i(%.*s)", text, n, word + 1)
                      : dalcs_arena_printf(&script->arena, "%s %s", text, word);
     }
-    return text != NULL ? add_card(script, s, "save", text) : DALCS_E_NOMEM;
+    return text != NULL ? dalcs_script_add_card(script, s, "save", text) : DALCS_E_NOMEM;
 }
 
 /* ---- Other values ---------------------------------------------------------------------------------- */

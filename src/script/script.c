@@ -139,6 +139,9 @@ static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size
             break;
         default:
             status = dalcs_script_command(script, k);
+            if (status == DALCS_E_NETLIST && dalcs_statement_may_be_left_out(&all->statement[k])) {
+                status = DALCS_OK; /* as in ngspice; a warning has told */
+            }
             dalcs_arena_finish(&script->arena);
             break;
         }
@@ -208,6 +211,7 @@ enum dalcs_status dalcs_script_run(const struct dalcs_script_host *host) {
         status = dalcs_statements_check(&script.statements, host->session);
     }
     if (status == DALCS_OK) {
+        script.vectors.session = host->session;
         script.vectors.text = script.statements.text;
         script.vectors.keeps_all = keeps_all(&script.statements);
         if (!asks(&script.statements)) {

@@ -19,11 +19,13 @@ struct dalcs_script {
     struct dalcs_arena kept;  /* texts of cards */
     bool has_cards;           /* analyses of the netlist, for run */
     bool quits, breaks, continues;
+    bool is_silent; /* nothing is said: it is tried whether a text has a value yet */
 };
 
 /* ---- text.c: a statement's text ------------------------------------------------------------------- */
 
-/* An error at the statement; returns DALCS_E_NETLIST. hint may be NULL. */
+/* An error at the statement, or a warning where the script goes on without it; returns DALCS_E_NETLIST.
+ * hint may be NULL. */
 enum dalcs_status dalcs_script_refuse(struct dalcs_script *script,
                                       const struct dalcs_statement *statement, const char *hint,
                                       const char *format, ...)
@@ -54,10 +56,21 @@ enum dalcs_status dalcs_script_vectors(struct dalcs_script *script,
                                        const struct dalcs_vector ***vector,
                                        size_t *n) DALCS_MUST_CHECK;
 
+/* ---- measuring.c: measurements of the run before them ---------------------------------------------- */
+
+/* Adds the cards of those that follow statement first - 1: they are measured while it runs. */
+enum dalcs_status dalcs_script_add_measurements(struct dalcs_script *script,
+                                                size_t first) DALCS_MUST_CHECK;
+
 /* ---- command.c: one statement that is no block ---------------------------------------------------- */
 
 /* `index`: of the statement, for what follows an analysis. */
 enum dalcs_status dalcs_script_command(struct dalcs_script *script, size_t index) DALCS_MUST_CHECK;
+
+/* A card for the next runs, without its dot. */
+enum dalcs_status dalcs_script_add_card(struct dalcs_script *script,
+                                        const struct dalcs_statement *statement, const char *word,
+                                        const char *rest) DALCS_MUST_CHECK;
 
 /* What `run` does, before all statements: of measurements that follow, the cards go with it. */
 enum dalcs_status dalcs_script_run_cards(struct dalcs_script *script) DALCS_MUST_CHECK;

@@ -255,6 +255,12 @@ enum dalcs_status dalcs_statements_check(struct dalcs_statements *all,
     return failed ? DALCS_E_NETLIST : DALCS_OK;
 }
 
+bool dalcs_statement_may_be_left_out(const struct dalcs_statement *s) {
+    return s->kind == DALCS_STATEMENT_LET || s->kind == DALCS_STATEMENT_PRINT ||
+           s->kind == DALCS_STATEMENT_ECHO || s->kind == DALCS_STATEMENT_MEASURE ||
+           s->kind == DALCS_STATEMENT_WRDATA || s->kind == DALCS_STATEMENT_WRITE;
+}
+
 void dalcs_statements_finish(struct dalcs_statements *s) {
     free(s->statement);
     free(s->text);

@@ -5,6 +5,8 @@
 #include "dalcs.h"
 #include "memory.h"
 
+#include <stdbool.h>
+
 enum dalcs_statement_kind {
     DALCS_STATEMENT_ANALYSIS, /* tran, op, dc, ac, run */
     DALCS_STATEMENT_MEASURE,  /* goes with the analysis before it */
@@ -40,6 +42,7 @@ struct dalcs_statement {
     const char *word; /* lower case */
     const char *rest; /* what follows it, as written, continuation lines joined */
     size_t end; /* of a block: the statement of its end; of if: of its else, if there is one */
+    bool is_reported; /* what is wrong with it was said: a loop comes by again */
 };
 
 struct dalcs_statements {
@@ -57,6 +60,9 @@ enum dalcs_status dalcs_statements_read(struct dalcs_statements *statements,
  * errors. */
 enum dalcs_status dalcs_statements_check(struct dalcs_statements *statements,
                                          struct dalcs_session *session) DALCS_MUST_CHECK;
+
+/* Can the script go on without this statement? What says, shows and measures changes no later run. */
+bool dalcs_statement_may_be_left_out(const struct dalcs_statement *statement);
 
 void dalcs_statements_finish(struct dalcs_statements *statements);
 

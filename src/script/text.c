@@ -7,17 +7,37 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Was something said of the statement before? From now on it was. */
+static bool was_reported(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const struct dalcs_statements *all = &script->statements;
+    for (size_t k = 0; k < all->n; k++) {
+        struct dalcs_statement *own = &all->statement[k];
+        if (own->line == s->line && own->column == s->column) {
+            const bool was = own->is_reported;
+            own->is_reported = true;
+            return was;
+        }
+    }
+    return false;
+}
+
 enum dalcs_status dalcs_script_refuse(struct dalcs_script *script, const struct dalcs_statement *s,
                                       const char *hint, const char *format, ...) {
+    const bool goes_on = dalcs_statement_may_be_left_out(s);
     char text[400];
+    if (script->is_silent || was_reported(script, s)) {
+        return DALCS_E_NETLIST;
+    }
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     const char *line = dalcs_session_script_line(script->host->session, s->line);
     size_t length = strlen(line + s->column - 1);
+    const size_t n = strlen(text);
+    snprintf(text + n, sizeof text - n, "%s", goes_on ? "; this line is left out" : "");
     dalcs_session_script_message(script->host->session, s->line, s->column, length > 0 ? length : 1,
-                                 DALCS_LEVEL_ERROR, hint, text);
+                                 goes_on ? DALCS_LEVEL_WARNING : DALCS_LEVEL_ERROR, hint, text);
     return DALCS_E_NETLIST;
 }
 
@@ -85,6 +105,26 @@ static enum dalcs_status append_formula(struct growing *g, const struct dalcs_st
     return status;
 }
 
+/* {formula}: what a measurement's card cannot know before the run, it finds itself. */
+static enum dalcs_status append_braces(struct growing *g, const struct dalcs_statement *s,
+                                       const char *formula) {
+    struct dalcs_script *script = g->script;
+    const bool is_measured = s->kind == DALCS_STATEMENT_MEASURE;
+    const bool was_silent = script->is_silent;
+    script->is_silent = was_silent || is_measured;
+    script->vectors.prefers_parameters = true;
+    enum dalcs_status status = append_formula(g, s, formula, strlen(formula));
+    script->vectors.prefers_parameters = false;
+    script->is_silent = was_silent;
+    if (status != DALCS_E_NETLIST || !is_measured) {
+        return status;
+    }
+    append(g, "{", 1);
+    append(g, formula, strlen(formula));
+    append(g, "}", 1);
+    return DALCS_OK;
+}
+
 /* After a `$` at *p: $name, ${name} or $&vector. */
 static enum dalcs_status append_variable(struct growing *g, const struct dalcs_statement *s,
                                          const char **p) {
@@ -131,7 +171,7 @@ enum dalcs_status dalcs_script_expand(struct dalcs_script *script, const struct 
             status =
                 inner.rest != NULL ? dalcs_script_expand(script, &inner, &formula) : DALCS_E_NOMEM;
             if (status == DALCS_OK) {
-                status = append_formula(&g, s, formula, strlen(formula));
+                status = append_braces(&g, s, formula);
             }
             p = close + 1;
         } else {

@@ -305,8 +305,27 @@ static struct dalcs_vector *copy_of(struct dalcs_vector_formula *f, const struct
     return copy;
 }
 
+static struct dalcs_vector *parameter(struct dalcs_vector_formula *f, const char *name) {
+    double value;
+    enum dalcs_status status = dalcs_session_parameter(f->vectors->session, name, &value);
+    if (status == DALCS_E_NOMEM) {
+        f->out_of_memory = true;
+        return fail(f, "out of memory");
+    }
+    return status == DALCS_OK ? number(f, value) : NULL;
+}
+
+/* A vector, or else a parameter of the netlist; in braces a parameter comes before the voltage of a
+ * node of its name. */
 static struct dalcs_vector *find(struct dalcs_vector_formula *f, const char *name) {
-    const struct dalcs_vector *v = dalcs_vectors_find(f->vectors, name);
+    const struct dalcs_vector *v = f->vectors->prefers_parameters
+                                       ? dalcs_vectors_find_exactly(f->vectors, name)
+                                       : dalcs_vectors_find(f->vectors, name);
+    struct dalcs_vector *known = v == NULL ? parameter(f, name) : NULL;
+    if (known != NULL || f->failed) {
+        return known;
+    }
+    v = v == NULL ? dalcs_vectors_find(f->vectors, name) : v;
     if (v == NULL) {
         if (!f->vectors->has_plot) {
             snprintf(f->hint, sizeof f->hint, "no analysis has been run yet");
@@ -388,8 +407,8 @@ static struct dalcs_vector *read_word(struct dalcs_vector_formula *f) {
         return find(f, word[0] == 'v' ? "v-sweep" : "i-sweep");
     }
     if (f->text[f->at] != '(') {
-        const struct dalcs_vector *known = dalcs_vectors_find(f->vectors, word);
-        return known == NULL && strcmp(word, "pi") == 0 ? number(f, acos(-1.0)) : find(f, word);
+        const bool is_pi = strcmp(word, "pi") == 0 && dalcs_vectors_find(f->vectors, word) == NULL;
+        return is_pi ? number(f, acos(-1.0)) : find(f, word);
     }
     f->at++;
     const char *suffix = word[0] == 'v' || word[0] == 'i' ? suffix_function(word) : NULL;

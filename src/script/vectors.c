@@ -55,12 +55,15 @@ static struct dalcs_vector *find_in(const struct dalcs_plot_vectors *plot, const
     return NULL;
 }
 
+const struct dalcs_vector *dalcs_vectors_find_exactly(const struct dalcs_vectors *v,
+                                                      const char *name) {
+    const struct dalcs_vector *found = find_in(&v->plot, name);
+    return found != NULL ? found : find_in(&v->own, name);
+}
+
 const struct dalcs_vector *dalcs_vectors_find(const struct dalcs_vectors *v, const char *name) {
     char other[256];
-    const struct dalcs_vector *found = find_in(&v->plot, name);
-    if (found == NULL) {
-        found = find_in(&v->own, name);
-    }
+    const struct dalcs_vector *found = dalcs_vectors_find_exactly(v, name);
     return found != NULL ? found : find_in(&v->plot, canonical(name, other, sizeof other));
 }
 

@@ -28,8 +28,10 @@ struct dalcs_plot_vectors {
 /* Zero-initialise. */
 struct dalcs_vectors {
     const char *text; /* of the whole script, lower case without blanks: what it may name */
+    const struct dalcs_session *session; /* whose parameters formulas may name */
     bool keeps_all;
     bool has_plot;
+    bool prefers_parameters;        /* to node voltages: in braces */
     struct dalcs_plot_vectors plot; /* of the last run */
     struct dalcs_plot_vectors own;  /* what was made without one */
     size_t *column;                 /* of each kept signal; heap, of the plot being received */
@@ -44,6 +46,10 @@ enum dalcs_status dalcs_vectors_row(struct dalcs_vectors *vectors, double scale,
 /* By any of its names: v(out), out, i(l1), l1#branch, @l1[i], time; NULL: there is none. */
 const struct dalcs_vector *dalcs_vectors_find(const struct dalcs_vectors *vectors,
                                               const char *name);
+
+/* The same by its own name alone. */
+const struct dalcs_vector *dalcs_vectors_find_exactly(const struct dalcs_vectors *vectors,
+                                                      const char *name);
 
 /* The scale of the present plot: the first vector; NULL without one. */
 const struct dalcs_vector *dalcs_vectors_scale(const struct dalcs_vectors *vectors);

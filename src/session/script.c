@@ -1,5 +1,6 @@
 /* script.c - what a .control block needs of a session: its lines, runs with cards of its own, other
  * values. The language of the block is not known here. */
+#include "expand.h"
 #include "session_internal.h"
 
 #include <string.h>
@@ -195,6 +196,23 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
                 has_card(&session->netlist, NULL, 0, name, like);
     }
     return found ? keep_override(session, &override) : DALCS_E_OPTION;
+}
+
+enum dalcs_status dalcs_session_parameter(const struct dalcs_session *session, const char *name,
+                                          double *value) {
+    const char *nearest = NULL;
+    if (!session->has_netlist || !has_parameter(&session->netlist, name, &nearest)) {
+        return DALCS_E_OPTION;
+    }
+    struct dalcs_deck deck = {.override = session->override, .n_overrides = session->n_altered};
+    struct dalcs_diag unheard = {0}; /* the circuit was built: all of it has been said */
+    enum dalcs_status status = dalcs_deck_settle(&deck, &session->netlist, &unheard);
+    if (status == DALCS_OK && !dalcs_deck_parameter(&deck, name, value)) {
+        status = DALCS_E_OPTION;
+    }
+    dalcs_deck_finish(&deck);
+    dalcs_diag_finish(&unheard);
+    return status;
 }
 
 void dalcs_session_reset(struct dalcs_session *session) {

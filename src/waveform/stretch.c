@@ -218,7 +218,7 @@ static void halve(struct visit *v, double a, double b, const struct dalcs_span *
     fill(v, a, middle, false, &half[0]);
     fill(v, middle, b, false, &half[1]);
     double least = fmin(tail_of(&half[0]), tail_of(&half[1]));
-    int next = least > helps * tail_of(span) ? in_vain + 1 : 0;
+    int next = in_vain + (least > helps * tail_of(span));
     settle(v, a, middle, &half[0], depth + 1, next);
     if (!v->ended) {
         settle(v, middle, b, &half[1], depth + 1, next);

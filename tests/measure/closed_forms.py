@@ -8,6 +8,7 @@ Tolerance 1e-13 where a circuit has states, so that what is left is the measurem
 
 import math
 import pathlib
+import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
@@ -451,10 +452,18 @@ R3 tri 0 1
     checker.close(whole["magnitude"][3], 4 / PI / 3, CLOSE, "all whole periods")
 
 
+def decibels(program, checker):
+    """Close to 0 dB all that is left of a logarithm is rounding: it is no reason to look closer."""
+    run = dalcs_program.run(program, "decibels\nV1 in 0 AC 1\nR1 in out 1k\nC1 out 0 1u\n"
+                            ".ac dec 20 1 10k\n.meas ac top max vdb(out)\n.end\n", method=None)
+    checker.close(float(re.search(r"top += +(\S+)", run.stdout).group(1)),
+                  -10 * math.log10(1 + (2e-3 * math.pi) ** 2), 1e-9, "the largest of vdb")
+
+
 def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("measurements")
-    for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier):
+    for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier, decibels):
         test(program, checker)
     return checker.finish()
 

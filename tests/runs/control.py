@@ -4,6 +4,7 @@
 usage: control.py PROGRAM [NGSPICE]
 """
 
+import math
 import pathlib
 import re
 import subprocess
@@ -263,6 +264,78 @@ tarn 1u 1m
 .end
 """, status=3)
         checker.check(not (pathlib.Path(folder) / "ours" / "w.txt").exists(), "nothing was run")
+
+    check_vectors_measured(both)
+    check_left_out(both)
+
+
+def check_vectors_measured(both):
+    """let vectors and parameters in meas, print and echo: v(out) = 2 (1 - exp(-t/tau))."""
+    with tempfile.TemporaryDirectory() as folder:
+        ours, _ = both.run(folder, "vectors", """vectors
+.param vin=2 half={vin/2}
+V1 vin 0 DC {vin} AC 1
+R1 vin out 1k
+C1 out 0 1u
+.control
+let limit = 1.5
+tran 10u 4m uic
+let p = out*(-v1#branch)
+let twice = p*2
+let bad = mean(p)
+meas tran energy INTEG twice
+meas tran t1 when v(out)=limit
+meas tran t2 when v(out)={Half}
+meas tran t3 when out=half
+meas tran there find p at={t2}
+meas tran none avg bad
+set numdgt=15
+print energy t1 t2 t3 there half+limit
+echo half is {HALF}, three {vin+half}, vin is {vin}
+ac dec 20 1 10k
+let gain = db(v(out))
+let size = mag(out)
+meas ac f3 when gain=-20
+meas ac low min size
+print f3 low
+.endc
+.end
+""")
+        found = dict(printed(ours.stdout))
+        decibel = 20 * math.log10(1 / math.hypot(1, 2e-3 * math.pi * 1e4))
+        wanted = {"t1": 1e-3 * math.log(4), "t2": 1e-3 * math.log(2), "t3": 1e-3 * math.log(2),
+                  "there": 1e-3, "half+limit": 2.5, "low": 10 ** (decibel / 20),
+                  "energy": 2 * 4e-3 * (0.5e-3 - 1e-3 * math.exp(-4) + 0.5e-3 * math.exp(-8))}
+        for name, value in wanted.items():
+            both.checker.close(found.get(name, math.nan), value, 1e-6, f"vectors: {name}")
+        both.checker.close(found["f3"], math.sqrt(99) / (2e-3 * math.pi), 1.0, "a level in dB")
+        both.checker.check("half is 1, three 3, vin is 2" in ours.stdout, ours.stdout)
+        both.checker.check("a vector of `let` cannot be measured" in ours.stderr, ours.stderr)
+
+
+def check_left_out(both):
+    """What cannot be done and changes no run is left out; ngspice goes on too."""
+    with tempfile.TemporaryDirectory() as folder:
+        ours, _ = both.run(folder, "left out", CIRCUIT.format(title="x") + """
+.control
+op
+let y = nowhere*2
+let z = (1
+print z v(nobody)
+repeat 3
+  print y
+end
+print v(out)
+wrdata none.txt v(none)
+wrdata w.txt v(out)
+.endc
+.end
+""")
+        folder = pathlib.Path(folder) / "ours"
+        both.checker.check(printed(ours.stdout) == [("v(out)", 1.0)], f"left out: {ours.stdout}")
+        both.checker.check(ours.stderr.count("this line is left out") == 5, ours.stderr)
+        both.checker.check((folder / "w.txt").exists() and (folder / "c.raw").exists() and
+                           not (folder / "none.txt").exists(), "files beside what is left out")
 
 
 def main():
