@@ -25,6 +25,18 @@ struct dalcs_form {
     int n;
     const struct dalcs_form_part *part;
     double height; /* not 0: the value is 0 or this, or between the two at a jump */
+    const struct dalcs_levels *levels; /* where `part` does not show them, or NULL */
+};
+
+/* base + sum of heights of values of 0 and 1 */
+struct dalcs_levels {
+    double base;
+    int n;
+
+    struct dalcs_height {
+        double height;
+        const struct dalcs_form *logic;
+    } * level;
 };
 
 /* exp(-decay t) sin(2 pi (frequency t + phase)) from `delay` on, 0 before */
@@ -104,6 +116,19 @@ enum dalcs_product { DALCS_PRODUCT_IS, DALCS_PRODUCT_HAS_JUMP, DALCS_PRODUCT_IS_
 enum dalcs_product dalcs_form_multiply(struct dalcs_compiler *c, const struct dalcs_form *a,
                                        const struct dalcs_form *b,
                                        const struct dalcs_form **product);
+
+/* ---- levels.c: numbers and steps ------------------------------------------------------------------ */
+
+/* NULL: the value is no such sum, or too long a one. */
+const struct dalcs_levels *dalcs_levels_of(struct dalcs_compiler *c, const struct dalcs_form *v);
+
+/* Those of a + factor b that the sum itself does not show. */
+const struct dalcs_levels *dalcs_levels_add(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                            double factor, const struct dalcs_form *b);
+
+/* a b, where both are such sums. */
+bool dalcs_levels_multiply(struct dalcs_compiler *c, const struct dalcs_form *a,
+                           const struct dalcs_form *b, const struct dalcs_form **product);
 
 /* ---- wave.c: functions of time --------------------------------------------------------------------- */
 

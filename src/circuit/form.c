@@ -71,36 +71,48 @@ static bool add_part(struct dalcs_compiler *c, struct dalcs_affine *affine,
     return true;
 }
 
-const struct dalcs_form *dalcs_form_add(struct dalcs_compiler *c, const struct dalcs_form *a,
-                                        double factor, const struct dalcs_form *b) {
+/* a + factor b, without its levels. */
+static bool add(struct dalcs_compiler *c, const struct dalcs_form *a, double factor,
+                const struct dalcs_form *b, struct dalcs_form *whole) {
     if (c->failed || a == NULL || b == NULL) {
-        return NULL;
+        return false;
     }
     struct dalcs_form sum = {.affine = dalcs_affine_add(c, &a->affine, factor, &b->affine)};
     struct dalcs_form_part *part =
         dalcs_arena_alloc(c->arena, (size_t)a->n + (size_t)b->n, sizeof *part);
     if (!check(c, part != NULL)) {
-        return NULL;
+        return false;
     }
     for (int k = 0; k < a->n + b->n; k++) {
         const struct dalcs_form_part *other = k < a->n ? &a->part[k] : &b->part[k - a->n];
         if (!add_part(c, &sum.affine, part, &sum.n, k < a->n ? 1 : factor, other)) {
-            return NULL;
+            return false;
         }
     }
     sum.part = part;
+    *whole = sum;
+    return true;
+}
+
+const struct dalcs_form *dalcs_form_add(struct dalcs_compiler *c, const struct dalcs_form *a,
+                                        double factor, const struct dalcs_form *b) {
+    struct dalcs_form sum;
+    if (!add(c, a, factor, b, &sum)) {
+        return NULL;
+    }
+    sum.levels = dalcs_form_is_number(&sum) ? NULL : dalcs_levels_add(c, a, factor, b);
     return keep(c, sum);
 }
 
 const struct dalcs_form *dalcs_form_scale(struct dalcs_compiler *c, double factor,
                                           const struct dalcs_form *a) {
     const struct dalcs_form *zero = dalcs_form_number(c, 0);
-    const struct dalcs_form *sum = dalcs_form_add(c, zero, factor, a);
-    if (sum == NULL) {
+    struct dalcs_form scaled;
+    if (!add(c, zero, factor, a, &scaled)) {
         return NULL;
     }
-    struct dalcs_form scaled = *sum;
     scaled.height = factor * a->height;
+    scaled.levels = a->levels != NULL ? dalcs_levels_add(c, zero, factor, a) : NULL;
     return keep(c, scaled);
 }
 
@@ -338,6 +350,9 @@ enum dalcs_product dalcs_form_multiply(struct dalcs_compiler *c, const struct da
             *product = NULL;
         }
         return *product != NULL || c->failed ? DALCS_PRODUCT_IS : DALCS_PRODUCT_IS_CURVED;
+    }
+    if (dalcs_levels_multiply(c, a, b, product)) {
+        return DALCS_PRODUCT_IS;
     }
     return is_step || is_other_step || a->height != 0 || b->height != 0 ? DALCS_PRODUCT_HAS_JUMP
                                                                         : DALCS_PRODUCT_IS_CURVED;

@@ -403,9 +403,46 @@ def diodes(checker, program):
                           f"recorded: {case.result.names}")
 
 
+NESTED_CHOICES = """nested choices between numbers, by conditions of different quantities
+V1 a 0 PWL(0 -3 1m 3)
+V2 b 0 SIN(0 1 1k)
+B1 y1 0 V=V(a)>1 ? 5 : (V(b)>0 ? 2 : 0)
+B2 y2 0 V=if(V(a)>V(b), 5, if(V(b)>0.5, 2, 0))
+B3 y3 0 V=V(a)>1 ? V(b)>0.5 ? 3 : 2 : V(b)>0 ? 1 : 0
+B4 y4 0 V={(V(a)>0 ? 2 : 1)*(V(b)>0 ? 3 : 4) - 1}
+B5 y5 0 V=V(b)>0 ? (V(a)>-1 && V(a)<1 ? 4 : (V(a)>2 ? 7 : 1)) : (V(a)>V(b) ? -1 : -2)
+S1 c c1 control 0 sw
+Bs control 0 V=V(a)>1 ? 1 : (V(b)>0.5 ? 1 : 0)
+V3 c 0 1
+Rc c1 0 1
+.model sw SW(Vt=0.5)
+.tran 10u 1m
+.end
+"""
+
+
+def nested_choices(checker, program):
+    case = Case(checker, program, NESTED_CHOICES, at=[k * 1e-5 for k in range(1, 100)])
+    for k in range(1, 100):
+        time = k * 1e-5
+        a, b = 6e3 * time - 3, math.sin(TURN * 1e3 * time)
+        if min(abs(a - b), *(abs(a - x) for x in (-1, 0, 1, 2)), abs(b), abs(b - 0.5)) < 1e-3:
+            continue
+        wanted = {"y1": 5 if a > 1 else 2 if b > 0 else 0,
+                  "y2": 5 if a > b else 2 if b > 0.5 else 0,
+                  "y3": (3 if b > 0.5 else 2) if a > 1 else 1 if b > 0 else 0,
+                  "y4": (2 if a > 0 else 1) * (3 if b > 0 else 4) - 1,
+                  "y5": (4 if -1 < a < 1 else 7 if a > 2 else 1) if b > 0
+                  else -1 if a > b else -2,
+                  "c1": 1 if a > 1 or b > 0.5 else 0}
+        for node, value in wanted.items():
+            case.is_at(f"v({node})", time, value)
+
+
 def main():
     checker = Checker("elements")
-    for part in (couplings, switches, controls, many, sources, parasitics, diodes, polynomials):
+    for part in (couplings, switches, controls, many, sources, parasitics, diodes, polynomials,
+                 nested_choices):
         part(checker, sys.argv[1])
     return checker.finish()
 
