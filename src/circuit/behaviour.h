@@ -63,6 +63,12 @@ struct dalcs_compiler {
     int n_pairs;
     struct dalcs_stimulus *stimulus; /* heap: of all compilers, those of the circuit follow */
     size_t n_stimuli, stimulus_capacity;
+    const struct dalcs_token *element; /* whose formula it is */
+    size_t n_forms;                    /* room in form_of */
+    int depth;                         /* of products that are parts of products */
+    int n_nodes;                       /* that products made, to name them */
+
+    bool is_silent; /* a formula is only asked what it is */
     bool failed;
 };
 
@@ -153,6 +159,23 @@ struct dalcs_affine dalcs_behaviour_freeze(struct dalcs_compiler *c, const struc
 /* Freezes the output and makes the behaviour, in the circuit's arena; NULL when out of memory. */
 const struct dalcs_behaviour *dalcs_behaviour_make(struct dalcs_compiler *c,
                                                    const struct dalcs_form *output);
+
+/* ---- commutate.c ----------------------------------------------------------------------------------- */
+
+/* steps (quantity - less); less NULL: nothing. A condition is 1 where it is not 0. */
+struct dalcs_commutation {
+    const struct dalcs_formula *steps, *quantity, *less;
+    bool is_condition;
+};
+
+/* The product, made by parts that are added to the circuit: the array of devices moves. NULL: the first
+ * factor does not consist of steps, or an error. */
+const struct dalcs_form *dalcs_commutate(struct dalcs_compiler *c,
+                                         const struct dalcs_commutation *what);
+
+/* The formula of a source, NULL: it has none, or a table. */
+const struct dalcs_formula *dalcs_behavioural_formula_of(const struct dalcs_builder *builder,
+                                                         int device);
 
 /* ---- compile.c ------------------------------------------------------------------------------------- */
 

@@ -186,8 +186,8 @@ static const struct dalcs_form *input_of(struct dalcs_compiler *c,
                                          const struct dalcs_device *device) {
     if (source->token != NULL) {
         const struct dalcs_formula *formula = source->token->formula;
-        c->form_of = dalcs_arena_alloc(c->arena, (size_t)formula->number_of + 1,
-                                       sizeof(const struct dalcs_form *));
+        c->n_forms = (size_t)formula->number_of + 1;
+        c->form_of = dalcs_arena_alloc(c->arena, c->n_forms, sizeof(const struct dalcs_form *));
         c->builder->out_of_memory = c->builder->out_of_memory || c->form_of == NULL;
         return c->form_of != NULL ? dalcs_compile(c, formula) : NULL;
     }
@@ -200,16 +200,30 @@ static const struct dalcs_form *input_of(struct dalcs_compiler *c,
     return dalcs_form_affine(c, &sum);
 }
 
+const struct dalcs_formula *dalcs_behavioural_formula_of(const struct dalcs_builder *builder,
+                                                         int device) {
+    for (size_t k = 0; k < builder->n_formulas; k++) {
+        const struct dalcs_formula_source *source = &builder->formula[k];
+        if (source->device == device && source->token != NULL && !source->has_table) {
+            return source->token->formula;
+        }
+    }
+    return NULL;
+}
+
 static void resolve(struct dalcs_compiler *c, const struct dalcs_formula_source *source) {
     struct dalcs_device *device = &c->builder->circuit->device[source->device];
     c->failed = false;
     c->n_waves = 0;
     c->n_cells = 0;
     c->n_pairs = 0;
+    c->n_nodes = 0;
+    c->element = c->builder->device_token[source->device];
     const struct dalcs_form *form = input_of(c, source, device);
     if (source->has_table) {
         form = dalcs_form_apply(c, &source->table, form);
     }
+    device = &c->builder->circuit->device[source->device]; /* products may have moved it */
     device->node[2] = device->node[3] = 0;
     if (form != NULL && !c->failed) {
         device->behaviour = dalcs_behaviour_make(c, form);

@@ -7,19 +7,19 @@
 
 static const struct dalcs_form *refuse(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                        const char *hint, const char *what) {
-    if (!c->failed) {
+    if (!c->failed && !c->is_silent) {
         dalcs_builder_error_at(c->builder, &f->where, hint, "%s", what);
-        c->failed = true;
     }
+    c->failed = true;
     return NULL;
 }
 
 static const struct dalcs_form *refuse_name(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                             const char *hint, const char *format) {
-    if (!c->failed) {
+    if (!c->failed && !c->is_silent) {
         dalcs_builder_error_at(c->builder, &f->where, hint, format, f->function);
-        c->failed = true;
     }
+    c->failed = true;
     return NULL;
 }
 
@@ -57,14 +57,25 @@ static const struct dalcs_form *current(struct dalcs_compiler *c, const struct d
 static const struct dalcs_form *multiply(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                          const struct dalcs_form *a, const struct dalcs_form *b) {
     const struct dalcs_form *product;
-    switch (dalcs_form_multiply(c, a, b, &product)) {
+    const enum dalcs_product kind = dalcs_form_multiply(c, a, b, &product);
+    for (int k = 0; kind != DALCS_PRODUCT_IS && f->code == DALCS_MULTIPLY && k < 2; k++) {
+        const struct dalcs_commutation what = {.steps = f->argument[k],
+                                               .quantity = f->argument[1 - k]};
+        product = dalcs_commutate(c, &what);
+        if (product != NULL || c->failed) {
+            return product;
+        }
+    }
+    switch (kind) {
     case DALCS_PRODUCT_IS:
         return product;
     case DALCS_PRODUCT_HAS_JUMP:
         return refuse(c, f, "an ideal switch S turns a voltage or a current on and off",
                       "the height of this jump is not constant: no complementarity pairs make it");
     default:
-        return refuse(c, f, "one of the factors must be a number, or a step",
+        return refuse(c, f,
+                      "one factor must be a number, or have two values: a comparison, or v(a) of a "
+                      "PULSE with short edges; .meas takes products",
                       "a product of two quantities that vary is not piecewise linear");
     }
 }
@@ -185,6 +196,14 @@ static const struct dalcs_form *choice(struct dalcs_compiler *c, const struct da
         return NULL;
     }
     if (dalcs_form_multiply(c, logic, difference, &product) != DALCS_PRODUCT_IS) {
+        const struct dalcs_commutation what = {.steps = f->argument[0],
+                                               .quantity = f->argument[1],
+                                               .less = f->argument[2],
+                                               .is_condition = true};
+        product = dalcs_commutate(c, &what);
+        if (product != NULL || c->failed) {
+            return product != NULL ? dalcs_form_add(c, b, 1, product) : NULL;
+        }
         return refuse(c, f, "an ideal switch S chooses between two voltages",
                       "the two values differ by what is not constant where the condition changes: "
                       "no complementarity pairs make such a jump");

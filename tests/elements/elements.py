@@ -439,10 +439,54 @@ def nested_choices(checker, program):
             case.is_at(f"v({node})", time, value)
 
 
+PRODUCTS = """products of what varies and of what has two values
+.param vin=3
+V1 a 0 SIN(0 10 500)
+V2 pwm 0 PULSE(0 1 0 0 0 50u 100u)
+V3 tri 0 PULSE(0 1 0 50u 50u 0 100u)
+V4 ref 0 {vin/10}
+V5 three 0 PULSE(-1 2 10u 1n 1n 30u 80u)
+R0 a x 1k
+C0 x 0 1u
+B1 y1 0 V=V(x)*V(pwm)
+B2 y2 0 V=V(pwm)>0.5 ? V(x) : V(a)
+B3 y3 0 V=(2*(V(a)>V(tri))-1)*V(x)
+B4 y4 0 V=V(tri)<0.3 ? V(x) : (V(tri)<0.6 ? V(a) : 2)
+B5 gate 0 V=V(tri)<V(ref) ? 5 : 0
+B6 y6 0 V=V(gate)/5*V(x) + V(a)*V(pwm)
+B7 y7 0 V=V(three)*I(R0)
+E1 y8 0 VALUE={V(gate)*limit(V(x), -1, 1)}
+B8 y9 0 V=V(x)*V(ref)
+.tran 10u 1m
+.end
+"""
+
+
+def products(checker, program):
+    case = Case(checker, program, PRODUCTS, at=[k * 3.7e-6 for k in range(1, 270)])
+    case.says("as a factor this pulse is a step at the middle of each edge, which lasts up to 1e-09 s")
+    for k in range(1, 270):
+        time = k * 3.7e-6
+        a, x = case.result.at("v(a)", time), case.result.at("v(x)", time)
+        phase = time % 1e-4 / 1e-4
+        tri = 2 * phase if phase < 0.5 else 2 - 2 * phase
+        three = 2 if time > 1e-5 and (time - 1e-5) % 8e-5 < 3e-5 else -1
+        near = [tri - 0.3, tri - 0.6, a - tri, phase, phase - 0.5, phase - 1]
+        if min(abs(y) for y in near) < 1e-3:
+            continue
+        pwm, gate = (1 if phase < 0.5 else 0), (5 if tri < 0.3 else 0)
+        wanted = {"y1": x * pwm, "y2": x if pwm else a, "y3": x if a > tri else -x,
+                  "y4": x if tri < 0.3 else a if tri < 0.6 else 2,
+                  "y6": gate / 5 * x + a * pwm, "y7": three * (a - x) / 1e3,
+                  "y8": gate * max(-1, min(1, x)), "y9": 0.3 * x}
+        for node, value in wanted.items():
+            case.is_at(f"v({node})", time, value, 1e-8)
+
+
 def main():
     checker = Checker("elements")
     for part in (couplings, switches, controls, many, sources, parasitics, diodes, polynomials,
-                 nested_choices):
+                 nested_choices, products):
         part(checker, sys.argv[1])
     return checker.finish()
 
