@@ -19,8 +19,11 @@ static const double pessimism = 10.0;
 /* No step gets longer for an error below this part of what is allowed. */
 static const double noticed = 1.0 / 512.0;
 
-/* Roundings in an element of a map times its input. */
-static const double roundings = 8.0 * DBL_EPSILON;
+/* With a lever this is what is left above rounding. */
+static const double least_tolerance = 1e-10;
+
+/* Roundings in an element of a map times its input, which has those of the steps before. */
+static const double roundings = 32.0 * DBL_EPSILON;
 
 /* Of what rounding of the largest column may make of a current, on factors: the drift is a solution by
  * itself, of small numbers. */
@@ -33,7 +36,9 @@ static const double growth = 2.0;
 
 static double allowed_of(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int k,
                          const double unit[2], double besides) {
-    return r->inner_tolerance * dalcs_step_scale(part, part->stages.current[k], unit) + besides;
+    return dalcs_larger(r->inner_tolerance, least_tolerance) *
+               dalcs_step_scale(part, part->stages.current[k], unit) +
+           besides;
 }
 
 /* Could states as large as they have been make an error that is noticed? */

@@ -15,6 +15,10 @@
 static const double doubtful_pivot = 1e-9;
 static const double rank_tolerance = 1e-12;
 
+/* Extended precision solves well above this, where double precision takes a very short step, in which coils
+ * are next to open, for a singular mode. */
+static const long double regular_pivot = 1e-12L;
+
 /* What a null vector has to do with a state cancels to this part of its terms, or does not. */
 static const double exact_cancelling = 1e-9;
 
@@ -531,8 +535,12 @@ static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
     if (pivot < doubtful_pivot && b->nullity == 0) {
         b->is_known = false;
         DALCS_TRY(find_null_space(b, b->S));
+        bool always = b->nullity > 0 && is_singular_always(b);
+        if (!always && pivot > regular_pivot) {
+            b->nullity = 0;
+        }
         fill_whole(b);
-        if (b->nullity > 0 && is_singular_always(b)) {
+        if (always) {
             eliminate_followers(b);
         } else {
             keep_all(b);
