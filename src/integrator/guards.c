@@ -4,6 +4,7 @@
 #include "crossing.h"
 #include "doubt.h"
 #include "extremes.h"
+#include "pair_laws.h"
 #include "quads.h"
 #include "union_find.h"
 
@@ -106,16 +107,11 @@ static inline double rounding_of(const struct dalcs_radau_part *part, int guard,
     }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
     double held = is_on ? part->held_charge[guard] : part->held_flux[guard];
-    return held > 0.0 ? rounded * held * unit[is_on ? 0 : 1] / part->h : 0.0;
-}
-
-/* F at a node, H of a coil; 0 of an algebraic row. */
-static double storage_of(const struct dalcs_system *s, int row) {
-    double sum = 0.0;
-    for (int k = row < s->n_x ? s->P.p[row] : 0; row < s->n_x && k < s->P.p[row + 1]; k++) {
-        sum += fabs(s->P.x[k]);
+    if (!(held > 0.0)) {
+        return 0.0;
     }
-    return sum;
+    return rounded *
+           (is_on ? dalcs_pair_charge_rate(part, guard) * unit[0] : held / part->h * unit[1]);
 }
 
 /* The KCL rows that a pair's current enters, and the capacitance there. */
@@ -131,7 +127,7 @@ static void find_charges(struct dalcs_radau_part *part) {
             if (d >= 0) {
                 int *row = &part->pair_row[2 * d];
                 row[row[0] < 0 ? 0 : 1] = r;
-                part->held_charge[d] = fmax(part->held_charge[d], storage_of(s, r));
+                part->held_charge[d] = fmax(part->held_charge[d], dalcs_pair_storage(s, r));
             }
         }
     }
@@ -145,7 +141,7 @@ static void find_fluxes(struct dalcs_radau_part *part, double *at_node /* [n_equ
         for (int k = s->A.p[r]; !s->row_is_current[r] && k < s->A.p[r + 1]; k++) {
             int c = s->A.j[k];
             if (c < n_equations && !s->column_is_current[c]) {
-                at_node[c] = fmax(at_node[c], storage_of(s, r));
+                at_node[c] = fmax(at_node[c], dalcs_pair_storage(s, r));
             }
         }
     }
@@ -163,16 +159,18 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     part->held_charge = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
     part->held_flux = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
     part->pair_row = dalcs_alloc(2 * (size_t)s->n_pairs, sizeof(int));
+    part->pair_law = dalcs_alloc(DALCS_PAIR_LAWS * (size_t)s->n_pairs, sizeof(*part->pair_law));
     part->cluster = dalcs_alloc(n_equations, sizeof(int));
     part->cluster_charge = dalcs_alloc(n_equations, sizeof(double));
     part->bound = dalcs_alloc((size_t)dalcs_quads_of(n_guards(part)) + DALCS_QUAD, sizeof(double));
     part->doubtful = dalcs_alloc((size_t)n_guards(part), sizeof(int));
     if (part->bound == NULL || part->doubtful == NULL || part->held_charge == NULL ||
-        part->held_flux == NULL || part->pair_row == NULL || part->cluster == NULL ||
-        part->cluster_charge == NULL) {
+        part->held_flux == NULL || part->pair_row == NULL || part->pair_law == NULL ||
+        part->cluster == NULL || part->cluster_charge == NULL) {
         return DALCS_E_NOMEM;
     }
     find_charges(part);
+    dalcs_pair_laws_find(part);
     find_fluxes(part, part->cluster_charge);
     return DALCS_OK;
 }
@@ -181,6 +179,7 @@ void dalcs_guards_finish(struct dalcs_radau_part *part) {
     free(part->held_charge);
     free(part->held_flux);
     free(part->pair_row);
+    free(part->pair_law);
     free(part->cluster);
     free(part->cluster_charge);
     free(part->bound);
@@ -205,7 +204,7 @@ static void gather_charges(struct dalcs_radau_part *part) {
     }
     memset(part->cluster_charge, 0, (size_t)n_equations * sizeof(double));
     for (int r = 0; r < s->n_x; r++) {
-        part->cluster_charge[dalcs_union_find(part->cluster, r)] += storage_of(s, r);
+        part->cluster_charge[dalcs_union_find(part->cluster, r)] += dalcs_pair_storage(s, r);
     }
     for (int d = 0; d < s->n_pairs; d++) {
         const int *row = &part->pair_row[2 * d];

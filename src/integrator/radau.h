@@ -78,6 +78,7 @@ struct dalcs_radau_part {
     int n_crossed;
     int *crossed; /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
     double *held_charge, *held_flux; /* [n_pairs] F, H: storage next to a pair; guards.c */
+    struct dalcs_pair_law *pair_law; /* [n_pairs][3] what gives the current of a pair; guards.c */
     int *pair_row;                   /* [n_pairs][2] KCL rows that its current enters, -1: ground */
     int *cluster;                    /* [n_equations] work of guards.c */
     double *cluster_charge;          /* [n_equations] work of guards.c */

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Events that are faint beside what the circuit works with, against closed forms.
 
-usage: faint.py PROGRAM leak|large_leak|flank|difference|large_difference
+usage: faint.py PROGRAM leak|large_leak|flank|difference|large_difference|stray
 
 leak: a switch connects a sine to a diode that clamps it, 1000 A; open, it leaks 10 uA, which the diode
 carries as long as the source is positive, and blocks after that: at the zero of the sine, and no volt is
@@ -16,6 +16,10 @@ keeps its voltage. Micro-steps see the diode open at once; that it conducts firs
 difference: 400 V feed 100 uF through 1 mohm, beside which a switch loads 10 ohm. A millivolt of the capacitor
 is an ampere of the source, and what is well within 1e-6 of 400 V is not so of 40 A. The current goes to
 V / (R + r), or 0, at the rate (1/r + 1/R) / C, or 1/(r C). Rounding ends at 1e-9. Large: on sparse factors.
+
+stray: a boost converter at the zero of its source rings with 4 pF through a diode of 72.5 mohm onto 0.1753 F. What
+rounding makes of 0.1753 F is a current of 40 uA in the steps of this ringing, what it makes of the resistance
+is none: a diode that could carry 40 uA backwards leaves the 4 pF at another voltage.
 """
 
 import math
@@ -150,11 +154,36 @@ def large_difference(program, checker):
     difference(program, checker, "em m0 0 c 0 1\n" + line)
 
 
+def stray(program, checker):
+    netlist = """a boost converter with a stray capacitor
+v1 n1 b sin(0 9.972 50)
+d2 0 n1 di
+c1 b 0 49u
+l1 b sw 120.3u
+c2 sw 0 4.193p
+v2 g1 0 pulse(0 1 0 0 0 57.1683u 100u)
+s1 sw 0 g1 0 sm
+d5 sw out di
+c3 out 0 0.1753 ic=12.96
+.model di d(ron=0.0725)
+.model sm sw(vt=0.5 ron=0.0527)
+.tran 60u 19.2m uic
+.end
+"""
+    for tolerance in TOLERANCES[1:-1]:
+        case = f"stray, {tolerance}"
+        result = start(program, checker, case, netlist, [19e-3], tolerance)
+        if result is not None:
+            wrong = result.report["certificate"]["wrong_sign"]
+            print(f"{case}: {len(result.report['events'])} events, wrong sign {wrong:.1e}")
+            checker.check(wrong <= tolerance, f"{case}: a wrong sign of {wrong:.1e}")
+
+
 def main():
     program, which = sys.argv[1:]
     checker = Checker(f"faint {which}")
     {"leak": leak, "large_leak": large_leak, "flank": flank, "difference": difference,
-     "large_difference": large_difference}[which](program, checker)
+     "large_difference": large_difference, "stray": stray}[which](program, checker)
     return checker.finish()
 
 

@@ -1,0 +1,61 @@
+/* pair_laws.c - the current of a closed pair by KCL and by Ohm.
+ *
+ * A capacitor of 0.1 F beside a diode, times the last digit of a volt, over a step of 0.2 ns, would be
+ * 40 uA; its other node has 4 pF, or it has 70 mohm itself, and then rounding makes next to nothing. */
+#include "pair_laws.h"
+
+#include "extremes.h"
+
+#include <math.h>
+
+double dalcs_pair_storage(const struct dalcs_system *s, int row) {
+    double sum = 0.0;
+    for (int k = row < s->n_x ? s->P.p[row] : 0; row < s->n_x && k < s->P.p[row + 1]; k++) {
+        sum += fabs(s->P.x[k]);
+    }
+    return sum;
+}
+
+/* row < 0: ground. */
+static struct dalcs_pair_law law_of_node(const struct dalcs_system *s, int pair, int row) {
+    int n_equations = dalcs_system_n_equations(s);
+    struct dalcs_pair_law law = {.holds = row >= 0};
+    for (int k = row >= 0 ? s->A.p[row] : 0; row >= 0 && k < s->A.p[row + 1]; k++) {
+        int c = s->A.j[k];
+        bool is_branch = c >= n_equations || s->column_is_current[c];
+        law.conductance += is_branch ? 0.0 : fabs(s->A.x[k]);
+        law.holds = law.holds && (!is_branch || c < s->n_x || c == n_equations + pair);
+    }
+    law.capacitance = row >= 0 ? dalcs_pair_storage(s, row) : 0.0;
+    return law;
+}
+
+static struct dalcs_pair_law law_of_resistance(const struct dalcs_system *s, int pair) {
+    struct dalcs_pair_law law = {0};
+    for (int k = s->C.p[pair]; k < s->C.p[pair + 1]; k++) {
+        if (s->C.j[k] == dalcs_system_n_equations(s) + pair && s->C.x[k] != 0.0) {
+            law = (struct dalcs_pair_law){.holds = true, .conductance = 1.0 / fabs(s->C.x[k])};
+        }
+    }
+    return law;
+}
+
+void dalcs_pair_laws_find(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    for (int d = 0; d < s->n_pairs; d++) {
+        part->pair_law[DALCS_PAIR_LAWS * d] = law_of_node(s, d, part->pair_row[2 * d]);
+        part->pair_law[DALCS_PAIR_LAWS * d + 1] = law_of_node(s, d, part->pair_row[2 * d + 1]);
+        part->pair_law[DALCS_PAIR_LAWS * d + 2] = law_of_resistance(s, d);
+    }
+}
+
+double dalcs_pair_charge_rate(const struct dalcs_radau_part *part, int pair) {
+    double rate = part->held_charge[pair] / part->h;
+    const struct dalcs_pair_law *law = part->pair_law + DALCS_PAIR_LAWS * pair;
+    for (int k = 0; k < DALCS_PAIR_LAWS && part->rounding == 1.0; k++) {
+        if (law[k].holds) {
+            rate = dalcs_smaller(rate, law[k].capacitance / part->h + law[k].conductance);
+        }
+    }
+    return rate;
+}
