@@ -54,16 +54,23 @@ static bool has_lever(const struct dalcs_radau *r, const struct dalcs_radau_part
     return false;
 }
 
-/* The note of an entry counts its steps: positive without a lever, negative with one. */
+/* Has a state a lever in this step? The note of an entry counts its steps until that is looked up again:
+ * positive without a lever, negative with one. On factors it is not looked up. */
 static bool may_matter(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                        struct dalcs_stage_entry *entry, const double unit[2], double besides) {
     int *note = dalcs_stage_note(entry);
+    if (*note > 0) {
+        --*note;
+        return false;
+    }
+    if (part->stages.n_currents == 0 || !dalcs_stage_has_map(entry)) {
+        return part->stages.n_currents > 0;
+    }
     if (*note == 0) {
         *note = has_lever(r, part, entry, unit, besides) ? -STEPS_BETWEEN : STEPS_BETWEEN;
     }
-    bool matters = *note < 0;
-    *note += matters ? 1 : -1;
-    return matters;
+    *note += *note < 0 ? 1 : 0;
+    return *note < STEPS_BETWEEN;
 }
 
 /* What rounding may make of the drift of a current. */
@@ -80,8 +87,7 @@ static double rounding_of(const struct dalcs_radau_part *part,
 double dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                            struct dalcs_stage_entry *entry, const double unit[2], double besides) {
     struct dalcs_stages *stages = &part->stages;
-    if (stages->n_currents == 0 ||
-        (dalcs_stage_has_map(entry) && !may_matter(r, part, entry, unit, besides))) {
+    if (!may_matter(r, part, entry, unit, besides)) {
         return 0.0;
     }
     dalcs_stages_drift_of_currents(stages, entry, part->in, part->current_drift);
