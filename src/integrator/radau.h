@@ -132,6 +132,7 @@ struct dalcs_radau {
     double worst_residual; /* of the stage equations, over their terms */
     double worst_time;     /* s */
     double wrong_sign; /* largest negative lambda or w of an accepted step, over its unit's scale */
+    double wrong_time; /* s, where that step begins */
 };
 
 enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *base,

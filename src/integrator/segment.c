@@ -400,8 +400,11 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
     if (theta == 1.0) {
         dalcs_guards_arm(r, part, true, quality->unit);
     }
-    r->wrong_sign =
-        dalcs_larger(r->wrong_sign, dalcs_guards_wrong_sign(r, part, theta, quality->unit));
+    double wrong_sign = dalcs_guards_wrong_sign(r, part, theta, quality->unit);
+    if (wrong_sign > r->wrong_sign) {
+        r->wrong_sign = wrong_sign;
+        r->wrong_time = part->t;
+    }
     if (part->fresh && part->flipped) {
         learn(r, part, search, theta, quality->ratio);
     }

@@ -336,6 +336,20 @@ static void note_held_back(struct dalcs_run *r, const struct dalcs_radau *radau)
     }
 }
 
+/* A wrong sign below this, or so many tolerances, is what a guard may be let be by. */
+static const double noted_sign = 1e-4;
+static const double noted_sign_over_tolerance = 100.0;
+
+static void warn_of_wrong_sign(struct dalcs_run *r, const struct dalcs_radau *radau) {
+    if (radau->wrong_sign > noted_sign &&
+        radau->wrong_sign > noted_sign_over_tolerance * radau->options.tolerance) {
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, "compare with another --tol",
+                       "a diode has had the wrong sign, up to %.2g of the largest current or "
+                       "voltage, at t = %.9g s: what follows may be wrong",
+                       radau->wrong_sign, radau->wrong_time);
+    }
+}
+
 static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau) {
     struct dalcs_report *report = &r->s->report;
     report->work.steps += radau->steps;
@@ -348,6 +362,7 @@ static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau)
     }
     note_held_back(r, radau);
     report->certificate.wrong_sign = radau->wrong_sign;
+    warn_of_wrong_sign(r, radau);
     if (radau->worst_residual > report->certificate.worst) {
         report->certificate.worst = radau->worst_residual;
         report->certificate.time = radau->worst_time;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Events that are faint beside what the circuit works with, against closed forms.
 
-usage: faint.py PROGRAM leak|large_leak|flank|difference|large_difference|stray
+usage: faint.py PROGRAM leak|large_leak|flank|difference|large_difference|stray|late
 
 leak: a switch connects a sine to a diode that clamps it, 1000 A; open, it leaks 10 uA, which the diode
 carries as long as the source is positive, and blocks after that: at the zero of the sine, and no volt is
@@ -20,6 +20,9 @@ V / (R + r), or 0, at the rate (1/r + 1/R) / C, or 1/(r C). Rounding ends at 1e-
 stray: a boost converter at the zero of its source rings with 4 pF through a diode of 72.5 mohm onto 0.1753 F. What
 rounding makes of 0.1753 F is a current of 40 uA in the steps of this ringing, what it makes of the resistance
 is none: a diode that could carry 40 uA backwards leaves the 4 pF at another voltage.
+
+late: a diode that closes picoseconds after its voltage has turned has had the wrong sign. Whether a run has such
+a thing or not, what the report says of it is said to the user.
 """
 
 import math
@@ -179,11 +182,34 @@ c3 out 0 0.1753 ic=12.96
             checker.check(wrong <= tolerance, f"{case}: a wrong sign of {wrong:.1e}")
 
 
+def late(program, checker):
+    netlist = """a boost converter with a stray capacitor, at rest
+v1 n1 0 sin(0 281 60)
+d1 n1 r di
+l1 r sw 57.04m
+c1 sw 0 0.1664n
+v2 g1 0 pulse(0 1 0 0 0 201.263u 333.33333u)
+s1 sw 0 g1 0 sm
+.model di d(ron=0.044 vfwd=0.465)
+.model sm sw(vt=0.5 ron=0.00379)
+.tran 33.33u 416.665u uic
+.end
+"""
+    for tolerance in TOLERANCES[1:]:
+        case = f"late, {tolerance}"
+        result = start(program, checker, case, netlist, [0.4e-3], tolerance)
+        if result is not None:
+            wrong = result.report["certificate"]["wrong_sign"]
+            print(f"{case}: wrong sign {wrong:.1e}")
+            checker.check(("has had the wrong sign" in result.stderr) == (wrong > max(1e-4, 100 * tolerance)),
+                          f"{case}: a wrong sign of {wrong:.1e}, and: {result.stderr}")
+
+
 def main():
     program, which = sys.argv[1:]
     checker = Checker(f"faint {which}")
     {"leak": leak, "large_leak": large_leak, "flank": flank, "difference": difference,
-     "large_difference": large_difference, "stray": stray}[which](program, checker)
+     "large_difference": large_difference, "stray": stray, "late": late}[which](program, checker)
     return checker.finish()
 
 
