@@ -16,8 +16,9 @@ static const double doubtful_pivot = 1e-9;
 static const double rank_tolerance = 1e-12;
 
 /* Extended precision solves well above this, where double precision takes a very short step, in which coils
- * are next to open, for a singular mode. */
-static const long double regular_pivot = 1e-12L;
+ * are next to open, for a singular mode. Followers come first there, too: KCL that lets a coil have no
+ * current is exact that way, and off by what h/L loses beside 1/R the other way. */
+static const long double regular_pivot = 1e-14L;
 
 /* What a null vector has to do with a state cancels to this part of its terms, or does not. */
 static const double exact_cancelling = 1e-9;
@@ -540,7 +541,7 @@ static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
             b->nullity = 0;
         }
         fill_whole(b);
-        if (always) {
+        if (always || b->nullity == 0) {
             eliminate_followers(b);
         } else {
             keep_all(b);
