@@ -4,6 +4,8 @@
  * before it. Running out of memory is remembered in out_of_memory and ends the build. */
 #include "builder.h"
 
+#include "lower_case.h"
+
 #include <string.h>
 
 /* A list of names longer than this is no help in a hint. */
@@ -309,8 +311,7 @@ void dalcs_builder_add_name(struct dalcs_builder *builder, const struct dalcs_to
 }
 
 char dalcs_builder_letter(const struct dalcs_token *name) {
-    const char c = name->line->text[name->offset];
-    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+    return dalcs_lower(name->line->text[name->offset]);
 }
 
 /* NULL when out of memory, which a name that is NULL is, too. */

@@ -2,6 +2,7 @@
  * 5935, 1996): coordinate or array, real or integer, general, symmetric or skew-symmetric. */
 #include "reading.h"
 
+#include "lower_case.h"
 #include "number.h"
 #include "text_file.h"
 
@@ -91,8 +92,7 @@ static bool take(const char **at, const char *word) {
     size_t n = strlen(word);
     const char *s = *at + strspn(*at, " \t");
     for (size_t k = 0; k < n; k++) {
-        char c = s[k] >= 'A' && s[k] <= 'Z' ? (char)(s[k] - 'A' + 'a') : s[k];
-        if (c != word[k]) {
+        if (dalcs_lower(s[k]) != word[k]) {
             return false;
         }
     }

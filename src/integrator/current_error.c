@@ -69,8 +69,9 @@ static bool may_matter(const struct dalcs_radau *r, const struct dalcs_radau_par
     if (*note == 0) {
         *note = has_lever(r, part, entry, unit, besides) ? -STEPS_BETWEEN : STEPS_BETWEEN;
     }
-    *note += *note < 0 ? 1 : 0;
-    return *note < STEPS_BETWEEN;
+    bool has = *note < 0;
+    *note += has ? 1 : 0;
+    return has;
 }
 
 /* What rounding may make of the drift of a current. */

@@ -358,7 +358,7 @@ static void fill_currents(struct dalcs_stage_workshop *b, double *out) {
 /* One column of the map, with its clashes: the answer to in[column] = 1. In the lanes of share are the
  * values of the source at the nodes and what they miss of it in between; for a state all are 0. */
 static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_column,
-                        const double *share, double *out) {
+                        const double *share, double *out, double *currents) {
     const struct dalcs_collocation *m = b->stages->method;
     const struct dalcs_stage_layout *l = &b->stages->layout;
     const struct dalcs_system *s = b->system;
@@ -381,8 +381,7 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
     for (int x = 0; x < b->n_x; x++) {
         out[l->drift + x] = (double)b->defect[x];
     }
-    int map_column = (int)((out - b->entry->map) / b->entry->rows);
-    fill_currents(b, b->entry->current_map + (size_t)map_column * (size_t)b->entry->current_rows);
+    fill_currents(b, currents);
     if (b->stages->excitation->is_curved) {
         put_columns(b, DALCS_RIPPLE_LANE, out + l->ripple);
     }
@@ -460,27 +459,31 @@ static void fill_map(struct dalcs_stage_workshop *b) {
     const struct dalcs_collocation *m = b->stages->method;
     double share[DALCS_LANES] = {0.0};
     double *out = b->entry->map;
+    double *currents = b->entry->current_map;
+    int rows = b->entry->rows;
+    int current_rows = b->entry->current_rows;
     memset(b->lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
-    for (int x = 0; x < b->n_x; x++, out += b->entry->rows) {
-        fill_column(b, x, x, share, out);
+    for (int x = 0; x < b->n_x; x++, out += rows, currents += current_rows) {
+        fill_column(b, x, x, share, out, currents);
         check_column(b, x, x, 0.0);
     }
     for (int k = 0; k <= m->s; k++) {
         share[k] = 1.0;
     }
     if (b->has_constants) {
-        fill_column(b, b->n_x, b->n_x, share, out);
+        fill_column(b, b->n_x, b->n_x, share, out, currents);
         check_column(b, b->n_x, b->n_x, 1.0);
-        out += b->entry->rows;
+        out += rows;
+        currents += current_rows;
     }
-    for (int f = 0; f < e->n_functions; f++, out += b->entry->rows) {
+    for (int f = 0; f < e->n_functions; f++, out += rows, currents += current_rows) {
         const struct dalcs_excitation_function *function = &e->function[f];
         for (int k = 0; k <= m->s; k++) {
             share[k] = dalcs_excitation_function_at(function, b->entry->h, m->node[k]);
         }
         share[DALCS_RIPPLE_LANE] = dalcs_excitation_missed(function, m, b->entry->h, share);
         int rhs_column = b->wave_column[function->input];
-        fill_column(b, b->n_x + 1 + f, rhs_column, share, out);
+        fill_column(b, b->n_x + 1 + f, rhs_column, share, out, currents);
         check_column(b, b->n_x + 1 + f, rhs_column, share[m->s]);
     }
 }

@@ -73,7 +73,7 @@ struct dalcs_stage_plan {
     double *share;  /* [waves][DALCS_N_SHARES] */
     double *near;   /* [n_rows] columns where the circuit was last; lambda of open pairs 0 */
     double *from;   /* [n_rows] of this step: y_0 */
-    double *missed; /* [n_rows] by states at the start; else 0 */
+    double *missed; /* [n_rows] by states at the start, then what is left of it; else 0 */
     double *guard;  /* [n_pairs + watched] */
 };
 

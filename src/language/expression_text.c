@@ -1,11 +1,9 @@
 /* expression_text.c - the text of an expression, gathered from the tokens of its card. */
 #include "expression.h"
 
-#include <string.h>
+#include "lower_case.h"
 
-static char lower(char c) {
-    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-}
+#include <string.h>
 
 /* Tokens k.. on the same line as token k: the first that is not. */
 static int end_of_line(const struct dalcs_token *token, int k, int n) {
@@ -41,7 +39,7 @@ bool dalcs_expression_text(struct dalcs_arena *arena, const struct dalcs_token *
         piece[n_pieces] = (struct dalcs_piece){token[k].line, at, token[k].offset + inside};
         const int stop = last->offset + last->length - inside;
         for (int p = token[k].offset + inside; p < stop; p++) {
-            low[at++] = lower(token[k].line->text[p]);
+            low[at++] = dalcs_lower(token[k].line->text[p]);
         }
         k = end;
     }

@@ -6,6 +6,7 @@
  * A name is relative to the file that includes. `.lib name` with one word begins a section when an
  * .endl follows before the next .lib; a section that nobody asks for is skipped. */
 #include "lexer.h"
+#include "lower_case.h"
 #include "text_file.h"
 
 #include <limits.h>
@@ -151,7 +152,7 @@ static bool endl_follows(const struct dalcs_lexer *lexer) {
         }
         char word[6] = {0};
         for (size_t k = 0; k < 5 && p + k < end; k++) {
-            word[k] = (char)(p[k] >= 'A' && p[k] <= 'Z' ? p[k] - 'A' + 'a' : p[k]);
+            word[k] = dalcs_lower(p[k]);
         }
         if (strcmp(word, ".endl") == 0) {
             return true;

@@ -6,6 +6,7 @@
 #include "lexer.h"
 
 #include "eight_bytes.h"
+#include "lower_case.h"
 
 #include <limits.h>
 #include <stdlib.h>
@@ -85,7 +86,7 @@ static size_t clean_character(struct dalcs_lexer *lexer, size_t k) {
     } else if (is_blank(c) && c != '\t' && !ends_line) {
         raw[k] = low[k] = ' ';
     } else {
-        low[k] = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+        low[k] = dalcs_lower(c);
     }
     return 1;
 }

@@ -5,6 +5,8 @@
  * `mil` (25.4e-6) is the one suffix that multiplies. */
 #include "number.h"
 
+#include "lower_case.h"
+
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -19,17 +21,13 @@ static bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-static char lower(char c) {
-    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-}
-
 /* A letter of a unit: ASCII, or any part of a UTF-8 character such as the ohm sign. */
 static bool is_unit_letter(char c) {
-    return (lower(c) >= 'a' && lower(c) <= 'z') || (unsigned char)c >= 0x80;
+    return (dalcs_lower(c) >= 'a' && dalcs_lower(c) <= 'z') || (unsigned char)c >= 0x80;
 }
 
 static bool starts_with(const char *text, const char *prefix) {
-    while (*prefix != '\0' && lower(*text) == *prefix) {
+    while (*prefix != '\0' && dalcs_lower(*text) == *prefix) {
         text++;
         prefix++;
     }
@@ -51,7 +49,7 @@ static int read_suffix(const char *text, char *suffix, int *power) {
     };
 
     for (size_t k = 0; *text != '\0' && k < sizeof table / sizeof table[0]; k++) {
-        if (lower(*text) == table[k].text[0] && starts_with(text, table[k].text)) {
+        if (dalcs_lower(*text) == table[k].text[0] && starts_with(text, table[k].text)) {
             *suffix = table[k].suffix;
             *power = table[k].power;
             return (int)strlen(table[k].text);
@@ -105,7 +103,7 @@ static const char *read_mantissa(const char *p, struct mantissa *m) {
 /* Reads e[+-]digits when it is there and saturates far outside any double. */
 static const char *read_exponent(const char *p, long long *exponent) {
     const char *q = p + 1;
-    if (lower(*p) != 'e') {
+    if (dalcs_lower(*p) != 'e') {
         return p;
     }
     const bool negative = *q == '-';
@@ -141,7 +139,7 @@ static double convert_short(const struct mantissa *m, int power) {
  * after them, or p when this is something else. */
 static const char *read_rkm(const char *p, struct dalcs_number *number, struct mantissa *m,
                             int *power) {
-    const bool is_plain = lower(*p) == 'r' || lower(*p) == 'v';
+    const bool is_plain = dalcs_lower(*p) == 'r' || dalcs_lower(*p) == 'v';
     const char *q = is_plain ? p + 1 : p + read_suffix(p, &number->suffix, power);
     if (q == p || !is_digit(*q) || number->suffix == 'i' || number->suffix == 'a') {
         return p;
@@ -198,7 +196,7 @@ enum dalcs_number_status dalcs_number_parse_as(const char *text, enum dalcs_dial
     const char *suffix = p;
     if (dialect == DALCS_DIALECT_LTSPICE && is_whole && p == mantissa_end) {
         p = read_rkm(p, &result, &m, &suffix_power);
-    } else if (dialect == DALCS_DIALECT_XYCE && lower(*p) == 'x') {
+    } else if (dialect == DALCS_DIALECT_XYCE && dalcs_lower(*p) == 'x') {
         result.suffix = 'x';
         result.is_special = true;
         suffix_power = 6;
@@ -214,7 +212,7 @@ enum dalcs_number_status dalcs_number_parse_as(const char *text, enum dalcs_dial
     if (is_digit(*p)) {
         return DALCS_NUMBER_RKM;
     }
-    if (*p != '\0' || (lower(*suffix) == 'e' && suffix[1] == '\0')) {
+    if (*p != '\0' || (dalcs_lower(*suffix) == 'e' && suffix[1] == '\0')) {
         return DALCS_NUMBER_MALFORMED;
     }
 

@@ -7,6 +7,7 @@
  *     let p = out*l1#branch             p: (v(out)*i(l1))
  *     meas tran power avg p             meas tran power avg {v(out)*i(l1)}
  */
+#include "lower_case.h"
 #include "names.h"
 #include "script_internal.h"
 
@@ -344,9 +345,7 @@ static void put_card_word(struct rewriting *r, const char *as_written, size_t n)
         r->all->out_of_memory = true;
         return;
     }
-    for (char *c = word; *c != '\0'; c++) {
-        *c = *c >= 'A' && *c <= 'Z' ? (char)(*c - 'A' + 'a') : *c;
-    }
+    dalcs_lower_text(word);
     bool takes_vector;
     const bool is_own = is_keyword(word, &takes_vector) || is_signal(word);
     const struct meaning *meaning = is_own ? NULL : find(r->all, word);
@@ -376,9 +375,9 @@ static void rewrite_card(struct rewriting *r) {
     int n_words = 0;
     while (*r->at != '\0' && r->cause == NULL && !r->all->out_of_memory) {
         const char *p = r->at;
-        char low[2] = {*p >= 'A' && *p <= 'Z' ? (char)(*p - 'A' + 'a') : *p, '\0'};
+        const char first = dalcs_lower(*p);
         size_t n = 1;
-        if (is_letter(low[0])) {
+        if (is_letter(first)) {
             while (p[n] != '\0' && strchr(" \t,=()+-*/%^<>!&|{}'?@[]~", p[n]) == NULL) {
                 n++;
             }
@@ -390,7 +389,7 @@ static void rewrite_card(struct rewriting *r) {
             }
             r->at += n;
             /* the names in v(...) are none of the script's */
-            if (p[n + n_blanks] == '(' && (low[0] == 'v' || low[0] == 'i') && n <= 3) {
+            if (p[n + n_blanks] == '(' && (first == 'v' || first == 'i') && n <= 3) {
                 const size_t m = parenthesis_length(p + n + n_blanks);
                 put(r, p + n + n_blanks, m);
                 r->at += m > 0 ? n_blanks + m : 0;
@@ -414,10 +413,8 @@ static enum dalcs_status add_result(struct meanings *all, const char *text) {
     (void)dalcs_script_word(script, &text);
     const char *word = dalcs_script_word(script, &text);
     char *name = word != NULL ? dalcs_arena_copy(&script->arena, word, strlen(word)) : NULL;
-    for (char *c = name; c != NULL && *c != '\0'; c++) {
-        *c = *c >= 'A' && *c <= 'Z' ? (char)(*c - 'A' + 'a') : *c;
-    }
     if (name != NULL) {
+        dalcs_lower_text(name);
         add(all, (struct meaning){.name = name, .is_result = true});
     }
     return all->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;

@@ -1,6 +1,7 @@
 /* statement.c - words, comments and blocks of a .control block. */
 #include "statement.h"
 
+#include "lower_case.h"
 #include "names.h"
 
 #include <stdio.h>
@@ -116,9 +117,7 @@ static enum dalcs_status add(struct dalcs_statements *s, size_t line, const char
     if (word == NULL || tail == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (char *c = word; *c != '\0'; c++) {
-        *c = *c >= 'A' && *c <= 'Z' ? (char)(*c - 'A' + 'a') : *c;
-    }
+    dalcs_lower_text(word);
     s->statement[s->n++] = (struct dalcs_statement){
         .kind = kind_of(word), .line = line, .column = begin + 1, .word = word, .rest = tail};
     return DALCS_OK;
@@ -153,7 +152,7 @@ static enum dalcs_status squeeze(struct dalcs_statements *s) {
     for (size_t k = 0; k < s->n; k++) {
         for (const char *c = s->statement[k].rest; *c != '\0'; c++) {
             if (*c != ' ' && *c != '\t') {
-                s->text[n++] = *c >= 'A' && *c <= 'Z' ? (char)(*c - 'A' + 'a') : *c;
+                s->text[n++] = dalcs_lower(*c);
             }
         }
         s->text[n++] = '\n';

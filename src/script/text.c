@@ -1,6 +1,8 @@
 /* text.c - substitution, words and formulas of a statement's text. */
 #include "script_internal.h"
 
+#include "lower_case.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -74,13 +76,6 @@ static bool is_name_character(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-static char *lower(char *text) {
-    for (char *c = text; *c != '\0'; c++) {
-        *c = *c >= 'A' && *c <= 'Z' ? (char)(*c - 'A' + 'a') : *c;
-    }
-    return text;
-}
-
 /* A number so that it reads back as it is, in few digits where they do. */
 static void append_number(struct growing *g, double value) {
     char text[40];
@@ -98,7 +93,7 @@ static enum dalcs_status append_formula(struct growing *g, const struct dalcs_st
     if (formula == NULL) {
         return DALCS_E_NOMEM;
     }
-    enum dalcs_status status = dalcs_script_number(g->script, s, lower(formula), &value);
+    enum dalcs_status status = dalcs_script_number(g->script, s, dalcs_lower_text(formula), &value);
     if (status == DALCS_OK) {
         append_number(g, value);
     }
@@ -144,7 +139,7 @@ static enum dalcs_status append_variable(struct growing *g, const struct dalcs_s
     if (name == NULL) {
         return DALCS_E_NOMEM;
     }
-    const char *value = dalcs_variables_get(&g->script->variables, lower(name));
+    const char *value = dalcs_variables_get(&g->script->variables, dalcs_lower_text(name));
     if (value == NULL) {
         return dalcs_script_refuse(g->script, s, "set it: set name=value",
                                    "there is no variable '%s'", name);
@@ -192,7 +187,7 @@ enum dalcs_status dalcs_script_expand_low(struct dalcs_script *script,
     if (copy == NULL) {
         return DALCS_E_NOMEM;
     }
-    *text = lower(copy);
+    *text = dalcs_lower_text(copy);
     return DALCS_OK;
 }
 
