@@ -123,7 +123,7 @@ static int count_sources(bool bystanders) {
 
 START_TEST(test_all_outputs) {
     static const int STAGES[] = {3, 5, 7, 9};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         start(STEPPED, STAGES[k], NULL, 15);
         ck_assert(!rows.one_by_one);
         ck_assert_int_gt(count_sources(true), 0);
