@@ -35,6 +35,9 @@ static const double dalcs_largest_residual = 1e-6;
 enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                       int longer, bool mode_only, bool *is_off) DALCS_MUST_CHECK;
 
+/* The state becomes part->after. */
+void dalcs_radau_go_after(const struct dalcs_radau *r, struct dalcs_radau_part *part);
+
 /* s; of one of them. */
 double dalcs_radau_micro_length(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                                 int longer);

@@ -241,7 +241,7 @@ static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_par
     return DALCS_OK;
 }
 
-static void go_after(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+void dalcs_radau_go_after(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     if (r->base->energy != NULL) {
         dalcs_energy_move(r->base->energy, part, part->after);
     }
@@ -288,7 +288,7 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         moves = extrapolate(r, part, part->after, &noticeable, &may_hide);
     }
     if (moves) {
-        go_after(r, part);
+        dalcs_radau_go_after(r, part);
     }
     return DALCS_OK;
 }
@@ -336,7 +336,7 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     if (is_off != NULL && part->rounding == 1.0) {
         *is_off = moves_little;
     } else if (moves_little) {
-        go_after(r, part);
+        dalcs_radau_go_after(r, part);
     }
     return noticeable ? settle_jump(r, part, h) : DALCS_OK;
 }

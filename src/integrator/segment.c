@@ -83,6 +83,7 @@ struct search {
     bool untied;  /* tied diodes have been looked at */
     bool opened;  /* and are open now, to try */
     bool projected;
+    bool settled;     /* the state has been moved by what no shorter step mended */
     bool states_free; /* in the mode of the last step, which has nothing to project on */
     int stuck;
     double ratio_before;
@@ -128,10 +129,7 @@ static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part 
         find_beginning(part, moved);
     }
     if (*moved) {
-        if (r->base->energy != NULL) {
-            dalcs_energy_move(r->base->energy, part, part->after);
-        }
-        memcpy(part->x, part->after, (size_t)n_x * sizeof(double));
+        dalcs_radau_go_after(r, part);
         return DALCS_OK;
     }
     dalcs_radau_swap_out(part, &part->out_tried);
@@ -206,6 +204,18 @@ static enum dalcs_status refuse(struct dalcs_radau_part *part, struct search *se
     return DALCS_OK;
 }
 
+/* Puts a state on what its mode allows if it is off by so little that it moves farther in the shortest of
+ * steps, and project() cannot tell: rounding of voltages across milliohms, on factors, may be more current
+ * than is allowed. It is where the polynomial of the step starts that was tried last. */
+static void settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                   struct search *search) {
+    bool moves = false;
+    search->settled = true;
+    find_beginning(part, &moves);
+    dalcs_radau_go_after(r, part);
+    start_over(part, search, search->level_before_stuck);
+}
+
 /* After a step that is not accurate: changes the mode, the state or the length. *done: the segment is
  * one of implicit Euler. */
 static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -248,6 +258,12 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     if ((is_rounding || is_small) && isfinite(quality->ratio) && search->tolerated == 1.0) {
         search->tolerated = 4.0 * quality->ratio;
         part->level = search->level_before_stuck;
+        return DALCS_OK;
+    }
+    bool is_off = search->stuck >= STUCK && !search->settled && !search->states_free &&
+                  quality->of_unit < r->inner_tolerance && quality->ratio < most_projected;
+    if (is_off && !search->fixed) {
+        settle(r, part, search);
         return DALCS_OK;
     }
     bool wrong_flip = search->flips > 0 && !(quality->ratio < most_projected);
