@@ -445,17 +445,40 @@ bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
     return all;
 }
 
-bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+/* The smallest of the coefficients, which a polynomial is an average of everywhere, times `sign`. */
+static double lowest(const struct dalcs_radau_part *part, const double *coefficient, double sign) {
+    double least = sign * coefficient[0];
+    for (int i = 1; i < part->stages.layout.n_nodes; i++) {
+        least = dalcs_smaller(least, sign * coefficient[i]);
+    }
+    return least;
+}
+
+/* Likewise of a voltage that moves a switch, less its threshold. */
+static double lowest_control(const struct dalcs_radau_part *part, int guard,
+                             const double *coefficient) {
+    const struct dalcs_pair *pair = &part->component->system->pair[pair_of(part, guard)];
+    return dalcs_osnsp_is_on(&part->component->osnsp, pair_of(part, guard))
+               ? lowest(part, coefficient, 1.0) - pair->turn_off
+               : lowest(part, coefficient, -1.0) + pair->turn_on;
+}
+
+bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                        const double *coefficient) {
     const double *unit = part->unit_scale;
     double band = clear * dalcs_doubt_band(r, part);
     bool all = true;
-    bound_all(part);
     part->n_crossed = 0;
     part->n_doubtful = 0;
     for (int g = 0; g < n_guards(part) && all; g++) {
         part->armed[g] = is_guarded(part, g);
-        all = !part->armed[g] ||
-              part->bound[g] > band * scale_of(part, g, unit) + clear * rounding_of(part, g, unit);
+        if (part->armed[g]) {
+            double least = g < part->component->system->n_pairs
+                               ? lowest(part, coefficient, 1.0)
+                               : lowest_control(part, g, coefficient);
+            all = least > band * scale_of(part, g, unit) + clear * rounding_of(part, g, unit);
+            coefficient += part->stages.layout.n_nodes;
+        }
     }
     return all;
 }

@@ -36,8 +36,9 @@ double dalcs_guards_recovery(const struct dalcs_radau_part *part);
 bool dalcs_guards_swing(const struct dalcs_radau_part *part);
 
 /* Is every guard so far above 0 during the whole step that it could be armed at its start and has no fall?
- * Then all are armed. By the scales so far. */
-bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part);
+ * Then all are armed. By the scales so far, and by the polynomials of a brief step (stage_brief.h). */
+bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                        const double *coefficient);
 
 /* Is there a diode that is on the wrong side from the start of the step up to `end`, in steps? By no more
  * than the error, or it would have ended the segment; but an error of 0 grows, or goes. Of the guards that

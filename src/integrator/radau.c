@@ -4,6 +4,7 @@
 #include "guards.h"
 #include "quads.h"
 #include "radau_internal.h"
+#include "recurrence.h"
 #include "step_length.h"
 
 #include <math.h>
@@ -97,6 +98,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->x = dalcs_alloc((size_t)dalcs_quads_of(s->n_x), sizeof(double));
     part->in = dalcs_alloc((size_t)part->stages.n_in, sizeof(double));
     part->out = dalcs_alloc(n_out, sizeof(double));
+    part->in_before = dalcs_alloc((size_t)part->stages.n_in, sizeof(double));
     part->out_before = dalcs_alloc(n_out, sizeof(double));
     part->out_tried = dalcs_alloc(n_out, sizeof(double));
     part->armed = dalcs_alloc(n_guards, sizeof(bool));
@@ -111,10 +113,11 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->current_drift =
         dalcs_alloc((size_t)dalcs_dense_map_rows(part->stages.n_currents), sizeof(double));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
-                    part->out_before != NULL && part->out_tried != NULL && part->armed != NULL &&
-                    part->crossed != NULL && part->tied != NULL && part->u != NULL &&
-                    part->y1 != NULL && part->y2 != NULL && part->w1 != NULL &&
-                    part->after != NULL && part->used_input != NULL && part->current_drift != NULL;
+                    part->in_before != NULL && part->out_before != NULL &&
+                    part->out_tried != NULL && part->armed != NULL && part->crossed != NULL &&
+                    part->tied != NULL && part->u != NULL && part->y1 != NULL && part->y2 != NULL &&
+                    part->w1 != NULL && part->after != NULL && part->used_input != NULL &&
+                    part->current_drift != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -223,6 +226,7 @@ static void part_finish(struct dalcs_radau_part *part) {
     free(part->x);
     free(part->in);
     free(part->out);
+    free(part->in_before);
     free(part->out_before);
     free(part->out_tried);
     free(part->armed);
@@ -313,11 +317,23 @@ static void count_crowd(const struct dalcs_radau *r, struct dalcs_radau_part *pa
 
 /* [n_columns] where the segment ends; inside the step by way of part->y1. */
 static const double *end_of_segment(struct dalcs_radau_part *part) {
+    dalcs_recurrence_complete(part);
     if (part->end == 1.0) {
         return part->out + part->stages.method->s * part->stages.layout.stride;
     }
     dalcs_step_values(part, part->end, part->y1);
     return part->y1;
+}
+
+/* The last segment is kept while the next one is looked for: there may be none. */
+static void set_aside(struct dalcs_radau_part *part) {
+    double *in = part->in;
+    part->in = part->in_before;
+    part->in_before = in;
+    dalcs_radau_swap_out(part, &part->out_before);
+    part->end_before = part->end;
+    part->late_before = part->late;
+    part->late = NULL;
 }
 
 static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
@@ -326,7 +342,10 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     if (r->base->energy != NULL) {
         memcpy(part->after, part->x, state_bytes);
     }
-    if (part->end == 1.0 || part->stages.plan != NULL) {
+    const double *known = part->stages.plan == NULL ? dalcs_recurrence_end(part) : NULL;
+    if (known != NULL) {
+        memcpy(part->x, known, state_bytes);
+    } else if (part->end == 1.0 || part->stages.plan != NULL) {
         const double *end = end_of_segment(part);
         memcpy(part->x, end, state_bytes);
         dalcs_stages_stay_near(&part->stages, part->component->osnsp.mode, end);
@@ -357,9 +376,7 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     if (part->t >= r->options.stop) {
         return DALCS_OK;
     }
-    /* The last segment is kept while the next one is looked for: there may be none. */
-    dalcs_radau_swap_out(part, &part->out_before);
-    part->end_before = part->end;
+    set_aside(part);
     return dalcs_segment_begin(r, part);
 }
 
@@ -416,6 +433,7 @@ static void evaluate_stepped(struct dalcs_radau_part *part, double t, enum dalcs
     const struct dalcs_system *s = c->system;
     const struct dalcs_bystanders *b = &part->excitation.bystanders;
     int n_equations = dalcs_system_n_equations(s);
+    dalcs_recurrence_complete(part);
     dalcs_step_values(part, dalcs_radau_theta(part, t), part->y1);
     memcpy(c->y, part->y1, (size_t)dalcs_system_n_columns(s) * sizeof(double));
     for (int d = 0; d < s->n_pairs; d++) {
@@ -474,6 +492,7 @@ enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t, enum dal
 
 static void evaluate_end_of_last(struct dalcs_radau_part *part) {
     struct dalcs_component *c = part->component;
+    dalcs_recurrence_complete_before(part);
     dalcs_radau_swap_out(part, &part->out_before);
     dalcs_step_values(part, part->end_before, part->y1);
     memcpy(c->y, part->y1, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));

@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "euler.h"
+#include "stage_brief.h"
 #include "stages.h"
 
 struct dalcs_radau_options {
@@ -59,8 +60,10 @@ struct dalcs_radau_part {
     bool flipped;         /* and it is that pairs changed sides */
     double *x;            /* [n_x] at t, in whole quads */
     double *in, *out;
-    double *out_before; /* the segment before, which ended there, in its steps */
+    double *in_before, *out_before; /* the segment before, which ended there, in its steps */
     double end_before;
+    /* Entries by which out and out_before are still to be filled; NULL: they are (recurrence.h) */
+    struct dalcs_stage_entry *late, *late_before;
     double *out_tried;               /* a step put aside while the state is projected */
     struct dalcs_stage_entry *entry; /* that gave out, where guards are looked at */
     double rounding;                 /* of out, over that of a dense map */
@@ -98,7 +101,7 @@ struct dalcs_radau_part {
         int held;    /* times that `level` did */
         double span;  /* s, from it to the next edge, the last time; recurrence.h */
         int recurred; /* times in a row that it was the same */
-        struct dalcs_stage_entry *of_span; /* a step as long, held; NULL: none yet */
+        struct dalcs_stage_brief *of_span; /* a step as long; NULL: none yet */
     } * transition;
 
     int present_transition; /* the slot of the latest guess */

@@ -34,23 +34,20 @@ static enum dalcs_status find_map(struct dalcs_radau_part *part, struct dalcs_tr
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
     if (status == DALCS_OK && dalcs_stage_n_clashes(entry) == 0 &&
         dalcs_stage_residual(entry) <= dalcs_largest_residual) {
-        dalcs_stages_hold(entry);
-        known->of_span = entry;
+        DALCS_TRY(dalcs_stage_brief_create(&part->stages, entry, &known->of_span));
     }
     return DALCS_OK;
 }
 
 /* Errors as in step_error.c, of the states, beside no more than their own scales. */
 static bool is_accurate(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                        bool states_free) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    const double *drift = part->out + l->drift;
-    const double *last = part->out + (l->n_nodes - 1) * l->stride;
+                        const struct dalcs_stage_brief *step) {
+    bool states_free = dalcs_stage_frees_states(step->entry);
     double allowed = (states_free ? 1.0 : dalcs_worth_projecting) * r->inner_tolerance;
     bool accurate = true;
     for (int x = 0; x < part->component->system->n_x && accurate; x++) {
-        accurate = fabs(drift[x]) <= allowed * part->scale[x] &&
-                   fabs(last[x]) <= most_growth * part->scale[x];
+        accurate = fabs(step->drift[x]) <= allowed * part->scale[x] &&
+                   fabs(step->last[x]) <= most_growth * part->scale[x];
     }
     return accurate;
 }
@@ -71,20 +68,25 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
     part->h = known->span;
     part->rounding = 1.0; /* a map's */
     dalcs_segment_inputs(part);
-    DALCS_TRY(dalcs_stages_apply(&part->stages, known->of_span, part->in, part->out));
-    *holds = is_accurate(r, part, dalcs_stage_frees_states(known->of_span)) &&
-             dalcs_guards_clear(r, part) &&
-             dalcs_current_error(r, part, known->of_span, part->unit_scale,
-                                 0.1 * r->options.abstol) <= 1.0;
+    struct dalcs_stage_brief *step = known->of_span;
+    dalcs_stage_brief_apply(&part->stages, step, part->in);
+    *holds =
+        is_accurate(r, part, step) && dalcs_guards_clear(r, part, step->guard) &&
+        dalcs_current_error(r, part, step->entry, part->unit_scale, 0.1 * r->options.abstol) <= 1.0;
     if (!*holds) { /* a step that failed once may always fail */
+        dalcs_recurrence_complete_before(part);
         dalcs_transition_begin_span(part, known, known->span);
         return DALCS_OK;
+    }
+    part->late = step->entry;
+    if (r->base->energy != NULL) {
+        dalcs_recurrence_complete(part);
     }
     part->stages.cache_hits++;
     part->t_end = limit;
     part->why = DALCS_END_AT_EDGE;
     part->open = false;
-    dalcs_segment_accept(r, part, 1.0, dalcs_stage_residual(known->of_span));
+    dalcs_segment_accept(r, part, 1.0, dalcs_stage_residual(step->entry));
     return DALCS_OK;
 }
 
@@ -99,4 +101,24 @@ void dalcs_recurrence_note(struct dalcs_radau_part *part) {
     } else {
         dalcs_transition_begin_span(part, known, part->t_end - part->t);
     }
+}
+
+const double *dalcs_recurrence_end(const struct dalcs_radau_part *part) {
+    return part->late != NULL ? dalcs_transition_known(part)->of_span->last : NULL;
+}
+
+static void complete(const struct dalcs_radau_part *part, struct dalcs_stage_entry **late,
+                     const double *in, double *out) {
+    if (*late != NULL) {
+        dalcs_stage_brief_expand(&part->stages, *late, in, out);
+        *late = NULL;
+    }
+}
+
+void dalcs_recurrence_complete(struct dalcs_radau_part *part) {
+    complete(part, &part->late, part->in, part->out);
+}
+
+void dalcs_recurrence_complete_before(struct dalcs_radau_part *part) {
+    complete(part, &part->late_before, part->in_before, part->out_before);
 }

@@ -16,4 +16,11 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
 /* After pairs changed sides, one step has reached the next edge; the transition is known. */
 void dalcs_recurrence_note(struct dalcs_radau_part *part);
 
+/* The states of the present segment, which recurred, at its end; NULL: part->out has them. */
+const double *dalcs_recurrence_end(const struct dalcs_radau_part *part);
+
+/* Fills part->out, or part->out_before, which nobody needed yet: few segments have rows. */
+void dalcs_recurrence_complete(struct dalcs_radau_part *part);
+void dalcs_recurrence_complete_before(struct dalcs_radau_part *part);
+
 #endif

@@ -2,6 +2,7 @@
 #include "rows.h"
 
 #include "radau_internal.h"
+#include "recurrence.h"
 #include "wide_vectors.h"
 
 #include <math.h>
@@ -315,6 +316,7 @@ enum dalcs_status dalcs_rows_fill(struct dalcs_rows *rows, const double *time, i
         if (part->kind == DALCS_PART_ALGEBRAIC) {
             DALCS_TRY(solve(rows, part, n, side));
         } else {
+            dalcs_recurrence_complete(part);
             interpolate(rows, part, n, side);
         }
     }

@@ -554,5 +554,9 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
     if (guessed && r->options.fixed_step == 0.0) {
         DALCS_TRY(dalcs_recurrence_try(r, part, limit, &holds));
     }
-    return holds ? DALCS_OK : look_for_segment(r, part, limit, guessed);
+    if (holds) {
+        return DALCS_OK;
+    }
+    dalcs_recurrence_complete_before(part);
+    return look_for_segment(r, part, limit, guessed);
 }

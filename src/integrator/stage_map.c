@@ -511,8 +511,11 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
     return DALCS_OK;
 }
 
-/* in[] without what maps lack. */
-static const double *map_input(const struct dalcs_stages *stages, const double *in) {
+int dalcs_stage_map_columns(const struct dalcs_stages *stages) {
+    return n_columns(stages->workshop);
+}
+
+const double *dalcs_stage_map_input(const struct dalcs_stages *stages, const double *in) {
     const struct dalcs_stage_workshop *b = stages->workshop;
     if (b->has_constants) {
         return in;
@@ -529,14 +532,14 @@ static const double *map_input(const struct dalcs_stages *stages, const double *
 void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
                            const double *in, double *out) {
     dalcs_dense_map_apply(entry->rows, n_columns(stages->workshop), entry->map,
-                          map_input(stages, in), out);
+                          dalcs_stage_map_input(stages, in), out);
 }
 
 void dalcs_stage_map_currents(const struct dalcs_stages *stages,
                               const struct dalcs_stage_entry *entry, const double *in,
                               double *drift) {
     dalcs_dense_map_apply(entry->current_rows, n_columns(stages->workshop), entry->current_map,
-                          map_input(stages, in), drift);
+                          dalcs_stage_map_input(stages, in), drift);
 }
 
 bool dalcs_stage_has_map(const struct dalcs_stage_entry *entry) {

@@ -46,6 +46,10 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
 void dalcs_stage_map_apply(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,
                            const double *in, double *out);
 
+/* Columns of a map, and in[] without what maps lack of it. */
+int dalcs_stage_map_columns(const struct dalcs_stages *stages);
+const double *dalcs_stage_map_input(const struct dalcs_stages *stages, const double *in);
+
 void dalcs_stage_map_currents(const struct dalcs_stages *stages,
                               const struct dalcs_stage_entry *entry, const double *in,
                               double *drift);

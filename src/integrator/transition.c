@@ -41,9 +41,7 @@ struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *p
 
 void dalcs_transition_begin_span(struct dalcs_radau_part *part, struct dalcs_transition *known,
                                  double span) {
-    if (known->of_span != NULL) {
-        dalcs_stages_release(&part->stages, known->of_span);
-    }
+    dalcs_stage_brief_destroy(&part->stages, known->of_span);
     known->of_span = NULL;
     known->span = span;
     known->recurred = 0;

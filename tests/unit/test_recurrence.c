@@ -142,4 +142,53 @@ START_TEST(test_jumps) {
 
 END_TEST
 
-RUN_TESTS("recurrence", test_spans, test_events, test_long_run, test_jumps)
+/* Nobody asks for most spans' waveforms; those of one are there all the same. */
+START_TEST(test_inside) {
+    bool happens;
+    int n_asked = 0;
+    start(CHOPPER("5 6"), motor_stop);
+    for (double to; (to = dalcs_radau_next_stop(&r, &happens)) < rises;) {
+        double inside = 0.7 * r.part->t + 0.3 * to;
+        int n_ended;
+        if (is_whole_span() && ++n_asked % 3 == 0) {
+            ck_assert_int_eq(dalcs_radau_evaluate(&r, inside, DALCS_LEFT), DALCS_OK);
+            ck_assert_double_eq_tol(r.part->component->y[0],
+                                    motor_current(inside, 5.0, 6.0, &n_ended), 2e-9);
+        }
+        if (n_asked == 50) {
+            break;
+        }
+        ck_assert_int_eq(dalcs_radau_pass(&r, to), DALCS_OK);
+    }
+    ck_assert_int_eq(n_asked, 50);
+    finish();
+}
+
+END_TEST
+
+/* Each period charges a capacitor a little, and in the 1348th it moves a switch. */
+START_TEST(test_watched) {
+    const double tau = 100e-3;
+    const double charging = tau * log(24.0 / (24.0 - 10.0)); /* until there are 10 V */
+    const double exact = floor(charging / on) * period + fmod(charging, on);
+    start("charger\nV1 in 0 24\nVg g 0 PULSE(0 1 0 0 0 40u 100u)\nS1 in a g 0 sm\nR1 a b 10k\n"
+          "C1 b 0 10u\nS2 b c b 0 sh\nR2 c 0 1k\n.model sm SW(Vt=0.5)\n"
+          ".model sh SW(Vt=6 Vh=4)\n.tran 1u 200m uic\n",
+          200e-3);
+    bool happens;
+    int n_spans = 0;
+    double event = 0.0;
+    for (double to; event == 0.0 && (to = dalcs_radau_next_stop(&r, &happens)) < 200e-3;) {
+        n_spans += is_whole_span() ? 1 : 0;
+        event = r.part->why == DALCS_END_AT_EVENT ? to : 0.0;
+        ck_assert_int_eq(dalcs_radau_pass(&r, to), DALCS_OK);
+    }
+    ck_assert_double_eq_tol(event, exact, 1e-12);
+    ck_assert_int_gt(n_spans, 2400);
+    finish();
+}
+
+END_TEST
+
+RUN_TESTS("recurrence", test_spans, test_events, test_long_run, test_jumps, test_inside,
+          test_watched)

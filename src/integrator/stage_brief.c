@@ -1,0 +1,94 @@
+/* stage_brief.c - rows of a map, and combinations of them. */
+#include "stage_brief.h"
+
+#include "dense_map.h"
+#include "stage_workshop.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The polynomial of element `place` of each node, from a column of the whole map. */
+static double *fill_guard(const struct dalcs_stages *stages, const double *column, int place,
+                          double *coefficient) {
+    const struct dalcs_stage_layout *l = &stages->layout;
+    for (int k = 0; k < l->n_nodes; k++) {
+        double value = column[k * l->stride + place];
+        for (int i = 0; i < l->n_nodes; i++) {
+            coefficient[i] += value * stages->method->to_bernstein[k][i];
+        }
+    }
+    return coefficient + l->n_nodes;
+}
+
+static void fill_column(const struct dalcs_stages *stages, const double *column, double *brief) {
+    const struct dalcs_system *s = stages->system;
+    const struct dalcs_stage_layout *l = &stages->layout;
+    size_t state_bytes = (size_t)s->n_x * sizeof(double);
+    memcpy(brief, column + (l->n_nodes - 1) * l->stride, state_bytes);
+    memcpy(brief + s->n_x, column + l->drift, state_bytes);
+    double *guard = brief + 2 * s->n_x;
+    for (int d = 0; d < s->n_pairs; d++) {
+        if (s->pair[d].kind == DALCS_PAIR_DIODE) {
+            guard = fill_guard(stages, column, dalcs_system_n_equations(s) + d, guard);
+        }
+    }
+    for (int i = 0; i < stages->n_watched; i++) {
+        guard = fill_guard(stages, column, dalcs_system_n_columns(s) + i, guard);
+    }
+}
+
+enum dalcs_status dalcs_stage_brief_create(struct dalcs_stages *stages,
+                                           struct dalcs_stage_entry *entry,
+                                           struct dalcs_stage_brief **brief) {
+    const struct dalcs_system *s = stages->system;
+    int n_guards = stages->n_watched;
+    for (int d = 0; d < s->n_pairs; d++) {
+        n_guards += s->pair[d].kind == DALCS_PAIR_DIODE ? 1 : 0;
+    }
+    int rows = dalcs_dense_map_rows(2 * s->n_x + n_guards * stages->layout.n_nodes);
+    int columns = dalcs_stage_map_columns(stages);
+    struct dalcs_stage_brief *b = dalcs_alloc(1, sizeof(*b));
+    *brief = b;
+    if (b == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    dalcs_stages_hold(entry);
+    b->entry = entry;
+    b->rows = rows;
+    b->map = dalcs_dense_map_alloc(rows, columns);
+    b->answer = dalcs_alloc((size_t)rows, sizeof(double));
+    if (b->map == NULL || b->answer == NULL) {
+        dalcs_stage_brief_destroy(stages, b);
+        *brief = NULL;
+        return DALCS_E_NOMEM;
+    }
+    b->last = b->answer;
+    b->drift = b->answer + s->n_x;
+    b->guard = b->answer + 2 * s->n_x;
+    memset(b->map, 0, (size_t)rows * (size_t)columns * sizeof(double));
+    for (int k = 0; k < columns; k++) {
+        fill_column(stages, entry->map + k * entry->rows, b->map + k * rows);
+    }
+    return DALCS_OK;
+}
+
+void dalcs_stage_brief_destroy(struct dalcs_stages *stages, struct dalcs_stage_brief *brief) {
+    if (brief != NULL) {
+        dalcs_stages_release(stages, brief->entry);
+        free(brief->map);
+        free(brief->answer);
+        free(brief);
+    }
+}
+
+void dalcs_stage_brief_apply(const struct dalcs_stages *stages, struct dalcs_stage_brief *brief,
+                             const double *in) {
+    dalcs_dense_map_apply(brief->rows, dalcs_stage_map_columns(stages), brief->map,
+                          dalcs_stage_map_input(stages, in), brief->answer);
+}
+
+void dalcs_stage_brief_expand(const struct dalcs_stages *stages,
+                              const struct dalcs_stage_entry *entry, const double *in,
+                              double *out) {
+    dalcs_stage_map_apply(stages, entry, in, out);
+}

@@ -1,0 +1,33 @@
+/* stage_brief.h - of a step on a dense map, what tells whether it is a segment: no more than the states at
+ * its end, their drift, and the guards as polynomials. The whole answer has many times as many rows. */
+#ifndef DALCS_STAGE_BRIEF_H
+#define DALCS_STAGE_BRIEF_H
+
+#include "stages.h"
+
+struct dalcs_stage_brief {
+    struct dalcs_stage_entry *entry; /* held */
+    const double *last;              /* [n_x] states at the end of the step applied last */
+    const double *drift;             /* [n_x] as in its answer */
+    const double
+        *guard; /* [n_nodes] in Bernstein's basis: of each diode, then of each watched voltage */
+    int rows;
+    double *map;    /* [rows][columns] by columns */
+    double *answer; /* [rows] last, drift, guard */
+};
+
+/* *brief: of an entry with a map, which it holds. */
+enum dalcs_status dalcs_stage_brief_create(struct dalcs_stages *stages,
+                                           struct dalcs_stage_entry *entry,
+                                           struct dalcs_stage_brief **brief) DALCS_MUST_CHECK;
+void dalcs_stage_brief_destroy(struct dalcs_stages *stages, struct dalcs_stage_brief *brief);
+
+/* in[n_in] as for dalcs_stages_apply. */
+void dalcs_stage_brief_apply(const struct dalcs_stages *stages, struct dalcs_stage_brief *brief,
+                             const double *in);
+
+/* The whole answer out[n_fixed] of the entry of a brief one. */
+void dalcs_stage_brief_expand(const struct dalcs_stages *stages,
+                              const struct dalcs_stage_entry *entry, const double *in, double *out);
+
+#endif
