@@ -9,16 +9,18 @@
 /* Analyses and factors of so many unknowns altogether are kept, and never fewer than a few. */
 enum { MOST_ANALYZED = 2000000, MOST_FACTORED = 100000, FEWEST = 4, MOST = 256 };
 
-/* Columns of [-A; C] as rows. */
-static enum dalcs_status fill_base(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
+/* Columns of [-A; C] as rows; work[2 n_rows]: 0 before and after. */
+static enum dalcs_status fill_base(struct dalcs_stage_plan *plan, const struct dalcs_system *s,
+                                   double *work) {
     struct dalcs_triplets t = {0};
     enum dalcs_status status = DALCS_OK;
     int n_equations = dalcs_system_n_equations(s);
-    for (int r = 0; r < plan->n_rows; r++) {
-        const struct dalcs_csr *a = r < n_equations ? &s->A : &s->C;
-        int from = r < n_equations ? r : r - n_equations;
-        for (int k = a->p[from]; k < a->p[from + 1] && status == DALCS_OK; k++) {
-            status = dalcs_triplets_add(&t, a->j[k], r, r < n_equations ? -a->x[k] : a->x[k]);
+    for (int r = 0; r < n_equations && status == DALCS_OK; r++) {
+        status = dalcs_stage_join_row(&plan->join, s, r, -1.0, work, work + plan->n_rows, &t);
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        for (int k = s->C.p[d]; k < s->C.p[d + 1] && status == DALCS_OK; k++) {
+            status = dalcs_triplets_add(&t, s->C.j[k], n_equations + d, s->C.x[k]);
         }
     }
     if (status == DALCS_OK) {
@@ -60,6 +62,22 @@ static enum dalcs_status fill_drive(const struct dalcs_stage_plan *plan, int n_c
     return status;
 }
 
+/* Row `from` of E, or -F, into row r. */
+static void add_sources(struct dalcs_stage_plan *plan, const struct dalcs_csr *a, int from,
+                        double sign, int r) {
+    const double *constant = plan->stages->excitation->constant;
+    for (int k = a->p[from]; k < a->p[from + 1]; k++) {
+        int wave = plan->wave_of_input[a->j[k]];
+        if (wave < 0) {
+            plan->constant[r] += sign * a->x[k] * constant[a->j[k]];
+            continue;
+        }
+        plan->wave_row[plan->n_waves] = r;
+        plan->wave_of[plan->n_waves] = wave;
+        plan->wave_x[plan->n_waves++] = sign * a->x[k];
+    }
+}
+
 /* Sources by rows: [E; -F], the constant ones summed. */
 static void fill_sources(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
     const struct dalcs_excitation *e = plan->stages->excitation;
@@ -71,18 +89,12 @@ static void fill_sources(struct dalcs_stage_plan *plan, const struct dalcs_syste
         plan->wave_of_input[e->wave[w].input] = w;
     }
     for (int r = 0; r < plan->n_rows; r++) {
-        const struct dalcs_csr *a = r < n_equations ? &s->E : &s->F;
-        int from = r < n_equations ? r : r - n_equations;
-        double sign = r < n_equations ? 1.0 : -1.0;
-        for (int k = a->p[from]; k < a->p[from + 1]; k++) {
-            int wave = plan->wave_of_input[a->j[k]];
-            if (wave < 0) {
-                plan->constant[r] += sign * a->x[k] * e->constant[a->j[k]];
-                continue;
-            }
-            plan->wave_row[plan->n_waves] = r;
-            plan->wave_of[plan->n_waves] = wave;
-            plan->wave_x[plan->n_waves++] = sign * a->x[k];
+        if (r >= n_equations) {
+            add_sources(plan, &s->F, r - n_equations, -1.0, r);
+        }
+        for (int f = r < n_equations ? r : -1; f >= 0;
+             f = f == r ? plan->join.other[r] : plan->join.next[f]) {
+            add_sources(plan, &s->E, f, 1.0, r);
         }
         plan->wave_begin[r + 1] = plan->n_waves;
     }
@@ -112,7 +124,7 @@ static void fill_combination(struct dalcs_stage_plan *plan) {
 
 static bool allocate(struct dalcs_stage_plan *plan, const struct dalcs_system *s) {
     size_t n = (size_t)plan->n_rows;
-    size_t n_entries = (size_t)(s->E.p[s->E.n_rows] + s->F.p[s->F.n_rows]);
+    size_t n_entries = (size_t)(2 * s->E.p[s->E.n_rows] + s->F.p[s->F.n_rows]);
     plan->constant = dalcs_alloc(n, sizeof(double));
     plan->wave_row = dalcs_alloc(n_entries, sizeof(int));
     plan->wave_of = dalcs_alloc(n_entries, sizeof(int));
@@ -150,9 +162,10 @@ static enum dalcs_status setup(struct dalcs_stage_plan *plan, const struct dalcs
     for (int c = 0; c < plan->n_rows; c++) {
         plan->match[c] = -1;
     }
+    DALCS_TRY(dalcs_stage_join_find(&plan->join, s));
     fill_sources(plan, s);
     fill_combination(plan);
-    DALCS_TRY(fill_base(plan, s));
+    DALCS_TRY(fill_base(plan, s, plan->rhs));
     DALCS_TRY(fill_P(plan, s));
     DALCS_TRY(fill_drive(plan, plan->n_rows, &plan->drive));
     DALCS_TRY(fill_drive(plan, s->n_x, &plan->drive_of_states));
@@ -205,6 +218,7 @@ void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
     stages->plan = NULL;
     dalcs_stage_rest_finish(&plan->rest);
     dalcs_stage_freedom_finish(&plan->freedom);
+    dalcs_stage_join_finish(&plan->join);
     dalcs_csr_finish(&plan->base);
     dalcs_csr_finish(&plan->P);
     dalcs_csr_finish(&plan->drive);

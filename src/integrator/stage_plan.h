@@ -2,6 +2,7 @@
  *
  * With every pair present the matrix of an eigenvalue is
  *     M = [sigma P - A; C],     right-hand side  drive y_0 + constant + wave s~,
+ * with some rows of A added to others (stage_join.h),
  * where drive = [A; -C], unknowns are increments over y_0, the states and what the rest was last (any
  * y_0 gives the same answer, but rounding is of the size of what is solved for), and the sources are
  * split into what is constant and what varies. The matrix of a mode is M without the rows and columns of open pairs, so its pattern, and
@@ -10,6 +11,7 @@
 #define DALCS_STAGE_PLAN_H
 
 #include "stage_freedom.h"
+#include "stage_join.h"
 #include "stage_rest.h"
 #include "stages.h"
 
@@ -42,6 +44,7 @@ struct dalcs_stage_analysis {
 struct dalcs_stage_plan {
     const struct dalcs_stages *stages;
     int n_rows;                       /* n_equations + n_pairs: rows and columns of M */
+    struct dalcs_stage_join join;     /* rows of A and E that are added to others */
     struct dalcs_csr base;            /* columns of M without P: row c lists column c */
     struct dalcs_csr P;               /* columns of P */
     struct dalcs_csr drive;           /* [n_rows][n_rows] */

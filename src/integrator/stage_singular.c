@@ -27,6 +27,7 @@ struct trace {
 };
 
 struct search {
+    const struct dalcs_stage_plan *plan;
     const struct dalcs_system *system;
     const struct dalcs_stage_entry *entry;
     struct dalcs_arena arena;
@@ -65,14 +66,16 @@ static enum dalcs_status add_row(const struct search *s, const struct dalcs_csr 
 static enum dalcs_status find_null_space(const struct search *s, int first_row, int first_column,
                                          struct dalcs_null_space *space) {
     const struct dalcs_system *of = s->system;
+    const struct dalcs_csr *drive = &s->plan->drive;
     int n_equations = dalcs_system_n_equations(of);
     struct dalcs_triplets t = {0};
     enum dalcs_status status = DALCS_OK;
     for (int r = first_row; status == DALCS_OK && r < n_equations; r++) {
-        status = add_row(s, &of->A, r, first_column, r - first_row, &t);
+        status = add_row(s, drive, r, first_column, r - first_row, &t);
     }
     for (int k = 0; status == DALCS_OK && k < s->entry->n_on; k++) {
-        status = add_row(s, &of->C, s->entry->on[k], first_column, n_equations - first_row + k, &t);
+        status = add_row(s, drive, n_equations + s->entry->on[k], first_column,
+                         n_equations - first_row + k, &t);
     }
     if (status == DALCS_OK) {
         status = dalcs_null_space_find(space, n_equations - first_row + s->entry->n_on,
@@ -279,7 +282,8 @@ enum dalcs_status dalcs_stage_singular_find(struct dalcs_stage_singular *g,
                                             const struct dalcs_stage_plan *plan,
                                             const struct dalcs_stage_entry *entry) {
     const struct dalcs_system *system = plan->stages->system;
-    struct search s = {.system = system, .entry = entry, .n_columns = system->n_z + entry->n_on};
+    struct search s = {
+        .plan = plan, .system = system, .entry = entry, .n_columns = system->n_z + entry->n_on};
     *g = (struct dalcs_stage_singular){0};
     enum dalcs_status status = find(g, &s);
     dalcs_triplets_finish(&s.choice);
