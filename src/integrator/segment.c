@@ -337,6 +337,24 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
     return fall_back(r, part, search->limit, search->first_level);
 }
 
+/* The present mode holds but for ties, of which micro-steps tell more than this; of a diode that crossed just
+ * now, less. */
+static enum dalcs_status ask_of_tied(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                     struct search *search, const double *unit) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    memcpy(part->mode_tied, p->mode, (size_t)p->n_words * sizeof(uint64_t));
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        part->tied[d] = dalcs_guards_is_tied(part, d, unit);
+    }
+    DALCS_TRY(restart(r, part, search, search->restarts > 0));
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        if (!part->tied[d] && p->is_diode[d]) {
+            dalcs_osnsp_command(p, d, dalcs_mode_has(part->mode_tied, d));
+        }
+    }
+    return DALCS_OK;
+}
+
 /* A diode without current and voltage: the circuit is asked which of its sides is of least norm, and
  * where it does not know yet, as at the event itself, whether it can open. Not beyond the next event, in
  * steps. */
@@ -345,7 +363,7 @@ static enum dalcs_status untie(struct dalcs_radau *r, struct dalcs_radau_part *p
                                const struct dalcs_step_quality *quality) {
     double micro = dalcs_radau_micro_length(r, part, search->restarts);
     if (search->restarts < TIED_RESTARTS && 4.0 * micro < next * part->h) {
-        return restart(r, part, search, search->restarts > 0);
+        return ask_of_tied(r, part, search, quality->unit);
     }
     search->untied = true;
     memcpy(part->mode_tied, part->component->osnsp.mode,
