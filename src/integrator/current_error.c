@@ -86,8 +86,10 @@ static double rounding_of(const struct dalcs_radau_part *part,
 }
 
 double dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                           struct dalcs_stage_entry *entry, const double unit[2], double besides) {
+                           struct dalcs_stage_entry *entry, const double unit[2], double besides,
+                           double *of_unit) {
     struct dalcs_stages *stages = &part->stages;
+    *of_unit = 0.0;
     if (!may_matter(r, part, entry, unit, besides)) {
         return 0.0;
     }
@@ -96,8 +98,11 @@ double dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part 
     for (int k = 0; k < stages->n_currents; k++) {
         double error = fabs(part->current_drift[k]) / pessimism;
         double allowed = allowed_of(r, part, k, unit, besides);
-        if (error > worst * allowed && error * pessimism > rounding_of(part, entry, k)) {
-            worst = error / allowed;
+        bool counts = error > dalcs_smaller(worst, 1.0) * allowed &&
+                      error * pessimism > rounding_of(part, entry, k);
+        if (counts) {
+            worst = dalcs_larger(worst, error / allowed);
+            *of_unit = error > allowed ? dalcs_larger(*of_unit, error / unit[1]) : *of_unit;
         }
     }
     return worst > noticed ? worst : 0.0;

@@ -6,8 +6,9 @@
 
 /* The largest error of a branch current without memory in the step that was solved last, over what is
  * allowed: the tolerance times its scale at these units (V, A), and `besides`, A. 0 if it is far less
- * than that. */
+ * than that. *of_unit: the largest that is not allowed, over unit[1]. */
 double dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                           struct dalcs_stage_entry *entry, const double unit[2], double besides);
+                           struct dalcs_stage_entry *entry, const double unit[2], double besides,
+                           double *of_unit);
 
 #endif

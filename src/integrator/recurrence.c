@@ -70,9 +70,10 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
     dalcs_segment_inputs(part);
     struct dalcs_stage_brief *step = known->of_span;
     dalcs_stage_brief_apply(&part->stages, step, part->in);
-    *holds =
-        is_accurate(r, part, step) && dalcs_guards_clear(r, part, step->guard) &&
-        dalcs_current_error(r, part, step->entry, part->unit_scale, 0.1 * r->options.abstol) <= 1.0;
+    double of_unit;
+    *holds = is_accurate(r, part, step) && dalcs_guards_clear(r, part, step->guard) &&
+             dalcs_current_error(r, part, step->entry, part->unit_scale, 0.1 * r->options.abstol,
+                                 &of_unit) <= 1.0;
     if (!*holds) { /* a step that failed once may always fail */
         dalcs_recurrence_complete_before(part);
         dalcs_transition_begin_span(part, known, known->span);

@@ -206,14 +206,23 @@ static enum dalcs_status refuse(struct dalcs_radau_part *part, struct search *se
 
 /* Puts a state on what its mode allows if it is off by so little that it moves farther in the shortest of
  * steps, and project() cannot tell: rounding of voltages across milliohms, on factors, may be more current
- * than is allowed. It is where the polynomial of the step starts that was tried last. */
-static void settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                   struct search *search) {
+ * than is allowed. It is where the polynomial of the step starts that was tried last. Not if that is farther
+ * away than an error may be: then the state is right, and something much faster than the step goes on. */
+static bool settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                   struct search *search, const double *unit) {
     bool moves = false;
-    search->settled = true;
     find_beginning(part, &moves);
+    const struct dalcs_system *s = part->component->system;
+    for (int x = 0; x < s->n_x; x++) {
+        double most = r->inner_tolerance * unit[s->column_is_current[x]];
+        if (!(fabs(part->after[x] - part->x[x]) <= most)) {
+            return false;
+        }
+    }
+    search->settled = true;
     dalcs_radau_go_after(r, part);
     start_over(part, search, search->level_before_stuck);
+    return true;
 }
 
 /* After a step that is not accurate: changes the mode, the state or the length. *done: the segment is
@@ -260,10 +269,9 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
         part->level = search->level_before_stuck;
         return DALCS_OK;
     }
-    bool is_off = search->stuck >= STUCK && !search->settled && !search->states_free &&
-                  quality->of_unit < r->inner_tolerance && quality->ratio < most_projected;
-    if (is_off && !search->fixed) {
-        settle(r, part, search);
+    bool may_be_off =
+        search->stuck >= STUCK && !search->settled && !search->states_free && !search->fixed;
+    if (may_be_off && settle(r, part, search, quality->unit)) {
         return DALCS_OK;
     }
     bool wrong_flip = search->flips > 0 && !(quality->ratio < most_projected);

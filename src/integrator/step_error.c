@@ -374,8 +374,8 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
         compare(part, &a, dalcs_stage_natural_units(entry), dalcs_step_rounding(part, entry), q);
     }
     if (q->ratio <= 1.0) {
-        q->ratio =
-            dalcs_larger(q->ratio, dalcs_current_error(r, part, entry, q->unit, a.besides[1]));
+        double ratio = dalcs_current_error(r, part, entry, q->unit, a.besides[1], &q->of_unit);
+        q->ratio = dalcs_larger(q->ratio, ratio);
     }
 }
 
