@@ -24,6 +24,10 @@ static const double steady = 0.99;
  * has no limit. */
 static const double shorter = 1.0 / 1024.0, runaway = 4.0;
 
+/* The same where a small transient may hide its mode: in a much shorter one an event's error would weigh
+ * more than what the circuit does. So many inner tolerances are no such error. */
+static const double a_little_shorter = 1.0 / 32.0, beyond_error = 10.0;
+
 /* States that move by less, over the largest of their unit, have not jumped; by still less, not at all. */
 static const double smallest_jump = 1e-9, rounding = 1e-15;
 
@@ -101,9 +105,10 @@ static void find_largest(const struct dalcs_radau_part *part, double *largest) {
 
 /* The states just after part->t from the micro-steps y1 and y2. Does any jump, and by more than the
  * error that the state of an event has? A fast transient moves in both micro-steps and is left to be
- * stepped through; it may hide a jump. */
+ * stepped through. It may hide a jump, or the mode that it is in: *closer is how short micro-steps that
+ * show it are, over these. */
 static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                        double *after, bool *noticeable, bool *may_hide) {
+                        double *after, bool *noticeable, double *closer) {
     const struct dalcs_system *s = part->component->system;
     double largest[2];
     find_largest(part, largest);
@@ -114,7 +119,7 @@ static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_pa
     double smallest = fmax(1e3 * r->inner_tolerance, smallest_jump);
     bool jumps = false;
     *noticeable = false;
-    *may_hide = false;
+    *closer = 1.0;
     for (int x = 0; x < s->n_x; x++) {
         double first = fabs(part->y1[x] - part->x[x]);
         double second = fabs(part->y2[x] - part->y1[x]);
@@ -122,7 +127,12 @@ static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_pa
         bool moved = first > jump_ratio * second && first > rounding * scale;
         jumps = jumps || moved;
         *noticeable = *noticeable || (moved && first > smallest * scale);
-        *may_hide = *may_hide || (!moved && first > smallest * scale && second < steady * first);
+        bool dies_away = !moved && second < steady * first;
+        if (dies_away && first > smallest * scale) {
+            *closer = shorter;
+        } else if (dies_away && first > beyond_error * r->inner_tolerance * scale) {
+            *closer = fmin(*closer, a_little_shorter);
+        }
         after[x] = 2.0 * part->y1[x] - part->y2[x];
     }
     return jumps;
@@ -258,7 +268,7 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
     const struct dalcs_system *s = part->component->system;
     bool noticeable = true;
     bool moves = true;
-    bool may_hide;
+    double closer;
     if (!s->monotone) {
         DALCS_TRY(check_limit(r, part, h));
     }
@@ -280,12 +290,12 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         enum dalcs_status status = micro_steps(r, part, shorter * h);
         if (status > DALCS_OK) { /* too short for a certificate: the last ones have to do */
             DALCS_TRY(micro_steps(r, part, h));
-            moves = extrapolate(r, part, part->after, &noticeable, &may_hide);
+            moves = extrapolate(r, part, part->after, &noticeable, &closer);
             break;
         }
         DALCS_TRY(status);
         h *= shorter;
-        moves = extrapolate(r, part, part->after, &noticeable, &may_hide);
+        moves = extrapolate(r, part, part->after, &noticeable, &closer);
     }
     if (moves) {
         dalcs_radau_go_after(r, part);
@@ -294,18 +304,17 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
 }
 
 /* After micro-steps of length *h in which a transient as fast as they are may have hidden a jump, or the
- * mode that it is in: much shorter ones, or, where these have no certificate, the same again. */
+ * mode that it is in: shorter ones, or, where these have no certificate, the same again. */
 static enum dalcs_status look_closer(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                     double *h, bool *jumps, bool *noticeable) {
-    bool may_hide;
-    enum dalcs_status status = micro_steps(r, part, shorter * *h);
+                                     double closer, double *h, bool *jumps, bool *noticeable) {
+    enum dalcs_status status = micro_steps(r, part, closer * *h);
     if (status == DALCS_OK) {
-        *h *= shorter;
+        *h *= closer;
     } else if (status > DALCS_OK) {
         status = micro_steps(r, part, *h);
     }
     DALCS_TRY(status);
-    *jumps = extrapolate(r, part, part->after, noticeable, &may_hide);
+    *jumps = extrapolate(r, part, part->after, noticeable, &closer);
     return DALCS_OK;
 }
 
@@ -327,10 +336,10 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
         return DALCS_OK; /* between two sides of a switch nothing that moves is a jump */
     }
     bool noticeable;
-    bool may_hide;
-    bool jumps = extrapolate(r, part, part->after, &noticeable, &may_hide);
-    if (may_hide && !noticeable && shorter * h >= 64.0 * r->resolution) {
-        DALCS_TRY(look_closer(r, part, &h, &jumps, &noticeable));
+    double closer;
+    bool jumps = extrapolate(r, part, part->after, &noticeable, &closer);
+    if (closer < 1.0 && !noticeable && closer * h >= 64.0 * r->resolution) {
+        DALCS_TRY(look_closer(r, part, closer, &h, &jumps, &noticeable));
     }
     bool moves_little = jumps && !noticeable;
     if (is_off != NULL && part->rounding == 1.0) {
