@@ -502,27 +502,35 @@ bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const d
     return is_guarded(part, pair) && is_nothing(part, pair, value, stride, unit);
 }
 
-/* Is it below -least from the start on, and does not come back by half up to `end`? */
-static bool stays_below(const struct dalcs_radau_part *part, int pair, double end, double least) {
+/* Is it below 0 from the start on, and does not come back by half up to `end`? By more than `least`, or by more
+ * than `nothing` and always the same, as no error of the polynomial is. */
+static bool stays_below(const struct dalcs_radau_part *part, int pair, double end, double least,
+                        double nothing) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
-    bool stays = value[0] < -least;
+    bool stays = value[0] < -nothing;
+    bool same = true;
     for (int k = 1; k < l->n_nodes && part->stages.method->node[k] <= end && stays; k++) {
         stays = value[k * l->stride] < 0.5 * value[0];
+        same = same && fabs(value[k * l->stride] - value[0]) <= -agreeing * value[0];
     }
-    return stays;
+    return stays && (same || value[0] < -least);
 }
 
 bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                                 double end, const double *unit) {
     int n_pairs = part->component->system->n_pairs;
-    double least = fmax(falling_part * dalcs_doubt_band(r, part), 4.0 * dalcs_doubt_noise(part));
+    double noise = dalcs_beyond_noise * dalcs_doubt_noise(part);
+    double least = fmax(falling_part * dalcs_doubt_band(r, part), noise);
     bool negative = false;
     for (int k = 0; k < part->n_doubtful && !negative && n_pairs <= MANY_PAIRS; k++) {
         int d = part->doubtful[k];
-        negative =
-            d < n_pairs &&
-            stays_below(part, d, end, least * scale_of(part, d, unit) + rounding_of(part, d, unit));
+        if (d < n_pairs) {
+            double scale = scale_of(part, d, unit);
+            double rounding = rounding_of(part, d, unit);
+            negative =
+                stays_below(part, d, end, least * scale + rounding, noise * scale + rounding);
+        }
     }
     return negative;
 }
