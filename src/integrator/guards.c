@@ -343,6 +343,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
     double band = dalcs_doubt_band(r, part);
     double too_late = end_of_events(r, part, end, band);
     int last = part->stages.layout.n_nodes - 1;
+    int n_pairs = part->component->system->n_pairs;
     for (int k = 0; k < part->n_doubtful; k++) {
         int g = part->doubtful[k];
         double work[DALCS_MAX_NODES];
@@ -357,6 +358,9 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         }
         if (part->bound[g] >= -zero - rounding) {
             continue;
+        }
+        if (!part->armed[g] && !part->fresh && value[0] > zero + rounding) {
+            part->armed[g] = g < n_pairs && goes_on(part, g, value[0]);
         }
         double depth = zero;
         if (!part->armed[g]) {
