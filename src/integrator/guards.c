@@ -21,6 +21,9 @@ static const double falling_part = 1e-3;
  * to do with each other, agree to this part of it: then it is known, however small it is. */
 static const double agreeing = 0.01;
 
+/* A guard that begins a mode just above 0 is off by so many times that, as far as its beginning tells. */
+static const double began = 10.0;
+
 /* A guard above so many bands is beyond doubt, though the scales grow. */
 static const double clear = 4.0;
 
@@ -334,6 +337,30 @@ static double end_of_events(const struct dalcs_radau *r, const struct dalcs_rada
     return stops ? end - band * r->options.stop / part->h : INFINITY;
 }
 
+/* How far a guard that begins a mode above 0 may fall and is no event, at most `doubt`: what it is off by at its
+ * beginning, and in this step by what the step is off by. Notes a dip that only a shorter step tells. */
+static double doubt_from_above(struct dalcs_radau_part *part, const double *value, int stride,
+                               double end, double doubt) {
+    const struct dalcs_collocation *m = part->stages.method;
+    double least = dalcs_larger(began * value[0], falling_part * doubt);
+    double depth = dalcs_smaller(doubt, dalcs_larger(least, part->ratio * doubt));
+    for (int k = 1; k <= m->s && m->node[k] <= end && !part->may_dip; k++) {
+        part->may_dip = value[k * stride] < -least && value[k * stride] >= -depth;
+    }
+    return depth;
+}
+
+/* How far a guard that is not armed may fall and is no event. */
+static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *part, int guard,
+                       const double *value, int stride, double end, const double *unit) {
+    int last = part->stages.layout.n_nodes - 1;
+    double doubt = dalcs_doubt_about(r, part, guard, scale_of(part, guard, unit), unit);
+    if (part->fresh) {
+        return value[0] > 0.0 ? doubt_from_above(part, value, stride, end, doubt) : doubt;
+    }
+    return value[last * stride] < value[0] ? falling_part * doubt : doubt;
+}
+
 /* The first of the doubtful ones. */
 static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *part, double end,
                          const double *unit, bool *at_once) {
@@ -362,12 +389,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         if (!part->armed[g] && !part->fresh && value[0] > zero + rounding) {
             part->armed[g] = g < n_pairs && goes_on(part, g, value[0]);
         }
-        double depth = zero;
-        if (!part->armed[g]) {
-            depth = dalcs_doubt_about(r, part, g, scale, unit);
-            bool falls = !part->fresh && value[last * stride] < value[0];
-            depth *= falls ? falling_part : 1.0;
-        }
+        double depth = part->armed[g] ? zero : doubt_of(r, part, g, value, stride, end, unit);
         depth += rounding;
         if (part->bound[g] >= -depth) {
             continue;
@@ -396,6 +418,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
 double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                                double end, const double *unit, bool *at_once) {
     part->n_crossed = 0;
+    part->may_dip = false;
     *at_once = false;
     find_doubtful(part);
     return part->n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;
@@ -567,6 +590,14 @@ bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit) {
         }
     }
     return found;
+}
+
+bool dalcs_guards_turn_back(const struct dalcs_radau_part *part) {
+    bool turns = false;
+    for (int k = 0; k < part->n_crossed && !turns; k++) {
+        turns = !part->armed[part->crossed[k]];
+    }
+    return turns;
 }
 
 double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_radau_part *part,

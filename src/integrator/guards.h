@@ -60,6 +60,9 @@ bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const d
 /* Opens the closed diodes among them. False: there is none. */
 bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit);
 
+/* Is there one in the first fall that was not clear of 0 before? */
+bool dalcs_guards_turn_back(const struct dalcs_radau_part *part);
+
 /* The most negative lambda or w at the nodes up to `end`, over the largest of its unit; 0 when none. Of
  * a step in which a first fall has been looked for. The start does not count for what is over at once. */
 double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_radau_part *part,

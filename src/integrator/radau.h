@@ -66,6 +66,7 @@ struct dalcs_radau_part {
     struct dalcs_stage_entry *late, *late_before;
     double *out_tried;               /* a step put aside while the state is projected */
     struct dalcs_stage_entry *entry; /* that gave out, where guards are looked at */
+    double ratio;                    /* the error of the step over what is allowed, up to 1 */
     double rounding;                 /* of out, over that of a dense map */
     double *scale;     /* [n_columns] largest magnitudes so far; this and the next in whole quads */
     double *magnitude; /* [n_columns] in the present step up to magnitude_end, in steps */
@@ -76,6 +77,7 @@ struct dalcs_radau_part {
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
     double *bound; /* [n_pairs + n_watched] in whole quads: none is below it in the present step */
+    bool may_dip;  /* one in doubt is below 0 in the present step, by less than its error */
     int n_doubtful;
     int *doubtful; /* [n_pairs + n_watched] those whose bound is below 0 */
     int n_crossed;

@@ -504,6 +504,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         DALCS_TRY(dalcs_stages_get(&part->stages, part->component->osnsp.mode, part->h, &entry));
     }
     part->entry = entry;
+    part->ratio = dalcs_smaller(1.0, quality.ratio);
     if (part->fresh) {
         dalcs_guards_arm(r, part, false, quality.unit);
     }
@@ -516,6 +517,9 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (at_once && part->fresh) {
         return change_mode(r, part, search, quality.unit, done);
     }
+    if (search->opened && dalcs_guards_turn_back(part)) {
+        return tie_again(part, search);
+    }
     double next = dalcs_smaller(theta, end);
     if (part->fresh && search->restarts == 0 &&
         dalcs_guards_stay_negative(r, part, next, quality.unit)) {
@@ -525,7 +529,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         dalcs_guards_stay_tied(part, dalcs_stage_n_clashes(entry) == 0, quality.unit)) {
         return untie(r, part, search, next, &quality);
     }
-    if (part->fresh && may_refine(search) && dalcs_guards_swing(part)) {
+    if (part->fresh && may_refine(search) && (part->may_dip || dalcs_guards_swing(part))) {
         return refine(r, part, search);
     }
     part->open = part->fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);
