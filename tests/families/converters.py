@@ -12,8 +12,9 @@ the currents of diodes and switches 1e-2 of it. What is not unique is not compar
 event, where a signal that jumps may be on either side. No run may fall back to implicit Euler.
 
 The seeds of meson.build were chosen because they pass. Others do not today: of the 324 seeds from 0 to 323,
-102 fail and 7 take longer than 16 s. 43 fail at 1e-9 only, where the reference, too, may be off;
-six, of twelve_pulse, are refused.
+99 fail and 2 take longer than 45 s. 49 fail at 1e-9 only, where the reference, too, may be off;
+six, of twelve_pulse, are refused. About ten are right to what a signal really gets, in spikes between the
+times.
 """
 
 import bisect
