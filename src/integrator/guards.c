@@ -6,12 +6,10 @@
 #include "extremes.h"
 #include "pair_laws.h"
 #include "quads.h"
-#include "union_find.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* The part of its doubt that counts in later steps where such a pair goes on falling: a diode that waits for
  * the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. */
@@ -117,45 +115,6 @@ static inline double rounding_of(const struct dalcs_radau_part *part, int guard,
            (is_on ? dalcs_pair_charge_rate(part, guard) * unit[0] : held / part->h * unit[1]);
 }
 
-/* The KCL rows that a pair's current enters, and the capacitance there. */
-static void find_charges(struct dalcs_radau_part *part) {
-    const struct dalcs_system *s = part->component->system;
-    int n_equations = dalcs_system_n_equations(s);
-    for (int d = 0; d < s->n_pairs; d++) {
-        part->pair_row[2 * d] = part->pair_row[2 * d + 1] = -1;
-    }
-    for (int r = 0; r < n_equations; r++) {
-        for (int k = s->A.p[r]; s->row_is_current[r] && k < s->A.p[r + 1]; k++) {
-            int d = s->A.j[k] - n_equations;
-            if (d >= 0) {
-                int *row = &part->pair_row[2 * d];
-                row[row[0] < 0 ? 0 : 1] = r;
-                part->held_charge[d] = fmax(part->held_charge[d], dalcs_pair_storage(s, r));
-            }
-        }
-    }
-}
-
-/* The inductance of coils on the nodes of a pair. */
-static void find_fluxes(struct dalcs_radau_part *part, double *at_node /* [n_equations], 0 */) {
-    const struct dalcs_system *s = part->component->system;
-    int n_equations = dalcs_system_n_equations(s);
-    for (int r = 0; r < s->n_x; r++) {
-        for (int k = s->A.p[r]; !s->row_is_current[r] && k < s->A.p[r + 1]; k++) {
-            int c = s->A.j[k];
-            if (c < n_equations && !s->column_is_current[c]) {
-                at_node[c] = fmax(at_node[c], dalcs_pair_storage(s, r));
-            }
-        }
-    }
-    for (int d = 0; d < s->n_pairs; d++) {
-        for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
-            int c = s->C.j[k];
-            part->held_flux[d] = fmax(part->held_flux[d], c < n_equations ? at_node[c] : 0.0);
-        }
-    }
-}
-
 enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     size_t n_equations = (size_t)dalcs_system_n_equations(s);
@@ -172,9 +131,7 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
         part->cluster == NULL || part->cluster_charge == NULL) {
         return DALCS_E_NOMEM;
     }
-    find_charges(part);
     dalcs_pair_laws_find(part);
-    find_fluxes(part, part->cluster_charge);
     return DALCS_OK;
 }
 
@@ -191,33 +148,6 @@ void dalcs_guards_finish(struct dalcs_radau_part *part) {
 
 /* Components with more pairs than this are large. */
 enum { MANY_PAIRS = 64 };
-
-/* Along a chain of closed pairs the current of one rounds what all the capacitors on the chain take:
- * in a large component that may be far more than its own two nodes hold. */
-static void gather_charges(struct dalcs_radau_part *part) {
-    const struct dalcs_system *s = part->component->system;
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    int n_equations = dalcs_system_n_equations(s);
-    dalcs_union_reset(part->cluster, n_equations);
-    for (int d = 0; d < s->n_pairs; d++) {
-        const int *row = &part->pair_row[2 * d];
-        if (dalcs_osnsp_is_on(p, d) && row[0] >= 0 && row[1] >= 0) {
-            dalcs_union_join(part->cluster, row[0], row[1]);
-        }
-    }
-    memset(part->cluster_charge, 0, (size_t)n_equations * sizeof(double));
-    for (int r = 0; r < s->n_x; r++) {
-        part->cluster_charge[dalcs_union_find(part->cluster, r)] += dalcs_pair_storage(s, r);
-    }
-    for (int d = 0; d < s->n_pairs; d++) {
-        const int *row = &part->pair_row[2 * d];
-        part->held_charge[d] = 0.0;
-        for (int e = 0; e < 2 && row[e] >= 0; e++) {
-            double charge = part->cluster_charge[dalcs_union_find(part->cluster, row[e])];
-            part->held_charge[d] = fmax(part->held_charge[d], charge);
-        }
-    }
-}
 
 static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band,
                          const double *unit) {
@@ -268,7 +198,7 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
     double band = dalcs_doubt_band(r, part);
     double known = dalcs_doubt_noise(part);
     if (!at_end && n_pairs > MANY_PAIRS) {
-        gather_charges(part);
+        dalcs_pair_laws_gather(part);
     }
     const double *value = part->out + (at_end ? (l->n_nodes - 1) * l->stride : 0) +
                           dalcs_system_n_equations(p->system);

@@ -5,15 +5,57 @@
 #include "pair_laws.h"
 
 #include "extremes.h"
+#include "union_find.h"
 
 #include <math.h>
+#include <string.h>
 
-double dalcs_pair_storage(const struct dalcs_system *s, int row) {
+/* F at a node, H of a coil; 0 of an algebraic row. */
+static double storage_of(const struct dalcs_system *s, int row) {
     double sum = 0.0;
     for (int k = row < s->n_x ? s->P.p[row] : 0; row < s->n_x && k < s->P.p[row + 1]; k++) {
         sum += fabs(s->P.x[k]);
     }
     return sum;
+}
+
+/* The KCL rows that a pair's current enters, and the capacitance there. */
+static void find_charges(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int d = 0; d < s->n_pairs; d++) {
+        part->pair_row[2 * d] = part->pair_row[2 * d + 1] = -1;
+    }
+    for (int r = 0; r < n_equations; r++) {
+        for (int k = s->A.p[r]; s->row_is_current[r] && k < s->A.p[r + 1]; k++) {
+            int d = s->A.j[k] - n_equations;
+            if (d >= 0) {
+                int *row = &part->pair_row[2 * d];
+                row[row[0] < 0 ? 0 : 1] = r;
+                part->held_charge[d] = fmax(part->held_charge[d], storage_of(s, r));
+            }
+        }
+    }
+}
+
+/* The inductance of coils on the nodes of a pair. */
+static void find_fluxes(struct dalcs_radau_part *part, double *at_node /* [n_equations], 0 */) {
+    const struct dalcs_system *s = part->component->system;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int r = 0; r < s->n_x; r++) {
+        for (int k = s->A.p[r]; !s->row_is_current[r] && k < s->A.p[r + 1]; k++) {
+            int c = s->A.j[k];
+            if (c < n_equations && !s->column_is_current[c]) {
+                at_node[c] = fmax(at_node[c], storage_of(s, r));
+            }
+        }
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
+            int c = s->C.j[k];
+            part->held_flux[d] = fmax(part->held_flux[d], c < n_equations ? at_node[c] : 0.0);
+        }
+    }
 }
 
 /* row < 0: ground. */
@@ -26,7 +68,7 @@ static struct dalcs_pair_law law_of_node(const struct dalcs_system *s, int pair,
         law.conductance += is_branch ? 0.0 : fabs(s->A.x[k]);
         law.holds = law.holds && (!is_branch || c < s->n_x || c == n_equations + pair);
     }
-    law.capacitance = row >= 0 ? dalcs_pair_storage(s, row) : 0.0;
+    law.capacitance = row >= 0 ? storage_of(s, row) : 0.0;
     return law;
 }
 
@@ -42,10 +84,37 @@ static struct dalcs_pair_law law_of_resistance(const struct dalcs_system *s, int
 
 void dalcs_pair_laws_find(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
+    find_charges(part);
+    find_fluxes(part, part->cluster_charge);
     for (int d = 0; d < s->n_pairs; d++) {
         part->pair_law[DALCS_PAIR_LAWS * d] = law_of_node(s, d, part->pair_row[2 * d]);
         part->pair_law[DALCS_PAIR_LAWS * d + 1] = law_of_node(s, d, part->pair_row[2 * d + 1]);
         part->pair_law[DALCS_PAIR_LAWS * d + 2] = law_of_resistance(s, d);
+    }
+}
+
+void dalcs_pair_laws_gather(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    int n_equations = dalcs_system_n_equations(s);
+    dalcs_union_reset(part->cluster, n_equations);
+    for (int d = 0; d < s->n_pairs; d++) {
+        const int *row = &part->pair_row[2 * d];
+        if (dalcs_osnsp_is_on(p, d) && row[0] >= 0 && row[1] >= 0) {
+            dalcs_union_join(part->cluster, row[0], row[1]);
+        }
+    }
+    memset(part->cluster_charge, 0, (size_t)n_equations * sizeof(double));
+    for (int r = 0; r < s->n_x; r++) {
+        part->cluster_charge[dalcs_union_find(part->cluster, r)] += storage_of(s, r);
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        const int *row = &part->pair_row[2 * d];
+        part->held_charge[d] = 0.0;
+        for (int e = 0; e < 2 && row[e] >= 0; e++) {
+            double charge = part->cluster_charge[dalcs_union_find(part->cluster, row[e])];
+            part->held_charge[d] = fmax(part->held_charge[d], charge);
+        }
     }
 }
 

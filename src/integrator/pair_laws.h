@@ -1,4 +1,5 @@
-/* pair_laws.h - what gives the current of a closed pair, and so what rounding makes of it. */
+/* pair_laws.h - what gives the current of a closed pair, what is stored next to one, and so what rounding makes
+ * of it. */
 #ifndef DALCS_PAIR_LAWS_H
 #define DALCS_PAIR_LAWS_H
 
@@ -13,14 +14,15 @@ struct dalcs_pair_law {
     double capacitance, conductance; /* F, S */
 };
 
-/* Fills part->pair_law[n_pairs][DALCS_PAIR_LAWS]; part->pair_row is known. */
+/* Fills what the part knows of its pairs: pair_row, held_charge, held_flux, pair_law. */
 void dalcs_pair_laws_find(struct dalcs_radau_part *part);
+
+/* Along a chain of closed pairs the current of one rounds what all the capacitors on the chain take: in a
+ * large component that may be far more than its own two nodes hold. Brings held_charge up to the mode. */
+void dalcs_pair_laws_gather(struct dalcs_radau_part *part);
 
 /* A of the current of a closed pair per V by which voltages are rounded, in the present step: by the law
  * that makes the least of them. */
 double dalcs_pair_charge_rate(const struct dalcs_radau_part *part, int pair);
-
-/* F at a node, H of a coil; 0 of an algebraic row. */
-double dalcs_pair_storage(const struct dalcs_system *system, int row);
 
 #endif

@@ -82,17 +82,18 @@ struct dalcs_radau_part {
     int *doubtful; /* [n_pairs + n_watched] those whose bound is below 0 */
     int n_crossed;
     int *crossed; /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
-    double *held_charge, *held_flux; /* [n_pairs] F, H: storage next to a pair; guards.c */
-    struct dalcs_pair_law *pair_law; /* [n_pairs][3] what gives the current of a pair; guards.c */
-    int *pair_row;                   /* [n_pairs][2] KCL rows that its current enters, -1: ground */
-    int *cluster;                    /* [n_equations] work of guards.c */
-    double *cluster_charge;          /* [n_equations] work of guards.c */
-    bool jumped;                     /* at t, when the segment began */
-    long held_back; /* steps that would have been longer, had the longest one been */
-    bool slides;    /* micro-steps: a switch opens what closes it, and closes what opens it */
-    bool by_euler;  /* the segment is a step of implicit Euler */
-    bool open;      /* its mode leaves something open, and nobody was told */
-    bool *tied;     /* [n_pairs] work */
+    double *held_charge, *held_flux; /* [n_pairs] F, H: storage next to a pair; pair_laws.c */
+    struct dalcs_pair_law
+        *pair_law;          /* [n_pairs][3] what gives the current of a pair; pair_laws.c */
+    int *pair_row;          /* [n_pairs][2] KCL rows that its current enters, -1: ground */
+    int *cluster;           /* [n_equations] work of pair_laws.c */
+    double *cluster_charge; /* [n_equations] work of pair_laws.c */
+    bool jumped;            /* at t, when the segment began */
+    long held_back;         /* steps that would have been longer, had the longest one been */
+    bool slides;   /* micro-steps: a switch opens what closes it, and closes what opens it */
+    bool by_euler; /* the segment is a step of implicit Euler */
+    bool open;     /* its mode leaves something open, and nobody was told */
+    bool *tied;    /* [n_pairs] work */
     double *u, *y1, *y2, *w1, *after; /* work; y1 and y2 in whole quads */
     int n_used_inputs, *used_input;   /* that probes read */
 

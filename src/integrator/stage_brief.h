@@ -9,8 +9,7 @@ struct dalcs_stage_brief {
     struct dalcs_stage_entry *entry; /* held */
     const double *last;              /* [n_x] states at the end of the step applied last */
     const double *drift;             /* [n_x] as in its answer */
-    const double
-        *guard; /* [n_nodes] in Bernstein's basis: of each diode, then of each watched voltage */
+    const double *guard; /* [guards][n_nodes] in Bernstein's basis: diodes, then watched voltages */
     int rows;
     double *map;    /* [rows][columns] by columns */
     double *answer; /* [rows] last, drift, guard */

@@ -104,14 +104,14 @@ void dalcs_stage_join_finish(struct dalcs_stage_join *join) {
 enum dalcs_status dalcs_stage_join_row(const struct dalcs_stage_join *join,
                                        const struct dalcs_system *s, int r, double factor,
                                        double *value, double *size, struct dalcs_triplets *t) {
-    for (int f = r; f >= 0; f = f == r ? join->other[r] : join->next[f]) {
+    for (int f = r; f >= 0; f = dalcs_stage_join_after(join, r, f)) {
         for (int k = s->A.p[f]; k < s->A.p[f + 1]; k++) {
             value[s->A.j[k]] += s->A.x[k];
             size[s->A.j[k]] += fabs(s->A.x[k]);
         }
     }
     enum dalcs_status status = DALCS_OK;
-    for (int f = r; f >= 0; f = f == r ? join->other[r] : join->next[f]) {
+    for (int f = r; f >= 0; f = dalcs_stage_join_after(join, r, f)) {
         for (int k = s->A.p[f]; k < s->A.p[f + 1]; k++) {
             int c = s->A.j[k];
             bool is_left = fabs(value[c]) > rounding * size[c];

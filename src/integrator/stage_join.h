@@ -10,11 +10,16 @@
 
 #include "system.h"
 
-/* Of [A; C] and [E; F], by rows: other[r] is added to row r, and next[other] after it; -1: none. */
+/* Of rows of A and E: other[r] is added to row r, and after it next[other]; -1: none. */
 struct dalcs_stage_join {
     int *other; /* [n_equations] */
     int *next;  /* [n_equations] */
 };
+
+/* After `part`, which begins with r itself, of the rows that make up row r; -1: no more. */
+static inline int dalcs_stage_join_after(const struct dalcs_stage_join *join, int r, int part) {
+    return part == r ? join->other[r] : join->next[part];
+}
 
 enum dalcs_status dalcs_stage_join_find(struct dalcs_stage_join *join,
                                         const struct dalcs_system *s) DALCS_MUST_CHECK;

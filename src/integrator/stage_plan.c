@@ -93,7 +93,7 @@ static void fill_sources(struct dalcs_stage_plan *plan, const struct dalcs_syste
             add_sources(plan, &s->F, r - n_equations, -1.0, r);
         }
         for (int f = r < n_equations ? r : -1; f >= 0;
-             f = f == r ? plan->join.other[r] : plan->join.next[f]) {
+             f = dalcs_stage_join_after(&plan->join, r, f)) {
             add_sources(plan, &s->E, f, 1.0, r);
         }
         plan->wave_begin[r + 1] = plan->n_waves;
