@@ -102,6 +102,9 @@ static void write_method(FILE *out, const struct dalcs_report *report) {
     if (report->work.euler_steps > 0) {
         fprintf(out, ", %ld by euler", report->work.euler_steps);
     }
+    if (report->work.periodic_steps > 0) {
+        fprintf(out, ", %ld as a period before", report->work.periodic_steps);
+    }
     fputc('\n', out);
 }
 

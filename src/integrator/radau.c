@@ -2,6 +2,7 @@
 #include "dense_map.h"
 #include "energy.h"
 #include "guards.h"
+#include "periodic.h"
 #include "quads.h"
 #include "radau_internal.h"
 #include "recurrence.h"
@@ -189,6 +190,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->rung = fit_rung(promising);
     part->level = -ilogb(fmin(first, promising) / part->rung);
     part->patience = 32;
+    DALCS_TRY(dalcs_periodic_setup(r, part));
     if (dalcs_system_n_columns(c->system) <= part->stages.dense_limit) {
         part->rounding = 1.0; /* before there is a step, too */
     }
@@ -218,6 +220,7 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
 
 static void part_finish(struct dalcs_radau_part *part) {
     dalcs_transition_finish(part); /* first: it holds steps */
+    dalcs_periodic_finish(part);
     if (part->stages.system != NULL) {
         dalcs_stages_finish(&part->stages);
     }
@@ -336,12 +339,9 @@ static void set_aside(struct dalcs_radau_part *part) {
     part->late = NULL;
 }
 
-static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+/* part->x is the state where the segment ends. */
+static void go_to_end(struct dalcs_radau_part *part) {
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
-    part->jumped = false;
-    if (r->base->energy != NULL) {
-        memcpy(part->after, part->x, state_bytes);
-    }
     const double *known = part->stages.plan == NULL ? dalcs_recurrence_end(part) : NULL;
     if (known != NULL) {
         memcpy(part->x, known, state_bytes);
@@ -351,6 +351,34 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
         dalcs_stages_stay_near(&part->stages, part->component->osnsp.mode, end);
     } else {
         dalcs_step_states(part, part->end, part->x);
+    }
+}
+
+/* The next segment of a part that may come back to where it was; repeats: it is known to. */
+static enum dalcs_status repeat_or_begin(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                         bool repeats) {
+    if (!repeats && part->n_crossed > 0) {
+        dalcs_periodic_event(r, part);
+        repeats = dalcs_periodic_repeats(r, part);
+    }
+    if (repeats) {
+        dalcs_periodic_take(r, part);
+        return DALCS_OK;
+    }
+    set_aside(part);
+    DALCS_TRY(dalcs_segment_begin(r, part));
+    return dalcs_periodic_note(part);
+}
+
+static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
+    part->jumped = false;
+    if (r->base->energy != NULL) {
+        memcpy(part->after, part->x, state_bytes);
+    }
+    bool repeats = part->periodic != NULL && dalcs_periodic_repeats(r, part);
+    if (!repeats || r->base->energy != NULL) {
+        go_to_end(part);
     }
     part->fresh = part->fresh || part->end != 1.0; /* the next step starts inside this one */
     if (r->base->energy != NULL) {
@@ -375,6 +403,9 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     }
     if (part->t >= r->options.stop) {
         return DALCS_OK;
+    }
+    if (part->periodic != NULL) {
+        return repeat_or_begin(r, part, repeats);
     }
     set_aside(part);
     return dalcs_segment_begin(r, part);

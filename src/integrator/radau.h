@@ -125,6 +125,7 @@ struct dalcs_radau_part {
     double crowd_since;
     long flurry; /* events, one close upon the other, up to the last one */
     double last_event;
+    struct dalcs_periodic *periodic; /* NULL: nothing can come back (periodic.h) */
 };
 
 struct dalcs_radau {
@@ -135,6 +136,7 @@ struct dalcs_radau {
     double resolution; /* s: times nearer than this are the same */
     double inner_tolerance;
     long steps, rejected, restarts, euler_steps;
+    long periodic_steps;   /* of them; periodic.h */
     double worst_residual; /* of the stage equations, over their terms */
     double worst_time;     /* s */
     double wrong_sign; /* largest negative lambda or w of an accepted step, over its unit's scale */

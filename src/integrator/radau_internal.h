@@ -60,10 +60,10 @@ enum dalcs_status dalcs_radau_solve(struct dalcs_radau *r, struct dalcs_radau_pa
 double dalcs_radau_bystander(const struct dalcs_radau_part *part, int bystander, double t,
                              enum dalcs_side side);
 
-/* Where t is in the present step, which may end a rounding earlier. */
+/* Where t is in the present segment, which may end a rounding earlier. */
 static inline double dalcs_radau_theta(const struct dalcs_radau_part *part, double t) {
     double theta = (t - part->t) / part->h;
-    return theta < 1.0 ? theta : 1.0;
+    return theta < part->end ? theta : part->end;
 }
 
 static inline double dalcs_radau_ladder(const struct dalcs_radau_part *part, int level) {

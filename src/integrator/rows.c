@@ -149,7 +149,7 @@ void dalcs_rows_finish(struct dalcs_rows *rows) {
 static inline void find_thetas(const struct dalcs_radau_part *part, const dalcs_four *time,
                                dalcs_quad *theta) {
     const dalcs_quad raw = (*time - part->t) / part->h;
-    *theta = (dalcs_quad){1.0, 1.0, 1.0, 1.0};
+    *theta = (dalcs_quad){part->end, part->end, part->end, part->end};
     dalcs_quad_lower(theta, &raw);
 }
 

@@ -356,6 +356,7 @@ static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau)
     report->work.rejected += radau->rejected;
     report->work.restarts += radau->restarts;
     report->work.euler_steps += radau->euler_steps;
+    report->work.periodic_steps += radau->periodic_steps;
     for (int k = 0; k < radau->n_parts; k++) {
         report->work.factorizations += radau->part[k].stages.factorizations;
         report->work.cache_hits += radau->part[k].stages.cache_hits;

@@ -45,7 +45,7 @@ START_TEST(test_everything) {
         .step = 1e-6,
         .stop = 0.5,
         .size = {1, 2, 3, 4, 5, 2, 0},
-        .work = {11, 12, 13, 14, 15, 16, 17, 18, 19, 0.5, 0.75},
+        .work = {11, 12, 13, 14, 10, 15, 16, 17, 18, 19, 0.5, 0.75},
         .certificate = {1e-15, 0.125, "KCL at out", 0.0625},
         .n_states = 2,
         .state_name = state_name,
@@ -82,6 +82,7 @@ START_TEST(test_everything) {
                  "    \"rejected\": 12,\n"
                  "    \"restarts\": 13,\n"
                  "    \"euler_steps\": 14,\n"
+                 "    \"periodic_steps\": 10,\n"
                  "    \"osnsp\": 15,\n"
                  "    \"pivots\": 16,\n"
                  "    \"factorizations\": 17,\n"
@@ -187,6 +188,7 @@ START_TEST(test_nothing) {
                  "    \"rejected\": 0,\n"
                  "    \"restarts\": 0,\n"
                  "    \"euler_steps\": 0,\n"
+                 "    \"periodic_steps\": 0,\n"
                  "    \"osnsp\": 0,\n"
                  "    \"pivots\": 0,\n"
                  "    \"factorizations\": 0,\n"

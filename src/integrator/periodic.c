@@ -1,0 +1,305 @@
+/* periodic.c - one period of segments, from an event to the same event. */
+#include "periodic.h"
+
+#include "energy.h"
+#include "extremes.h"
+#include "radau_internal.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Periods of the slowest source that may be one of all sources. */
+enum { MOST_PERIODS = 64 };
+
+/* Shorter runs have nothing to repeat. */
+static const double fewest_periods = 3.0;
+
+/* What states may miss by coming back, over what a step may: in all periods to come together. */
+static const double part_of_step = 0.1;
+
+/* As good as rounding lets them. */
+static const double rounded = 4.0 * DBL_EPSILON;
+
+/* Over what they may miss: farther off they will hardly have come back a period later, and its segments
+ * are not kept. */
+static const double far = 1e6;
+
+/* An event that comes a period after another, but for this part of the period, may be the same. */
+static const double same_event = 1e-3;
+
+/* What crosses so shortly before the stop time, in inner tolerances of it, may be left to a longer run
+ * (guards.c). */
+static const double near_stop = 64.0;
+
+/* Doubles that are kept at most. */
+static const size_t most_kept = (size_t)1 << 18;
+
+struct periodic_segment {
+    double h, end; /* s, and steps */
+    double t_end;  /* s, since the event */
+    enum dalcs_radau_end why;
+    int n_crossed;
+    size_t first_crossed;
+};
+
+struct dalcs_periodic {
+    double period; /* s, of all sources */
+
+    /* The event: mode and states there. */
+    bool has_event;
+    double since; /* s */
+    double *x;
+    uint64_t *mode;
+
+    bool keeps; /* all segments since then */
+    size_t n;
+    struct periodic_segment *segment; /* [n] */
+    double *values;                   /* [n][n_values]: out, in and x */
+    uint64_t *modes;                  /* [n][n_words] */
+    int *crossed;
+    size_t n_out, n_in, n_x, n_values, n_words, n_crossed;
+    size_t segment_room, values_room, modes_room, crossed_room;
+
+    bool repeats;
+    double start;  /* s: it came back then */
+    double n_done; /* periods since */
+    size_t next;
+    double *own_out; /* while part->out is one of those kept */
+};
+
+/* 0: there is none. */
+static double common_period(const struct dalcs_excitation *e) {
+    double slowest = INFINITY;
+    for (int k = 0; k < e->n_functions; k++) {
+        const struct dalcs_excitation_function *f = &e->function[k];
+        if (f->decay != 0.0) {
+            return 0.0;
+        }
+        if (f->omega != 0.0) {
+            slowest = fmin(slowest, fabs(f->omega));
+        }
+    }
+    for (int n = 1; n <= MOST_PERIODS && isfinite(slowest); n++) {
+        bool is_common = true;
+        for (int k = 0; k < e->n_functions && is_common; k++) {
+            double periods = n * fabs(e->function[k].omega) / slowest;
+            is_common = fabs(periods - rint(periods)) <= rounded * periods;
+        }
+        if (is_common) {
+            return n * 6.283185307179586 / slowest;
+        }
+    }
+    return 0.0;
+}
+
+enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    double period = common_period(&part->excitation);
+    bool may_come_back = period > 0.0 && fewest_periods * period < r->options.stop &&
+                         part->component->system->monotone && part->commands.n == 0 &&
+                         r->options.fixed_step == 0.0;
+    if (!may_come_back) {
+        return DALCS_OK;
+    }
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    struct dalcs_periodic *periodic = part->periodic = dalcs_alloc(1, sizeof(*periodic));
+    if (periodic == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    periodic->period = period;
+    periodic->n_out = (size_t)l->n_nodes * (size_t)l->stride;
+    periodic->n_in = (size_t)part->stages.n_in;
+    periodic->n_x = (size_t)p->system->n_x;
+    periodic->n_values = periodic->n_out + periodic->n_in + periodic->n_x;
+    periodic->n_words = (size_t)p->n_words;
+    periodic->x = dalcs_alloc((size_t)p->system->n_x, sizeof(double));
+    periodic->mode = dalcs_alloc((size_t)p->n_words, sizeof(uint64_t));
+    return periodic->x != NULL && periodic->mode != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+void dalcs_periodic_finish(struct dalcs_radau_part *part) {
+    struct dalcs_periodic *periodic = part->periodic;
+    if (periodic == NULL) {
+        return;
+    }
+    if (periodic->own_out != NULL) {
+        part->out = periodic->own_out;
+    }
+    free(periodic->x);
+    free(periodic->mode);
+    free(periodic->segment);
+    free(periodic->values);
+    free(periodic->modes);
+    free(periodic->crossed);
+    free(periodic);
+    part->periodic = NULL;
+}
+
+/* How far the circuit is from where it was at the event a period ago, over what it may be; INFINITY:
+ * it is something else that happened. */
+static double distance(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    const struct dalcs_periodic *periodic = part->periodic;
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    double to_come = (r->options.stop - part->t) / periodic->period;
+    double share = dalcs_larger(part_of_step * r->inner_tolerance / to_come, rounded);
+    double late = fabs(part->t - periodic->since - periodic->period);
+    if (late > same_event * periodic->period ||
+        !dalcs_mode_is(periodic->mode, p->mode, p->n_words)) {
+        return INFINITY;
+    }
+    double farthest =
+        late / dalcs_larger(rounded * part->t, share / 6.283185307179586 * periodic->period);
+    for (int x = 0; x < p->system->n_x; x++) {
+        double off = fabs(part->x[x] - periodic->x[x]);
+        if (off > farthest * share * part->scale[x]) {
+            farthest = off / (share * part->scale[x]);
+        }
+    }
+    return farthest;
+}
+
+void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    struct dalcs_periodic *periodic = part->periodic;
+    if (isfinite(part->excitation.next_edge)) {
+        return;
+    }
+    bool is_first = !periodic->has_event;
+    if (!is_first && part->t < periodic->since + periodic->period * (1.0 - same_event)) {
+        return;
+    }
+    double off = is_first ? INFINITY : distance(r, part);
+    periodic->repeats = periodic->keeps && off <= 1.0;
+    periodic->keeps = !(off >= far && off < INFINITY);
+    if (periodic->repeats) {
+        periodic->start = part->t;
+        return;
+    }
+    periodic->has_event = true;
+    periodic->since = part->t;
+    memcpy(periodic->x, part->x, periodic->n_x * sizeof(double));
+    memcpy(periodic->mode, part->component->osnsp.mode, periodic->n_words * sizeof(uint64_t));
+    periodic->n = 0;
+    periodic->n_crossed = 0;
+}
+
+/* ---- Segments that are kept -------------------------------------------------------------------- */
+
+/* For one more. */
+static enum dalcs_status make_room(struct dalcs_periodic *periodic, size_t n_crossed) {
+    size_t n = periodic->n + 1;
+    DALCS_TRY(
+        dalcs_grow(&periodic->segment, &periodic->segment_room, n, sizeof(*periodic->segment)));
+    DALCS_TRY(dalcs_grow(&periodic->values, &periodic->values_room, n * periodic->n_values,
+                         sizeof(double)));
+    DALCS_TRY(dalcs_grow(&periodic->modes, &periodic->modes_room, n * periodic->n_words,
+                         sizeof(uint64_t)));
+    return dalcs_grow(&periodic->crossed, &periodic->crossed_room, periodic->n_crossed + n_crossed,
+                      sizeof(int));
+}
+
+enum dalcs_status dalcs_periodic_note(struct dalcs_radau_part *part) {
+    struct dalcs_periodic *periodic = part->periodic;
+    if (!periodic->keeps) {
+        return DALCS_OK;
+    }
+    periodic->keeps = !part->by_euler && !part->jumped && part->late == NULL &&
+                      (periodic->n + 1) * periodic->n_values <= most_kept;
+    if (!periodic->keeps) {
+        return DALCS_OK;
+    }
+    size_t n_crossed = (size_t)part->n_crossed;
+    DALCS_TRY(make_room(periodic, n_crossed));
+    double *value = periodic->values + periodic->n * periodic->n_values;
+    memcpy(value, part->out, periodic->n_out * sizeof(double));
+    value += periodic->n_out;
+    memcpy(value, part->in, periodic->n_in * sizeof(double));
+    value += periodic->n_in;
+    memcpy(value, part->x, periodic->n_x * sizeof(double));
+    memcpy(periodic->modes + periodic->n * periodic->n_words, part->component->osnsp.mode,
+           periodic->n_words * sizeof(uint64_t));
+    memcpy(periodic->crossed + periodic->n_crossed, part->crossed, n_crossed * sizeof(int));
+    periodic->segment[periodic->n++] =
+        (struct periodic_segment){.h = part->h,
+                                  .end = part->end,
+                                  .t_end = part->t_end - periodic->since,
+                                  .why = part->why,
+                                  .n_crossed = part->n_crossed,
+                                  .first_crossed = periodic->n_crossed};
+    periodic->n_crossed += n_crossed;
+    return DALCS_OK;
+}
+
+/* ---- And taken again --------------------------------------------------------------------------- */
+
+/* When the next segment ends. Periods are counted, never accumulated. */
+static double next_end(const struct dalcs_periodic *periodic) {
+    bool is_last = periodic->next + 1 == periodic->n;
+    double begin = periodic->start + periodic->n_done * periodic->period;
+    return is_last ? periodic->start + (periodic->n_done + 1.0) * periodic->period
+                   : begin + periodic->segment[periodic->next].t_end;
+}
+
+/* What comes next is looked for as always, from where the present segment ends. */
+static void stop_repeating(struct dalcs_radau_part *part) {
+    struct dalcs_periodic *periodic = part->periodic;
+    periodic->repeats = false;
+    periodic->keeps = false;
+    if (periodic->own_out != NULL) {
+        memcpy(periodic->own_out, part->out, periodic->n_out * sizeof(double));
+        part->out = periodic->own_out;
+        periodic->own_out = NULL;
+        part->fresh = true;
+        dalcs_transition_hold(part);
+    }
+}
+
+bool dalcs_periodic_repeats(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    const struct dalcs_periodic *periodic = part->periodic;
+    if (!periodic->repeats) {
+        return false;
+    }
+    double last = r->options.stop * (1.0 - near_stop * r->inner_tolerance) - r->resolution;
+    bool goes_on = next_end(periodic) < last;
+    if (!goes_on) {
+        stop_repeating(part);
+    }
+    return goes_on;
+}
+
+void dalcs_periodic_take(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    struct dalcs_periodic *periodic = part->periodic;
+    const struct periodic_segment *segment = &periodic->segment[periodic->next];
+    double *value = periodic->values + periodic->next * periodic->n_values;
+    if (periodic->own_out == NULL) {
+        periodic->own_out = part->out;
+    }
+    part->out = value;
+    if (r->base->energy != NULL) {
+        memcpy(part->in, value + periodic->n_out, periodic->n_in * sizeof(double));
+        memcpy(part->after, value + periodic->n_out + periodic->n_in,
+               periodic->n_x * sizeof(double));
+        dalcs_radau_go_after(r, part);
+    }
+    part->t_end = next_end(periodic);
+    part->h = segment->h;
+    part->end = segment->end;
+    part->why = segment->why;
+    part->fresh = false;
+    part->flipped = false;
+    part->n_crossed = segment->n_crossed;
+    for (int k = 0; k < segment->n_crossed; k++) {
+        part->crossed[k] = periodic->crossed[segment->first_crossed + (size_t)k];
+    }
+    for (size_t k = 0; k < periodic->n_words; k++) {
+        part->component->osnsp.mode[k] = periodic->modes[periodic->next * periodic->n_words + k];
+    }
+    periodic->next++;
+    if (periodic->next == periodic->n) {
+        periodic->next = 0;
+        periodic->n_done += 1.0;
+    }
+    r->steps++;
+    r->periodic_steps++;
+}
