@@ -1,8 +1,12 @@
 /* stretch.c - Gauss' rule and Legendre's polynomials; formulas cut until each part is resolved. */
 #include "stretch.h"
 
+#include "extremes.h"
+#include "wide_vectors.h"
+
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 enum { N = DALCS_STRETCH_NODES };
 
@@ -48,24 +52,41 @@ void dalcs_stretch_rule_make(struct dalcs_stretch_rule *rule) {
         double p[N];
         polynomials(rule->node[i], p);
         for (int k = 0; k < N; k++) {
-            rule->expand[k][i] = (2 * k + 1) * rule->weight[i] * p[k];
+            rule->expand[i][k] = (2 * k + 1) * rule->weight[i] * p[k];
         }
     }
 }
 
-void dalcs_stretch_expand(const struct dalcs_stretch_rule *rule, const double *value,
-                          double *coefficient) {
+/* sum[k] of expand[i][k] value[i]: node by node, so that coefficients are neighbours. */
+DALCS_TWICE(void, sum_up,
+            (const struct dalcs_stretch_rule *rule, const double *value, double *restrict sum),
+            (rule, value, sum)) {
+    for (int k = 0; k < N; k++) {
+        sum[k] = 0.0;
+    }
+    for (int i = 0; i < N; i++) {
+        for (int k = 0; k < N; k++) {
+            sum[k] += rule->expand[i][k] * value[i];
+        }
+    }
+}
+
+static double largest_of(const double *value) {
     double largest = 0.0;
     for (int i = 0; i < N; i++) {
-        largest = fmax(largest, fabs(value[i]));
+        largest = dalcs_larger(largest, fabs(value[i]));
     }
+    return largest;
+}
+
+void dalcs_stretch_expand(const struct dalcs_stretch_rule *rule, const double *value,
+                          double *coefficient) {
+    double largest = largest_of(value);
+    double sum[N];
+    sum_up(rule, value, sum);
     for (int k = 0; k < N; k++) {
-        double sum = 0.0;
-        for (int i = 0; i < N; i++) {
-            sum += rule->expand[k][i] * value[i];
-        }
         /* What rounding leaves is nothing: a constant must not look like one that wriggles. */
-        coefficient[k] = fabs(sum) > (2 * k + 1) * DBL_EPSILON * largest ? sum : 0.0;
+        coefficient[k] = fabs(sum[k]) > (2 * k + 1) * DBL_EPSILON * largest ? sum[k] : 0.0;
     }
 }
 
@@ -167,12 +188,26 @@ struct visit {
     bool ended, has_no_value;
 };
 
+/* Is the formula one real signal, as most are? */
+static bool is_signal(const struct visit *v) {
+    const struct dalcs_signal_formula_step *step = v->formula->step;
+    return v->formula->n == 1 && step->push == DALCS_PUT_SIGNAL && step->part == DALCS_PART_PLAIN &&
+           v->stretch->imaginary == NULL;
+}
+
 /* The formula between x = a and x = b; whole: that is the stretch. */
 static void fill(struct visit *v, double a, double b, bool whole, struct dalcs_span *span) {
     const struct dalcs_stretch *stretch = v->stretch;
     const double length = stretch->to - stretch->from;
     span->from = a == -1.0 ? stretch->from : stretch->from + 0.5 * (1.0 + a) * length;
     span->to = b == 1.0 ? stretch->to : stretch->from + 0.5 * (1.0 + b) * length;
+    if (whole && is_signal(v)) {
+        int index = v->formula->step->index;
+        memcpy(span->value, stretch->value[index], sizeof(span->value));
+        memcpy(span->coefficient, stretch->coefficient[index], sizeof(span->coefficient));
+        *v->scale = dalcs_larger(*v->scale, largest_of(span->value));
+        return;
+    }
     for (int i = 0; i < N; i++) {
         double x = a + 0.5 * (1.0 + stretch->rule->node[i]) * (b - a);
         span->value[i] =

@@ -1,6 +1,6 @@
 /* stretch.h - signals between two times where nothing happens, as sums of Legendre polynomials.
  *
- * Between events and edges every signal is a polynomial of a degree of at most 7, a sinusoid over less
+ * Between events and edges every signal is a polynomial of a degree of at most 9, a sinusoid over less
  * than a period or an exponential over a few time constants. Its values at the nodes of Gauss' rule
  * with 18 points give back all of these to rounding, the product of two polynomials and the integral of
  * the square of that exactly. The nodes lie inside, so that no side of an edge can be mistaken. */
@@ -15,7 +15,7 @@ enum { DALCS_STRETCH_NODES = 18 };
 struct dalcs_stretch_rule {
     double node[DALCS_STRETCH_NODES];                        /* in (-1, 1), ascending */
     double weight[DALCS_STRETCH_NODES];                      /* their sum is 1 */
-    double expand[DALCS_STRETCH_NODES][DALCS_STRETCH_NODES]; /* [coefficient][node] */
+    double expand[DALCS_STRETCH_NODES][DALCS_STRETCH_NODES]; /* [node][coefficient] */
 };
 
 void dalcs_stretch_rule_make(struct dalcs_stretch_rule *rule);
