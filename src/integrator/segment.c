@@ -125,7 +125,9 @@ static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part 
     dalcs_radau_swap_out(part, &part->out_tried);
     part->h = h;
     enum dalcs_status status = solve_step(part, &entry);
-    if (status == DALCS_OK) {
+    bool means_something =
+        status == DALCS_OK && dalcs_stage_residual(entry) <= dalcs_largest_residual;
+    if (means_something) { /* so short a step may be shorter than rounding lets a mode see */
         find_beginning(part, moved);
     }
     if (*moved) {
