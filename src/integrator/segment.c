@@ -30,14 +30,19 @@ static const double most_tolerated = 2e-13;
 /* A mode may be over after so little of a step. */
 static const double briefly = 1.0 / 64.0;
 
+/* A projecting step is this many rungs below: the first of these in which the mode can be seen. */
+enum { PROJECTIONS = 3 };
+
+static const int projection[PROJECTIONS] = {30, 20, 10};
+
 enum {
     MOST_PREFERRED = 2, /* rungs of the ladder, for the sake of factors */
     STUCK = 3,          /* smaller steps without a smaller error */
     VERY_STUCK = 8,
-    PROJECTION = 30, /* a projecting step is this many rungs below */
     MOST_RESTARTS = 4,
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
     MOST_FLIPS = 12,
+    MOST_FLIPS_CLOSER = 2,
     MOST_REFINED = 2,
     FALL_BACK_LEAST = 5,
     FALL_BACK = 14, /* steps of implicit Euler start this many rungs below */
@@ -72,7 +77,7 @@ static enum dalcs_status solve_step(struct dalcs_radau_part *part,
 /* The search for a segment from one point. */
 struct search {
     double limit;    /* s: edge, command or stop */
-    int first_level; /* where the ladder stood */
+    int first_level; /* where the ladder stood, or `closer` begins */
     bool fixed;      /* the step is given: no error control */
     int restarts, flips;
     bool guessed; /* the mode is one remembered from the last time, or that of a front */
@@ -80,8 +85,9 @@ struct search {
     int reopened; /* times that diodes of a front were opened again */
     int refined;  /* times that a step was shortened for the signs at its start */
     bool closer;  /* micro-steps have looked for a mode that lasts for a small part of the step */
-    bool untied;  /* tied diodes have been looked at */
-    bool opened;  /* and are open now, to try */
+    int flips_closer;
+    bool untied; /* tied diodes have been looked at */
+    bool opened; /* and are open now, to try */
     bool projected;
     bool settled;     /* the state has been moved by what no shorter step mended */
     bool states_free; /* in the mode of the last step, which has nothing to project on */
@@ -106,6 +112,19 @@ static void find_beginning(struct dalcs_radau_part *part, bool *moves) {
     }
 }
 
+/* A step of length part->h, up to limit. *means_something: it is long enough for the mode to be seen beside
+ * rounding. */
+static enum dalcs_status try_projection(struct dalcs_radau_part *part, double limit,
+                                        bool *means_something) {
+    if (part->h > limit - part->t) {
+        return DALCS_OK;
+    }
+    struct dalcs_stage_entry *entry;
+    enum dalcs_status status = solve_step(part, &entry);
+    *means_something = status == DALCS_OK && dalcs_stage_residual(entry) <= dalcs_largest_residual;
+    return status;
+}
+
 /* Puts a state that is a little off, as interpolation leaves it at an event, on what its mode allows:
  * that is where the stages of a step in the mode are, here so short a step that only such a defect
  * moves the state, and where their polynomial starts. If there is nothing to move, the step that was
@@ -114,20 +133,20 @@ static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part 
                                  struct search *search, bool *moved) {
     int n_x = part->component->system->n_x;
     double tried = part->h;
-    double h = search->fixed ? ldexp(part->h, -PROJECTION)
-                             : dalcs_radau_ladder(part, (part->level & ~7) + PROJECTION);
     *moved = false;
     search->projected = true;
-    if (n_x == 0 || h > search->limit - part->t) {
+    if (n_x == 0) {
         return DALCS_OK;
     }
-    struct dalcs_stage_entry *entry;
     dalcs_radau_swap_out(part, &part->out_tried);
-    part->h = h;
-    enum dalcs_status status = solve_step(part, &entry);
-    bool means_something =
-        status == DALCS_OK && dalcs_stage_residual(entry) <= dalcs_largest_residual;
-    if (means_something) { /* so short a step may be shorter than rounding lets a mode see */
+    bool means_something = false;
+    enum dalcs_status status = DALCS_OK;
+    for (int k = 0; k < PROJECTIONS && !means_something && status >= DALCS_OK; k++) {
+        part->h = search->fixed ? ldexp(tried, -projection[k])
+                                : dalcs_radau_ladder(part, (part->level & ~7) + projection[k]);
+        status = try_projection(part, search->limit, &means_something);
+    }
+    if (means_something) {
         find_beginning(part, moved);
     }
     if (*moved) {
@@ -314,7 +333,8 @@ static enum dalcs_status ask_closer(struct dalcs_radau *r, struct dalcs_radau_pa
                                     struct search *search, double recovery) {
     search->closer = true;
     search->projected = false;
-    start_over(part, search, part->level - 2 - ilogb(recovery));
+    search->first_level = part->level - 2 - ilogb(recovery);
+    start_over(part, search, search->first_level);
     return dalcs_radau_restart(r, part, search->restarts++, false, NULL);
 }
 
@@ -335,6 +355,10 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
     double recovery = may_be_brief(r, part, search) ? dalcs_guards_recovery(part) : INFINITY;
     if (recovery > 0.0 && recovery < briefly) {
         return ask_closer(r, part, search, recovery);
+    }
+    if (search->closer && search->flips_closer++ < MOST_FLIPS_CLOSER) {
+        dalcs_guards_flip(part);
+        return DALCS_OK;
     }
     if (search->restarts < MOST_RESTARTS && search->flips == 0) {
         return restart(r, part, search, false);
