@@ -307,15 +307,19 @@ double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens) {
 static const double close = 0x1p-30;
 
 /* Too many events in no time: an accumulation, or a mode that cannot be told. Or one upon the other without
- * end: rounding of what is 0 goes to and fro. */
+ * end: rounding of what is 0 goes to and fro. Steps of implicit Euler leave either behind, with no event at
+ * their ends. */
 static void count_crowd(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     if (part->t - part->crowd_since > 1e4 * r->resolution) {
         part->crowd_since = part->t;
         part->crowd = 0;
     }
-    part->crowd++;
-    part->flurry = part->t - part->last_event > close * r->options.stop ? 1 : part->flurry + 1;
-    part->last_event = part->t;
+    part->flurry = part->t - part->last_event > close * r->options.stop ? 0 : part->flurry;
+    if (part->n_crossed > 0) {
+        part->crowd++;
+        part->flurry++;
+        part->last_event = part->t;
+    }
 }
 
 /* [n_columns] where the segment ends; inside the step by way of part->y1. */
@@ -389,6 +393,8 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
         dalcs_guards_flip(part);
         part->fresh = true;
         part->flipped = true;
+    }
+    if (part->n_crossed > 0 || part->by_euler) {
         count_crowd(r, part);
     }
     if (part->excitation.next_edge <= part->t + r->resolution) {

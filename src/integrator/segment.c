@@ -502,6 +502,9 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         if (part->fresh && search->restarts == 0) {
             return restart(r, part, search, false);
         }
+        if (search->opened) {
+            return tie_again(part, search);
+        }
         *done = true; /* no length mends it */
         return fall_back(r, part, search->limit, search->first_level);
     }
