@@ -77,7 +77,8 @@ static enum dalcs_status solve_step(struct dalcs_radau_part *part,
 /* The search for a segment from one point. */
 struct search {
     double limit;    /* s: edge, command or stop */
-    int first_level; /* where the ladder stood, or `closer` begins */
+    int first_level; /* where the ladder stood */
+    int asked_level; /* where a search begins anew after the circuit was asked: there, or `closer` */
     bool fixed;      /* the step is given: no error control */
     int restarts, flips;
     bool guessed; /* the mode is one remembered from the last time, or that of a front */
@@ -172,13 +173,14 @@ static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part 
                                  struct search *search, bool mode_only) {
     bool is_off;
     DALCS_TRY(dalcs_radau_restart(r, part, search->restarts++, mode_only, &is_off));
+    search->projected = false;
     if (is_off) {
         /* Micro-steps may see a transient that is as fast as they are; a projecting step is far
          * shorter. */
         bool moved;
         DALCS_TRY(project(r, part, search, &moved));
     }
-    start_over(part, search, search->first_level);
+    start_over(part, search, search->asked_level);
     return DALCS_OK;
 }
 
@@ -215,7 +217,7 @@ static enum dalcs_status tie_again(struct dalcs_radau_part *part, struct search 
 
 static enum dalcs_status refuse(struct dalcs_radau_part *part, struct search *search) {
     bool stands = dalcs_transition_refuse(part);
-    search->first_level = part->level;
+    search->first_level = search->asked_level = part->level;
     if (stands) {
         return DALCS_OK;
     }
@@ -333,8 +335,8 @@ static enum dalcs_status ask_closer(struct dalcs_radau *r, struct dalcs_radau_pa
                                     struct search *search, double recovery) {
     search->closer = true;
     search->projected = false;
-    search->first_level = part->level - 2 - ilogb(recovery);
-    start_over(part, search, search->first_level);
+    search->asked_level = part->level - 2 - ilogb(recovery);
+    start_over(part, search, search->asked_level);
     return dalcs_radau_restart(r, part, search->restarts++, false, NULL);
 }
 
@@ -584,6 +586,7 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
                                           double limit, bool guessed) {
     struct search search = {.limit = limit,
                             .first_level = part->level,
+                            .asked_level = part->level,
                             .fixed = r->options.fixed_step > 0.0,
                             .guessed = guessed,
                             .ratio_before = INFINITY,
@@ -593,7 +596,7 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
         search.guessed = search.front;
     }
     if (part->fresh && part->flipped && !guessed && !search.fixed) {
-        part->level = search.first_level = cheapest_level(part);
+        part->level = search.first_level = search.asked_level = cheapest_level(part);
     }
     bool done = false;
     while (!done) {
