@@ -219,7 +219,9 @@ enum dalcs_status dalcs_periodic_note(struct dalcs_radau_part *part) {
     memcpy(value, part->x, periodic->n_x * sizeof(double));
     memcpy(periodic->modes + periodic->n * periodic->n_words, part->component->osnsp.mode,
            periodic->n_words * sizeof(uint64_t));
-    memcpy(periodic->crossed + periodic->n_crossed, part->crossed, n_crossed * sizeof(int));
+    for (size_t k = 0; k < n_crossed; k++) {
+        periodic->crossed[periodic->n_crossed + k] = part->crossed[k];
+    }
     periodic->segment[periodic->n++] =
         (struct periodic_segment){.h = part->h,
                                   .end = part->end,
