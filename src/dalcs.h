@@ -264,6 +264,11 @@ struct dalcs_sink {
      * within a step. Simulated time and stop in s; of .dc and .ac points. Return DALCS_OK to go on, DALCS_E_CANCELLED to stop: because
      * of a flag that another thread or a signal handler has set, for example. */
     enum dalcs_status (*progress)(void *user, double time, double stop);
+    /* Several of a transient's rows at once, for those who want many rows fast: their times and, row after
+     * row, their values. In order with those of `row`, which still gets what stands beside a
+     * discontinuity or comes alone. NULL: `row` gets all. */
+    enum dalcs_status (*rows)(void *user, size_t n, const double *time /* [n] */,
+                              const double *value /* [n * n_signals] */);
 };
 
 /* The methods by name, the default first; NULL when index is too large. */

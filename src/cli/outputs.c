@@ -78,17 +78,20 @@ enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs,
     return dalcs_measure_begin(&outputs->measure[plot->analysis], plot);
 }
 
-enum dalcs_status dalcs_outputs_row(struct dalcs_outputs *outputs, double time,
-                                    const double *value) {
-    outputs->n_rows++;
-    if (outputs->has_summary) {
-        dalcs_measure_row(&outputs->measure[outputs->analysis], time, value);
+enum dalcs_status dalcs_outputs_rows(struct dalcs_outputs *outputs, size_t n, const double *time,
+                                     const double *value) {
+    struct dalcs_measure *measure = &outputs->measure[outputs->analysis];
+    const size_t n_values = (measure->plot->is_complex ? 2 : 1) * measure->plot->n_signals;
+    const bool is_drawn = outputs->drawn && outputs->drawn == measure->plot;
+    outputs->n_rows += n;
+    for (size_t k = 0; k < n && outputs->has_summary; k++) {
+        dalcs_measure_row(measure, time[k], value + k * n_values);
     }
-    if (outputs->drawn && outputs->drawn == outputs->measure[outputs->analysis].plot) {
-        dalcs_figure_row(outputs->figure, time, value);
+    for (size_t k = 0; k < n && is_drawn; k++) {
+        dalcs_figure_row(outputs->figure, time[k], value + k * n_values);
     }
     for (size_t i = 0; i < outputs->n_tables; i++) {
-        DALCS_TRY(dalcs_table_row(&outputs->table[i], time, value));
+        DALCS_TRY(dalcs_table_rows(&outputs->table[i], n, time, value));
     }
     return DALCS_OK;
 }

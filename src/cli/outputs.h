@@ -32,8 +32,8 @@ enum dalcs_status dalcs_outputs_init(struct dalcs_outputs *outputs,
 /* The callbacks of struct dalcs_sink. Begin opens all files, so that a path which cannot be
  * written ends the run before it starts. */
 enum dalcs_status dalcs_outputs_begin(struct dalcs_outputs *outputs, const struct dalcs_plot *plot);
-enum dalcs_status dalcs_outputs_row(struct dalcs_outputs *outputs, double time,
-                                    const double *value);
+enum dalcs_status dalcs_outputs_rows(struct dalcs_outputs *outputs, size_t n, const double *time,
+                                     const double *value);
 enum dalcs_status dalcs_outputs_end(struct dalcs_outputs *outputs);
 
 /* Ends every file: under its name when `complete`, else under one that says it is partial. The

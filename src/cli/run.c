@@ -90,14 +90,19 @@ static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     return status != DALCS_OK ? status : dalcs_outputs_begin(&run->outputs, plot);
 }
 
-static enum dalcs_status row(void *user, double time, const double *value) {
+static enum dalcs_status rows(void *user, size_t n, const double *time, const double *value) {
     struct run *run = user;
-    run->time = time;
-    if (run->printed.out != NULL) {
-        DALCS_TRY(dalcs_print_table_row(&run->printed, time, value));
+    run->time = time[n - 1];
+    for (size_t k = 0; k < n && run->printed.out != NULL; k++) {
+        const double *of_row = value + k * run->printed.plot->n_signals;
+        DALCS_TRY(dalcs_print_table_row(&run->printed, time[k], of_row));
     }
-    DALCS_TRY(dalcs_outputs_row(&run->outputs, time, value));
+    DALCS_TRY(dalcs_outputs_rows(&run->outputs, n, time, value));
     return check_interrupt(run);
+}
+
+static enum dalcs_status row(void *user, double time, const double *value) {
+    return rows(user, 1, &time, value);
 }
 
 static enum dalcs_status end(void *user) {
@@ -208,7 +213,8 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
         options.max_events = SHOWN_EVENTS;
     }
     options.energy = arguments->report || arguments->energy;
-    const struct dalcs_sink sink = {run, begin, row, end, progress};
+    const struct dalcs_sink sink = {
+        .user = run, .begin = begin, .row = row, .end = end, .progress = progress, .rows = rows};
     run->session = session;
     dalcs_progress_init(&run->progress, run->cli->err_is_terminal ? run->cli->err : NULL);
     const struct dalcs_script_host host = {.session = session,

@@ -86,8 +86,7 @@ static enum dalcs_status begin(void *state, FILE *stream, const struct dalcs_plo
     return DALCS_OK;
 }
 
-static void row(void *state, FILE *stream, double time, const double *value) {
-    const struct csv *csv = state;
+static void write_row(const struct csv *csv, FILE *stream, double time, const double *value) {
     char *c = csv->line;
     for (size_t i = 0; i < csv->n_parameters; i++) {
         c += dalcs_decimal_write(&csv->decimal, csv->parameter[i], c);
@@ -100,6 +99,13 @@ static void row(void *state, FILE *stream, double time, const double *value) {
     }
     *c++ = '\n';
     fwrite(csv->line, 1, (size_t)(c - csv->line), stream);
+}
+
+static void rows(void *state, FILE *stream, size_t n, const double *time, const double *value) {
+    const struct csv *csv = state;
+    for (size_t k = 0; k < n; k++) {
+        write_row(csv, stream, time[k], value + k * csv->n_values);
+    }
 }
 
 static void end(void *state, FILE *stream) {
@@ -137,7 +143,7 @@ const struct dalcs_table_format dalcs_csv_format = {
     .state_size = sizeof(struct csv),
     .one_plot = true,
     .begin = begin,
-    .row = row,
+    .rows = rows,
     .end = end,
     .recover = recover,
     .finish = finish,

@@ -198,8 +198,7 @@ static void release(struct raw *raw, FILE *stream) {
 
 /* Readers count the steps by how often the scale is what it is at first. So of two rows there, before
  * and behind an edge at tstart, only the second one is written. The first is still held. */
-static void row(void *state, FILE *stream, double time, const double *value) {
-    struct raw *raw = state;
+static void add_row(struct raw *raw, FILE *stream, double time, const double *value) {
     if (raw->is_stepped && raw->n_of_step++ == 1 && raw->next[-(ptrdiff_t)raw->width] == time) {
         raw->next -= raw->width;
     } else if (raw->next == raw->end) {
@@ -211,6 +210,13 @@ static void row(void *state, FILE *stream, double time, const double *value) {
         point[0] = time;
     }
     memcpy(point + raw->n_before, value, raw->n_values * sizeof(double));
+}
+
+static void rows(void *state, FILE *stream, size_t n, const double *time, const double *value) {
+    struct raw *raw = state;
+    for (size_t k = 0; k < n; k++) {
+        add_row(raw, stream, time[k], value + k * raw->n_values);
+    }
 }
 
 static bool write_points(const struct raw *raw, int descriptor, size_t n_points) {
@@ -279,7 +285,7 @@ const struct dalcs_table_format dalcs_raw_format = {
     .extension = ".raw",
     .state_size = sizeof(struct raw),
     .begin = begin,
-    .row = row,
+    .rows = rows,
     .end = end,
     .recover = recover,
     .finish = finish,
@@ -289,7 +295,7 @@ const struct dalcs_table_format dalcs_raw_ascii_format = {
     .extension = ".raw",
     .state_size = sizeof(struct raw),
     .begin = begin_ascii,
-    .row = row,
+    .rows = rows,
     .end = end,
     .recover = recover_ascii,
     .finish = finish,

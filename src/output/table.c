@@ -47,7 +47,8 @@ enum dalcs_status dalcs_table_init(struct dalcs_table *table, const char *path,
     return dalcs_table_init_as(table, path, dalcs_table_find_format(path), main);
 }
 
-enum dalcs_status dalcs_table_note_error(struct dalcs_table *table) {
+/* What a stream that failed means; the first errno stays. */
+static enum dalcs_status note_error(struct dalcs_table *table) {
     if (table->file.error == 0) {
         table->file.error = errno != 0 ? errno : EIO;
     }
@@ -55,7 +56,7 @@ enum dalcs_status dalcs_table_note_error(struct dalcs_table *table) {
 }
 
 static enum dalcs_status check_stream(struct dalcs_table *table) {
-    return ferror(table->file.stream) ? dalcs_table_note_error(table) : DALCS_OK;
+    return ferror(table->file.stream) ? note_error(table) : DALCS_OK;
 }
 
 /* Has this file no room for the plot? */
@@ -105,6 +106,16 @@ enum dalcs_status dalcs_table_begin(struct dalcs_table *table, const struct dalc
     enum dalcs_status status = table->format->begin(table->state, table->file.stream, plot);
     table->in_plot = status == DALCS_OK;
     return status == DALCS_OK ? check_stream(table) : status;
+}
+
+enum dalcs_status dalcs_table_rows(struct dalcs_table *table, size_t n, const double *time,
+                                   const double *value) {
+    if (table->skipping) {
+        return DALCS_OK;
+    }
+    table->format->rows(table->state, table->file.stream, n, time, value);
+    table->n_rows += n;
+    return check_stream(table);
 }
 
 enum dalcs_status dalcs_table_end(struct dalcs_table *table) {

@@ -11,7 +11,8 @@ struct dalcs_table_format {
     size_t state_size;
     bool one_plot; /* can hold a single table, that of the main analysis when there are several */
     enum dalcs_status (*begin)(void *state, FILE *stream, const struct dalcs_plot *plot);
-    void (*row)(void *state, FILE *stream, double time, const double *value);
+    /* n rows, their values one row after the other. */
+    void (*rows)(void *state, FILE *stream, size_t n, const double *time, const double *value);
     /* Also called when the run was cut short, so that what is there can be read. */
     void (*end)(void *state, FILE *stream);
     /* How many of the file's first `size` bytes, all that the disk took, are whole rows and what they
@@ -58,19 +59,8 @@ enum dalcs_status dalcs_table_init_as(struct dalcs_table *table, const char *pat
 enum dalcs_status dalcs_table_begin(struct dalcs_table *table, const struct dalcs_plot *plot);
 enum dalcs_status dalcs_table_end(struct dalcs_table *table);
 
-/* What a stream that failed means; the first errno stays. */
-enum dalcs_status dalcs_table_note_error(struct dalcs_table *table);
-
-/* Here, for it is called for each row. No other thread has the stream. */
-static inline enum dalcs_status dalcs_table_row(struct dalcs_table *table, double time,
-                                                const double *value) {
-    if (table->skipping) {
-        return DALCS_OK;
-    }
-    table->format->row(table->state, table->file.stream, time, value);
-    table->n_rows++;
-    return ferror_unlocked(table->file.stream) ? dalcs_table_note_error(table) : DALCS_OK;
-}
+enum dalcs_status dalcs_table_rows(struct dalcs_table *table, size_t n, const double *time,
+                                   const double *value);
 
 /* All rows are with the system. */
 enum dalcs_status dalcs_table_flush(struct dalcs_table *table) DALCS_MUST_CHECK;

@@ -180,7 +180,8 @@ static enum dalcs_status write_table(struct dalcs_table *table, const struct dal
     enum dalcs_status status = dalcs_table_begin(table, plot);
     for (size_t k = 0; k < length && status == DALCS_OK; k++) {
         fill(row, k, plot->is_complex);
-        status = dalcs_table_row(table, scale != NULL ? creal(scale->value[k]) : 0.0, row->value);
+        const double at = scale != NULL ? creal(scale->value[k]) : 0.0;
+        status = dalcs_table_rows(table, 1, &at, row->value);
     }
     status = status == DALCS_OK ? dalcs_table_end(table) : status;
     return status == DALCS_OK ? dalcs_table_commit(table) : status;

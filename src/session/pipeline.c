@@ -437,6 +437,7 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
         .row = sink->row != NULL ? sink->row : ignore_row,
         .end = sink->end != NULL ? sink->end : ignore_end,
         .progress = sink->progress != NULL ? sink->progress : ignore_progress,
+        .rows = sink->rows,
     };
     if (session->circuit.n_steps > 0) {
         return run_steps(session, options, &complete);

@@ -179,8 +179,10 @@ static bool source_jumps(const struct transient *c) {
     return jumps;
 }
 
-static enum dalcs_status tell_progress(struct transient *c) {
-    if (--c->to_go > 0) {
+/* After so many steps and rows more. */
+static enum dalcs_status tell_progress(struct transient *c, int n) {
+    c->to_go -= n;
+    if (c->to_go > 0) {
         return DALCS_OK;
     }
     c->to_go = c->interval;
@@ -190,7 +192,7 @@ static enum dalcs_status tell_progress(struct transient *c) {
 static enum dalcs_status row(struct transient *c, enum dalcs_side side, bool is_due) {
     int n_done;
     DALCS_TRY(dalcs_rows_fill(&c->rows, &c->t, 1, side, &n_done));
-    return dalcs_recorder_row(c->recorder, &c->rows, 0, c->t, is_due);
+    return dalcs_recorder_row(c->recorder, &c->rows, c->t, is_due);
 }
 
 /* The rows that are due while nothing else happens: until shortly before `until`. */
@@ -200,11 +202,9 @@ static enum dalcs_status rows(struct transient *c, double until) {
     int n;
     while ((n = dalcs_recorder_list_due(c->recorder, until, near, due, DALCS_MOST_ROWS)) > 0) {
         DALCS_TRY(dalcs_rows_fill(&c->rows, due, n, DALCS_LEFT, &n));
-        for (int i = 0; i < n; i++) {
-            c->t = due[i];
-            DALCS_TRY(dalcs_recorder_row(c->recorder, &c->rows, i, c->t, true));
-            DALCS_TRY(tell_progress(c));
-        }
+        c->t = due[n - 1];
+        DALCS_TRY(dalcs_recorder_rows(c->recorder, &c->rows, due, n));
+        DALCS_TRY(tell_progress(c, n));
     }
     return DALCS_OK;
 }
@@ -266,7 +266,7 @@ static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau 
     enum dalcs_status status = DALCS_OK;
     while (c.t < radau->options.stop && status == DALCS_OK) {
         status = advance(&c);
-        status = status == DALCS_OK ? tell_progress(&c) : status;
+        status = status == DALCS_OK ? tell_progress(&c, 1) : status;
     }
     if (status != DALCS_OK) {
         dalcs_radau_break_off(radau, c.t);
@@ -418,6 +418,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     warn_of_coarse_rows(r, &schedule);
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
+    s->recorder.n_shown = s->circuit.n_shown;
     DALCS_TRY(dalcs_tangents_watch(r));
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, r->h, stop));
     e.detect_jumps = r->options->record || dalcs_run_keeps_ledger(r);

@@ -74,7 +74,7 @@ static enum dalcs_status progress(void *user, double time, double stop) {
 
 static enum dalcs_status run(struct receiver *r, struct dalcs_session *session,
                              const struct dalcs_run_options *options) {
-    const struct dalcs_sink sink = {r, begin, row, NULL, progress};
+    const struct dalcs_sink sink = {.user = r, .begin = begin, .row = row, .progress = progress};
     return dalcs_session_run(session, options, &sink);
 }
 

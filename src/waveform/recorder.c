@@ -19,9 +19,10 @@ enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
     *r = (struct dalcs_recorder){
         .network = network, .sink = sink, .schedule = *schedule, .keep = keep, .limit = limit};
     size_t n = (size_t)network->n_outputs;
+    r->n_shown = network->n_outputs;
     r->now = dalcs_alloc(n, sizeof(double));
     r->before = dalcs_alloc(n, sizeof(double));
-    r->row = dalcs_alloc(n, sizeof(double));
+    r->row = dalcs_alloc(n, DALCS_MOST_ROWS * sizeof(double));
     r->seen = dalcs_alloc((size_t)network->n_systems, sizeof(*r->seen));
     r->jump_state = dalcs_alloc((size_t)network->n_states, sizeof(*r->jump_state));
     bool complete = r->now != NULL && r->before != NULL && r->row != NULL && r->seen != NULL &&
@@ -270,13 +271,44 @@ bool dalcs_recorder_wants_sides(const struct dalcs_recorder *r, double t) {
     return r->schedule.kind != DALCS_AT_TIMES && t >= r->schedule.start;
 }
 
-enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_rows *rows, int k,
+enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_rows *rows,
                                      double t, bool is_due) {
     r->schedule.next += is_due ? 1 : 0;
     for (int i = 0; i < rows->n_outputs; i++) {
-        r->row[i] = rows->value[i].at[k];
+        r->row[i] = rows->value[i].at[0];
     }
     return emit(r, t, r->row);
+}
+
+static void watch(struct dalcs_recorder *r, const struct dalcs_rows *rows, int n) {
+    for (int i = 0; i < r->n_watched; i++) {
+        const double *value = rows->value[r->watched[i]].at;
+        for (int k = 0; k < n; k++) {
+            r->largest[i] = fmax(r->largest[i], value[k]);
+        }
+    }
+}
+
+enum dalcs_status dalcs_recorder_rows(struct dalcs_recorder *r, const struct dalcs_rows *rows,
+                                      const double *time, int n) {
+    const struct dalcs_sink *sink = r->sink;
+    const size_t n_shown = (size_t)r->n_shown;
+    r->schedule.next += (size_t)n;
+    watch(r, rows, n);
+    for (size_t i = 0; i < n_shown; i++) {
+        const double *value = rows->value[i].at;
+        double *to = r->row + i;
+        for (int k = 0; k < n; k++, to += n_shown) {
+            *to = value[k];
+        }
+    }
+    if (sink->rows != NULL) {
+        return sink->rows(sink->user, (size_t)n, time, r->row);
+    }
+    for (int k = 0; k < n; k++) {
+        DALCS_TRY(sink->row(sink->user, time[k], r->row + (size_t)k * n_shown));
+    }
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_recorder_events(struct dalcs_recorder *r, const struct dalcs_euler *e) {

@@ -23,7 +23,9 @@ struct dalcs_recorder {
     const struct dalcs_network *network;
     const struct dalcs_sink *sink;
     struct dalcs_schedule schedule;
-    double *now, *before, *row; /* [n_outputs] at the end and the beginning of the step */
+    double *now, *before; /* [n_outputs] at the end and the beginning of the step */
+    double *row;          /* work [DALCS_MOST_ROWS * n_outputs]: what is handed on */
+    int n_shown;          /* the first outputs, which rows have: all, unless set after the setup */
     bool have_before;
     int n_watched; /* outputs whose largest value in all rows is wanted */
     const int *watched;
@@ -72,9 +74,13 @@ int dalcs_recorder_list_due(const struct dalcs_recorder *r, double until, double
 /* Should there be rows at edges and on both sides of events, besides the due ones, at time t? */
 bool dalcs_recorder_wants_sides(const struct dalcs_recorder *r, double t);
 
-/* A row at time t, the k-th of `rows`, of all outputs; is_due: the one that was due. */
-enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_rows *rows, int k,
+/* A row at time t, the first of `rows`, of all outputs; is_due: the one that was due. */
+enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_rows *rows,
                                      double t, bool is_due) DALCS_MUST_CHECK;
+
+/* The next n that are due, at these times: the first n of `rows`. */
+enum dalcs_status dalcs_recorder_rows(struct dalcs_recorder *r, const struct dalcs_rows *rows,
+                                      const double *time, int n) DALCS_MUST_CHECK;
 
 /* Modes that changed at e->t become events. */
 enum dalcs_status dalcs_recorder_events(struct dalcs_recorder *r,

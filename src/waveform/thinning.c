@@ -103,7 +103,11 @@ static enum dalcs_status take_progress(void *user, double time, double stop) {
 enum dalcs_status dalcs_thinning_setup(struct dalcs_thinning *t, const struct dalcs_sink *to,
                                        size_t n_signals, double bound) {
     *t = (struct dalcs_thinning){
-        .sink = {t, take_begin, take_row, take_end, take_progress},
+        .sink = {.user = t,
+                 .begin = take_begin,
+                 .row = take_row,
+                 .end = take_end,
+                 .progress = take_progress},
         .to = to,
         .bound = bound,
         .n_signals = n_signals,

@@ -11,7 +11,7 @@ static void write_plot(struct dalcs_table *table, enum dalcs_analysis analysis, 
     struct dalcs_plot plot = sample_plot(analysis);
     ck_assert_int_eq(dalcs_table_begin(table, &plot), DALCS_OK);
     for (int i = 0; i < n_rows; i++) {
-        ck_assert_int_eq(dalcs_table_row(table, 0.1 * i, sample_row[i]), DALCS_OK);
+        ck_assert_int_eq(dalcs_table_rows(table, 1, &(double){0.1 * i}, sample_row[i]), DALCS_OK);
     }
     ck_assert_int_eq(dalcs_table_end(table), DALCS_OK);
 }
@@ -87,8 +87,8 @@ START_TEST(test_interrupted) {
     struct dalcs_plot plot = sample_plot(DALCS_TRANSIENT);
     ck_assert_int_eq(dalcs_table_init(&table, "out.raw", true), DALCS_OK);
     ck_assert_int_eq(dalcs_table_begin(&table, &plot), DALCS_OK);
-    ck_assert_int_eq(dalcs_table_row(&table, 0.0, sample_row[0]), DALCS_OK);
-    ck_assert_int_eq(dalcs_table_row(&table, 0.1, sample_row[1]), DALCS_OK);
+    ck_assert_int_eq(dalcs_table_rows(&table, 1, &(double){0.0}, sample_row[0]), DALCS_OK);
+    ck_assert_int_eq(dalcs_table_rows(&table, 1, &(double){0.1}, sample_row[1]), DALCS_OK);
     char *left_at = NULL;
     ck_assert_int_eq(dalcs_table_keep(&table, &left_at), DALCS_OK);
     dalcs_table_finish(&table);

@@ -1,4 +1,4 @@
-/* test_session.c - the public interface: options, reports, what initial conditions hold, the names of
+/* test_session.c - the public interface: rows, options, reports, what initial conditions hold, the names of
  * a loop, cancelling, two threads. */
 #include "dalcs.h"
 
@@ -64,6 +64,44 @@ static const double *first_row(const char *text) {
     dalcs_session_destroy(session);
     return rows.value + 1;
 }
+
+/* ---- Rows ---------------------------------------------------------------------------------- */
+
+static size_t n_together; /* rows that came with others */
+
+static enum dalcs_status take_rows(void *user, size_t n, const double *time, const double *value) {
+    const size_t n_signals = ((const struct rows *)user)->n_signals;
+    n_together += n > 1 ? n : 0;
+    for (size_t k = 0; k < n; k++) {
+        ck_assert_int_eq(take_row(user, time[k], value + k * n_signals), DALCS_OK);
+    }
+    return DALCS_OK;
+}
+
+/* Who takes several at once gets the same rows in the same order; those beside an edge come alone, and a
+ * signal that is there to be measured does not come at all. */
+START_TEST(test_rows_together) {
+    struct dalcs_session *session = read_good(
+        "rectifier\nV1 in 0 PULSE(-1 1 0 0 0 0.37 1)\nR1 in a 1\nD1 a out\nC1 out 0 1\nR2 out 0 3\n"
+        ".save v(out) i(d1)\n.meas tran peak MAX v(in,a)\n.tran 0.01 4\n");
+    ck_assert_int_eq(run_with(session, "auto", &rows), DALCS_OK);
+    const size_t n_values = rows.n_values;
+    static struct rows one_by_one;
+    one_by_one = rows;
+    rows.n_values = 0;
+    const struct dalcs_run_options options = dalcs_run_options_default();
+    const struct dalcs_sink sink = {
+        .user = &rows, .begin = take_plot, .row = take_row, .rows = take_rows};
+    ck_assert_int_eq(dalcs_session_run(session, &options, &sink), DALCS_OK);
+    ck_assert_uint_gt(n_together, 300);
+    ck_assert_uint_lt(n_together, 400);
+    ck_assert_uint_eq(rows.n_signals, 2);
+    ck_assert_uint_eq(rows.n_values, n_values);
+    ck_assert_mem_eq(rows.value, one_by_one.value, n_values * sizeof(double));
+    dalcs_session_destroy(session);
+}
+
+END_TEST
 
 /* ---- Options and the report ---------------------------------------------------------------- */
 
@@ -473,7 +511,8 @@ START_TEST(test_cancel_from_another_thread) {
 
 END_TEST
 
-RUN_TESTS("session", test_wrong_options, test_method_and_tolerance, test_step_without_states,
-          test_cancel, test_memory_of_jumps, test_bounded_events, test_initial_across_parts,
-          test_initial_beside_short, test_initial_of_floating_part, test_certificate_of_held_point,
-          test_shorts_in_a_loop, test_dialect, test_threads, test_cancel_from_another_thread)
+RUN_TESTS("session", test_rows_together, test_wrong_options, test_method_and_tolerance,
+          test_step_without_states, test_cancel, test_memory_of_jumps, test_bounded_events,
+          test_initial_across_parts, test_initial_beside_short, test_initial_of_floating_part,
+          test_certificate_of_held_point, test_shorts_in_a_loop, test_dialect, test_threads,
+          test_cancel_from_another_thread)

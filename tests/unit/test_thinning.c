@@ -52,7 +52,11 @@ static enum dalcs_status take_progress(void *user, double time, double stop) {
     return ((struct rows *)user)->stop ? DALCS_E_CANCELLED : DALCS_OK;
 }
 
-static const struct dalcs_sink sink = {&kept, take_begin, take_row, take_end, take_progress};
+static const struct dalcs_sink sink = {.user = &kept,
+                                       .begin = take_begin,
+                                       .row = take_row,
+                                       .end = take_end,
+                                       .progress = take_progress};
 
 /* All rows through the sink into `kept`. */
 static void thin(double bound) {

@@ -34,7 +34,8 @@ START_TEST(test_own_files) {
         ck_assert_int_eq(dalcs_table_init(&table, path[f], true), DALCS_OK);
         ck_assert_int_eq(dalcs_table_begin(&table, &plot), DALCS_OK);
         for (int i = 0; i < 2; i++) {
-            ck_assert_int_eq(dalcs_table_row(&table, 0.1 * i, sample_row[i]), DALCS_OK);
+            ck_assert_int_eq(dalcs_table_rows(&table, 1, &(double){0.1 * i}, sample_row[i]),
+                             DALCS_OK);
         }
         ck_assert_int_eq(dalcs_table_end(&table), DALCS_OK);
         ck_assert_int_eq(dalcs_table_commit(&table), DALCS_OK);

@@ -211,7 +211,8 @@ static bool parse(struct configuration *c, const char *text, const struct refere
 static void run_once(struct configuration *c, const char *netlist, struct capture *capture,
                      bool timed) {
     struct dalcs_session *session;
-    const struct dalcs_sink sink = {capture, on_begin, on_row, NULL, on_progress};
+    const struct dalcs_sink sink = {
+        .user = capture, .begin = on_begin, .row = on_row, .progress = on_progress};
     capture->begin = cpu_seconds();
     if (dalcs_session_create(&session) != DALCS_OK) {
         abort();
