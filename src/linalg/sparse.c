@@ -5,7 +5,9 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
+
+/* Indices that work needs at most to be on the stack. */
+enum { FEW = 128 };
 
 enum dalcs_status dalcs_triplets_add(struct dalcs_triplets *t, int row, int column, double value) {
     DALCS_TRY(dalcs_grow(&t->entry, &t->capacity, t->n + 1, sizeof(*t->entry)));
@@ -18,44 +20,38 @@ void dalcs_triplets_finish(struct dalcs_triplets *t) {
     *t = (struct dalcs_triplets){0};
 }
 
-enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_columns,
-                                     const struct dalcs_triplets *t) {
-    *a = (struct dalcs_csr){.n_rows = n_rows, .n_columns = n_columns};
-    if (t->n > INT_MAX / 2) {
-        return DALCS_E_LIMIT;
+/* One allocation for all three arrays, the one with the largest elements first; it is x. */
+static bool make_room(struct dalcs_csr *a, size_t n) {
+    const size_t n_starts = (size_t)a->n_rows + 1;
+    const size_t n_indices = n_starts + n;
+    a->x = dalcs_alloc(n + (n_indices + 1) / 2, sizeof(*a->x));
+    if (a->x == NULL) {
+        return false;
     }
-    enum dalcs_status status = DALCS_E_NOMEM;
-    int *start = dalcs_alloc((size_t)n_columns + 1, sizeof(*start));
-    int *order = dalcs_alloc(t->n, sizeof(*order));
-    a->p = dalcs_alloc((size_t)n_rows + 1, sizeof(*a->p));
-    a->j = dalcs_alloc(t->n, sizeof(*a->j));
-    a->x = dalcs_alloc(t->n, sizeof(*a->x));
-    if (start == NULL || order == NULL || a->p == NULL || a->j == NULL || a->x == NULL) {
-        goto done;
-    }
+    _Static_assert(2 * sizeof(*a->p) <= sizeof(*a->x), "two indices take the room of a value");
+    a->p = (int *)(a->x + n);
+    a->j = a->p + n_starts;
+    return true;
+}
+
+/* order[t->n]: the entries, column by column; start[n_columns + 1] is 0 before. */
+static void order_by_column(const struct dalcs_triplets *t, int n_columns, int *start, int *order) {
     for (size_t k = 0; k < t->n; k++) {
         start[t->entry[k].column + 1]++;
-        a->p[t->entry[k].row + 1]++;
     }
     for (int c = 0; c < n_columns; c++) {
         start[c + 1] += start[c];
     }
-    for (int r = 0; r < n_rows; r++) {
-        a->p[r + 1] += a->p[r];
-    }
     for (size_t k = 0; k < t->n; k++) {
         order[start[t->entry[k].column]++] = (int)k;
     }
-    for (size_t k = 0; k < t->n; k++) {
-        const struct dalcs_triplet *e = &t->entry[order[k]];
-        int slot = a->p[e->row]++;
-        a->j[slot] = e->column;
-        a->x[slot] = e->value;
-    }
-    /* p[r] now holds the end of row r: walk forward, merge duplicates, drop what cancelled. */
+}
+
+/* p[r] is the end of row r: walk forward, merge duplicates, drop what cancelled. */
+static void merge_duplicates(struct dalcs_csr *a) {
     int out = 0;
     int begin = 0;
-    for (int r = 0; r < n_rows; r++) {
+    for (int r = 0; r < a->n_rows; r++) {
         int end = a->p[r];
         a->p[r] = out;
         for (int k = begin; k < end;) {
@@ -71,20 +67,43 @@ enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_colu
         }
         begin = end;
     }
-    a->p[n_rows] = out;
-    status = DALCS_OK;
-done:
-    free(start);
-    free(order);
-    if (status != DALCS_OK) {
-        dalcs_csr_finish(a);
+    a->p[a->n_rows] = out;
+}
+
+enum dalcs_status dalcs_csr_compress(struct dalcs_csr *a, int n_rows, int n_columns,
+                                     const struct dalcs_triplets *t) {
+    *a = (struct dalcs_csr){.n_rows = n_rows, .n_columns = n_columns};
+    if (t->n > INT_MAX / 2) {
+        return DALCS_E_LIMIT;
     }
-    return status;
+    int few[FEW] = {0}; /* most matrices are small, and there are many of them */
+    const size_t n_work = (size_t)n_columns + 1 + t->n;
+    int *work = n_work <= FEW ? few : dalcs_alloc(n_work, sizeof(*work));
+    const bool complete = work != NULL && make_room(a, t->n);
+    if (complete) {
+        int *order = work + n_columns + 1;
+        order_by_column(t, n_columns, work, order);
+        for (size_t k = 0; k < t->n; k++) {
+            a->p[t->entry[k].row + 1]++;
+        }
+        for (int r = 0; r < n_rows; r++) {
+            a->p[r + 1] += a->p[r];
+        }
+        for (size_t k = 0; k < t->n; k++) {
+            const struct dalcs_triplet *e = &t->entry[order[k]];
+            int slot = a->p[e->row]++;
+            a->j[slot] = e->column;
+            a->x[slot] = e->value;
+        }
+        merge_duplicates(a);
+    }
+    if (work != few) {
+        free(work);
+    }
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 void dalcs_csr_finish(struct dalcs_csr *a) {
-    free(a->p);
-    free(a->j);
     free(a->x);
     *a = (struct dalcs_csr){0};
 }

@@ -22,7 +22,7 @@ enum dalcs_status dalcs_triplets_add(struct dalcs_triplets *t, int row, int colu
 
 void dalcs_triplets_finish(struct dalcs_triplets *t);
 
-/* Compressed rows, columns ascending within a row. */
+/* Compressed rows, columns ascending within a row. All is in the block that starts at x. */
 struct dalcs_csr {
     int n_rows, n_columns;
     int *p;    /* [n_rows + 1] */

@@ -155,6 +155,7 @@ struct transient {
     struct dalcs_measures *measures;
     struct dalcs_rows rows;
     double t;
+    double next_row;  /* s, that is due */
     double next_edge; /* s, of any source: rows are wanted there */
     long interval;    /* steps and rows between calls of progress */
     long to_go;       /* of them, until the next */
@@ -192,18 +193,21 @@ static enum dalcs_status tell_progress(struct transient *c, int n) {
 static enum dalcs_status row(struct transient *c, enum dalcs_side side, bool is_due) {
     int n_done;
     DALCS_TRY(dalcs_rows_fill(&c->rows, &c->t, 1, side, &n_done));
-    return dalcs_recorder_row(c->recorder, &c->rows, c->t, is_due);
+    DALCS_TRY(dalcs_recorder_row(c->recorder, &c->rows, c->t, is_due));
+    c->next_row = dalcs_recorder_due(c->recorder);
+    return DALCS_OK;
 }
 
 /* The rows that are due while nothing else happens: until shortly before `until`. */
 static enum dalcs_status rows(struct transient *c, double until) {
     double due[DALCS_MOST_ROWS];
     double near = c->radau->resolution;
-    int n;
-    while ((n = dalcs_recorder_list_due(c->recorder, until, near, due, DALCS_MOST_ROWS)) > 0) {
+    while (c->next_row + near < until) {
+        int n = dalcs_recorder_list_due(c->recorder, until, near, due, DALCS_MOST_ROWS);
         DALCS_TRY(dalcs_rows_fill(&c->rows, due, n, DALCS_LEFT, &n));
         c->t = due[n - 1];
         DALCS_TRY(dalcs_recorder_rows(c->recorder, &c->rows, due, n));
+        c->next_row = dalcs_recorder_due(c->recorder);
         DALCS_TRY(tell_progress(c, n));
     }
     return DALCS_OK;
@@ -219,8 +223,7 @@ static enum dalcs_status advance(struct transient *c) {
     double t = dalcs_smaller(dalcs_smaller(end, stop),
                              dalcs_smaller(c->next_edge, c->measures->next_edge));
     DALCS_TRY(rows(c, t));
-    double due = dalcs_recorder_due(c->recorder);
-    t = dalcs_smaller(t, due);
+    t = dalcs_smaller(t, c->next_row);
     bool ends = end <= t + near;
     bool edge = c->next_edge <= t + near;
     if (ends) {
@@ -231,7 +234,7 @@ static enum dalcs_status advance(struct transient *c) {
     c->t = t;
     DALCS_TRY(dalcs_measures_reach(c->measures, radau, dalcs_smaller(t, stop), near));
     bool sides = dalcs_recorder_wants_sides(c->recorder, t);
-    bool is_due = due <= t + near;
+    bool is_due = c->next_row <= t + near;
     bool written = is_due || (sides && (edge || (ends && happens)));
     if (written) {
         DALCS_TRY(row(c, DALCS_LEFT, is_due));
@@ -260,6 +263,7 @@ static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau 
                                         struct dalcs_measures *measures) {
     struct transient c = {
         .run = r, .recorder = &r->s->recorder, .radau = radau, .measures = measures};
+    c.next_row = dalcs_recorder_due(c.recorder);
     c.next_edge = edge_after(&c, 0.0);
     c.interval = c.to_go = progress_interval(&r->s->network);
     DALCS_TRY(dalcs_rows_setup(&c.rows, radau, NULL, r->s->network.n_outputs));
