@@ -122,13 +122,14 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     part->held_flux = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
     part->pair_row = dalcs_alloc(2 * (size_t)s->n_pairs, sizeof(int));
     part->pair_law = dalcs_alloc(DALCS_PAIR_LAWS * (size_t)s->n_pairs, sizeof(*part->pair_law));
+    part->pair_rate = dalcs_pair_rate_create(s->n_pairs, part->component->osnsp.n_words);
     part->cluster = dalcs_alloc(n_equations, sizeof(int));
     part->cluster_charge = dalcs_alloc(n_equations, sizeof(double));
     part->bound = dalcs_alloc((size_t)dalcs_quads_of(n_guards(part)) + DALCS_QUAD, sizeof(double));
     part->doubtful = dalcs_alloc((size_t)n_guards(part), sizeof(int));
     if (part->bound == NULL || part->doubtful == NULL || part->held_charge == NULL ||
         part->held_flux == NULL || part->pair_row == NULL || part->pair_law == NULL ||
-        part->cluster == NULL || part->cluster_charge == NULL) {
+        part->pair_rate == NULL || part->cluster == NULL || part->cluster_charge == NULL) {
         return DALCS_E_NOMEM;
     }
     dalcs_pair_laws_find(part);
@@ -140,14 +141,12 @@ void dalcs_guards_finish(struct dalcs_radau_part *part) {
     free(part->held_flux);
     free(part->pair_row);
     free(part->pair_law);
+    dalcs_pair_rate_destroy(part->pair_rate);
     free(part->cluster);
     free(part->cluster_charge);
     free(part->bound);
     free(part->doubtful);
 }
-
-/* Components with more pairs than this are large. */
-enum { MANY_PAIRS = 64 };
 
 static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band,
                          const double *unit) {
@@ -197,7 +196,7 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
     int n_pairs = p->system->n_pairs;
     double band = dalcs_doubt_band(r, part);
     double known = dalcs_doubt_noise(part);
-    if (!at_end && n_pairs > MANY_PAIRS) {
+    if (!at_end && n_pairs > DALCS_MANY_PAIRS) {
         dalcs_pair_laws_gather(part);
     }
     const double *value = part->out + (at_end ? (l->n_nodes - 1) * l->stride : 0) +
@@ -480,7 +479,7 @@ bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_
     double noise = dalcs_beyond_noise * dalcs_doubt_noise(part);
     double least = fmax(falling_part * dalcs_doubt_band(r, part), noise);
     bool negative = false;
-    for (int k = 0; k < part->n_doubtful && !negative && n_pairs <= MANY_PAIRS; k++) {
+    for (int k = 0; k < part->n_doubtful && !negative && n_pairs <= DALCS_MANY_PAIRS; k++) {
         int d = part->doubtful[k];
         if (d < n_pairs) {
             double scale = scale_of(part, d, unit);
@@ -504,7 +503,7 @@ bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determi
                             const double *unit) {
     int n_pairs = part->component->system->n_pairs;
     bool tied = false;
-    for (int d = 0; d < n_pairs && !tied && !(n_pairs > MANY_PAIRS && part->flipped); d++) {
+    for (int d = 0; d < n_pairs && !tied && !(n_pairs > DALCS_MANY_PAIRS && part->flipped); d++) {
         tied = dalcs_guards_is_tied(part, d, unit) && !(is_determined && was_tied(part, d, unit));
     }
     return tied;
@@ -513,7 +512,7 @@ bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determi
 bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     bool found = false;
-    for (int d = 0; d < p->system->n_pairs && p->system->n_pairs <= MANY_PAIRS; d++) {
+    for (int d = 0; d < p->system->n_pairs && p->system->n_pairs <= DALCS_MANY_PAIRS; d++) {
         if (dalcs_osnsp_is_on(p, d) && dalcs_guards_is_tied(part, d, unit)) {
             dalcs_osnsp_command(p, d, false);
             found = true;

@@ -1,14 +1,38 @@
 /* pair_laws.c - the current of a closed pair by KCL and by Ohm.
  *
  * A capacitor of 0.1 F beside a diode, times the last digit of a volt, over a step of 0.2 ns, would be
- * 40 uA; its other node has 4 pF, or it has 70 mohm itself, and then rounding makes next to nothing. */
+ * 40 uA; its other node has 4 pF, or it has 70 mohm itself, and then rounding makes next to nothing. Or its
+ * other node has nothing but another diode, whose current is known. */
 #include "pair_laws.h"
 
 #include "extremes.h"
 #include "union_find.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+struct dalcs_pair_rate *dalcs_pair_rate_create(int n_pairs, int n_words) {
+    struct dalcs_pair_rate *rate = dalcs_alloc(1, sizeof(*rate));
+    if (rate == NULL) {
+        return NULL;
+    }
+    rate->mode = dalcs_alloc((size_t)n_words, sizeof(*rate->mode));
+    rate->of = dalcs_alloc((size_t)n_pairs, sizeof(*rate->of));
+    if (rate->mode == NULL || rate->of == NULL) {
+        dalcs_pair_rate_destroy(rate);
+        return NULL;
+    }
+    return rate;
+}
+
+void dalcs_pair_rate_destroy(struct dalcs_pair_rate *rate) {
+    if (rate != NULL) {
+        free(rate->mode);
+        free(rate->of);
+    }
+    free(rate);
+}
 
 /* F at a node, H of a coil; 0 of an algebraic row. */
 static double storage_of(const struct dalcs_system *s, int row) {
@@ -59,14 +83,14 @@ static void find_fluxes(struct dalcs_radau_part *part, double *at_node /* [n_equ
 }
 
 /* row < 0: ground. */
-static struct dalcs_pair_law law_of_node(const struct dalcs_system *s, int pair, int row) {
+static struct dalcs_pair_law law_of_node(const struct dalcs_system *s, int row) {
     int n_equations = dalcs_system_n_equations(s);
     struct dalcs_pair_law law = {.holds = row >= 0};
     for (int k = row >= 0 ? s->A.p[row] : 0; row >= 0 && k < s->A.p[row + 1]; k++) {
         int c = s->A.j[k];
         bool is_branch = c >= n_equations || s->column_is_current[c];
         law.conductance += is_branch ? 0.0 : fabs(s->A.x[k]);
-        law.holds = law.holds && (!is_branch || c < s->n_x || c == n_equations + pair);
+        law.holds = law.holds && (!is_branch || c < s->n_x || c >= n_equations);
     }
     law.capacitance = row >= 0 ? storage_of(s, row) : 0.0;
     return law;
@@ -87,8 +111,8 @@ void dalcs_pair_laws_find(struct dalcs_radau_part *part) {
     find_charges(part);
     find_fluxes(part, part->cluster_charge);
     for (int d = 0; d < s->n_pairs; d++) {
-        part->pair_law[DALCS_PAIR_LAWS * d] = law_of_node(s, d, part->pair_row[2 * d]);
-        part->pair_law[DALCS_PAIR_LAWS * d + 1] = law_of_node(s, d, part->pair_row[2 * d + 1]);
+        part->pair_law[DALCS_PAIR_LAWS * d] = law_of_node(s, part->pair_row[2 * d]);
+        part->pair_law[DALCS_PAIR_LAWS * d + 1] = law_of_node(s, part->pair_row[2 * d + 1]);
         part->pair_law[DALCS_PAIR_LAWS * d + 2] = law_of_resistance(s, d);
     }
 }
@@ -116,15 +140,61 @@ void dalcs_pair_laws_gather(struct dalcs_radau_part *part) {
             part->held_charge[d] = fmax(part->held_charge[d], charge);
         }
     }
+    part->pair_rate->h = 0.0;
 }
 
-double dalcs_pair_charge_rate(const struct dalcs_radau_part *part, int pair) {
-    double rate = part->held_charge[pair] / part->h;
-    const struct dalcs_pair_law *law = part->pair_law + DALCS_PAIR_LAWS * pair;
-    for (int k = 0; k < DALCS_PAIR_LAWS && part->rounding == 1.0; k++) {
-        if (law[k].holds) {
-            rate = dalcs_smaller(rate, law[k].capacitance / part->h + law[k].conductance);
+/* By one of its laws; what other closed pairs carry away from its node is as well known as it is so far. */
+static double rate_by_law(const struct dalcs_radau_part *part, int pair, int which) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_pair_law *law = &part->pair_law[DALCS_PAIR_LAWS * pair + which];
+    if (!law->holds) {
+        return INFINITY;
+    }
+    double rate = law->capacitance / part->h + law->conductance;
+    int row = which < 2 ? part->pair_row[2 * pair + which] : -1;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int k = row >= 0 ? s->A.p[row] : 0; row >= 0 && k < s->A.p[row + 1]; k++) {
+        int other = s->A.j[k] - n_equations;
+        if (other >= 0 && other != pair && dalcs_osnsp_is_on(&part->component->osnsp, other)) {
+            rate += part->pair_rate->of[other];
         }
     }
     return rate;
+}
+
+/* From what each pair's nodes hold downwards, until no law makes less of any: every law adds to what it takes
+ * from others, so two pairs cannot vouch for each other (D. E. Knuth, Inf. Process. Lett. 6(1), 1977). */
+static void find_rates(const struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    int n_pairs = p->system->n_pairs;
+    struct dalcs_pair_rate *rate = part->pair_rate;
+    for (int d = 0; d < n_pairs; d++) {
+        rate->of[d] = part->held_charge[d] > 0.0 ? part->held_charge[d] / part->h : INFINITY;
+    }
+    bool changes = true;
+    for (int round = 0; round < n_pairs && changes; round++) {
+        changes = false;
+        for (int d = 0; d < n_pairs; d++) {
+            for (int k = 0; k < DALCS_PAIR_LAWS && dalcs_osnsp_is_on(p, d); k++) {
+                double by_law = rate_by_law(part, d, k);
+                changes = changes || by_law < rate->of[d];
+                rate->of[d] = dalcs_smaller(rate->of[d], by_law);
+            }
+        }
+    }
+    memcpy(rate->mode, p->mode, (size_t)p->n_words * sizeof(uint64_t));
+    rate->h = part->h;
+}
+
+double dalcs_pair_charge_rate(const struct dalcs_radau_part *part, int pair) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const struct dalcs_pair_rate *rate = part->pair_rate;
+    double held = part->held_charge[pair] / part->h;
+    if (p->system->n_pairs > DALCS_MANY_PAIRS) {
+        return held;
+    }
+    if (rate->h != part->h || !dalcs_mode_is(rate->mode, p->mode, p->n_words)) {
+        find_rates(part);
+    }
+    return dalcs_smaller(held, part->rounding * rate->of[pair]);
 }

@@ -7,12 +7,24 @@
 
 enum { DALCS_PAIR_LAWS = 3 };
 
-/* The KCL of a node where nothing but capacitors, resistors and coils takes the current, or the pair's own
- * resistance. */
+/* The KCL of a node where nothing but capacitors, resistors, coils and other pairs takes the current, or the
+ * pair's own resistance. */
 struct dalcs_pair_law {
     bool holds;
     double capacitance, conductance; /* F, S */
 };
+
+/* A per V, by which voltages are rounded, of the currents of closed pairs; INFINITY: no law tells. */
+struct dalcs_pair_rate {
+    uint64_t *mode; /* for which they are known */
+    double h;       /* likewise; 0: they are not */
+    double *of;     /* [n_pairs] */
+};
+
+/* NULL: out of memory. */
+struct dalcs_pair_rate *dalcs_pair_rate_create(int n_pairs, int n_words);
+
+void dalcs_pair_rate_destroy(struct dalcs_pair_rate *rate);
 
 /* Fills what the part knows of its pairs: pair_row, held_charge, held_flux, pair_law. */
 void dalcs_pair_laws_find(struct dalcs_radau_part *part);

@@ -32,6 +32,9 @@ enum dalcs_radau_end {
     DALCS_END_AT_EDGE /* or at a command, or where the search for one goes on */
 };
 
+/* Components with more pairs than this are large: what is looked up for each pair in each mode would be dear. */
+enum { DALCS_MANY_PAIRS = 64 };
+
 struct dalcs_radau_part {
     struct dalcs_component *component; /* its OSNSP, and y and u when evaluated */
     int index;
@@ -84,7 +87,8 @@ struct dalcs_radau_part {
     int *crossed; /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
     double *held_charge, *held_flux; /* [n_pairs] F, H: storage next to a pair; pair_laws.c */
     struct dalcs_pair_law
-        *pair_law;          /* [n_pairs][3] what gives the current of a pair; pair_laws.c */
+        *pair_law; /* [n_pairs][3] what gives the current of a pair; pair_laws.c */
+    struct dalcs_pair_rate *pair_rate; /* pair_laws.h */
     int *pair_row;          /* [n_pairs][2] KCL rows that its current enters, -1: ground */
     int *cluster;           /* [n_equations] work of pair_laws.c */
     double *cluster_charge; /* [n_equations] work of pair_laws.c */

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Events that are faint beside what the circuit works with, against closed forms.
 
-usage: faint.py PROGRAM leak|large_leak|flank|difference|large_difference|stray|late
+usage: faint.py PROGRAM leak|large_leak|flank|difference|large_difference|stray|opposed|late
 
 leak: a switch connects a sine to a diode that clamps it, 1000 A; open, it leaks 10 uA, which the diode
 carries as long as the source is positive, and blocks after that: at the zero of the sine, and no volt is
@@ -20,6 +20,10 @@ V / (R + r), or 0, at the rate (1/r + 1/R) / C, or 1/(r C). Rounding ends at 1e-
 stray: a boost converter at the zero of its source rings with 4 pF through a diode of 72.5 mohm onto 0.1753 F. What
 rounding makes of 0.1753 F is a current of 40 uA in the steps of this ringing, what it makes of the resistance
 is none: a diode that could carry 40 uA backwards leaves the 4 pF at another voltage.
+
+opposed: two diodes point at a node where nothing is stored, one from a coil, one from 1 mF that rings with 20 ps.
+No current can pass them. When the coil's end comes by the voltage of the capacitor, its diode closes and the
+other one opens; what rounding makes of 1 mF in 10 ps is microamperes, but what enters a node leaves it.
 
 late: a diode that closes picoseconds after its voltage has turned has had the wrong sign. Whether a run has such
 a thing or not, what the report says of it is said to the user.
@@ -182,6 +186,29 @@ c3 out 0 0.1753 ic=12.96
             checker.check(wrong <= tolerance, f"{case}: a wrong sign of {wrong:.1e}")
 
 
+def opposed(program, checker):
+    netlist = """two diodes that point at each other, a large capacitor and a ring
+v1 a 0 pwl(0 0 200n 10)
+l1 a xa 1m
+d1 xa x
+d2 o x
+c1 o 0 1m ic=5
+r1 o 0 1k
+l2 o q 1n
+c2 q 0 0.01p ic=4
+.tran 1n 200n uic
+.end
+"""
+    times = [10e-9 * k for k in range(1, 20)]
+    for tolerance in TOLERANCES[1:4]:
+        case = f"opposed, {tolerance}"
+        result = start(program, checker, case, netlist, times, tolerance)
+        if result is not None:
+            check_signal(checker, case, result, "v(xa)", [5e7 * t for t in times], tolerance)
+            largest = max(map(abs, result.column("i(l1)")))
+            checker.check(largest <= 1e-12, f"{case}: {largest:.1e} A pass the diodes")
+
+
 def late(program, checker):
     netlist = """a boost converter with a stray capacitor, at rest
 v1 n1 0 sin(0 281 60)
@@ -209,7 +236,8 @@ def main():
     program, which = sys.argv[1:]
     checker = Checker(f"faint {which}")
     {"leak": leak, "large_leak": large_leak, "flank": flank, "difference": difference,
-     "large_difference": large_difference, "stray": stray, "late": late}[which](program, checker)
+     "large_difference": large_difference, "stray": stray,
+     "opposed": opposed, "late": late}[which](program, checker)
     return checker.finish()
 
 

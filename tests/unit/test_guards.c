@@ -23,10 +23,16 @@ static int crossed[8];
 static const double unit[2] = {1.0, 1.0};
 
 /* Two diodes and a switch that closes above 0.75 V and opens below 0.25 V of a voltage of its own. */
-static void start(void) {
+static const char usual[] = "guards\nV1 a 0 1\nR1 a b 1\nD1 b c\nD2 b d\nR2 d 0 1\nC1 c 0 1\n"
+                            "S1 c 0 b 0 sm\n.model sm SW(Vt=0.5 Vh=0.25)\n.tran 1 100\n";
+
+/* The same, but nothing tells what the source delivers. */
+static const char without_law[] = "guards\nV1 b 0 1\nD1 b c\nD2 b d\nR2 d 0 1\nC1 c 0 1\n"
+                                  "S1 c 0 d 0 sm\n.model sm SW(Vt=0.5 Vh=0.25)\n.tran 1 100\n";
+
+static void start_with(const char *netlist) {
     const struct dalcs_osnsp_options options = usual_osnsp_options();
-    build_good_network(&t, "guards\nV1 a 0 1\nR1 a b 1\nD1 b c\nD2 b d\nR2 d 0 1\nC1 c 0 1\n"
-                           "S1 c 0 b 0 sm\n.model sm SW(Vt=0.5 Vh=0.25)\n.tran 1 100\n");
+    build_good_network(&t, netlist);
     const struct dalcs_system *s = &t.network.system[0];
     ck_assert_int_eq(dalcs_osnsp_setup(&osnsp, s, &options), DALCS_OK);
     component = (struct dalcs_component){.system = s, .circuit = &t.circuit};
@@ -50,6 +56,10 @@ static void start(void) {
     }
     memset(out_before, 0, sizeof(out_before));
     modes_before[0] = component.osnsp.mode[0];
+}
+
+static void start(void) {
+    start_with(usual);
 }
 
 static void finish(void) {
@@ -343,7 +353,7 @@ END_TEST
 /* In a short step a capacitor makes a current of the last digits of its voltage: d1 leads to 1 F. The
  * longer the step, the less of it is rounding. */
 START_TEST(test_rounding) {
-    start();
+    start_with(without_law);
     dalcs_osnsp_command(&component.osnsp, find_pair(component.system, "d1"), true);
     arm_beside(1.0, -1e-9);
     ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-8);
@@ -351,6 +361,20 @@ START_TEST(test_rounding) {
     ck_assert(isinf(first_fall(1.0)));
     draw("d1", 1.0, -1e-8);
     ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-7);
+    finish();
+}
+
+END_TEST
+
+/* But what resistors bring to its other node is known, and so is what another diode takes away from there. */
+START_TEST(test_law) {
+    start();
+    dalcs_osnsp_command(&component.osnsp, find_pair(component.system, "d1"), true);
+    arm_beside(1.0, -1e-9);
+    part.h = 1e-6;
+    ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-8);
+    dalcs_osnsp_command(&component.osnsp, find_pair(component.system, "d2"), true);
+    ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-8);
     finish();
 }
 
@@ -414,6 +438,6 @@ START_TEST(test_recovery) {
 
 END_TEST
 
-RUN_TESTS("guards", test_rounding, test_own_doubt, test_stop, test_recovery, test_pairs,
+RUN_TESTS("guards", test_rounding, test_law, test_own_doubt, test_stop, test_recovery, test_pairs,
           test_watched, test_arming, test_faint, test_recover, test_goes_on, test_signs_and_ties,
           test_stays, test_over_soon, test_swing)
