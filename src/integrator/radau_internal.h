@@ -30,8 +30,8 @@ static const double dalcs_largest_residual = 1e-6;
 /* restart.c: two micro-steps from part->t decide mode and state; a jump is reported. `longer` makes
  * them 2^(5 longer) times as long; mode_only leaves the state as it is. *is_off: it jumps by no
  * more than the error that the state of an event has, or so it seems, and was left where it is, for a
- * projecting step to decide; on factors, whose rounding such a step would not survive, and for NULL it was
- * moved. */
+ * projecting step to decide; in large parts on factors, whose rounding such a step would not survive, and
+ * for NULL it was moved. */
 enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                       int longer, bool mode_only, bool *is_off) DALCS_MUST_CHECK;
 

@@ -342,7 +342,7 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
         DALCS_TRY(look_closer(r, part, closer, &h, &jumps, &noticeable));
     }
     bool moves_little = jumps && !noticeable;
-    if (is_off != NULL && part->rounding == 1.0) {
+    if (is_off != NULL && (part->rounding == 1.0 || s->n_pairs <= DALCS_MANY_PAIRS)) {
         *is_off = moves_little;
     } else if (moves_little) {
         dalcs_radau_go_after(r, part);
