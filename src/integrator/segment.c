@@ -355,7 +355,8 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
         return tie_again(part, search);
     }
     double recovery = may_be_brief(r, part, search) ? dalcs_guards_recovery(part) : INFINITY;
-    if (recovery > 0.0 && recovery < briefly) {
+    bool is_resolved = recovery * part->h >= 64.0 * r->resolution; /* else no micro-step sees it */
+    if (recovery > 0.0 && recovery < briefly && is_resolved) {
         return ask_closer(r, part, search, recovery);
     }
     if (search->closer && search->flips_closer++ < MOST_FLIPS_CLOSER) {
