@@ -36,7 +36,8 @@ static const double slight = 1e-8, unresolved = 1e-5;
 static const double swing = 0.1;
 
 /* Digits of a voltage over what the capacitors at a diode make of them in a step: a current that only
- * rounds their voltages is none, however small the others are. So for coils and their currents. */
+ * rounds their voltages is none, however small the others are. So for coils and their currents. A dense map
+ * tells what rounding of states and sources makes of a guard itself, which is often far less. */
 static const double rounded = 16.0 * DBL_EPSILON;
 
 /* Falls this near to each other, in steps, are one event. */
@@ -111,8 +112,14 @@ static inline double rounding_of(const struct dalcs_radau_part *part, int guard,
     if (!(held > 0.0)) {
         return 0.0;
     }
-    return rounded *
-           (is_on ? dalcs_pair_charge_rate(part, guard) * unit[0] : held / part->h * unit[1]);
+    double most = is_on ? dalcs_pair_charge_rate(part, guard) * unit[0] : held / part->h * unit[1];
+    if (part->entry != NULL && dalcs_stage_has_map(part->entry)) {
+        int place = dalcs_system_n_equations(part->component->system) + guard;
+        double by_map =
+            dalcs_stage_spread(&part->stages, part->entry, place, part->in, part->scale);
+        most = dalcs_smaller(most, by_map);
+    }
+    return rounded * most;
 }
 
 enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {

@@ -67,6 +67,7 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
     }
     part->h = known->span;
     part->rounding = 1.0; /* a map's */
+    part->entry = NULL;   /* which may be that of another mode */
     dalcs_segment_inputs(part);
     struct dalcs_stage_brief *step = known->of_span;
     dalcs_stage_brief_apply(&part->stages, step, part->in);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Events that are faint beside what the circuit works with, against closed forms.
 
-usage: faint.py PROGRAM leak|large_leak|flank|difference|large_difference|stray|opposed|late
+usage: faint.py PROGRAM leak|large_leak|flank|difference|large_difference|stray|opposed|overtaken|late
 
 leak: a switch connects a sine to a diode that clamps it, 1000 A; open, it leaks 10 uA, which the diode
 carries as long as the source is positive, and blocks after that: at the zero of the sine, and no volt is
@@ -24,6 +24,10 @@ is none: a diode that could carry 40 uA backwards leaves the 4 pF at another vol
 opposed: two diodes point at a node where nothing is stored, one from a coil, one from 1 mF that rings with 20 ps.
 No current can pass them. When the coil's end comes by the voltage of the capacitor, its diode closes and the
 other one opens; what rounding makes of 1 mF in 10 ps is microamperes, but what enters a node leaves it.
+
+overtaken: a switch charges 1 pF within femtoseconds, past the voltage of 600 pF beside a coil of 3 mH, and a diode
+joins them. What rounding of the currents makes of 3 mH in so short a step is volts, but the coil's end is a
+capacitor, which is known. The time is that of the two charges, RC log((V - v0) / (V - v)) and an LC's cosine.
 
 late: a diode that closes picoseconds after its voltage has turned has had the wrong sign. Whether a run has such
 a thing or not, what the report says of it is said to the user.
@@ -209,6 +213,36 @@ c2 q 0 0.01p ic=4
             checker.check(largest <= 1e-12, f"{case}: {largest:.1e} A pass the diodes")
 
 
+def overtaken(program, checker):
+    volts, ohms, farads, henries, other_farads, at = 10.0, 0.035, 1e-12, 3e-3, 600e-12, 1e-6
+    netlist = f"""a capacitor of 1 pF passes another one, at a coil
+v1 p 0 {volts}
+v2 g 0 pulse(0 1 {at})
+s1 p n g 0 sm
+c1 n 0 {farads} ic={-volts}
+d1 n x di
+c2 x 0 {other_farads} ic=5
+l1 x 0 {henries} ic=0
+.model di d(ron=0.03)
+.model sm sw(vt=0.5 ron={ohms})
+.tran 10n 2u uic
+.end
+"""
+    before = 5.0 * math.cos(at / math.sqrt(henries * other_farads))
+    exact = ohms * farads * math.log(2.0 * volts / (volts - before))
+    for stages, tolerance in ((3, 1e-9), (3, 1e-11), (5, 1e-11), (7, 1e-9)):
+        case = f"overtaken, {stages} stages, {tolerance}"
+        result = run(program, netlist, at=[1.5e-6], method="radau", stages=stages, tolerance=tolerance)
+        if not checker.check(result.status == 0, f"{case}: {result.stderr}"):
+            continue
+        wrong = result.report["certificate"]["wrong_sign"]
+        times = [time - at for time, state in events(result, "d1") if state == "on" and time >= at]
+        print(f"{case}: {len(times)} events, the first after {times[:1]} s, wrong sign {wrong:.1e}")
+        checker.check(wrong <= tolerance, f"{case}: a wrong sign of {wrong:.1e}")
+        checker.check(times != [] and abs(times[0] - exact) <= 1e-4 * exact,
+                      f"{case}: closes after {times[:1]} instead of {exact:.6e} s")
+
+
 def late(program, checker):
     netlist = """a boost converter with a stray capacitor, at rest
 v1 n1 0 sin(0 281 60)
@@ -237,7 +271,7 @@ def main():
     checker = Checker(f"faint {which}")
     {"leak": leak, "large_leak": large_leak, "flank": flank, "difference": difference,
      "large_difference": large_difference, "stray": stray,
-     "opposed": opposed, "late": late}[which](program, checker)
+     "opposed": opposed, "overtaken": overtaken, "late": late}[which](program, checker)
     return checker.finish()
 
 
