@@ -19,7 +19,7 @@ static const double falling_part = 1e-3;
  * to do with each other, agree to this part of it: then it is known, however small it is. */
 static const double agreeing = 0.01;
 
-/* A guard that begins a mode just above 0 is off by so many times that, as far as its beginning tells. */
+/* A guard that begins a mode next to 0 is off by so many times that, as far as its beginning tells. */
 static const double began = 10.0;
 
 /* A guard above so many bands is beyond doubt, though the scales grow. */
@@ -273,12 +273,13 @@ static double end_of_events(const struct dalcs_radau *r, const struct dalcs_rada
     return stops ? end - band * r->options.stop / part->h : INFINITY;
 }
 
-/* How far a guard that begins a mode above 0 may fall and is no event, at most `doubt`: what it is off by at its
- * beginning, and in this step by what the step is off by. Notes a dip that only a shorter step tells. */
-static double doubt_from_above(struct dalcs_radau_part *part, const double *value, int stride,
-                               double end, double doubt) {
+/* How far a guard may fall in the first step of a mode and is no event, at most `doubt`: what it is off by at its
+ * beginning, on either side of 0, and in this step by what the step is off by. Notes a dip that only a shorter
+ * step tells. */
+static double doubt_at_first(struct dalcs_radau_part *part, const double *value, int stride,
+                             double end, double doubt) {
     const struct dalcs_collocation *m = part->stages.method;
-    double least = dalcs_larger(began * value[0], falling_part * doubt);
+    double least = dalcs_larger(began * fabs(value[0]), falling_part * doubt);
     double depth = dalcs_smaller(doubt, dalcs_larger(least, part->ratio * doubt));
     for (int k = 1; k <= m->s && m->node[k] <= end && !part->may_dip; k++) {
         part->may_dip = value[k * stride] < -least && value[k * stride] >= -depth;
@@ -292,7 +293,7 @@ static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *par
     int last = part->stages.layout.n_nodes - 1;
     double doubt = dalcs_doubt_about(r, part, guard, scale_of(part, guard, unit), unit);
     if (part->fresh) {
-        return value[0] > 0.0 ? doubt_from_above(part, value, stride, end, doubt) : doubt;
+        return doubt_at_first(part, value, stride, end, doubt);
     }
     return value[last * stride] < value[0] ? falling_part * doubt : doubt;
 }
