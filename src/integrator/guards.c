@@ -101,17 +101,24 @@ static inline double scale_of(const struct dalcs_radau_part *part, int guard, co
                : control_scale(part, guard, unit);
 }
 
-/* What rounding may make of a guard that is 0, in V or A. */
-static inline double rounding_of(const struct dalcs_radau_part *part, int guard,
-                                 const double *unit) {
+/* What rounding makes of a guard that is 0 at most, in V or A: as far as what is held beside it tells. */
+static inline double most_rounding_of(const struct dalcs_radau_part *part, int guard,
+                                      const double *unit) {
     if (guard >= part->component->system->n_pairs) {
         return 0.0;
     }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
-    double held = is_on ? part->held_charge[guard] : part->held_flux[guard];
-    if (!(held > 0.0)) {
+    return rounded / part->h *
+           (is_on ? part->held_charge[guard] * unit[0] : part->held_flux[guard] * unit[1]);
+}
+
+/* The same of all that is known. */
+static double rounding_of(const struct dalcs_radau_part *part, int guard, const double *unit) {
+    if (!(most_rounding_of(part, guard, unit) > 0.0)) {
         return 0.0;
     }
+    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
+    double held = is_on ? part->held_charge[guard] : part->held_flux[guard];
     double most = is_on ? dalcs_pair_charge_rate(part, guard) * unit[0] : held / part->h * unit[1];
     if (part->entry != NULL && dalcs_stage_has_map(part->entry)) {
         int place = dalcs_system_n_equations(part->component->system) + guard;
@@ -440,7 +447,9 @@ bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *pa
             double least = g < part->component->system->n_pairs
                                ? lowest(part, coefficient, 1.0)
                                : lowest_control(part, g, coefficient);
-            all = least > band * scale_of(part, g, unit) + clear * rounding_of(part, g, unit);
+            least -= band * scale_of(part, g, unit);
+            all = least > clear * most_rounding_of(part, g, unit) ||
+                  least > clear * rounding_of(part, g, unit);
             coefficient += part->stages.layout.n_nodes;
         }
     }
