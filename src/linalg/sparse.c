@@ -29,7 +29,8 @@ static bool make_room(struct dalcs_csr *a, size_t n) {
         return false;
     }
     _Static_assert(2 * sizeof(*a->p) <= sizeof(*a->x), "two indices take the room of a value");
-    a->p = (int *)(a->x + n);
+    void *indices = a->x + n;
+    a->p = indices;
     a->j = a->p + n_starts;
     return true;
 }
