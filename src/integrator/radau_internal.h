@@ -19,6 +19,10 @@ void dalcs_segment_accept(struct dalcs_radau *r, struct dalcs_radau_part *part, 
 /* part->in for a step of length part->h from part->t. */
 void dalcs_segment_inputs(struct dalcs_radau_part *part);
 
+/* Such a step in the present mode, into part->out. */
+enum dalcs_status dalcs_segment_solve(struct dalcs_radau_part *part,
+                                      struct dalcs_stage_entry **entry) DALCS_MUST_CHECK;
+
 /* Defects of a state, over what is allowed, that need no projection; of larger ones currents across
  * capacitors are the derivatives. */
 static const double dalcs_worth_projecting = 1e-2;

@@ -10,6 +10,7 @@
 #include "extremes.h"
 #include "front.h"
 #include "guards.h"
+#include "projection.h"
 #include "radau_internal.h"
 #include "recurrence.h"
 #include "step_length.h"
@@ -29,11 +30,6 @@ static const double most_tolerated = 2e-13;
 
 /* A mode may be over after so little of a step. */
 static const double briefly = 1.0 / 64.0;
-
-/* A projecting step is this many rungs below: the first of these in which the mode can be seen. */
-enum { PROJECTIONS = 3 };
-
-static const int projection[PROJECTIONS] = {30, 20, 10};
 
 enum {
     MOST_PREFERRED = 2, /* rungs of the ladder, for the sake of factors */
@@ -65,8 +61,8 @@ void dalcs_segment_inputs(struct dalcs_radau_part *part) {
     dalcs_excitation_coefficients(&part->excitation, part->t, part->h, part->in + s->n_x + 1);
 }
 
-static enum dalcs_status solve_step(struct dalcs_radau_part *part,
-                                    struct dalcs_stage_entry **entry) {
+enum dalcs_status dalcs_segment_solve(struct dalcs_radau_part *part,
+                                      struct dalcs_stage_entry **entry) {
     dalcs_segment_inputs(part);
     DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->h, part->in,
                                 part->out, entry));
@@ -98,66 +94,11 @@ struct search {
     double tolerated; /* the ratio that is let pass */
 };
 
-/* Where the polynomial of a step begins. *moves: that is elsewhere, farther than the step goes. */
-static void find_beginning(struct dalcs_radau_part *part, bool *moves) {
-    const struct dalcs_collocation *m = part->stages.method;
-    int stride = part->stages.layout.stride;
-    for (int x = 0; x < part->component->system->n_x; x++) {
-        part->after[x] = 0.0;
-        for (int i = 1; i <= m->s; i++) {
-            part->after[x] += m->back[i - 1] * part->out[i * stride + x];
-        }
-        double defect = fabs(part->after[x] - part->x[x]);
-        double regular = fabs(part->out[m->s * stride + x] - part->after[x]);
-        *moves = *moves || defect > 4.0 * regular;
-    }
-}
-
-/* A step of length part->h, up to limit. *means_something: it is long enough for the mode to be seen beside
- * rounding. */
-static enum dalcs_status try_projection(struct dalcs_radau_part *part, double limit,
-                                        bool *means_something) {
-    if (part->h > limit - part->t) {
-        return DALCS_OK;
-    }
-    struct dalcs_stage_entry *entry;
-    enum dalcs_status status = solve_step(part, &entry);
-    *means_something = status == DALCS_OK && dalcs_stage_residual(entry) <= dalcs_largest_residual;
-    return status;
-}
-
-/* Puts a state that is a little off, as interpolation leaves it at an event, on what its mode allows:
- * that is where the stages of a step in the mode are, here so short a step that only such a defect
- * moves the state, and where their polynomial starts. If there is nothing to move, the step that was
- * tried before is there again. */
+/* See projection.h. */
 static enum dalcs_status project(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                  struct search *search, bool *moved) {
-    int n_x = part->component->system->n_x;
-    double tried = part->h;
-    *moved = false;
     search->projected = true;
-    if (n_x == 0) {
-        return DALCS_OK;
-    }
-    dalcs_radau_swap_out(part, &part->out_tried);
-    bool means_something = false;
-    enum dalcs_status status = DALCS_OK;
-    for (int k = 0; k < PROJECTIONS && !means_something && status >= DALCS_OK; k++) {
-        part->h = search->fixed ? ldexp(tried, -projection[k])
-                                : dalcs_radau_ladder(part, (part->level & ~7) + projection[k]);
-        status = try_projection(part, search->limit, &means_something);
-    }
-    if (means_something) {
-        find_beginning(part, moved);
-    }
-    if (*moved) {
-        dalcs_radau_go_after(r, part);
-        return DALCS_OK;
-    }
-    dalcs_radau_swap_out(part, &part->out_tried);
-    part->h = tried;
-    dalcs_segment_inputs(part);
-    return status < DALCS_OK ? status : DALCS_OK;
+    return dalcs_projection_try(r, part, search->limit, search->fixed, moved);
 }
 
 /* What was seen of errors in another mode, or from another state, does not count. */
@@ -227,23 +168,13 @@ static enum dalcs_status refuse(struct dalcs_radau_part *part, struct search *se
     return DALCS_OK;
 }
 
-/* Puts a state on what its mode allows if it is off by so little that it moves farther in the shortest of
- * steps, and project() cannot tell: rounding of voltages across milliohms, on factors, may be more current
- * than is allowed. It is where the polynomial of the step starts that was tried last. Not if that is farther
- * away than an error may be: then the state is right, and something much faster than the step goes on. */
+/* Where project() cannot tell. */
 static bool settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                    struct search *search, const double *unit) {
-    bool moves = false;
-    find_beginning(part, &moves);
-    const struct dalcs_system *s = part->component->system;
-    for (int x = 0; x < s->n_x; x++) {
-        double most = r->inner_tolerance * unit[s->column_is_current[x]];
-        if (!(fabs(part->after[x] - part->x[x]) <= most)) {
-            return false;
-        }
+    if (!dalcs_projection_settle(r, part, unit)) {
+        return false;
     }
     search->settled = true;
-    dalcs_radau_go_after(r, part);
     start_over(part, search, search->level_before_stuck);
     return true;
 }
@@ -495,7 +426,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return fall_back(r, part, search->limit, search->first_level);
     }
     part->h = search->fixed ? r->options.fixed_step : dalcs_radau_ladder(part, part->level);
-    enum dalcs_status status = solve_step(part, &entry);
+    enum dalcs_status status = dalcs_segment_solve(part, &entry);
     if (status < DALCS_OK) {
         return status;
     }

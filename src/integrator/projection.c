@@ -1,0 +1,80 @@
+/* projection.c - where the stages of a step in the mode are, extrapolated to its beginning. */
+#include "projection.h"
+
+#include <math.h>
+
+/* A projecting step is this many rungs below: the first of these in which the mode can be seen. */
+enum { PROJECTIONS = 3 };
+
+static const int projection[PROJECTIONS] = {30, 20, 10};
+
+/* Where the polynomial of a step begins. *moves: that is elsewhere, farther than the step goes. */
+static void find_beginning(struct dalcs_radau_part *part, bool *moves) {
+    const struct dalcs_collocation *m = part->stages.method;
+    int stride = part->stages.layout.stride;
+    for (int x = 0; x < part->component->system->n_x; x++) {
+        part->after[x] = 0.0;
+        for (int i = 1; i <= m->s; i++) {
+            part->after[x] += m->back[i - 1] * part->out[i * stride + x];
+        }
+        double defect = fabs(part->after[x] - part->x[x]);
+        double regular = fabs(part->out[m->s * stride + x] - part->after[x]);
+        *moves = *moves || defect > 4.0 * regular;
+    }
+}
+
+/* A step of length part->h, up to limit. *means_something: it is long enough for the mode to be seen beside
+ * rounding. */
+static enum dalcs_status try_projection(struct dalcs_radau_part *part, double limit,
+                                        bool *means_something) {
+    if (part->h > limit - part->t) {
+        return DALCS_OK;
+    }
+    struct dalcs_stage_entry *entry;
+    enum dalcs_status status = dalcs_segment_solve(part, &entry);
+    *means_something = status == DALCS_OK && dalcs_stage_residual(entry) <= dalcs_largest_residual;
+    return status;
+}
+
+enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       double limit, bool fixed, bool *moved) {
+    double tried = part->h;
+    *moved = false;
+    if (part->component->system->n_x == 0) {
+        return DALCS_OK;
+    }
+    dalcs_radau_swap_out(part, &part->out_tried);
+    bool means_something = false;
+    enum dalcs_status status = DALCS_OK;
+    for (int k = 0; k < PROJECTIONS && !means_something && status >= DALCS_OK; k++) {
+        part->h = fixed ? ldexp(tried, -projection[k])
+                        : dalcs_radau_ladder(part, (part->level & ~7) + projection[k]);
+        status = try_projection(part, limit, &means_something);
+    }
+    if (means_something) {
+        find_beginning(part, moved);
+    }
+    if (*moved) {
+        dalcs_radau_go_after(r, part);
+        return DALCS_OK;
+    }
+    dalcs_radau_swap_out(part, &part->out_tried);
+    part->h = tried;
+    dalcs_segment_inputs(part);
+    return status < DALCS_OK ? status : DALCS_OK;
+}
+
+bool dalcs_projection_settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                             const double *unit) {
+    bool moves = false;
+    find_beginning(part, &moves);
+    const struct dalcs_system *s = part->component->system;
+    for (int x = 0; x < s->n_x; x++) {
+        double most = r->inner_tolerance * unit[s->column_is_current[x]];
+        if (!(fabs(part->after[x] - part->x[x]) <= most)) {
+            return false;
+        }
+    }
+    dalcs_radau_go_after(r, part);
+    return true;
+}
