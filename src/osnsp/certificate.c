@@ -99,7 +99,7 @@ static void recover_states(const struct dalcs_osnsp *p, const double *u, double 
             y[x] = y[ends[0]] - y[ends[1]];
             continue;
         }
-        if (p->keeps_states) {
+        if (p->keeps_states && f->Xu.p[x] < f->Xu.p[x + 1]) {
             continue;
         }
         double sum = 0.0;

@@ -73,7 +73,7 @@ struct dalcs_osnsp {
     bool refines;    /* set by the caller: each answer of a regular mode is refined once, for small
                         currents next to large ones, which the certificate lets be off */
     bool
-        keeps_states; /* states that are no voltage between two nodes are as in the answer, not recovered */
+        keeps_states; /* states that more than voltages of nodes gives are as in the answer, not recovered */
     bool looks_around; /* nothing was certified: currents are measured against whole chains */
 
     struct dalcs_step_form **form; /* most recently used first */

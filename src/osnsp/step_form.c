@@ -332,6 +332,20 @@ static enum dalcs_status gather_checked_rows(struct dalcs_step_form *f,
     return status;
 }
 
+/* x = v(a) - v(b) with unit coefficients leaves nothing to check: evaluating the row again would repeat
+ * the very same subtraction. */
+static bool is_definition(const struct elimination *e, int i) {
+    const struct dalcs_csr *A = &e->s->A;
+    bool defines = e->is_pivot[i] && i >= e->s->n_x && A->p[i + 1] - A->p[i] <= 3;
+    for (int k = A->p[i]; k < A->p[i + 1]; k++) {
+        defines = defines && fabs(A->x[k]) == 1.0;
+    }
+    for (int k = 0; k < e->row[i].n; k++) {
+        defines = defines && e->row[i].column[k] < e->n_left;
+    }
+    return defines;
+}
+
 /* Numbers what is left, and splits the rows into K, R, X and Xu. */
 static enum dalcs_status collect(struct dalcs_step_form *f, const struct elimination *e,
                                  const int *row_of_dual) {
@@ -394,14 +408,8 @@ static enum dalcs_status collect(struct dalcs_step_form *f, const struct elimina
             }
         }
     }
-    /* x = v(a) - v(b) with unit coefficients leaves nothing to check: evaluating the row again
-     * would repeat the very same subtraction. */
     for (int i = 0; i < n_equations; i++) {
-        bool is_definition = e->is_pivot[i] && i >= s->n_x && s->E.p[i] == s->E.p[i + 1];
-        for (int k = s->A.p[i]; k < s->A.p[i + 1]; k++) {
-            is_definition = is_definition && fabs(s->A.x[k]) == 1.0;
-        }
-        if (!is_definition || s->A.p[i + 1] - s->A.p[i] > 3) {
+        if (!is_definition(e, i)) {
             f->checked[f->n_checked++] = i;
         }
     }
