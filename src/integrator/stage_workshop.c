@@ -2,26 +2,16 @@
 #include "stage_workshop.h"
 
 #include "extended.h"
+#include "null_space.h"
 #include "stage_matrix.h"
 #include "wide_vectors.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A pivot smaller than this (balanced) asks for a rank decision; kept ones are above 1e-7, those of
- * singular modes below 1e-15. */
+/* A pivot smaller than this (balanced) asks whether the mode is singular. */
 static const double doubtful_pivot = 1e-9;
-static const double rank_tolerance = 1e-12;
-
-/* Extended precision solves well above this, where double precision takes a very short step, in which coils
- * are next to open, for a singular mode. Followers come first there, too: KCL that lets a coil have no
- * current is exact that way, and off by what h/L loses beside 1/R the other way. */
-static const long double regular_pivot = 1e-14L;
-
-/* What a null vector has to do with a state cancels to this part of its terms, or does not. */
-static const double exact_cancelling = 1e-9;
 
 /* The smallest pivot (balanced) that makes an unknown a follower. */
 static const long double least_follower = 1e-2L;
@@ -276,84 +266,53 @@ static void balance(struct dalcs_stage_workshop *b) {
     }
 }
 
-/* Null vectors of S from a rank-revealing QR. They have no state in them, so they belong to every
- * eigenvalue and step. */
-static enum dalcs_status find_null_space(struct dalcs_stage_workshop *b, const double *S) {
+/* The null vectors of the columns, or else of the rows, of what has no memory: *vector[*nullity][n], over
+ * the scales of all unknowns and of length 1, with 0 in the places of states. */
+static enum dalcs_status find_null_vectors(struct dalcs_stage_workshop *b, bool of_columns,
+                                           int *nullity, double **vector) {
     int n = b->n;
-    double *qr = dalcs_stage_workshop_reals(&b->arena, n * n);
-    double *tau = dalcs_stage_workshop_reals(&b->arena, n);
-    lapack_int *order = dalcs_arena_alloc(&b->arena, (size_t)n, sizeof(*order));
-    if (qr == NULL || tau == NULL || order == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    memcpy(qr, S, (size_t)n * (size_t)n * sizeof(double));
-    if (LAPACKE_dgeqp3(LAPACK_COL_MAJOR, n, n, qr, n, order, tau) != 0) {
-        return DALCS_E_NOMEM;
-    }
-    int rank = 0;
-    while (rank < n && fabs(qr[rank * n + rank]) > rank_tolerance * fabs(qr[0])) {
-        rank++;
-    }
-    b->nullity = n - rank;
-    if (b->nullity == 0) {
-        return DALCS_OK;
-    }
-    b->left = dalcs_stage_workshop_reals(&b->arena, n * b->nullity);
-    b->right = dalcs_stage_workshop_reals(&b->arena, n * b->nullity);
-    if (b->left == NULL || b->right == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    if (rank > 0) {
-        (void)LAPACKE_dtrtrs(LAPACK_COL_MAJOR, 'U', 'N', 'N', rank, b->nullity, qr, n,
-                             qr + rank * n, n);
-    }
-    for (int k = 0; k < b->nullity; k++) {
-        double *v = b->right + k * n;
-        for (int i = 0; i < rank; i++) {
-            v[order[i] - 1] = -qr[(rank + k) * n + i];
-        }
-        v[order[rank + k] - 1] = 1.0;
-        for (int x = 0; x < b->n_x; x++) {
-            v[x] = 0.0;
+    int n_x = b->n_x;
+    const double *scale = of_columns ? b->column_scale : b->row_scale;
+    struct dalcs_triplets t = {0};
+    struct dalcs_null_space space;
+    enum dalcs_status status = DALCS_OK;
+    for (int i = 0; i < n; i++) {
+        for (int j = n_x; j < n && status == DALCS_OK; j++) {
+            double a = of_columns ? b->plain_base[j * n + i] : b->plain_base[i * n + j];
+            status = a != 0.0 ? dalcs_triplets_add(&t, i, j - n_x, a) : DALCS_OK;
         }
     }
-    if (LAPACKE_dorgqr(LAPACK_COL_MAJOR, n, n, n, qr, n, tau) != 0) {
-        return DALCS_E_NOMEM;
+    if (status == DALCS_OK) {
+        status = dalcs_null_space_find(&space, n, n - n_x, &t);
     }
-    for (int k = 0; k < b->nullity; k++) {
-        for (int i = 0; i < n; i++) {
-            b->left[k * n + i] = i < b->n_x ? 0.0 : qr[(rank + k) * n + i];
+    dalcs_triplets_finish(&t);
+    DALCS_TRY(status);
+    *nullity = space.n_free;
+    *vector = dalcs_stage_workshop_reals(&b->arena, n * *nullity);
+    for (int k = 0; k < *nullity && *vector != NULL; k++) {
+        double *v = *vector + k * n;
+        double square = 0.0;
+        dalcs_null_space_vector(&space, k, v + n_x);
+        for (int i = n_x; i < n; i++) {
+            v[i] /= scale[i];
+            square += v[i] * v[i];
+        }
+        for (int i = n_x; i < n; i++) {
+            v[i] /= sqrt(square);
         }
     }
-    return DALCS_OK;
+    dalcs_null_space_finish(&space);
+    return *vector != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-static bool cancels(double sum, double size) {
-    return fabs(sum) <= exact_cancelling * size;
-}
-
-/* Have states no part in the null vectors, neither their equations nor they themselves? Then the mode is
- * singular with any step length. A very short step hides what states have to do with the rest. */
-static bool is_singular_always(const struct dalcs_stage_workshop *b) {
-    bool always = true;
-    for (int k = 0; k < b->nullity; k++) {
-        const double *left = b->left + k * b->n;
-        const double *right = b->right + k * b->n;
-        for (int x = 0; x < b->n_x && always; x++) {
-            double sum[2] = {0.0, 0.0};
-            double size[2] = {0.0, 0.0};
-            for (int i = b->n_x; i < b->n; i++) {
-                double in_equation = b->base[i * b->n + x] * right[i];
-                double of_state = b->base[x * b->n + i] * left[i];
-                sum[0] += in_equation;
-                sum[1] += of_state;
-                size[0] += fabs(in_equation);
-                size[1] += fabs(of_state);
-            }
-            always = cancels(sum[0], size[0]) && cancels(sum[1], size[1]);
-        }
-    }
-    return always;
+/* Is the mode singular, whatever the step length? In a passive circuit null vectors of S have then no state
+ * in them: they are those of its columns, and of its rows, of what has no memory. These know no step length,
+ * beside the shortest of which coils would be next to open. */
+static enum dalcs_status find_null_space(struct dalcs_stage_workshop *b) {
+    int n_of_rows;
+    DALCS_TRY(find_null_vectors(b, true, &b->nullity, &b->right));
+    DALCS_TRY(find_null_vectors(b, false, &n_of_rows, &b->left));
+    return n_of_rows == b->nullity ? DALCS_OK : DALCS_SINGULAR;
 }
 
 /* With left right^T added, S is regular and its solutions, where there are any, are those of S that
@@ -461,15 +420,6 @@ static void rescale_followers(struct dalcs_stage_workshop *b) {
     list_followers(b);
 }
 
-static void keep_all(struct dalcs_stage_workshop *b) {
-    b->n_kept = b->n;
-    b->n_followers = 0;
-    for (int c = 0; c < b->n; c++) {
-        b->kept[c] = c;
-        b->kept_row[c] = c;
-    }
-}
-
 /* The system at sigma of what is kept, with its right-hand sides. im: NULL where sigma is real. */
 static void fill_system(const struct dalcs_stage_workshop *b, long double sigma_re,
                         long double sigma_im, long double *im) {
@@ -535,18 +485,12 @@ static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
     long double pivot = solve_kept(b);
     if (pivot < doubtful_pivot && b->nullity == 0) {
         b->is_known = false;
-        DALCS_TRY(find_null_space(b, b->S));
-        bool always = b->nullity > 0 && is_singular_always(b);
-        if (!always && pivot > regular_pivot) {
-            b->nullity = 0;
-        }
-        fill_whole(b);
-        if (always || b->nullity == 0) {
+        DALCS_TRY(find_null_space(b));
+        if (b->nullity > 0) {
+            fill_whole(b);
             eliminate_followers(b);
-        } else {
-            keep_all(b);
+            pivot = solve_kept(b);
         }
-        pivot = solve_kept(b);
     }
     b->entry->frees_states = b->n_kept == b->n_x && b->nullity == 0;
     take_real(b);

@@ -355,6 +355,27 @@ END_TEST
 
 /* ---- Watched voltages, natural units, the store ---------------------------------------------- */
 
+/* Coils in series with a diode and milliohms. In a short step they are next to open: of conductances of 1e4 S
+ * and of h/L. That makes no mode singular, and two diodes side by side are as singular as in a long one. */
+START_TEST(test_next_to_open) {
+    const double state[] = {1.0, 1.0 + 1e-6};
+    const double together = (3.0 * state[0] + 0.5 * state[1]) / 3.5;
+    start("next to open\nL1 0 a 3m\nD1 a b\nD2 a b\nR1 b c 0.1m\nL2 c 0 0.5m\n.tran 1 1\n", 7);
+    for (double h = 1e-4; h > 1e-20; h *= 1e-3) {
+        for (int both = 0; both <= 1; both++) {
+            uint64_t mode = DIODE("d1") | (both == 1 ? DIODE("d2") : 0);
+            ck_assert_int_eq(step(mode, 0.0, h, state), both == 1 ? 7 : 0);
+            const double *end = out + 7 * stages.layout.stride;
+            for (int k = 0; k < 2; k++) {
+                ck_assert_double_eq_tol(end[k], together, 1e-13 + h);
+            }
+        }
+    }
+    finish();
+}
+
+END_TEST
+
 START_TEST(test_watched) {
     start("watched\nV1 a 0 SIN(0 1 0.1)\nR1 a b 1\nC1 b 0 1\nS1 b 0 b 0 sm\nS2 b 0 a 0 sm\n"
           "S3 b 0 g 0 sm\nVg g 0 PULSE(0 1 0 0 0 1 2)\n.model sm SW(Vt=0.5 Roff=10 Ron=1)\n"
@@ -419,4 +440,4 @@ START_TEST(test_store) {
 END_TEST
 
 RUN_TESTS("stages", test_against_direct_solution, test_rc, test_index_two, test_parallel_diodes,
-          test_floating, test_clash, test_watched, test_store)
+          test_floating, test_clash, test_next_to_open, test_watched, test_store)
