@@ -31,6 +31,9 @@ static const double most_tolerated = 2e-13;
 /* A mode may be over after so little of a step. */
 static const double briefly = 1.0 / 64.0;
 
+/* See is_outsized(). */
+static const double outsized = 1e6;
+
 enum {
     MOST_PREFERRED = 2, /* rungs of the ladder, for the sake of factors */
     STUCK = 3,          /* smaller steps without a smaller error */
@@ -416,6 +419,18 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
     }
 }
 
+/* Signals so many times as large as any before: it may be that a coil's current has nowhere to go in this
+ * mode, and a step that short makes of it what vouches for any error. */
+static bool is_outsized(const struct dalcs_radau_part *part,
+                        const struct dalcs_step_quality *quality) {
+    bool is = false;
+    for (int unit = 0; unit < 2; unit++) {
+        double before = part->unit_scale[unit];
+        is = is || (before > 0.0 && quality->here[unit] > outsized * before);
+    }
+    return is;
+}
+
 /* One try. *done: there is a segment. */
 static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                   struct search *search, bool *done) {
@@ -448,6 +463,9 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         dalcs_step_judge(r, part, entry, end, &quality);
         means_something =
             quality.ratio == quality.ratio && !dalcs_step_clashes(part, entry, end, quality.unit);
+        if (part->fresh && search->restarts == 0 && !search->fixed && is_outsized(part, &quality)) {
+            quality.ratio = INFINITY;
+        }
     }
     bool controlled = !search->fixed || (part->fresh && search->restarts == 0);
     if (!means_something || (controlled && !(quality.ratio <= search->tolerated))) {

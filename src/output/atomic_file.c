@@ -15,7 +15,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#define BUFFER_BYTES ((size_t)1 << 15)
+#define BUFFER_BYTES ((size_t)1 << 16)
 #define NAME_TRIES   100
 
 static enum dalcs_status fail(struct dalcs_atomic_file *file, int error) {
