@@ -118,13 +118,15 @@ static double rounding_of(const struct dalcs_radau_part *part, int guard, const 
         return 0.0;
     }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
-    double held = is_on ? part->held_charge[guard] : part->held_flux[guard];
-    double most = is_on ? dalcs_pair_charge_rate(part, guard) * unit[0] : held / part->h * unit[1];
+    double most = is_on ? dalcs_pair_charge_rate(part, guard) * unit[0]
+                        : part->held_flux[guard] / part->h * unit[1];
     if (part->entry != NULL && dalcs_stage_has_map(part->entry)) {
         int place = dalcs_system_n_equations(part->component->system) + guard;
         double by_map =
             dalcs_stage_spread(&part->stages, part->entry, place, part->in, part->scale);
         most = dalcs_smaller(most, by_map);
+    } else if (!is_on) {
+        most = dalcs_smaller(most, dalcs_pair_flux(part, guard) / part->h);
     }
     return rounded * most;
 }
@@ -516,21 +518,45 @@ static bool was_tied(const struct dalcs_radau_part *part, int pair, const double
     return before != NULL && is_nothing(part, pair, before, part->stages.layout.stride, unit);
 }
 
+/* Does it share a node with a pair that has just changed sides? Then something did happen to it. */
+static bool is_beside_flipped(const struct dalcs_radau_part *part, int pair) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const int *mine = part->pair_row + 2 * pair;
+    bool found = false;
+    for (int d = 0; d < p->system->n_pairs && !found; d++) {
+        if (dalcs_mode_has(part->modes_before, d) != dalcs_osnsp_is_on(p, d)) {
+            const int *its = part->pair_row + 2 * d;
+            for (int e = 0; e < 2; e++) {
+                found = found || (mine[e] >= 0 && (mine[e] == its[0] || mine[e] == its[1]));
+            }
+        }
+    }
+    return found;
+}
+
 bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determined,
                             const double *unit) {
     int n_pairs = part->component->system->n_pairs;
     bool tied = false;
     for (int d = 0; d < n_pairs && !tied && !(n_pairs > DALCS_MANY_PAIRS && part->flipped); d++) {
-        tied = dalcs_guards_is_tied(part, d, unit) && !(is_determined && was_tied(part, d, unit));
+        tied = dalcs_guards_is_tied(part, d, unit) &&
+               !(is_determined && was_tied(part, d, unit) && !is_beside_flipped(part, d));
     }
     return tied;
+}
+
+/* Is its value at the end of the step above 0 by more than at the start, however little? */
+static bool grows(const struct dalcs_radau_part *part, int pair) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
+    return value[(l->n_nodes - 1) * l->stride] > fabs(value[0]);
 }
 
 bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     bool found = false;
     for (int d = 0; d < p->system->n_pairs && p->system->n_pairs <= DALCS_MANY_PAIRS; d++) {
-        if (dalcs_osnsp_is_on(p, d) && dalcs_guards_is_tied(part, d, unit)) {
+        if (dalcs_osnsp_is_on(p, d) && dalcs_guards_is_tied(part, d, unit) && !grows(part, d)) {
             dalcs_osnsp_command(p, d, false);
             found = true;
         }

@@ -49,15 +49,15 @@ bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_
 /* Is there a diode with neither current nor voltage during the whole step? It may change sides without
  * anything else, and where that leaves a choice (sources in parallel, floating nodes) only the OSNSP
  * knows which is of least norm. A closed one that had no current before the event either is none of them
- * where the mode determines all: nothing happened to it. Large components, where that is dear, are asked
- * only at their start and at edges, not after every event. */
+ * where the mode determines all, unless a neighbour changed sides: nothing happened to it. Large
+ * components, where that is dear, are asked only at their start and at edges, not after every event. */
 bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determined,
                             const double *unit);
 
 /* Is this pair such a diode? */
 bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit);
 
-/* Opens the closed diodes among them. False: there is none. */
+/* Opens the closed diodes among them but those in which a current begins. False: there is none. */
 bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit);
 
 /* Is there one in the first fall that was not clear of 0 before? */

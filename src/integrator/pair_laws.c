@@ -83,9 +83,11 @@ static void find_fluxes(struct dalcs_radau_part *part, double *at_node /* [n_equ
 }
 
 /* row < 0: ground. */
-static struct dalcs_pair_law law_of_node(const struct dalcs_system *s, int row) {
+static struct dalcs_pair_law law_of_node(const struct dalcs_system *s, int row,
+                                         const double *inductance) {
     int n_equations = dalcs_system_n_equations(s);
     struct dalcs_pair_law law = {.holds = row >= 0};
+    law.inductance = row >= 0 ? inductance[s->dual[row]] : 0.0;
     for (int k = row >= 0 ? s->A.p[row] : 0; row >= 0 && k < s->A.p[row + 1]; k++) {
         int c = s->A.j[k];
         bool is_branch = c >= n_equations || s->column_is_current[c];
@@ -109,10 +111,12 @@ static struct dalcs_pair_law law_of_resistance(const struct dalcs_system *s, int
 void dalcs_pair_laws_find(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     find_charges(part);
-    find_fluxes(part, part->cluster_charge);
+    double *inductance = part->cluster_charge; /* [n_equations] at nodes; a work space of later */
+    find_fluxes(part, inductance);
     for (int d = 0; d < s->n_pairs; d++) {
-        part->pair_law[DALCS_PAIR_LAWS * d] = law_of_node(s, part->pair_row[2 * d]);
-        part->pair_law[DALCS_PAIR_LAWS * d + 1] = law_of_node(s, part->pair_row[2 * d + 1]);
+        part->pair_law[DALCS_PAIR_LAWS * d] = law_of_node(s, part->pair_row[2 * d], inductance);
+        part->pair_law[DALCS_PAIR_LAWS * d + 1] =
+            law_of_node(s, part->pair_row[2 * d + 1], inductance);
         part->pair_law[DALCS_PAIR_LAWS * d + 2] = law_of_resistance(s, d);
     }
 }
@@ -197,4 +201,34 @@ double dalcs_pair_charge_rate(const struct dalcs_radau_part *part, int pair) {
         find_rates(part);
     }
     return dalcs_smaller(held, part->rounding * rate->of[pair]);
+}
+
+/* The largest current at the nodes of the step, in A, of what a KCL row holds. */
+static double largest_current(const struct dalcs_radau_part *part, int row) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    int n_equations = dalcs_system_n_equations(s);
+    double largest = 0.0;
+    for (int i = s->A.p[row]; i < s->A.p[row + 1]; i++) {
+        int c = s->A.j[i];
+        bool is_current = c < n_equations
+                              ? s->column_is_current[c]
+                              : dalcs_osnsp_is_on(&part->component->osnsp, c - n_equations);
+        for (int k = 0; k < l->n_nodes && is_current; k++) {
+            largest = dalcs_larger(largest, fabs(part->out[k * l->stride + c]));
+        }
+    }
+    return largest;
+}
+
+double dalcs_pair_flux(const struct dalcs_radau_part *part, int pair) {
+    double flux = 0.0;
+    for (int e = 0; e < 2; e++) {
+        double inductance = part->pair_law[DALCS_PAIR_LAWS * pair + e].inductance;
+        if (inductance > 0.0) {
+            double largest = largest_current(part, part->pair_row[2 * pair + e]);
+            flux = dalcs_larger(flux, inductance * largest);
+        }
+    }
+    return flux;
 }
