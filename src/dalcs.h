@@ -471,6 +471,7 @@ struct dalcs_report {
         long restarts;       /* pairs of micro-steps that decided a mode or a jump */
         long euler_steps;    /* steps where radau fell back to implicit Euler */
         long periodic_steps; /* steps that were those of a period before */
+        long leapt_steps;    /* steps in periods that were taken as one */
         long osnsp;          /* one-step problems solved, over all components */
         long pivots;         /* mode changes tried */
         long factorizations; /* of KLU and LAPACK */

@@ -105,6 +105,9 @@ static void write_method(FILE *out, const struct dalcs_report *report) {
     if (report->work.periodic_steps > 0) {
         fprintf(out, ", %ld as a period before", report->work.periodic_steps);
     }
+    if (report->work.leapt_steps > 0) {
+        fprintf(out, ", %ld in whole periods", report->work.leapt_steps);
+    }
     fputc('\n', out);
 }
 

@@ -127,8 +127,7 @@ static void recognise_pulse(const struct dalcs_commands *c, struct dalcs_command
 
 static void next_of_pulse(struct dalcs_command *m) {
     int way = m->is_on ? 1 : 0;
-    m->next =
-        m->pulse->u.pulse.delay + (double)m->n[way] * m->pulse->u.pulse.period + m->offset[way];
+    m->next = dalcs_command_time(m, way, m->n[way]);
     m->moves = true;
 }
 
@@ -208,4 +207,14 @@ bool dalcs_commands_obey(struct dalcs_commands *commands, double t) {
     }
     find_earliest(commands);
     return moved;
+}
+
+void dalcs_commands_leap(struct dalcs_commands *commands, long n_periods) {
+    for (int k = 0; k < commands->n; k++) {
+        struct dalcs_command *m = &commands->command[k];
+        m->n[0] += n_periods;
+        m->n[1] += n_periods;
+        next_of_pulse(m);
+    }
+    find_earliest(commands);
 }

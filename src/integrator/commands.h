@@ -24,6 +24,11 @@ struct dalcs_command {
     long n[2];                          /* period of the next of each */
 };
 
+/* Of its n-th move (0: closes, 1: opens), for one by a PULSE. */
+static inline double dalcs_command_time(const struct dalcs_command *m, int way, long n) {
+    return m->pulse->u.pulse.delay + (double)n * m->pulse->u.pulse.period + m->offset[way];
+}
+
 struct dalcs_commands {
     const struct dalcs_circuit *circuit;
     const struct dalcs_system *system;
@@ -43,5 +48,8 @@ void dalcs_commands_start(struct dalcs_commands *commands);
 
 /* Moves what is due at t, and looks for the next. Returns whether anything moved. */
 bool dalcs_commands_obey(struct dalcs_commands *commands, double t);
+
+/* All are PULSEs of the same period: passes over so many of them. */
+void dalcs_commands_leap(struct dalcs_commands *commands, long n_periods);
 
 #endif

@@ -427,35 +427,45 @@ static double lowest(const struct dalcs_radau_part *part, const double *coeffici
     return least;
 }
 
-/* Likewise of a voltage that moves a switch, less its threshold. */
-static double lowest_control(const struct dalcs_radau_part *part, int guard,
-                             const double *coefficient) {
+/* What sign times a coefficient of a guard has to be above so that it is beyond doubt, but for rounding. */
+static double doubtless(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int guard,
+                        double *sign) {
+    double bound = clear * dalcs_doubt_band(r, part) * scale_of(part, guard, part->unit_scale);
+    *sign = 1.0;
+    if (guard < part->component->system->n_pairs) {
+        return bound;
+    }
     const struct dalcs_pair *pair = &part->component->system->pair[pair_of(part, guard)];
-    return dalcs_osnsp_is_on(&part->component->osnsp, pair_of(part, guard))
-               ? lowest(part, coefficient, 1.0) - pair->turn_off
-               : lowest(part, coefficient, -1.0) + pair->turn_on;
+    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, pair_of(part, guard));
+    *sign = is_on ? 1.0 : -1.0;
+    return bound + (is_on ? pair->turn_off : -pair->turn_on);
 }
 
 bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                         const double *coefficient) {
     const double *unit = part->unit_scale;
-    double band = clear * dalcs_doubt_band(r, part);
     bool all = true;
     part->n_crossed = 0;
     part->n_doubtful = 0;
     for (int g = 0; g < n_guards(part) && all; g++) {
         part->armed[g] = is_guarded(part, g);
         if (part->armed[g]) {
-            double least = g < part->component->system->n_pairs
-                               ? lowest(part, coefficient, 1.0)
-                               : lowest_control(part, g, coefficient);
-            least -= band * scale_of(part, g, unit);
+            double sign;
+            double bound = doubtless(r, part, g, &sign);
+            double least = lowest(part, coefficient, sign) - bound;
             all = least > clear * most_rounding_of(part, g, unit) ||
                   least > clear * rounding_of(part, g, unit);
             coefficient += part->stages.layout.n_nodes;
         }
     }
     return all;
+}
+
+bool dalcs_guards_clearance(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                            int guard, double *sign, double *bound) {
+    *bound =
+        doubtless(r, part, guard, sign) + clear * most_rounding_of(part, guard, part->unit_scale);
+    return is_guarded(part, guard);
 }
 
 /* Are all of these no more than rounding makes of 0? */

@@ -1,4 +1,5 @@
 /* radau.c - the parts of a run: set up, started, passed from segment to segment, evaluated. */
+#include "cycle.h"
 #include "dense_map.h"
 #include "energy.h"
 #include "guards.h"
@@ -212,6 +213,7 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
         r->part[k].index = k;
         status = part_setup(r, &r->part[k], osnsp);
     }
+    status = status == DALCS_OK ? dalcs_cycle_setup(r) : status;
     if (status != DALCS_OK) {
         dalcs_radau_finish(r);
     }
@@ -221,6 +223,7 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
 static void part_finish(struct dalcs_radau_part *part) {
     dalcs_transition_finish(part); /* first: it holds steps */
     dalcs_periodic_finish(part);
+    dalcs_cycle_finish(part);
     if (part->stages.system != NULL) {
         dalcs_stages_finish(&part->stages);
     }
@@ -414,7 +417,8 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
         return repeat_or_begin(r, part, repeats);
     }
     set_aside(part);
-    return dalcs_segment_begin(r, part);
+    DALCS_TRY(dalcs_segment_begin(r, part));
+    return part->cycle != NULL ? dalcs_cycle_note(r, part) : DALCS_OK;
 }
 
 enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) {

@@ -108,6 +108,7 @@ struct dalcs_radau_part {
         int held;    /* times that `level` did */
         double span;  /* s, from it to the next edge, the last time; recurrence.h */
         int recurred; /* times in a row that it was the same */
+        int patience; /* until it is tried to step over it at once; 0: not looked at yet */
         struct dalcs_stage_brief *of_span; /* a step as long; NULL: none yet */
     } * transition;
 
@@ -130,6 +131,8 @@ struct dalcs_radau_part {
     long flurry; /* events, one close upon the other, up to the last one */
     double last_event;
     struct dalcs_periodic *periodic; /* NULL: nothing can come back (periodic.h) */
+    struct dalcs_cycle *cycle;       /* NULL: no period is leapt over (cycle.h) */
+    bool cycles;                     /* its segments are those of a period, of which all is known */
 };
 
 struct dalcs_radau {
@@ -137,10 +140,12 @@ struct dalcs_radau {
     struct dalcs_radau_options options;
     int n_parts;
     struct dalcs_radau_part *part;
-    double resolution; /* s: times nearer than this are the same */
+    struct dalcs_radau_part *cycling; /* the one that may leap; NULL: none */
+    double resolution;                /* s: times nearer than this are the same */
     double inner_tolerance;
     long steps, rejected, restarts, euler_steps;
     long periodic_steps;   /* of them; periodic.h */
+    long leapt_steps;      /* likewise; cycle.h */
     double worst_residual; /* of the stage equations, over their terms */
     double worst_time;     /* s */
     double wrong_sign; /* largest negative lambda or w of an accepted step, over its unit's scale */

@@ -16,6 +16,14 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
 /* After pairs changed sides, one step has reached the next edge; the transition is known. */
 void dalcs_recurrence_note(struct dalcs_radau_part *part);
 
+/* What such a step is held to at a state: how large it may become, and its drift; in the present mode. */
+void dalcs_recurrence_limits(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                             const struct dalcs_stage_brief *step, int x, double *most_last,
+                             double *most_drift);
+
+/* The present segment, which recurred, has another state in part->in. */
+void dalcs_recurrence_begin(struct dalcs_radau_part *part);
+
 /* The states of the present segment, which recurred, at its end; NULL: part->out has them. */
 const double *dalcs_recurrence_end(const struct dalcs_radau_part *part);
 

@@ -87,6 +87,23 @@ void dalcs_stage_brief_apply(const struct dalcs_stages *stages, struct dalcs_sta
                           dalcs_stage_map_input(stages, in), brief->answer);
 }
 
+double dalcs_stage_brief_row(const struct dalcs_stages *stages,
+                             const struct dalcs_stage_brief *brief, int which, const double *in,
+                             double *factor) {
+    int n_columns = dalcs_stage_map_columns(stages);
+    const double *input = dalcs_stage_map_input(stages, in);
+    const double *element = brief->map + which;
+    double rest = 0.0;
+    for (int k = 0; k < n_columns; k++, element += brief->rows) {
+        if (k < stages->system->n_x) {
+            factor[k] = *element;
+        } else {
+            rest += *element * input[k];
+        }
+    }
+    return rest;
+}
+
 void dalcs_stage_brief_expand(const struct dalcs_stages *stages,
                               const struct dalcs_stage_entry *entry, const double *in,
                               double *out) {

@@ -25,6 +25,12 @@ void dalcs_stage_brief_destroy(struct dalcs_stages *stages, struct dalcs_stage_b
 void dalcs_stage_brief_apply(const struct dalcs_stages *stages, struct dalcs_stage_brief *brief,
                              const double *in);
 
+/* Element `which` of the answer as a function of the states, the other inputs being as they are in `in`: factor[n_x]
+ * of them, and what is returned for 0. */
+double dalcs_stage_brief_row(const struct dalcs_stages *stages,
+                             const struct dalcs_stage_brief *brief, int which, const double *in,
+                             double *factor);
+
 /* The whole answer out[n_fixed] of the entry of a brief one. */
 void dalcs_stage_brief_expand(const struct dalcs_stages *stages,
                               const struct dalcs_stage_entry *entry, const double *in, double *out);

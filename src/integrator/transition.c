@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 /* An entry has three modes: the one that held, the one after pairs changed sides, what followed. */
-enum { SLOTS = 64, MODES = 3 };
+enum { SLOTS = DALCS_TRANSITIONS, MODES = 3 };
 
 /* Transitions that come back so often are worth a try of a longer step. */
 enum { OFTEN = 16 };

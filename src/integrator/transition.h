@@ -9,6 +9,9 @@
 
 #include "radau.h"
 
+/* part->transition[DALCS_TRANSITIONS]. */
+enum { DALCS_TRANSITIONS = 64 };
+
 enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) DALCS_MUST_CHECK;
 
 void dalcs_transition_finish(struct dalcs_radau_part *part);

@@ -39,6 +39,7 @@ static void write_work(struct dalcs_json *json, const struct dalcs_report *repor
     dalcs_json_integer(json, "restarts", report->work.restarts);
     dalcs_json_integer(json, "euler_steps", report->work.euler_steps);
     dalcs_json_integer(json, "periodic_steps", report->work.periodic_steps);
+    dalcs_json_integer(json, "leapt_steps", report->work.leapt_steps);
     dalcs_json_integer(json, "osnsp", report->work.osnsp);
     dalcs_json_integer(json, "pivots", report->work.pivots);
     dalcs_json_integer(json, "factorizations", report->work.factorizations);

@@ -77,12 +77,14 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
                                        const struct dalcs_euler *e, struct dalcs_radau *radau) {
     const struct dalcs_circuit *c = &r->s->circuit;
     measures->next_edge = INFINITY;
+    measures->begin = INFINITY;
     if (!dalcs_measuring_is_wanted(c, DALCS_MEASURED_TRAN)) {
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_measuring_setup(&measures->measuring, c, DALCS_MEASURED_TRAN,
                                     c->transient.start, c->transient.stop));
     measures->wanted = true;
+    measures->begin = dalcs_measuring_begin(&measures->measuring);
     DALCS_TRY(allocate(measures, c, &r->s->network));
     if (radau == NULL) {
         read_signals(measures, e, measures->now);
@@ -179,6 +181,11 @@ enum dalcs_status dalcs_measures_reach(struct dalcs_measures *measures,
         measures->next_edge = edge_after(measures, fmax(t, measures->next_edge));
     }
     return DALCS_OK;
+}
+
+void dalcs_measures_skip(struct dalcs_measures *measures, double t) {
+    measures->t = t;
+    measures->next_edge = edge_after(measures, t);
 }
 
 /* ---- Implicit Euler and rows ------------------------------------------------------------------- */

@@ -17,6 +17,7 @@ struct dalcs_measures {
     const struct dalcs_stimulus **stimulus; /* [n_stimuli] those that drive them and vary */
     struct dalcs_stimulus_term *term;       /* work */
     double t;                               /* s, measured so far */
+    double begin;                           /* s, before which nothing is; INFINITY without .meas */
     double next_edge;                       /* s, of the stimuli; INFINITY without .meas */
     double *before, *now; /* [n_measured] of euler, at the ends of a step; or of a row */
 };
@@ -31,6 +32,9 @@ void dalcs_measures_finish(struct dalcs_measures *measures);
 enum dalcs_status dalcs_measures_reach(struct dalcs_measures *measures,
                                        const struct dalcs_radau *radau, double t,
                                        double near) DALCS_MUST_CHECK;
+
+/* What lies before t, which is before `begin`, is passed over. */
+void dalcs_measures_skip(struct dalcs_measures *measures, double t);
 
 /* After a step of implicit Euler, and after it crossed a discontinuity. */
 void dalcs_measures_step(struct dalcs_measures *measures, const struct dalcs_euler *e);

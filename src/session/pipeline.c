@@ -311,6 +311,7 @@ static void add_work(struct dalcs_report *sum, const struct dalcs_report *one) {
     sum->work.restarts += one->work.restarts;
     sum->work.euler_steps += one->work.euler_steps;
     sum->work.periodic_steps += one->work.periodic_steps;
+    sum->work.leapt_steps += one->work.leapt_steps;
     sum->work.osnsp += one->work.osnsp;
     sum->work.pivots += one->work.pivots;
     sum->work.factorizations += one->work.factorizations;

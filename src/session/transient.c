@@ -4,6 +4,7 @@
  * rows are evaluated when they are due. dalcs_transient_run at the end is the table of contents. */
 #include "measures.h"
 
+#include "cycle.h"
 #include "energy.h"
 #include "extremes.h"
 #include "rows.h"
@@ -148,6 +149,9 @@ static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct dalcs_euler
     return DALCS_OK;
 }
 
+/* What is nearer before the first row than this part of its time may be at it. */
+static const double before_start = 1e-9;
+
 struct transient {
     struct dalcs_run *run;
     struct dalcs_recorder *recorder;
@@ -161,9 +165,11 @@ struct transient {
     long to_go;       /* of them, until the next */
 };
 
+/* Of any source; before the first row nobody asks. */
 static double edge_after(const struct transient *c, double t) {
     const struct dalcs_circuit *circuit = &c->run->s->circuit;
     double edge = INFINITY;
+    t = dalcs_larger(t, c->recorder->schedule.start * (1.0 - before_start));
     for (int i = 0; i < circuit->n_stimuli && dalcs_recorder_wants_sides(c->recorder, INFINITY);
          i++) {
         edge = fmin(edge, dalcs_stimulus_next_edge(&circuit->stimulus[i], t));
@@ -181,7 +187,7 @@ static bool source_jumps(const struct transient *c) {
 }
 
 /* After so many steps and rows more. */
-static enum dalcs_status tell_progress(struct transient *c, int n) {
+static enum dalcs_status tell_progress(struct transient *c, long n) {
     c->to_go -= n;
     if (c->to_go > 0) {
         return DALCS_OK;
@@ -213,12 +219,29 @@ static enum dalcs_status rows(struct transient *c, double until) {
     return DALCS_OK;
 }
 
+/* Over periods of which nobody asks anything. */
+static enum dalcs_status leap(struct transient *c) {
+    const struct dalcs_leap *leap;
+    double until = dalcs_smaller(dalcs_smaller(c->next_row, c->next_edge), c->measures->begin);
+    DALCS_TRY(dalcs_cycle_leap(c->radau, until, c->to_go, &leap));
+    if (leap == NULL) {
+        return DALCS_OK;
+    }
+    c->t = c->radau->cycling->t;
+    dalcs_measures_skip(c->measures, c->t);
+    DALCS_TRY(dalcs_recorder_leap(c->recorder, leap));
+    return tell_progress(c, leap->n_steps);
+}
+
 /* To the next time at which there is something to do, with the rows up to there. */
 static enum dalcs_status advance(struct transient *c) {
     struct dalcs_radau *radau = c->radau;
     double near = radau->resolution;
     double stop = radau->options.stop;
     bool happens;
+    if (radau->cycling != NULL && radau->cycling->cycles) {
+        DALCS_TRY(leap(c));
+    }
     double end = dalcs_radau_next_stop(radau, &happens);
     double t = dalcs_smaller(dalcs_smaller(end, stop),
                              dalcs_smaller(c->next_edge, c->measures->next_edge));
@@ -361,6 +384,7 @@ static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau)
     report->work.restarts += radau->restarts;
     report->work.euler_steps += radau->euler_steps;
     report->work.periodic_steps += radau->periodic_steps;
+    report->work.leapt_steps += radau->leapt_steps;
     for (int k = 0; k < radau->n_parts; k++) {
         report->work.factorizations += radau->part[k].stages.factorizations;
         report->work.cache_hits += radau->part[k].stages.cache_hits;

@@ -105,6 +105,20 @@ void dalcs_measuring_finish(struct dalcs_measuring *m) {
     *m = (struct dalcs_measuring){0};
 }
 
+double dalcs_measuring_begin(const struct dalcs_measuring *m) {
+    double begin = m->kept != NULL ? m->start : INFINITY;
+    for (int k = 0; k < m->n; k++) {
+        const struct dalcs_measure_card *card = m->item[k].card;
+        if (card->analysis == m->analysis && card->kind != DALCS_MEASURE_PARAM && !card->is_late) {
+            begin = fmin(begin, fmax(m->start, m->item[k].from));
+        }
+    }
+    for (int k = 0; k < m->n_harmonics; k++) {
+        begin = fmin(begin, m->harmonics[k].from);
+    }
+    return begin;
+}
+
 /* ---- Extremes --------------------------------------------------------------------------------- */
 
 struct climb {

@@ -51,6 +51,9 @@ enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
                                         double stop) DALCS_MUST_CHECK;
 void dalcs_measuring_finish(struct dalcs_measuring *m);
 
+/* When the first stretch ends that anything is measured in: those before count for nothing. */
+double dalcs_measuring_begin(const struct dalcs_measuring *m);
+
 /* m->stretch.value[circuit->n_measured] has been filled, at the nodes between from and to. Stretches
  * follow each other. */
 void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to);

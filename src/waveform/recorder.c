@@ -315,6 +315,28 @@ enum dalcs_status dalcs_recorder_events(struct dalcs_recorder *r, const struct d
     return r->keep ? note_events(r, e, true) : DALCS_OK;
 }
 
+enum dalcs_status dalcs_recorder_leap(struct dalcs_recorder *r, const struct dalcs_leap *leap) {
+    if (!r->keep) {
+        return DALCS_OK;
+    }
+    size_t n = (size_t)leap->n_periods * (size_t)leap->n_events;
+    size_t kept = n < r->limit - r->n_events ? n : r->limit - r->n_events;
+    DALCS_TRY(dalcs_grow(&r->event, &r->event_capacity, r->n_events + kept, sizeof(*r->event)));
+    struct dalcs_event *to = r->event + r->n_events;
+    const struct dalcs_event *end = to + kept;
+    for (long k = 0; to < end; k++) {
+        for (int i = 0; i < leap->n_events && to < end; i++, to++) {
+            const struct dalcs_leap_event *e = &leap->event[i];
+            *to = (struct dalcs_event){.time = dalcs_command_time(e->command, e->way, e->n + k),
+                                       .element = leap->system->pair[e->pair].element,
+                                       .on = e->is_on};
+        }
+    }
+    r->n_events += kept;
+    r->n_events_dropped += n - kept;
+    return DALCS_OK;
+}
+
 /* Which states and pairs of a jump are worth a line: those that changed by more than rounding. */
 static bool is_noticeable(double change, double largest) {
     return fabs(change) > 1e-9 * largest;

@@ -4,6 +4,7 @@
 #ifndef DALCS_RECORDER_H
 #define DALCS_RECORDER_H
 
+#include "cycle.h"
 #include "rows.h"
 
 struct dalcs_schedule {
@@ -85,6 +86,10 @@ enum dalcs_status dalcs_recorder_rows(struct dalcs_recorder *r, const struct dal
 /* Modes that changed at e->t become events. */
 enum dalcs_status dalcs_recorder_events(struct dalcs_recorder *r,
                                         const struct dalcs_euler *e) DALCS_MUST_CHECK;
+
+/* The events of the periods that were leapt over. */
+enum dalcs_status dalcs_recorder_leap(struct dalcs_recorder *r,
+                                      const struct dalcs_leap *leap) DALCS_MUST_CHECK;
 
 /* dalcs_euler's on_jump; user is the recorder. */
 enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump *jump);

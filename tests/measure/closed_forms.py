@@ -8,7 +8,10 @@ Tolerance 1e-13 where a circuit has states, so that what is left is the measurem
 
 import math
 import pathlib
+import re
+import subprocess
 import sys
+import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import dalcs_program  # pylint: disable=wrong-import-position,import-error
@@ -459,10 +462,49 @@ def decibels(program, checker):
                   "the largest of vdb")
 
 
+def windows(program, checker):
+    """What lies before the first row and the first measurement is leapt over, if no ledger is kept."""
+    duty, tau, period, mean = 0.4, 2e-3, 1e-4, 0.4 * 24 - 5
+    on, off = math.exp(-duty * period / tau), math.exp(-(1 - duty) * period / tau)
+    most = ((1 - on) * 19 - on * (1 - off) * 5) / (1 - on * off)
+    least = off * (most + 5) - 5
+    with tempfile.TemporaryDirectory() as folder:
+        netlist = pathlib.Path(folder) / "chopper.cir"
+        netlist.write_text("""chopper
+V1 in 0 24
+Vg g 0 PULSE(0 1 0 0 0 40u 100u)
+S1 in a g 0 sm
+D1 0 a
+L1 a b 2m
+R1 b c 1
+Ve c 0 5
+.model sm SW(Vt=0.5)
+.tran 10u 1 0.999 uic
+.meas tran mean AVG i(l1) from=0.999
+.meas tran most MAX i(l1) from=0.9995
+.meas tran least FIND i(l1) AT=0.9998
+.meas tran on TRIG v(a) VAL=12 RISE=1 TARG v(a) VAL=12 FALL=2
+.four 10k i(l1)
+.end
+""")
+        done = subprocess.run([program, "run", netlist, "--tol", "1e-12", "-o",
+                               netlist.with_suffix(".csv")], capture_output=True, text=True,
+                              check=False)
+    checker.check(done.returncode == 0, done.stderr)
+    leapt = re.search(r"20000 steps.* (\d+) in whole periods", done.stdout)
+    checker.check(leapt is not None and int(leapt.group(1)) > 19000, f"leaps: {done.stdout}")
+    found = dict(re.findall(r"^(\w+) += +(\S+)", done.stdout, re.MULTILINE))
+    for name, wanted in (("mean", mean), ("most", most), ("least", least), ("on", 40e-6)):
+        checker.close(float(found.get(name, "nan")), wanted, 2e-9 * wanted, f"windows: {name}")
+    constant = re.search(r"^ 0 +0 +(\S+)", done.stdout, re.MULTILINE)
+    checker.close(float(constant.group(1)), mean, 2e-9, "windows: constant of .four")
+
+
 def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("measurements")
-    for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier, decibels):
+    for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier, decibels,
+                 windows):
         test(program, checker)
     return checker.finish()
 

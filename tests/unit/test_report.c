@@ -45,7 +45,7 @@ START_TEST(test_everything) {
         .step = 1e-6,
         .stop = 0.5,
         .size = {1, 2, 3, 4, 5, 2, 0},
-        .work = {11, 12, 13, 14, 10, 15, 16, 17, 18, 19, 0.5, 0.75},
+        .work = {11, 12, 13, 14, 10, 9, 15, 16, 17, 18, 19, 0.5, 0.75},
         .certificate = {1e-15, 0.125, "KCL at out", 0.0625},
         .n_states = 2,
         .state_name = state_name,
@@ -83,6 +83,7 @@ START_TEST(test_everything) {
                  "    \"restarts\": 13,\n"
                  "    \"euler_steps\": 14,\n"
                  "    \"periodic_steps\": 10,\n"
+                 "    \"leapt_steps\": 9,\n"
                  "    \"osnsp\": 15,\n"
                  "    \"pivots\": 16,\n"
                  "    \"factorizations\": 17,\n"
@@ -189,6 +190,7 @@ START_TEST(test_nothing) {
                  "    \"restarts\": 0,\n"
                  "    \"euler_steps\": 0,\n"
                  "    \"periodic_steps\": 0,\n"
+                 "    \"leapt_steps\": 0,\n"
                  "    \"osnsp\": 0,\n"
                  "    \"pivots\": 0,\n"
                  "    \"factorizations\": 0,\n"
