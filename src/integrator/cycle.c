@@ -49,9 +49,10 @@ struct dalcs_cycle {
     bool is_closed; /* they have come back to the first */
     int n_taken;    /* of those whose rows are known: one after the other, in the next period */
     struct cycle_segment segment[MOST_SEGMENTS];
-    uint64_t *mode; /* [MOST_SEGMENTS][n_words] */
-    double *tail;   /* [n_in - n_x] inputs of all steps that are no states */
-    double *x, *near;
+    uint64_t *mode;    /* [MOST_SEGMENTS][n_words] */
+    double *tail;      /* [n_in - n_x] inputs of all steps that are no states */
+    double *x, *later; /* [n_x] work, as are these */
+    double *near, *most;
     int waits, patience;
     struct dalcs_leap leap;
 };
@@ -91,7 +92,9 @@ enum dalcs_status dalcs_cycle_setup(struct dalcs_radau *r) {
     cycle->leap.system = s;
     cycle->tail = dalcs_alloc((size_t)(part->stages.n_in - s->n_x), sizeof(double));
     cycle->x = dalcs_alloc((size_t)s->n_x, sizeof(double));
+    cycle->later = dalcs_alloc((size_t)s->n_x, sizeof(double));
     cycle->near = dalcs_alloc((size_t)s->n_x, sizeof(double));
+    cycle->most = dalcs_alloc((size_t)s->n_x, sizeof(double));
     cycle->mode =
         dalcs_alloc(MOST_SEGMENTS * (size_t)part->component->osnsp.n_words, sizeof(uint64_t));
     bool complete =
@@ -121,7 +124,9 @@ void dalcs_cycle_finish(struct dalcs_radau_part *part) {
         free(part->cycle->mode);
         free(part->cycle->tail);
         free(part->cycle->x);
+        free(part->cycle->later);
         free(part->cycle->near);
+        free(part->cycle->most);
         free(part->cycle);
         part->cycle = NULL;
     }
@@ -431,38 +436,48 @@ static double find_room(int n_x, const struct affine_rows *condition, const doub
     return room;
 }
 
-static bool is_near(int n_x, const double *x, const double *from, double room,
-                    const double *scale) {
-    bool near = true;
-    for (int k = 0; k < n_x && near; k++) {
-        near = fabs(x[k] - from[k]) <= room * scale[k];
+/* The states a period later; false: one has moved from `near` by more than most[n_x]. */
+static inline bool pass_period(int n_x, const double *map, const double *x, const double *near,
+                               const double *most, double *later) {
+    bool is_near = true;
+    for (int k = 0; k < n_x; k++, map += n_x + 1) {
+        double value = value_of(n_x, map, x);
+        later[k] = value;
+        is_near = is_near && fabs(value - near[k]) <= most[k];
     }
-    return near;
+    return is_near;
+}
+
+/* How far states may move from x, cycle->most; false: not at all. */
+static bool look_around(const struct dalcs_radau_part *part, const double *x) {
+    struct dalcs_cycle *cycle = part->cycle;
+    int n_x = part->component->system->n_x;
+    double room = find_room(n_x, &cycle->segment[cycle->at].period_condition, x);
+    for (int k = 0; k < n_x; k++) {
+        cycle->near[k] = x[k];
+        cycle->most[k] = room * part->scale[k];
+    }
+    return room > 0.0;
 }
 
 /* Takes the states of the present segment to those that it has periods later, as many as may be, and from
  * which a period holds, too. */
 static long go_on(const struct dalcs_radau_part *part, long most) {
     struct dalcs_cycle *cycle = part->cycle;
-    const struct cycle_segment *segment = &cycle->segment[cycle->at];
+    const double *map = cycle->segment[cycle->at].period_last.row;
     int n_x = part->component->system->n_x;
-    size_t bytes = (size_t)n_x * sizeof(double);
-    double room = find_room(n_x, &segment->period_condition, part->x);
+    double *x = cycle->x;
+    double *later = cycle->later;
     long n = 0;
-    memcpy(cycle->near, part->x, bytes);
-    while (n < most && room > 0.0) {
-        for (int k = 0; k < n_x; k++) {
-            cycle->x[k] = value_of(n_x, segment->period_last.row + k * (n_x + 1), part->x);
-        }
-        if (!is_near(n_x, cycle->x, cycle->near, room, part->scale)) {
-            room = find_room(n_x, &segment->period_condition, cycle->x);
-            memcpy(cycle->near, cycle->x, bytes);
-        }
-        if (room > 0.0) {
-            memcpy(part->x, cycle->x, bytes);
-            n++;
-        }
+    memcpy(x, part->x, (size_t)n_x * sizeof(double));
+    for (bool holds = look_around(part, x); holds && n < most; n += holds ? 1 : 0) {
+        holds =
+            pass_period(n_x, map, x, cycle->near, cycle->most, later) || look_around(part, later);
+        double *swap = x;
+        x = holds ? later : x;
+        later = holds ? swap : later;
     }
+    memcpy(part->x, x, (size_t)n_x * sizeof(double));
     return n;
 }
 

@@ -27,6 +27,9 @@ static const double paced_part = 0.65;
 
 enum { FIRST_STEPS = 64 };
 
+/* There is a power of 2 from a length up to twice that. */
+static const double below_twice = 2.0 * (1.0 - 1e-9);
+
 /* Unknowns up to which a step is a dense map, over the limit of the OSNSP's maps: factors are cheaper
  * from about two dozen on, but a map is as exact as doubles can be, which tight tolerances need. */
 static const double maps_when_tight = 1.5, maps_when_not = 0.375;
@@ -186,7 +189,8 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     free(used);
     find_cross_scales(c->system, r->options.stop, part->cross);
     part->longest = dalcs_length_longest(r, part);
-    double first = fmin(part->longest, r->options.stop / FIRST_STEPS);
+    part->longest_needed = below_twice * dalcs_length_of_spans(part);
+    double first = fmin(part->longest_needed, fmin(part->longest, r->options.stop / FIRST_STEPS));
     double promising = dalcs_length_promising(r, part);
     part->rung = fit_rung(promising);
     part->level = -ilogb(fmin(first, promising) / part->rung);

@@ -57,11 +57,13 @@ struct dalcs_radau_part {
     int waited, patience; /* steps since the length changed; until a longer one is tried anyhow */
     bool grew;            /* the present length is such a try */
     double longest;       /* s, step worth trying */
-    int tries;            /* falls back to implicit Euler in a row */
-    double fell_back;     /* s, length of the last */
-    bool fresh;           /* something just happened at t: nothing is known of how pairs start */
-    bool flipped;         /* and it is that pairs changed sides */
-    double *x;            /* [n_x] at t, in whole quads */
+    double
+        longest_needed; /* s; with longer ones segments are no longer, for something ends them all */
+    int tries;          /* falls back to implicit Euler in a row */
+    double fell_back;   /* s, length of the last */
+    bool fresh;         /* something just happened at t: nothing is known of how pairs start */
+    bool flipped;       /* and it is that pairs changed sides */
+    double *x;          /* [n_x] at t, in whole quads */
     double *in, *out;
     double *in_before, *out_before; /* the segment before, which ended there, in its steps */
     double end_before;

@@ -368,7 +368,8 @@ static void learn(struct dalcs_radau *r, struct dalcs_radau_part *part, const st
     double ratio = error * fmax(1.0, r->inner_tolerance / fine);
     bool longer = !search->fixed && theta == 1.0 && part->n_crossed == 0 &&
                   dalcs_length_rungs_promised(r, part, ratio) > 1.0 &&
-                  dalcs_radau_ladder(part, part->level - 1) <= part->longest;
+                  dalcs_radau_ladder(part, part->level - 1) <=
+                      dalcs_smaller(part->longest, part->longest_needed);
     int spare = longer ? 1 : 0; /* rungs that the first step may have more the next time */
     if (!search->guessed) {
         double promised =
@@ -531,6 +532,12 @@ static int cheapest_level(struct dalcs_radau_part *part) {
     return part->level;
 }
 
+/* A command has moved a switch: what it carried goes elsewhere, through pairs that have not crossed anything. On
+ * dense maps to ask the circuit of them costs less than a step in a mode that is wrong. */
+static bool is_commutation(const struct dalcs_radau_part *part) {
+    return part->fresh && part->flipped && part->n_crossed == 0 && part->rounding == 1.0;
+}
+
 /* guessed: the mode is what followed the last time. */
 static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                           double limit, bool guessed) {
@@ -547,6 +554,9 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
     }
     if (part->fresh && part->flipped && !guessed && !search.fixed) {
         part->level = search.first_level = search.asked_level = cheapest_level(part);
+    }
+    if (is_commutation(part) && !guessed && !search.fixed) {
+        DALCS_TRY(restart(r, part, &search, false));
     }
     bool done = false;
     while (!done) {

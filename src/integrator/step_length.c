@@ -17,6 +17,9 @@ static const double rungs_unseen = 3.0;
 /* Steps until a longer one is tried to see, at most. */
 enum { MOST_PATIENCE = 4096 };
 
+/* A PULSE that begins so many periods late is not looked at. */
+static const double most_delay = 4.0;
+
 /* The longest step over the shortest period of a source, by stages: fewer nodes see less. */
 static double most_periods(int stages) {
     return stages >= 9 ? 0.75 : stages >= 7 ? 0.6 : stages >= 5 ? 0.45 : 0.25;
@@ -28,6 +31,37 @@ double dalcs_length_longest(const struct dalcs_radau *r, const struct dalcs_rada
         longest = fmin(longest, r->options.max_step);
     }
     return fmin(longest, most_periods(part->stages.method->s) * part->excitation.shortest_period);
+}
+
+/* Between two edges of it, or two crossings of a threshold; INFINITY if it does not come back, or only begins to
+ * after many periods. */
+static double longest_span(const struct dalcs_stimulus *s) {
+    if (s->kind != DALCS_STIMULUS_PULSE || s->u.pulse.n_periods > 0.0 ||
+        !(s->u.pulse.delay < most_delay * s->u.pulse.period)) {
+        return INFINITY;
+    }
+    double ramps = s->u.pulse.rise + s->u.pulse.fall;
+    double low = s->u.pulse.period - s->u.pulse.width - ramps;
+    return dalcs_larger(s->u.pulse.width, low) + ramps;
+}
+
+double dalcs_length_of_spans(const struct dalcs_radau_part *part) {
+    const struct dalcs_component *c = part->component;
+    const struct dalcs_csr *control = &c->system->direct_control;
+    double shortest = INFINITY;
+    for (int k = 0; k < part->excitation.n_waves; k++) {
+        shortest = dalcs_smaller(shortest, longest_span(part->excitation.wave[k].stimulus));
+    }
+    for (int i = 0; i < part->commands.n; i++) {
+        int d = part->commands.command[i].pair;
+        for (int k = control->p[d]; k < control->p[d + 1]; k++) {
+            int stimulus = c->system->stimulus[control->j[k]];
+            if (stimulus >= 0) {
+                shortest = dalcs_smaller(shortest, longest_span(&c->circuit->stimulus[stimulus]));
+            }
+        }
+    }
+    return shortest;
 }
 
 double dalcs_length_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
@@ -79,10 +113,14 @@ void dalcs_length_lengthen(const struct dalcs_radau *r, struct dalcs_radau_part 
     while (up > 0 && dalcs_radau_ladder(part, part->level - up) > part->longest) {
         up--;
     }
+    bool is_held_back = up == 0 && promising;
+    while (up > 0 && dalcs_radau_ladder(part, part->level - up) > part->longest_needed) {
+        up--;
+    }
     part->waited++;
     part->grew = false;
     if (up == 0) {
-        part->held_back += promising ? 1 : 0;
+        part->held_back += is_held_back ? 1 : 0;
         return;
     }
     int level = up < 2 ? part->level - 1 : shared_rung(part->level - up, up < 3 ? 2 : 3);

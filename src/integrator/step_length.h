@@ -10,6 +10,10 @@ enum { DALCS_LENGTH_MOST_RUNGS = 6 };
 /* s; the longest step worth trying. */
 double dalcs_length_longest(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
 
+/* s; the longest one that is needed where sources or commands of switches come back: the longest between two edges
+ * of one of them; INFINITY: none do. */
+double dalcs_length_of_spans(const struct dalcs_radau_part *part);
+
 /* s; the step at which the error of following the fastest source is about what is allowed. */
 double dalcs_length_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
 
