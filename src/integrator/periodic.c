@@ -40,6 +40,7 @@ struct periodic_segment {
     double h, end; /* s, and steps */
     double t_end;  /* s, since the event */
     enum dalcs_radau_end why;
+    int level; /* of the step to come */
     int n_crossed;
     size_t first_crossed;
 };
@@ -227,6 +228,7 @@ enum dalcs_status dalcs_periodic_note(struct dalcs_radau_part *part) {
                                   .end = part->end,
                                   .t_end = part->t_end - periodic->since,
                                   .why = part->why,
+                                  .level = part->level,
                                   .n_crossed = part->n_crossed,
                                   .first_crossed = periodic->n_crossed};
     periodic->n_crossed += n_crossed;
@@ -288,6 +290,7 @@ void dalcs_periodic_take(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     part->h = segment->h;
     part->end = segment->end;
     part->why = segment->why;
+    part->level = segment->level;
     part->fresh = false;
     part->flipped = false;
     part->n_crossed = segment->n_crossed;

@@ -8,6 +8,30 @@ enum { PROJECTIONS = 3 };
 
 static const int projection[PROJECTIONS] = {30, 20, 10};
 
+/* States that move by so many times their drift in a projecting step hide in it what they are off by. */
+static const double hidden = 16.0;
+
+/* Of try k, after a step of length `tried`. */
+static double projecting_length(const struct dalcs_radau_part *part, double tried, bool fixed,
+                                int k) {
+    return fixed ? ldexp(tried, -projection[k])
+                 : dalcs_radau_ladder(part, (part->level & ~7) + projection[k]);
+}
+
+bool dalcs_projection_sees(const struct dalcs_radau_part *part, bool fixed) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const double *first = part->out + l->stride;
+    const double *drift = part->out + l->drift;
+    double span = part->stages.method->node[1] * part->h;
+    double part_of_span = projecting_length(part, part->h, fixed, 0) / span;
+    bool sees = false;
+    for (int x = 0; x < part->component->system->n_x && !sees; x++) {
+        double regular = fabs(first[x] - part->x[x]) * part_of_span;
+        sees = drift[x] != 0.0 && !(hidden * fabs(drift[x]) < regular);
+    }
+    return sees;
+}
+
 /* Where the polynomial of a step begins. *moves: that is elsewhere, farther than the step goes. */
 static void find_beginning(struct dalcs_radau_part *part, bool *moves) {
     const struct dalcs_collocation *m = part->stages.method;
@@ -47,8 +71,7 @@ enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau
     bool means_something = false;
     enum dalcs_status status = DALCS_OK;
     for (int k = 0; k < PROJECTIONS && !means_something && status >= DALCS_OK; k++) {
-        part->h = fixed ? ldexp(tried, -projection[k])
-                        : dalcs_radau_ladder(part, (part->level & ~7) + projection[k]);
+        part->h = projecting_length(part, tried, fixed, k);
         status = try_projection(part, limit, &means_something);
     }
     if (means_something) {

@@ -12,6 +12,10 @@
 enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        double limit, bool fixed, bool *moved) DALCS_MUST_CHECK;
 
+/* May it find anything to move? Not where all states move in a projecting step by much more than their drift
+ * in the step that was tried. It saves the map. */
+bool dalcs_projection_sees(const struct dalcs_radau_part *part, bool fixed);
+
 /* For one that is off by so little that it moves farther in the shortest of steps, and dalcs_projection_try
  * cannot tell: rounding of voltages across milliohms, on factors, may be more current than is allowed. It goes
  * to where the polynomial of the step starts that was tried last. False: that is farther away than an error

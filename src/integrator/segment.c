@@ -182,6 +182,17 @@ static bool settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
     return true;
 }
 
+/* Of the first step of a mode, with an error so many times what is allowed: may it be that the state has to
+ * jump, or only that the step is too long? Where every state is what it likes none jumps. On factors
+ * micro-steps in a new mode cost more than a shorter step, which is tried first. */
+static bool is_worth_asking(const struct dalcs_radau_part *part, const struct search *search,
+                            double ratio) {
+    bool is_map = part->rounding == 1.0;
+    bool has_free_states = search->states_free && part->component->system->n_x > 0;
+    bool may_jump = is_map ? !has_free_states || isinf(ratio) : !(ratio < most_projected);
+    return search->fixed || search->stuck > 0 || may_jump;
+}
+
 /* After a step that is not accurate: changes the mode, the state or the length. *done: the segment is
  * one of implicit Euler. */
 static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -196,15 +207,12 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     if (search->opened) {
         return tie_again(part, search);
     }
-    /* On factors micro-steps in a new mode cost more than a shorter step, which is tried first. */
-    bool is_cheap = part->rounding == 1.0 || search->fixed;
-    bool ask = is_cheap || !(quality->ratio < most_projected) || search->stuck > 0;
-    if (part->fresh && search->restarts == 0 && ask) {
+    if (part->fresh && search->restarts == 0 && is_worth_asking(part, search, quality->ratio)) {
         return restart(r, part, search, false);
     }
     bool asked = search->restarts > 0 || !part->fresh;
     bool may_project = !search->fixed && !search->projected && !search->states_free && asked;
-    if (quality->ratio < most_projected && may_project) {
+    if (quality->ratio < most_projected && may_project && dalcs_projection_sees(part, false)) {
         bool moved;
         DALCS_TRY(project(r, part, search, &moved));
         if (moved) {
@@ -477,7 +485,8 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return DALCS_OK;
     }
     if (part->fresh && !search->projected && !search->states_free &&
-        quality.drift > (search->fixed ? 0.0 : dalcs_worth_projecting)) {
+        quality.drift > (search->fixed ? 0.0 : dalcs_worth_projecting) &&
+        dalcs_projection_sees(part, search->fixed)) {
         bool moved;
         DALCS_TRY(project(r, part, search, &moved));
         if (moved) {
@@ -520,16 +529,17 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     return DALCS_OK;
 }
 
-/* A mode that has been before, though not after this one, may have the factors of a shorter step: it costs
- * less to begin with that. */
+/* A mode that has been before, though not after this one, may have the map of a longer step that suited it then,
+ * or the factors of a shorter one: it costs less to begin with that. */
 static int cheapest_level(struct dalcs_radau_part *part) {
+    int level = part->rounding == 1.0 ? dalcs_transition_longest_level(part) : part->level;
     for (int k = 0; k <= MOST_PREFERRED; k++) {
-        double h = dalcs_radau_ladder(part, part->level + k);
+        double h = dalcs_radau_ladder(part, level + k);
         if (dalcs_stages_have(&part->stages, part->component->osnsp.mode, h)) {
-            return part->level + k;
+            return level + k;
         }
     }
-    return part->level;
+    return level;
 }
 
 /* A command has moved a switch: what it carried goes elsewhere, through pairs that have not crossed anything. On

@@ -104,6 +104,19 @@ bool dalcs_transition_guess(struct dalcs_radau_part *part) {
     return true;
 }
 
+int dalcs_transition_longest_level(const struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const uint64_t *followed = part->transition_modes + 2 * p->n_words;
+    int level = part->level;
+    for (int k = 0; k < SLOTS; k++, followed += MODES * p->n_words) {
+        const struct dalcs_transition *t = &part->transition[k];
+        if (t->is_known && t->level < level && dalcs_mode_is(followed, p->mode, p->n_words)) {
+            level = t->level;
+        }
+    }
+    return level;
+}
+
 void dalcs_transition_pass(struct dalcs_radau_part *part, int spare) {
     struct dalcs_transition *known = dalcs_transition_known(part);
     known->held += known->held < OFTEN ? 1 : 0;

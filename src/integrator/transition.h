@@ -24,6 +24,10 @@ void dalcs_transition_hold(struct dalcs_radau_part *part);
  * changed. */
 bool dalcs_transition_guess(struct dalcs_radau_part *part);
 
+/* That of the longest step that suited the beginning of the present mode when another change led to it, if it is
+ * longer than that of the part. */
+int dalcs_transition_longest_level(const struct dalcs_radau_part *part);
+
 /* The guess holds, and its step may be longer the next time by `spare` rungs. */
 void dalcs_transition_pass(struct dalcs_radau_part *part, int spare);
 
