@@ -5,6 +5,7 @@
  * an object larger than a quarter of a block gets its own. */
 #include "memory.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,12 +16,16 @@ struct dalcs_arena_block {
     struct dalcs_arena_block *next;
     size_t size; /* bytes in data */
     size_t used;
+    bool is_zero; /* in whole; else each piece is cleared as it is taken */
     _Alignas(max_align_t) unsigned char data[];
 };
 
 /* Blocks double from the first size to the last, so that a small netlist stays small and a huge one
  * makes few calls to the allocator. */
 enum { FIRST_BLOCK = 1024, LAST_BLOCK = 1 << 24 };
+
+/* Blocks of so many bytes come from the system, zeroed; smaller ones from what was freed before. */
+enum { NEW_BLOCK = 1 << 17 };
 
 /* Bytes of the largest piece of memory that glibc keeps for its thread. */
 enum { MOST_CACHED = 1032 };
@@ -89,12 +94,24 @@ static struct dalcs_arena_block *make_block(size_t size) {
     if (size > PTRDIFF_MAX - sizeof(struct dalcs_arena_block)) {
         return NULL;
     }
-    struct dalcs_arena_block *block = calloc(1, sizeof *block + size);
+    const size_t bytes = sizeof(struct dalcs_arena_block) + size;
+    const bool is_new = bytes >= NEW_BLOCK;
+    struct dalcs_arena_block *block = is_new ? calloc(1, bytes) : malloc(bytes);
     if (block != NULL) {
-        prefer_large_pages(block, sizeof *block + size);
-        block->size = size;
+        prefer_large_pages(block, bytes);
+        *block = (struct dalcs_arena_block){.size = size, .is_zero = is_new};
     }
     return block;
+}
+
+enum dalcs_status dalcs_arena_reserve(struct dalcs_arena *arena, size_t bytes) {
+    arena->head = make_block(bytes);
+    return arena->head != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+static void *piece(const struct dalcs_arena_block *block, size_t start, size_t bytes) {
+    unsigned char *at = (unsigned char *)block->data + start;
+    return block->is_zero ? at : memset(at, 0, bytes);
 }
 
 /* align: a power of 2. */
@@ -104,7 +121,7 @@ static void *take(struct dalcs_arena *arena, size_t bytes, size_t align) {
         const size_t start = (head->used + align - 1) & ~(align - 1);
         if (start <= head->size && bytes <= head->size - start) {
             head->used = start + bytes;
-            return head->data + start;
+            return piece(head, start, bytes);
         }
     }
     size_t block_size = head == NULL ? FIRST_BLOCK : head->size * 2;
@@ -123,7 +140,7 @@ static void *take(struct dalcs_arena *arena, size_t bytes, size_t align) {
         block->next = head;
         arena->head = block;
     }
-    return block->data;
+    return piece(block, 0, bytes);
 }
 
 void *dalcs_arena_alloc(struct dalcs_arena *arena, size_t n, size_t size) {

@@ -5,10 +5,20 @@
 #include "status.h"
 
 #include <stdarg.h>
+#include <stddef.h>
 
 /* n zeroed objects of `size` bytes; NULL when out of memory or when n * size overflows. n = 0 gives
  * a unique non-NULL pointer. Release with free(). */
 void *dalcs_alloc(size_t n, size_t size);
+
+/* n objects of `size` bytes, the next ones in a storage for many, which is aligned for any type; *used grows by
+ * their bytes. Without storage (NULL) that is all: so many bytes it has to have. */
+static inline void *dalcs_carve(void *storage, size_t *used, size_t n, size_t size) {
+    const size_t align = _Alignof(max_align_t);
+    void *at = storage != NULL ? (unsigned char *)storage + *used : NULL;
+    *used += (n * size + align - 1) / align * align;
+    return at;
+}
 
 /* The same as dalcs_grow where there is no room. */
 enum dalcs_status dalcs_grow_now(void *array, size_t *capacity, size_t need,
@@ -25,6 +35,9 @@ static inline DALCS_MUST_CHECK enum dalcs_status dalcs_grow(void *array, size_t 
 struct dalcs_arena {
     struct dalcs_arena_block *head;
 };
+
+/* For an arena that is still empty and will hold about so many bytes: they will be in one block. */
+enum dalcs_status dalcs_arena_reserve(struct dalcs_arena *arena, size_t bytes) DALCS_MUST_CHECK;
 
 /* Zeroed, aligned for any type; NULL when out of memory. */
 void *dalcs_arena_alloc(struct dalcs_arena *arena, size_t n, size_t size);

@@ -16,16 +16,16 @@ enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
     DALCS_TRY(dalcs_osnsp_setup(&c->osnsp, system, options));
     size_t n_u = (size_t)(system->n_x + system->n_inputs);
     size_t n_columns = (size_t)dalcs_system_n_columns(system);
-    c->u = dalcs_alloc(n_u, sizeof(double));
-    c->probe_u = dalcs_alloc(n_u, sizeof(double));
-    c->probe_y = dalcs_alloc(n_columns, sizeof(double));
-    c->y = dalcs_alloc(n_columns, sizeof(double));
-    c->y_before = dalcs_alloc(n_columns, sizeof(double));
-    c->scratch = dalcs_alloc(n_columns, sizeof(double));
-    c->saved_mode = dalcs_alloc((size_t)c->osnsp.n_words, sizeof(*c->saved_mode));
-    c->varying = dalcs_alloc((size_t)system->n_inputs, sizeof(int));
-    c->piece = dalcs_alloc((size_t)system->n_inputs, sizeof(*c->piece));
-    c->switch_pair = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
+    c->u = dalcs_arena_alloc(&c->arena, n_u, sizeof(double));
+    c->probe_u = dalcs_arena_alloc(&c->arena, n_u, sizeof(double));
+    c->probe_y = dalcs_arena_alloc(&c->arena, n_columns, sizeof(double));
+    c->y = dalcs_arena_alloc(&c->arena, n_columns, sizeof(double));
+    c->y_before = dalcs_arena_alloc(&c->arena, n_columns, sizeof(double));
+    c->scratch = dalcs_arena_alloc(&c->arena, n_columns, sizeof(double));
+    c->saved_mode = dalcs_arena_alloc(&c->arena, (size_t)c->osnsp.n_words, sizeof(*c->saved_mode));
+    c->varying = dalcs_arena_alloc(&c->arena, (size_t)system->n_inputs, sizeof(int));
+    c->piece = dalcs_arena_alloc(&c->arena, (size_t)system->n_inputs, sizeof(*c->piece));
+    c->switch_pair = dalcs_arena_alloc(&c->arena, (size_t)system->n_pairs, sizeof(int));
     if (c->u == NULL || c->probe_u == NULL || c->probe_y == NULL || c->y == NULL ||
         c->y_before == NULL || c->scratch == NULL || c->saved_mode == NULL || c->varying == NULL ||
         c->piece == NULL || c->switch_pair == NULL) {
@@ -56,16 +56,7 @@ void dalcs_component_finish(struct dalcs_component *c) {
     if (c->system != NULL) {
         dalcs_osnsp_finish(&c->osnsp);
     }
-    free(c->u);
-    free(c->probe_u);
-    free(c->probe_y);
-    free(c->y);
-    free(c->y_before);
-    free(c->scratch);
-    free(c->saved_mode);
-    free(c->varying);
-    free(c->piece);
-    free(c->switch_pair);
+    dalcs_arena_finish(&c->arena);
     *c = (struct dalcs_component){0};
 }
 

@@ -29,10 +29,11 @@ struct dalcs_component {
     int *switch_pair;
     double failed_sigma; /* the problem of the last failed solve, for the dump */
     const double *failed_u;
-    bool is_static;        /* nothing depends on time or history */
-    bool commanded;        /* the last solve changed a switch */
-    bool was_open;         /* the last step's answer may be one of several */
-    long delayed_commands; /* switches whose control did not settle within a step */
+    bool is_static;           /* nothing depends on time or history */
+    bool commanded;           /* the last solve changed a switch */
+    bool was_open;            /* the last step's answer may be one of several */
+    long delayed_commands;    /* switches whose control did not settle within a step */
+    struct dalcs_arena arena; /* what has the same size during the run */
 };
 
 enum dalcs_status dalcs_component_setup(struct dalcs_component *c,

@@ -9,7 +9,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
 /* The part of its doubt that counts in later steps where such a pair goes on falling: a diode that waits for
  * the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. */
@@ -134,15 +133,18 @@ static double rounding_of(const struct dalcs_radau_part *part, int guard, const 
 enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     size_t n_equations = (size_t)dalcs_system_n_equations(s);
-    part->held_charge = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
-    part->held_flux = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
-    part->pair_row = dalcs_alloc(2 * (size_t)s->n_pairs, sizeof(int));
-    part->pair_law = dalcs_alloc(DALCS_PAIR_LAWS * (size_t)s->n_pairs, sizeof(*part->pair_law));
-    part->pair_rate = dalcs_pair_rate_create(s->n_pairs, part->component->osnsp.n_words);
-    part->cluster = dalcs_alloc(n_equations, sizeof(int));
-    part->cluster_charge = dalcs_alloc(n_equations, sizeof(double));
-    part->bound = dalcs_alloc((size_t)dalcs_quads_of(n_guards(part)) + DALCS_QUAD, sizeof(double));
-    part->doubtful = dalcs_alloc((size_t)n_guards(part), sizeof(int));
+    part->held_charge = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
+    part->held_flux = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
+    part->pair_row = dalcs_arena_alloc(&part->arena, 2 * (size_t)s->n_pairs, sizeof(int));
+    part->pair_law = dalcs_arena_alloc(&part->arena, DALCS_PAIR_LAWS * (size_t)s->n_pairs,
+                                       sizeof(*part->pair_law));
+    part->pair_rate =
+        dalcs_pair_rate_create(&part->arena, s->n_pairs, part->component->osnsp.n_words);
+    part->cluster = dalcs_arena_alloc(&part->arena, n_equations, sizeof(int));
+    part->cluster_charge = dalcs_arena_alloc(&part->arena, n_equations, sizeof(double));
+    part->bound = dalcs_arena_alloc(
+        &part->arena, (size_t)dalcs_quads_of(n_guards(part)) + DALCS_QUAD, sizeof(double));
+    part->doubtful = dalcs_arena_alloc(&part->arena, (size_t)n_guards(part), sizeof(int));
     if (part->bound == NULL || part->doubtful == NULL || part->held_charge == NULL ||
         part->held_flux == NULL || part->pair_row == NULL || part->pair_law == NULL ||
         part->pair_rate == NULL || part->cluster == NULL || part->cluster_charge == NULL) {
@@ -150,18 +152,6 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     }
     dalcs_pair_laws_find(part);
     return DALCS_OK;
-}
-
-void dalcs_guards_finish(struct dalcs_radau_part *part) {
-    free(part->held_charge);
-    free(part->held_flux);
-    free(part->pair_row);
-    free(part->pair_law);
-    dalcs_pair_rate_destroy(part->pair_rate);
-    free(part->cluster);
-    free(part->cluster_charge);
-    free(part->bound);
-    free(part->doubtful);
 }
 
 static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band,

@@ -6,10 +6,8 @@
 
 #include "step_error.h"
 
-/* Of a part that is otherwise set up; finish also after a failure. */
+/* Of a part that is otherwise set up. */
 enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) DALCS_MUST_CHECK;
-
-void dalcs_guards_finish(struct dalcs_radau_part *part);
 
 /* Guards that are clear of 0 at the start, or at the end, of a step are armed: from then on every fall
  * below 0 counts. Those that start within the error of 0, because they have just crossed it, count when

@@ -9,29 +9,17 @@
 #include "union_find.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-struct dalcs_pair_rate *dalcs_pair_rate_create(int n_pairs, int n_words) {
-    struct dalcs_pair_rate *rate = dalcs_alloc(1, sizeof(*rate));
+struct dalcs_pair_rate *dalcs_pair_rate_create(struct dalcs_arena *arena, int n_pairs,
+                                               int n_words) {
+    struct dalcs_pair_rate *rate = dalcs_arena_alloc(arena, 1, sizeof(*rate));
     if (rate == NULL) {
         return NULL;
     }
-    rate->mode = dalcs_alloc((size_t)n_words, sizeof(*rate->mode));
-    rate->of = dalcs_alloc((size_t)n_pairs, sizeof(*rate->of));
-    if (rate->mode == NULL || rate->of == NULL) {
-        dalcs_pair_rate_destroy(rate);
-        return NULL;
-    }
-    return rate;
-}
-
-void dalcs_pair_rate_destroy(struct dalcs_pair_rate *rate) {
-    if (rate != NULL) {
-        free(rate->mode);
-        free(rate->of);
-    }
-    free(rate);
+    rate->mode = dalcs_arena_alloc(arena, (size_t)n_words, sizeof(*rate->mode));
+    rate->of = dalcs_arena_alloc(arena, (size_t)n_pairs, sizeof(*rate->of));
+    return rate->mode != NULL && rate->of != NULL ? rate : NULL;
 }
 
 /* F at a node, H of a coil; 0 of an algebraic row. */

@@ -105,7 +105,8 @@ enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r, struct dalcs
         return DALCS_OK;
     }
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    struct dalcs_periodic *periodic = part->periodic = dalcs_alloc(1, sizeof(*periodic));
+    struct dalcs_periodic *periodic = part->periodic =
+        dalcs_arena_alloc(&part->arena, 1, sizeof(*periodic));
     if (periodic == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -115,8 +116,8 @@ enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r, struct dalcs
     periodic->n_x = (size_t)p->system->n_x;
     periodic->n_values = periodic->n_out + periodic->n_in + periodic->n_x;
     periodic->n_words = (size_t)p->n_words;
-    periodic->x = dalcs_alloc((size_t)p->system->n_x, sizeof(double));
-    periodic->mode = dalcs_alloc((size_t)p->n_words, sizeof(uint64_t));
+    periodic->x = dalcs_arena_alloc(&part->arena, (size_t)p->system->n_x, sizeof(double));
+    periodic->mode = dalcs_arena_alloc(&part->arena, (size_t)p->n_words, sizeof(uint64_t));
     return periodic->x != NULL && periodic->mode != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -125,16 +126,10 @@ void dalcs_periodic_finish(struct dalcs_radau_part *part) {
     if (periodic == NULL) {
         return;
     }
-    if (periodic->own_out != NULL) {
-        part->out = periodic->own_out;
-    }
-    free(periodic->x);
-    free(periodic->mode);
     free(periodic->segment);
     free(periodic->values);
     free(periodic->modes);
     free(periodic->crossed);
-    free(periodic);
     part->periodic = NULL;
 }
 

@@ -94,29 +94,36 @@ static void list_used_inputs(struct dalcs_radau_part *part, const struct dalcs_n
     }
 }
 
+/* Bytes that a part keeps for the run, with something to spare: small ones are made of one piece. */
+static size_t room_for_part(const struct dalcs_system *s) {
+    enum { FOR_ALL = 8192, FOR_A_COLUMN = 640 };
+
+    return FOR_ALL + FOR_A_COLUMN * (size_t)dalcs_system_n_columns(s);
+}
+
 static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     size_t n_columns = (size_t)dalcs_system_n_columns(s);
     size_t n_guards = (size_t)(s->n_pairs + part->stages.n_watched);
     size_t n_out = (size_t)l->n_fixed + (size_t)part->stages.method->s * n_columns + 8;
-    part->x = dalcs_alloc((size_t)dalcs_quads_of(s->n_x), sizeof(double));
-    part->in = dalcs_alloc((size_t)part->stages.n_in, sizeof(double));
-    part->out = dalcs_alloc(n_out, sizeof(double));
-    part->in_before = dalcs_alloc((size_t)part->stages.n_in, sizeof(double));
-    part->out_before = dalcs_alloc(n_out, sizeof(double));
-    part->out_tried = dalcs_alloc(n_out, sizeof(double));
-    part->armed = dalcs_alloc(n_guards, sizeof(bool));
-    part->crossed = dalcs_alloc(n_guards, sizeof(int));
-    part->tied = dalcs_alloc((size_t)s->n_pairs, sizeof(bool));
-    part->u = dalcs_alloc((size_t)(s->n_x + s->n_inputs), sizeof(double));
-    part->y1 = dalcs_alloc((size_t)dalcs_quads_of(l->stride), sizeof(double));
-    part->y2 = dalcs_alloc((size_t)dalcs_quads_of(l->stride), sizeof(double));
-    part->w1 = dalcs_alloc((size_t)s->n_pairs, sizeof(double));
-    part->after = dalcs_alloc((size_t)s->n_x, sizeof(double));
-    part->used_input = dalcs_alloc((size_t)s->n_inputs, sizeof(int));
-    part->current_drift =
-        dalcs_alloc((size_t)dalcs_dense_map_rows(part->stages.n_currents), sizeof(double));
+    part->x = dalcs_arena_alloc(&part->arena, (size_t)dalcs_quads_of(s->n_x), sizeof(double));
+    part->in = dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_in, sizeof(double));
+    part->out = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
+    part->in_before = dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_in, sizeof(double));
+    part->out_before = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
+    part->out_tried = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
+    part->armed = dalcs_arena_alloc(&part->arena, n_guards, sizeof(bool));
+    part->crossed = dalcs_arena_alloc(&part->arena, n_guards, sizeof(int));
+    part->tied = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(bool));
+    part->u = dalcs_arena_alloc(&part->arena, (size_t)(s->n_x + s->n_inputs), sizeof(double));
+    part->y1 = dalcs_arena_alloc(&part->arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
+    part->y2 = dalcs_arena_alloc(&part->arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
+    part->w1 = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
+    part->after = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
+    part->used_input = dalcs_arena_alloc(&part->arena, (size_t)s->n_inputs, sizeof(int));
+    part->current_drift = dalcs_arena_alloc(
+        &part->arena, (size_t)dalcs_dense_map_rows(part->stages.n_currents), sizeof(double));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
                     part->in_before != NULL && part->out_before != NULL &&
                     part->out_tried != NULL && part->armed != NULL && part->crossed != NULL &&
@@ -177,6 +184,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, stages,
                                  map_limit(&r->options, osnsp->dense_limit), osnsp->rcond_min,
                                  osnsp->cache_bytes / (size_t)r->n_parts));
+    DALCS_TRY(dalcs_arena_reserve(&part->arena, room_for_part(c->system)));
     DALCS_TRY(allocate(part));
     DALCS_TRY(dalcs_transition_setup(part));
     DALCS_TRY(dalcs_guards_setup(part));
@@ -233,24 +241,7 @@ static void part_finish(struct dalcs_radau_part *part) {
     }
     dalcs_excitation_finish(&part->excitation);
     dalcs_commands_finish(&part->commands);
-    free(part->x);
-    free(part->in);
-    free(part->out);
-    free(part->in_before);
-    free(part->out_before);
-    free(part->out_tried);
-    free(part->armed);
-    free(part->crossed);
-    free(part->tied);
-    free(part->u);
-    free(part->y1);
-    free(part->y2);
-    free(part->w1);
-    free(part->after);
-    free(part->used_input);
-    free(part->current_drift);
-    dalcs_guards_finish(part);
-    dalcs_step_finish(part);
+    dalcs_arena_finish(&part->arena);
 }
 
 void dalcs_radau_finish(struct dalcs_radau *r) {

@@ -135,6 +135,7 @@ struct dalcs_radau_part {
     struct dalcs_periodic *periodic; /* NULL: nothing can come back (periodic.h) */
     struct dalcs_cycle *cycle;       /* NULL: no period is leapt over (cycle.h) */
     bool cycles;                     /* its segments are those of a period, of which all is known */
+    struct dalcs_arena arena;        /* what has the same size during the run */
 };
 
 struct dalcs_radau {

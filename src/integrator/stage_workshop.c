@@ -20,63 +20,68 @@ enum { BALANCING_ROUNDS = 3 };
 
 /* ---- Room ---------------------------------------------------------------------------------- */
 
-static long double *extendeds(struct dalcs_arena *arena, int n) {
-    return dalcs_arena_alloc(arena, (size_t)(n > 0 ? n : 1), sizeof(long double));
+/* For as many unknowns as a map may have. Returns the bytes of it all. */
+static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
+    const struct dalcs_system *s = b->system;
+    size_t n_x = (size_t)b->n_x;
+    size_t n_rhs = (size_t)b->n_rhs;
+    size_t n_pairs = (size_t)s->n_pairs;
+    size_t all = (size_t)dalcs_system_n_columns(s);
+    size_t n = all < (size_t)b->stages->dense_limit ? all : (size_t)b->stages->dense_limit;
+    size_t used = 0;
+    b->wave_column = dalcs_carve(storage, &used, (size_t)s->n_inputs, sizeof(int));
+    b->place = dalcs_carve(storage, &used, all, sizeof(int));
+    b->row_scale = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
+    b->column_scale = dalcs_carve(storage, &used, n, sizeof(double));
+    b->mode = dalcs_carve(storage, &used, (size_t)b->stages->n_words, sizeof(*b->mode));
+    b->plain_base = dalcs_carve(storage, &used, n * n, sizeof(double));
+    b->plain_P = dalcs_carve(storage, &used, n_x * n_x, sizeof(double));
+    b->plain_rhs = dalcs_carve(storage, &used, n * n_rhs, sizeof(double));
+    b->base = dalcs_carve(storage, &used, n * n + DALCS_QUAD, sizeof(double));
+    b->P = dalcs_carve(storage, &used, n_x * n_x, sizeof(double));
+    b->rhs = dalcs_carve(storage, &used, n * n_rhs, sizeof(double));
+    b->whole_row_scale = dalcs_carve(storage, &used, n, sizeof(double));
+    b->whole_column_scale = dalcs_carve(storage, &used, n, sizeof(double));
+    b->S = dalcs_carve(storage, &used, n * n + DALCS_QUAD, sizeof(double));
+    b->re = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
+    b->im = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
+    b->whole = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
+    b->part = dalcs_carve(storage, &used, n * n_rhs * DALCS_SOLUTION_PARTS, sizeof(long double));
+    b->real = dalcs_carve(storage, &used, n * n_rhs, sizeof(long double));
+    b->stage = dalcs_carve(storage, &used, n * DALCS_MAX_STAGES, sizeof(long double));
+    b->follows_x = dalcs_carve(storage, &used, n * n, sizeof(long double));
+    b->follows_j = dalcs_carve(storage, &used, n * n, sizeof(int));
+    b->follows_p = dalcs_carve(storage, &used, n + 1, sizeof(int));
+    b->follower = dalcs_carve(storage, &used, n, sizeof(int));
+    b->kept = dalcs_carve(storage, &used, n, sizeof(int));
+    b->kept_row = dalcs_carve(storage, &used, n, sizeof(int));
+    b->row_of = dalcs_carve(storage, &used, n, sizeof(int));
+    b->owner = dalcs_carve(storage, &used, n, sizeof(int));
+    b->lanes = dalcs_carve(storage, &used, n * DALCS_LANES, sizeof(double));
+    b->kept_start = dalcs_carve(storage, &used, n, sizeof(long double));
+    b->start = dalcs_carve(storage, &used, n, sizeof(long double));
+    b->missed = dalcs_carve(storage, &used, n_x, sizeof(long double));
+    b->defect = dalcs_carve(storage, &used, n_x, sizeof(long double));
+    b->lasting = dalcs_carve(storage, &used, n_x, sizeof(long double));
+    b->guard = dalcs_carve(storage, &used, n_pairs * DALCS_LANES, sizeof(double));
+    b->residual = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
+    b->in = dalcs_carve(storage, &used, (size_t)b->stages->n_in, sizeof(double));
+    b->factor = dalcs_carve(storage, &used, DALCS_MAX_STAGES, sizeof(*b->factor));
+    b->constant_factor = dalcs_carve(storage, &used, DALCS_MAX_STAGES, sizeof(*b->factor));
+    return used;
 }
 
-/* For as many unknowns as a map may have. */
-static bool allocate(struct dalcs_stage_workshop *b) {
-    const struct dalcs_system *s = b->system;
-    struct dalcs_arena *kept = &b->for_all;
-    int all = dalcs_system_n_columns(s);
-    int n = all < b->stages->dense_limit ? all : b->stages->dense_limit;
-    b->wave_column = dalcs_arena_alloc(kept, (size_t)s->n_inputs + 1, sizeof(int));
-    b->place = dalcs_arena_alloc(kept, (size_t)all + 1, sizeof(int));
-    b->row_scale = dalcs_stage_workshop_reals(kept, n + DALCS_QUAD);
-    b->column_scale = dalcs_stage_workshop_reals(kept, n);
-    b->mode = dalcs_arena_alloc(kept, (size_t)b->stages->n_words + 1, sizeof(*b->mode));
-    b->plain_base = dalcs_stage_workshop_reals(kept, n * n);
-    b->plain_P = dalcs_stage_workshop_reals(kept, b->n_x * b->n_x);
-    b->plain_rhs = dalcs_stage_workshop_reals(kept, n * b->n_rhs);
-    b->base = dalcs_stage_workshop_reals(kept, n * n + DALCS_QUAD);
-    b->P = dalcs_stage_workshop_reals(kept, b->n_x * b->n_x);
-    b->rhs = dalcs_stage_workshop_reals(kept, n * b->n_rhs);
-    b->whole_row_scale = dalcs_stage_workshop_reals(kept, n);
-    b->whole_column_scale = dalcs_stage_workshop_reals(kept, n);
-    b->S = dalcs_stage_workshop_reals(kept, n * n + DALCS_QUAD);
-    b->re = extendeds(kept, n * (n + b->n_rhs));
-    b->im = extendeds(kept, n * (n + b->n_rhs));
-    b->whole = extendeds(kept, n * (n + b->n_rhs));
-    b->part = extendeds(kept, n * b->n_rhs * DALCS_SOLUTION_PARTS);
-    b->real = extendeds(kept, n * b->n_rhs);
-    b->stage = extendeds(kept, n * DALCS_MAX_STAGES);
-    b->follows_x = extendeds(kept, n * n);
-    b->follows_j = dalcs_arena_alloc(kept, (size_t)(n * n) + 1, sizeof(int));
-    b->follows_p = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
-    b->follower = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
-    b->kept = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
-    b->kept_row = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
-    b->row_of = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
-    b->owner = dalcs_arena_alloc(kept, (size_t)n + 1, sizeof(int));
-    b->lanes = dalcs_stage_workshop_reals(kept, n * DALCS_LANES);
-    b->kept_start = extendeds(kept, n);
-    b->start = extendeds(kept, n);
-    b->missed = extendeds(kept, b->n_x);
-    b->defect = extendeds(kept, b->n_x);
-    b->lasting = extendeds(kept, b->n_x);
-    b->guard = dalcs_stage_workshop_reals(kept, s->n_pairs * DALCS_LANES);
-    b->residual = dalcs_stage_workshop_reals(kept, n + DALCS_QUAD);
-    b->in = dalcs_stage_workshop_reals(kept, b->stages->n_in);
-    return b->wave_column != NULL && b->place != NULL && b->row_scale != NULL &&
-           b->column_scale != NULL && b->base != NULL && b->P != NULL && b->rhs != NULL &&
-           b->S != NULL && b->re != NULL && b->im != NULL && b->whole != NULL && b->part != NULL &&
-           b->real != NULL && b->stage != NULL && b->follows_x != NULL && b->follows_j != NULL &&
-           b->follows_p != NULL && b->follower != NULL && b->kept != NULL && b->kept_row != NULL &&
-           b->row_of != NULL && b->owner != NULL && b->mode != NULL && b->plain_base != NULL &&
-           b->plain_P != NULL && b->plain_rhs != NULL && b->whole_row_scale != NULL &&
-           b->whole_column_scale != NULL && b->lanes != NULL && b->kept_start != NULL &&
-           b->start != NULL && b->missed != NULL && b->defect != NULL && b->lasting != NULL &&
-           b->guard != NULL && b->residual != NULL && b->in != NULL;
+/* What is read before it is written has to be numbers: a quad behind matrices, and parts of solutions that few
+ * stages do without. */
+static void clear(struct dalcs_stage_workshop *b) {
+    memset(b->base, 0, (size_t)((char *)b->P - (char *)b->base));
+    memset(b->S, 0, (size_t)((char *)b->re - (char *)b->S));
+    memset(b->residual, 0, (size_t)((char *)b->in - (char *)b->residual));
+    if (b->stages->method->s < 7) {
+        memset(b->part, 0, (size_t)((char *)b->real - (char *)b->part));
+        memset(b->factor, 0, DALCS_MAX_STAGES * sizeof(*b->factor));
+        memset(b->constant_factor, 0, DALCS_MAX_STAGES * sizeof(*b->factor));
+    }
 }
 
 static bool is_driven(const struct dalcs_csr *a, const double *constant) {
@@ -99,11 +104,14 @@ enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **work
                                        .system = stages->system,
                                        .n_x = stages->system->n_x,
                                        .n_rhs = stages->system->n_x + 1 + e->n_waves};
-    if (!allocate(b)) {
+    b->storage = malloc(lay_out(b, NULL));
+    if (b->storage == NULL) {
         dalcs_stage_workshop_destroy(b);
         *workshop = NULL;
         return DALCS_E_NOMEM;
     }
+    lay_out(b, b->storage);
+    clear(b);
     for (int k = 0; k < b->system->n_inputs; k++) {
         b->wave_column[k] = -1;
     }
@@ -119,7 +127,7 @@ enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **work
 void dalcs_stage_workshop_destroy(struct dalcs_stage_workshop *workshop) {
     if (workshop != NULL) {
         dalcs_arena_finish(&workshop->arena);
-        dalcs_arena_finish(&workshop->for_all);
+        free(workshop->storage);
         free(workshop);
     }
 }

@@ -55,12 +55,13 @@ struct dalcs_stage_workshop {
     double *residual;             /* [n] */
     bool has_constants; /* inputs that do not vary drive something: else maps lack their column */
     double *in;         /* [n_in] of such a map */
-    long double factor[DALCS_MAX_STAGES][DALCS_SOLUTION_PARTS]; /* of a solution, at the stages */
-    long double constant_factor[DALCS_MAX_STAGES][DALCS_SOLUTION_PARTS];
+    long double (*factor)[DALCS_SOLUTION_PARTS]; /* [stages] of a solution, at the stages */
+    long double (*constant_factor)[DALCS_SOLUTION_PARTS];
     int nullity;
     double *left, *right; /* [nullity][n] null vectors, balanced */
     double *choice;       /* [nullity][n_pairs] what the other sides of pairs add of them */
-    struct dalcs_arena for_all, arena;
+    struct dalcs_arena arena;
+    void *storage; /* of all of these but for those in the arena */
 };
 
 enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **workshop,

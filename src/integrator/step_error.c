@@ -13,7 +13,6 @@
 #include "wide_vectors.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Signals smaller than this part of the largest of their unit are held to that one's scale; the
@@ -46,18 +45,19 @@ struct dalcs_column_kinds {
 enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     size_t n = (size_t)dalcs_quads_of(dalcs_system_n_columns(s));
-    part->scale = dalcs_alloc(n, sizeof(double));
-    part->magnitude = dalcs_alloc(n, sizeof(double));
-    part->kinds = dalcs_alloc(1, sizeof(*part->kinds));
+    part->scale = dalcs_arena_alloc(&part->arena, n, sizeof(double));
+    part->magnitude = dalcs_arena_alloc(&part->arena, n, sizeof(double));
+    part->kinds = dalcs_arena_alloc(&part->arena, 1, sizeof(*part->kinds));
     if (part->scale == NULL || part->magnitude == NULL || part->kinds == NULL) {
         return DALCS_E_NOMEM;
     }
     struct dalcs_column_kinds *kinds = part->kinds;
-    kinds->mode = dalcs_alloc((size_t)part->component->osnsp.n_words, sizeof(*kinds->mode));
-    kinds->is_volt = dalcs_alloc(n, sizeof(double));
-    kinds->is_ampere = dalcs_alloc(n, sizeof(double));
-    kinds->is_closed = dalcs_alloc(n, sizeof(double));
-    kinds->counts = dalcs_alloc(n, sizeof(*kinds->counts));
+    kinds->mode = dalcs_arena_alloc(&part->arena, (size_t)part->component->osnsp.n_words,
+                                    sizeof(*kinds->mode));
+    kinds->is_volt = dalcs_arena_alloc(&part->arena, n, sizeof(double));
+    kinds->is_ampere = dalcs_arena_alloc(&part->arena, n, sizeof(double));
+    kinds->is_closed = dalcs_arena_alloc(&part->arena, n, sizeof(double));
+    kinds->counts = dalcs_arena_alloc(&part->arena, n, sizeof(*kinds->counts));
     if (kinds->mode == NULL || kinds->is_volt == NULL || kinds->is_ampere == NULL ||
         kinds->is_closed == NULL || kinds->counts == NULL) {
         return DALCS_E_NOMEM;
@@ -69,19 +69,6 @@ enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
         kinds->counts[c] = is_pair ? 0 : UINT64_MAX;
     }
     return DALCS_OK;
-}
-
-void dalcs_step_finish(struct dalcs_radau_part *part) {
-    if (part->kinds != NULL) {
-        free(part->kinds->mode);
-        free(part->kinds->is_volt);
-        free(part->kinds->is_ampere);
-        free(part->kinds->is_closed);
-        free(part->kinds->counts);
-    }
-    free(part->kinds);
-    free(part->scale);
-    free(part->magnitude);
 }
 
 /* Brings what pairs are up to the present mode. */

@@ -13,10 +13,8 @@ struct dalcs_step_quality {
     double unit[2]; /* V, A: so far */
 };
 
-/* Of a part that is otherwise set up; finish also after a failure. */
+/* Of a part that is otherwise set up. */
 enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) DALCS_MUST_CHECK;
-
-void dalcs_step_finish(struct dalcs_radau_part *part);
 
 /* x[n_x], or value[n_columns + n_watched], with room for whole quads (quads.h), at theta of the present
  * step. */

@@ -2,7 +2,6 @@
 #include "transition.h"
 
 #include <limits.h>
-#include <stdlib.h>
 
 /* An entry has three modes: the one that held, the one after pairs changed sides, what followed. */
 enum { SLOTS = DALCS_TRANSITIONS, MODES = 3 };
@@ -15,10 +14,11 @@ enum { MOST_PATIENCE = 64 };
 
 enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
     size_t words = (size_t)part->component->osnsp.n_words;
-    part->transition = dalcs_alloc(SLOTS, sizeof(*part->transition));
-    part->transition_modes = dalcs_alloc(SLOTS * MODES * words, sizeof(uint64_t));
-    part->modes_before = dalcs_alloc(2 * words, sizeof(uint64_t));
-    part->mode_tied = dalcs_alloc(words, sizeof(uint64_t));
+    part->transition = dalcs_arena_alloc(&part->arena, SLOTS, sizeof(*part->transition));
+    part->transition_modes =
+        dalcs_arena_alloc(&part->arena, SLOTS * MODES * words, sizeof(uint64_t));
+    part->modes_before = dalcs_arena_alloc(&part->arena, 2 * words, sizeof(uint64_t));
+    part->mode_tied = dalcs_arena_alloc(&part->arena, words, sizeof(uint64_t));
     part->beginning[0] = part->beginning[1] = (struct dalcs_beginning){INT_MIN, 0, 1};
     bool complete = part->transition != NULL && part->transition_modes != NULL &&
                     part->modes_before != NULL && part->mode_tied != NULL;
@@ -29,10 +29,6 @@ void dalcs_transition_finish(struct dalcs_radau_part *part) {
     for (int k = 0; k < SLOTS && part->transition != NULL; k++) {
         dalcs_transition_begin_span(part, &part->transition[k], 0.0);
     }
-    free(part->transition);
-    free(part->transition_modes);
-    free(part->modes_before);
-    free(part->mode_tied);
 }
 
 struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *part) {

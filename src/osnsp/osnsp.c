@@ -26,8 +26,8 @@ struct dalcs_osnsp_options dalcs_osnsp_options_of(const struct dalcs_run_options
 static enum dalcs_status list_pair_rows(struct dalcs_osnsp *p) {
     const struct dalcs_system *s = p->system;
     int n_equations = dalcs_system_n_equations(s);
-    p->pair_rows_p = dalcs_alloc((size_t)s->n_pairs + 2, sizeof(int));
-    p->pair_rows = dalcs_alloc((size_t)s->A.p[n_equations], sizeof(int));
+    p->pair_rows_p = dalcs_arena_alloc(&p->arena, (size_t)s->n_pairs + 2, sizeof(int));
+    p->pair_rows = dalcs_arena_alloc(&p->arena, (size_t)s->A.p[n_equations], sizeof(int));
     if (p->pair_rows_p == NULL || p->pair_rows == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -69,7 +69,8 @@ static const double largest_threshold = 1.0;
 static enum dalcs_status list_drives(struct dalcs_osnsp *p) {
     const struct dalcs_system *s = p->system;
     int n_equations = dalcs_system_n_equations(s);
-    p->drive = dalcs_alloc((size_t)(s->E.p[n_equations] + s->F.p[s->n_pairs]), sizeof(*p->drive));
+    p->drive = dalcs_arena_alloc(&p->arena, (size_t)(s->E.p[n_equations] + s->F.p[s->n_pairs]),
+                                 sizeof(*p->drive));
     if (p->drive == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -109,8 +110,8 @@ static enum dalcs_status list_references(struct dalcs_osnsp *p) {
     for (int c = 0; c < n_equations; c++) {
         p->n_references += s->column[c].kind == DALCS_LABEL_REFERENCE ? 1 : 0;
     }
-    p->reference = dalcs_alloc((size_t)p->n_references, sizeof(int));
-    p->reference_row = dalcs_alloc((size_t)p->n_references, sizeof(int));
+    p->reference = dalcs_arena_alloc(&p->arena, (size_t)p->n_references, sizeof(int));
+    p->reference_row = dalcs_arena_alloc(&p->arena, (size_t)p->n_references, sizeof(int));
     if (p->reference == NULL || p->reference_row == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -124,6 +125,13 @@ static enum dalcs_status list_references(struct dalcs_osnsp *p) {
     return DALCS_OK;
 }
 
+/* Bytes that are kept for the run, with something to spare. */
+static size_t room(const struct dalcs_system *system) {
+    enum { FOR_ALL = 2048, FOR_A_COLUMN = 256 };
+
+    return FOR_ALL + FOR_A_COLUMN * (size_t)dalcs_system_n_columns(system);
+}
+
 enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_system *system,
                                     const struct dalcs_osnsp_options *options) {
     *p = (struct dalcs_osnsp){.system = system, .options = *options};
@@ -132,30 +140,31 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
     size_t n_columns = (size_t)dalcs_system_n_columns(system);
     p->n_words = (system->n_pairs + 63) / 64;
     size_t words = (size_t)p->n_words;
-    p->mode = dalcs_alloc(words, sizeof(*p->mode));
-    p->key = dalcs_alloc(words + 1, sizeof(*p->key));
-    p->regularised_mode = dalcs_alloc(words, sizeof(*p->regularised_mode));
-    p->w = dalcs_alloc(n_pairs, sizeof(double));
-    p->form = dalcs_alloc(33, sizeof(*p->form));
-    p->form_id = dalcs_alloc(33, sizeof(*p->form_id));
-    p->difference =
-        dalcs_alloc((size_t)(system->n_x + system->n_inputs) + n_columns, sizeof(double));
-    p->run = dalcs_alloc(n_columns, sizeof(*p->run));
-    p->is_diode = dalcs_alloc(n_pairs, sizeof(bool));
-    p->w_ends = dalcs_alloc(2 * n_pairs, sizeof(int));
-    p->violating = dalcs_alloc(n_pairs, sizeof(int));
-    p->tied = dalcs_alloc(n_pairs, sizeof(bool));
-    p->tied_mode = dalcs_alloc(words, sizeof(*p->tied_mode));
-    p->tied_answer = dalcs_alloc(n_columns, sizeof(double));
-    p->mapped = dalcs_alloc(n_columns + 8, sizeof(double));
-    p->right = dalcs_alloc(n_columns, sizeof(double));
-    p->scaled = dalcs_alloc(n_columns, sizeof(double));
-    p->rhs = dalcs_alloc(n_columns, sizeof(double));
-    p->residual = dalcs_alloc(n_columns, sizeof(double));
-    p->centre = dalcs_alloc(n_columns, sizeof(double));
-    p->centre_w = dalcs_alloc(n_pairs, sizeof(double));
-    p->step_before = dalcs_alloc(n_columns + n_pairs, sizeof(double));
-    p->step_now = dalcs_alloc(n_columns + n_pairs, sizeof(double));
+    DALCS_TRY(dalcs_arena_reserve(&p->arena, room(system)));
+    p->mode = dalcs_arena_alloc(&p->arena, words, sizeof(*p->mode));
+    p->key = dalcs_arena_alloc(&p->arena, words + 1, sizeof(*p->key));
+    p->regularised_mode = dalcs_arena_alloc(&p->arena, words, sizeof(*p->regularised_mode));
+    p->w = dalcs_arena_alloc(&p->arena, n_pairs, sizeof(double));
+    p->form = dalcs_arena_alloc(&p->arena, 33, sizeof(*p->form));
+    p->form_id = dalcs_arena_alloc(&p->arena, 33, sizeof(*p->form_id));
+    p->difference = dalcs_arena_alloc(
+        &p->arena, (size_t)(system->n_x + system->n_inputs) + n_columns, sizeof(double));
+    p->run = dalcs_arena_alloc(&p->arena, n_columns, sizeof(*p->run));
+    p->is_diode = dalcs_arena_alloc(&p->arena, n_pairs, sizeof(bool));
+    p->w_ends = dalcs_arena_alloc(&p->arena, 2 * n_pairs, sizeof(int));
+    p->violating = dalcs_arena_alloc(&p->arena, n_pairs, sizeof(int));
+    p->tied = dalcs_arena_alloc(&p->arena, n_pairs, sizeof(bool));
+    p->tied_mode = dalcs_arena_alloc(&p->arena, words, sizeof(*p->tied_mode));
+    p->tied_answer = dalcs_arena_alloc(&p->arena, n_columns, sizeof(double));
+    p->mapped = dalcs_arena_alloc(&p->arena, n_columns + 8, sizeof(double));
+    p->right = dalcs_arena_alloc(&p->arena, n_columns, sizeof(double));
+    p->scaled = dalcs_arena_alloc(&p->arena, n_columns, sizeof(double));
+    p->rhs = dalcs_arena_alloc(&p->arena, n_columns, sizeof(double));
+    p->residual = dalcs_arena_alloc(&p->arena, n_columns, sizeof(double));
+    p->centre = dalcs_arena_alloc(&p->arena, n_columns, sizeof(double));
+    p->centre_w = dalcs_arena_alloc(&p->arena, n_pairs, sizeof(double));
+    p->step_before = dalcs_arena_alloc(&p->arena, n_columns + n_pairs, sizeof(double));
+    p->step_now = dalcs_arena_alloc(&p->arena, n_columns + n_pairs, sizeof(double));
     enum dalcs_status status = DALCS_E_NOMEM;
     if (p->mode != NULL && p->key != NULL && p->regularised_mode != NULL && p->w != NULL &&
         p->form != NULL && p->form_id != NULL && p->difference != NULL && p->run != NULL &&
@@ -183,34 +192,7 @@ void dalcs_osnsp_finish(struct dalcs_osnsp *p) {
     if (p->form != NULL) {
         dalcs_modes_finish(p);
     }
-    free(p->form);
-    free(p->form_id);
-    free(p->mode);
-    free(p->key);
-    free(p->regularised_mode);
-    free(p->w);
-    free(p->pair_rows_p);
-    free(p->pair_rows);
-    free(p->reference);
-    free(p->reference_row);
-    free(p->difference);
-    free(p->run);
-    free(p->drive);
-    free(p->w_ends);
-    free(p->is_diode);
-    free(p->violating);
-    free(p->tied);
-    free(p->tied_mode);
-    free(p->tied_answer);
-    free(p->mapped);
-    free(p->right);
-    free(p->scaled);
-    free(p->rhs);
-    free(p->residual);
-    free(p->centre);
-    free(p->centre_w);
-    free(p->step_before);
-    free(p->step_now);
+    dalcs_arena_finish(&p->arena);
     free(p->witness.element);
     *p = (struct dalcs_osnsp){0};
 }

@@ -63,7 +63,7 @@ static void start(void) {
 }
 
 static void finish(void) {
-    dalcs_guards_finish(&part);
+    dalcs_arena_finish(&part.arena);
     dalcs_stages_finish(&part.stages);
     dalcs_excitation_finish(&x);
     dalcs_osnsp_finish(&osnsp);

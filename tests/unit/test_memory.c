@@ -86,4 +86,45 @@ START_TEST(test_arena) {
 
 END_TEST
 
-RUN_TESTS("memory", test_alloc, test_grow, test_arena)
+/* What was reserved is one block, whatever was in that memory before. */
+START_TEST(test_reserve) {
+    enum { SMALL = 5000, LARGE = 1 << 20 };
+
+    static const size_t sizes[] = {SMALL, LARGE};
+    for (int round = 0; round < 4; round++) {
+        struct dalcs_arena arena = {0};
+        const size_t size = sizes[round % 2];
+        ck_assert_int_eq(dalcs_arena_reserve(&arena, 2 * size), DALCS_OK);
+        const struct dalcs_arena_block *block = arena.head;
+        for (int k = 0; k < 2; k++) {
+            unsigned char *object = dalcs_arena_alloc(&arena, 1, size - 16);
+            ck_assert(object != NULL && all_zero(object, size - 16));
+            memset(object, 255, size - 16);
+        }
+        ck_assert_ptr_eq(arena.head, block);
+        dalcs_arena_finish(&arena);
+    }
+    struct dalcs_arena arena = {0};
+    ck_assert_int_eq(dalcs_arena_reserve(&arena, SIZE_MAX), DALCS_E_NOMEM);
+}
+
+END_TEST
+
+/* Places side by side, and the same bytes with and without storage. */
+START_TEST(test_carve) {
+    size_t used = 0;
+    ck_assert_ptr_null(dalcs_carve(NULL, &used, 3, sizeof(int)));
+    ck_assert_ptr_null(dalcs_carve(NULL, &used, 5, sizeof(double)));
+    unsigned char *storage = dalcs_alloc(1, used);
+    size_t again = 0;
+    ck_assert_ptr_eq(dalcs_carve(storage, &again, 3, sizeof(int)), storage);
+    unsigned char *second = dalcs_carve(storage, &again, 5, sizeof(double));
+    ck_assert_uint_eq((uintptr_t)second % _Alignof(max_align_t), 0);
+    ck_assert_uint_eq(again, used);
+    ck_assert(second + 5 * sizeof(double) <= storage + used);
+    free(storage);
+}
+
+END_TEST
+
+RUN_TESTS("memory", test_alloc, test_grow, test_arena, test_reserve, test_carve)

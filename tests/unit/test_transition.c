@@ -49,6 +49,7 @@ START_TEST(test_learns) {
     ck_assert(!guess(1, 3));
     ck_assert(!guess(0, 2));
     dalcs_transition_finish(&part);
+    dalcs_arena_finish(&part.arena);
 }
 
 END_TEST
@@ -75,6 +76,7 @@ START_TEST(test_held) {
     ck_assert(guess(1, 2));
     ck_assert(mode[0] == 7 && mode[1] == 8 && part.level == 4);
     dalcs_transition_finish(&part);
+    dalcs_arena_finish(&part.arena);
 }
 
 END_TEST
@@ -98,6 +100,7 @@ START_TEST(test_many) {
     }
     ck_assert_int_ge(n_known, 30);
     dalcs_transition_finish(&part);
+    dalcs_arena_finish(&part.arena);
 }
 
 END_TEST
@@ -129,6 +132,7 @@ START_TEST(test_beginning) {
     part.rounding = 1.0; /* on dense maps the circuit is asked */
     ck_assert(!guess(2, 7) && part.level == 10);
     dalcs_transition_finish(&part);
+    dalcs_arena_finish(&part.arena);
 }
 
 END_TEST
@@ -162,6 +166,7 @@ START_TEST(test_patience) {
         dalcs_transition_began(&part, level, 0);
     }
     dalcs_transition_finish(&part);
+    dalcs_arena_finish(&part.arena);
 }
 
 END_TEST
@@ -188,6 +193,7 @@ START_TEST(test_untried) {
     dalcs_transition_pass(&part, 2); /* its error promises more */
     ck_assert(guess(1, 2) && part.level == 14);
     dalcs_transition_finish(&part);
+    dalcs_arena_finish(&part.arena);
 }
 
 END_TEST
