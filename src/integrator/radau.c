@@ -172,6 +172,7 @@ static double fit_rung(double promising) {
 static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                     const struct dalcs_osnsp_options *osnsp) {
     struct dalcs_component *c = part->component;
+    c->osnsp.is_passing = true;
     bool steps = has_memory_or_sides(c->system);
     part->kind = steps ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
     int stages = r->options.stages;

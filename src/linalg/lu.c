@@ -1,5 +1,5 @@
 /* lu.c - the seam to KLU: analyse and factor there, solve here. */
-#include "lu.h"
+#include "lu_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,16 +34,6 @@ struct extracted {
     void *storage; /* of all of them */
 };
 
-/* n numbers of `size` bytes, the next ones in a storage; *used grows by them. Without storage that is
- * all. */
-static void *carve(void *storage, size_t *used, size_t n, size_t size) {
-    enum { ALIGNED = 16 };
-
-    void *at = storage != NULL ? (char *)storage + *used : NULL;
-    *used += (n * size + ALIGNED - 1) / ALIGNED * ALIGNED;
-    return at;
-}
-
 static size_t lay_out_extracted(struct extracted *e, const struct dalcs_lu *lu,
                                 const klu_numeric *numeric) {
     size_t n = (size_t)lu->n;
@@ -52,36 +42,33 @@ static size_t lay_out_extracted(struct extracted *e, const struct dalcs_lu *lu,
     size_t nzoff = (size_t)numeric->nzoff;
     size_t number = (lu->is_complex ? 2 : 1) * sizeof(double);
     size_t used = 0;
-    e->Lx = carve(e->storage, &used, lnz, number);
-    e->Ux = carve(e->storage, &used, unz, number);
-    e->Fx = carve(e->storage, &used, nzoff, number);
-    e->Lp = carve(e->storage, &used, n + 1, sizeof(int));
-    e->Li = carve(e->storage, &used, lnz, sizeof(int));
-    e->Up = carve(e->storage, &used, n + 1, sizeof(int));
-    e->Ui = carve(e->storage, &used, unz, sizeof(int));
-    e->Fp = carve(e->storage, &used, n + 1, sizeof(int));
-    e->Fi = carve(e->storage, &used, nzoff, sizeof(int));
+    e->Lx = dalcs_carve(e->storage, &used, lnz, number);
+    e->Ux = dalcs_carve(e->storage, &used, unz, number);
+    e->Fx = dalcs_carve(e->storage, &used, nzoff, number);
+    e->Lp = dalcs_carve(e->storage, &used, n + 1, sizeof(int));
+    e->Li = dalcs_carve(e->storage, &used, lnz, sizeof(int));
+    e->Up = dalcs_carve(e->storage, &used, n + 1, sizeof(int));
+    e->Ui = dalcs_carve(e->storage, &used, unz, sizeof(int));
+    e->Fp = dalcs_carve(e->storage, &used, n + 1, sizeof(int));
+    e->Fi = dalcs_carve(e->storage, &used, nzoff, sizeof(int));
     return used;
 }
 
-/* Row pointers, which count, come first. */
-static size_t lay_out(struct dalcs_lu *lu, const klu_numeric *numeric) {
+size_t dalcs_lu_lay_out(struct dalcs_lu *lu, size_t lower, size_t upper) {
     size_t n = (size_t)lu->n;
-    size_t lower = (size_t)numeric->lnz - n + (size_t)numeric->nzoff;
-    size_t upper = (size_t)numeric->unz - n;
     size_t number = (lu->is_complex ? 2 : 1) * sizeof(double);
     size_t used = 0;
-    lu->lower_p = carve(lu->storage, &used, n + 1, sizeof(int));
-    lu->upper_p = carve(lu->storage, &used, n + 1, sizeof(int));
-    lu->lower_x = carve(lu->storage, &used, lower, number);
-    lu->upper_x = carve(lu->storage, &used, upper, number);
-    lu->pivot_inverse = carve(lu->storage, &used, n, number);
-    lu->work = carve(lu->storage, &used, n + DALCS_LU_SPARE, number);
-    lu->lower_j = carve(lu->storage, &used, lower, sizeof(int));
-    lu->upper_j = carve(lu->storage, &used, upper, sizeof(int));
-    lu->from = carve(lu->storage, &used, n, sizeof(int));
-    lu->to = carve(lu->storage, &used, n, sizeof(int));
-    lu->block = carve(lu->storage, &used, (size_t)lu->n_blocks + 1, sizeof(int));
+    lu->lower_p = dalcs_carve(lu->storage, &used, n + 1, sizeof(int));
+    lu->upper_p = dalcs_carve(lu->storage, &used, n + 1, sizeof(int));
+    lu->lower_x = dalcs_carve(lu->storage, &used, lower, number);
+    lu->upper_x = dalcs_carve(lu->storage, &used, upper, number);
+    lu->pivot_inverse = dalcs_carve(lu->storage, &used, n, number);
+    lu->work = dalcs_carve(lu->storage, &used, n + DALCS_LU_SPARE, number);
+    lu->lower_j = dalcs_carve(lu->storage, &used, lower, sizeof(int));
+    lu->upper_j = dalcs_carve(lu->storage, &used, upper, sizeof(int));
+    lu->from = dalcs_carve(lu->storage, &used, n, sizeof(int));
+    lu->to = dalcs_carve(lu->storage, &used, n, sizeof(int));
+    lu->block = dalcs_carve(lu->storage, &used, (size_t)lu->n_blocks + 1, sizeof(int));
     return used;
 }
 
@@ -90,13 +77,15 @@ static enum dalcs_status extract(struct extracted *e, struct dalcs_lu *lu, klu_s
                                  klu_numeric *numeric, klu_common *common) {
     *e = (struct extracted){.storage = NULL};
     lu->n_blocks = symbolic->nblocks;
+    size_t lower = (size_t)numeric->lnz - (size_t)lu->n + (size_t)numeric->nzoff;
+    size_t upper = (size_t)numeric->unz - (size_t)lu->n;
     e->storage = malloc(lay_out_extracted(e, lu, numeric));
-    lu->storage = malloc(lay_out(lu, numeric));
+    lu->storage = malloc(dalcs_lu_lay_out(lu, lower, upper));
     if (e->storage == NULL || lu->storage == NULL) {
         return DALCS_E_NOMEM;
     }
     lay_out_extracted(e, lu, numeric);
-    lay_out(lu, numeric);
+    dalcs_lu_lay_out(lu, lower, upper);
     memset(lu->lower_p, 0, (size_t)((char *)lu->lower_x - (char *)lu->lower_p));
     size_t lnz = (size_t)numeric->lnz;
     size_t unz = (size_t)numeric->unz;

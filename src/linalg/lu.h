@@ -57,6 +57,14 @@ void dalcs_lu_pivot_carefully(klu_common *common);
 enum dalcs_status dalcs_lu_factor(struct dalcs_lu *lu, klu_common *common, int n, int *p, int *i,
                                   double *x, int *row_of_column, double rcond_min) DALCS_MUST_CHECK;
 
+/* A matrix of up to so many rows is as well factored without an analysis. */
+enum { DALCS_LU_SMALL = 16 };
+
+/* The same of such a matrix, by plain elimination. DALCS_SINGULAR where a pivot is 0 or, over another one, less
+ * than `apart`: then it may be singular, or ask for an order that follows its pattern, and dalcs_lu_factor tells. */
+enum dalcs_status dalcs_lu_factor_small(struct dalcs_lu *lu, int n, const int *p, const int *i,
+                                        const double *x, double apart) DALCS_MUST_CHECK;
+
 /* What depends on the pattern alone: good for all values, real or complex. DALCS_SINGULAR when no
  * values can make the matrix regular. Free it with klu_free_symbolic. */
 enum dalcs_status dalcs_lu_analyze(klu_symbolic **symbolic, klu_common *common, int n, int *p,

@@ -227,12 +227,30 @@ static enum dalcs_status factor_large(struct dalcs_osnsp *p, struct dalcs_mode_e
     return status;
 }
 
+bool dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu, int n,
+                              const int *start, const int *row, const double *value, double apart) {
+    return p->is_passing && n <= DALCS_LU_SMALL &&
+           dalcs_lu_factor_small(lu, n, start, row, value, apart) == DALCS_OK;
+}
+
+/* Pivots of a mode that is not clearly regular. */
+static const double far_apart = 1e-6;
+
+static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *e,
+                                struct dalcs_columns *a) {
+    if (a->n >= LARGE_MODE) {
+        return factor_large(p, e, a);
+    }
+    return dalcs_modes_factor_small(p, &e->lu, a->n, a->p, a->i, a->x, far_apart)
+               ? DALCS_OK
+               : dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, NULL,
+                                 p->options.rcond_min);
+}
+
 static enum dalcs_status factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
     struct dalcs_columns a;
     DALCS_TRY(dalcs_modes_matrix(p, e, &a));
-    enum dalcs_status status = a.n >= LARGE_MODE ? factor_large(p, e, &a)
-                                                 : dalcs_lu_factor(&e->lu, &p->klu, a.n, a.p, a.i,
-                                                                   a.x, NULL, p->options.rcond_min);
+    enum dalcs_status status = factor(p, e, &a);
     dalcs_columns_finish(&a);
     return status == DALCS_OK ? order_rows(p, e) : status;
 }

@@ -73,6 +73,9 @@ struct dalcs_osnsp {
     bool refines;    /* set by the caller: each answer of a regular mode is refined once, for small
                         currents next to large ones, which the certificate lets be off */
     bool
+        is_passing; /* set by the caller: forms and modes serve a problem or two, so that small ones are factored
+                        in the least time; steps of implicit Euler go on with the digits of KLU's order */
+    bool
         keeps_states; /* states that more than voltages of nodes gives are as in the answer, not recovered */
     bool looks_around; /* nothing was certified: currents are measured against whole chains */
 

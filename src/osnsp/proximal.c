@@ -114,9 +114,12 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
             start[c + 1] = out;
         }
         /* The weights make it nonsingular; only an exact zero pivot is refused. */
-        dalcs_lu_keep_diagonal(&p->klu, true);
-        status = dalcs_lu_factor(&entry->lu, &p->klu, n, start, row, value, NULL, 0.0);
-        dalcs_lu_keep_diagonal(&p->klu, false);
+        status = DALCS_OK;
+        if (!dalcs_modes_factor_small(p, &entry->lu, n, start, row, value, 0.0)) {
+            dalcs_lu_keep_diagonal(&p->klu, true);
+            status = dalcs_lu_factor(&entry->lu, &p->klu, n, start, row, value, NULL, 0.0);
+            dalcs_lu_keep_diagonal(&p->klu, false);
+        }
     }
     free(start);
     free(row);

@@ -30,9 +30,14 @@ static struct columns compress(int n, const double *dense) {
     return a;
 }
 
+static bool by_small; /* without an analysis */
+
 static enum dalcs_status factor(struct dalcs_lu *lu, int n, const double *dense, double rcond_min) {
     struct columns a = compress(n, dense);
     dalcs_lu_common_init(&klu);
+    if (by_small) {
+        return dalcs_lu_factor_small(lu, n, a.p, a.i, a.x, 1e-6);
+    }
     return dalcs_lu_factor(lu, &klu, n, a.p, a.i, a.x, NULL, rcond_min);
 }
 
@@ -96,6 +101,25 @@ START_TEST(test_random) {
 
 END_TEST
 
+START_TEST(test_small) {
+    by_small = true;
+    for (uint64_t seed = 1; seed <= 100; seed++) {
+        double dense[DALCS_LU_SMALL * DALCS_LU_SMALL] = {0.0};
+        int n = 1 + (int)(seed % DALCS_LU_SMALL);
+        uint64_t random = seed;
+        for (int r = 0; r < n; r++) { /* with little on the diagonal */
+            dense[r * n + (r + 3) % n] = 4.0 + next_random(&random);
+            for (int k = 0; k < 3; k++) {
+                dense[r * n + (int)(n * fabs(next_random(&random)))] += next_random(&random);
+            }
+        }
+        check_solves(n, dense, seed);
+    }
+    by_small = false;
+}
+
+END_TEST
+
 /* Several diagonal blocks that depend on each other, hidden by permutations. */
 START_TEST(test_blocks) {
     enum { N = 24 };
@@ -124,6 +148,9 @@ END_TEST
 START_TEST(test_zero_diagonal) {
     const double dense[] = {0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 1.0, 4.0, 0.0};
     check_solves(3, dense, 3);
+    by_small = true;
+    check_solves(3, dense, 3);
+    by_small = false;
 }
 
 END_TEST
@@ -212,15 +239,36 @@ START_TEST(test_singular) {
 
 END_TEST
 
+/* Without an analysis whatever may be singular is refused. */
+START_TEST(test_small_singular) {
+    const double some[][4] = {{1.0, 2.0, 0.0, 0.0},
+                              {1.0, 2.0, 2.0, 4.0},
+                              {1.0, 1.0, 1.0, 1.0 + 0x1p-50},
+                              {1.0, 0.0, 0.0, 1e-15},
+                              {1.0, 0.0, 0.0, NAN}};
+    by_small = true;
+    for (size_t k = 0; k < sizeof(some) / sizeof(some[0]); k++) {
+        struct dalcs_lu lu;
+        ck_assert_int_eq(factor(&lu, 2, some[k], 1e-14), DALCS_SINGULAR);
+        ck_assert_ptr_null(lu.work);
+    }
+    by_small = false;
+}
+
+END_TEST
+
 START_TEST(test_nothing) {
     struct dalcs_lu lu;
     ck_assert_int_eq(factor(&lu, 0, NULL, 1e-14), DALCS_OK);
     dalcs_lu_solve(&lu, NULL);
     ck_assert_uint_eq(dalcs_lu_bytes(&lu), 0);
     dalcs_lu_finish(&lu);
+    ck_assert_int_eq(dalcs_lu_factor_small(&lu, 0, NULL, NULL, NULL, 1e-6), DALCS_OK);
+    dalcs_lu_solve_ordered(&lu);
+    dalcs_lu_finish(&lu);
 }
 
 END_TEST
 
-RUN_TESTS("lu", test_random, test_blocks, test_zero_diagonal, test_matched_rows, test_singular,
-          test_nothing)
+RUN_TESTS("lu", test_random, test_small, test_blocks, test_zero_diagonal, test_matched_rows,
+          test_singular, test_small_singular, test_nothing)
