@@ -8,6 +8,7 @@
 #include "radau_internal.h"
 #include "recurrence.h"
 #include "step_length.h"
+#include "twins.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -189,6 +190,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     DALCS_TRY(allocate(part));
     DALCS_TRY(dalcs_transition_setup(part));
     DALCS_TRY(dalcs_guards_setup(part));
+    DALCS_TRY(dalcs_twins_setup(part));
     DALCS_TRY(dalcs_step_setup(part));
     bool *used = dalcs_alloc((size_t)c->system->n_inputs, sizeof(bool));
     if (used == NULL) {
@@ -389,7 +391,7 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     }
     part->t = part->t_end;
     if (part->n_crossed > 0) {
-        dalcs_guards_flip(part);
+        dalcs_twins_flip(part);
         part->fresh = true;
         part->flipped = true;
     }

@@ -100,6 +100,8 @@ struct dalcs_radau_part {
     bool by_euler; /* the segment is a step of implicit Euler */
     bool open;     /* its mode leaves something open, and nobody was told */
     bool *tied;    /* [n_pairs] work */
+    int *twin;     /* [n_pairs] the first one with the same law; NULL: nobody asked (twins.h) */
+    int n_twins;   /* that another one comes before */
     double *u, *y1, *y2, *w1, *after; /* work; y1 and y2 in whole quads */
     int n_used_inputs, *used_input;   /* that probes read */
 

@@ -14,6 +14,7 @@
 #include "radau_internal.h"
 #include "recurrence.h"
 #include "step_length.h"
+#include "twins.h"
 
 #include <math.h>
 #include <string.h>
@@ -510,6 +511,9 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     }
     if (search->opened && dalcs_guards_turn_back(part)) {
         return tie_again(part, search);
+    }
+    if (part->fresh && dalcs_twins_close(part, quality.unit)) {
+        return DALCS_OK;
     }
     double next = dalcs_smaller(theta, end);
     if (part->fresh && search->restarts == 0 &&
