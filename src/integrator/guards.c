@@ -43,8 +43,9 @@ static const double rounded = 16.0 * DBL_EPSILON;
 static const double same_on_maps = 1e-13;
 static const double same_on_factors = 1e-9;
 
-/* A fall this early in a step is one from the start. */
-static const double soon_after = 1e-6;
+/* A fall this early in a step is one from the start; so early where no pair has changed sides and it was above 0
+ * by no more than its doubt: from rest a circuit may begin to move as a power of time. */
+static const double soon_after = 1e-6, from_rest = 1.0 / 64.0;
 
 static int n_guards(const struct dalcs_radau_part *part) {
     return part->component->system->n_pairs + part->stages.n_watched;
@@ -344,7 +345,8 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
             *at_once = false;
         }
         first = dalcs_smaller(first, c.theta);
-        bool soon = c.at_once || (c.theta <= soon_after && c.peak <= band * scale);
+        bool rests = part->fresh && !part->flipped && c.theta <= from_rest && c.peak <= depth;
+        bool soon = c.at_once || rests || (c.theta <= soon_after && c.peak <= band * scale);
         *at_once = *at_once || (!part->armed[g] && soon);
         part->crossed[part->n_crossed++] = g;
     }
