@@ -31,8 +31,9 @@ static const double shallow = 100.0;
  * does not tell it from nothing. */
 static const double slight = 1e-8, unresolved = 1e-5;
 
-/* What dies away between two nodes leaves so much of itself, of either sign, at those behind. */
-static const double swing = 0.1;
+/* What dies away between two nodes leaves so much of itself, of either sign, at those behind: in the first step
+ * of a mode, and in later ones, which have got longer meanwhile. */
+static const double swing = 0.1, late_swing = 0.01;
 
 /* Digits of a voltage over what the capacitors at a diode make of them in a step: a current that only
  * rounds their voltages is none, however small the others are. So for coils and their currents. A dense map
@@ -397,6 +398,7 @@ double dalcs_guards_recovery(const struct dalcs_radau_part *part) {
 bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
     int last = part->stages.layout.n_nodes - 1;
     bool all = part->n_crossed > 0;
+    double part_left = part->fresh ? swing : late_swing;
     for (int k = 0; k < part->n_crossed && all; k++) {
         double work[DALCS_MAX_NODES];
         int stride;
@@ -405,7 +407,7 @@ bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
         for (int i = 1; i < last; i++) {
             least = dalcs_smaller(least, value[i * stride]);
         }
-        all = value[last * stride] > 0.0 && least > -swing * value[0];
+        all = value[last * stride] > 0.0 && least > -part_left * value[0];
     }
     return all;
 }

@@ -524,7 +524,8 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         dalcs_guards_stay_tied(part, dalcs_stage_n_clashes(entry) == 0, quality.unit)) {
         return untie(r, part, search, next, &quality);
     }
-    if (part->fresh && may_refine(search) && (part->may_dip || dalcs_guards_swing(part))) {
+    bool may_dip = part->fresh && part->may_dip;
+    if (may_refine(search) && (may_dip || dalcs_guards_swing(part))) {
         return refine(r, part, search);
     }
     part->open = part->fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);

@@ -328,7 +328,7 @@ START_TEST(test_over_soon) {
 END_TEST
 
 /* What has died away before the second node and is above 0 at the end may have dipped as the polynomial does;
- * what dips deep, or ends below, has not. */
+ * what dips deep, or ends below, has not. Later than in the first step of a mode less is deep. */
 START_TEST(test_swing) {
     start();
     const struct dalcs_stage_layout *l = &part.stages.layout;
@@ -339,7 +339,15 @@ START_TEST(test_swing) {
         d1[k * l->stride] = k % 2 == 0 ? -4e-5 : 4e-5;
     }
     d1[(l->n_nodes - 1) * l->stride] = 3e-5;
+    part.fresh = true;
     ck_assert(first_fall(1.0) < 1.0 && dalcs_guards_swing(&part));
+    part.fresh = false;
+    ck_assert(first_fall(1.0) < 1.0 && !dalcs_guards_swing(&part));
+    for (int k = 1; k < l->n_nodes; k++) {
+        d1[k * l->stride] *= 0.1;
+    }
+    ck_assert(first_fall(1.0) < 1.0 && dalcs_guards_swing(&part));
+    part.fresh = true;
     d1[2 * l->stride] = -4e-4;
     ck_assert(first_fall(1.0) < 1.0 && !dalcs_guards_swing(&part));
     d1[2 * l->stride] = -4e-5;
