@@ -184,13 +184,13 @@ static bool settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
 }
 
 /* Of the first step of a mode, with an error so many times what is allowed: may it be that the state has to
- * jump, or only that the step is too long? Where every state is what it likes none jumps. On factors
- * micro-steps in a new mode cost more than a shorter step, which is tried first. */
+ * jump, or only that the step is too long? A shorter one is tried first: it may show a transient that a
+ * micro-step passes over, with the events in it, and costs less. Where every state is what it likes none jumps. */
 static bool is_worth_asking(const struct dalcs_radau_part *part, const struct search *search,
                             double ratio) {
-    bool is_map = part->rounding == 1.0;
-    bool has_free_states = search->states_free && part->component->system->n_x > 0;
-    bool may_jump = is_map ? !has_free_states || isinf(ratio) : !(ratio < most_projected);
+    bool has_free_states =
+        part->rounding == 1.0 && search->states_free && part->component->system->n_x > 0;
+    bool may_jump = has_free_states ? isinf(ratio) : !(ratio < most_projected);
     return search->fixed || search->stuck > 0 || may_jump;
 }
 
