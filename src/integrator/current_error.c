@@ -25,6 +25,10 @@ static const double least_tolerance = 1e-10;
 /* Roundings in an element of a map times its input, which has those of the steps before. */
 static const double roundings = 32.0 * DBL_EPSILON;
 
+/* What rounding of voltages makes of the current that is their difference over a resistance no step mends; a
+ * part of that is in its drift, too, where nearly all of it cancels. */
+static const double roundings_apart = 0.25 * DBL_EPSILON;
+
 /* Of what rounding of the largest column may make of a current, on factors: the drift is a solution by
  * itself, of small numbers. */
 static const double on_factors = 1.0 / 16.0;
@@ -54,9 +58,19 @@ static bool has_lever(const struct dalcs_radau *r, const struct dalcs_radau_part
     return false;
 }
 
+/* The largest of what currents have been made of in steps with a lever. */
+static void raise_parts(struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry) {
+    const struct dalcs_stages *stages = &part->stages;
+    for (int k = 0; k < stages->n_currents; k++) {
+        double spread =
+            dalcs_stage_spread(stages, entry, stages->current[k], part->in, part->scale);
+        part->current_parts[k] = dalcs_larger(part->current_parts[k], spread);
+    }
+}
+
 /* Has a state a lever in this step? The note of an entry counts its steps until that is looked up again:
  * positive without a lever, negative with one. On factors it is not looked up. */
-static bool may_matter(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+static bool may_matter(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                        struct dalcs_stage_entry *entry, const double unit[2], double besides) {
     int *note = dalcs_stage_note(entry);
     if (*note > 0) {
@@ -70,6 +84,9 @@ static bool may_matter(const struct dalcs_radau *r, const struct dalcs_radau_par
         *note = has_lever(r, part, entry, unit, besides) ? -STEPS_BETWEEN : STEPS_BETWEEN;
     }
     bool has = *note < 0;
+    if (*note == -STEPS_BETWEEN) {
+        raise_parts(part, entry);
+    }
     *note += has ? 1 : 0;
     return has;
 }
@@ -79,7 +96,8 @@ static double rounding_of(const struct dalcs_radau_part *part,
                           const struct dalcs_stage_entry *entry, int k) {
     const struct dalcs_stages *stages = &part->stages;
     if (dalcs_stage_has_map(entry)) {
-        return roundings * dalcs_stage_spread_of_current(stages, entry, k, part->in, part->scale);
+        return roundings * dalcs_stage_spread_of_current(stages, entry, k, part->in, part->scale) +
+               roundings_apart * part->current_parts[k];
     }
     return on_factors * dalcs_step_rounding(part, entry) *
            dalcs_stage_natural_units(entry)[stages->current[k]];

@@ -78,6 +78,7 @@ struct dalcs_radau_part {
     double magnitude_end;
     struct dalcs_column_kinds *kinds; /* see step_error.c */
     double *current_drift;            /* [n_currents] in whole eights: see current_error.c */
+    double *current_parts;            /* [n_currents] what they are made of, at most; ditto */
     double unit_scale[2];             /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
