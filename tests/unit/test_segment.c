@@ -99,6 +99,25 @@ START_TEST(test_start_without_jump) {
 
 END_TEST
 
+/* A buck converter: no step is longer than the first power of 2 beyond the longest span, from the start on, and
+ * when the switch opens or closes the first time the circuit is asked at once where the current goes, instead of
+ * making maps of two modes in which it has nowhere to go. */
+START_TEST(test_commutation) {
+    bool happens;
+    start("buck\nvin in 0 12\nvg g 0 pulse(0 1 0 0 0 4u 10u)\ns1 in sw g 0 sm\nd1 0 sw\n"
+          "l1 sw out 50u\nc1 out 0 20u\nr1 out 0 2\n.model sm sw(vt=0.5)\n.tran 1u 10m uic\n",
+          10e-3);
+    for (double to; (to = dalcs_radau_next_stop(&r, &happens)) < 25e-6;) {
+        ck_assert(r.part->h < 12e-6);
+        ck_assert_int_eq(dalcs_radau_pass(&r, to), DALCS_OK);
+    }
+    ck_assert_int_eq(r.restarts, 3); /* at 0, 4 and 10 us */
+    ck_assert_int_eq(r.part->stages.factorizations, 4);
+    finish();
+}
+
+END_TEST
+
 RUN_TESTS("segment", test_known_mode, test_start_without_jump, test_open_across_a_capacitor,
           test_nothing_across_a_capacitor, test_brief_behind_a_jump,
-          test_falls_back_in_longer_steps)
+          test_falls_back_in_longer_steps, test_commutation)
