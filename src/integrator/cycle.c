@@ -6,6 +6,7 @@
 #include "radau_internal.h"
 #include "recurrence.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,15 +31,14 @@ struct affine_rows {
 
 struct cycle_segment {
     struct dalcs_stage_brief *brief;
-    const struct dalcs_command *began; /* its move began the segment */
-    int way;
+    struct dalcs_leap_moment began;
     struct affine_rows last;      /* states at its end */
     struct affine_rows condition; /* what must not be negative */
     bool is_composed;             /* the following are known, of the period that begins with it */
     struct affine_rows period_last,
         period_condition; /* the latter in parts of the states' scales */
     int n_events;
-    struct dalcs_leap_event *event; /* of that period, without n */
+    struct dalcs_leap_event *event; /* of that period */
 };
 
 struct dalcs_cycle {
@@ -145,16 +145,25 @@ static double common_period(const struct dalcs_commands *commands) {
     return is_common ? first->u.pulse.period : NAN;
 }
 
-/* The command that moved at part->t; NULL: something else began the segment. */
-static const struct dalcs_command *find_move(const struct dalcs_radau_part *part, int *way) {
+/* The commands that moved at part->t; false: something else began the segment, or too many. */
+static bool find_moves(const struct dalcs_radau_part *part, struct dalcs_leap_moment *moment) {
+    bool is_exact = false;
+    moment->n_moves = 0;
     for (int k = 0; k < part->commands.n; k++) {
         const struct dalcs_command *m = &part->commands.command[k];
-        *way = m->is_on ? 0 : 1;
-        if (m->n[*way] > 0 && dalcs_command_time(m, *way, m->n[*way] - 1) == part->t) {
-            return m;
+        int way = m->is_on ? 0 : 1;
+        double time = m->n[way] > 0 ? dalcs_command_time(m, way, m->n[way] - 1) : -1.0;
+        if (!(fabs(time - part->t) <= 4.0 * DBL_EPSILON * part->t)) {
+            continue;
         }
+        if (moment->n_moves == DALCS_MOST_MOVES) {
+            return false;
+        }
+        moment->move[moment->n_moves].command = m;
+        moment->move[moment->n_moves++].way = way;
+        is_exact = is_exact || time == part->t;
     }
-    return NULL;
+    return is_exact;
 }
 
 /* Inputs beside the states are the same in all steps: no source is on a ramp. */
@@ -235,20 +244,25 @@ static enum dalcs_status take_conditions(const struct dalcs_radau *r,
 }
 
 /* The present segment is the next one of a period. */
-static void append(struct dalcs_radau_part *part, const struct dalcs_command *began, int way) {
+static void append(struct dalcs_radau_part *part, const struct dalcs_leap_moment *began) {
     struct dalcs_cycle *cycle = part->cycle;
     size_t n_words = (size_t)part->component->osnsp.n_words;
     memcpy(cycle->mode + (size_t)cycle->n * n_words, part->component->osnsp.mode,
            n_words * sizeof(uint64_t));
-    cycle->segment[cycle->n++] = (struct cycle_segment){
-        .brief = dalcs_transition_known(part)->of_span, .began = began, .way = way};
+    cycle->segment[cycle->n++] =
+        (struct cycle_segment){.brief = dalcs_transition_known(part)->of_span, .began = *began};
 }
 
 static bool is_segment(const struct dalcs_radau_part *part, int k,
-                       const struct dalcs_command *began, int way) {
+                       const struct dalcs_leap_moment *began) {
     const struct cycle_segment *segment = &part->cycle->segment[k];
-    return segment->brief == dalcs_transition_known(part)->of_span && segment->began == began &&
-           segment->way == way;
+    bool is = segment->brief == dalcs_transition_known(part)->of_span &&
+              segment->began.n_moves == began->n_moves;
+    for (int i = 0; i < began->n_moves && is; i++) {
+        is = segment->began.move[i].command == began->move[i].command &&
+             segment->began.move[i].way == began->move[i].way;
+    }
+    return is;
 }
 
 static enum dalcs_status take_rows(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
@@ -274,17 +288,13 @@ enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r, struct dalcs_rad
     if (cycle->period == 0.0) {
         cycle->period = common_period(&part->commands);
     }
-    int way = 0;
-    const struct dalcs_command *began = NULL;
-    if (cycle->period > 0.0 && is_tail(part, cycle->n == 0)) {
-        began = find_move(part, &way);
-    }
-    if (began == NULL) {
+    struct dalcs_leap_moment began;
+    if (!(cycle->period > 0.0 && is_tail(part, cycle->n == 0) && find_moves(part, &began))) {
         forget(part);
         return DALCS_OK;
     }
     int next = cycle->is_closed ? (cycle->at + 1) % cycle->n : 0;
-    if (cycle->n > 0 && is_segment(part, next, began, way)) {
+    if (cycle->n > 0 && is_segment(part, next, &began)) {
         cycle->is_closed = true;
         cycle->at = next;
         return cycle->n_taken < cycle->n ? take_rows(r, part) : DALCS_OK;
@@ -292,7 +302,7 @@ enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r, struct dalcs_rad
     if (cycle->is_closed || cycle->n == MOST_SEGMENTS) {
         forget(part);
     }
-    append(part, began, way);
+    append(part, &began);
     return DALCS_OK;
 }
 
@@ -373,10 +383,7 @@ static void list_changes(const struct dalcs_radau_part *part, int k, struct cycl
         bool is_on = dalcs_mode_has(to, d);
         if (is_on != dalcs_mode_has(from, d)) {
             of->event[of->n_events++] =
-                (struct dalcs_leap_event){.command = cycle->segment[next].began,
-                                          .way = cycle->segment[next].way,
-                                          .pair = d,
-                                          .is_on = is_on};
+                (struct dalcs_leap_event){&cycle->segment[next].began, d, is_on};
         }
     }
 }
@@ -508,12 +515,14 @@ static void put_off(struct dalcs_radau *r, struct dalcs_radau_part *part, long n
     cycle->leap.n_steps = n * cycle->n;
     cycle->leap.n_events = segment->n_events;
     cycle->leap.event = segment->event;
-    for (int k = 0; k < segment->n_events; k++) {
-        struct dalcs_leap_event *event = &segment->event[k];
-        event->n = event->command->n[event->way];
+    for (int k = 0; k < cycle->n; k++) {
+        struct dalcs_leap_moment *began = &cycle->segment[k].began;
+        for (int i = 0; i < began->n_moves; i++) {
+            began->move[i].n = began->move[i].command->n[began->move[i].way];
+        }
     }
+    part->t = dalcs_leap_time(&segment->began, n - 1);
     dalcs_commands_leap(&part->commands, n);
-    part->t = dalcs_command_time(segment->began, segment->way, segment->began->n[segment->way] - 1);
     part->t_end = dalcs_radau_limit(r, part);
     memcpy(part->in, part->x, (size_t)part->component->system->n_x * sizeof(double));
     dalcs_recurrence_begin(part);

@@ -13,12 +13,33 @@
 
 #include "radau.h"
 
-/* What changed sides in each of the periods that were leapt over: in the k-th at the time of the command's
- * move n + k. */
+/* Where one segment of a period ends and the next begins: some commands move at once, but for rounding of their
+ * times, and the first one's counts. */
+enum { DALCS_MOST_MOVES = 8 };
+
+struct dalcs_leap_moment {
+    int n_moves;
+
+    struct {
+        const struct dalcs_command *command;
+        int way; /* commands.h */
+        long n;  /* of its move in the first of the periods */
+    } move[DALCS_MOST_MOVES];
+};
+
+/* s; in the k-th of the periods. */
+static inline double dalcs_leap_time(const struct dalcs_leap_moment *m, long k) {
+    double time = dalcs_command_time(m->move[0].command, m->move[0].way, m->move[0].n + k);
+    for (int i = 1; i < m->n_moves; i++) {
+        double other = dalcs_command_time(m->move[i].command, m->move[i].way, m->move[i].n + k);
+        time = other < time ? other : time;
+    }
+    return time;
+}
+
+/* What changed sides in each of the periods that were leapt over. */
 struct dalcs_leap_event {
-    const struct dalcs_command *command;
-    int way; /* commands.h */
-    long n;
+    const struct dalcs_leap_moment *moment;
     int pair;
     bool is_on;
 };

@@ -325,11 +325,13 @@ enum dalcs_status dalcs_recorder_leap(struct dalcs_recorder *r, const struct dal
     struct dalcs_event *to = r->event + r->n_events;
     const struct dalcs_event *end = to + kept;
     for (long k = 0; to < end; k++) {
+        double time = 0.0;
         for (int i = 0; i < leap->n_events && to < end; i++, to++) {
             const struct dalcs_leap_event *e = &leap->event[i];
-            *to = (struct dalcs_event){.time = dalcs_command_time(e->command, e->way, e->n + k),
-                                       .element = leap->system->pair[e->pair].element,
-                                       .on = e->is_on};
+            bool is_same = i > 0 && e->moment == leap->event[i - 1].moment;
+            time = is_same ? time : dalcs_leap_time(e->moment, k);
+            *to = (struct dalcs_event){
+                .time = time, .element = leap->system->pair[e->pair].element, .on = e->is_on};
         }
     }
     r->n_events += kept;
