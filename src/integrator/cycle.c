@@ -83,22 +83,23 @@ enum dalcs_status dalcs_cycle_setup(struct dalcs_radau *r) {
     if (part == NULL) {
         return DALCS_OK;
     }
-    struct dalcs_cycle *cycle = part->cycle = dalcs_alloc(1, sizeof(*cycle));
+    struct dalcs_arena *arena = &part->arena;
+    const size_t n_x = (size_t)part->component->system->n_x;
+    const size_t n_modes = MOST_SEGMENTS * (size_t)part->component->osnsp.n_words;
+    struct dalcs_cycle *cycle = part->cycle = dalcs_arena_alloc(arena, 1, sizeof(*cycle));
     if (cycle == NULL) {
         return DALCS_E_NOMEM;
     }
-    const struct dalcs_system *s = part->component->system;
     cycle->patience = 1;
-    cycle->leap.system = s;
-    cycle->tail = dalcs_alloc((size_t)(part->stages.n_in - s->n_x), sizeof(double));
-    cycle->x = dalcs_alloc((size_t)s->n_x, sizeof(double));
-    cycle->later = dalcs_alloc((size_t)s->n_x, sizeof(double));
-    cycle->near = dalcs_alloc((size_t)s->n_x, sizeof(double));
-    cycle->most = dalcs_alloc((size_t)s->n_x, sizeof(double));
-    cycle->mode =
-        dalcs_alloc(MOST_SEGMENTS * (size_t)part->component->osnsp.n_words, sizeof(uint64_t));
-    bool complete =
-        cycle->tail != NULL && cycle->x != NULL && cycle->near != NULL && cycle->mode != NULL;
+    cycle->leap.system = part->component->system;
+    cycle->tail = dalcs_arena_alloc(arena, (size_t)part->stages.n_in - n_x, sizeof(double));
+    cycle->x = dalcs_arena_alloc(arena, n_x, sizeof(double));
+    cycle->later = dalcs_arena_alloc(arena, n_x, sizeof(double));
+    cycle->near = dalcs_arena_alloc(arena, n_x, sizeof(double));
+    cycle->most = dalcs_arena_alloc(arena, n_x, sizeof(double));
+    cycle->mode = dalcs_arena_alloc(arena, n_modes, sizeof(uint64_t));
+    bool complete = cycle->tail != NULL && cycle->x != NULL && cycle->later != NULL &&
+                    cycle->near != NULL && cycle->most != NULL && cycle->mode != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -121,13 +122,6 @@ static void forget(struct dalcs_radau_part *part) {
 void dalcs_cycle_finish(struct dalcs_radau_part *part) {
     if (part->cycle != NULL) {
         forget(part);
-        free(part->cycle->mode);
-        free(part->cycle->tail);
-        free(part->cycle->x);
-        free(part->cycle->later);
-        free(part->cycle->near);
-        free(part->cycle->most);
-        free(part->cycle);
         part->cycle = NULL;
     }
 }
