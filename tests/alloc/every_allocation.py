@@ -192,6 +192,18 @@ S3 b 0 h 0 sg
 .save v(p,m) v(q,m) i(d1)
 .end
 """, 0),
+    "leaps": ("""A chopper, whose periods before the rows are leapt over
+V1 in 0 24
+Vg g 0 PULSE(0 1 0 0 0 40u 100u)
+S1 in a g 0 sm
+D1 0 a
+L1 a b 2m
+R1 b 0 5
+.model sm SW(Vt=0.5)
+.meas tran mean AVG i(l1) from=9.8m
+.tran 20u 10m 9.9m uic
+.end
+""", 0),
     "undetermined": ("""A ring, a stack, an ideal transformer at 0 V, and feedback with two answers
 I1 0 r 1
 D1 r s
@@ -391,8 +403,9 @@ class Case:
         for file, text in FILES.items():
             (self.folder / file).write_text(text)
         self.output = self.folder / "out.csv"
-        self.command = [program, "run", "circuit.cir", "--method", method, "-o", "out.csv",
-                        "--report", "report.json"]
+        self.command = [program, "run", "circuit.cir", "--method", method, "-o", "out.csv"]
+        if name != "leaps":  # the report has a ledger of energies, which wants every segment
+            self.command += ["--report", "report.json"]
         if name == "equations":  # the method is a format
             self.command = [program, "equations", "circuit.cir", "--form", "lcs", "--format", method,
                             "-o", "out.csv"]
