@@ -41,8 +41,13 @@ struct dalcs_collocation {
     long double complex exact_to_pair[DALCS_MAX_STAGES][DALCS_MAX_CONJUGATES];
     long double complex exact_from_pair[DALCS_MAX_CONJUGATES][DALCS_MAX_STAGES];
     double barycentric[DALCS_MAX_NODES]; /* weights of all s + 1 nodes */
-    double back[DALCS_MAX_STAGES];       /* value at 0 of the polynomial through the stages alone */
-    double weight[DALCS_MAX_STAGES];     /* of the stages, in an integral over the step */
+    /* Newton's form on all nodes, which come in Leja's order for the sake of rounding: place of the k-th, itself,
+     * and what the difference of the value there from that at the first adds to the coefficients */
+    int newton_order[DALCS_MAX_NODES];
+    double newton_node[DALCS_MAX_NODES];
+    double newton[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* [k][coefficient], 0 for those before k */
+    double back[DALCS_MAX_STAGES];   /* value at 0 of the polynomial through the stages alone */
+    double weight[DALCS_MAX_STAGES]; /* of the stages, in an integral over the step */
     double gauss[DALCS_MAX_NODES]; /* Gauss' rule with s nodes for integrals over (0, 1), then 1, */
     double gauss_weight[DALCS_MAX_NODES]; /* with the weight 0 */
     double test_size;                     /* the product of the distances from all nodes there */

@@ -341,6 +341,36 @@ static void find_spread(struct dalcs_collocation *c, const real *node) {
     c->spread = (double)(0.5L * (1.001L * largest - 1.0L));
 }
 
+/* Each next node is the one for which the product of its distances to those before is largest (L. Reichel, BIT 30,
+ * 1990): values of a polynomial in Newton's form are then as exact as its values at the nodes, but for a factor
+ * of about 20 with ten nodes, and of 1e5 with the same in ascending order. */
+static void order_nodes(struct dalcs_collocation *c, const real *node) {
+    bool used[MAX] = {false};
+    for (int k = 0; k <= c->s; k++) {
+        real largest = -1.0L;
+        for (int i = 0; i <= c->s; i++) {
+            real product = 1.0L;
+            for (int j = 0; j < k; j++) {
+                product *= size_of(node[i] - node[c->newton_order[j]]);
+            }
+            if (!used[i] && product > largest) {
+                largest = product;
+                c->newton_order[k] = i;
+            }
+        }
+        used[c->newton_order[k]] = true;
+        c->newton_node[k] = (double)node[c->newton_order[k]];
+    }
+    for (int k = 1; k <= c->s; k++) {
+        real inverse = 1.0L;
+        for (int coefficient = 1; coefficient <= c->s; coefficient++) {
+            int other = coefficient <= k ? coefficient - 1 : coefficient;
+            inverse /= node[c->newton_order[k]] - node[c->newton_order[other]];
+            c->newton[k][coefficient] = coefficient >= k ? (double)inverse : 0.0;
+        }
+    }
+}
+
 static void compute(struct dalcs_collocation *c, int s) {
     *c = (struct dalcs_collocation){.s = s};
     real node[MAX] = {0.0L};
@@ -354,6 +384,7 @@ static void compute(struct dalcs_collocation *c, int s) {
         }
         c->barycentric[i] = (double)(1.0L / weight);
     }
+    order_nodes(c, node);
     real A[MAX][MAX];
     real gauss[MAX];
     real gauss_weight[MAX];
@@ -384,6 +415,18 @@ static void print_reals(const char *name, int n, const double *x) {
         printf("%s%.17g", i > 0 ? ", " : "", x[i]);
     }
     printf("},\n");
+}
+
+static void print_square(const char *name, int s, const double (*x)[DALCS_MAX_NODES]) {
+    printf("        .%s = {\n", name);
+    for (int i = 0; i <= s; i++) {
+        printf("            {");
+        for (int k = 0; k <= s; k++) {
+            printf("%s%.17g", k > 0 ? ", " : "", x[i][k]);
+        }
+        printf("},\n");
+    }
+    printf("        },\n");
 }
 
 static void print_exacts(const char *name, int n, const long double *x) {
@@ -449,6 +492,13 @@ static void print_method(const struct dalcs_collocation *c) {
     printf("},\n");
     print_reals("binomial", s + 1, c->binomial);
     print_reals("barycentric", s + 1, c->barycentric);
+    printf("        .newton_order = {");
+    for (int k = 0; k <= s; k++) {
+        printf("%s%d", k > 0 ? ", " : "", c->newton_order[k]);
+    }
+    printf("},\n");
+    print_reals("newton_node", s + 1, c->newton_node);
+    print_square("newton", s, c->newton);
     print_reals("back", s, c->back);
     print_reals("weight", s, c->weight);
     print_reals("gauss", MAX, c->gauss);
@@ -458,15 +508,9 @@ static void print_method(const struct dalcs_collocation *c) {
     printf("        .test_node = %.17g,\n        .test_factor = %.17g,\n", c->test_node,
            c->test_factor);
     printf("        .spread = %.17g,\n", c->spread);
-    printf("        .bernstein_spread = %.17g,\n        .to_bernstein = {\n", c->bernstein_spread);
-    for (int i = 0; i <= s; i++) {
-        printf("            {");
-        for (int k = 0; k <= s; k++) {
-            printf("%s%.17g", k > 0 ? ", " : "", c->to_bernstein[i][k]);
-        }
-        printf("},\n");
-    }
-    printf("        },\n    },\n");
+    printf("        .bernstein_spread = %.17g,\n", c->bernstein_spread);
+    print_square("to_bernstein", s, c->to_bernstein);
+    printf("    },\n");
 }
 
 int main(void) {

@@ -97,6 +97,9 @@ static enum dalcs_status part_setup(struct dalcs_rows_part *p,
         p->place[b->column[i]] = -2 - i;
     }
     list_sources(p, part);
+    for (int k = 0; k <= part->stages.method->s; k++) {
+        p->offset[k] = part->stages.method->newton_order[k] * part->stages.layout.stride;
+    }
     return DALCS_OK;
 }
 
@@ -142,54 +145,66 @@ void dalcs_rows_finish(struct dalcs_rows *rows) {
     *rows = (struct dalcs_rows){0};
 }
 
-/* ---- The nodes' weights ------------------------------------------------------------------------ */
+/* ---- Polynomials ------------------------------------------------------------------------------- */
 
 /* dalcs_radau_theta of each time. */
-static inline void find_thetas(const struct dalcs_radau_part *part, const dalcs_four *time,
-                               dalcs_quad *theta) {
-    const dalcs_quad raw = (*time - part->t) / part->h;
-    *theta = (dalcs_quad){part->end, part->end, part->end, part->end};
-    dalcs_quad_lower(theta, &raw);
+DALCS_TWICE(void, find_thetas,
+            (const struct dalcs_radau_part *part, const union dalcs_row_values *time, int n_groups,
+             union dalcs_row_values *theta),
+            (part, time, n_groups, theta)) {
+    for (int g = 0; g < n_groups; g++) {
+        const dalcs_quad raw = (time->group[g] - part->t) / part->h;
+        dalcs_quad until = {part->end, part->end, part->end, part->end};
+        dalcs_quad_lower(&until, &raw);
+        theta->group[g] = until;
+    }
 }
 
-/* Products of the distances to all other nodes over the same at the node: no quotients, which take five
- * times as long and mean nothing at a node. */
-DALCS_TWICE(void, weigh,
-            (const struct dalcs_radau_part *part, const union dalcs_row_values *time, int n_groups,
-             union dalcs_row_values *weight),
-            (part, time, n_groups, weight)) {
-    const struct dalcs_collocation *c = part->stages.method;
+/* coefficient[s + 1], in whole quads, from value[s + 1] at the nodes in their order; s is known to the compiler where
+ * it matters. */
+static inline __attribute__((always_inline)) void expand(int s, const struct dalcs_collocation *c,
+                                                         const double *value, double *coefficient) {
+    dalcs_quad sum[DALCS_MAX_NODES / DALCS_QUAD] = {{value[0]}};
+#pragma GCC unroll 9
+    for (int k = 1; k <= s; k++) {
+        const double difference = value[k] - value[0];
+#pragma GCC unroll 3
+        for (int q = k / DALCS_QUAD; q <= s / DALCS_QUAD; q++) {
+            dalcs_quad factor;
+            dalcs_quad_load(&factor, c->newton[k] + q * DALCS_QUAD);
+            sum[q] += factor * difference;
+        }
+    }
+    memcpy(coefficient, sum, sizeof(sum));
+}
+
+DALCS_TWICE(void, find_coefficients,
+            (const struct dalcs_collocation *c, const double *value, double *coefficient),
+            (c, value, coefficient)) {
+    if (c->s == 9) {
+        expand(9, c, value, coefficient);
+    } else if (c->s == 7) {
+        expand(7, c, value, coefficient);
+    } else {
+        expand(c->s, c, value, coefficient);
+    }
+}
+
+DALCS_TWICE(void, add_polynomial,
+            (const struct dalcs_collocation *c, const double *coefficient,
+             const union dalcs_row_values *theta, int n_groups, union dalcs_row_values *sum),
+            (c, coefficient, theta, n_groups, sum)) {
     for (int g = 0; g < n_groups; g++) {
-        dalcs_quad theta;
-        find_thetas(part, &time->group[g], &theta);
-        dalcs_four before = {1.0, 1.0, 1.0, 1.0};
-        for (int k = 0; k <= c->s; k++) {
-            weight[k].group[g] = c->barycentric[k] * before;
-            before *= theta - c->node[k];
+        dalcs_four value = {0.0};
+        value += coefficient[c->s];
+        for (int k = c->s - 1; k >= 0; k--) {
+            value = value * (theta->group[g] - c->newton_node[k]) + coefficient[k];
         }
-        dalcs_four behind = {1.0, 1.0, 1.0, 1.0};
-        for (int k = c->s; k >= 0; k--) {
-            weight[k].group[g] *= behind;
-            behind *= theta - c->node[k];
-        }
+        sum->group[g] += value;
     }
 }
 
 /* ---- Values ------------------------------------------------------------------------------------ */
-
-/* sum += coefficient * column, whose values at the nodes are y[stride * node]. */
-DALCS_TWICE(void, add_column,
-            (const struct dalcs_stage_layout *l, const union dalcs_row_values *weight,
-             const double *y, double coefficient, int n_groups, union dalcs_row_values *sum),
-            (l, weight, y, coefficient, n_groups, sum)) {
-    for (int g = 0; g < n_groups; g++) {
-        dalcs_four column = {0.0};
-        for (int k = 0; k < l->n_nodes; k++) {
-            column += weight[k].group[g] * y[k * l->stride];
-        }
-        sum->group[g] += coefficient * column;
-    }
-}
 
 static void add(const union dalcs_row_values *value, double coefficient, int n_groups,
                 union dalcs_row_values *sum) {
@@ -204,29 +219,61 @@ static void add_constant(double constant, int n_groups, union dalcs_row_values *
     }
 }
 
-/* As dalcs_probe_value does, in the same order. */
-static void sum_probe(const struct dalcs_rows *rows, const struct dalcs_radau_part *part,
-                      const struct dalcs_probe *probe, int n_groups, union dalcs_row_values *sum) {
-    const struct dalcs_rows_part *p = &rows->part[part->index];
+/* Adds coefficient times a column, whose values at the nodes are y[offset]; s as above. */
+static inline __attribute__((always_inline)) void
+add_nodes(int s, const int *offset, const double *y, double coefficient, double *node) {
+#pragma GCC unroll 10
+    for (int k = 0; k <= s; k++) {
+        node[k] += coefficient * y[offset[k]];
+    }
+}
+
+/* What steps of a probe, at the nodes: added to node[s + 1]; whether there is anything. */
+static bool collect(const struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
+                    const struct dalcs_probe *probe, double sign, double *node) {
     const struct dalcs_component *c = part->component;
-    int n_equations = dalcs_system_n_equations(c->system);
+    const int s = part->stages.method->s;
+    const int n_equations = dalcs_system_n_equations(c->system);
+    bool found = false;
+    for (int i = 0; i < probe->n_terms; i++) {
+        int column = probe->term[i].index;
+        double coefficient = sign * probe->term[i].coefficient;
+        bool steps = p->place[column] < 0;
+        if (!steps ||
+            !(column < n_equations || dalcs_osnsp_is_on(&c->osnsp, column - n_equations))) {
+            continue;
+        }
+        found = true;
+        if (s == 9) {
+            add_nodes(9, p->offset, part->out + column, coefficient, node);
+        } else if (s == 7) {
+            add_nodes(7, p->offset, part->out + column, coefficient, node);
+        } else {
+            add_nodes(s, p->offset, part->out + column, coefficient, node);
+        }
+    }
+    return found;
+}
+
+/* What sources decide of a probe. */
+static void add_sources(const struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
+                        const struct dalcs_probe *probe, double sign, int n_groups,
+                        union dalcs_row_values *sum) {
+    const struct dalcs_component *c = part->component;
     int n_columns = dalcs_system_n_columns(c->system);
     const struct dalcs_probe_term *term = probe->term;
     for (const struct dalcs_probe_term *end = term + probe->n_terms; term < end; term++) {
-        int column = term->index;
-        if (p->place[column] >= 0) {
-            add(&p->source[p->place[column]].value, term->coefficient, n_groups, sum);
-        } else if (column < n_equations || dalcs_osnsp_is_on(&c->osnsp, column - n_equations)) {
-            add_column(&part->stages.layout, rows->weight, part->out + column, term->coefficient,
-                       n_groups, sum);
+        if (p->place[term->index] >= 0) {
+            add(&p->source[p->place[term->index]].value, sign * term->coefficient, n_groups, sum);
         }
     }
     for (const struct dalcs_probe_term *end = term + probe->n_inputs; term < end; term++) {
         int place = p->place[n_columns + term->index];
+        double coefficient = sign * term->coefficient;
         if (place >= 0) {
-            add(&p->source[place].value, term->coefficient, n_groups, sum);
+            add(&p->source[place].value, coefficient, n_groups, sum);
         } else {
-            add_constant(term->coefficient * c->u[c->system->n_x + term->index], n_groups, sum);
+            add_constant(coefficient * c->u[c->system->n_x + term->index], n_groups, sum);
         }
     }
 }
@@ -250,15 +297,25 @@ static void ask_sources(struct dalcs_rows_part *p, const struct dalcs_radau_part
 /* A part that steps. */
 static void interpolate(struct dalcs_rows *rows, const struct dalcs_radau_part *part, int n,
                         enum dalcs_side side) {
+    const struct dalcs_collocation *m = part->stages.method;
     struct dalcs_rows_part *p = &rows->part[part->index];
     int n_groups = (n + 3) / 4;
-    weigh(part, &rows->time, n_groups, rows->weight);
+    find_thetas(part, &rows->time, n_groups, &rows->theta);
     ask_sources(p, part, &rows->time, n, side);
-    for (int i = 0; i < p->n_signals; i++) {
-        union dalcs_row_values sum;
-        memset(sum.group, 0, (size_t)n_groups * sizeof(*sum.group));
-        sum_probe(rows, part, p->signal[i].probe, n_groups, &sum);
-        add(&sum, p->signal[i].sign, n_groups, &rows->value[p->signal[i].output]);
+    for (int i = 0; i < p->n_signals;) {
+        int output = p->signal[i].output;
+        double node[DALCS_MAX_NODES] = {0.0};
+        double coefficient[DALCS_MAX_NODES];
+        bool steps = false;
+        for (; i < p->n_signals && p->signal[i].output == output; i++) {
+            const struct dalcs_row_signal *signal = &p->signal[i];
+            steps = collect(p, part, signal->probe, signal->sign, node) || steps;
+            add_sources(p, part, signal->probe, signal->sign, n_groups, &rows->value[output]);
+        }
+        if (steps) {
+            find_coefficients(m, node, coefficient);
+            add_polynomial(m, coefficient, &rows->theta, n_groups, &rows->value[output]);
+        }
     }
 }
 

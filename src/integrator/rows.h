@@ -1,8 +1,8 @@
 /* rows.h - outputs at many times at once, for rows and for measurements.
  *
- * Between two stops each component is on the polynomials of one step. The weights of its nodes are made
- * for all times together, and only columns that an output reads are summed, four times in a vector.
- * Whatever the times beside it, a value has the same bits. */
+ * Between two stops each component is on the polynomials of one step. What an output reads of it is added up at the
+ * nodes, and the sum's polynomial, in Newton's form, is evaluated at four times in a vector. Whatever the
+ * times beside it, a value has the same bits. */
 #ifndef DALCS_ROWS_H
 #define DALCS_ROWS_H
 
@@ -26,7 +26,9 @@ struct dalcs_rows_part {
         const struct dalcs_probe *probe;
         int output; /* among those of the rows */
         double sign;
-    } * signal; /* [n_signals] what outputs read of this part */
+    } * signal; /* [n_signals] what outputs read of this part, those of an output in a row */
+
+    int offset[DALCS_MAX_NODES]; /* [s + 1] of the nodes in an answer, in Newton's order */
 
     /* Columns and inputs that sources decide have a place among the `source`s when they are read. */
     int *place; /* [n_columns + n_inputs], -1: none, below: bystander -2 - place */
@@ -47,7 +49,7 @@ struct dalcs_rows {
     int n_asked, *asked;           /* parts that are read or have to be solved */
     bool one_by_one;               /* one of them is */
     union dalcs_row_values time;   /* the last one again where its group is not full */
-    union dalcs_row_values weight[DALCS_MAX_NODES]; /* work: of one part */
+    union dalcs_row_values theta;  /* work: the same in the steps of one part */
 };
 
 /* output[n_outputs]: which of the network's. NULL: all of them, and parts without memory are solved though

@@ -156,6 +156,33 @@ START_TEST(test_weights) {
 
 END_TEST
 
+/* Powers of time in Newton's form, and a constant, of which nothing but itself is left. */
+START_TEST(test_newton) {
+    FOR_ALL_METHODS(c) {
+        for (int power = 0; power <= c->s; power++) {
+            double value[DALCS_MAX_NODES] = {0.0};
+            double coefficient[DALCS_MAX_NODES] = {0.0};
+            for (int k = 0; k <= c->s; k++) {
+                ck_assert_double_eq(c->newton_node[k], c->node[c->newton_order[k]]);
+                value[k] = pow(c->newton_node[k], power);
+                for (int i = k; i > 0 && i <= c->s; i++) {
+                    coefficient[i] += c->newton[k][i] * (value[k] - value[0]);
+                }
+            }
+            coefficient[0] = value[0];
+            for (double theta = 0.0; theta <= 1.0; theta += 0.0625) {
+                double sum = coefficient[c->s];
+                for (int k = c->s - 1; k >= 0; k--) {
+                    sum = sum * (theta - c->newton_node[k]) + coefficient[k];
+                }
+                ck_assert_double_le(fabs(sum - pow(theta, power)), power == 0 ? 0.0 : 2e-15);
+            }
+        }
+    }
+}
+
+END_TEST
+
 /* Through the stages alone, one degree less, back to the start; and where the nodes see least. */
 START_TEST(test_extrapolation) {
     FOR_ALL_METHODS(c) {
@@ -255,4 +282,4 @@ START_TEST(test_spread) {
 END_TEST
 
 RUN_TESTS("collocation", test_closed_forms, test_order_conditions, test_coordinates, test_weights,
-          test_extrapolation, test_bernstein, test_spread)
+          test_newton, test_extrapolation, test_bernstein, test_spread)
