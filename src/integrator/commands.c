@@ -209,6 +209,16 @@ bool dalcs_commands_obey(struct dalcs_commands *commands, double t) {
     return moved;
 }
 
+double dalcs_commands_period(const struct dalcs_commands *commands) {
+    const struct dalcs_stimulus *first = commands->n > 0 ? commands->command[0].pulse : NULL;
+    bool is_common = first != NULL;
+    for (int k = 1; k < commands->n && is_common; k++) {
+        const struct dalcs_stimulus *pulse = commands->command[k].pulse;
+        is_common = pulse != NULL && pulse->u.pulse.period == first->u.pulse.period;
+    }
+    return is_common ? first->u.pulse.period : 0.0;
+}
+
 void dalcs_commands_leap(struct dalcs_commands *commands, long n_periods) {
     for (int k = 0; k < commands->n; k++) {
         struct dalcs_command *m = &commands->command[k];

@@ -49,6 +49,9 @@ void dalcs_commands_start(struct dalcs_commands *commands);
 /* Moves what is due at t, and looks for the next. Returns whether anything moved. */
 bool dalcs_commands_obey(struct dalcs_commands *commands, double t);
 
+/* s; of all, if they are PULSEs of one period; 0: they are not. After the start. */
+double dalcs_commands_period(const struct dalcs_commands *commands);
+
 /* All are PULSEs of the same period: passes over so many of them. */
 void dalcs_commands_leap(struct dalcs_commands *commands, long n_periods);
 

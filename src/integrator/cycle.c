@@ -42,7 +42,7 @@ struct cycle_segment {
 };
 
 struct dalcs_cycle {
-    double period; /* s; 0: not known yet, NAN: there is none */
+    double period; /* s; 0: there is none */
     int at;        /* the present one */
     int in_a_row;  /* segments that recurred, up to the present one */
     int n;
@@ -127,17 +127,6 @@ void dalcs_cycle_finish(struct dalcs_radau_part *part) {
 }
 
 /* ---- The segments of a period ------------------------------------------------------------------ */
-
-/* Of all commands; NAN: they have none in common. */
-static double common_period(const struct dalcs_commands *commands) {
-    const struct dalcs_stimulus *first = commands->command[0].pulse;
-    bool is_common = first != NULL;
-    for (int k = 1; k < commands->n && is_common; k++) {
-        const struct dalcs_stimulus *pulse = commands->command[k].pulse;
-        is_common = pulse != NULL && pulse->u.pulse.period == first->u.pulse.period;
-    }
-    return is_common ? first->u.pulse.period : NAN;
-}
 
 /* The commands that moved at part->t; false: something else began the segment, or too many. */
 static bool find_moves(const struct dalcs_radau_part *part, struct dalcs_leap_moment *moment) {
@@ -279,9 +268,7 @@ enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r, struct dalcs_rad
         }
         return DALCS_OK;
     }
-    if (cycle->period == 0.0) {
-        cycle->period = common_period(&part->commands);
-    }
+    cycle->period = dalcs_commands_period(&part->commands);
     struct dalcs_leap_moment began;
     if (!(cycle->period > 0.0 && is_tail(part, cycle->n == 0) && find_moves(part, &began))) {
         forget(part);

@@ -4,6 +4,7 @@
 #include "energy.h"
 #include "extremes.h"
 #include "radau_internal.h"
+#include "recurrence.h"
 
 #include <float.h>
 #include <math.h>
@@ -46,7 +47,8 @@ struct periodic_segment {
 };
 
 struct dalcs_periodic {
-    double period; /* s, of all sources */
+    double
+        period; /* s, of all sources; 0: that of the commands, which is not known before the start */
 
     /* The event: mode and states there. */
     bool has_event;
@@ -70,7 +72,7 @@ struct dalcs_periodic {
     double *own_out; /* while part->out is one of those kept */
 };
 
-/* 0: there is none. */
+/* Of oscillations; 0: they have none. */
 static double common_period(const struct dalcs_excitation *e) {
     double slowest = INFINITY;
     for (int k = 0; k < e->n_functions; k++) {
@@ -98,8 +100,10 @@ static double common_period(const struct dalcs_excitation *e) {
 enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     double period = common_period(&part->excitation);
-    bool may_come_back = period > 0.0 && fewest_periods * period < r->options.stop &&
-                         part->component->system->monotone && part->commands.n == 0 &&
+    bool is_commanded = part->commands.n > 0 && !part->excitation.is_curved;
+    bool is_sinusoidal =
+        part->commands.n == 0 && period > 0.0 && fewest_periods * period < r->options.stop;
+    bool may_come_back = (is_sinusoidal || is_commanded) && part->component->system->monotone &&
                          r->options.fixed_step == 0.0;
     if (!may_come_back) {
         return DALCS_OK;
@@ -161,13 +165,18 @@ void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *
     if (isfinite(part->excitation.next_edge)) {
         return;
     }
+    if (periodic->period == 0.0) {
+        periodic->period = dalcs_commands_period(&part->commands);
+        periodic->period = periodic->period > 0.0 ? periodic->period : INFINITY;
+    }
     bool is_first = !periodic->has_event;
     if (!is_first && part->t < periodic->since + periodic->period * (1.0 - same_event)) {
         return;
     }
     double off = is_first ? INFINITY : distance(r, part);
     periodic->repeats = periodic->keeps && off <= 1.0;
-    periodic->keeps = !(off >= far && off < INFINITY);
+    /* The period of a converter is short, and what happens in it moves about for many: that is not worth a copy. */
+    periodic->keeps = off < far || (isinf(off) && part->commands.n == 0);
     if (periodic->repeats) {
         periodic->start = part->t;
         return;
@@ -200,11 +209,13 @@ enum dalcs_status dalcs_periodic_note(struct dalcs_radau_part *part) {
     if (!periodic->keeps) {
         return DALCS_OK;
     }
-    periodic->keeps = !part->by_euler && !part->jumped && part->late == NULL &&
+    bool is_over = part->t > periodic->since + periodic->period * (1.0 + same_event);
+    periodic->keeps = !part->by_euler && !part->jumped && !is_over &&
                       (periodic->n + 1) * periodic->n_values <= most_kept;
     if (!periodic->keeps) {
         return DALCS_OK;
     }
+    dalcs_recurrence_complete(part);
     size_t n_crossed = (size_t)part->n_crossed;
     DALCS_TRY(make_room(periodic, n_crossed));
     double *value = periodic->values + periodic->n * periodic->n_values;
@@ -281,7 +292,8 @@ void dalcs_periodic_take(struct dalcs_radau *r, struct dalcs_radau_part *part) {
                periodic->n_x * sizeof(double));
         dalcs_radau_go_after(r, part);
     }
-    part->t_end = next_end(periodic);
+    bool is_commanded = segment->why == DALCS_END_AT_EDGE;
+    part->t_end = is_commanded ? part->commands.next : next_end(periodic);
     part->h = segment->h;
     part->end = segment->end;
     part->why = segment->why;

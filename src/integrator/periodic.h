@@ -1,4 +1,4 @@
-/* periodic.h - what comes back with the sources' period is computed once.
+/* periodic.h - what comes back with the sources' period, or with that of the switches' commands, is computed once.
  *
  * Between two events a circuit is linear, and what it does from an event on follows from its mode, its
  * states and what the sources do. If all are what they were one period of the sources ago, everything
@@ -6,9 +6,9 @@
  * from one such event on, and once the circuit has come back to it, they are taken as they are, later by
  * whole periods.
  *
- * Of a component whose diodes are all that changes sides, under sines with a common period, and passive:
- * there what the states miss by coming back cannot grow. It is held to a part of the tolerance, over all
- * periods to come. */
+ * Of a component under sines with a common period, or one whose commanded switches follow PULSEs with one, and
+ * passive: there what the states miss by coming back cannot grow. It is held to a part of the tolerance, over
+ * all periods to come. */
 #ifndef DALCS_PERIODIC_H
 #define DALCS_PERIODIC_H
 

@@ -414,10 +414,11 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
         return DALCS_OK;
     }
     if (part->periodic != NULL) {
-        return repeat_or_begin(r, part, repeats);
+        DALCS_TRY(repeat_or_begin(r, part, repeats));
+    } else {
+        set_aside(part);
+        DALCS_TRY(dalcs_segment_begin(r, part));
     }
-    set_aside(part);
-    DALCS_TRY(dalcs_segment_begin(r, part));
     return part->cycle != NULL ? dalcs_cycle_note(r, part) : DALCS_OK;
 }
 
