@@ -61,21 +61,9 @@ DALCS_TWICE(void, find_guards,
     }
 }
 
-/* choice = - pseudoinverse of the guards of the null vectors: adding choice * guards of them makes the
- * diodes' lambda and w as small as possible. Diodes only: a switch's current is a wire's. */
-static enum dalcs_status prepare_choice(struct dalcs_stage_workshop *b) {
+/* The guards of the null vectors, each over its largest entry, which become unscaled. */
+static void find_null_guards(struct dalcs_stage_workshop *b, double *guards) {
     int n_pairs = b->system->n_pairs;
-    int rows = n_pairs > b->nullity ? n_pairs : b->nullity;
-    if (b->nullity == 0 || n_pairs == 0 || b->choice != NULL) {
-        return DALCS_OK;
-    }
-    double *guards = dalcs_stage_workshop_reals(&b->arena, n_pairs * b->nullity);
-    double *identity = dalcs_stage_workshop_reals(&b->arena, rows * n_pairs);
-    double *singular = dalcs_stage_workshop_reals(&b->arena, b->nullity + n_pairs);
-    b->choice = dalcs_stage_workshop_reals(&b->arena, b->nullity * n_pairs);
-    if (guards == NULL || identity == NULL || singular == NULL || b->choice == NULL) {
-        return DALCS_E_NOMEM;
-    }
     const double no_share[DALCS_LANES] = {0.0};
     memset(b->lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
     for (int k = 0; k < b->nullity; k++) {
@@ -96,6 +84,28 @@ static enum dalcs_status prepare_choice(struct dalcs_stage_workshop *b) {
             guards[k * n_pairs + d] = fabs(guard) > null_rounding ? guard : 0.0;
         }
     }
+}
+
+/* Of a single vector: over its square. */
+static void choose_along(int n, const double *guards, double *choice) {
+    double square = 0.0;
+    for (int d = 0; d < n; d++) {
+        square += guards[d] * guards[d];
+    }
+    for (int d = 0; d < n; d++) {
+        choice[d] = square > 0.0 ? -guards[d] / square : 0.0;
+    }
+}
+
+/* Of several, which `guards` is not afterwards. */
+static enum dalcs_status choose_among(struct dalcs_stage_workshop *b, double *guards) {
+    int n_pairs = b->system->n_pairs;
+    int rows = n_pairs > b->nullity ? n_pairs : b->nullity;
+    double *identity = dalcs_stage_workshop_reals(&b->arena, rows * n_pairs);
+    double *singular = dalcs_stage_workshop_reals(&b->arena, b->nullity + n_pairs);
+    if (identity == NULL || singular == NULL) {
+        return DALCS_E_NOMEM;
+    }
     for (int d = 0; d < n_pairs; d++) {
         identity[d * rows + d] = 1.0;
     }
@@ -110,6 +120,27 @@ static enum dalcs_status prepare_choice(struct dalcs_stage_workshop *b) {
         }
     }
     return DALCS_OK;
+}
+
+/* choice = - pseudoinverse of the guards of the null vectors: adding choice * guards of them makes the
+ * diodes' lambda and w as small as possible. Diodes only: a switch's current is a wire's. */
+static enum dalcs_status prepare_choice(struct dalcs_stage_workshop *b) {
+    int n_pairs = b->system->n_pairs;
+    if (b->nullity == 0 || n_pairs == 0 || b->choice != NULL) {
+        return DALCS_OK;
+    }
+    double *guards = dalcs_stage_workshop_reals(&b->arena, n_pairs * b->nullity);
+    b->choice = dalcs_stage_workshop_reals(&b->arena, b->nullity * n_pairs);
+    if (guards == NULL || b->choice == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    find_null_guards(b, guards);
+    if (b->nullity ==
+        1) { /* as in most circuits that have any, where LAPACK takes longer than a map */
+        choose_along(n_pairs, guards, b->choice);
+        return DALCS_OK;
+    }
+    return choose_among(b, guards);
 }
 
 /* Adds what is to be added of the null vectors at the nodes. */
