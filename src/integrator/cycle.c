@@ -3,8 +3,10 @@
 
 #include "extremes.h"
 #include "guards.h"
+#include "quads.h"
 #include "radau_internal.h"
 #include "recurrence.h"
+#include "wide_vectors.h"
 
 #include <float.h>
 #include <math.h>
@@ -29,14 +31,21 @@ struct affine_rows {
     double *row; /* [n][n_x + 1] */
 };
 
+/* The same, each number of four rows side by side: the constants first. The last quads are filled up with the
+ * last row. */
+struct affine_quads {
+    int n; /* of rows, in whole quads */
+    double *number;
+};
+
 struct cycle_segment {
     struct dalcs_stage_brief *brief;
     struct dalcs_leap_moment began;
     struct affine_rows last;      /* states at its end */
     struct affine_rows condition; /* what must not be negative */
     bool is_composed;             /* the following are known, of the period that begins with it */
-    struct affine_rows period_last,
-        period_condition; /* the latter in parts of the states' scales */
+    struct affine_rows period_last;
+    struct affine_quads period_condition; /* in parts of the states' scales */
     int n_events;
     struct dalcs_leap_event *event; /* of that period */
 };
@@ -110,7 +119,7 @@ static void forget(struct dalcs_radau_part *part) {
         free(segment->last.row);
         free(segment->condition.row);
         free(segment->period_last.row);
-        free(segment->period_condition.row);
+        free(segment->period_condition.number);
         free(segment->event);
         *segment = (struct cycle_segment){0};
     }
@@ -322,17 +331,38 @@ static bool normalise(int n_x, const double *scale, long double *row) {
     return most > 0.0L || row[n_x] < 0.0L;
 }
 
+/* The i-th of conditions that lie side by side. */
+static void put_condition(int n_x, const long double *row, int i, double *number) {
+    double *to = number + i / DALCS_QUAD * DALCS_QUAD * (n_x + 1) + i % DALCS_QUAD;
+    *to = (double)row[n_x];
+    for (int k = 0; k < n_x; k++) {
+        to += DALCS_QUAD;
+        *to = (double)row[k];
+    }
+}
+
 /* The conditions of a segment on the states at the start of the period, from where `inner` leads. */
 static void add_conditions(const struct dalcs_radau_part *part, const struct cycle_segment *of,
-                           const long double *inner, long double *work, struct affine_rows *all) {
+                           const long double *inner, long double *work, struct affine_quads *all) {
     int n_x = part->component->system->n_x;
     compose(n_x, &of->condition, inner, work);
     for (int i = 0; i < of->condition.n; i++) {
-        long double *row = work + i * (n_x + 1);
-        if (normalise(n_x, part->scale, row)) {
-            round_rows(n_x, 1, row, all->row + all->n++ * (n_x + 1));
+        const long double *row = work + i * (n_x + 1);
+        if (normalise(n_x, part->scale, work + i * (n_x + 1))) {
+            put_condition(n_x, row, all->n++, all->number);
         }
     }
+}
+
+static void fill_up(int n_x, struct affine_quads *all) {
+    int n_last = all->n % DALCS_QUAD;
+    double *quad = all->number + all->n / DALCS_QUAD * DALCS_QUAD * (n_x + 1);
+    for (int k = 0; k <= n_x && n_last > 0; k++, quad += DALCS_QUAD) {
+        for (int i = n_last; i < DALCS_QUAD; i++) {
+            quad[i] = quad[n_last - 1];
+        }
+    }
+    all->n = dalcs_quads_of(all->n);
 }
 
 static void compose_maps(const struct dalcs_radau_part *part, int first, long double *inner,
@@ -350,6 +380,7 @@ static void compose_maps(const struct dalcs_radau_part *part, int first, long do
         compose(n_x, &of->last, inner, work);
         memcpy(inner, work, bytes);
     }
+    fill_up(n_x, &segment->period_condition);
     round_rows(n_x, n_x, inner, segment->period_last.row);
 }
 
@@ -386,10 +417,11 @@ static enum dalcs_status compose_period(const struct dalcs_radau_part *part, boo
         return DALCS_OK;
     }
     segment->period_last.row = dalcs_alloc((size_t)s->n_x * width, sizeof(double));
-    segment->period_condition.row = dalcs_alloc((size_t)n * width, sizeof(double));
+    segment->period_condition.number =
+        dalcs_alloc((size_t)dalcs_quads_of(n) * width, sizeof(double));
     segment->event = dalcs_alloc((size_t)(s->n_pairs * cycle->n), sizeof(*segment->event));
     long double *inner = dalcs_alloc((size_t)(s->n_x + most) * width, sizeof(*inner));
-    if (segment->period_last.row == NULL || segment->period_condition.row == NULL ||
+    if (segment->period_last.row == NULL || segment->period_condition.number == NULL ||
         segment->event == NULL || inner == NULL) {
         free(inner);
         return DALCS_E_NOMEM;
@@ -416,12 +448,22 @@ static inline double value_of(int n_x, const double *row, const double *x) {
 
 /* By how much of their scales states may change from x, and all conditions hold for a period; negative: they do
  * not at x. */
-static double find_room(int n_x, const struct affine_rows *condition, const double *x) {
-    double room = INFINITY;
-    for (int i = 0; i < condition->n; i++) {
-        room = dalcs_smaller(room, value_of(n_x, condition->row + i * (n_x + 1), x));
+DALCS_TWICE(double, find_room, (int n_x, const struct affine_quads *condition, const double *x),
+            (n_x, condition, x)) {
+    const double *number = condition->number;
+    dalcs_quad least = {INFINITY, INFINITY, INFINITY, INFINITY};
+    for (int i = 0; i < condition->n; i += DALCS_QUAD) {
+        dalcs_quad value;
+        dalcs_quad_load(&value, number);
+        number += DALCS_QUAD;
+        for (int k = 0; k < n_x; k++, number += DALCS_QUAD) {
+            dalcs_quad factor;
+            dalcs_quad_load(&factor, number);
+            value += factor * x[k];
+        }
+        dalcs_quad_lower(&least, &value);
     }
-    return room;
+    return dalcs_smaller(dalcs_smaller(least[0], least[1]), dalcs_smaller(least[2], least[3]));
 }
 
 /* The states a period later; false: one has moved from `near` by more than most[n_x]. */
