@@ -48,6 +48,17 @@ static enum dalcs_status count_answers(struct dalcs_osnsp *p) {
     return status;
 }
 
+/* What dissipates nothing does so in steps of any length. Where small problems are factored without a look at
+ * their conditions, that of another step tells it. */
+static bool is_unique_in_other_steps(const struct dalcs_osnsp *p) {
+    bool is_unique = false;
+    for (int k = 1; k < p->n_forms && p->is_passing && p->form[0]->sigma > 0.0; k++) {
+        const struct dalcs_step_form *f = p->form[k];
+        is_unique = is_unique || (f->sigma > 0.0 && f->answers == DALCS_UNIQUE);
+    }
+    return is_unique;
+}
+
 /* Names the set of tied pairs: FNV-1a, never 0. */
 static uint64_t name_of_ties(const struct dalcs_osnsp *p) {
     uint64_t name = 14695981039346656037u;
@@ -99,7 +110,9 @@ static bool was_stopped(const struct dalcs_osnsp *p) {
 }
 
 enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, double *y) {
-    if (p->form[0]->answers == DALCS_UNKNOWN) {
+    if (p->form[0]->answers == DALCS_UNKNOWN && is_unique_in_other_steps(p)) {
+        p->form[0]->answers = DALCS_UNIQUE;
+    } else if (p->form[0]->answers == DALCS_UNKNOWN) {
         DALCS_TRY(count_answers(p));
     }
     if (p->form[0]->answers == DALCS_UNIQUE) {
