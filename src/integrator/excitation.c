@@ -177,6 +177,10 @@ void dalcs_excitation_coefficients(const struct dalcs_excitation *excitation, do
     }
 }
 
+static double fading(const struct dalcs_excitation_function *f, double h, double theta) {
+    return f->decay == 0.0 ? 1.0 : exp(-f->decay * h * theta);
+}
+
 double dalcs_excitation_function_at(const struct dalcs_excitation_function *f, double h,
                                     double theta) {
     switch (f->shape) {
@@ -185,11 +189,22 @@ double dalcs_excitation_function_at(const struct dalcs_excitation_function *f, d
     case DALCS_EXCITATION_RAMP:
         return theta;
     case DALCS_EXCITATION_COSINE:
-        return exp(-f->decay * h * theta) * cos(f->omega * h * theta);
+        return fading(f, h, theta) * cos(f->omega * h * theta);
     case DALCS_EXCITATION_SINE:
-        return exp(-f->decay * h * theta) * sin(f->omega * h * theta);
+        return fading(f, h, theta) * sin(f->omega * h * theta);
     }
     return 0.0;
+}
+
+/* What it adds at the test node. */
+static double next_derivative(const struct dalcs_excitation_function *f,
+                              const struct dalcs_collocation *method, double h) {
+    double derivative = method->test_size;
+    double rate = hypot(f->decay, f->omega) * h;
+    for (int k = 0; k <= method->s; k++) {
+        derivative *= rate / (k + 1);
+    }
+    return derivative;
 }
 
 double dalcs_excitation_missed(const struct dalcs_excitation_function *f,
@@ -200,13 +215,11 @@ double dalcs_excitation_missed(const struct dalcs_excitation_function *f,
     }
     double missed = dalcs_excitation_function_at(f, h, method->test_node);
     double size = fabs(missed);
-    double derivative = method->test_size;
     for (int k = 0; k <= method->s; k++) {
         missed -= method->test[k] * value[k];
         size += fabs(method->test[k] * value[k]);
-        derivative *= hypot(f->decay, f->omega) * h / (k + 1);
     }
-    return fabs(missed) > 4.0 * DBL_EPSILON * size ? missed : derivative;
+    return fabs(missed) > 4.0 * DBL_EPSILON * size ? missed : next_derivative(f, method, h);
 }
 
 void dalcs_excitation_inputs(const struct dalcs_excitation *excitation, double t, double tau,

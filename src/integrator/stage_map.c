@@ -195,45 +195,6 @@ static double watched_voltage(const struct dalcs_stage_workshop *b, int d, const
     return v;
 }
 
-/* Of what is the same at all stages, as states and constants are: each coordinate sees the constant 1
- * as 1. */
-static void find_constant_factors(struct dalcs_stage_workshop *b) {
-    const struct dalcs_collocation *m = b->stages->method;
-    for (int i = 0; i < m->s; i++) {
-        b->constant_factor[i][0] = m->exact_to[i];
-        for (int p = 0; p < m->n_pairs; p++) {
-            b->constant_factor[i][1 + 2 * p] = 2.0L * creall(m->exact_to_pair[i][p]);
-            b->constant_factor[i][2 + 2 * p] = -2.0L * cimagl(m->exact_to_pair[i][p]);
-        }
-    }
-}
-
-/* What the stages take of each part of a solution: factor[s][parts]. */
-static void find_factors(const struct dalcs_stage_workshop *b, const double *share,
-                         long double factor[][DALCS_SOLUTION_PARTS]) {
-    const struct dalcs_collocation *m = b->stages->method;
-    long double weight = 0.0L;
-    for (int q = 0; q < m->s; q++) {
-        weight += m->exact_from[q] * share[q + 1];
-    }
-    for (int i = 0; i < m->s; i++) {
-        factor[i][0] = m->exact_to[i] * weight;
-    }
-    for (int p = 0; p < m->n_pairs; p++) {
-        long double re = 0.0L;
-        long double im = 0.0L;
-        for (int q = 0; q < m->s; q++) {
-            re += creall(m->exact_from_pair[p][q]) * share[q + 1];
-            im += cimagl(m->exact_from_pair[p][q]) * share[q + 1];
-        }
-        for (int i = 0; i < m->s; i++) {
-            const long double *of_pair = b->constant_factor[i] + 1 + 2 * p;
-            factor[i][1 + 2 * p] = of_pair[0] * re + of_pair[1] * im;
-            factor[i][2 + 2 * p] = of_pair[1] * re - of_pair[0] * im;
-        }
-    }
-}
-
 /* Adds up what a stage takes of the parts of a solution; n is known to the compiler where it matters. */
 static inline __attribute__((always_inline)) long double combine(int n, const long double *factor,
                                                                  const long double *part) {
@@ -312,13 +273,8 @@ static void fill_followers(struct dalcs_stage_workshop *b, int rhs_column, const
 /* The stages, into b->lanes, and, before the filter, where the polynomial through them alone starts, into
  * b->start. */
 static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_column,
-                        const double *share) {
+                        const double *share, const dalcs_stage_factors_of_parts factor) {
     static const double constant[DALCS_MAX_STAGES] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
-    const long double(*factor)[DALCS_SOLUTION_PARTS] = (const void *)b->constant_factor;
-    if (column > b->n_x) {
-        find_factors(b, share, b->factor);
-        factor = (const void *)b->factor;
-    }
     if (b->stages->method->s == 7) {
         fill_kept(b, 7, column, rhs_column, factor);
     } else {
@@ -389,12 +345,13 @@ static void fill_currents(struct dalcs_stage_workshop *b, double *out) {
 /* One column of the map, with its clashes: the answer to in[column] = 1. In the lanes of share are the
  * values of the source at the nodes and what they miss of it in between; for a state all are 0. */
 static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_column,
-                        const double *share, double *out, double *currents) {
+                        const double *share, const dalcs_stage_factors_of_parts factor, double *out,
+                        double *currents) {
     const struct dalcs_collocation *m = b->stages->method;
     const struct dalcs_stage_layout *l = &b->stages->layout;
     const struct dalcs_system *s = b->system;
     bool is_state = column < b->n_x;
-    fill_stages(b, column, rhs_column, share);
+    fill_stages(b, column, rhs_column, share, factor);
     fill_start(b, column, rhs_column, share);
     find_guards(b, rhs_column, share);
     if (b->nullity > 0) {
@@ -485,7 +442,7 @@ static int n_columns(const struct dalcs_stage_workshop *b) {
     return b->has_constants ? b->stages->n_in : b->stages->n_in - 1;
 }
 
-static void fill_map(struct dalcs_stage_workshop *b) {
+static void fill_map(struct dalcs_stage_workshop *b, const struct dalcs_stage_function *function) {
     const struct dalcs_excitation *e = b->stages->excitation;
     const struct dalcs_collocation *m = b->stages->method;
     double share[DALCS_LANES] = {0.0};
@@ -495,27 +452,23 @@ static void fill_map(struct dalcs_stage_workshop *b) {
     int current_rows = b->entry->current_rows;
     memset(b->lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
     for (int x = 0; x < b->n_x; x++, out += rows, currents += current_rows) {
-        fill_column(b, x, x, share, out, currents);
+        fill_column(b, x, x, share, *b->functions.constant_factor, out, currents);
         check_column(b, x, x, 0.0);
     }
-    for (int k = 0; k <= m->s; k++) {
-        share[k] = 1.0;
-    }
     if (b->has_constants) {
-        fill_column(b, b->n_x, b->n_x, share, out, currents);
+        for (int k = 0; k <= m->s; k++) {
+            share[k] = 1.0;
+        }
+        fill_column(b, b->n_x, b->n_x, share, *b->functions.constant_factor, out, currents);
         check_column(b, b->n_x, b->n_x, 1.0);
         out += rows;
         currents += current_rows;
     }
     for (int f = 0; f < e->n_functions; f++, out += rows, currents += current_rows) {
-        const struct dalcs_excitation_function *function = &e->function[f];
-        for (int k = 0; k <= m->s; k++) {
-            share[k] = dalcs_excitation_function_at(function, b->entry->h, m->node[k]);
-        }
-        share[DALCS_RIPPLE_LANE] = dalcs_excitation_missed(function, m, b->entry->h, share);
-        int rhs_column = b->wave_column[function->input];
-        fill_column(b, b->n_x + 1 + f, rhs_column, share, out, currents);
-        check_column(b, b->n_x + 1 + f, rhs_column, share[m->s]);
+        const double *of = function[f].share;
+        int rhs_column = b->wave_column[e->function[f].input];
+        fill_column(b, b->n_x + 1 + f, rhs_column, of, function[f].factor, out, currents);
+        check_column(b, b->n_x + 1 + f, rhs_column, of[m->s]);
     }
 }
 
@@ -523,9 +476,13 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
                                         struct dalcs_stage_entry *entry) {
     if (stages->workshop == NULL) {
         DALCS_TRY(dalcs_stage_workshop_create(&stages->workshop, stages));
-        find_constant_factors(stages->workshop);
     }
     struct dalcs_stage_workshop *b = stages->workshop;
+    const struct dalcs_stage_function *function =
+        dalcs_stage_functions_get(&b->functions, stages, entry->h);
+    if (function == NULL) {
+        return DALCS_E_NOMEM;
+    }
     DALCS_TRY(dalcs_stage_workshop_solve(b, entry));
     DALCS_TRY(prepare_choice(b));
     entry->n_clashes = b->nullity * stages->method->s;
@@ -538,7 +495,7 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
     }
     entry->bytes +=
         (size_t)(entry->rows + entry->current_rows) * (size_t)n_columns(b) * sizeof(double);
-    fill_map(b);
+    fill_map(b, function);
     return DALCS_OK;
 }
 

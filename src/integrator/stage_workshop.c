@@ -66,8 +66,7 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     b->guard = dalcs_carve(storage, &used, n_pairs * DALCS_LANES, sizeof(double));
     b->residual = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
     b->in = dalcs_carve(storage, &used, (size_t)b->stages->n_in, sizeof(double));
-    b->factor = dalcs_carve(storage, &used, DALCS_MAX_STAGES, sizeof(*b->factor));
-    b->constant_factor = dalcs_carve(storage, &used, DALCS_MAX_STAGES, sizeof(*b->factor));
+    b->constant_factor = dalcs_carve(storage, &used, 1, sizeof(*b->constant_factor));
     return used;
 }
 
@@ -79,8 +78,6 @@ static void clear(struct dalcs_stage_workshop *b) {
     memset(b->residual, 0, (size_t)((char *)b->in - (char *)b->residual));
     if (b->stages->method->s < 7) {
         memset(b->part, 0, (size_t)((char *)b->real - (char *)b->part));
-        memset(b->factor, 0, DALCS_MAX_STAGES * sizeof(*b->factor));
-        memset(b->constant_factor, 0, DALCS_MAX_STAGES * sizeof(*b->factor));
     }
 }
 
@@ -112,6 +109,7 @@ enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **work
     }
     lay_out(b, b->storage);
     clear(b);
+    dalcs_stage_functions_setup(&b->functions, stages->method, b->constant_factor);
     for (int k = 0; k < b->system->n_inputs; k++) {
         b->wave_column[k] = -1;
     }
@@ -126,6 +124,7 @@ enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **work
 
 void dalcs_stage_workshop_destroy(struct dalcs_stage_workshop *workshop) {
     if (workshop != NULL) {
+        dalcs_stage_functions_finish(&workshop->functions);
         dalcs_arena_finish(&workshop->arena);
         free(workshop->storage);
         free(workshop);

@@ -9,14 +9,8 @@
 #define DALCS_STAGE_WORKSHOP_H
 
 #include "quads.h"
+#include "stage_functions.h"
 #include "stages_internal.h"
-
-/* Solutions of one unknown side by side: the real eigenvalue's, then (re, im) of each complex one's, 0
- * where there are fewer: loops of known length are worth more than what they skip. */
-enum { DALCS_SOLUTION_PARTS = 1 + 2 * DALCS_MAX_CONJUGATES };
-
-/* An answer at all nodes side by side, behind them what sources do between the nodes. */
-enum { DALCS_RIPPLE_LANE = DALCS_MAX_NODES, DALCS_LANES = DALCS_MAX_NODES + DALCS_QUAD };
 
 /* Kept from map to map; what a map needs apart from it is in the arena. */
 struct dalcs_stage_workshop {
@@ -55,8 +49,8 @@ struct dalcs_stage_workshop {
     double *residual;             /* [n] */
     bool has_constants; /* inputs that do not vary drive something: else maps lack their column */
     double *in;         /* [n_in] of such a map */
-    long double (*factor)[DALCS_SOLUTION_PARTS]; /* [stages] of a solution, at the stages */
-    long double (*constant_factor)[DALCS_SOLUTION_PARTS];
+    struct dalcs_stage_functions functions;
+    dalcs_stage_factors_of_parts *constant_factor; /* of these */
     int nullity;
     double *left, *right; /* [nullity][n] null vectors, balanced */
     double *choice;       /* [nullity][n_pairs] what the other sides of pairs add of them */
