@@ -487,12 +487,12 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
     DALCS_TRY(prepare_choice(b));
     entry->n_clashes = b->nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
-    entry->map = dalcs_dense_map_alloc(entry->rows, n_columns(b));
     entry->current_rows = dalcs_dense_map_rows(stages->n_currents);
-    entry->current_map = dalcs_dense_map_alloc(entry->current_rows, n_columns(b));
-    if (entry->map == NULL || entry->current_map == NULL) {
+    entry->map = dalcs_dense_map_alloc(entry->rows + entry->current_rows, n_columns(b));
+    if (entry->map == NULL) {
         return DALCS_E_NOMEM;
     }
+    entry->current_map = entry->map + entry->rows * n_columns(b);
     entry->bytes +=
         (size_t)(entry->rows + entry->current_rows) * (size_t)n_columns(b) * sizeof(double);
     fill_map(b, function);

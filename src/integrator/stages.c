@@ -105,11 +105,7 @@ static void withdraw_as_base(struct dalcs_stages *stages, struct dalcs_stage_ent
 static void entry_destroy(struct dalcs_stages *stages, struct dalcs_stage_entry *e) {
     withdraw_as_base(stages, e);
     dalcs_stage_factors_destroy(stages, e->factors);
-    free(e->key);
-    free(e->on);
     free(e->map);
-    free(e->current_map);
-    free(e->natural);
     free(e);
 }
 
@@ -147,37 +143,52 @@ void dalcs_stages_finish(struct dalcs_stages *stages) {
     *stages = (struct dalcs_stages){0};
 }
 
+/* An entry with what all have, in one piece: a short run makes a handful. Returns the bytes of it. */
+static size_t lay_out(const struct dalcs_stages *stages, struct dalcs_stage_entry *e,
+                      void *storage) {
+    size_t used = 0;
+    (void)dalcs_carve(storage, &used, 1, sizeof(*e));
+    size_t n_equations = (size_t)dalcs_system_n_equations(stages->system);
+    e->key = dalcs_carve(storage, &used, (size_t)stages->n_words + 1, sizeof(*e->key));
+    e->natural = dalcs_carve(storage, &used, 2 * n_equations, sizeof(*e->natural));
+    e->on = dalcs_carve(storage, &used, (size_t)stages->system->n_pairs, sizeof(*e->on));
+    return used;
+}
+
+static struct dalcs_stage_entry *entry_alloc(const struct dalcs_stages *stages) {
+    struct dalcs_stage_entry laid_out = {.n_holders = 1};
+    struct dalcs_stage_entry *e = dalcs_alloc(1, lay_out(stages, &laid_out, NULL));
+    if (e != NULL) {
+        lay_out(stages, &laid_out, e);
+        *e = laid_out;
+    }
+    return e;
+}
+
 /* What stages->key asks for. */
 static enum dalcs_status entry_create(struct dalcs_stages *stages, double h, bool of_its_own,
                                       struct dalcs_stage_entry **entry) {
-    struct dalcs_stage_entry *e = dalcs_alloc(1, sizeof(*e));
+    struct dalcs_stage_entry *e = entry_alloc(stages);
     *entry = NULL;
     if (e == NULL) {
         return DALCS_E_NOMEM;
     }
     int n_pairs = stages->system->n_pairs;
     e->h = h;
-    e->n_holders = 1;
-    e->key = dalcs_alloc((size_t)stages->n_words + 1, sizeof(*e->key));
-    e->on = dalcs_alloc((size_t)n_pairs, sizeof(*e->on));
-    e->natural =
-        dalcs_alloc(2 * (size_t)dalcs_system_n_equations(stages->system), sizeof(*e->natural));
-    enum dalcs_status status = DALCS_E_NOMEM;
-    if (e->key != NULL && e->on != NULL && e->natural != NULL) {
-        memcpy(e->key, stages->key, ((size_t)stages->n_words + 1) * sizeof(*e->key));
-        e->mode = e->key;
-        for (int d = 0; d < n_pairs; d++) {
-            if (dalcs_stage_is_on(e, d)) {
-                e->on[e->n_on++] = d;
-            }
+    memcpy(e->key, stages->key, ((size_t)stages->n_words + 1) * sizeof(*e->key));
+    e->mode = e->key;
+    for (int d = 0; d < n_pairs; d++) {
+        if (dalcs_stage_is_on(e, d)) {
+            e->on[e->n_on++] = d;
         }
-        e->n = dalcs_system_n_equations(stages->system) + e->n_on;
-        status = e->n <= stages->dense_limit ? dalcs_stage_map_build(stages, e)
-                                             : dalcs_stage_factors_build(stages, e, of_its_own);
-        stages->factorizations += dalcs_stage_is_update(e) ? 0 : 1;
-        for (int c = 0, n = dalcs_system_n_equations(stages->system); c < n; c++) {
-            e->natural[n + c] = 1.0 / e->natural[c];
-        }
+    }
+    e->n = dalcs_system_n_equations(stages->system) + e->n_on;
+    enum dalcs_status status = e->n <= stages->dense_limit
+                                   ? dalcs_stage_map_build(stages, e)
+                                   : dalcs_stage_factors_build(stages, e, of_its_own);
+    stages->factorizations += dalcs_stage_is_update(e) ? 0 : 1;
+    for (int c = 0, n = dalcs_system_n_equations(stages->system); c < n; c++) {
+        e->natural[n + c] = 1.0 / e->natural[c];
     }
     if (status != DALCS_OK) {
         entry_destroy(stages, e);

@@ -26,7 +26,7 @@ struct dalcs_stage_entry {
     int rows;    /* of map, padded to 8 */
     double *map; /* [rows][n_in] by columns; NULL: factors */
     int current_rows;
-    double *current_map; /* [current_rows][n_in] the drift of currents, beside map */
+    double *current_map; /* [current_rows][n_in] the drift of currents, behind map */
     int note;
     struct dalcs_stage_factors *factors;
     /* Entries with factors of their own, whose changes others may be. */
