@@ -1,12 +1,12 @@
 /* cycle.c - segments of a period, put together to one affine map and what it is held to. */
 #include "cycle.h"
 
+#include "affine.h"
 #include "extremes.h"
 #include "guards.h"
 #include "quads.h"
 #include "radau_internal.h"
 #include "recurrence.h"
-#include "wide_vectors.h"
 
 #include <float.h>
 #include <math.h>
@@ -25,27 +25,14 @@ static const double fewest_periods = 2.0;
 /* Segments until it is tried again, after it was in vain, at most. */
 enum { MOST_PATIENCE = 64 };
 
-/* All rows are affine in the states at the start of a segment, or of a period: [n_x] factors, a constant. */
-struct affine_rows {
-    int n;
-    double *row; /* [n][n_x + 1] */
-};
-
-/* The same, each number of four rows side by side: the constants first. The last quads are filled up with the
- * last row. */
-struct affine_quads {
-    int n; /* of rows, in whole quads */
-    double *number;
-};
-
 struct cycle_segment {
     struct dalcs_stage_brief *brief;
     struct dalcs_leap_moment began;
-    struct affine_rows last;      /* states at its end */
-    struct affine_rows condition; /* what must not be negative */
-    bool is_composed;             /* the following are known, of the period that begins with it */
-    struct affine_rows period_last;
-    struct affine_quads period_condition; /* in parts of the states' scales */
+    struct dalcs_affine_rows last;      /* states at its end */
+    struct dalcs_affine_rows condition; /* what must not be negative */
+    bool is_composed; /* the following are known, of the period that begins with it */
+    struct dalcs_affine_rows period_last;
+    struct dalcs_affine_quads period_condition; /* in parts of the states' scales */
     int n_events;
     struct dalcs_leap_event *event; /* of that period */
 };
@@ -192,7 +179,7 @@ static enum dalcs_status take_last(const struct dalcs_radau_part *part,
                                    struct cycle_segment *segment) {
     int n_x = part->component->system->n_x;
     double *row = dalcs_alloc((size_t)n_x * (size_t)(n_x + 1), sizeof(double));
-    segment->last = (struct affine_rows){n_x, row};
+    segment->last = (struct dalcs_affine_rows){n_x, row};
     for (int x = 0; x < n_x && row != NULL; x++) {
         row = put_row(part, segment->brief, x, 1.0, 0.0, row);
     }
@@ -298,27 +285,6 @@ enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r, struct dalcs_rad
 
 /* ---- One map for a period ---------------------------------------------------------------------- */
 
-/* to = rows of `of`, a function of what `inner` gives. */
-static void compose(int n_x, const struct affine_rows *of, const long double *inner,
-                    long double *to) {
-    for (int i = 0; i < of->n; i++) {
-        const double *row = of->row + i * (n_x + 1);
-        for (int j = 0; j <= n_x; j++) {
-            long double sum = j == n_x ? row[n_x] : 0.0L;
-            for (int k = 0; k < n_x; k++) {
-                sum += row[k] * inner[k * (n_x + 1) + j];
-            }
-            to[i * (n_x + 1) + j] = sum;
-        }
-    }
-}
-
-static void round_rows(int n_x, int n, const long double *from, double *to) {
-    for (int k = 0; k < n * (n_x + 1); k++) {
-        to[k] = (double)from[k];
-    }
-}
-
 /* Divides a condition by what a change of the states by their scales may make of it; false: no change does. */
 static bool normalise(int n_x, const double *scale, long double *row) {
     long double most = 0.0L;
@@ -331,38 +297,18 @@ static bool normalise(int n_x, const double *scale, long double *row) {
     return most > 0.0L || row[n_x] < 0.0L;
 }
 
-/* The i-th of conditions that lie side by side. */
-static void put_condition(int n_x, const long double *row, int i, double *number) {
-    double *to = number + i / DALCS_QUAD * DALCS_QUAD * (n_x + 1) + i % DALCS_QUAD;
-    *to = (double)row[n_x];
-    for (int k = 0; k < n_x; k++) {
-        to += DALCS_QUAD;
-        *to = (double)row[k];
-    }
-}
-
 /* The conditions of a segment on the states at the start of the period, from where `inner` leads. */
 static void add_conditions(const struct dalcs_radau_part *part, const struct cycle_segment *of,
-                           const long double *inner, long double *work, struct affine_quads *all) {
+                           const long double *inner, long double *work,
+                           struct dalcs_affine_quads *all) {
     int n_x = part->component->system->n_x;
-    compose(n_x, &of->condition, inner, work);
+    dalcs_affine_compose(n_x, &of->condition, inner, work);
     for (int i = 0; i < of->condition.n; i++) {
         const long double *row = work + i * (n_x + 1);
         if (normalise(n_x, part->scale, work + i * (n_x + 1))) {
-            put_condition(n_x, row, all->n++, all->number);
+            dalcs_affine_quads_put(n_x, row, all);
         }
     }
-}
-
-static void fill_up(int n_x, struct affine_quads *all) {
-    int n_last = all->n % DALCS_QUAD;
-    double *quad = all->number + all->n / DALCS_QUAD * DALCS_QUAD * (n_x + 1);
-    for (int k = 0; k <= n_x && n_last > 0; k++, quad += DALCS_QUAD) {
-        for (int i = n_last; i < DALCS_QUAD; i++) {
-            quad[i] = quad[n_last - 1];
-        }
-    }
-    all->n = dalcs_quads_of(all->n);
 }
 
 static void compose_maps(const struct dalcs_radau_part *part, int first, long double *inner,
@@ -377,11 +323,11 @@ static void compose_maps(const struct dalcs_radau_part *part, int first, long do
     for (int i = 0; i < cycle->n; i++) {
         const struct cycle_segment *of = &cycle->segment[(first + i) % cycle->n];
         add_conditions(part, of, inner, work, &segment->period_condition);
-        compose(n_x, &of->last, inner, work);
+        dalcs_affine_compose(n_x, &of->last, inner, work);
         memcpy(inner, work, bytes);
     }
-    fill_up(n_x, &segment->period_condition);
-    round_rows(n_x, n_x, inner, segment->period_last.row);
+    dalcs_affine_quads_fill_up(n_x, &segment->period_condition);
+    dalcs_affine_round(n_x, n_x, inner, segment->period_last.row);
 }
 
 /* What changes sides where the k-th segment ends and the next begins. */
@@ -438,51 +384,11 @@ static enum dalcs_status compose_period(const struct dalcs_radau_part *part, boo
 
 /* ---- Periods ----------------------------------------------------------------------------------- */
 
-static inline double value_of(int n_x, const double *row, const double *x) {
-    double sum = row[n_x];
-    for (int k = 0; k < n_x; k++) {
-        sum += row[k] * x[k];
-    }
-    return sum;
-}
-
-/* By how much of their scales states may change from x, and all conditions hold for a period; negative: they do
- * not at x. */
-DALCS_TWICE(double, find_room, (int n_x, const struct affine_quads *condition, const double *x),
-            (n_x, condition, x)) {
-    const double *number = condition->number;
-    dalcs_quad least = {INFINITY, INFINITY, INFINITY, INFINITY};
-    for (int i = 0; i < condition->n; i += DALCS_QUAD) {
-        dalcs_quad value;
-        dalcs_quad_load(&value, number);
-        number += DALCS_QUAD;
-        for (int k = 0; k < n_x; k++, number += DALCS_QUAD) {
-            dalcs_quad factor;
-            dalcs_quad_load(&factor, number);
-            value += factor * x[k];
-        }
-        dalcs_quad_lower(&least, &value);
-    }
-    return dalcs_smaller(dalcs_smaller(least[0], least[1]), dalcs_smaller(least[2], least[3]));
-}
-
-/* The states a period later; false: one has moved from `near` by more than most[n_x]. */
-static inline bool pass_period(int n_x, const double *map, const double *x, const double *near,
-                               const double *most, double *later) {
-    bool is_near = true;
-    for (int k = 0; k < n_x; k++, map += n_x + 1) {
-        double value = value_of(n_x, map, x);
-        later[k] = value;
-        is_near = is_near && fabs(value - near[k]) <= most[k];
-    }
-    return is_near;
-}
-
 /* How far states may move from x, cycle->most; false: not at all. */
 static bool look_around(const struct dalcs_radau_part *part, const double *x) {
     struct dalcs_cycle *cycle = part->cycle;
     int n_x = part->component->system->n_x;
-    double room = find_room(n_x, &cycle->segment[cycle->at].period_condition, x);
+    double room = dalcs_affine_quads_least(n_x, &cycle->segment[cycle->at].period_condition, x);
     for (int k = 0; k < n_x; k++) {
         cycle->near[k] = x[k];
         cycle->most[k] = room * part->scale[k];
@@ -496,18 +402,19 @@ static long go_on(const struct dalcs_radau_part *part, long most) {
     struct dalcs_cycle *cycle = part->cycle;
     const double *map = cycle->segment[cycle->at].period_last.row;
     int n_x = part->component->system->n_x;
-    double *x = cycle->x;
-    double *later = cycle->later;
+    double *states[2] = {cycle->x, cycle->later};
     long n = 0;
-    memcpy(x, part->x, (size_t)n_x * sizeof(double));
-    for (bool holds = look_around(part, x); holds && n < most; n += holds ? 1 : 0) {
-        holds =
-            pass_period(n_x, map, x, cycle->near, cycle->most, later) || look_around(part, later);
-        double *swap = x;
-        x = holds ? later : x;
-        later = holds ? swap : later;
+    memcpy(states[0], part->x, (size_t)n_x * sizeof(double));
+    bool holds = look_around(part, states[0]);
+    while (holds && n < most) {
+        n += dalcs_affine_pass(n_x, map, cycle->near, cycle->most, most - n, states);
+        holds = n < most && look_around(part, states[1]);
+        if (holds) {
+            dalcs_affine_swap(states);
+            n++;
+        }
     }
-    memcpy(part->x, x, (size_t)n_x * sizeof(double));
+    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));
     return n;
 }
 
