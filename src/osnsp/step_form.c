@@ -19,10 +19,15 @@ static const int fill_limit = 4096;
  * conductances are small. */
 static const double cross_floor = 1e-3;
 
+/* Entries that a row may get before it moves. */
+enum { SPARE = 4 };
+
 struct row {
     int n, capacity;
     int *column;
     double *value;
+    bool
+        has_moved; /* from the room that all rows have together to one of its own: that of value and column */
 };
 
 struct column_rows {
@@ -35,6 +40,7 @@ struct elimination {
     int n_rows; /* equations, then pairs */
     int n_left; /* columns of the system; the right-hand side follows */
     struct row *row;
+    void *room;                /* of the rows as they begin, and a little more */
     struct column_rows *users; /* [n_x] rows that hold an x column (or once did) */
     int *where;                /* [all columns] slot in the row being changed, else -1 */
     int *pivot_row;            /* [n_x], -1 if kept */
@@ -48,12 +54,27 @@ static enum dalcs_status push_int(int **array, int *capacity, int n) {
     return DALCS_OK;
 }
 
+static enum dalcs_status row_move(struct row *r) {
+    size_t n = (size_t)r->n;
+    size_t capacity = 2 * n + SPARE;
+    double *value = malloc(capacity * (sizeof(*r->value) + sizeof(*r->column)));
+    if (value == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    void *column = value + capacity;
+    memcpy(value, r->value, n * sizeof(*r->value));
+    memcpy(column, r->column, n * sizeof(*r->column));
+    if (r->has_moved) {
+        free(r->value);
+    }
+    *r = (struct row){r->n, (int)capacity, column, value, true};
+    return DALCS_OK;
+}
+
 static enum dalcs_status row_push(struct row *r, int column, double value) {
-    size_t columns = (size_t)r->capacity;
-    size_t values = (size_t)r->capacity;
-    DALCS_TRY(dalcs_grow(&r->column, &columns, (size_t)r->n + 1, sizeof(*r->column)));
-    DALCS_TRY(dalcs_grow(&r->value, &values, (size_t)r->n + 1, sizeof(*r->value)));
-    r->capacity = (int)(columns < values ? columns : values);
+    if (r->n == r->capacity) {
+        DALCS_TRY(row_move(r));
+    }
     r->column[r->n] = column;
     r->value[r->n++] = value;
     return DALCS_OK;
@@ -123,6 +144,37 @@ static enum dalcs_status add_entries(struct elimination *e, int row, const struc
             DALCS_TRY(row_push(&e->row[row], column, factor * a->x[k]));
             DALCS_TRY(note_user(e, column, row));
         }
+    }
+    return DALCS_OK;
+}
+
+static int row_length(const struct dalcs_csr *a, int i) {
+    return a->p[i + 1] - a->p[i];
+}
+
+/* Room for what fill_rows() puts into each row, all in one piece. */
+static enum dalcs_status make_room(struct elimination *e) {
+    const struct dalcs_system *s = e->s;
+    int n_equations = dalcs_system_n_equations(s);
+    size_t all = 0;
+    for (int i = 0; i < e->n_rows; i++) {
+        int d = i - n_equations;
+        int n = d < 0 ? row_length(&s->A, i) + row_length(&s->E, i)
+                      : row_length(&s->C, d) + row_length(&s->F, d);
+        e->row[i].capacity = n + (i < s->n_x ? 2 * row_length(&s->P, i) : 0) + SPARE;
+        all += (size_t)e->row[i].capacity;
+    }
+    double *value = malloc((all > 0 ? all : 1) * (sizeof(double) + sizeof(int)));
+    e->room = value;
+    if (value == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    int *column = (void *)(value + all);
+    for (int i = 0; i < e->n_rows; i++) {
+        e->row[i].value = value;
+        e->row[i].column = column;
+        value += e->row[i].capacity;
+        column += e->row[i].capacity;
     }
     return DALCS_OK;
 }
@@ -460,9 +512,11 @@ done:
 
 static void elimination_finish(struct elimination *e) {
     for (int i = 0; e->row != NULL && i < e->n_rows; i++) {
-        free(e->row[i].column);
-        free(e->row[i].value);
+        if (e->row[i].has_moved) {
+            free(e->row[i].value);
+        }
     }
+    free(e->room);
     for (int x = 0; e->users != NULL && x < e->s->n_x; x++) {
         free(e->users[x].row);
     }
@@ -497,7 +551,10 @@ enum dalcs_status dalcs_step_form_build(struct dalcs_step_form *form,
         for (int i = 0; i < n_equations; i++) {
             row_of_dual[s->dual[i]] = i;
         }
-        status = fill_rows(&e, sigma);
+        status = make_room(&e);
+        if (status == DALCS_OK) {
+            status = fill_rows(&e, sigma);
+        }
         if (status == DALCS_OK) {
             status = eliminate_states(&e, row_of_dual);
         }
