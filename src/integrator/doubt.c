@@ -32,19 +32,31 @@ static double spread_of_current(const struct dalcs_radau_part *part, int pair, c
     return least;
 }
 
+/* The largest value of a row in the step, for what the polynomial may be off by. */
+static double largest_of(const struct dalcs_radau_part *part, int row) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    double size = 0.0;
+    for (int k = 0; k < l->n_nodes; k++) {
+        size = dalcs_larger(size, fabs(part->out[k * l->stride + row]));
+    }
+    return size;
+}
+
+/* What errors of all that a guard is made of come to, which is no more than the band. */
+static double within_band(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                          double size, double scale) {
+    double own = dalcs_doubts_over_tolerance * r->inner_tolerance * size;
+    return dalcs_smaller(own + dalcs_beyond_noise * dalcs_doubt_noise(part) * scale,
+                         dalcs_doubt_band(r, part) * scale);
+}
+
 double dalcs_doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                          int guard, double scale, const double *unit) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
     const struct dalcs_system *s = part->component->system;
-    double band = dalcs_doubt_band(r, part) * scale;
     if (guard >= s->n_pairs || part->entry == NULL) {
-        return band;
+        return dalcs_doubt_band(r, part) * scale;
     }
     int place = dalcs_system_n_equations(s) + guard;
-    double size = 0.0; /* for what the polynomial may be off by */
-    for (int k = 0; k < l->n_nodes; k++) {
-        size = dalcs_larger(size, fabs(part->out[k * l->stride + place]));
-    }
     double spread;
     if (dalcs_stage_has_map(part->entry)) {
         spread = dalcs_stage_spread(&part->stages, part->entry, place, part->in, part->scale);
@@ -53,6 +65,31 @@ double dalcs_doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_p
     } else {
         spread = spread_of(part, &s->C, guard, -1, unit);
     }
-    double own = dalcs_doubts_over_tolerance * r->inner_tolerance * (size + spread);
-    return dalcs_smaller(own + dalcs_beyond_noise * dalcs_doubt_noise(part) * scale, band);
+    return within_band(r, part, largest_of(part, place) + spread, scale);
+}
+
+/* Is a row below -`least` at all nodes behind the start? */
+static bool is_below(const struct dalcs_radau_part *part, int row, double least) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    bool below = true;
+    for (int k = 1; k < l->n_nodes && below; k++) {
+        below = part->out[k * l->stride + row] < -least;
+    }
+    return below;
+}
+
+double dalcs_doubt_of_fall(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                           int guard, double scale, const double *unit) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const struct dalcs_system *s = part->component->system;
+    double doubt = dalcs_doubt_about(r, part, guard, scale, unit);
+    int place = dalcs_system_n_equations(s) + guard;
+    bool has_map = part->entry != NULL && dalcs_stage_has_map(part->entry);
+    if (guard >= s->n_pairs || !has_map || !is_below(part, place, 0.0)) {
+        return doubt;
+    }
+    double spread = dalcs_stage_spread(&part->stages, part->entry,
+                                       (l->n_nodes - 1) * l->stride + place, part->in, part->scale);
+    double at_end = within_band(r, part, largest_of(part, place) + spread, scale);
+    return is_below(part, place, at_end) ? dalcs_smaller(doubt, at_end) : doubt;
 }

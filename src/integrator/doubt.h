@@ -32,4 +32,10 @@ static inline double dalcs_doubt_band(const struct dalcs_radau *r,
 double dalcs_doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                          int guard, double scale, const double *unit);
 
+/* The same of one that is not armed and may fall below 0. What errors of voltages across milliohms make of a
+ * current at first dies away within the step: one that is below 0 throughout it, by more than what is left of
+ * them at its end, is in no doubt. */
+double dalcs_doubt_of_fall(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                           int guard, double scale, const double *unit);
+
 #endif

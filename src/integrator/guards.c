@@ -292,7 +292,7 @@ static double doubt_at_first(struct dalcs_radau_part *part, const double *value,
 static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *part, int guard,
                        const double *value, int stride, double end, const double *unit) {
     int last = part->stages.layout.n_nodes - 1;
-    double doubt = dalcs_doubt_about(r, part, guard, scale_of(part, guard, unit), unit);
+    double doubt = dalcs_doubt_of_fall(r, part, guard, scale_of(part, guard, unit), unit);
     if (part->fresh) {
         return doubt_at_first(part, value, stride, end, doubt);
     }

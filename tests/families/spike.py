@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+"""A voltage multiplier of milliohms whose source starts far from 0: a spike of 1e4 A, and milliamperes ever after.
+
+usage: spike.py PROGRAM
+
+Errors of voltages across 13 mohm are amperes where a diode begins to conduct, and die away within nanoseconds.
+Those, and the spike, must not hide from then on that a diode's current of a microampere has the wrong sign: all
+voltages are those of a run with a far smaller tolerance, over their own largest values.
+"""
+
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker, run  # noqa: E402
+
+NETLIST = """spike
+v1 ac 0 sin(26.96 63 50 0 0 45)
+c1 ac a1 103.2n
+c2 0 b1 120n
+d1 0 a1 di
+d2 a1 b1 di
+c3 a1 a2 168n
+c4 b1 b2 69.6n
+d3 b1 a2 di
+d4 a2 b2 di
+r1 b2 0 11.67meg
+.model di d(ron=13m roff=1.8meg vfwd=0.7 vrev=120)
+.tran 260u 260m uic
+.end
+"""
+STOP, ROWS = 260e-3, 500
+TOLERANCES = 1e-5, 1e-6, 1e-7, 1e-8
+SIGNALS = "v(a1)", "v(b1)", "v(a2)", "v(b2)"
+
+
+def main():
+    program = sys.argv[1]
+    checker = Checker("spike")
+    at = [STOP * (k + 0.618034) / ROWS for k in range(ROWS)]
+    exact = run(program, NETLIST, at=at, method=None, tolerance=1e-10)
+    for tolerance in TOLERANCES:
+        result = run(program, NETLIST, at=at, method=None, tolerance=tolerance)
+        if not checker.check(result.status == 0 == exact.status, f"{tolerance}: {result.stderr}"):
+            continue
+        checker.check(result.report["work"]["euler_steps"] == 0, f"{tolerance}: steps of implicit Euler")
+        for signal in SIGNALS:
+            column = exact.column(signal)
+            error = max(abs(a - b) for a, b in zip(result.column(signal), column)) / max(map(abs, column))
+            checker.check(error <= tolerance, f"{tolerance}: {signal} is off by {error:.1e}")
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
