@@ -14,6 +14,10 @@
  * the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. */
 static const double falling_part = 1e-3;
 
+/* One that comes down to 0 from above and goes up again, as that of a peak detector without a load at each peak, may
+ * be on the other side by this part of its doubt. */
+static const double touching = 1e-3;
+
 /* The value of a pair at the end of a segment and that at the start of the next, whose errors have nothing
  * to do with each other, agree to this part of it: then it is known, however small it is. */
 static const double agreeing = 0.01;
@@ -288,11 +292,21 @@ static double doubt_at_first(struct dalcs_radau_part *part, const double *value,
     return depth;
 }
 
-/* How far a guard that is not armed may fall and is no event. */
+/* How far a guard may fall and is no event: where it is armed by rounding, or as far as it may be touching 0. */
 static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *part, int guard,
                        const double *value, int stride, double end, const double *unit) {
     int last = part->stages.layout.n_nodes - 1;
-    double doubt = dalcs_doubt_of_fall(r, part, guard, scale_of(part, guard, unit), unit);
+    double scale = scale_of(part, guard, unit);
+    double noise = dalcs_doubt_noise(part) * scale;
+    bool is_armed = part->armed[guard];
+    if (is_armed &&
+        (end < 1.0 ? value_at(part, value, stride, end) : value[last * stride]) <= noise) {
+        return noise; /* it does not come back */
+    }
+    double doubt = dalcs_doubt_of_fall(r, part, guard, scale, unit);
+    if (is_armed) {
+        return dalcs_larger(noise, touching * doubt);
+    }
     if (part->fresh) {
         return doubt_at_first(part, value, stride, end, doubt);
     }
@@ -327,7 +341,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         if (!part->armed[g] && !part->fresh && value[0] > zero + rounding) {
             part->armed[g] = g < n_pairs && goes_on(part, g, value[0]);
         }
-        double depth = part->armed[g] ? zero : doubt_of(r, part, g, value, stride, end, unit);
+        double depth = doubt_of(r, part, g, value, stride, end, unit);
         depth += rounding;
         if (part->bound[g] >= -depth) {
             continue;

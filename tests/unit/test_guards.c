@@ -201,6 +201,17 @@ START_TEST(test_faint) {
     ck_assert(isinf(first_fall(1.0)) && !armed[d1]);
     draw("d1", -1e-10, 0.5);
     ck_assert(isinf(first_fall(1.0)));
+    arm_beside(
+        1.0,
+        1.0); /* so is one that only touches 0, but for an error; one that is farther below is one */
+    for (int k = 0; k < l->n_nodes; k++) {
+        value[k * l->stride] = pow(part.stages.method->node[k] - 0.5, 2.0) - 1e-10;
+    }
+    ck_assert(isinf(first_fall(1.0)) && armed[d1]);
+    for (int k = 0; k < l->n_nodes; k++) {
+        value[k * l->stride] -= 0.01;
+    }
+    ck_assert_double_eq_tol(first_fall(1.0), 0.4, 1e-8);
     draw("d1", 2e-10, -0.5);
     ck_assert_double_eq_tol(dalcs_guards_first_fall(&r, &part, 1.0, unit, &at_once), 4e-10, 1e-14);
     finish();
