@@ -264,7 +264,9 @@ enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r, struct dalcs_rad
         }
         return DALCS_OK;
     }
-    cycle->period = dalcs_commands_period(&part->commands);
+    if (cycle->n == 0) {
+        cycle->period = dalcs_commands_period(&part->commands);
+    }
     struct dalcs_leap_moment began;
     if (!(cycle->period > 0.0 && is_tail(part, cycle->n == 0) && find_moves(part, &began))) {
         forget(part);

@@ -51,7 +51,7 @@ enum dalcs_status dalcs_measuring_setup(struct dalcs_measuring *m,
                                         double stop) DALCS_MUST_CHECK;
 void dalcs_measuring_finish(struct dalcs_measuring *m);
 
-/* When the first stretch ends that anything is measured in: those before count for nothing. */
+/* What lies before this time counts for nothing; INFINITY: nothing is measured. */
 double dalcs_measuring_begin(const struct dalcs_measuring *m);
 
 /* m->stretch.value[circuit->n_measured] has been filled, at the nodes between from and to. Stretches

@@ -12,23 +12,11 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import overlap  # noqa: E402
 from dalcs_program import Checker, run  # noqa: E402
 
-NETLIST = """spike
-v1 ac 0 sin(26.96 63 50 0 0 45)
-c1 ac a1 103.2n
-c2 0 b1 120n
-d1 0 a1 di
-d2 a1 b1 di
-c3 a1 a2 168n
-c4 b1 b2 69.6n
-d3 b1 a2 di
-d4 a2 b2 di
-r1 b2 0 11.67meg
-.model di d(ron=13m roff=1.8meg vfwd=0.7 vrev=120)
-.tran 260u 260m uic
-.end
-"""
+NETLIST = overlap.NETLIST.replace("overlap", "spike").replace("sin(0 63 50)",
+                                                              "sin(26.96 63 50 0 0 45)")
 STOP, ROWS = 260e-3, 500
 TOLERANCES = 1e-5, 1e-6, 1e-7, 1e-8
 SIGNALS = "v(a1)", "v(b1)", "v(a2)", "v(b2)"
