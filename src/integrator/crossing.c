@@ -260,3 +260,22 @@ struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, con
     found.theta = found.at_once ? 0.0 : root * end;
     return found;
 }
+
+double dalcs_crossing_only(const struct dalcs_collocation *c, const double *coefficient, double end,
+                           double depth) {
+    int n = c->s + 1;
+    if (!(coefficient[n - 1] < -depth) || sign_changes(n, coefficient) != 1) {
+        return INFINITY;
+    }
+    double theta = only_root(c, coefficient, 0.0);
+    if (!(theta > early && theta < end)) {
+        return INFINITY;
+    }
+    if (end < 1.0) {
+        struct weighted p;
+        double slope;
+        weigh(c, coefficient, &p);
+        return evaluate(&p, end, &slope) < -depth ? theta : INFINITY;
+    }
+    return theta;
+}

@@ -25,4 +25,9 @@ struct dalcs_crossing {
 struct dalcs_crossing dalcs_crossing_find(const struct dalcs_collocation *c, const double *value,
                                           int stride, double end, double depth, double guess);
 
+/* Where a polynomial in Bernstein's basis that is above 0 at first falls below it, in (0, end); INFINITY unless its
+ * coefficients tell that it does so once and is below -depth at `end`. */
+double dalcs_crossing_only(const struct dalcs_collocation *c, const double *coefficient, double end,
+                           double depth);
+
 #endif

@@ -4,6 +4,7 @@
 #include "crossing.h"
 #include "doubt.h"
 #include "extremes.h"
+#include "guard_scale.h"
 #include "pair_laws.h"
 #include "quads.h"
 
@@ -25,9 +26,6 @@ static const double agreeing = 0.01;
 /* A guard that begins a mode next to 0 is off by so many times that, as far as its beginning tells. */
 static const double began = 10.0;
 
-/* A guard above so many bands is beyond doubt, though the scales grow. */
-static const double clear = 4.0;
-
 /* An error of the polynomial may be so many bands at its start. */
 static const double shallow = 100.0;
 
@@ -39,11 +37,6 @@ static const double slight = 1e-8, unresolved = 1e-5;
  * of a mode, and in later ones, which have got longer meanwhile. */
 static const double swing = 0.1, late_swing = 0.01;
 
-/* Digits of a voltage over what the capacitors at a diode make of them in a step: a current that only
- * rounds their voltages is none, however small the others are. So for coils and their currents. A dense map
- * tells what rounding of states and sources makes of a guard itself, which is often far less. */
-static const double rounded = 16.0 * DBL_EPSILON;
-
 /* Falls this near to each other, in steps, are one event. */
 static const double same_on_maps = 1e-13;
 static const double same_on_factors = 1e-9;
@@ -52,20 +45,10 @@ static const double same_on_factors = 1e-9;
  * by no more than its doubt: from rest a circuit may begin to move as a power of time. */
 static const double soon_after = 1e-6, from_rest = 1.0 / 64.0;
 
-static int n_guards(const struct dalcs_radau_part *part) {
-    return part->component->system->n_pairs + part->stages.n_watched;
-}
-
-/* The pair of a guard. */
-static int pair_of(const struct dalcs_radau_part *part, int guard) {
-    int n_pairs = part->component->system->n_pairs;
-    return guard < n_pairs ? guard : part->stages.watched[guard - n_pairs];
-}
-
 /* A voltage that moves a switch, less its threshold, at a node. */
 static double control_at(const struct dalcs_radau_part *part, int guard, int node) {
     const struct dalcs_system *s = part->component->system;
-    int d = pair_of(part, guard);
+    int d = dalcs_guard_pair(part, guard);
     double v = part->out[node * part->stages.layout.stride + dalcs_system_n_columns(s) + guard -
                          s->n_pairs];
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, d);
@@ -87,55 +70,6 @@ static inline const double *values_of(const struct dalcs_radau_part *part, int g
     return work;
 }
 
-/* A switch has no sign to keep. */
-static inline bool is_guarded(const struct dalcs_radau_part *part, int guard) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    return guard >= p->system->n_pairs || p->is_diode[guard];
-}
-
-static double control_scale(const struct dalcs_radau_part *part, int guard, const double *unit) {
-    const struct dalcs_system *s = part->component->system;
-    int d = pair_of(part, guard);
-    return fmax(unit[dalcs_system_control_is_current(s, d)],
-                fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off)));
-}
-
-static inline double scale_of(const struct dalcs_radau_part *part, int guard, const double *unit) {
-    return guard < part->component->system->n_pairs
-               ? unit[dalcs_osnsp_is_on(&part->component->osnsp, guard) ? 1 : 0]
-               : control_scale(part, guard, unit);
-}
-
-/* What rounding makes of a guard that is 0 at most, in V or A: as far as what is held beside it tells. */
-static inline double most_rounding_of(const struct dalcs_radau_part *part, int guard,
-                                      const double *unit) {
-    if (guard >= part->component->system->n_pairs) {
-        return 0.0;
-    }
-    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
-    return rounded / part->h *
-           (is_on ? part->held_charge[guard] * unit[0] : part->held_flux[guard] * unit[1]);
-}
-
-/* The same of all that is known. */
-static double rounding_of(const struct dalcs_radau_part *part, int guard, const double *unit) {
-    if (!(most_rounding_of(part, guard, unit) > 0.0)) {
-        return 0.0;
-    }
-    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
-    double most = is_on ? dalcs_pair_charge_rate(part, guard) * unit[0]
-                        : part->held_flux[guard] / part->h * unit[1];
-    if (part->entry != NULL && dalcs_stage_has_map(part->entry)) {
-        int place = dalcs_system_n_equations(part->component->system) + guard;
-        double by_map =
-            dalcs_stage_spread(&part->stages, part->entry, place, part->in, part->scale);
-        most = dalcs_smaller(most, by_map);
-    } else if (!is_on) {
-        most = dalcs_smaller(most, dalcs_pair_flux(part, guard) / part->h);
-    }
-    return rounded * most;
-}
-
 enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     size_t n_equations = (size_t)dalcs_system_n_equations(s);
@@ -148,9 +82,11 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
         dalcs_pair_rate_create(&part->arena, s->n_pairs, part->component->osnsp.n_words);
     part->cluster = dalcs_arena_alloc(&part->arena, n_equations, sizeof(int));
     part->cluster_charge = dalcs_arena_alloc(&part->arena, n_equations, sizeof(double));
-    part->bound = dalcs_arena_alloc(
-        &part->arena, (size_t)dalcs_quads_of(n_guards(part)) + DALCS_QUAD, sizeof(double));
-    part->doubtful = dalcs_arena_alloc(&part->arena, (size_t)n_guards(part), sizeof(int));
+    part->bound = dalcs_arena_alloc(&part->arena,
+                                    (size_t)dalcs_quads_of(dalcs_guards_number(part)) + DALCS_QUAD,
+                                    sizeof(double));
+    part->doubtful =
+        dalcs_arena_alloc(&part->arena, (size_t)dalcs_guards_number(part), sizeof(int));
     if (part->bound == NULL || part->doubtful == NULL || part->held_charge == NULL ||
         part->held_flux == NULL || part->pair_row == NULL || part->pair_law == NULL ||
         part->pair_rate == NULL || part->cluster == NULL || part->cluster_charge == NULL) {
@@ -163,9 +99,10 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
 static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band,
                          const double *unit) {
     int node = at_end ? part->stages.layout.n_nodes - 1 : 0;
-    for (int g = part->component->system->n_pairs; g < n_guards(part); g++) {
+    for (int g = part->component->system->n_pairs; g < dalcs_guards_number(part); g++) {
         if (!(at_end && part->armed[g])) {
-            part->armed[g] = control_at(part, g, node) > band * control_scale(part, g, unit);
+            part->armed[g] =
+                control_at(part, g, node) > band * dalcs_guard_control_scale(part, g, unit);
         }
     }
 }
@@ -229,7 +166,7 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
 }
 
 static void bound_controls(const struct dalcs_radau_part *part) {
-    for (int g = part->component->system->n_pairs; g < n_guards(part); g++) {
+    for (int g = part->component->system->n_pairs; g < dalcs_guards_number(part); g++) {
         double work[DALCS_MAX_NODES + DALCS_QUAD] = {0.0};
         int stride;
         const double *value = values_of(part, g, work, &stride);
@@ -250,10 +187,10 @@ static void bound_all(struct dalcs_radau_part *part) {
 static void find_doubtful(struct dalcs_radau_part *part) {
     bound_all(part);
     const double *bound = part->bound;
-    int n = n_guards(part);
+    int n = dalcs_guards_number(part);
     int n_doubtful = 0;
     for (int g = 0; g < n; g++) {
-        if (!(bound[g] >= 0.0) && is_guarded(part, g)) {
+        if (!(bound[g] >= 0.0) && dalcs_guard_is_one(part, g)) {
             part->doubtful[n_doubtful++] = g;
         }
     }
@@ -296,7 +233,7 @@ static double doubt_at_first(struct dalcs_radau_part *part, const double *value,
 static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *part, int guard,
                        const double *value, int stride, double end, const double *unit) {
     int last = part->stages.layout.n_nodes - 1;
-    double scale = scale_of(part, guard, unit);
+    double scale = dalcs_guard_scale(part, guard, unit);
     double noise = dalcs_doubt_noise(part) * scale;
     bool is_armed = part->armed[guard];
     if (is_armed &&
@@ -328,8 +265,8 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         double work[DALCS_MAX_NODES];
         int stride;
         const double *value = values_of(part, g, work, &stride);
-        double scale = scale_of(part, g, unit);
-        double rounding = rounding_of(part, g, unit);
+        double scale = dalcs_guard_scale(part, g, unit);
+        double rounding = dalcs_guard_rounding(part, g, unit);
         double zero = dalcs_doubt_noise(part) * scale;
         if (!part->fresh && value[0] <= falling_part * band * scale &&
             fabs(value[last * stride]) <= zero + rounding) {
@@ -385,7 +322,7 @@ bool dalcs_guards_recover(const struct dalcs_radau *r, const struct dalcs_radau_
         double work[DALCS_MAX_NODES];
         int stride;
         const double *value = values_of(part, part->crossed[k], work, &stride);
-        double band = dalcs_doubt_band(r, part) * scale_of(part, part->crossed[k], unit);
+        double band = dalcs_doubt_band(r, part) * dalcs_guard_scale(part, part->crossed[k], unit);
         all = value[0] >= -shallow * band && value[last * stride] > 0.0;
     }
     return all;
@@ -426,61 +363,11 @@ bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
     return all;
 }
 
-/* The smallest of the coefficients, which a polynomial is an average of everywhere, times `sign`. */
-static double lowest(const struct dalcs_radau_part *part, const double *coefficient, double sign) {
-    double least = sign * coefficient[0];
-    for (int i = 1; i < part->stages.layout.n_nodes; i++) {
-        least = dalcs_smaller(least, sign * coefficient[i]);
-    }
-    return least;
-}
-
-/* What sign times a coefficient of a guard has to be above so that it is beyond doubt, but for rounding. */
-static double doubtless(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int guard,
-                        double *sign) {
-    double bound = clear * dalcs_doubt_band(r, part) * scale_of(part, guard, part->unit_scale);
-    *sign = 1.0;
-    if (guard < part->component->system->n_pairs) {
-        return bound;
-    }
-    const struct dalcs_pair *pair = &part->component->system->pair[pair_of(part, guard)];
-    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, pair_of(part, guard));
-    *sign = is_on ? 1.0 : -1.0;
-    return bound + (is_on ? pair->turn_off : -pair->turn_on);
-}
-
-bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                        const double *coefficient) {
-    const double *unit = part->unit_scale;
-    bool all = true;
-    part->n_crossed = 0;
-    part->n_doubtful = 0;
-    for (int g = 0; g < n_guards(part) && all; g++) {
-        part->armed[g] = is_guarded(part, g);
-        if (part->armed[g]) {
-            double sign;
-            double bound = doubtless(r, part, g, &sign);
-            double least = lowest(part, coefficient, sign) - bound;
-            all = least > clear * most_rounding_of(part, g, unit) ||
-                  least > clear * rounding_of(part, g, unit);
-            coefficient += part->stages.layout.n_nodes;
-        }
-    }
-    return all;
-}
-
-bool dalcs_guards_clearance(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                            int guard, double *sign, double *bound) {
-    *bound =
-        doubtless(r, part, guard, sign) + clear * most_rounding_of(part, guard, part->unit_scale);
-    return is_guarded(part, guard);
-}
-
 /* Are all of these no more than rounding makes of 0? */
 static bool is_nothing(const struct dalcs_radau_part *part, int pair, const double *value,
                        int stride, const double *unit) {
-    double limit = dalcs_doubt_noise(part) * scale_of(part, pair, unit);
-    limit += rounding_of(part, pair, unit);
+    double limit = dalcs_doubt_noise(part) * dalcs_guard_scale(part, pair, unit);
+    limit += dalcs_guard_rounding(part, pair, unit);
     bool nothing = true;
     for (int k = 0; k < part->stages.layout.n_nodes && nothing; k++) {
         nothing = fabs(value[k * stride]) <= limit;
@@ -492,7 +379,7 @@ bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const d
     double work[DALCS_MAX_NODES];
     int stride;
     const double *value = values_of(part, pair, work, &stride);
-    return is_guarded(part, pair) && is_nothing(part, pair, value, stride, unit);
+    return dalcs_guard_is_one(part, pair) && is_nothing(part, pair, value, stride, unit);
 }
 
 /* Is it below 0 from the start on, and does not come back by half up to `end`? By more than `least`, or by more
@@ -519,8 +406,8 @@ bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_
     for (int k = 0; k < part->n_doubtful && !negative && n_pairs <= DALCS_MANY_PAIRS; k++) {
         int d = part->doubtful[k];
         if (d < n_pairs) {
-            double scale = scale_of(part, d, unit);
-            double rounding = rounding_of(part, d, unit);
+            double scale = dalcs_guard_scale(part, d, unit);
+            double rounding = dalcs_guard_rounding(part, d, unit);
             negative =
                 stays_below(part, d, end, least * scale + rounding, noise * scale + rounding);
         }
@@ -598,7 +485,7 @@ double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_r
     for (int i = 0; i < part->n_doubtful && part->doubtful[i] < s->n_pairs; i++) {
         int d = part->doubtful[i];
         const double *value = part->out + dalcs_system_n_equations(s) + d;
-        double scale = scale_of(part, d, unit);
+        double scale = dalcs_guard_scale(part, d, unit);
         bool skips =
             part->fresh && value[0] < 0.0 && is_over_soon(r, part, value, l->stride, scale);
         double least = 0.0;
@@ -615,7 +502,7 @@ double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_r
 void dalcs_guards_flip(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     for (int k = 0; k < part->n_crossed; k++) {
-        int d = pair_of(part, part->crossed[k]);
+        int d = dalcs_guard_pair(part, part->crossed[k]);
         dalcs_osnsp_command(p, d, !dalcs_osnsp_is_on(p, d));
     }
 }

@@ -33,16 +33,6 @@ double dalcs_guards_recovery(const struct dalcs_radau_part *part);
  * two crossings, or the polynomial, which swings where something has died away between two nodes. */
 bool dalcs_guards_swing(const struct dalcs_radau_part *part);
 
-/* Is every guard so far above 0 during the whole step that it could be armed at its start and has no fall?
- * Then all are armed. By the scales so far, and by the polynomials of a brief step (stage_brief.h). */
-bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                        const double *coefficient);
-
-/* Of a step of length part->h in the present mode: sign times each coefficient of this guard is above *bound, in V
- * or A, where it is as clear as that. false: a switch by itself, which has none. */
-bool dalcs_guards_clearance(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                            int guard, double *sign, double *bound);
-
 /* Is there a diode that is on the wrong side from the start of the step up to `end`, in steps? By no more
  * than the error, or it would have ended the segment; but an error of 0 grows, or goes. Of the guards that
  * dalcs_guards_first_fall looked at; large components are not asked. */

@@ -294,6 +294,7 @@ void dalcs_periodic_take(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     }
     bool is_commanded = segment->why == DALCS_END_AT_EDGE;
     part->t_end = is_commanded ? part->commands.next : next_end(periodic);
+    part->brief = NULL;
     part->h = segment->h;
     part->end = segment->end;
     part->why = segment->why;

@@ -344,6 +344,7 @@ static void set_aside(struct dalcs_radau_part *part) {
     part->end_before = part->end;
     part->late_before = part->late;
     part->late = NULL;
+    part->brief = NULL;
 }
 
 /* part->x is the state where the segment ends. */

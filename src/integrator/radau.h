@@ -35,6 +35,9 @@ enum dalcs_radau_end {
 /* Components with more pairs than this are large: what is looked up for each pair in each mode would be dear. */
 enum { DALCS_MANY_PAIRS = 64 };
 
+/* Spans between commands that maps are made for: one PULSE has two. */
+enum { DALCS_SPANS = 4 };
+
 struct dalcs_radau_part {
     struct dalcs_component *component; /* its OSNSP, and y and u when evaluated */
     int index;
@@ -59,16 +62,20 @@ struct dalcs_radau_part {
     double longest;       /* s, step worth trying */
     double
         longest_needed; /* s; with longer ones segments are no longer, for something ends them all */
-    int tries;          /* falls back to implicit Euler in a row */
-    double fell_back;   /* s, length of the last */
-    bool fresh;         /* something just happened at t: nothing is known of how pairs start */
-    bool flipped;       /* and it is that pairs changed sides */
-    double *x;          /* [n_x] at t, in whole quads */
+    int n_spans;        /* between two commands, that steps are fitted to: step_length.h */
+    double span[DALCS_SPANS]; /* s */
+    int tries;                /* falls back to implicit Euler in a row */
+    double fell_back;         /* s, length of the last */
+    bool fresh;   /* something just happened at t: nothing is known of how pairs start */
+    bool flipped; /* and it is that pairs changed sides */
+    double *x;    /* [n_x] at t, in whole quads */
     double *in, *out;
     double *in_before, *out_before; /* the segment before, which ended there, in its steps */
     double end_before;
     /* Entries by which out and out_before are still to be filled; NULL: they are (recurrence.h) */
     struct dalcs_stage_entry *late, *late_before;
+    const struct dalcs_stage_brief
+        *brief;                      /* that made the present segment; NULL: it did not recur */
     double *out_tried;               /* a step put aside while the state is projected */
     struct dalcs_stage_entry *entry; /* that gave out, where guards are looked at */
     double ratio;                    /* the error of the step over what is allowed, up to 1 */
@@ -115,6 +122,11 @@ struct dalcs_radau_part {
         int recurred; /* times in a row that it was the same */
         int patience; /* until it is tried to step over it at once; 0: not looked at yet */
         struct dalcs_stage_brief *of_span; /* a step as long; NULL: none yet */
+        double step;       /* s, that was enough up to what came then, the last time */
+        int step_level;    /* of the ladder, on which it was found */
+        int sufficed;      /* times in a row that it was */
+        int step_patience; /* until it is tried at once */
+        struct dalcs_stage_brief *of_step; /* NULL: none yet */
     } * transition;
 
     int present_transition; /* the slot of the latest guess */

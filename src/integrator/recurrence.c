@@ -5,8 +5,9 @@
  * would be armed and clear of events. What is left out only raises scales and chooses the next length. */
 #include "recurrence.h"
 
+#include "clearance.h"
 #include "current_error.h"
-#include "guards.h"
+#include "extremes.h"
 #include "radau_internal.h"
 
 #include <float.h>
@@ -17,43 +18,44 @@
 enum { OFTEN = 4, MOST_PATIENCE = 64 };
 
 /* States within this many times their scale need no new one. */
-static const double most_growth = 2.0;
+static const double most_growth = 4.0;
 
-/* As far as rounded times can tell. The first of equal spans is kept: it comes earliest, when times have most
- * digits, and later ones, rounded up and down, are that one exactly. */
-static bool is_same(const struct dalcs_transition *known, double from, double to) {
-    return fabs(to - from - known->span) <= 4.0 * DBL_EPSILON * to;
+/* As far as rounded times can tell. */
+static bool is_same(double span, double from, double to) {
+    return fabs(to - from - span) <= 4.0 * DBL_EPSILON * to;
 }
 
-static void wait_longer(struct dalcs_transition *known) {
-    known->recurred = 0;
-    known->patience = known->patience < MOST_PATIENCE ? 2 * known->patience : MOST_PATIENCE;
+static int wait_longer(int patience) {
+    return patience < MOST_PATIENCE ? 2 * patience : MOST_PATIENCE;
 }
 
-/* As the first span had it that was as long and has a map: it serves both. */
+/* As the first such span had it: its map may be there. */
 static double first_span(const struct dalcs_radau_part *part, double span) {
+    for (int k = 0; k < part->n_spans; k++) {
+        if (is_same(part->span[k], part->t, part->t + span)) {
+            return part->span[k];
+        }
+    }
     for (int k = 0; k < DALCS_TRANSITIONS; k++) {
         const struct dalcs_transition *other = &part->transition[k];
-        if (other->of_span != NULL && is_same(other, part->t, part->t + span)) {
+        if (other->of_span != NULL && is_same(other->span, part->t, part->t + span)) {
             return other->span;
         }
     }
     return span;
 }
 
-/* The map of the span, if a step with it can be judged by its states and guards alone. */
-static enum dalcs_status find_map(struct dalcs_radau_part *part, struct dalcs_transition *known) {
+/* A step of length h in the present mode, if it can be judged by its states and guards alone; NULL: not so. */
+static enum dalcs_status find_map(struct dalcs_radau_part *part, double h, bool with_nodes,
+                                  struct dalcs_stage_brief **step) {
     struct dalcs_stage_entry *entry;
-    known->recurred = 0;
-    known->span = first_span(part, known->span);
     enum dalcs_status status =
-        dalcs_stages_get(&part->stages, part->component->osnsp.mode, known->span, &entry);
+        dalcs_stages_get(&part->stages, part->component->osnsp.mode, h, &entry);
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
     if (status == DALCS_OK && dalcs_stage_n_clashes(entry) == 0 &&
         dalcs_stage_residual(entry) <= dalcs_largest_residual) {
-        return dalcs_stage_brief_create(&part->stages, entry, &known->of_span);
+        return dalcs_stage_brief_create(&part->stages, entry, with_nodes, step);
     }
-    wait_longer(known);
     return DALCS_OK;
 }
 
@@ -63,70 +65,152 @@ void dalcs_recurrence_limits(const struct dalcs_radau *r, const struct dalcs_rad
                              double *most_drift) {
     bool states_free = dalcs_stage_frees_states(step->entry);
     double allowed = (states_free ? 1.0 : dalcs_worth_projecting) * r->inner_tolerance;
-    *most_last = most_growth * part->scale[x];
+    double of_unit = part->unit_scale[part->component->system->column_is_current[x] ? 1 : 0];
+    *most_last = dalcs_larger(most_growth * part->scale[x], of_unit);
     *most_drift = allowed * part->scale[x];
 }
 
-static bool is_accurate(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+static bool is_accurate(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                         const struct dalcs_stage_brief *step, bool *outgrows) {
+    const int n_x = part->component->system->n_x;
     bool accurate = true;
     *outgrows = false;
-    for (int x = 0; x < part->component->system->n_x; x++) {
+    for (int x = 0; x < n_x; x++) {
         double most_last;
         double most_drift;
         dalcs_recurrence_limits(r, part, step, x, &most_last, &most_drift);
         accurate = accurate && fabs(step->drift[x]) <= most_drift;
         *outgrows = *outgrows || fabs(step->last[x]) > most_last;
     }
-    return accurate;
+    double of_unit;
+    return accurate && dalcs_current_error(r, part, step->entry, part->unit_scale,
+                                           0.1 * r->options.abstol, &of_unit) <= 1.0;
+}
+
+/* A step of length h from part->t, by its brief map. */
+static void apply(struct dalcs_radau_part *part, struct dalcs_stage_brief *step, double h) {
+    part->h = h;
+    part->rounding = 1.0; /* a map's */
+    part->entry = NULL;   /* which may be that of another mode */
+    dalcs_segment_inputs(part);
+    dalcs_stage_brief_apply(&part->stages, step, part->in);
+}
+
+/* It is the present segment up to theta, in steps. */
+static void take(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                 struct dalcs_stage_brief *step, double theta) {
+    part->late = step->entry;
+    part->brief = step;
+    if (r->base->energy != NULL) {
+        dalcs_recurrence_complete(part);
+    }
+    part->stages.cache_hits++;
+    part->open = false;
+    dalcs_segment_accept(r, part, theta, dalcs_stage_residual(step->entry));
+}
+
+/* Over a span of the same length as before. */
+static enum dalcs_status try_span(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                  struct dalcs_transition *known, double limit, bool *holds) {
+    if (known->of_span == NULL && known->recurred >= known->patience) {
+        known->recurred = 0;
+        known->span = first_span(part, known->span);
+        DALCS_TRY(find_map(part, known->span, false, &known->of_span));
+        known->patience = known->of_span != NULL ? known->patience : wait_longer(known->patience);
+    }
+    struct dalcs_stage_brief *step = known->of_span;
+    if (step == NULL) {
+        return DALCS_OK;
+    }
+    apply(part, step, known->span);
+    bool outgrows;
+    bool may_hold =
+        is_accurate(r, part, step, &outgrows) && dalcs_guards_clear(r, part, step->guard);
+    *holds = may_hold && !outgrows;
+    if (*holds) {
+        part->t_end = limit;
+        part->why = DALCS_END_AT_EDGE;
+        take(r, part, step, 1.0);
+    } else if (!may_hold) { /* a step that failed once may always fail */
+        dalcs_recurrence_complete_before(part);
+        dalcs_transition_begin_span(part, known, known->span);
+        known->patience = wait_longer(known->patience);
+    }
+    return DALCS_OK;
+}
+
+static void note_span(struct dalcs_radau_part *part, struct dalcs_transition *known) {
+    if (is_same(known->span, part->t, part->t_end)) {
+        known->recurred++;
+    } else {
+        dalcs_transition_begin_span(part, known, part->t_end - part->t);
+        known->patience = OFTEN;
+    }
+}
+
+/* By the step that was enough the last times, up to an event or the limit. */
+static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                  struct dalcs_transition *known, double limit, bool *holds) {
+    if (known->step_level != part->level) {
+        return DALCS_OK;
+    }
+    if (known->of_step == NULL && known->sufficed >= known->step_patience) {
+        known->sufficed = 0;
+        DALCS_TRY(find_map(part, known->step, true, &known->of_step));
+    }
+    struct dalcs_stage_brief *step = known->of_step;
+    if (step == NULL) {
+        return DALCS_OK;
+    }
+    apply(part, step, known->step);
+    double end = dalcs_smaller(1.0, (limit - part->t) / part->h);
+    double theta = end;
+    bool outgrows;
+    bool may_hold = is_accurate(r, part, step, &outgrows) &&
+                    dalcs_guards_plain(r, part, step->guard, end, &theta);
+    double t_end = part->t + theta * part->h;
+    bool happens = part->n_crossed > 0;
+    if (!happens && may_hold) {
+        may_hold = t_end >= limit - r->resolution;
+        t_end = limit;
+    }
+    /* What crosses near the stop time may be left to a longer run (guards.c). */
+    *holds = may_hold && !outgrows && !(happens && limit >= r->options.stop);
+    if (*holds) {
+        part->t_end = dalcs_smaller(t_end, limit);
+        part->why = happens ? DALCS_END_AT_EVENT : DALCS_END_AT_EDGE;
+        if (!happens) {
+            note_span(part, known); /* which is stepped at once when it recurs */
+        }
+        dalcs_stage_brief_stop(&part->stages, step, theta);
+        take(r, part, step, theta);
+    } else if (!may_hold) {
+        dalcs_recurrence_complete_before(part);
+        dalcs_transition_begin_step(part, known, known->step);
+        known->step_patience = wait_longer(known->step_patience);
+    }
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        double limit, bool *holds) {
     struct dalcs_transition *known = dalcs_transition_known(part);
     *holds = false;
-    if (!is_same(known, part->t, limit)) {
-        return DALCS_OK;
+    if (is_same(known->span, part->t, limit)) {
+        DALCS_TRY(try_span(r, part, known, limit, holds));
     }
-    if (known->of_span == NULL && known->recurred >= known->patience) {
-        DALCS_TRY(find_map(part, known));
+    return *holds ? DALCS_OK : try_step(r, part, known, limit, holds);
+}
+
+static void note_step(struct dalcs_radau_part *part, struct dalcs_transition *known) {
+    bool is_enough = part->why != DALCS_END_OF_STEP && part->n_crossed <= 1;
+    if (is_enough && known->step == part->h) {
+        known->sufficed++;
+    } else {
+        dalcs_transition_begin_step(part, known, is_enough ? part->h : 0.0);
+        known->step_level = part->level;
+        known->step_patience = OFTEN;
     }
-    if (known->of_span == NULL) {
-        return DALCS_OK;
-    }
-    part->h = known->span;
-    part->rounding = 1.0; /* a map's */
-    part->entry = NULL;   /* which may be that of another mode */
-    dalcs_segment_inputs(part);
-    struct dalcs_stage_brief *step = known->of_span;
-    dalcs_stage_brief_apply(&part->stages, step, part->in);
-    double of_unit;
-    bool outgrows;
-    bool may_hold = is_accurate(r, part, step, &outgrows) &&
-                    dalcs_guards_clear(r, part, step->guard) &&
-                    dalcs_current_error(r, part, step->entry, part->unit_scale,
-                                        0.1 * r->options.abstol, &of_unit) <= 1.0;
-    *holds = may_hold && !outgrows;
-    if (!*holds) {
-        dalcs_recurrence_complete_before(part);
-    }
-    if (!may_hold) { /* a step that failed once may always fail */
-        dalcs_transition_begin_span(part, known, known->span);
-        wait_longer(known);
-    }
-    if (!*holds) {
-        return DALCS_OK;
-    }
-    part->late = step->entry;
-    if (r->base->energy != NULL) {
-        dalcs_recurrence_complete(part);
-    }
-    part->stages.cache_hits++;
-    part->t_end = limit;
-    part->why = DALCS_END_AT_EDGE;
-    part->open = false;
-    dalcs_segment_accept(r, part, 1.0, dalcs_stage_residual(step->entry));
-    return DALCS_OK;
 }
 
 void dalcs_recurrence_note(struct dalcs_radau_part *part) {
@@ -135,22 +219,21 @@ void dalcs_recurrence_note(struct dalcs_radau_part *part) {
     if (!on_map || part->excitation.is_curved) {
         return; /* factors for one span are too dear; what sources do between the nodes is not looked at */
     }
-    if (is_same(known, part->t, part->t_end)) {
-        known->recurred++;
-    } else {
-        dalcs_transition_begin_span(part, known, part->t_end - part->t);
-        known->patience = OFTEN;
+    if (part->why == DALCS_END_AT_EDGE) {
+        note_span(part, known);
     }
+    note_step(part, known);
 }
 
 void dalcs_recurrence_begin(struct dalcs_radau_part *part) {
     struct dalcs_stage_brief *step = dalcs_transition_known(part)->of_span;
     dalcs_stage_brief_apply(&part->stages, step, part->in);
     part->late = step->entry;
+    part->brief = step;
 }
 
 const double *dalcs_recurrence_end(const struct dalcs_radau_part *part) {
-    return part->late != NULL ? dalcs_transition_known(part)->of_span->last : NULL;
+    return part->brief != NULL ? part->brief->last : NULL;
 }
 
 static void complete(const struct dalcs_radau_part *part, struct dalcs_stage_entry **late,

@@ -371,11 +371,16 @@ void dalcs_segment_accept(struct dalcs_radau *r, struct dalcs_radau_part *part, 
     }
 }
 
+/* All of a step of the ladder: a longer one may be as good. */
+static bool is_whole(const struct dalcs_radau_part *part, double theta) {
+    return theta == 1.0 && part->h == dalcs_radau_ladder(part, part->level);
+}
+
 /* What began after pairs changed sides. */
 static void learn(struct dalcs_radau *r, struct dalcs_radau_part *part, const struct search *search,
                   double theta, double error) {
     double ratio = error * fmax(1.0, r->inner_tolerance / fine);
-    bool longer = !search->fixed && theta == 1.0 && part->n_crossed == 0 &&
+    bool longer = !search->fixed && is_whole(part, theta) && part->n_crossed == 0 &&
                   dalcs_length_rungs_promised(r, part, ratio) > 1.0 &&
                   dalcs_radau_ladder(part, part->level - 1) <=
                       dalcs_smaller(part->longest, part->longest_needed);
@@ -392,7 +397,7 @@ static void learn(struct dalcs_radau *r, struct dalcs_radau_part *part, const st
     } else if (spare > 0) {
         dalcs_transition_learn(part, part->level - spare, 0);
     }
-    if (!search->fixed && part->why == DALCS_END_AT_EDGE) {
+    if (!search->fixed) {
         dalcs_recurrence_note(part);
     }
 }
@@ -424,7 +429,7 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         learn(r, part, search, theta, quality->ratio);
     }
     dalcs_segment_accept(r, part, theta, residual);
-    if (!search->fixed && theta == 1.0) {
+    if (!search->fixed && is_whole(part, theta)) {
         dalcs_length_lengthen(r, part, quality->ratio);
     }
 }
@@ -441,6 +446,19 @@ static bool is_outsized(const struct dalcs_radau_part *part,
     return is;
 }
 
+/* A command has moved a switch: what it carried goes elsewhere, through pairs that have not crossed anything. On
+ * dense maps to ask the circuit of them costs less than a step in a mode that is wrong. */
+static bool is_commutation(const struct dalcs_radau_part *part) {
+    return part->fresh && part->flipped && part->n_crossed == 0 && part->rounding == 1.0;
+}
+
+static double step_to_try(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                          double limit) {
+    bool at_command = part->fresh && part->n_crossed == 0 && part->rounding == 1.0;
+    return at_command && limit < r->options.stop ? dalcs_length_fitted(part, limit)
+                                                 : dalcs_radau_ladder(part, part->level);
+}
+
 /* One try. *done: there is a segment. */
 static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                   struct search *search, bool *done) {
@@ -450,7 +468,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         *done = true;
         return fall_back(r, part, search->limit, search->first_level);
     }
-    part->h = search->fixed ? r->options.fixed_step : dalcs_radau_ladder(part, part->level);
+    part->h = search->fixed ? r->options.fixed_step : step_to_try(r, part, search->limit);
     enum dalcs_status status = dalcs_segment_solve(part, &entry);
     if (status < DALCS_OK) {
         return status;
@@ -545,12 +563,6 @@ static int cheapest_level(struct dalcs_radau_part *part) {
         }
     }
     return level;
-}
-
-/* A command has moved a switch: what it carried goes elsewhere, through pairs that have not crossed anything. On
- * dense maps to ask the circuit of them costs less than a step in a mode that is wrong. */
-static bool is_commutation(const struct dalcs_radau_part *part) {
-    return part->fresh && part->flipped && part->n_crossed == 0 && part->rounding == 1.0;
 }
 
 /* guessed: the mode is what followed the last time. */

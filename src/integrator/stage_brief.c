@@ -20,7 +20,8 @@ static double *fill_guard(const struct dalcs_stages *stages, const double *colum
     return coefficient + l->n_nodes;
 }
 
-static void fill_column(const struct dalcs_stages *stages, const double *column, double *brief) {
+static void fill_column(const struct dalcs_stages *stages, const double *column, bool with_nodes,
+                        double *brief) {
     const struct dalcs_system *s = stages->system;
     const struct dalcs_stage_layout *l = &stages->layout;
     size_t state_bytes = (size_t)s->n_x * sizeof(double);
@@ -35,17 +36,22 @@ static void fill_column(const struct dalcs_stages *stages, const double *column,
     for (int i = 0; i < stages->n_watched; i++) {
         guard = fill_guard(stages, column, dalcs_system_n_columns(s) + i, guard);
     }
+    for (int k = 0; k < l->n_nodes && with_nodes; k++) {
+        memcpy(guard + k * s->n_x, column + k * l->stride, state_bytes);
+    }
 }
 
 enum dalcs_status dalcs_stage_brief_create(struct dalcs_stages *stages,
-                                           struct dalcs_stage_entry *entry,
+                                           struct dalcs_stage_entry *entry, bool with_nodes,
                                            struct dalcs_stage_brief **brief) {
     const struct dalcs_system *s = stages->system;
+    const int n_nodes = stages->layout.n_nodes;
     int n_guards = stages->n_watched;
     for (int d = 0; d < s->n_pairs; d++) {
         n_guards += s->pair[d].kind == DALCS_PAIR_DIODE ? 1 : 0;
     }
-    int rows = dalcs_dense_map_rows(2 * s->n_x + n_guards * stages->layout.n_nodes);
+    int n_states = 2 * s->n_x + (with_nodes ? n_nodes * s->n_x : 0);
+    int rows = dalcs_dense_map_rows(n_states + n_guards * n_nodes);
     int columns = dalcs_stage_map_columns(stages);
     struct dalcs_stage_brief *b = dalcs_alloc(1, sizeof(*b));
     *brief = b;
@@ -54,6 +60,7 @@ enum dalcs_status dalcs_stage_brief_create(struct dalcs_stages *stages,
     }
     dalcs_stages_hold(entry);
     b->entry = entry;
+    b->number = ++stages->n_briefs;
     b->rows = rows;
     b->map = dalcs_dense_map_alloc(rows, columns);
     b->answer = dalcs_alloc((size_t)rows, sizeof(double));
@@ -65,9 +72,10 @@ enum dalcs_status dalcs_stage_brief_create(struct dalcs_stages *stages,
     b->last = b->answer;
     b->drift = b->answer + s->n_x;
     b->guard = b->answer + 2 * s->n_x;
+    b->node = with_nodes ? b->guard + n_guards * n_nodes : NULL;
     memset(b->map, 0, (size_t)rows * (size_t)columns * sizeof(double));
     for (int k = 0; k < columns; k++) {
-        fill_column(stages, entry->map + k * entry->rows, b->map + k * rows);
+        fill_column(stages, entry->map + k * entry->rows, with_nodes, b->map + k * rows);
     }
     return DALCS_OK;
 }
@@ -87,6 +95,20 @@ void dalcs_stage_brief_apply(const struct dalcs_stages *stages, struct dalcs_sta
                           dalcs_stage_map_input(stages, in), brief->answer);
 }
 
+void dalcs_stage_brief_stop(const struct dalcs_stages *stages, struct dalcs_stage_brief *brief,
+                            double theta) {
+    const int n_x = stages->system->n_x;
+    double weight[DALCS_MAX_NODES];
+    dalcs_collocation_weights(stages->method, theta, weight);
+    for (int x = 0; x < n_x; x++) {
+        double sum = 0.0;
+        for (int k = 0; k < stages->layout.n_nodes; k++) {
+            sum += weight[k] * brief->node[k * n_x + x];
+        }
+        brief->last[x] = sum;
+    }
+}
+
 double dalcs_stage_brief_row(const struct dalcs_stages *stages,
                              const struct dalcs_stage_brief *brief, int which, const double *in,
                              double *factor) {
@@ -102,6 +124,18 @@ double dalcs_stage_brief_row(const struct dalcs_stages *stages,
         }
     }
     return rest;
+}
+
+int dalcs_stage_brief_columns(const struct dalcs_stages *stages) {
+    return dalcs_stage_map_columns(stages);
+}
+
+const double *dalcs_stage_brief_column(const struct dalcs_stage_entry *entry, int column) {
+    return entry->map + column * entry->rows;
+}
+
+const double *dalcs_stage_brief_input(const struct dalcs_stages *stages, const double *in) {
+    return dalcs_stage_map_input(stages, in);
 }
 
 void dalcs_stage_brief_expand(const struct dalcs_stages *stages,

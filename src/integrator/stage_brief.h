@@ -1,5 +1,6 @@
 /* stage_brief.h - of a step on a dense map, what tells whether it is a segment: no more than the states at
- * its end, their drift, and the guards as polynomials. The whole answer has many times as many rows. */
+ * its end, their drift, and the guards as polynomials. The whole answer has many times as many rows. Of a step
+ * that may be a segment only in part the states at all nodes, too. */
 #ifndef DALCS_STAGE_BRIEF_H
 #define DALCS_STAGE_BRIEF_H
 
@@ -7,17 +8,19 @@
 
 struct dalcs_stage_brief {
     struct dalcs_stage_entry *entry; /* held */
-    const double *last;              /* [n_x] states at the end of the step applied last */
+    long number;                     /* no other brief step of these stages has it */
+    double *last;                    /* [n_x] states at the end of the step applied last */
     const double *drift;             /* [n_x] as in its answer */
     const double *guard; /* [guards][n_nodes] in Bernstein's basis: diodes, then watched voltages */
+    const double *node;  /* [n_nodes][n_x] states there; NULL: not asked for */
     int rows;
     double *map;    /* [rows][columns] by columns */
-    double *answer; /* [rows] last, drift, guard */
+    double *answer; /* [rows] last, drift, guard, node */
 };
 
 /* *brief: of an entry with a map, which it holds. */
 enum dalcs_status dalcs_stage_brief_create(struct dalcs_stages *stages,
-                                           struct dalcs_stage_entry *entry,
+                                           struct dalcs_stage_entry *entry, bool with_nodes,
                                            struct dalcs_stage_brief **brief) DALCS_MUST_CHECK;
 void dalcs_stage_brief_destroy(struct dalcs_stages *stages, struct dalcs_stage_brief *brief);
 
@@ -25,11 +28,20 @@ void dalcs_stage_brief_destroy(struct dalcs_stages *stages, struct dalcs_stage_b
 void dalcs_stage_brief_apply(const struct dalcs_stages *stages, struct dalcs_stage_brief *brief,
                              const double *in);
 
+/* The states at theta, in steps, as those at the end; of a brief one with nodes. */
+void dalcs_stage_brief_stop(const struct dalcs_stages *stages, struct dalcs_stage_brief *brief,
+                            double theta);
+
 /* Element `which` of the answer as a function of the states, the other inputs being as they are in `in`: factor[n_x]
  * of them, and what is returned for 0. */
 double dalcs_stage_brief_row(const struct dalcs_stages *stages,
                              const struct dalcs_stage_brief *brief, int which, const double *in,
                              double *factor);
+
+/* The whole answer is a sum of `columns` answers, of its entry, times the elements of `input`. */
+int dalcs_stage_brief_columns(const struct dalcs_stages *stages);
+const double *dalcs_stage_brief_column(const struct dalcs_stage_entry *entry, int column);
+const double *dalcs_stage_brief_input(const struct dalcs_stages *stages, const double *in);
 
 /* The whole answer out[n_fixed] of the entry of a brief one. */
 void dalcs_stage_brief_expand(const struct dalcs_stages *stages,

@@ -50,6 +50,7 @@ struct dalcs_stages {
     int update_trust;                      /* updates that served against those that did not */
     uint64_t *key;                         /* [n_words + 1] */
     long factorizations, cache_hits;
+    long n_briefs; /* so far (stage_brief.h) */
     klu_common klu, klu_complex;
     struct dalcs_stage_plan *plan;         /* what sparse factors share; NULL until there are any */
     struct dalcs_stage_workshop *workshop; /* what makes dense maps; NULL until there are any */

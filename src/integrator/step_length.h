@@ -14,6 +14,10 @@ double dalcs_length_longest(const struct dalcs_radau *r, const struct dalcs_rada
  * of one of them; INFINITY: none do. */
 double dalcs_length_of_spans(const struct dalcs_radau_part *part);
 
+/* s; the present one of the ladder, or, if commands of a switch are periodic, `limit` (s) is no more than one such step away and no
+ * less than half of it, the span up to there, from a command to another: it recurs, and its map serves. */
+double dalcs_length_fitted(struct dalcs_radau_part *part, double limit);
+
 /* s; the step at which the error of following the fastest source is about what is allowed. */
 double dalcs_length_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
 

@@ -27,7 +27,10 @@ enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
 
 void dalcs_transition_finish(struct dalcs_radau_part *part) {
     for (int k = 0; k < SLOTS && part->transition != NULL; k++) {
-        dalcs_transition_begin_span(part, &part->transition[k], 0.0);
+        if (part->transition[k].is_known) {
+            dalcs_transition_begin_span(part, &part->transition[k], 0.0);
+            dalcs_transition_begin_step(part, &part->transition[k], 0.0);
+        }
     }
 }
 
@@ -41,6 +44,14 @@ void dalcs_transition_begin_span(struct dalcs_radau_part *part, struct dalcs_tra
     known->of_span = NULL;
     known->span = span;
     known->recurred = 0;
+}
+
+void dalcs_transition_begin_step(struct dalcs_radau_part *part, struct dalcs_transition *known,
+                                 double step) {
+    dalcs_stage_brief_destroy(&part->stages, known->of_step);
+    known->of_step = NULL;
+    known->step = step;
+    known->sufficed = 0;
 }
 
 /* Of part->modes_before. */
@@ -161,5 +172,6 @@ void dalcs_transition_learn(struct dalcs_radau_part *part, int level, int untrie
         copy_mode(modes, part->modes_before, 2 * words);
         copy_mode(modes + 2 * words, p->mode, words);
         dalcs_transition_begin_span(part, known, 0.0);
+        dalcs_transition_begin_step(part, known, 0.0);
     }
 }

@@ -42,6 +42,10 @@ struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *p
 void dalcs_transition_begin_span(struct dalcs_radau_part *part, struct dalcs_transition *known,
                                  double span);
 
+/* Likewise how often a step of that length (s) is enough. */
+void dalcs_transition_begin_step(struct dalcs_radau_part *part, struct dalcs_transition *known,
+                                 double step);
+
 /* After a guess of false: the segment holds with the part's level, `tried` was the first that was tried,
  * and the error promises steps longer by so many rungs. */
 void dalcs_transition_began(struct dalcs_radau_part *part, int tried, int promised);

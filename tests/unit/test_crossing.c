@@ -163,11 +163,24 @@ static double at(const struct dalcs_collocation *c, const double *value, double 
     return sum;
 }
 
+/* By its coefficients alone, where they tell it. */
+static double only_fall(const struct dalcs_collocation *c, const double *value, double end,
+                        double depth) {
+    double coefficient[DALCS_MAX_NODES] = {0.0};
+    for (int k = 0; k <= c->s; k++) {
+        for (int i = 0; i <= c->s; i++) {
+            coefficient[i] += value[k] * c->to_bernstein[k][i];
+        }
+    }
+    return dalcs_crossing_only(c, coefficient, end, depth);
+}
+
 START_TEST(test_random) {
     enum { N_TRIALS = 2000, SCAN = 500 };
 
     int n_falls = 0;
     int n_hidden = 0;
+    int n_only = 0;
     for (int trial = 0; trial < N_TRIALS; trial++) {
         const struct dalcs_collocation *c = dalcs_collocation_of(1 + 2 * (trial % 5));
         double value[DALCS_MAX_NODES];
@@ -189,6 +202,12 @@ START_TEST(test_random) {
         }
         struct dalcs_crossing found = dalcs_crossing_find(c, value, 1, end, depth, guess);
         ck_assert(found.falls || isinf(first));
+        double only = value[0] > 0.0 ? only_fall(c, value, end, depth) : INFINITY;
+        if (only < INFINITY) {
+            n_only++;
+            ck_assert(found.falls && fabs(found.theta - only) < 1e-12);
+            ck_assert(at(c, value, end) < -depth);
+        }
         if (!found.falls) {
             continue;
         }
@@ -209,6 +228,7 @@ START_TEST(test_random) {
     }
     ck_assert_int_gt(n_falls, N_TRIALS / 5);
     ck_assert_int_gt(n_hidden, 20);
+    ck_assert_int_gt(n_only, 30);
 }
 
 END_TEST

@@ -11,6 +11,12 @@ static bool is_whole_span(void) {
     return known->of_span != NULL && r.part->h == known->span && r.part->end == 1.0;
 }
 
+/* A step that was enough for another segment is for this, up to whatever ends it. */
+static bool is_known_step(void) {
+    const struct dalcs_transition *known = dalcs_transition_known(r.part);
+    return r.part->brief != NULL && r.part->brief == known->of_step;
+}
+
 /* A chopper feeds a motor, whose voltage rises for a while: a little, so that its current only moves to
  * another mean, or so much that it ends in each period. */
 static const double period = 100e-6, on = 40e-6, supply = 24.0, resistance = 1.0, inductance = 2e-3;
@@ -49,14 +55,17 @@ static double motor_current(double time, double low, double high, int *n_ended) 
     return i;
 }
 
-/* Walks to the end; the numbers of segments by a recurring span before, in and after the rise. */
-static void walk_motor(double low, double high, int n_spans[3]) {
+/* Walks to the end; the numbers of segments by a recurring span before, in and after the rise. How many, instead, were
+ * by a step that had been enough before? */
+static int walk_motor(double low, double high, int n_spans[3]) {
     bool happens;
     int n_events = 0;
+    int n_steps = 0;
     n_spans[0] = n_spans[1] = n_spans[2] = 0;
     for (double to; (to = dalcs_radau_next_stop(&r, &happens)) < motor_stop;) {
         int which = to <= rises ? 0 : to <= falls ? 1 : 2;
         n_spans[which] += is_whole_span() ? 1 : 0;
+        n_steps += is_known_step() ? 1 : 0;
         n_events += r.part->why == DALCS_END_AT_EVENT ? 1 : 0;
         ck_assert_int_eq(dalcs_radau_pass(&r, to), DALCS_OK);
         int n_ended;
@@ -67,6 +76,7 @@ static void walk_motor(double low, double high, int n_spans[3]) {
     int n_ended;
     (void)motor_current(motor_stop, low, high, &n_ended);
     ck_assert_int_eq(n_events, n_ended);
+    return n_steps;
 }
 
 /* Two spans in each of 50 periods before, in and after the rise. Its edges cut one short, which is then
@@ -74,7 +84,8 @@ static void walk_motor(double low, double high, int n_spans[3]) {
 START_TEST(test_spans) {
     int n[3];
     start(CHOPPER("5 6"), motor_stop);
-    walk_motor(5.0, 6.0, n);
+    int n_steps = walk_motor(5.0, 6.0, n);
+    ck_assert_int_lt(n_steps, 20);
     ck_assert_msg(n[0] > 60 && n[1] > 75 && n[2] > 75, "%d, %d, %d", n[0], n[1], n[2]);
     finish();
 }
@@ -82,12 +93,13 @@ START_TEST(test_spans) {
 END_TEST
 
 /* No span hides an event: that of the diode is left alone as long as the current ends in it; of three segments in
- * a period two may recur. */
+ * a period two may recur. That event ends a step that is the same in each of 50 periods. */
 START_TEST(test_events) {
     int n[3];
     start(CHOPPER("5 12"), motor_stop);
-    walk_motor(5.0, 12.0, n);
+    int n_steps = walk_motor(5.0, 12.0, n);
     ck_assert_msg(n[0] > 60 && n[1] <= 100 && n[2] > 60, "%d, %d, %d", n[0], n[1], n[2]);
+    ck_assert_int_gt(n_steps, 40);
     finish();
 }
 

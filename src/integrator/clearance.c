@@ -1,0 +1,128 @@
+/* clearance.c - least coefficients, and one change of their sign. */
+#include "clearance.h"
+
+#include "crossing.h"
+#include "doubt.h"
+#include "guard_scale.h"
+
+#include <math.h>
+
+/* A guard above so many bands is beyond doubt, though the scales grow. */
+static const double clear = 8.0;
+
+/* The smallest of the coefficients, which a polynomial is an average of everywhere, times `sign`. */
+static double lowest(const struct dalcs_radau_part *part, const double *coefficient, double sign) {
+    double least = sign * coefficient[0];
+    for (int i = 1; i < part->stages.layout.n_nodes; i++) {
+        least = dalcs_smaller(least, sign * coefficient[i]);
+    }
+    return least;
+}
+
+/* Sign times a voltage that moves a switch has to be above this for the switch to stay; 0 for a pair itself. */
+static double threshold(const struct dalcs_radau_part *part, int guard, double *sign) {
+    *sign = 1.0;
+    if (guard < part->component->system->n_pairs) {
+        return 0.0;
+    }
+    int d = dalcs_guard_pair(part, guard);
+    const struct dalcs_pair *pair = &part->component->system->pair[d];
+    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, d);
+    *sign = is_on ? 1.0 : -1.0;
+    return is_on ? pair->turn_off : -pair->turn_on;
+}
+
+/* What a guard has to be above so that it is beyond doubt, but for rounding. */
+static double doubtless(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                        int guard) {
+    return clear * dalcs_doubt_band(r, part) * dalcs_guard_scale(part, guard, part->unit_scale);
+}
+
+static bool is_beyond_rounding(const struct dalcs_radau_part *part, int guard, double value) {
+    return value > clear * dalcs_guard_most_rounding(part, guard, part->unit_scale) ||
+           value > clear * dalcs_guard_rounding(part, guard, part->unit_scale);
+}
+
+/* Of one guard. */
+static bool is_clear(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int guard,
+                     const double *coefficient) {
+    double sign;
+    double least = -threshold(part, guard, &sign) - doubtless(r, part, guard);
+    least += lowest(part, coefficient, sign);
+    return is_beyond_rounding(part, guard, least);
+}
+
+bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                        const double *coefficient) {
+    bool all = true;
+    part->n_crossed = 0;
+    part->n_doubtful = 0;
+    for (int g = 0; g < dalcs_guards_number(part) && all; g++) {
+        part->armed[g] = dalcs_guard_is_one(part, g);
+        if (part->armed[g]) {
+            all = is_clear(r, part, g, coefficient);
+            coefficient += part->stages.layout.n_nodes;
+        }
+    }
+    return all;
+}
+
+bool dalcs_guards_clearance(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                            int guard, double *sign, double *bound) {
+    *bound = threshold(part, guard, sign) + doubtless(r, part, guard) +
+             clear * dalcs_guard_most_rounding(part, guard, part->unit_scale);
+    return dalcs_guard_is_one(part, guard);
+}
+
+/* A diode that has just changed sides. */
+static bool has_flipped(const struct dalcs_radau_part *part, int guard) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    return guard < p->system->n_pairs &&
+           dalcs_mode_has(part->modes_before, guard) != dalcs_osnsp_is_on(p, guard);
+}
+
+/* Is a guard plain up to `end`? Then *theta is brought forward to its fall, if it has one. */
+static bool is_plain(const struct dalcs_radau *r, struct dalcs_radau_part *part, int guard,
+                     const double *coefficient, double end, double *theta) {
+    double above[DALCS_MAX_NODES];
+    double sign;
+    double zero = threshold(part, guard, &sign);
+    double bound = doubtless(r, part, guard);
+    const int last = part->stages.method->s;
+    double least = INFINITY;
+    for (int k = 0; k <= last; k++) {
+        above[k] = sign * coefficient[k] - zero;
+        least = k > 0 ? dalcs_smaller(least, above[k]) : least;
+    }
+    bool begins_at_0 = above[0] >= 0.0 && has_flipped(part, guard);
+    double first = begins_at_0 ? above[1] : dalcs_smaller(above[0], above[1]);
+    if (!is_beyond_rounding(part, guard, first - bound)) {
+        return false;
+    }
+    if (is_beyond_rounding(part, guard, least - bound)) {
+        return true;
+    }
+    double fall = dalcs_crossing_only(part->stages.method, above, end, 2.0 * bound);
+    if (!(fall < INFINITY) || part->n_crossed > 0) {
+        return false;
+    }
+    part->crossed[part->n_crossed++] = guard;
+    *theta = fall;
+    return true;
+}
+
+bool dalcs_guards_plain(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                        const double *coefficient, double end, double *theta) {
+    bool all = true;
+    part->n_crossed = 0;
+    part->n_doubtful = 0;
+    *theta = end;
+    for (int g = 0; g < dalcs_guards_number(part) && all; g++) {
+        part->armed[g] = dalcs_guard_is_one(part, g);
+        if (part->armed[g]) {
+            all = is_plain(r, part, g, coefficient, end, theta);
+            coefficient += part->stages.layout.n_nodes;
+        }
+    }
+    return all;
+}

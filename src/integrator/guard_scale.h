@@ -1,0 +1,56 @@
+/* guard_scale.h - what guards are measured by: the scale of their unit, and rounding. */
+#ifndef DALCS_GUARD_SCALE_H
+#define DALCS_GUARD_SCALE_H
+
+#include "radau.h"
+
+#include <float.h>
+
+/* Digits of a voltage over what the capacitors at a diode make of them in a step: a current that only
+ * rounds their voltages is none, however small the others are. So for coils and their currents. A dense map
+ * tells what rounding of states and sources makes of a guard itself, which is often far less. */
+static const double dalcs_guard_rounded = 16.0 * DBL_EPSILON;
+
+static inline int dalcs_guards_number(const struct dalcs_radau_part *part) {
+    return part->component->system->n_pairs + part->stages.n_watched;
+}
+
+/* The pair of a guard. */
+static inline int dalcs_guard_pair(const struct dalcs_radau_part *part, int guard) {
+    int n_pairs = part->component->system->n_pairs;
+    return guard < n_pairs ? guard : part->stages.watched[guard - n_pairs];
+}
+
+/* A switch has no sign to keep. */
+static inline bool dalcs_guard_is_one(const struct dalcs_radau_part *part, int guard) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    return guard >= p->system->n_pairs || p->is_diode[guard];
+}
+
+/* V or A; of a voltage or current that moves a switch. */
+double dalcs_guard_control_scale(const struct dalcs_radau_part *part, int guard,
+                                 const double *unit);
+
+/* V or A. */
+static inline double dalcs_guard_scale(const struct dalcs_radau_part *part, int guard,
+                                       const double *unit) {
+    return guard < part->component->system->n_pairs
+               ? unit[dalcs_osnsp_is_on(&part->component->osnsp, guard) ? 1 : 0]
+               : dalcs_guard_control_scale(part, guard, unit);
+}
+
+/* What rounding makes of a guard that is 0 at most, in V or A: as far as what is held beside it tells. */
+static inline double dalcs_guard_most_rounding(const struct dalcs_radau_part *part, int guard,
+                                               const double *unit) {
+    if (guard >= part->component->system->n_pairs) {
+        return 0.0;
+    }
+    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
+    return dalcs_guard_rounded / part->h *
+           (is_on ? part->held_charge[guard] * unit[0] : part->held_flux[guard] * unit[1]);
+}
+
+/* The same of all that is known. */
+double dalcs_guard_rounding(const struct dalcs_radau_part *part, int guard, const double *unit);
+
+#endif
