@@ -1,6 +1,7 @@
 /* rows.c - what outputs read, listed once; then their values, by fours. */
 #include "rows.h"
 
+#include "dense_map.h"
 #include "radau_internal.h"
 #include "recurrence.h"
 #include "wide_vectors.h"
@@ -80,6 +81,10 @@ static void list_sources(struct dalcs_rows_part *p, const struct dalcs_radau_par
     }
 }
 
+static int map_rows(const struct dalcs_rows_part *p) {
+    return dalcs_dense_map_rows(p->n_read * DALCS_MAX_NODES);
+}
+
 static enum dalcs_status part_setup(struct dalcs_rows_part *p,
                                     const struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
@@ -97,6 +102,14 @@ static enum dalcs_status part_setup(struct dalcs_rows_part *p,
         p->place[b->column[i]] = -2 - i;
     }
     list_sources(p, part);
+    for (int i = 0; i < p->n_signals; i++) {
+        bool is_next = i > 0 && p->signal[i].output == p->signal[i - 1].output;
+        p->n_read += is_next ? 0 : 1;
+    }
+    p->coefficient = dalcs_alloc((size_t)map_rows(p), sizeof(double));
+    if (p->coefficient == NULL) {
+        return DALCS_E_NOMEM;
+    }
     for (int k = 0; k <= part->stages.method->s; k++) {
         p->offset[k] = part->stages.method->newton_order[k] * part->stages.layout.stride;
     }
@@ -138,6 +151,10 @@ void dalcs_rows_finish(struct dalcs_rows *rows) {
         free(rows->part[k].signal);
         free(rows->part[k].place);
         free(rows->part[k].source);
+        free(rows->part[k].coefficient);
+        for (int i = 0; i < DALCS_ROW_MAPS; i++) {
+            free(rows->part[k].map[i].map);
+        }
     }
     free(rows->value);
     free(rows->part);
@@ -228,9 +245,10 @@ add_nodes(int s, const int *offset, const double *y, double coefficient, double 
     }
 }
 
-/* What steps of a probe, at the nodes: added to node[s + 1]; whether there is anything. */
-static bool collect(const struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
-                    const struct dalcs_probe *probe, double sign, double *node) {
+/* What steps of a probe, at the nodes of an answer: added to node[s + 1]; whether there is anything. */
+static inline __attribute__((always_inline)) bool
+collect(const struct dalcs_rows_part *p, const struct dalcs_radau_part *part, const double *out,
+        const struct dalcs_probe *probe, double sign, double *node) {
     const struct dalcs_component *c = part->component;
     const int s = part->stages.method->s;
     const int n_equations = dalcs_system_n_equations(c->system);
@@ -245,20 +263,22 @@ static bool collect(const struct dalcs_rows_part *p, const struct dalcs_radau_pa
         }
         found = true;
         if (s == 9) {
-            add_nodes(9, p->offset, part->out + column, coefficient, node);
+            add_nodes(9, p->offset, out + column, coefficient, node);
         } else if (s == 7) {
-            add_nodes(7, p->offset, part->out + column, coefficient, node);
+            add_nodes(7, p->offset, out + column, coefficient, node);
         } else {
-            add_nodes(s, p->offset, part->out + column, coefficient, node);
+            add_nodes(s, p->offset, out + column, coefficient, node);
         }
     }
     return found;
 }
 
 /* What sources decide of a probe. */
-static void add_sources(const struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
-                        const struct dalcs_probe *probe, double sign, int n_groups,
-                        union dalcs_row_values *sum) {
+static inline __attribute__((always_inline)) void add_sources(const struct dalcs_rows_part *p,
+                                                              const struct dalcs_radau_part *part,
+                                                              const struct dalcs_probe *probe,
+                                                              double sign, int n_groups,
+                                                              union dalcs_row_values *sum) {
     const struct dalcs_component *c = part->component;
     int n_columns = dalcs_system_n_columns(c->system);
     const struct dalcs_probe_term *term = probe->term;
@@ -278,8 +298,8 @@ static void add_sources(const struct dalcs_rows_part *p, const struct dalcs_rada
     }
 }
 
-static void ask_sources(struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
-                        const union dalcs_row_values *time, int n, enum dalcs_side side) {
+static inline void ask_sources(struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
+                               const union dalcs_row_values *time, int n, enum dalcs_side side) {
     const struct dalcs_component *c = part->component;
     for (int k = 0; k < p->n_sources; k++) {
         struct dalcs_row_source *source = &p->source[k];
@@ -309,7 +329,7 @@ static void interpolate(struct dalcs_rows *rows, const struct dalcs_radau_part *
         bool steps = false;
         for (; i < p->n_signals && p->signal[i].output == output; i++) {
             const struct dalcs_row_signal *signal = &p->signal[i];
-            steps = collect(p, part, signal->probe, signal->sign, node) || steps;
+            steps = collect(p, part, part->out, signal->probe, signal->sign, node) || steps;
             add_sources(p, part, signal->probe, signal->sign, n_groups, &rows->value[output]);
         }
         if (steps) {
@@ -318,6 +338,86 @@ static void interpolate(struct dalcs_rows *rows, const struct dalcs_radau_part *
         }
     }
 }
+
+/* ---- Steps that recur -------------------------------------------------------------------------- */
+
+/* The polynomials of outputs as functions of the inputs of a step: a column of its map is an answer, too. */
+static enum dalcs_status make_map(const struct dalcs_rows_part *p,
+                                  const struct dalcs_radau_part *part, struct dalcs_row_map *to) {
+    const struct dalcs_stage_entry *entry = part->brief->entry;
+    int n_columns = dalcs_stage_brief_columns(&part->stages);
+    to->map = dalcs_dense_map_alloc(map_rows(p), n_columns);
+    if (to->map == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    memset(to->map, 0, (size_t)map_rows(p) * (size_t)n_columns * sizeof(double));
+    for (int column = 0; column < n_columns; column++) {
+        double *coefficient = to->map + column * map_rows(p);
+        for (int i = 0; i < p->n_signals; coefficient += DALCS_MAX_NODES) {
+            int output = p->signal[i].output;
+            double node[DALCS_MAX_NODES] = {0.0};
+            for (; i < p->n_signals && p->signal[i].output == output; i++) {
+                const struct dalcs_row_signal *signal = &p->signal[i];
+                (void)collect(p, part, dalcs_stage_brief_column(entry, column), signal->probe,
+                              signal->sign, node);
+            }
+            find_coefficients(part->stages.method, node, coefficient);
+        }
+    }
+    return DALCS_OK;
+}
+
+/* *map: of the present segment, which recurred; NULL: it has had no rows before. */
+static enum dalcs_status find_map(struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
+                                  const double **map) {
+    struct dalcs_row_map *its = &p->map[part->brief->number % DALCS_ROW_MAPS];
+    bool is_known = its->number == part->brief->number;
+    if (!is_known) {
+        free(its->map);
+        *its = (struct dalcs_row_map){.number = part->brief->number};
+    } else if (its->map == NULL) {
+        DALCS_TRY(make_map(p, part, its));
+    }
+    *map = its->map;
+    return DALCS_OK;
+}
+
+static void interpolate_by(struct dalcs_rows *rows, const struct dalcs_radau_part *part,
+                           const double *map, int n, enum dalcs_side side) {
+    const struct dalcs_collocation *m = part->stages.method;
+    struct dalcs_rows_part *p = &rows->part[part->index];
+    int n_groups = (n + 3) / 4;
+    find_thetas(part, &rows->time, n_groups, &rows->theta);
+    ask_sources(p, part, &rows->time, n, side);
+    dalcs_dense_map_apply(map_rows(p), dalcs_stage_brief_columns(&part->stages), map,
+                          dalcs_stage_brief_input(&part->stages, part->in), p->coefficient);
+    const double *coefficient = p->coefficient;
+    for (int i = 0; i < p->n_signals; coefficient += DALCS_MAX_NODES) {
+        int output = p->signal[i].output;
+        for (; i < p->n_signals && p->signal[i].output == output; i++) {
+            const struct dalcs_row_signal *signal = &p->signal[i];
+            add_sources(p, part, signal->probe, signal->sign, n_groups, &rows->value[output]);
+        }
+        add_polynomial(m, coefficient, &rows->theta, n_groups, &rows->value[output]);
+    }
+}
+
+static enum dalcs_status fill_stepped(struct dalcs_rows *rows, struct dalcs_radau_part *part, int n,
+                                      enum dalcs_side side) {
+    const double *map = NULL;
+    if (part->brief != NULL) {
+        DALCS_TRY(find_map(&rows->part[part->index], part, &map));
+    }
+    if (map != NULL) {
+        interpolate_by(rows, part, map, n, side);
+    } else {
+        dalcs_recurrence_complete(part);
+        interpolate(rows, part, n, side);
+    }
+    return DALCS_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------ */
 
 /* One without memory: at a single time, unless it is constant. */
 static enum dalcs_status solve(struct dalcs_rows *rows, struct dalcs_radau_part *part, int n,
@@ -348,8 +448,7 @@ enum dalcs_status dalcs_rows_fill(struct dalcs_rows *rows, const double *time, i
         if (part->kind == DALCS_PART_ALGEBRAIC) {
             DALCS_TRY(solve(rows, part, n, side));
         } else {
-            dalcs_recurrence_complete(part);
-            interpolate(rows, part, n, side);
+            DALCS_TRY(fill_stepped(rows, part, n, side));
         }
     }
     *n_done = n;

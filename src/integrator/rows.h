@@ -9,7 +9,7 @@
 #include "quads.h"
 #include "radau.h"
 
-enum { DALCS_MOST_ROWS = 32, DALCS_ROW_GROUPS = DALCS_MOST_ROWS / 4 };
+enum { DALCS_MOST_ROWS = 32, DALCS_ROW_GROUPS = DALCS_MOST_ROWS / 4, DALCS_ROW_MAPS = 8 };
 
 /* Something at all times, which are taken by fours. */
 typedef dalcs_quad dalcs_four __attribute__((aligned(8)));
@@ -28,7 +28,17 @@ struct dalcs_rows_part {
         double sign;
     } * signal; /* [n_signals] what outputs read of this part, those of an output in a row */
 
+    int n_read;                  /* outputs that read this part */
     int offset[DALCS_MAX_NODES]; /* [s + 1] of the nodes in an answer, in Newton's order */
+
+    /* Of a step that recurs the polynomials are one map of its inputs, from the second time on that it has rows. */
+    struct dalcs_row_map {
+        long number;       /* of the step; 0: none yet (stage_brief.h) */
+        double *map;       /* [rows][columns] by columns; NULL: asked for once */
+    } map[DALCS_ROW_MAPS]; /* at the step's number modulo theirs */
+
+    double *
+        coefficient; /* [rows] Newton's, in DALCS_MAX_NODES, of one output after the other that reads this part */
 
     /* Columns and inputs that sources decide have a place among the `source`s when they are read. */
     int *place; /* [n_columns + n_inputs], -1: none, below: bystander -2 - place */
