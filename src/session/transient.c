@@ -219,6 +219,10 @@ static enum dalcs_status rows(struct transient *c, double until) {
     return DALCS_OK;
 }
 
+static bool cycles(const struct dalcs_radau *radau) {
+    return radau->cycling != NULL && radau->cycling->cycles;
+}
+
 /* Over periods of which nobody asks anything. */
 static enum dalcs_status leap(struct transient *c) {
     const struct dalcs_leap *leap;
@@ -239,13 +243,18 @@ static enum dalcs_status advance(struct transient *c) {
     double near = radau->resolution;
     double stop = radau->options.stop;
     bool happens;
-    if (radau->cycling != NULL && radau->cycling->cycles) {
+    if (cycles(radau)) {
         DALCS_TRY(leap(c));
     }
     double end = dalcs_radau_next_stop(radau, &happens);
     double t = dalcs_smaller(dalcs_smaller(end, stop),
                              dalcs_smaller(c->next_edge, c->measures->next_edge));
-    DALCS_TRY(rows(c, t));
+    if (c->next_row + near < t) {
+        DALCS_TRY(rows(c, t));
+        if (cycles(radau)) {
+            return DALCS_OK; /* the next row may be in this segment, periods later */
+        }
+    }
     t = dalcs_smaller(t, c->next_row);
     bool ends = end <= t + near;
     bool edge = c->next_edge <= t + near;
