@@ -3,10 +3,12 @@
  *     bench_radau NETLIST REFERENCE.csv REPEATS method=euler,step=1e-6 method=radau,tol=1e-6 ...
  *
  * For each configuration one line of JSON: the error against the reference, the work, and the CPU
- * time of each repeat. Each repeat is a session of its own, so that no factor is kept from the one
- * before; the time is the report's, that of the run without reading the netlist. The sink stores
- * the reference's times only. Repeats take turns among the configurations, so that what else the
- * machine does hits all of them. What takes long is repeated once only. */
+ * time of a run in each repeat, the mean of as many as fill a tenth of a second, a hundred at most:
+ * ngspice's transients are timed in a row as well (ngspice_deck.py). Each run is a session of its
+ * own, so that no factor is kept from the one before; the time is the report's, that of the run
+ * without reading the netlist. The sink stores the reference's times only. Repeats take turns among
+ * the configurations, so that what else the machine does hits all of them. What takes long is
+ * repeated once only. */
 #include <dalcs.h>
 
 #include <math.h>
@@ -19,6 +21,8 @@ enum { LINE = 1 << 16 };
 
 static const double LONG = 0.3;   /* s, repeated once only */
 static const double LIMIT = 10.0; /* s, given up */
+static const double FILLED = 0.1; /* s, by runs in a row */
+static const int MOST_IN_A_ROW = 100;
 
 struct reference {
     size_t n_rows, n_signals;
@@ -208,8 +212,9 @@ static bool parse(struct configuration *c, const char *text, const struct refere
     return true;
 }
 
-static void run_once(struct configuration *c, const char *netlist, struct capture *capture,
-                     bool timed) {
+/* The CPU time, s. */
+static double run_once(struct configuration *c, const char *netlist, struct capture *capture,
+                       bool timed) {
     struct dalcs_session *session;
     const struct dalcs_sink sink = {
         .user = capture, .begin = on_begin, .row = on_row, .progress = on_progress};
@@ -222,18 +227,30 @@ static void run_once(struct configuration *c, const char *netlist, struct captur
         status = dalcs_session_run(session, &c->options, &sink);
     }
     const struct dalcs_report *report = dalcs_session_report(session);
+    double cpu = 0.0;
     if (status != DALCS_OK || report == NULL) {
         size_t n = dalcs_session_n_messages(session);
         fprintf(stderr, "bench_radau: %s: %s: %s\n", c->text, dalcs_status_text(status),
                 n > 0 ? dalcs_session_message(session, n - 1, NULL) : "");
         c->failed = true;
     } else if (timed) {
-        c->cpu[c->n_cpu++] = report->work.cpu_s;
+        cpu = report->work.cpu_s;
     } else {
         c->error = error_of(capture, &c->worst);
         c->report = *report; /* the counters; the strings die with the session */
     }
     dalcs_session_destroy(session);
+    return cpu;
+}
+
+static void run_in_a_row(struct configuration *c, const char *netlist, struct capture *capture) {
+    double fill = ceil(FILLED / c->report.work.cpu_s);
+    int n = fill < MOST_IN_A_ROW ? (int)fill : MOST_IN_A_ROW;
+    double sum = 0.0;
+    for (int k = 0; k < n; k++) {
+        sum += run_once(c, netlist, capture, true);
+    }
+    c->cpu[c->n_cpu++] = sum / n;
 }
 
 static void print(const struct configuration *c) {
@@ -271,12 +288,12 @@ int main(int argc, char **argv) {
             return 2;
         }
         configuration[k].cpu = allocate((size_t)repeats, sizeof(double));
-        run_once(&configuration[k], argv[1], &capture, false); /* the error; warms the caches */
+        (void)run_once(&configuration[k], argv[1], &capture, false); /* the error */
     }
     for (int r = 0; r < repeats; r++) {
         for (int k = 0; k < n; k++) {
             if (!configuration[k].failed && (r == 0 || configuration[k].report.work.cpu_s < LONG)) {
-                run_once(&configuration[k], argv[1], &capture, true);
+                run_in_a_row(&configuration[k], argv[1], &capture);
             }
         }
     }
