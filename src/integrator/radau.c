@@ -19,6 +19,9 @@ static const double inner_part = 0.03;
 static const double largest_inner = 3e-7;
 static const double smallest_inner = 1e-12;
 
+/* So much of them is lost among them, though rounding may be in currents that follow from voltages. */
+static const double unseen_part = 1e-5;
+
 /* Where the number of stages of a large component changes: measured, doc/methods.md. */
 static const double loose = 1e-4;
 
@@ -188,6 +191,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, stages,
                                  map_limit(&r->options, osnsp->dense_limit), osnsp->rcond_min,
                                  osnsp->cache_bytes / (size_t)r->n_parts));
+    part->stages.unseen = r->options.fixed_step > 0.0 ? 0.0 : unseen_part * r->inner_tolerance;
     DALCS_TRY(dalcs_arena_reserve(&part->arena, room_for_part(c->system)));
     DALCS_TRY(allocate(part));
     DALCS_TRY(dalcs_transition_setup(part));

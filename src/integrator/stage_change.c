@@ -3,11 +3,12 @@
 
 #include "extremes.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* An element of G this large lets so many digits cancel. */
+/* An element of G this large lets so many digits cancel, where none can be spared. */
 static const double largest_response = 10.0;
 
 /* Elements of G this small beside the largest are nothing. */
@@ -157,6 +158,7 @@ static enum dalcs_status keep_response(struct dalcs_stage_change *c, int system,
 static enum dalcs_status solve_change(const struct dalcs_stage_plan *plan,
                                       const struct dalcs_stage_factors *f, bool closes,
                                       struct dalcs_stage_change *c) {
+    double allowed = fmax(largest_response, plan->stages->unseen / DBL_EPSILON);
     for (int q = 0; q < f->n_systems; q++) {
         load_change(plan, f, q, closes, c);
         if (q > 0) {
@@ -166,7 +168,7 @@ static enum dalcs_status solve_change(const struct dalcs_stage_plan *plan,
         }
         double largest = largest_of(f->lu[q].work, f->lu[q].n * (q > 0 ? 2 : 1));
         c->largest = fmax(c->largest, largest);
-        if (!(largest <= largest_response)) {
+        if (!(largest <= allowed)) {
             c->refused = true;
             return DALCS_OK;
         }

@@ -25,7 +25,7 @@
  * singular, which its own factors tell. */
 static const double least_pivot = 1e-9;
 
-/* The residual may be so many times the base's, or rounding in any case. */
+/* The residual may be so many times the base's, or rounding in any case, or what nobody sees. */
 static const double residual_growth = 4.0;
 static const double residual_of_rounding = 5e-15;
 
@@ -49,27 +49,31 @@ bool dalcs_stage_is_update(const struct dalcs_stage_entry *entry) {
     return entry->factors != NULL && entry->factors->update != NULL;
 }
 
-bool dalcs_stage_update_is_doubtful(const struct dalcs_stage_entry *entry) {
-    return dalcs_stage_is_update(entry) &&
-           !(entry->residual <=
-             fmax(residual_growth * entry->factors->update->base->residual, residual_of_rounding));
+bool dalcs_stage_update_is_doubtful(const struct dalcs_stages *stages,
+                                    const struct dalcs_stage_entry *entry) {
+    if (!dalcs_stage_is_update(entry)) {
+        return false;
+    }
+    double of_base = residual_growth * entry->factors->update->base->residual;
+    return !(entry->residual <= fmax(of_base, fmax(residual_of_rounding, stages->unseen)));
 }
 
 void dalcs_stage_update_check(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
                               const double *in, const double *out) {
     double miss = dalcs_stage_factors_miss(stages, entry, in, out);
     entry->residual = miss > entry->residual || miss != miss ? miss : entry->residual;
-    if (dalcs_stage_update_is_doubtful(entry)) {
+    if (dalcs_stage_update_is_doubtful(stages, entry)) {
         stages->update_trust += REFUSED;
     }
 }
 
-bool dalcs_stage_update_is_spent(struct dalcs_stage_entry *entry) {
+bool dalcs_stage_update_is_spent(const struct dalcs_stages *stages,
+                                 struct dalcs_stage_entry *entry) {
     if (!dalcs_stage_is_update(entry)) {
         return false;
     }
     entry->spent += entry->factors->update->n_changes;
-    return entry->spent > WORTH_FACTORING || dalcs_stage_update_is_doubtful(entry);
+    return entry->spent > WORTH_FACTORING || dalcs_stage_update_is_doubtful(stages, entry);
 }
 
 static int count_changes(const struct dalcs_stages *stages, const struct dalcs_stage_entry *a,

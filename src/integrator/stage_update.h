@@ -24,11 +24,13 @@ bool dalcs_stage_is_update(const struct dalcs_stage_entry *entry);
  * base? If not the entry is doubtful. */
 void dalcs_stage_update_check(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,
                               const double *in, const double *out);
-bool dalcs_stage_update_is_doubtful(const struct dalcs_stage_entry *entry);
+bool dalcs_stage_update_is_doubtful(const struct dalcs_stages *stages,
+                                    const struct dalcs_stage_entry *entry);
 
 /* One more step on this entry; had it better have factors of its own, as a doubtful one or one that has
  * cost so much? */
-bool dalcs_stage_update_is_spent(struct dalcs_stage_entry *entry);
+bool dalcs_stage_update_is_spent(const struct dalcs_stages *stages,
+                                 struct dalcs_stage_entry *entry);
 
 /* entry->factors as an update of a base that is near, if there is one and its digits promise to serve as
  * well as factors of the entry's own would; else they stay NULL. */

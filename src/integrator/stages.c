@@ -279,7 +279,7 @@ enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *
     if (e == NULL || !is_key(stages, e, mode, h)) {
         e = find(stages, mode, h);
     }
-    bool is_spent = e != NULL && dalcs_stage_update_is_spent(e);
+    bool is_spent = e != NULL && dalcs_stage_update_is_spent(stages, e);
     if (e != NULL && !is_spent) {
         stages->cache_hits++;
         if (e != stages->newest) {
@@ -344,7 +344,7 @@ enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t 
     DALCS_TRY(choose_rest(stages, mode, in));
     DALCS_TRY(dalcs_stages_get(stages, mode, h, entry));
     DALCS_TRY(dalcs_stages_apply(stages, *entry, in, out));
-    if (!dalcs_stage_update_is_doubtful(*entry)) {
+    if (!dalcs_stage_update_is_doubtful(stages, *entry)) {
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_stages_get(stages, mode, h, entry)); /* with factors of its own */

@@ -48,7 +48,9 @@ struct dalcs_stages {
     struct dalcs_stage_entry *entries, *newest, *oldest;
     struct dalcs_stage_entry *newest_base; /* entries with factors that others may use */
     int update_trust;                      /* updates that served against those that did not */
-    uint64_t *key;                         /* [n_words + 1] */
+    double
+        unseen; /* rounding, over what it is in, that the error allowed hides; 0: as little as can be */
+    uint64_t *key; /* [n_words + 1] */
     long factorizations, cache_hits;
     long n_briefs; /* so far (stage_brief.h) */
     klu_common klu, klu_complex;
