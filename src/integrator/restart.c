@@ -261,9 +261,9 @@ void dalcs_radau_go_after(const struct dalcs_radau *r, struct dalcs_radau_part *
 /* The micro-steps of length h have seen the state move: part->x becomes the state after the jump,
  * exactly where that is known, and the jump is reported. What else they have seen is a transient
  * faster than they are: they get shorter, until they tell the mode before it, or, where time cannot be
- * told apart any more, it is over. */
-static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                     double h) {
+ * told apart any more, it is over. *moves_little: they see it move on, by no more than an event's error. */
+static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                                     bool *moves_little) {
     const struct dalcs_euler *e = r->base;
     const struct dalcs_system *s = part->component->system;
     bool noticeable = true;
@@ -297,7 +297,9 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         h *= shorter;
         moves = extrapolate(r, part, part->after, &noticeable, &closer);
     }
-    if (moves) {
+    bool is_over = moves && noticeable && !e->jump.is_known;
+    *moves_little = moves && !is_over;
+    if (is_over) {
         dalcs_radau_go_after(r, part);
     }
     return DALCS_OK;
@@ -342,12 +344,15 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
         DALCS_TRY(look_closer(r, part, closer, &h, &jumps, &noticeable));
     }
     bool moves_little = jumps && !noticeable;
+    if (noticeable) {
+        DALCS_TRY(settle_jump(r, part, h, &moves_little));
+    }
     if (is_off != NULL && (part->rounding == 1.0 || s->n_pairs <= DALCS_MANY_PAIRS)) {
         *is_off = moves_little;
     } else if (moves_little) {
         dalcs_radau_go_after(r, part);
     }
-    return noticeable ? settle_jump(r, part, h) : DALCS_OK;
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
