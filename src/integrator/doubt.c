@@ -42,6 +42,18 @@ static double largest_of(const struct dalcs_radau_part *part, int row) {
     return size;
 }
 
+double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, double scale,
+                               const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    double local = scale;
+    if (part->rounding > 1.0 && guard < s->n_pairs) {
+        local = dalcs_osnsp_is_on(&part->component->osnsp, guard)
+                    ? spread_of_current(part, guard, unit)
+                    : spread_of(part, &s->C, guard, -1, unit);
+    }
+    return dalcs_doubt_noise(part) * dalcs_smaller(local, scale);
+}
+
 /* What errors of all that a guard is made of come to, which is no more than the band. */
 static double within_band(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                           double size, double scale) {

@@ -21,6 +21,11 @@ static inline double dalcs_doubt_noise(const struct dalcs_radau_part *part) {
     return 2e-13 * part->rounding;
 }
 
+/* V or A, what rounding leaves of a guard that is 0. Factors leave more than a map, of what meets at the guard's
+ * nodes: what a thousand amperes elsewhere would leave is a current here. scale: of its unit. */
+double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, double scale,
+                               const double *unit);
+
 /* The band of errors, over the unit's scale: no guard is in doubt beyond it. */
 static inline double dalcs_doubt_band(const struct dalcs_radau *r,
                                       const struct dalcs_radau_part *part) {

@@ -229,12 +229,13 @@ static double doubt_at_first(struct dalcs_radau_part *part, const double *value,
     return depth;
 }
 
-/* How far a guard may fall and is no event: where it is armed by rounding, or as far as it may be touching 0. */
+/* How far a guard may fall and is no event: where it is armed by rounding, `noise`, or as far as it may be touching
+ * 0. */
 static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *part, int guard,
-                       const double *value, int stride, double end, const double *unit) {
+                       const double *value, int stride, double end, double noise,
+                       const double *unit) {
     int last = part->stages.layout.n_nodes - 1;
     double scale = dalcs_guard_scale(part, guard, unit);
-    double noise = dalcs_doubt_noise(part) * scale;
     bool is_armed = part->armed[guard];
     if (is_armed &&
         (end < 1.0 ? value_at(part, value, stride, end) : value[last * stride]) <= noise) {
@@ -267,7 +268,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         const double *value = values_of(part, g, work, &stride);
         double scale = dalcs_guard_scale(part, g, unit);
         double rounding = dalcs_guard_rounding(part, g, unit);
-        double zero = dalcs_doubt_noise(part) * scale;
+        double zero = dalcs_doubt_noise_about(part, g, scale, unit);
         if (!part->fresh && value[0] <= falling_part * band * scale &&
             fabs(value[last * stride]) <= zero + rounding) {
             part->armed[g] = false; /* what has died away has no sign any more */
@@ -278,7 +279,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         if (!part->armed[g] && !part->fresh && value[0] > zero + rounding) {
             part->armed[g] = g < n_pairs && goes_on(part, g, value[0]);
         }
-        double depth = doubt_of(r, part, g, value, stride, end, unit);
+        double depth = doubt_of(r, part, g, value, stride, end, zero, unit);
         depth += rounding;
         if (part->bound[g] >= -depth) {
             continue;
@@ -375,11 +376,27 @@ static bool is_nothing(const struct dalcs_radau_part *part, int pair, const doub
     return nothing;
 }
 
+/* Has it just changed sides, and rises from node to node, above what the rounding of a map would be? That of factors
+ * may be larger, but does not. */
+static bool has_crossed(const struct dalcs_radau_part *part, int pair, const double *value,
+                        int stride, const double *unit) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    int last = part->stages.layout.n_nodes - 1;
+    double least = dalcs_doubt_noise(part) / part->rounding * dalcs_guard_scale(part, pair, unit);
+    bool rises = part->flipped && value[last * stride] > dalcs_larger(least, fabs(value[0])) &&
+                 dalcs_mode_has(part->modes_before, pair) != dalcs_osnsp_is_on(p, pair);
+    for (int k = 1; k <= last && rises; k++) {
+        rises = value[k * stride] > value[(k - 1) * stride];
+    }
+    return rises;
+}
+
 bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
     double work[DALCS_MAX_NODES];
     int stride;
     const double *value = values_of(part, pair, work, &stride);
-    return dalcs_guard_is_one(part, pair) && is_nothing(part, pair, value, stride, unit);
+    return dalcs_guard_is_one(part, pair) && is_nothing(part, pair, value, stride, unit) &&
+           !has_crossed(part, pair, value, stride, unit);
 }
 
 /* Is it below 0 from the start on, and does not come back by half up to `end`? By more than `least`, or by more
