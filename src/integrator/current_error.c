@@ -1,7 +1,9 @@
-/* current_error.c - the drift of the states (step_error.c), carried on to currents.
+/* current_error.c - the drift of the states (step_error.c), carried on to currents, and to voltages that are made of
+ * currents.
  *
  * 400 V that feed 100 uF through 1 mohm: a millivolt is an ampere, so that a state well within its
- * tolerance can make a current of 40 A wrong. Of voltages nothing like it is asked: a coil cut off by
+ * tolerance can make a current of 40 A wrong. And 0.1 A of two coils that meet at 70 kohm are 7 kV, so that a
+ * ten millionth of them is a millivolt. Of other voltages nothing like it is asked: a coil cut off by
  * 10 Mohm has transients of 10 ps, which nobody wants to wait for. In most circuits no state has such a
  * lever; that is looked up now and then, and costs them nothing else. */
 #include "current_error.h"
@@ -19,8 +21,8 @@ static const double pessimism = 10.0;
 /* No step gets longer for an error below this part of what is allowed. */
 static const double noticed = 1.0 / 512.0;
 
-/* With a lever this is what is left above rounding. */
-static const double least_tolerance = 1e-10;
+/* With a lever this is what is left above rounding; of a voltage that is what megohms make of amperes. */
+static const double least_tolerance = 1e-10, least_of_voltages = 1e-8;
 
 /* Roundings in an element of a map times its input, which has those of the steps before. */
 static const double roundings = 32.0 * DBL_EPSILON;
@@ -29,29 +31,64 @@ static const double roundings = 32.0 * DBL_EPSILON;
  * part of that is in its drift, too, where nearly all of it cancels. */
 static const double roundings_apart = 0.25 * DBL_EPSILON;
 
+/* Likewise of currents of coils, whose difference a resistor makes a voltage of: each has its own, and keeps it. */
+static const double roundings_of_coils = 128.0 * DBL_EPSILON;
+
 /* Of what rounding of the largest column may make of a current, on factors: the drift is a solution by
  * itself, of small numbers. */
 static const double on_factors = 1.0 / 16.0;
 
-/* Steps with an entry until levers are looked up again, as scales grow, and by how much they may. */
-enum { STEPS_BETWEEN = 256 };
+/* Steps with an entry until levers are looked up again, as scales grow, and by how much they may; steps with one, which
+ * may be gone when scales have grown. */
+enum { STEPS_BETWEEN = 256, STEPS_WITH = 32 };
 
 static const double growth = 2.0;
 
+/* Voltages that errors of states move by no more than this, over what is allowed, are well known if states are. */
+static const double least_lever = 8.0;
+
 static double allowed_of(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int k,
-                         const double unit[2], double besides) {
-    return dalcs_larger(r->inner_tolerance, least_tolerance) *
-               dalcs_step_scale(part, part->stages.current[k], unit) +
-           besides;
+                         const double unit[2], const double besides[2]) {
+    int column = part->stages.levered[k];
+    bool is_current = part->component->system->column_is_current[column];
+    double least = is_current ? least_tolerance : least_of_voltages;
+    return dalcs_larger(r->inner_tolerance, least) * dalcs_step_scale(part, column, unit) +
+           besides[is_current];
 }
 
-/* Could states as large as they have been make an error that is noticed? */
+/* The largest drift of a state, over what is allowed, that states as large as they have been could make. */
+static double spread_of_states(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                               const struct dalcs_stage_entry *entry, const double unit[2],
+                               const double besides[2]) {
+    const struct dalcs_system *s = part->component->system;
+    double largest = 0.0;
+    for (int x = 0; x < s->n_x; x++) {
+        double spread = dalcs_stage_spread(&part->stages, entry, part->stages.layout.drift + x,
+                                           part->in, part->scale);
+        double allowed =
+            r->inner_tolerance * dalcs_step_scale(part, x, unit) + besides[s->column_is_current[x]];
+        largest = dalcs_larger(largest, spread / allowed);
+    }
+    return largest;
+}
+
+/* Could states as large as they have been make an error that is noticed? In a voltage one that is much larger than
+ * in states: most voltages follow them. */
 static bool has_lever(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                      const struct dalcs_stage_entry *entry, const double unit[2], double besides) {
-    for (int k = 0; k < part->stages.n_currents; k++) {
-        double spread =
-            dalcs_stage_spread_of_current(&part->stages, entry, k, part->in, part->scale);
-        if (growth * spread > pessimism * noticed * allowed_of(r, part, k, unit, besides)) {
+                      const struct dalcs_stage_entry *entry, const double unit[2],
+                      const double besides[2]) {
+    const struct dalcs_stages *stages = &part->stages;
+    const bool *is_current = part->component->system->column_is_current;
+    double of_states = -1.0;
+    for (int k = 0; k < stages->n_levered; k++) {
+        double spread = dalcs_stage_spread_of_current(stages, entry, k, part->in, part->scale);
+        double least = pessimism * allowed_of(r, part, k, unit, besides);
+        if (growth * spread > noticed * least && !is_current[stages->levered[k]]) {
+            of_states =
+                of_states < 0.0 ? spread_of_states(r, part, entry, unit, besides) : of_states;
+            least *= dalcs_larger(1.0, least_lever * growth * of_states / noticed);
+        }
+        if (growth * spread > noticed * least) {
             return true;
         }
     }
@@ -61,9 +98,9 @@ static bool has_lever(const struct dalcs_radau *r, const struct dalcs_radau_part
 /* The largest of what currents have been made of in steps with a lever. */
 static void raise_parts(struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry) {
     const struct dalcs_stages *stages = &part->stages;
-    for (int k = 0; k < stages->n_currents; k++) {
+    for (int k = 0; k < stages->n_levered; k++) {
         double spread =
-            dalcs_stage_spread(stages, entry, stages->current[k], part->in, part->scale);
+            dalcs_stage_spread(stages, entry, stages->levered[k], part->in, part->scale);
         part->current_parts[k] = dalcs_larger(part->current_parts[k], spread);
     }
 }
@@ -71,20 +108,21 @@ static void raise_parts(struct dalcs_radau_part *part, const struct dalcs_stage_
 /* Has a state a lever in this step? The note of an entry counts its steps until that is looked up again:
  * positive without a lever, negative with one. On factors it is not looked up. */
 static bool may_matter(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                       struct dalcs_stage_entry *entry, const double unit[2], double besides) {
+                       struct dalcs_stage_entry *entry, const double unit[2],
+                       const double besides[2]) {
     int *note = dalcs_stage_note(entry);
     if (*note > 0) {
         --*note;
         return false;
     }
-    if (part->stages.n_currents == 0 || !dalcs_stage_has_map(entry)) {
+    if (part->stages.n_levered == 0 || !dalcs_stage_has_map(entry)) {
         return part->stages.n_currents > 0;
     }
     if (*note == 0) {
-        *note = has_lever(r, part, entry, unit, besides) ? -STEPS_BETWEEN : STEPS_BETWEEN;
+        *note = has_lever(r, part, entry, unit, besides) ? -STEPS_WITH : STEPS_BETWEEN;
     }
     bool has = *note < 0;
-    if (*note == -STEPS_BETWEEN) {
+    if (*note == -STEPS_WITH) {
         raise_parts(part, entry);
     }
     *note += has ? 1 : 0;
@@ -96,16 +134,17 @@ static double rounding_of(const struct dalcs_radau_part *part,
                           const struct dalcs_stage_entry *entry, int k) {
     const struct dalcs_stages *stages = &part->stages;
     if (dalcs_stage_has_map(entry)) {
+        bool is_current = part->component->system->column_is_current[stages->levered[k]];
         return roundings * dalcs_stage_spread_of_current(stages, entry, k, part->in, part->scale) +
-               roundings_apart * part->current_parts[k];
+               (is_current ? roundings_apart : roundings_of_coils) * part->current_parts[k];
     }
     return on_factors * dalcs_step_rounding(part, entry) *
-           dalcs_stage_natural_units(entry)[stages->current[k]];
+           dalcs_stage_natural_units(entry)[stages->levered[k]];
 }
 
 double dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                           struct dalcs_stage_entry *entry, const double unit[2], double besides,
-                           double *of_unit) {
+                           struct dalcs_stage_entry *entry, const double unit[2],
+                           const double besides[2], double *of_unit) {
     struct dalcs_stages *stages = &part->stages;
     *of_unit = 0.0;
     if (!may_matter(r, part, entry, unit, besides)) {
@@ -113,14 +152,20 @@ double dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part 
     }
     dalcs_stages_drift_of_currents(stages, entry, part->in, part->current_drift);
     double worst = noticed;
-    for (int k = 0; k < stages->n_currents; k++) {
+    int n = dalcs_stage_has_map(entry) ? stages->n_levered : stages->n_currents;
+    for (int k = 0; k < n; k++) {
         double error = fabs(part->current_drift[k]) / pessimism;
         double allowed = allowed_of(r, part, k, unit, besides);
         bool counts = error > dalcs_smaller(worst, 1.0) * allowed &&
                       error * pessimism > rounding_of(part, entry, k);
         if (counts) {
             worst = dalcs_larger(worst, error / allowed);
-            *of_unit = error > allowed ? dalcs_larger(*of_unit, error / unit[1]) : *of_unit;
+            *of_unit =
+                error > allowed
+                    ? dalcs_larger(*of_unit,
+                                   error / unit[part->component->system
+                                                    ->column_is_current[part->stages.levered[k]]])
+                    : *of_unit;
         }
     }
     return worst > noticed ? worst : 0.0;

@@ -423,7 +423,7 @@ static long go_on(const struct dalcs_radau_part *part, long most) {
 /* Currents need no closer look: no state has a lever on them, as far as is known (current_error.c). */
 static bool has_no_lever(const struct dalcs_radau_part *part) {
     bool none = true;
-    for (int k = 0; k < part->cycle->n && part->stages.n_currents > 0 && none; k++) {
+    for (int k = 0; k < part->cycle->n && part->stages.n_levered > 0 && none; k++) {
         none = *dalcs_stage_note(part->cycle->segment[k].brief->entry) > 0;
     }
     return none;

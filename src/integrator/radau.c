@@ -127,9 +127,9 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->after = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
     part->used_input = dalcs_arena_alloc(&part->arena, (size_t)s->n_inputs, sizeof(int));
     part->current_drift = dalcs_arena_alloc(
-        &part->arena, (size_t)dalcs_dense_map_rows(part->stages.n_currents), sizeof(double));
+        &part->arena, (size_t)dalcs_dense_map_rows(part->stages.n_levered), sizeof(double));
     part->current_parts =
-        dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_currents, sizeof(double));
+        dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_levered, sizeof(double));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
                     part->in_before != NULL && part->out_before != NULL &&
                     part->out_tried != NULL && part->armed != NULL && part->crossed != NULL &&
@@ -227,6 +227,8 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
     (void)frexp(options->stop, &exponent);
     r->resolution = ldexp(1.0, exponent - 50);
     r->inner_tolerance = fmax(smallest_inner, fmin(largest_inner, inner_part * options->tolerance));
+    r->besides[0] = 0.1 * options->vntol;
+    r->besides[1] = 0.1 * options->abstol;
     r->part = dalcs_alloc((size_t)r->n_parts, sizeof(*r->part));
     enum dalcs_status status = r->part != NULL ? DALCS_OK : DALCS_E_NOMEM;
     for (int k = 0; k < r->n_parts && status == DALCS_OK; k++) {

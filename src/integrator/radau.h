@@ -84,8 +84,8 @@ struct dalcs_radau_part {
     double *magnitude; /* [n_columns] in the present step up to magnitude_end, in steps */
     double magnitude_end;
     struct dalcs_column_kinds *kinds; /* see step_error.c */
-    double *current_drift;            /* [n_currents] in whole eights: see current_error.c */
-    double *current_parts;            /* [n_currents] what they are made of, at most; ditto */
+    double *current_drift;            /* [n_levered] in whole eights: see current_error.c */
+    double *current_parts;            /* [n_levered] what they are made of, at most; ditto */
     double unit_scale[2];             /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
@@ -161,6 +161,7 @@ struct dalcs_radau {
     struct dalcs_radau_part *cycling; /* the one that may leap; NULL: none */
     double resolution;                /* s: times nearer than this are the same */
     double inner_tolerance;
+    double besides[2]; /* V, A: error allowed besides, of a step */
     long steps, rejected, restarts, euler_steps;
     long periodic_steps;   /* of them; periodic.h */
     long leapt_steps;      /* likewise; cycle.h */

@@ -83,8 +83,8 @@ static bool is_accurate(const struct dalcs_radau *r, struct dalcs_radau_part *pa
         *outgrows = *outgrows || fabs(step->last[x]) > most_last;
     }
     double of_unit;
-    return accurate && dalcs_current_error(r, part, step->entry, part->unit_scale,
-                                           0.1 * r->options.abstol, &of_unit) <= 1.0;
+    return accurate &&
+           dalcs_current_error(r, part, step->entry, part->unit_scale, r->besides, &of_unit) <= 1.0;
 }
 
 /* A step of length h from part->t, by its brief map. */

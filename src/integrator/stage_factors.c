@@ -379,7 +379,7 @@ void dalcs_stage_factors_currents(const struct dalcs_stages *stages,
     memset(plan->missed, 0, (size_t)plan->n_rows * sizeof(double));
     add_runs(f, &plan->rest.without, plan->missed);
     for (int k = 0; k < stages->n_currents; k++) {
-        drift[k] = plan->missed[stages->current[k]];
+        drift[k] = plan->missed[stages->levered[k]];
     }
     memset(plan->missed, 0, (size_t)plan->n_rows * sizeof(double));
 }

@@ -334,11 +334,11 @@ static long double filtered(const struct dalcs_stage_workshop *b, const long dou
  * is no error of currents. */
 static void fill_currents(struct dalcs_stage_workshop *b, double *out) {
     const struct dalcs_stages *stages = b->stages;
-    for (int x = 0; x < b->n_x && stages->n_currents > 0; x++) {
+    for (int x = 0; x < b->n_x && stages->n_levered > 0; x++) {
         b->lasting[x] = filtered(b, b->defect, x);
     }
     for (int k = 0; k < b->entry->current_rows; k++) {
-        out[k] = k < stages->n_currents ? (double)filtered(b, b->lasting, stages->current[k]) : 0.0;
+        out[k] = k < stages->n_levered ? (double)filtered(b, b->lasting, stages->levered[k]) : 0.0;
     }
 }
 
@@ -487,7 +487,7 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
     DALCS_TRY(prepare_choice(b));
     entry->n_clashes = b->nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
-    entry->current_rows = dalcs_dense_map_rows(stages->n_currents);
+    entry->current_rows = dalcs_dense_map_rows(stages->n_levered);
     entry->map = dalcs_dense_map_alloc(entry->rows + entry->current_rows, n_columns(b));
     if (entry->map == NULL) {
         return DALCS_E_NOMEM;

@@ -11,6 +11,37 @@ static const double FACTORS_ROUNDING = 50.0;
 /* The latest entries are looked at one by one before all are asked. */
 enum { RECENT = 3 };
 
+/* Is it KCL of a node without capacitors at which a resistor ends? */
+static bool has_conductance(const struct dalcs_system *s, int row) {
+    bool has = false;
+    for (int k = s->A.p[row]; s->row_is_current[row] && k < s->A.p[row + 1]; k++) {
+        int c = s->A.j[k];
+        has = has || (c < dalcs_system_n_equations(s) && !s->column_is_current[c]);
+    }
+    return has;
+}
+
+/* Branch currents without memory, and voltages that resistors make of what currents of coils differ by. */
+static void list_levered(struct dalcs_stages *stages) {
+    const struct dalcs_system *s = stages->system;
+    bool has_coil = false;
+    for (int x = 0; x < s->n_x; x++) {
+        has_coil = has_coil || s->column_is_current[x];
+    }
+    for (int c = s->n_x; c < dalcs_system_n_equations(s); c++) {
+        if (s->column_is_current[c]) {
+            stages->levered[stages->n_currents++] = c;
+        }
+    }
+    stages->n_levered = stages->n_currents;
+    for (int r = s->n_x; has_coil && r < dalcs_system_n_equations(s); r++) {
+        int c = s->dual[r];
+        if (c >= s->n_x && !s->column_is_current[c] && has_conductance(s, r)) {
+            stages->levered[stages->n_levered++] = c;
+        }
+    }
+}
+
 enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,
                                      const struct dalcs_excitation *excitation, int s,
                                      int dense_limit, double rcond_min, size_t most_bytes) {
@@ -31,16 +62,12 @@ enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct d
     stages->watched = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
     stages->key = dalcs_alloc((size_t)stages->n_words + 1, sizeof(*stages->key));
     int n_z = dalcs_system_n_equations(system) - system->n_x;
-    stages->current = dalcs_alloc((size_t)n_z, sizeof(int));
-    if (stages->watched == NULL || stages->key == NULL || stages->current == NULL) {
+    stages->levered = dalcs_alloc((size_t)n_z, sizeof(int));
+    if (stages->watched == NULL || stages->key == NULL || stages->levered == NULL) {
         dalcs_stages_finish(stages);
         return DALCS_E_NOMEM;
     }
-    for (int c = system->n_x; c < system->n_x + n_z; c++) {
-        if (system->column_is_current[c]) {
-            stages->current[stages->n_currents++] = c;
-        }
-    }
+    list_levered(stages);
     for (int d = 0; d < system->n_pairs; d++) {
         const struct dalcs_pair *p = &system->pair[d];
         if (p->kind != DALCS_PAIR_SWITCH) {
@@ -138,7 +165,7 @@ void dalcs_stages_finish(struct dalcs_stages *stages) {
     dalcs_stage_plan_destroy(stages);
     dalcs_stage_workshop_destroy(stages->workshop);
     free(stages->watched);
-    free(stages->current);
+    free(stages->levered);
     free(stages->key);
     *stages = (struct dalcs_stages){0};
 }

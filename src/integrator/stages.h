@@ -37,7 +37,8 @@ struct dalcs_stages {
     const struct dalcs_collocation *method;
     struct dalcs_stage_layout layout;
     int n_currents; /* branch currents without memory */
-    int *current;   /* [n_currents] columns */
+    int n_levered,
+        *levered; /* [n_levered] their columns, then those of voltages that resistors make of coils */
     int n_watched;
     int *watched; /* [n_watched] pairs: switches that follow a voltage, or a source along a curve */
     int n_in;     /* n_x + 1 + functions: (x_0, 1, coefficients) */
@@ -82,8 +83,8 @@ enum dalcs_status dalcs_stages_step(struct dalcs_stages *stages, const uint64_t 
                                     const double *in, double *out,
                                     struct dalcs_stage_entry **entry) DALCS_MUST_CHECK;
 
-/* drift[n_currents], A: what goes with the drift of the states of stages->current, in the step that was
- * applied last. */
+/* drift[n_currents], with a map [n_levered], A and V: what goes with the drift of the states of stages->levered, in the
+ * step that was applied last. */
 void dalcs_stages_drift_of_currents(struct dalcs_stages *stages,
                                     const struct dalcs_stage_entry *entry, const double *in,
                                     double *drift);

@@ -247,8 +247,8 @@ static void find_allowance(const struct dalcs_radau *r, const struct dalcs_radau
     a->least[0] = smallest_scale * q->unit[0];
     a->least[1] = smallest_scale * q->unit[1];
     a->least[2] = smallest_pair * q->unit[1];
-    a->besides[0] = 0.1 * r->options.vntol + crossed * part->cross[0] * q->here[1];
-    a->besides[1] = 0.1 * r->options.abstol + crossed * part->cross[1] * q->here[0];
+    a->besides[0] = r->besides[0] + crossed * part->cross[0] * q->here[1];
+    a->besides[1] = r->besides[1] + crossed * part->cross[1] * q->here[0];
     a->besides[2] = rounding_part * part->rounding * q->unit[1] + a->besides[1];
 }
 
@@ -361,7 +361,7 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
         compare(part, &a, dalcs_stage_natural_units(entry), dalcs_step_rounding(part, entry), q);
     }
     if (q->ratio <= 1.0) {
-        double ratio = dalcs_current_error(r, part, entry, q->unit, a.besides[1], &q->of_unit);
+        double ratio = dalcs_current_error(r, part, entry, q->unit, a.besides, &q->of_unit);
         q->ratio = dalcs_larger(q->ratio, ratio);
     }
 }
