@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Power converters drawn at random, with parasitics from 1 pF and 1 nH on, against a much smaller tolerance.
 
-usage: converters.py PROGRAM SEED...    with FIRST-LAST for all the seeds from FIRST to LAST
+usage: converters.py PROGRAM SEED...    with FIRST-LAST for all the seeds from FIRST to LAST, SEED@STOP up to STOP
        converters.py show SEED          prints the netlist of a seed
 
 Nobody chose these circuits to be easy: diodes and switches with and without resistance, coils coupled with 1,
@@ -20,6 +20,7 @@ twelve_pulse, are refused.
 import bisect
 import math
 import pathlib
+import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
@@ -86,9 +87,28 @@ def what_they_get(run_of, netlist, names):
     return {name: max(value[f"max{k}"], value[f"min{k}"]) for k, name in enumerate(names)}
 
 
-def check_seed(program, checker, seed):
-    netlist = converter_netlists.netlist(seed)
-    title = f"{converter_netlists.topology(seed)}, seed {seed}"
+def until(stop, netlist):
+    """The netlist with another stop time."""
+    return re.sub(r"^(\.tran \S+) \S+", rf"\g<1> {stop}", netlist, flags=re.MULTILINE) if stop else netlist
+
+
+def has_operating_point(program, netlist):
+    """Sources that drive coils in a loop have none, and both methods say so: nothing else may be refused."""
+    refused = run(program, netlist)
+    if refused.status == 0:
+        return True
+    loop = (refused.report or {}).get("infeasible", {"kind": "", "elements": ""})
+    by_euler = run(program, netlist, method="euler")
+    is_right = (loop["kind"] == "loop" and {name[0] for name in loop["elements"]} == {"v", "l"} and
+                by_euler.status != 0 and by_euler.report["infeasible"] == loop)
+    return not is_right
+
+
+def check_seed(program, checker, seed, stop):
+    netlist = until(stop, converter_netlists.netlist(seed))
+    if "uic" not in netlist and not has_operating_point(program, netlist):
+        netlist = re.sub(r"^(\.tran .*)$", r"\1 uic", netlist, flags=re.MULTILINE)
+    title = f"{converter_netlists.topology(seed)}, seed {seed}" + (f" up to {stop} s" if stop else "")
     times = times_of(netlist)
 
     def reference_of(text):
@@ -128,9 +148,11 @@ def check_seed(program, checker, seed):
 
 
 def seeds_of(words):
+    """(seed, its stop time or "")"""
     for word in words:
-        first, _, last = word.partition("-")
-        yield from range(int(first), int(last or first) + 1)
+        seeds, _, stop = word.partition("@")
+        first, _, last = seeds.partition("-")
+        yield from ((seed, stop) for seed in range(int(first), int(last or first) + 1))
 
 
 def main():
@@ -141,8 +163,8 @@ def main():
         print(__doc__, file=sys.stderr)
         return 2
     checker = Checker("converters")
-    for seed in seeds_of(sys.argv[2:]):
-        check_seed(sys.argv[1], checker, seed)
+    for seed, stop in seeds_of(sys.argv[2:]):
+        check_seed(sys.argv[1], checker, seed, stop)
     return checker.finish()
 
 
