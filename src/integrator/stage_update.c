@@ -28,6 +28,7 @@ static const double least_pivot = 1e-9;
 /* The residual may be so many times the base's, or rounding in any case, or what nobody sees. */
 static const double residual_growth = 4.0;
 static const double residual_of_rounding = 5e-15;
+static const double largest_residual = 1e-13; /* as it is reported: to be no more than rounding */
 
 /* So many bases are looked at, the latest first. */
 enum { MOST_BASES = 64 };
@@ -55,7 +56,8 @@ bool dalcs_stage_update_is_doubtful(const struct dalcs_stages *stages,
         return false;
     }
     double of_base = residual_growth * entry->factors->update->base->residual;
-    return !(entry->residual <= fmax(of_base, fmax(residual_of_rounding, stages->unseen)));
+    double let_be = fmin(stages->unseen, largest_residual);
+    return !(entry->residual <= fmax(of_base, fmax(residual_of_rounding, let_be)));
 }
 
 void dalcs_stage_update_check(struct dalcs_stages *stages, struct dalcs_stage_entry *entry,

@@ -646,6 +646,13 @@ START_TEST(test_unseen_rounding) {
     uint64_t random = 11;
     check_mode(&b, &first_open, 2.0 * h, &random, &tally);
     ck_assert_int_eq(tally.n_openings, 1);
+    struct dalcs_stage_entry *update;
+    ck_assert_int_eq(dalcs_stages_get(&b.updated, &first_open, 2.0 * h, &update), DALCS_OK);
+    b.updated.unseen = 1e-9; /* residuals are reported: they are to be rounding */
+    update->residual = 5e-14;
+    ck_assert(!dalcs_stage_update_is_doubtful(&b.updated, update));
+    update->residual = 2e-13;
+    ck_assert(dalcs_stage_update_is_doubtful(&b.updated, update));
     finish(&b);
 }
 
