@@ -22,7 +22,7 @@ static const double smallest_inner = 1e-12;
 /* So much of them is lost among them, though rounding may be in currents that follow from voltages. */
 static const double unseen_part = 1e-5;
 
-/* Where the number of stages of a large component changes: measured, doc/methods.md. */
+/* Where the number of stages of a large component without a sine changes: measured, doc/methods.md. */
 static const double loose = 1e-4;
 
 /* A step that follows the fastest source, over the one that just would if nothing else were there:
@@ -46,24 +46,34 @@ static int map_limit(const struct dalcs_radau_options *o, int dense_limit) {
     return (int)((o->tolerance < tight ? maps_when_tight : maps_when_not) * dense_limit);
 }
 
-static bool is_pulsed(const struct dalcs_component *c) {
+static bool has_source(const struct dalcs_component *c, enum dalcs_stimulus_kind kind) {
     bool found = false;
     for (int k = 1; k < c->system->n_inputs && !found; k++) {
-        found = c->circuit->stimulus[c->system->stimulus[k]].kind == DALCS_STIMULUS_PULSE;
+        found = c->circuit->stimulus[c->system->stimulus[k]].kind == kind;
     }
     return found;
+}
+
+static bool is_pulsed(const struct dalcs_component *c) {
+    return has_source(c, DALCS_STIMULUS_PULSE);
+}
+
+static bool is_swinging(const struct dalcs_component *c) {
+    return has_source(c, DALCS_STIMULUS_SIN) || has_source(c, DALCS_STIMULUS_TONES);
 }
 
 /* Small components pay little for more stages, mostly as dense maps, and save steps and maps. Nine are
  * too many where pulses end steps before errors do, where a map is dear, and where controlled sources may
  * make the index 3: second derivatives show ten times the rounding of seven. Large components pay for each
- * stage with a factorisation in every new mode. */
+ * stage with a factorisation in some new modes, and save steps where a sine sets their length. */
 static int choose_stages(const struct dalcs_radau_options *o, const struct dalcs_component *c,
                          int dense_limit, const char **because) {
     int n = dalcs_system_n_columns(c->system);
     if (n > dense_limit) {
-        *because = o->tolerance >= loose ? "large, loose tolerance" : "large";
-        return o->tolerance >= loose ? 3 : 5;
+        bool few = is_pulsed(c) || !is_swinging(c);
+        bool fewer = few && o->tolerance >= loose;
+        *because = fewer ? "large, loose tolerance" : few ? "large" : "large, sine";
+        return fewer ? 3 : few ? 5 : 7;
     }
     bool many = o->tolerance < tight && n <= (int)(very_small * dense_limit) &&
                 c->system->monotone && !is_pulsed(c);

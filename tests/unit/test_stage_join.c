@@ -8,7 +8,7 @@ static double largest_difference(const char *text, int coil, double stop) {
     const double tolerance = 1e-6;
     double worst = 0.0;
     double largest = 0.0;
-    start_with(text, stop, tolerance, 0);
+    start_in(text, stop, tolerance, 0, 5); /* more cost digits of their own */
     const struct dalcs_stage_layout *l = &r.part->stages.layout;
     const int diode = dalcs_system_n_equations(r.part->component->system);
     bool happens;
