@@ -256,7 +256,9 @@ static enum dalcs_status take_rows(const struct dalcs_radau *r, struct dalcs_rad
 
 enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     struct dalcs_cycle *cycle = part->cycle;
-    bool recurred = part->brief != NULL && part->brief == dalcs_transition_known(part)->of_span;
+    /* A ledger of energies needs every segment. */
+    bool recurred = r->base->energy == NULL && part->brief != NULL &&
+                    part->brief == dalcs_transition_known(part)->of_span;
     cycle->in_a_row = recurred ? cycle->in_a_row + 1 : 0;
     if (cycle->in_a_row < FEWEST_IN_A_ROW) {
         if (cycle->n > 0) {

@@ -195,11 +195,18 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
 enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        double limit, bool *holds) {
     struct dalcs_transition *known = dalcs_transition_known(part);
+    int n_crossed = part->n_crossed; /* which began the segment */
     *holds = false;
     if (is_same(known->span, part->t, limit)) {
         DALCS_TRY(try_span(r, part, known, limit, holds));
     }
-    return *holds ? DALCS_OK : try_step(r, part, known, limit, holds);
+    if (!*holds) {
+        DALCS_TRY(try_step(r, part, known, limit, holds));
+    }
+    if (!*holds) {
+        part->n_crossed = n_crossed;
+    }
+    return DALCS_OK;
 }
 
 static void note_step(struct dalcs_radau_part *part, struct dalcs_transition *known) {
