@@ -2,7 +2,9 @@
 #include "stage_brief.h"
 
 #include "dense_map.h"
+#include "quads.h"
 #include "stage_workshop.h"
+#include "wide_vectors.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -36,8 +38,10 @@ static void fill_column(const struct dalcs_stages *stages, const double *column,
     for (int i = 0; i < stages->n_watched; i++) {
         guard = fill_guard(stages, column, dalcs_system_n_columns(s) + i, guard);
     }
-    for (int k = 0; k < l->n_nodes && with_nodes; k++) {
-        memcpy(guard + k * s->n_x, column + k * l->stride, state_bytes);
+    for (int x = 0; x < s->n_x && with_nodes; x++, guard += dalcs_quads_of(l->n_nodes)) {
+        for (int k = 0; k < l->n_nodes; k++) {
+            guard[k] = column[k * l->stride + x];
+        }
     }
 }
 
@@ -50,7 +54,7 @@ enum dalcs_status dalcs_stage_brief_create(struct dalcs_stages *stages,
     for (int d = 0; d < s->n_pairs; d++) {
         n_guards += s->pair[d].kind == DALCS_PAIR_DIODE ? 1 : 0;
     }
-    int n_states = 2 * s->n_x + (with_nodes ? n_nodes * s->n_x : 0);
+    int n_states = 2 * s->n_x + (with_nodes ? s->n_x * dalcs_quads_of(n_nodes) : 0);
     int rows = dalcs_dense_map_rows(n_states + n_guards * n_nodes);
     int columns = dalcs_stage_map_columns(stages);
     struct dalcs_stage_brief *b = dalcs_alloc(1, sizeof(*b));
@@ -95,18 +99,31 @@ void dalcs_stage_brief_apply(const struct dalcs_stages *stages, struct dalcs_sta
                           dalcs_stage_map_input(stages, in), brief->answer);
 }
 
+/* value[n]: sums of n_nodes weighted nodes each. */
+DALCS_TWICE(void, weigh_nodes,
+            (int n, int n_nodes, const double *weight, const double *node, double *value),
+            (n, n_nodes, weight, node, value)) {
+    for (int i = 0; i < n; i++) {
+        dalcs_quad sum = {0.0};
+        for (int k = 0; k < n_nodes; k += DALCS_QUAD, node += DALCS_QUAD) {
+            dalcs_quad of;
+            dalcs_quad factor;
+            dalcs_quad_load(&of, node);
+            dalcs_quad_load(&factor, weight + k);
+            sum += factor * of;
+        }
+        value[i] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    }
+}
+
 void dalcs_stage_brief_stop(const struct dalcs_stages *stages, struct dalcs_stage_brief *brief,
                             double theta) {
-    const int n_x = stages->system->n_x;
     double weight[DALCS_MAX_NODES];
     dalcs_collocation_weights(stages->method, theta, weight);
-    for (int x = 0; x < n_x; x++) {
-        double sum = 0.0;
-        for (int k = 0; k < stages->layout.n_nodes; k++) {
-            sum += weight[k] * brief->node[k * n_x + x];
-        }
-        brief->last[x] = sum;
+    for (int k = stages->layout.n_nodes; k < DALCS_MAX_NODES; k++) {
+        weight[k] = 0.0;
     }
+    weigh_nodes(stages->system->n_x, stages->layout.n_nodes, weight, brief->node, brief->last);
 }
 
 double dalcs_stage_brief_row(const struct dalcs_stages *stages,

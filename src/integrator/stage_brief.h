@@ -12,7 +12,7 @@ struct dalcs_stage_brief {
     double *last;                    /* [n_x] states at the end of the step applied last */
     const double *drift;             /* [n_x] as in its answer */
     const double *guard; /* [guards][n_nodes] in Bernstein's basis: diodes, then watched voltages */
-    const double *node;  /* [n_nodes][n_x] states there; NULL: not asked for */
+    const double *node;  /* [n_x][n_nodes in whole quads] states there; NULL: not asked for */
     int rows;
     double *map;    /* [rows][columns] by columns */
     double *answer; /* [rows] last, drift, guard, node */
