@@ -90,9 +90,10 @@ static bool is_plain(const struct dalcs_radau *r, struct dalcs_radau_part *part,
     double bound = doubtless(r, part, guard);
     const int last = part->stages.method->s;
     double least = INFINITY;
-    for (int k = 0; k <= last; k++) {
+    above[0] = sign * coefficient[0] - zero;
+    for (int k = 1; k <= last; k++) {
         above[k] = sign * coefficient[k] - zero;
-        least = k > 0 ? dalcs_smaller(least, above[k]) : least;
+        least = dalcs_smaller(least, above[k]);
     }
     bool begins_at_0 = above[0] >= 0.0 && has_flipped(part, guard);
     double first = begins_at_0 ? above[1] : dalcs_smaller(above[0], above[1]);
