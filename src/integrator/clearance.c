@@ -52,33 +52,11 @@ static bool is_clear(const struct dalcs_radau *r, const struct dalcs_radau_part 
     return is_beyond_rounding(part, guard, least);
 }
 
-bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                        const double *coefficient) {
-    bool all = true;
-    part->n_crossed = 0;
-    part->n_doubtful = 0;
-    for (int g = 0; g < dalcs_guards_number(part) && all; g++) {
-        part->armed[g] = dalcs_guard_is_one(part, g);
-        if (part->armed[g]) {
-            all = is_clear(r, part, g, coefficient);
-            coefficient += part->stages.layout.n_nodes;
-        }
-    }
-    return all;
-}
-
 bool dalcs_guards_clearance(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                             int guard, double *sign, double *bound) {
     *bound = threshold(part, guard, sign) + doubtless(r, part, guard) +
              clear * dalcs_guard_most_rounding(part, guard, part->unit_scale);
     return dalcs_guard_is_one(part, guard);
-}
-
-/* A diode that has just changed sides. */
-static bool has_flipped(const struct dalcs_radau_part *part, int guard) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    return guard < p->system->n_pairs &&
-           dalcs_mode_has(part->modes_before, guard) != dalcs_osnsp_is_on(p, guard);
 }
 
 /* Is a guard plain up to `end`? Then *theta is brought forward to its fall, if it has one. */
@@ -95,7 +73,8 @@ static bool is_plain(const struct dalcs_radau *r, struct dalcs_radau_part *part,
         above[k] = sign * coefficient[k] - zero;
         least = dalcs_smaller(least, above[k]);
     }
-    bool begins_at_0 = above[0] >= 0.0 && has_flipped(part, guard);
+    bool is_pair = guard < part->component->system->n_pairs;
+    bool begins_at_0 = above[0] >= 0.0 && is_pair && dalcs_guard_has_flipped(part, guard);
     double first = begins_at_0 ? above[1] : dalcs_smaller(above[0], above[1]);
     if (!is_beyond_rounding(part, guard, first - bound)) {
         return false;
@@ -112,18 +91,30 @@ static bool is_plain(const struct dalcs_radau *r, struct dalcs_radau_part *part,
     return true;
 }
 
-bool dalcs_guards_plain(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                        const double *coefficient, double end, double *theta) {
+/* Of all guards: theta is NULL where none may fall. */
+static inline bool look_at_all(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                               const double *coefficient, double end, double *theta) {
     bool all = true;
     part->n_crossed = 0;
     part->n_doubtful = 0;
-    *theta = end;
     for (int g = 0; g < dalcs_guards_number(part) && all; g++) {
         part->armed[g] = dalcs_guard_is_one(part, g);
         if (part->armed[g]) {
-            all = is_plain(r, part, g, coefficient, end, theta);
+            all = theta != NULL ? is_plain(r, part, g, coefficient, end, theta)
+                                : is_clear(r, part, g, coefficient);
             coefficient += part->stages.layout.n_nodes;
         }
     }
     return all;
+}
+
+bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                        const double *coefficient) {
+    return look_at_all(r, part, coefficient, 1.0, NULL);
+}
+
+bool dalcs_guards_plain(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                        const double *coefficient, double end, double *theta) {
+    *theta = end;
+    return look_at_all(r, part, coefficient, end, theta);
 }

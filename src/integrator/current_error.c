@@ -160,12 +160,10 @@ double dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part 
                       error * pessimism > rounding_of(part, entry, k);
         if (counts) {
             worst = dalcs_larger(worst, error / allowed);
-            *of_unit =
-                error > allowed
-                    ? dalcs_larger(*of_unit,
-                                   error / unit[part->component->system
-                                                    ->column_is_current[part->stages.levered[k]]])
-                    : *of_unit;
+        }
+        if (counts && error > allowed) {
+            double scale = unit[part->component->system->column_is_current[stages->levered[k]]];
+            *of_unit = dalcs_larger(*of_unit, error / scale);
         }
     }
     return worst > noticed ? worst : 0.0;

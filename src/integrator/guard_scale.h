@@ -1,4 +1,4 @@
-/* guard_scale.h - what guards are measured by: the scale of their unit, and rounding. */
+/* guard_scale.h - what guards are, and are measured by: the scale of their unit, and rounding. */
 #ifndef DALCS_GUARD_SCALE_H
 #define DALCS_GUARD_SCALE_H
 
@@ -25,6 +25,12 @@ static inline int dalcs_guard_pair(const struct dalcs_radau_part *part, int guar
 static inline bool dalcs_guard_is_one(const struct dalcs_radau_part *part, int guard) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     return guard >= p->system->n_pairs || p->is_diode[guard];
+}
+
+/* Is a pair on another side than in the mode that held last? */
+static inline bool dalcs_guard_has_flipped(const struct dalcs_radau_part *part, int pair) {
+    return dalcs_mode_has(part->modes_before, pair) !=
+           dalcs_osnsp_is_on(&part->component->osnsp, pair);
 }
 
 /* V or A; of a voltage or current that moves a switch. */

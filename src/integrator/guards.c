@@ -122,7 +122,7 @@ static double value_at(const struct dalcs_radau_part *part, const double *value,
  * was on the other side. */
 static const double *values_before(const struct dalcs_radau_part *part, int pair) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    if (part->by_euler || dalcs_mode_has(part->modes_before, pair) != dalcs_osnsp_is_on(p, pair)) {
+    if (part->by_euler || dalcs_guard_has_flipped(part, pair)) {
         return NULL;
     }
     return part->out_before + dalcs_system_n_equations(p->system) + pair;
@@ -380,11 +380,10 @@ static bool is_nothing(const struct dalcs_radau_part *part, int pair, const doub
  * may be larger, but does not. */
 static bool has_crossed(const struct dalcs_radau_part *part, int pair, const double *value,
                         int stride, const double *unit) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
     int last = part->stages.layout.n_nodes - 1;
     double least = dalcs_doubt_noise(part) / part->rounding * dalcs_guard_scale(part, pair, unit);
     bool rises = part->flipped && value[last * stride] > dalcs_larger(least, fabs(value[0])) &&
-                 dalcs_mode_has(part->modes_before, pair) != dalcs_osnsp_is_on(p, pair);
+                 dalcs_guard_has_flipped(part, pair);
     for (int k = 1; k <= last && rises; k++) {
         rises = value[k * stride] > value[(k - 1) * stride];
     }
@@ -446,7 +445,7 @@ static bool is_beside_flipped(const struct dalcs_radau_part *part, int pair) {
     const int *mine = part->pair_row + 2 * pair;
     bool found = false;
     for (int d = 0; d < p->system->n_pairs && !found; d++) {
-        if (dalcs_mode_has(part->modes_before, d) != dalcs_osnsp_is_on(p, d)) {
+        if (dalcs_guard_has_flipped(part, d)) {
             const int *its = part->pair_row + 2 * d;
             for (int e = 0; e < 2; e++) {
                 found = found || (mine[e] >= 0 && (mine[e] == its[0] || mine[e] == its[1]));

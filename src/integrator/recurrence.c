@@ -9,6 +9,7 @@
 #include "current_error.h"
 #include "extremes.h"
 #include "radau_internal.h"
+#include "step_length.h"
 
 #include <float.h>
 #include <math.h>
@@ -20,25 +21,19 @@ enum { OFTEN = 4, MOST_PATIENCE = 64 };
 /* States within this many times their scale need no new one. */
 static const double most_growth = 4.0;
 
-/* As far as rounded times can tell. */
-static bool is_same(double span, double from, double to) {
-    return fabs(to - from - span) <= 4.0 * DBL_EPSILON * to;
-}
-
 static int wait_longer(int patience) {
     return patience < MOST_PATIENCE ? 2 * patience : MOST_PATIENCE;
 }
 
 /* As the first such span had it: its map may be there. */
 static double first_span(const struct dalcs_radau_part *part, double span) {
-    for (int k = 0; k < part->n_spans; k++) {
-        if (is_same(part->span[k], part->t, part->t + span)) {
-            return part->span[k];
-        }
+    double known = dalcs_length_known_span(part, part->t, part->t + span);
+    if (known > 0.0) {
+        return known;
     }
     for (int k = 0; k < DALCS_TRANSITIONS; k++) {
         const struct dalcs_transition *other = &part->transition[k];
-        if (other->of_span != NULL && is_same(other->span, part->t, part->t + span)) {
+        if (other->of_span != NULL && dalcs_length_is_same(other->span, part->t, part->t + span)) {
             return other->span;
         }
     }
@@ -140,7 +135,7 @@ static enum dalcs_status try_span(struct dalcs_radau *r, struct dalcs_radau_part
 }
 
 static void note_span(struct dalcs_radau_part *part, struct dalcs_transition *known) {
-    if (is_same(known->span, part->t, part->t_end)) {
+    if (dalcs_length_is_same(known->span, part->t, part->t_end)) {
         known->recurred++;
     } else {
         dalcs_transition_begin_span(part, known, part->t_end - part->t);
@@ -197,7 +192,7 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
     struct dalcs_transition *known = dalcs_transition_known(part);
     int n_crossed = part->n_crossed; /* which began the segment */
     *holds = false;
-    if (is_same(known->span, part->t, limit)) {
+    if (dalcs_length_is_same(known->span, part->t, limit)) {
         DALCS_TRY(try_span(r, part, known, limit, holds));
     }
     if (!*holds) {

@@ -417,7 +417,7 @@ static enum dalcs_status fill_stepped(struct dalcs_rows *rows, struct dalcs_rada
     return DALCS_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------ */
+/* ---- All parts --------------------------------------------------------------------------------- */
 
 /* One without memory: at a single time, unless it is constant. */
 static enum dalcs_status solve(struct dalcs_rows *rows, struct dalcs_radau_part *part, int n,

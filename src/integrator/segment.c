@@ -446,17 +446,21 @@ static bool is_outsized(const struct dalcs_radau_part *part,
     return is;
 }
 
+/* Something happened that is no crossing, a command or the start of the run, in a part on dense maps. */
+static bool is_at_command(const struct dalcs_radau_part *part) {
+    return part->fresh && part->n_crossed == 0 && part->rounding == 1.0;
+}
+
 /* A command has moved a switch: what it carried goes elsewhere, through pairs that have not crossed anything. On
  * dense maps to ask the circuit of them costs less than a step in a mode that is wrong. */
 static bool is_commutation(const struct dalcs_radau_part *part) {
-    return part->fresh && part->flipped && part->n_crossed == 0 && part->rounding == 1.0;
+    return part->flipped && is_at_command(part);
 }
 
 static double step_to_try(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                           double limit) {
-    bool at_command = part->fresh && part->n_crossed == 0 && part->rounding == 1.0;
-    return at_command && limit < r->options.stop ? dalcs_length_fitted(part, limit)
-                                                 : dalcs_radau_ladder(part, part->level);
+    return is_at_command(part) && limit < r->options.stop ? dalcs_length_fitted(part, limit)
+                                                          : dalcs_radau_ladder(part, part->level);
 }
 
 /* One try. *done: there is a segment. */

@@ -6,8 +6,6 @@
 #include "extremes.h"
 #include "radau_internal.h"
 
-#include <float.h>
-
 /* The error estimate may be this much smaller than what is allowed before the step is doubled. */
 static const double safety = 0.8;
 
@@ -66,9 +64,19 @@ double dalcs_length_of_spans(const struct dalcs_radau_part *part) {
     return shortest;
 }
 
-/* Of a single switch; where several are commanded, events cut most spans, and maps of their length serve nothing else.
- * As far as rounded times can tell, the first of equal spans is the one: it comes earliest, when times have most
- * digits, and later ones, rounded up and down, are that one exactly. */
+/* The first of equal spans is the one: it comes earliest, when times have most digits, and later ones, rounded up and
+ * down, are that one exactly. */
+double dalcs_length_known_span(const struct dalcs_radau_part *part, double from, double to) {
+    for (int k = 0; k < part->n_spans; k++) {
+        if (dalcs_length_is_same(part->span[k], from, to)) {
+            return part->span[k];
+        }
+    }
+    return 0.0;
+}
+
+/* Of a single switch; where several are commanded, events cut most spans, and maps of their length serve nothing
+ * else. */
 double dalcs_length_fitted(struct dalcs_radau_part *part, double limit) {
     double h = dalcs_radau_ladder(part, part->level);
     double span = limit - part->t;
@@ -76,15 +84,11 @@ double dalcs_length_fitted(struct dalcs_radau_part *part, double limit) {
           2.0 * span > h)) {
         return h;
     }
-    for (int k = 0; k < part->n_spans; k++) {
-        if (fabs(span - part->span[k]) <= 4.0 * DBL_EPSILON * limit) {
-            return part->span[k];
-        }
+    double known = dalcs_length_known_span(part, part->t, limit);
+    if (known == 0.0 && part->n_spans < DALCS_SPANS) {
+        known = part->span[part->n_spans++] = span;
     }
-    if (part->n_spans < DALCS_SPANS) {
-        return part->span[part->n_spans++] = span;
-    }
-    return h;
+    return known > 0.0 ? known : h;
 }
 
 double dalcs_length_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {

@@ -4,6 +4,9 @@
 
 #include "radau.h"
 
+#include <float.h>
+#include <math.h>
+
 /* Up or down at once. */
 enum { DALCS_LENGTH_MOST_RUNGS = 6 };
 
@@ -13,6 +16,14 @@ double dalcs_length_longest(const struct dalcs_radau *r, const struct dalcs_rada
 /* s; the longest one that is needed where sources or commands of switches come back: the longest between two edges
  * of one of them; INFINITY: none do. */
 double dalcs_length_of_spans(const struct dalcs_radau_part *part);
+
+/* Is a span (s) as long as from `from` to `to` (s), as far as rounded times can tell? */
+static inline bool dalcs_length_is_same(double span, double from, double to) {
+    return fabs(to - from - span) <= 4.0 * DBL_EPSILON * to;
+}
+
+/* s; as the first span between commands that was as long, and steps were fitted to, had it; 0: there was none. */
+double dalcs_length_known_span(const struct dalcs_radau_part *part, double from, double to);
 
 /* s; the present one of the ladder, or, if commands of a switch are periodic, `limit` (s) is no more than one such step away and no
  * less than half of it, the span up to there, from a command to another: it recurs, and its map serves. */
