@@ -33,7 +33,7 @@ enum dalcs_status dalcs_euler_setup(struct dalcs_euler *e, const struct dalcs_ci
     size_t columns = 1;
     size_t pairs = 1;
     enum dalcs_status status = DALCS_OK;
-    e->component = dalcs_alloc(n, sizeof(*e->component));
+    e->component = dalcs_arena_alloc(&e->arena, n, sizeof(*e->component));
     if (e->component == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -47,12 +47,12 @@ enum dalcs_status dalcs_euler_setup(struct dalcs_euler *e, const struct dalcs_ci
         status = dalcs_component_setup(&e->component[k], circuit, s, &share);
         e->n_components = k + 1;
     }
-    e->after = dalcs_alloc(columns, sizeof(double));
-    e->charge = dalcs_alloc(pairs, sizeof(double));
-    e->flux = dalcs_alloc(pairs, sizeof(double));
-    e->jump.after = dalcs_alloc(columns, sizeof(double));
-    e->jump.charge = dalcs_alloc(pairs, sizeof(double));
-    e->jump.flux = dalcs_alloc(pairs, sizeof(double));
+    e->after = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
+    e->charge = dalcs_arena_alloc(&e->arena, pairs, sizeof(double));
+    e->flux = dalcs_arena_alloc(&e->arena, pairs, sizeof(double));
+    e->jump.after = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
+    e->jump.charge = dalcs_arena_alloc(&e->arena, pairs, sizeof(double));
+    e->jump.flux = dalcs_arena_alloc(&e->arena, pairs, sizeof(double));
     bool complete = e->after != NULL && e->charge != NULL && e->flux != NULL &&
                     e->jump.after != NULL && e->jump.charge != NULL && e->jump.flux != NULL;
     if (status == DALCS_OK && !complete) {
@@ -70,13 +70,7 @@ void dalcs_euler_finish(struct dalcs_euler *e) {
     for (int k = 0; k < e->n_components; k++) {
         dalcs_component_finish(&e->component[k]);
     }
-    free(e->component);
-    free(e->after);
-    free(e->charge);
-    free(e->flux);
-    free(e->jump.after);
-    free(e->jump.charge);
-    free(e->jump.flux);
+    dalcs_arena_finish(&e->arena);
     dalcs_jumps_finish(&e->jumps);
     *e = (struct dalcs_euler){0};
 }

@@ -66,6 +66,7 @@ struct dalcs_euler {
     double *after, *charge, *flux;                /* what micro-steps see, the largest component */
     struct dalcs_jumps jumps;
     struct dalcs_jump_answer jump; /* the last one */
+    struct dalcs_arena arena;      /* what has the same size during the run */
 };
 
 /* Sets up for a transient with step h (s). network and circuit must outlive it. */

@@ -76,10 +76,12 @@ static enum dalcs_status allocate(struct dalcs_excitation *excitation,
         n_terms += (size_t)n_of_wave;
         most = n_of_wave > most ? n_of_wave : most;
     }
-    excitation->wave = dalcs_alloc(n, sizeof(*excitation->wave));
-    excitation->function = dalcs_alloc(2 * n + 2 * n_terms, sizeof(*excitation->function));
-    excitation->term = dalcs_alloc(n_terms + (size_t)most, sizeof(*excitation->term));
-    excitation->constant = dalcs_alloc(n, sizeof(double));
+    excitation->wave = dalcs_arena_alloc(&excitation->arena, n, sizeof(*excitation->wave));
+    excitation->function =
+        dalcs_arena_alloc(&excitation->arena, 2 * n + 2 * n_terms, sizeof(*excitation->function));
+    excitation->term =
+        dalcs_arena_alloc(&excitation->arena, n_terms + (size_t)most, sizeof(*excitation->term));
+    excitation->constant = dalcs_arena_alloc(&excitation->arena, n, sizeof(double));
     if (excitation->wave == NULL || excitation->function == NULL || excitation->term == NULL ||
         excitation->constant == NULL) {
         return DALCS_E_NOMEM;
@@ -114,10 +116,7 @@ enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
 }
 
 void dalcs_excitation_finish(struct dalcs_excitation *excitation) {
-    free(excitation->wave);
-    free(excitation->function);
-    free(excitation->term);
-    free(excitation->constant);
+    dalcs_arena_finish(&excitation->arena);
     dalcs_bystanders_finish(&excitation->bystanders);
     *excitation = (struct dalcs_excitation){0};
 }

@@ -49,6 +49,7 @@ struct dalcs_excitation {
     bool is_curved;                      /* any wave is */
     double shortest_period;              /* s, of the oscillations; INFINITY without */
     double next_edge;                    /* s, of the waves */
+    struct dalcs_arena arena;            /* all arrays */
 };
 
 /* Inputs that only command switches, and do so along straight lines, are left out, for commands have

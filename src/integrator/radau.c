@@ -208,12 +208,11 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     DALCS_TRY(dalcs_guards_setup(part));
     DALCS_TRY(dalcs_twins_setup(part));
     DALCS_TRY(dalcs_step_setup(part));
-    bool *used = dalcs_alloc((size_t)c->system->n_inputs, sizeof(bool));
+    bool *used = dalcs_arena_alloc(&part->arena, (size_t)c->system->n_inputs, sizeof(bool));
     if (used == NULL) {
         return DALCS_E_NOMEM;
     }
     list_used_inputs(part, r->base->network, used);
-    free(used);
     find_cross_scales(c->system, r->options.stop, part->cross);
     part->longest = dalcs_length_longest(r, part);
     part->longest_needed = below_twice * dalcs_length_of_spans(part);

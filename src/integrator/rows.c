@@ -35,7 +35,7 @@ static enum dalcs_status list_signals(struct dalcs_rows *rows, const int *output
     }
     for (int k = 0; k < rows->radau->n_parts; k++) {
         struct dalcs_rows_part *p = &rows->part[k];
-        p->signal = dalcs_alloc((size_t)p->n_signals, sizeof(*p->signal));
+        p->signal = dalcs_arena_alloc(&rows->arena, (size_t)p->n_signals, sizeof(*p->signal));
         if (p->signal == NULL) {
             return DALCS_E_NOMEM;
         }
@@ -85,13 +85,13 @@ static int map_rows(const struct dalcs_rows_part *p) {
     return dalcs_dense_map_rows(p->n_read * DALCS_MAX_NODES);
 }
 
-static enum dalcs_status part_setup(struct dalcs_rows_part *p,
-                                    const struct dalcs_radau_part *part) {
+static enum dalcs_status part_setup(struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
+                                    struct dalcs_arena *arena) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_bystanders *b = &part->excitation.bystanders;
     int n_places = dalcs_system_n_columns(s) + s->n_inputs;
-    p->place = dalcs_alloc((size_t)n_places, sizeof(int));
-    p->source = dalcs_alloc((size_t)(b->n + s->n_inputs), sizeof(*p->source));
+    p->place = dalcs_arena_alloc(arena, (size_t)n_places, sizeof(int));
+    p->source = dalcs_arena_alloc(arena, (size_t)(b->n + s->n_inputs), sizeof(*p->source));
     if (p->place == NULL || p->source == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -106,7 +106,7 @@ static enum dalcs_status part_setup(struct dalcs_rows_part *p,
         bool is_next = i > 0 && p->signal[i].output == p->signal[i - 1].output;
         p->n_read += is_next ? 0 : 1;
     }
-    p->coefficient = dalcs_alloc((size_t)map_rows(p), sizeof(double));
+    p->coefficient = dalcs_arena_alloc(arena, (size_t)map_rows(p), sizeof(double));
     if (p->coefficient == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -126,7 +126,7 @@ static enum dalcs_status set_up_parts(struct dalcs_rows *rows, const int *output
             rows->one_by_one = rows->one_by_one || is_solved;
         }
         if (rows->part[k].n_signals > 0 && part->kind == DALCS_PART_STEPPED) {
-            DALCS_TRY(part_setup(&rows->part[k], part));
+            DALCS_TRY(part_setup(&rows->part[k], part, &rows->arena));
         }
     }
     return DALCS_OK;
@@ -135,9 +135,9 @@ static enum dalcs_status set_up_parts(struct dalcs_rows *rows, const int *output
 enum dalcs_status dalcs_rows_setup(struct dalcs_rows *rows, struct dalcs_radau *radau,
                                    const int *output, int n_outputs) {
     *rows = (struct dalcs_rows){.radau = radau, .n_outputs = n_outputs};
-    rows->value = dalcs_alloc((size_t)n_outputs, sizeof(*rows->value));
-    rows->part = dalcs_alloc((size_t)radau->n_parts, sizeof(*rows->part));
-    rows->asked = dalcs_alloc((size_t)radau->n_parts, sizeof(int));
+    rows->value = dalcs_arena_alloc(&rows->arena, (size_t)n_outputs, sizeof(*rows->value));
+    rows->part = dalcs_arena_alloc(&rows->arena, (size_t)radau->n_parts, sizeof(*rows->part));
+    rows->asked = dalcs_arena_alloc(&rows->arena, (size_t)radau->n_parts, sizeof(int));
     bool complete = rows->value != NULL && rows->part != NULL && rows->asked != NULL;
     enum dalcs_status status = complete ? set_up_parts(rows, output) : DALCS_E_NOMEM;
     if (status != DALCS_OK) {
@@ -148,17 +148,11 @@ enum dalcs_status dalcs_rows_setup(struct dalcs_rows *rows, struct dalcs_radau *
 
 void dalcs_rows_finish(struct dalcs_rows *rows) {
     for (int k = 0; rows->part != NULL && k < rows->radau->n_parts; k++) {
-        free(rows->part[k].signal);
-        free(rows->part[k].place);
-        free(rows->part[k].source);
-        free(rows->part[k].coefficient);
         for (int i = 0; i < DALCS_ROW_MAPS; i++) {
             free(rows->part[k].map[i].map);
         }
     }
-    free(rows->value);
-    free(rows->part);
-    free(rows->asked);
+    dalcs_arena_finish(&rows->arena);
     *rows = (struct dalcs_rows){0};
 }
 

@@ -60,6 +60,7 @@ struct dalcs_rows {
     bool one_by_one;               /* one of them is */
     union dalcs_row_values time;   /* the last one again where its group is not full */
     union dalcs_row_values theta;  /* work: the same in the steps of one part */
+    struct dalcs_arena arena;      /* what has the same size during the run */
 };
 
 /* output[n_outputs]: which of the network's. NULL: all of them, and parts without memory are solved though

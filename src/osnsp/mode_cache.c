@@ -26,10 +26,6 @@ static void link_newest(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
 
 static void entry_destroy(struct dalcs_mode_entry *e) {
     dalcs_lu_finish(&e->lu);
-    free(e->key);
-    free(e->on);
-    free(e->row_of);
-    free(e->column_of);
     free(e->scale_of);
     free(e->map);
     free(e);
@@ -123,6 +119,19 @@ static int index_of_slot(const struct dalcs_step_form *f, const struct dalcs_mod
     return slot < f->n ? slot : f->n + e->on[slot - f->n];
 }
 
+enum dalcs_status dalcs_columns_alloc(struct dalcs_columns *a, int n, size_t n_entries) {
+    size_t n_starts = (size_t)n + 1;
+    *a = (struct dalcs_columns){.n = n};
+    a->x = malloc(n_entries * (sizeof(*a->x) + sizeof(*a->i)) + n_starts * sizeof(*a->p));
+    if (a->x == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    a->p = (void *)(a->x + n_entries);
+    a->i = a->p + n_starts;
+    a->p[0] = 0;
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_modes_matrix(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *e,
                                      struct dalcs_columns *a) {
     const struct dalcs_step_form *f = p->form[0];
@@ -136,13 +145,10 @@ enum dalcs_status dalcs_modes_matrix(const struct dalcs_osnsp *p, const struct d
     for (int c = 0; c < f->n + f->n_pairs; c++) {
         n_entries += slot[c] >= 0 ? (size_t)(f->K.p[c + 1] - f->K.p[c]) : 0;
     }
-    a->p = dalcs_alloc((size_t)a->n + 1, sizeof(*a->p));
-    a->i = dalcs_alloc(n_entries, sizeof(*a->i));
-    a->x = dalcs_alloc(n_entries, sizeof(*a->x));
-    if (a->p == NULL || a->i == NULL || a->x == NULL) {
+    enum dalcs_status status = dalcs_columns_alloc(a, a->n, n_entries);
+    if (status != DALCS_OK) {
         free(slot);
-        dalcs_columns_finish(a);
-        return DALCS_E_NOMEM;
+        return status;
     }
     int out = 0;
     for (int c = 0; c < f->n + f->n_pairs; c++) {
@@ -162,8 +168,6 @@ enum dalcs_status dalcs_modes_matrix(const struct dalcs_osnsp *p, const struct d
 }
 
 void dalcs_columns_finish(struct dalcs_columns *a) {
-    free(a->p);
-    free(a->i);
     free(a->x);
     *a = (struct dalcs_columns){0};
 }
@@ -172,12 +176,12 @@ void dalcs_columns_finish(struct dalcs_columns *a) {
 static enum dalcs_status order_rows(const struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
     const struct dalcs_step_form *f = p->form[0];
     size_t order = (size_t)e->lu.n;
-    e->row_of = dalcs_alloc(order, sizeof(*e->row_of));
-    e->column_of = dalcs_alloc(order, sizeof(*e->column_of));
-    e->scale_of = dalcs_alloc(order, sizeof(*e->scale_of));
-    if (e->row_of == NULL || e->column_of == NULL || e->scale_of == NULL) {
+    e->scale_of = dalcs_alloc(order, sizeof(*e->scale_of) + 2 * sizeof(*e->row_of));
+    if (e->scale_of == NULL) {
         return DALCS_E_NOMEM;
     }
+    e->row_of = (void *)(e->scale_of + order);
+    e->column_of = e->row_of + order;
     int n_equations = dalcs_system_n_equations(p->system);
     for (int i = 0; i < e->lu.n; i++) {
         int unknown = e->lu.to[i];
@@ -255,42 +259,51 @@ static enum dalcs_status factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_e
     return status == DALCS_OK ? order_rows(p, e) : status;
 }
 
+/* Of p->key and p->mode, without factors; its key and list are behind it. */
+static struct dalcs_mode_entry *entry_alloc(const struct dalcs_osnsp *p) {
+    int n_pairs = p->system->n_pairs;
+    int n_on = 0;
+    for (int d = 0; d < n_pairs; d++) {
+        n_on += dalcs_osnsp_is_on(p, d) ? 1 : 0;
+    }
+    struct dalcs_mode_entry *e;
+    size_t key_bytes = ((size_t)p->n_words + 1) * sizeof(*e->key);
+    size_t bytes = sizeof(*e) + key_bytes + (size_t)n_on * sizeof(*e->on);
+    e = dalcs_alloc(1, bytes);
+    if (e == NULL) {
+        return NULL;
+    }
+    e->bytes = bytes;
+    e->key = (void *)(e + 1);
+    memcpy(e->key, p->key, key_bytes);
+    e->on = (void *)(e->key + p->n_words + 1);
+    for (int d = 0; d < n_pairs; d++) {
+        if (dalcs_osnsp_is_on(p, d)) {
+            e->on[e->n_on++] = d;
+        }
+    }
+    return e;
+}
+
 static enum dalcs_status entry_create(struct dalcs_osnsp *p, int kind,
                                       struct dalcs_mode_entry **entry) {
-    struct dalcs_mode_entry *e = dalcs_alloc(1, sizeof(*e));
+    struct dalcs_mode_entry *e = entry_alloc(p);
     *entry = NULL;
     if (e == NULL) {
         return DALCS_E_NOMEM;
     }
-    int n_pairs = p->system->n_pairs;
-    for (int d = 0; d < n_pairs; d++) {
-        e->n_on += dalcs_osnsp_is_on(p, d) ? 1 : 0;
-    }
-    e->key = dalcs_alloc((size_t)p->n_words + 1, sizeof(*e->key));
-    e->on = dalcs_alloc((size_t)e->n_on, sizeof(*e->on));
-    enum dalcs_status status = DALCS_E_NOMEM;
-    if (e->key != NULL && e->on != NULL) {
-        memcpy(e->key, p->key, ((size_t)p->n_words + 1) * sizeof(*e->key));
-        int n = 0;
-        for (int d = 0; d < n_pairs; d++) {
-            if (dalcs_osnsp_is_on(p, d)) {
-                e->on[n++] = d;
-            }
-        }
-        p->counters.factorizations++;
-        status = kind == DALCS_PLAIN ? factor_plain(p, e) : dalcs_proximal_factor(p, e, kind - 1);
-        if (status == DALCS_SINGULAR) {
-            e->singular = true;
-            status = DALCS_OK;
-        }
+    p->counters.factorizations++;
+    enum dalcs_status status =
+        kind == DALCS_PLAIN ? factor_plain(p, e) : dalcs_proximal_factor(p, e, kind - 1);
+    if (status == DALCS_SINGULAR) {
+        e->singular = true;
+        status = DALCS_OK;
     }
     if (status != DALCS_OK) {
         entry_destroy(e);
         return status;
     }
-    e->bytes = sizeof(*e) + ((size_t)p->n_words + 1) * sizeof(uint64_t) +
-               (size_t)e->n_on * sizeof(int) + dalcs_lu_bytes(&e->lu) +
-               (size_t)e->lu.n * (2 * sizeof(int) + sizeof(double));
+    e->bytes += dalcs_lu_bytes(&e->lu) + (size_t)e->lu.n * (2 * sizeof(int) + sizeof(double));
     *entry = e;
     return DALCS_OK;
 }

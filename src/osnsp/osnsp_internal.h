@@ -16,13 +16,13 @@ enum { DALCS_N_WEIGHTS = 3, DALCS_N_RUNGS = 2 * DALCS_N_WEIGHTS };
 struct dalcs_mode_entry {
     UT_hash_handle hh;
     struct dalcs_mode_entry *newer, *older;
-    uint64_t *key; /* mode words, then form id and kind */
+    uint64_t *key; /* mode words, then form id and kind; behind the entry, as `on` is */
     bool singular; /* no factors: remembered so that it is not tried again */
     int n_on;
     int *on; /* [n_on] ascending */
     struct dalcs_lu lu;
     int *row_of, *column_of; /* [lu.n] plain factors: row of R, column of y, in pivot order */
-    double *scale_of;        /* [lu.n] */
+    double *scale_of;        /* [lu.n]; behind it the two */
     double *map;             /* see step_map.h; NULL until the mode has recurred */
     uint64_t tie;            /* which ties of this mode were looked at last; 0: none yet */
     bool tie_has_choice;     /* they leave a choice */
@@ -45,12 +45,16 @@ enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
 bool dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu, int n,
                               const int *start, const int *row, const double *value, double apart);
 
-/* A square matrix by columns. */
+/* A square matrix by columns. All is in the block that starts at x. */
 struct dalcs_columns {
     int n;
     int *p, *i;
     double *x;
 };
+
+/* With so many entries, which are for the caller to set, as are the starts behind the first. */
+enum dalcs_status dalcs_columns_alloc(struct dalcs_columns *a, int n,
+                                      size_t n_entries) DALCS_MUST_CHECK;
 
 /* The plain matrix of the entry's mode in p->form[0]: equations and the w rows of closed pairs. */
 enum dalcs_status dalcs_modes_matrix(const struct dalcs_osnsp *p,

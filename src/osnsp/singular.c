@@ -33,17 +33,18 @@ static enum dalcs_status find_null_space(const struct dalcs_columns *a,
 static enum dalcs_status put_choices(struct dalcs_columns *a, const struct dalcs_null_space *space,
                                      const double *vectors) {
     size_t capacity = (size_t)a->p[a->n] + (size_t)space->n_free * (size_t)a->n;
-    struct dalcs_columns b = {.n = a->n,
-                              .p = dalcs_alloc((size_t)a->n + 1, sizeof(int)),
-                              .i = dalcs_alloc(capacity, sizeof(int)),
-                              .x = dalcs_alloc(capacity, sizeof(double))};
+    struct dalcs_columns b;
+    DALCS_TRY(dalcs_columns_alloc(&b, a->n, capacity));
     bool *is_redundant = dalcs_alloc((size_t)a->n, sizeof(bool));
-    bool complete = b.p != NULL && b.i != NULL && b.x != NULL && is_redundant != NULL;
-    for (int k = 0; complete && k < space->n_redundant; k++) {
+    if (is_redundant == NULL) {
+        dalcs_columns_finish(&b);
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < space->n_redundant; k++) {
         is_redundant[space->redundant[k]] = true;
     }
     int out = 0;
-    for (int c = 0; complete && c < a->n; c++) {
+    for (int c = 0; c < a->n; c++) {
         for (int k = a->p[c]; k < a->p[c + 1]; k++) {
             if (!is_redundant[a->i[k]]) {
                 b.i[out] = a->i[k];
@@ -59,10 +60,6 @@ static enum dalcs_status put_choices(struct dalcs_columns *a, const struct dalcs
         b.p[c + 1] = out;
     }
     free(is_redundant);
-    if (!complete) {
-        dalcs_columns_finish(&b);
-        return DALCS_E_NOMEM;
-    }
     dalcs_columns_finish(a);
     *a = b;
     return DALCS_OK;

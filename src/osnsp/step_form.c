@@ -45,6 +45,9 @@ struct elimination {
     int *where;                /* [all columns] slot in the row being changed, else -1 */
     int *pivot_row;            /* [n_x], -1 if kept */
     bool *is_pivot;            /* [n_rows] */
+    int *row_of_dual;          /* [n_equations] */
+    int *reduced;              /* [n_left] the unknown that a column is, once that is known */
+    struct dalcs_arena work;   /* all of them */
 };
 
 static enum dalcs_status push_int(int **array, int *capacity, int n) {
@@ -216,9 +219,9 @@ static bool pivot_is_sound(const struct elimination *e, int x, int row) {
            (long)(n_left - 1) * (e->users[x].n - 1) <= fill_limit;
 }
 
-static enum dalcs_status eliminate_states(struct elimination *e, const int *row_of_dual) {
+static enum dalcs_status eliminate_states(struct elimination *e) {
     for (int x = 0; x < e->s->n_x; x++) {
-        int r = row_of_dual[x];
+        int r = e->row_of_dual[x];
         e->pivot_row[x] = -1;
         if (!pivot_is_sound(e, x, r)) {
             continue;
@@ -250,9 +253,9 @@ static bool lower_scale(double *scale, double largest) {
  * 1e-12 S, or volts next to amperes, look alike to KLU's pivoting and to rcond. Rows and columns
  * have their own scales: the KCL of a floating group of capacitors, summed over the group, has none
  * of the large companion conductances that its voltages see elsewhere. */
-static enum dalcs_status balance(struct dalcs_step_form *f) {
+static enum dalcs_status balance(struct dalcs_step_form *f, struct elimination *e) {
     int n = f->n + f->n_pairs;
-    double *largest = dalcs_alloc(2 * (size_t)n, sizeof(*largest));
+    double *largest = dalcs_arena_alloc(&e->work, 2 * (size_t)n, sizeof(*largest));
     if (largest == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -277,7 +280,6 @@ static enum dalcs_status balance(struct dalcs_step_form *f) {
             changed = lower_scale(&f->row_scale[i], largest[n + i]) || changed;
         }
     }
-    free(largest);
     double sum = 0.0;
     for (int d = 0; d < f->n_pairs; d++) {
         sum += log2(f->scale[f->n + d]) + log2(f->row_scale[f->n + d]);
@@ -319,13 +321,8 @@ static void see_conductance(struct conductances *g, bool row_is_current, bool co
 
 /* The norm of every row of the system over voltages and over currents, and how far a voltage counts
  * as a current. */
-static enum dalcs_status measure_rows(struct dalcs_step_form *f, const struct dalcs_system *s) {
+static void measure_rows(struct dalcs_step_form *f, const struct dalcs_system *s) {
     int n_equations = dalcs_system_n_equations(s);
-    f->row_volts = dalcs_alloc((size_t)n_equations, sizeof(*f->row_volts));
-    f->row_amperes = dalcs_alloc((size_t)n_equations, sizeof(*f->row_amperes));
-    if (f->row_volts == NULL || f->row_amperes == NULL) {
-        return DALCS_E_NOMEM;
-    }
     struct conductances g = {0};
     for (int r = 0; r < n_equations; r++) {
         double *norm[2] = {&f->row_volts[r], &f->row_amperes[r]};
@@ -348,6 +345,13 @@ static enum dalcs_status measure_rows(struct dalcs_step_form *f, const struct da
     f->most_conductance = g.n > 0 ? g.most : 1.0;
     f->volt_in_amperes = cross_floor * typical;
     f->ampere_in_volts = cross_floor / typical;
+}
+
+/* What was collected becomes *a, and t is empty again. */
+static enum dalcs_status compress(struct dalcs_csr *a, int n_rows, int n_columns,
+                                  struct dalcs_triplets *t) {
+    DALCS_TRY(dalcs_csr_compress(a, n_rows, n_columns, t));
+    t->n = 0;
     return DALCS_OK;
 }
 
@@ -361,27 +365,18 @@ static enum dalcs_status copy_row(struct dalcs_triplets *t, int row, const struc
 
 /* The rows that a certificate evaluates, in one matrix: its loop is a good part of a step. */
 static enum dalcs_status gather_checked_rows(struct dalcs_step_form *f,
-                                             const struct dalcs_system *s) {
-    struct dalcs_triplets t = {0};
+                                             const struct dalcs_system *s,
+                                             struct dalcs_triplets *t) {
     int n_columns = dalcs_system_n_columns(s);
-    enum dalcs_status status = DALCS_OK;
-    for (int i = 0; i < f->n_checked && status == DALCS_OK; i++) {
+    for (int i = 0; i < f->n_checked; i++) {
         int r = f->checked[i];
         if (r < s->n_x) {
-            status = copy_row(&t, i, &s->P, r, 0, -1.0);
+            DALCS_TRY(copy_row(t, i, &s->P, r, 0, -1.0));
         }
-        if (status == DALCS_OK) {
-            status = copy_row(&t, i, &s->A, r, s->n_x, 1.0);
-        }
-        if (status == DALCS_OK) {
-            status = copy_row(&t, i, &s->E, r, s->n_x + n_columns, 1.0);
-        }
+        DALCS_TRY(copy_row(t, i, &s->A, r, s->n_x, 1.0));
+        DALCS_TRY(copy_row(t, i, &s->E, r, s->n_x + n_columns, 1.0));
     }
-    if (status == DALCS_OK) {
-        status = dalcs_csr_compress(&f->check, f->n_checked, s->n_x + n_columns + s->n_inputs, &t);
-    }
-    dalcs_triplets_finish(&t);
-    return status;
+    return compress(&f->check, f->n_checked, s->n_x + n_columns + s->n_inputs, t);
 }
 
 /* x = v(a) - v(b) with unit coefficients leaves nothing to check: evaluating the row again would repeat
@@ -398,26 +393,26 @@ static bool is_definition(const struct elimination *e, int i) {
     return defines;
 }
 
-/* Numbers what is left, and splits the rows into K, R, X and Xu. */
-static enum dalcs_status collect(struct dalcs_step_form *f, const struct elimination *e,
-                                 const int *row_of_dual) {
+static enum dalcs_status make_room_for_form(struct dalcs_step_form *f,
+                                            const struct elimination *e) {
+    size_t n_equations = (size_t)dalcs_system_n_equations(e->s);
+    f->column_of = dalcs_arena_alloc(&f->arena, n_equations, sizeof(*f->column_of));
+    f->checked = dalcs_arena_alloc(&f->arena, n_equations, sizeof(*f->checked));
+    f->scale = dalcs_arena_alloc(&f->arena, (size_t)e->n_rows, sizeof(*f->scale));
+    f->row_scale = dalcs_arena_alloc(&f->arena, (size_t)e->n_rows, sizeof(*f->row_scale));
+    f->row_volts = dalcs_arena_alloc(&f->arena, n_equations, sizeof(*f->row_volts));
+    f->row_amperes = dalcs_arena_alloc(&f->arena, n_equations, sizeof(*f->row_amperes));
+    f->x_ends = dalcs_arena_alloc(&f->arena, 2 * (size_t)e->s->n_x, sizeof(*f->x_ends));
+    bool complete = f->column_of != NULL && f->checked != NULL && f->scale != NULL &&
+                    f->row_scale != NULL && f->row_volts != NULL && f->row_amperes != NULL &&
+                    f->x_ends != NULL;
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* Numbers what is left. */
+static void number_unknowns(struct dalcs_step_form *f, struct elimination *e) {
     const struct dalcs_system *s = e->s;
     int n_equations = dalcs_system_n_equations(s);
-    struct dalcs_triplets K = {0};
-    struct dalcs_triplets W = {0};
-    struct dalcs_triplets R = {0};
-    struct dalcs_triplets X = {0};
-    struct dalcs_triplets Xu = {0};
-    enum dalcs_status status = DALCS_E_NOMEM;
-    int *reduced = dalcs_alloc((size_t)e->n_left, sizeof(*reduced));
-    f->column_of = dalcs_alloc((size_t)n_equations, sizeof(*f->column_of));
-    f->checked = dalcs_alloc((size_t)n_equations, sizeof(*f->checked));
-    f->scale = dalcs_alloc((size_t)e->n_rows, sizeof(*f->scale));
-    f->row_scale = dalcs_alloc((size_t)e->n_rows, sizeof(*f->row_scale));
-    if (reduced == NULL || f->column_of == NULL || f->checked == NULL || f->scale == NULL ||
-        f->row_scale == NULL) {
-        goto done;
-    }
     for (int c = s->n_x; c < n_equations; c++) {
         f->column_of[f->n++] = c;
     }
@@ -427,86 +422,124 @@ static enum dalcs_status collect(struct dalcs_step_form *f, const struct elimina
         }
     }
     for (int i = 0; i < f->n; i++) {
-        reduced[f->column_of[i]] = i;
+        e->reduced[f->column_of[i]] = i;
     }
     for (int d = 0; d < s->n_pairs; d++) {
-        reduced[n_equations + d] = f->n + d;
+        e->reduced[n_equations + d] = f->n + d;
     }
-    status = DALCS_OK;
-    for (int i = 0; i < f->n + s->n_pairs && status == DALCS_OK; i++) {
-        const struct row *r =
-            &e->row[i < f->n ? row_of_dual[f->column_of[i]] : n_equations + i - f->n];
-        for (int k = 0; k < r->n && status == DALCS_OK; k++) {
-            status = r->column[k] < e->n_left
-                         ? dalcs_triplets_add(&K, reduced[r->column[k]], i, r->value[k])
-                         : dalcs_triplets_add(&R, i, r->column[k] - e->n_left, r->value[k]);
-            if (status == DALCS_OK && i >= f->n && r->column[k] < e->n_left) {
-                status = dalcs_triplets_add(&W, i - f->n, reduced[r->column[k]], r->value[k]);
+}
+
+/* Row i of what is left. */
+static const struct row *row_left(const struct dalcs_step_form *f, const struct elimination *e,
+                                  int i) {
+    return &e->row[i < f->n ? e->row_of_dual[f->column_of[i]]
+                            : dalcs_system_n_equations(e->s) + i - f->n];
+}
+
+static enum dalcs_status collect_K(struct dalcs_step_form *f, const struct elimination *e,
+                                   struct dalcs_triplets *t) {
+    int n = f->n + f->n_pairs;
+    for (int i = 0; i < n; i++) {
+        const struct row *r = row_left(f, e, i);
+        for (int k = 0; k < r->n; k++) {
+            if (r->column[k] < e->n_left) {
+                DALCS_TRY(dalcs_triplets_add(t, e->reduced[r->column[k]], i, r->value[k]));
             }
         }
     }
-    for (int x = 0; x < s->n_x && status == DALCS_OK; x++) {
+    return compress(&f->K, n, n, t);
+}
+
+static enum dalcs_status collect_W(struct dalcs_step_form *f, const struct elimination *e,
+                                   struct dalcs_triplets *t) {
+    for (int d = 0; d < f->n_pairs; d++) {
+        const struct row *r = row_left(f, e, f->n + d);
+        for (int k = 0; k < r->n; k++) {
+            if (r->column[k] < e->n_left) {
+                DALCS_TRY(dalcs_triplets_add(t, d, e->reduced[r->column[k]], r->value[k]));
+            }
+        }
+    }
+    return compress(&f->W, f->n_pairs, f->n + f->n_pairs, t);
+}
+
+static enum dalcs_status collect_R(struct dalcs_step_form *f, const struct elimination *e,
+                                   struct dalcs_triplets *t) {
+    int n = f->n + f->n_pairs;
+    for (int i = 0; i < n; i++) {
+        const struct row *r = row_left(f, e, i);
+        for (int k = 0; k < r->n; k++) {
+            if (r->column[k] >= e->n_left) {
+                DALCS_TRY(dalcs_triplets_add(t, i, r->column[k] - e->n_left, r->value[k]));
+            }
+        }
+    }
+    return compress(&f->R, n, f->n_u, t);
+}
+
+static enum dalcs_status collect_X(struct dalcs_step_form *f, const struct elimination *e,
+                                   struct dalcs_triplets *t) {
+    for (int x = 0; x < e->s->n_x; x++) {
         if (e->pivot_row[x] < 0) {
-            status = dalcs_triplets_add(&X, x, x, 1.0);
+            DALCS_TRY(dalcs_triplets_add(t, x, x, 1.0));
             continue;
         }
         const struct row *r = &e->row[e->pivot_row[x]];
         double pivot = *row_find(r, x);
-        for (int k = 0; k < r->n && status == DALCS_OK; k++) {
-            if (r->column[k] >= e->n_left) {
-                status = dalcs_triplets_add(&Xu, x, r->column[k] - e->n_left, r->value[k] / pivot);
-            } else if (r->column[k] != x) {
-                status = dalcs_triplets_add(&X, x, r->column[k], -r->value[k] / pivot);
+        for (int k = 0; k < r->n; k++) {
+            if (r->column[k] < e->n_left && r->column[k] != x) {
+                DALCS_TRY(dalcs_triplets_add(t, x, r->column[k], -r->value[k] / pivot));
             }
         }
     }
-    for (int i = 0; i < n_equations; i++) {
-        if (!is_definition(e, i)) {
-            f->checked[f->n_checked++] = i;
+    return compress(&f->X, e->s->n_x, e->n_left, t);
+}
+
+static enum dalcs_status collect_Xu(struct dalcs_step_form *f, const struct elimination *e,
+                                    struct dalcs_triplets *t) {
+    for (int x = 0; x < e->s->n_x; x++) {
+        const struct row *r = e->pivot_row[x] < 0 ? NULL : &e->row[e->pivot_row[x]];
+        for (int k = 0; r != NULL && k < r->n; k++) {
+            if (r->column[k] >= e->n_left) {
+                DALCS_TRY(dalcs_triplets_add(t, x, r->column[k] - e->n_left,
+                                             r->value[k] / *row_find(r, x)));
+            }
         }
     }
-    int n = f->n + s->n_pairs;
-    if (status == DALCS_OK) {
-        status = dalcs_csr_compress(&f->K, n, n, &K);
-    }
-    if (status == DALCS_OK) {
-        status = dalcs_csr_compress(&f->R, n, f->n_u, &R);
-    }
-    if (status == DALCS_OK) {
-        status = dalcs_csr_compress(&f->W, s->n_pairs, n, &W);
-    }
-    if (status == DALCS_OK) {
-        status = dalcs_csr_compress(&f->X, s->n_x, e->n_left, &X);
-    }
-    if (status == DALCS_OK) {
-        status = dalcs_csr_compress(&f->Xu, s->n_x, f->n_u, &Xu);
-    }
-    f->x_ends = dalcs_alloc(2 * (size_t)s->n_x, sizeof(*f->x_ends));
-    if (status == DALCS_OK && f->x_ends == NULL) {
-        status = DALCS_E_NOMEM;
-    }
-    for (int x = 0; status == DALCS_OK && x < s->n_x; x++) {
+    return compress(&f->Xu, e->s->n_x, f->n_u, t);
+}
+
+/* Splits the rows into K, R, X and Xu. */
+static enum dalcs_status collect_all(struct dalcs_step_form *f, struct elimination *e,
+                                     struct dalcs_triplets *t) {
+    const struct dalcs_system *s = e->s;
+    DALCS_TRY(make_room_for_form(f, e));
+    number_unknowns(f, e);
+    DALCS_TRY(collect_K(f, e, t));
+    DALCS_TRY(collect_W(f, e, t));
+    DALCS_TRY(collect_R(f, e, t));
+    DALCS_TRY(collect_X(f, e, t));
+    DALCS_TRY(collect_Xu(f, e, t));
+    for (int x = 0; x < s->n_x; x++) {
         dalcs_csr_row_difference(&f->X, x, &f->x_ends[2 * x]);
         if (f->Xu.p[x] != f->Xu.p[x + 1]) {
             f->x_ends[2 * x] = -1;
         }
     }
-    if (status == DALCS_OK) {
-        status = measure_rows(f, s);
+    for (int i = 0; i < dalcs_system_n_equations(s); i++) {
+        if (!is_definition(e, i)) {
+            f->checked[f->n_checked++] = i;
+        }
     }
-    if (status == DALCS_OK) {
-        status = gather_checked_rows(f, s);
-    }
-    if (status == DALCS_OK) {
-        status = balance(f);
-    }
-done:
-    dalcs_triplets_finish(&K);
-    dalcs_triplets_finish(&W);
-    dalcs_triplets_finish(&R);
-    dalcs_triplets_finish(&X);
-    dalcs_triplets_finish(&Xu);
-    free(reduced);
+    DALCS_TRY(gather_checked_rows(f, s, t));
+    measure_rows(f, s);
+    return balance(f, e);
+}
+
+static enum dalcs_status collect(struct dalcs_step_form *f, struct elimination *e) {
+    struct dalcs_triplets t = {0};
+    enum dalcs_status status = collect_all(f, e, &t);
+    dalcs_triplets_finish(&t);
     return status;
 }
 
@@ -520,50 +553,50 @@ static void elimination_finish(struct elimination *e) {
     for (int x = 0; e->users != NULL && x < e->s->n_x; x++) {
         free(e->users[x].row);
     }
-    free(e->row);
-    free(e->users);
-    free(e->where);
-    free(e->pivot_row);
-    free(e->is_pivot);
+    dalcs_arena_finish(&e->work);
+}
+
+static enum dalcs_status elimination_setup(struct elimination *e, const struct dalcs_system *s) {
+    int n_equations = dalcs_system_n_equations(s);
+    *e = (struct elimination){
+        .s = s, .n_rows = n_equations + s->n_pairs, .n_left = dalcs_system_n_columns(s)};
+    size_t n_all = (size_t)(e->n_left + s->n_x + s->n_inputs);
+    size_t n_rows = (size_t)e->n_rows;
+    size_t n_x = (size_t)s->n_x;
+    e->row = dalcs_arena_alloc(&e->work, n_rows, sizeof(*e->row));
+    e->users = dalcs_arena_alloc(&e->work, n_x, sizeof(*e->users));
+    e->where = dalcs_arena_alloc(&e->work, n_all, sizeof(*e->where));
+    e->pivot_row = dalcs_arena_alloc(&e->work, n_x, sizeof(*e->pivot_row));
+    e->is_pivot = dalcs_arena_alloc(&e->work, n_rows, sizeof(*e->is_pivot));
+    e->row_of_dual = dalcs_arena_alloc(&e->work, (size_t)n_equations, sizeof(*e->row_of_dual));
+    e->reduced = dalcs_arena_alloc(&e->work, (size_t)e->n_left, sizeof(*e->reduced));
+    if (e->row == NULL || e->users == NULL || e->where == NULL || e->pivot_row == NULL ||
+        e->is_pivot == NULL || e->row_of_dual == NULL || e->reduced == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k < n_all; k++) {
+        e->where[k] = -1;
+    }
+    for (int i = 0; i < n_equations; i++) {
+        e->row_of_dual[s->dual[i]] = i;
+    }
+    return make_room(e);
+}
+
+static enum dalcs_status build(struct dalcs_step_form *form, struct elimination *e) {
+    DALCS_TRY(elimination_setup(e, e->s));
+    DALCS_TRY(fill_rows(e, form->sigma));
+    DALCS_TRY(eliminate_states(e));
+    return collect(form, e);
 }
 
 enum dalcs_status dalcs_step_form_build(struct dalcs_step_form *form,
                                         const struct dalcs_system *system, double sigma) {
-    const struct dalcs_system *s = system;
-    int n_equations = dalcs_system_n_equations(s);
-    int n_left = dalcs_system_n_columns(s);
     *form = (struct dalcs_step_form){
-        .sigma = sigma, .n_pairs = s->n_pairs, .n_u = s->n_x + s->n_inputs};
-    struct elimination e = {.s = s, .n_rows = n_equations + s->n_pairs, .n_left = n_left};
-    size_t n_all = (size_t)(n_left + form->n_u);
-    e.row = dalcs_alloc((size_t)e.n_rows, sizeof(*e.row));
-    e.users = dalcs_alloc((size_t)s->n_x, sizeof(*e.users));
-    e.where = dalcs_alloc(n_all, sizeof(*e.where));
-    e.pivot_row = dalcs_alloc((size_t)s->n_x, sizeof(*e.pivot_row));
-    e.is_pivot = dalcs_alloc((size_t)e.n_rows, sizeof(*e.is_pivot));
-    int *row_of_dual = dalcs_alloc((size_t)n_equations, sizeof(*row_of_dual));
-    enum dalcs_status status = DALCS_E_NOMEM;
-    if (e.row != NULL && e.users != NULL && e.where != NULL && e.pivot_row != NULL &&
-        e.is_pivot != NULL && row_of_dual != NULL) {
-        for (size_t k = 0; k < n_all; k++) {
-            e.where[k] = -1;
-        }
-        for (int i = 0; i < n_equations; i++) {
-            row_of_dual[s->dual[i]] = i;
-        }
-        status = make_room(&e);
-        if (status == DALCS_OK) {
-            status = fill_rows(&e, sigma);
-        }
-        if (status == DALCS_OK) {
-            status = eliminate_states(&e, row_of_dual);
-        }
-        if (status == DALCS_OK) {
-            status = collect(form, &e, row_of_dual);
-        }
-    }
+        .sigma = sigma, .n_pairs = system->n_pairs, .n_u = system->n_x + system->n_inputs};
+    struct elimination e = {.s = system};
+    enum dalcs_status status = build(form, &e);
     elimination_finish(&e);
-    free(row_of_dual);
     if (status != DALCS_OK) {
         dalcs_step_form_finish(form);
     }
@@ -571,13 +604,7 @@ enum dalcs_status dalcs_step_form_build(struct dalcs_step_form *form,
 }
 
 void dalcs_step_form_finish(struct dalcs_step_form *form) {
-    free(form->column_of);
-    free(form->scale);
-    free(form->row_scale);
-    free(form->checked);
-    free(form->x_ends);
-    free(form->row_volts);
-    free(form->row_amperes);
+    dalcs_arena_finish(&form->arena);
     dalcs_csr_finish(&form->K);
     dalcs_csr_finish(&form->check);
     dalcs_csr_finish(&form->W);

@@ -45,6 +45,7 @@ struct dalcs_step_form {
     struct dalcs_csr check; /* [n_checked] those rows over (sigma (x+ - x_k), y, s) side by side */
     double *row_volts;      /* [n_equations] sum of |coefficients| on voltages, sigma P included */
     double *row_amperes;    /* [n_equations] the same on currents */
+    struct dalcs_arena arena; /* vectors */
 };
 
 /* Condenses the system at sigma. On failure *form is zeroed. */

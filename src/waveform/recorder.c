@@ -20,21 +20,21 @@ enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
         .network = network, .sink = sink, .schedule = *schedule, .keep = keep, .limit = limit};
     size_t n = (size_t)network->n_outputs;
     r->n_shown = network->n_outputs;
-    r->now = dalcs_alloc(n, sizeof(double));
-    r->before = dalcs_alloc(n, sizeof(double));
-    r->row = dalcs_alloc(n, DALCS_MOST_ROWS * sizeof(double));
-    r->seen = dalcs_alloc((size_t)network->n_systems, sizeof(*r->seen));
-    r->jump_state = dalcs_alloc((size_t)network->n_states, sizeof(*r->jump_state));
+    r->now = dalcs_arena_alloc(&r->arena, n, sizeof(double));
+    r->before = dalcs_arena_alloc(&r->arena, n, sizeof(double));
+    r->row = dalcs_arena_alloc(&r->arena, n, DALCS_MOST_ROWS * sizeof(double));
+    r->seen = dalcs_arena_alloc(&r->arena, (size_t)network->n_systems, sizeof(*r->seen));
+    r->jump_state = dalcs_arena_alloc(&r->arena, (size_t)network->n_states, sizeof(*r->jump_state));
     bool complete = r->now != NULL && r->before != NULL && r->row != NULL && r->seen != NULL &&
                     r->jump_state != NULL;
     size_t most_pairs = 0;
     for (int k = 0; complete && k < network->n_systems; k++) {
         size_t n_pairs = (size_t)network->system[k].n_pairs;
         most_pairs = n_pairs > most_pairs ? n_pairs : most_pairs;
-        r->seen[k] = dalcs_alloc((n_pairs + 63) / 64, sizeof(uint64_t));
+        r->seen[k] = dalcs_arena_alloc(&r->arena, (n_pairs + 63) / 64, sizeof(uint64_t));
         complete = r->seen[k] != NULL;
     }
-    r->impulse = dalcs_alloc(2 * most_pairs, sizeof(*r->impulse));
+    r->impulse = dalcs_arena_alloc(&r->arena, 2 * most_pairs, sizeof(*r->impulse));
     complete = complete && r->impulse != NULL;
     if (!complete) {
         dalcs_recorder_finish(r);
@@ -44,17 +44,8 @@ enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
 }
 
 void dalcs_recorder_finish(struct dalcs_recorder *r) {
-    for (int k = 0; r->seen != NULL && k < r->network->n_systems; k++) {
-        free(r->seen[k]);
-    }
-    free(r->seen);
-    free(r->now);
-    free(r->before);
-    free(r->row);
     free(r->event);
     free(r->jump);
-    free(r->jump_state);
-    free(r->impulse);
     dalcs_arena_finish(&r->arena);
     *r = (struct dalcs_recorder){0};
 }

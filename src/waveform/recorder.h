@@ -39,7 +39,7 @@ struct dalcs_recorder {
     size_t n_events, event_capacity, n_events_dropped;
     struct dalcs_jump *jump;
     size_t n_jumps, jump_capacity, n_jumps_dropped;
-    struct dalcs_arena arena;            /* what jumps point to */
+    struct dalcs_arena arena; /* what jumps point to, and what has the same size during the run */
     struct dalcs_jump_state *jump_state; /* work [n_states]: what a jump is made of */
     struct dalcs_impulse *impulse;       /* work [2 * pairs of the largest system] */
 };
