@@ -229,13 +229,13 @@ static void append(struct dalcs_radau_part *part, const struct dalcs_leap_moment
     memcpy(cycle->mode + (size_t)cycle->n * n_words, part->component->osnsp.mode,
            n_words * sizeof(uint64_t));
     cycle->segment[cycle->n++] =
-        (struct cycle_segment){.brief = dalcs_transition_known(part)->of_span, .began = *began};
+        (struct cycle_segment){.brief = dalcs_transition_known(part)->span.brief, .began = *began};
 }
 
 static bool is_segment(const struct dalcs_radau_part *part, int k,
                        const struct dalcs_leap_moment *began) {
     const struct cycle_segment *segment = &part->cycle->segment[k];
-    bool is = segment->brief == dalcs_transition_known(part)->of_span &&
+    bool is = segment->brief == dalcs_transition_known(part)->span.brief &&
               segment->began.n_moves == began->n_moves;
     for (int i = 0; i < began->n_moves && is; i++) {
         is = segment->began.move[i].command == began->move[i].command &&
@@ -258,7 +258,7 @@ enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r, struct dalcs_rad
     struct dalcs_cycle *cycle = part->cycle;
     /* A ledger of energies needs every segment. */
     bool recurred = r->base->energy == NULL && part->brief != NULL &&
-                    part->brief == dalcs_transition_known(part)->of_span;
+                    part->brief == dalcs_transition_known(part)->span.brief;
     cycle->in_a_row = recurred ? cycle->in_a_row + 1 : 0;
     if (cycle->in_a_row < FEWEST_IN_A_ROW) {
         if (cycle->n > 0) {

@@ -38,6 +38,14 @@ enum { DALCS_MANY_PAIRS = 64 };
 /* Spans between commands that maps are made for: one PULSE has two. */
 enum { DALCS_SPANS = 4 };
 
+/* A length that may come back, and is then stepped at once; see recurrence.h. */
+struct dalcs_recurring {
+    double length;                   /* s, the last time; 0: none */
+    int times;                       /* in a row that it was the same */
+    int patience;                    /* until it is tried at once; 0: not looked at yet */
+    struct dalcs_stage_brief *brief; /* a step as long; NULL: none yet */
+};
+
 struct dalcs_radau_part {
     struct dalcs_component *component; /* its OSNSP, and y and u when evaluated */
     int index;
@@ -118,15 +126,9 @@ struct dalcs_radau_part {
         int level;
         int untried; /* rungs up to a length that was not tried when this one was found by analogy */
         int held;    /* times that `level` did */
-        double span;  /* s, from it to the next edge, the last time; recurrence.h */
-        int recurred; /* times in a row that it was the same */
-        int patience; /* until it is tried to step over it at once; 0: not looked at yet */
-        struct dalcs_stage_brief *of_span; /* a step as long; NULL: none yet */
-        double step;       /* s, that was enough up to what came then, the last time */
-        int step_level;    /* of the ladder, on which it was found */
-        int sufficed;      /* times in a row that it was */
-        int step_patience; /* until it is tried at once */
-        struct dalcs_stage_brief *of_step; /* NULL: none yet */
+        struct dalcs_recurring span; /* from it to the next edge */
+        struct dalcs_recurring step; /* that was enough up to what came then */
+        int step_level;              /* of the ladder, on which `step` was found */
     } * transition;
 
     int present_transition; /* the slot of the latest guess */

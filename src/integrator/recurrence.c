@@ -21,8 +21,21 @@ enum { OFTEN = 4, MOST_PATIENCE = 64 };
 /* States within this many times their scale need no new one. */
 static const double most_growth = 4.0;
 
-static int wait_longer(int patience) {
-    return patience < MOST_PATIENCE ? 2 * patience : MOST_PATIENCE;
+static void wait_longer(struct dalcs_recurring *recurring) {
+    recurring->patience =
+        recurring->patience < MOST_PATIENCE ? 2 * recurring->patience : MOST_PATIENCE;
+}
+
+/* A step that failed once may always fail. */
+static void let_go(struct dalcs_radau_part *part, struct dalcs_recurring *recurring) {
+    dalcs_recurrence_complete_before(part);
+    dalcs_transition_count(part, recurring, recurring->length);
+    wait_longer(recurring);
+}
+
+/* It is time to try one at once. */
+static bool is_due(const struct dalcs_recurring *recurring) {
+    return recurring->brief == NULL && recurring->times >= recurring->patience;
 }
 
 /* As the first such span had it: its map may be there. */
@@ -32,9 +45,9 @@ static double first_span(const struct dalcs_radau_part *part, double span) {
         return known;
     }
     for (int k = 0; k < DALCS_TRANSITIONS; k++) {
-        const struct dalcs_transition *other = &part->transition[k];
-        if (other->of_span != NULL && dalcs_length_is_same(other->span, part->t, part->t + span)) {
-            return other->span;
+        const struct dalcs_recurring *other = &part->transition[k].span;
+        if (other->brief != NULL && dalcs_length_is_same(other->length, part->t, part->t + span)) {
+            return other->length;
         }
     }
     return span;
@@ -106,18 +119,20 @@ static void take(struct dalcs_radau *r, struct dalcs_radau_part *part,
 
 /* Over a span of the same length as before. */
 static enum dalcs_status try_span(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                  struct dalcs_transition *known, double limit, bool *holds) {
-    if (known->of_span == NULL && known->recurred >= known->patience) {
-        known->recurred = 0;
-        known->span = first_span(part, known->span);
-        DALCS_TRY(find_map(part, known->span, false, &known->of_span));
-        known->patience = known->of_span != NULL ? known->patience : wait_longer(known->patience);
+                                  struct dalcs_recurring *span, double limit, bool *holds) {
+    if (is_due(span)) {
+        span->times = 0;
+        span->length = first_span(part, span->length);
+        DALCS_TRY(find_map(part, span->length, false, &span->brief));
+        if (span->brief == NULL) {
+            wait_longer(span);
+        }
     }
-    struct dalcs_stage_brief *step = known->of_span;
+    struct dalcs_stage_brief *step = span->brief;
     if (step == NULL) {
         return DALCS_OK;
     }
-    apply(part, step, known->span);
+    apply(part, step, span->length);
     bool outgrows;
     bool may_hold =
         is_accurate(r, part, step, &outgrows) && dalcs_guards_clear(r, part, step->guard);
@@ -126,20 +141,18 @@ static enum dalcs_status try_span(struct dalcs_radau *r, struct dalcs_radau_part
         part->t_end = limit;
         part->why = DALCS_END_AT_EDGE;
         take(r, part, step, 1.0);
-    } else if (!may_hold) { /* a step that failed once may always fail */
-        dalcs_recurrence_complete_before(part);
-        dalcs_transition_begin_span(part, known, known->span);
-        known->patience = wait_longer(known->patience);
+    } else if (!may_hold) {
+        let_go(part, span);
     }
     return DALCS_OK;
 }
 
-static void note_span(struct dalcs_radau_part *part, struct dalcs_transition *known) {
-    if (dalcs_length_is_same(known->span, part->t, part->t_end)) {
-        known->recurred++;
+static void note_span(struct dalcs_radau_part *part, struct dalcs_recurring *span) {
+    if (dalcs_length_is_same(span->length, part->t, part->t_end)) {
+        span->times++;
     } else {
-        dalcs_transition_begin_span(part, known, part->t_end - part->t);
-        known->patience = OFTEN;
+        dalcs_transition_count(part, span, part->t_end - part->t);
+        span->patience = OFTEN;
     }
 }
 
@@ -149,15 +162,15 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (known->step_level != part->level) {
         return DALCS_OK;
     }
-    if (known->of_step == NULL && known->sufficed >= known->step_patience) {
-        known->sufficed = 0;
-        DALCS_TRY(find_map(part, known->step, true, &known->of_step));
+    if (is_due(&known->step)) {
+        known->step.times = 0;
+        DALCS_TRY(find_map(part, known->step.length, true, &known->step.brief));
     }
-    struct dalcs_stage_brief *step = known->of_step;
+    struct dalcs_stage_brief *step = known->step.brief;
     if (step == NULL) {
         return DALCS_OK;
     }
-    apply(part, step, known->step);
+    apply(part, step, known->step.length);
     double end = dalcs_smaller(1.0, (limit - part->t) / part->h);
     double theta = end;
     bool outgrows;
@@ -175,14 +188,12 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         part->t_end = dalcs_smaller(t_end, limit);
         part->why = happens ? DALCS_END_AT_EVENT : DALCS_END_AT_EDGE;
         if (!happens) {
-            note_span(part, known); /* which is stepped at once when it recurs */
+            note_span(part, &known->span); /* which is stepped at once when it recurs */
         }
         dalcs_stage_brief_stop(&part->stages, step, theta);
         take(r, part, step, theta);
     } else if (!may_hold) {
-        dalcs_recurrence_complete_before(part);
-        dalcs_transition_begin_step(part, known, known->step);
-        known->step_patience = wait_longer(known->step_patience);
+        let_go(part, &known->step);
     }
     return DALCS_OK;
 }
@@ -192,8 +203,8 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
     struct dalcs_transition *known = dalcs_transition_known(part);
     int n_crossed = part->n_crossed; /* which began the segment */
     *holds = false;
-    if (dalcs_length_is_same(known->span, part->t, limit)) {
-        DALCS_TRY(try_span(r, part, known, limit, holds));
+    if (dalcs_length_is_same(known->span.length, part->t, limit)) {
+        DALCS_TRY(try_span(r, part, &known->span, limit, holds));
     }
     if (!*holds) {
         DALCS_TRY(try_step(r, part, known, limit, holds));
@@ -206,12 +217,12 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
 
 static void note_step(struct dalcs_radau_part *part, struct dalcs_transition *known) {
     bool is_enough = part->why != DALCS_END_OF_STEP && part->n_crossed <= 1;
-    if (is_enough && known->step == part->h) {
-        known->sufficed++;
+    if (is_enough && known->step.length == part->h) {
+        known->step.times++;
     } else {
-        dalcs_transition_begin_step(part, known, is_enough ? part->h : 0.0);
+        dalcs_transition_count(part, &known->step, is_enough ? part->h : 0.0);
         known->step_level = part->level;
-        known->step_patience = OFTEN;
+        known->step.patience = OFTEN;
     }
 }
 
@@ -222,13 +233,13 @@ void dalcs_recurrence_note(struct dalcs_radau_part *part) {
         return; /* factors for one span are too dear; what sources do between the nodes is not looked at */
     }
     if (part->why == DALCS_END_AT_EDGE) {
-        note_span(part, known);
+        note_span(part, &known->span);
     }
     note_step(part, known);
 }
 
 void dalcs_recurrence_begin(struct dalcs_radau_part *part) {
-    struct dalcs_stage_brief *step = dalcs_transition_known(part)->of_span;
+    struct dalcs_stage_brief *step = dalcs_transition_known(part)->span.brief;
     dalcs_stage_brief_apply(&part->stages, step, part->in);
     part->late = step->entry;
     part->brief = step;

@@ -28,8 +28,8 @@ enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
 void dalcs_transition_finish(struct dalcs_radau_part *part) {
     for (int k = 0; k < SLOTS && part->transition != NULL; k++) {
         if (part->transition[k].is_known) {
-            dalcs_transition_begin_span(part, &part->transition[k], 0.0);
-            dalcs_transition_begin_step(part, &part->transition[k], 0.0);
+            dalcs_transition_count(part, &part->transition[k].span, 0.0);
+            dalcs_transition_count(part, &part->transition[k].step, 0.0);
         }
     }
 }
@@ -38,20 +38,12 @@ struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *p
     return &part->transition[part->present_transition];
 }
 
-void dalcs_transition_begin_span(struct dalcs_radau_part *part, struct dalcs_transition *known,
-                                 double span) {
-    dalcs_stage_brief_destroy(&part->stages, known->of_span);
-    known->of_span = NULL;
-    known->span = span;
-    known->recurred = 0;
-}
-
-void dalcs_transition_begin_step(struct dalcs_radau_part *part, struct dalcs_transition *known,
-                                 double step) {
-    dalcs_stage_brief_destroy(&part->stages, known->of_step);
-    known->of_step = NULL;
-    known->step = step;
-    known->sufficed = 0;
+void dalcs_transition_count(struct dalcs_radau_part *part, struct dalcs_recurring *recurring,
+                            double length) {
+    dalcs_stage_brief_destroy(&part->stages, recurring->brief);
+    recurring->brief = NULL;
+    recurring->length = length;
+    recurring->times = 0;
 }
 
 /* Of part->modes_before. */
@@ -171,7 +163,7 @@ void dalcs_transition_learn(struct dalcs_radau_part *part, int level, int untrie
         known->is_known = true;
         copy_mode(modes, part->modes_before, 2 * words);
         copy_mode(modes + 2 * words, p->mode, words);
-        dalcs_transition_begin_span(part, known, 0.0);
-        dalcs_transition_begin_step(part, known, 0.0);
+        dalcs_transition_count(part, &known->span, 0.0);
+        dalcs_transition_count(part, &known->step, 0.0);
     }
 }

@@ -38,13 +38,9 @@ bool dalcs_transition_refuse(struct dalcs_radau_part *part);
 /* What the latest guess was taken from, or what was learned instead of it. */
 struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *part);
 
-/* It is counted from here how often `span` (s; 0: none yet) recurs, and the step of the one before is let go. */
-void dalcs_transition_begin_span(struct dalcs_radau_part *part, struct dalcs_transition *known,
-                                 double span);
-
-/* Likewise how often a step of that length (s) is enough. */
-void dalcs_transition_begin_step(struct dalcs_radau_part *part, struct dalcs_transition *known,
-                                 double step);
+/* It is counted from here how often `length` (s; 0: none) recurs, and the step of the one before is let go. */
+void dalcs_transition_count(struct dalcs_radau_part *part, struct dalcs_recurring *recurring,
+                            double length);
 
 /* After a guess of false: the segment holds with the part's level, `tried` was the first that was tried,
  * and the error promises steps longer by so many rungs. */

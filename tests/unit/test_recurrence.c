@@ -8,13 +8,13 @@
 
 static bool is_whole_span(void) {
     const struct dalcs_transition *known = dalcs_transition_known(r.part);
-    return known->of_span != NULL && r.part->h == known->span && r.part->end == 1.0;
+    return known->span.brief != NULL && r.part->h == known->span.length && r.part->end == 1.0;
 }
 
 /* A step that was enough for another segment is for this, up to whatever ends it. */
 static bool is_known_step(void) {
     const struct dalcs_transition *known = dalcs_transition_known(r.part);
-    return r.part->brief != NULL && r.part->brief == known->of_step;
+    return r.part->brief != NULL && r.part->brief == known->step.brief;
 }
 
 /* A chopper feeds a motor, whose voltage rises for a while: a little, so that its current only moves to

@@ -39,11 +39,11 @@ START_TEST(test_learns) {
     ck_assert(mode[0] == 5 && mode[1] == 6 && part.level == 17);
     ck_assert(!dalcs_transition_refuse(&part));
     ck_assert(mode[0] == 1 && mode[1] == 2 && part.level == 3);
-    dalcs_transition_known(&part)->span = 1.0;
+    dalcs_transition_known(&part)->span.length = 1.0;
     learn(5, 6, 16); /* the same */
-    ck_assert_double_eq(dalcs_transition_known(&part)->span, 1.0);
+    ck_assert_double_eq(dalcs_transition_known(&part)->span.length, 1.0);
     learn(7, 8, 4); /* something else this time */
-    ck_assert_double_eq(dalcs_transition_known(&part)->span, 0.0);
+    ck_assert_double_eq(dalcs_transition_known(&part)->span.length, 0.0);
     ck_assert(guess(1, 2));
     ck_assert(mode[0] == 7 && mode[1] == 8 && part.level == 4);
     ck_assert(!guess(1, 3));
