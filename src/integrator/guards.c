@@ -455,12 +455,24 @@ static bool is_beside_flipped(const struct dalcs_radau_part *part, int pair) {
     return found;
 }
 
+/* An open pair without the least voltage, where all answers are the only ones: to close it would change nothing. */
+static bool is_settled(const struct dalcs_radau_part *part, int pair) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const double *value = part->out + dalcs_system_n_equations(p->system) + pair;
+    bool settled = dalcs_osnsp_is_unique(p) && !dalcs_osnsp_is_on(p, pair);
+    for (int k = 0; k < l->n_nodes && settled; k++) {
+        settled = value[k * l->stride] == 0.0;
+    }
+    return settled;
+}
+
 bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determined,
                             const double *unit) {
     int n_pairs = part->component->system->n_pairs;
     bool tied = false;
     for (int d = 0; d < n_pairs && !tied && !(n_pairs > DALCS_MANY_PAIRS && part->flipped); d++) {
-        tied = dalcs_guards_is_tied(part, d, unit) &&
+        tied = dalcs_guards_is_tied(part, d, unit) && !is_settled(part, d) &&
                !(is_determined && was_tied(part, d, unit) && !is_beside_flipped(part, d));
     }
     return tied;

@@ -159,6 +159,11 @@ static inline bool dalcs_osnsp_is_open(const struct dalcs_osnsp *p) {
     return p->least_norm || (p->n_tied > 0 && p->form[0]->answers != DALCS_UNIQUE);
 }
 
+/* Is it known of the circuit that no answer of it is one of several, whatever is tied? */
+static inline bool dalcs_osnsp_is_unique(const struct dalcs_osnsp *p) {
+    return p->n_forms > 0 && p->form[0]->answers == DALCS_UNIQUE;
+}
+
 static inline bool dalcs_osnsp_is_on(const struct dalcs_osnsp *p, int pair) {
     return dalcs_mode_has(p->mode, pair);
 }
