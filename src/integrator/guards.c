@@ -364,11 +364,16 @@ bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
     return all;
 }
 
+/* V or A that rounding makes of a pair that is 0 where its whole unit is. */
+static double rounding_across(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    return dalcs_step_crossed(part, dalcs_osnsp_is_on(&part->component->osnsp, pair) ? 1 : 0, unit);
+}
+
 /* Are all of these no more than rounding makes of 0? */
 static bool is_nothing(const struct dalcs_radau_part *part, int pair, const double *value,
                        int stride, const double *unit) {
     double limit = dalcs_doubt_noise(part) * dalcs_guard_scale(part, pair, unit);
-    limit += dalcs_guard_rounding(part, pair, unit);
+    limit += dalcs_guard_rounding(part, pair, unit) + rounding_across(part, pair, unit);
     bool nothing = true;
     for (int k = 0; k < part->stages.layout.n_nodes && nothing; k++) {
         nothing = fabs(value[k * stride]) <= limit;
@@ -478,18 +483,20 @@ bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determi
     return tied;
 }
 
-/* Is its value at the end of the step above 0 by more than at the start, however little? */
-static bool grows(const struct dalcs_radau_part *part, int pair) {
+/* Is its value at the end of the step above 0 by more than at the start, however little that is beyond rounding? */
+static bool grows(const struct dalcs_radau_part *part, int pair, const double *unit) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
-    return value[(l->n_nodes - 1) * l->stride] > fabs(value[0]);
+    return value[(l->n_nodes - 1) * l->stride] >
+           dalcs_larger(fabs(value[0]), rounding_across(part, pair, unit));
 }
 
 bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     bool found = false;
     for (int d = 0; d < p->system->n_pairs && p->system->n_pairs <= DALCS_MANY_PAIRS; d++) {
-        if (dalcs_osnsp_is_on(p, d) && dalcs_guards_is_tied(part, d, unit) && !grows(part, d)) {
+        if (dalcs_osnsp_is_on(p, d) && dalcs_guards_is_tied(part, d, unit) &&
+            !grows(part, d, unit)) {
             dalcs_osnsp_command(p, d, false);
             found = true;
         }

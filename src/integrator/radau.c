@@ -153,25 +153,31 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
  * current through the least of its conductances, and a millionth of that counts as nothing. */
 static const double nothing = 1e-6;
 
+/* S: the least and the most that tie a voltage to a current in a row, over `time` where it is one of rates. */
+static void find_conductances(const struct dalcs_system *s, const struct dalcs_csr *m, int row,
+                              bool is_current, double time, double *least, double *most) {
+    for (int k = m->p[row]; k < m->p[row + 1]; k++) {
+        if (s->column_is_current[m->j[k]] != is_current && m->x[k] != 0.0) {
+            double size = fabs(m->x[k]) / time;
+            double g = is_current ? size : 1.0 / size;
+            *least = fmin(*least, g);
+            *most = fmax(*most, g);
+        }
+    }
+}
+
 static void find_cross_scales(const struct dalcs_system *s, double stop, double *cross) {
     double least = INFINITY;
     double most = 0.0;
-    for (int r = 0; r < dalcs_system_n_equations(s); r++) {
-        bool is_current = s->row_is_current[r];
-        for (int k = s->A.p[r]; k < s->A.p[r + 1]; k++) {
-            if (s->column_is_current[s->A.j[k]] != is_current && s->A.x[k] != 0.0) {
-                double g = is_current ? fabs(s->A.x[k]) : 1.0 / fabs(s->A.x[k]);
-                least = fmin(least, g);
-                most = fmax(most, g);
-            }
+    int n_equations = dalcs_system_n_equations(s);
+    for (int r = 0; r < n_equations; r++) {
+        find_conductances(s, &s->A, r, s->row_is_current[r], 1.0, &least, &most);
+        if (r < s->n_x) {
+            find_conductances(s, &s->P, r, s->row_is_current[r], stop, &least, &most);
         }
-        for (int k = r < s->n_x ? s->P.p[r] : 0; r < s->n_x && k < s->P.p[r + 1]; k++) {
-            if (s->column_is_current[s->P.j[k]] != is_current && s->P.x[k] != 0.0) {
-                double g = is_current ? fabs(s->P.x[k]) / stop : stop / fabs(s->P.x[k]);
-                least = fmin(least, g);
-                most = fmax(most, g);
-            }
-        }
+    }
+    for (int d = 0; d < s->n_pairs; d++) {
+        find_conductances(s, &s->C, d, !s->column_is_current[n_equations + d], 1.0, &least, &most);
     }
     cross[0] = most > 0.0 ? nothing / most : nothing;
     cross[1] = most > 0.0 ? nothing * least : nothing;

@@ -23,11 +23,6 @@ static const double smallest_pair = 1e-2;
 /* No column is known better than this part of what would balance the largest of the others. */
 static const double rounding_part = 2e-14;
 
-/* A voltage that is 0 is no better than what rounding of this step's currents drives through the
- * largest conductance of the circuit, nor a current than rounding of the voltages through the least:
- * the same part, over what find_cross_scales counts as nothing. */
-static const double crossed = 2e-8;
-
 /* Sources that disagree by more than this part of the largest signal. */
 static const double clash_part = 1e-9;
 
@@ -247,8 +242,8 @@ static void find_allowance(const struct dalcs_radau *r, const struct dalcs_radau
     a->least[0] = smallest_scale * q->unit[0];
     a->least[1] = smallest_scale * q->unit[1];
     a->least[2] = smallest_pair * q->unit[1];
-    a->besides[0] = r->besides[0] + crossed * part->cross[0] * q->here[1];
-    a->besides[1] = r->besides[1] + crossed * part->cross[1] * q->here[0];
+    a->besides[0] = r->besides[0] + dalcs_step_crossed(part, 0, q->here);
+    a->besides[1] = r->besides[1] + dalcs_step_crossed(part, 1, q->here);
     a->besides[2] = rounding_part * part->rounding * q->unit[1] + a->besides[1];
 }
 

@@ -13,6 +13,14 @@ struct dalcs_step_quality {
     double unit[2]; /* V, A: so far */
 };
 
+/* A voltage that is 0 is no better than what rounding of this step's currents drives through the
+ * largest conductance of the circuit, nor a current than rounding of the voltages through the least:
+ * 2e-14 of them, over what find_cross_scales counts as nothing. V or A; of: 0 of a voltage, 1 of a current. */
+static inline double dalcs_step_crossed(const struct dalcs_radau_part *part, int of,
+                                        const double unit[2]) {
+    return 2e-8 * part->cross[of] * unit[1 - of];
+}
+
 /* Of a part that is otherwise set up. */
 enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) DALCS_MUST_CHECK;
 

@@ -32,6 +32,7 @@ Lf o out 1m ic=4
 R out 0 1
 .tran 10u 100u uic
 """
+BRIDGE = "nothing conducts between a, b and m and the rest: s1, s2, d1, d2, d3 and d4 block"
 COILS = "loops of v1, l1, l2, l3, d1 and d2, with perfectly coupled coils"
 
 CASES = {
@@ -168,6 +169,21 @@ I1 0 a DC -1
 """, {signal: (lower, upper, "2 solutions of a circuit that is not passive")
       for signal, lower, upper in (("v(e)", -3, 3), ("v(a)", -1, 1), ("v(b)", -1, 3),
                                    ("i(e1)", -2, 0), ("i(d1)", 0, 2))}),
+    "before the first switch closes": ("""No current yet: 12 V across two coils are not to be taken for one
+V1 in 0 DC 12
+V2 g 0 PULSE(0 1 0 10n 10n 2u 10u)
+S1 in a g 0 SM
+S2 b 0 g 0 SM
+D1 a in DF
+D2 0 a DF
+D3 b in DF
+D4 0 b DF
+L1 a m 158.9u
+L2 m b 31.77m
+.model DF D(Ron=0 Vfwd=0.7)
+.model SM SW(Ron=1 Vt=0.5)
+.tran 10n 4n uic
+""", {signal: (-0.7, 12.7, BRIDGE) for signal in ("v(a)", "v(b)", "v(m)")}),
 }
 COILS_CASES = {
     "transformer": (TRANSFORMER.format(n=1), {
