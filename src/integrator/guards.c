@@ -11,8 +11,8 @@
 #include <float.h>
 #include <math.h>
 
-/* The part of its doubt that counts in later steps where such a pair goes on falling: a diode that waits for
- * the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. */
+/* The part of its doubt that counts in later steps where such a pair goes on falling, or stays where it is: a diode
+ * that waits for the whole band is wrong meanwhile, and a jump when it turns, which may turn its neighbours. */
 static const double falling_part = 1e-3;
 
 /* One that comes down to 0 from above and goes up again, as that of a peak detector without a load at each peak, may
@@ -248,7 +248,7 @@ static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *par
     if (part->fresh) {
         return doubt_at_first(part, value, stride, end, doubt);
     }
-    return value[last * stride] < value[0] ? falling_part * doubt : doubt;
+    return value[last * stride] < (1.0 - agreeing) * value[0] ? falling_part * doubt : doubt;
 }
 
 /* The first of the doubtful ones. */

@@ -5,7 +5,8 @@ usage: spike.py PROGRAM
 
 Errors of voltages across 13 mohm are amperes where a diode begins to conduct, and die away within nanoseconds.
 Those, and the spike, must not hide from then on that a diode's current of a microampere has the wrong sign: all
-voltages are those of a run with a far smaller tolerance, over their own largest values.
+voltages are those of a run with a far smaller tolerance, over their own largest values, and so are the times of
+all events.
 """
 
 import pathlib
@@ -22,6 +23,11 @@ TOLERANCES = 1e-5, 1e-6, 1e-7, 1e-8
 SIGNALS = "v(a1)", "v(b1)", "v(a2)", "v(b2)"
 
 
+def events(result):
+    """By element and side, in order: diodes may change sides in the same moment."""
+    return sorted((event["element"], event["state"], event["time"]) for event in result.report["events"])
+
+
 def main():
     program = sys.argv[1]
     checker = Checker("spike")
@@ -32,6 +38,10 @@ def main():
         if not checker.check(result.status == 0 == exact.status, f"{tolerance}: {result.stderr}"):
             continue
         checker.check(result.report["work"]["euler_steps"] == 0, f"{tolerance}: steps of implicit Euler")
+        found, wanted = events(result), events(exact)
+        if checker.check(len(found) == len(wanted), f"{tolerance}: {len(found)} events, not {len(wanted)}"):
+            late = max(abs(a[2] - b[2]) for a, b in zip(found, wanted))
+            checker.check(late <= 10 * tolerance * STOP, f"{tolerance}: events are off by {late:.1e} s")
         for signal in SIGNALS:
             column = exact.column(signal)
             error = max(abs(a - b) for a, b in zip(result.column(signal), column)) / max(map(abs, column))
