@@ -26,6 +26,10 @@ static const double agreeing = 0.01;
 /* A guard that begins a mode next to 0 is off by so many times that, as far as its beginning tells. */
 static const double began = 10.0;
 
+/* The voltage of a diode that has just opened, and rises, may begin so far below 0, over the largest: what a sum of
+ * siemens and microsiemens rounds of the latter, where only these lead on, is no event. */
+static const double blocking = 1e-9;
+
 /* An error of the polynomial may be so many bands at its start. */
 static const double shallow = 100.0;
 
@@ -40,6 +44,9 @@ static const double swing = 0.1, late_swing = 0.01;
 /* Falls this near to each other, in steps, are one event. */
 static const double same_on_maps = 1e-13;
 static const double same_on_factors = 1e-9;
+
+/* And those that are so near and no more than their doubt above 0 at the first of them. */
+static const double same_by_value = 1e-10;
 
 /* A fall this early in a step is one from the start; so early where no pair has changed sides and it was above 0
  * by no more than its doubt: from rest a circuit may begin to move as a power of time. */
@@ -229,6 +236,28 @@ static double doubt_at_first(struct dalcs_radau_part *part, const double *value,
     return depth;
 }
 
+/* Has it just changed sides, and rises from node to node, above what the rounding of a map would be? That of factors
+ * may be larger, but does not. */
+static bool has_crossed(const struct dalcs_radau_part *part, int pair, const double *value,
+                        int stride, const double *unit) {
+    int last = part->stages.layout.n_nodes - 1;
+    double least = dalcs_doubt_noise(part) / part->rounding * dalcs_guard_scale(part, pair, unit);
+    bool rises = part->flipped && value[last * stride] > dalcs_larger(least, fabs(value[0])) &&
+                 dalcs_guard_has_flipped(part, pair);
+    for (int k = 1; k <= last && rises; k++) {
+        rises = value[k * stride] > value[(k - 1) * stride];
+    }
+    return rises;
+}
+
+/* Is it a diode that has just opened, and whose reverse voltage rises? */
+static bool begins_to_block(const struct dalcs_radau_part *part, int guard, const double *value,
+                            int stride, const double *unit) {
+    return guard < part->component->system->n_pairs &&
+           !dalcs_osnsp_is_on(&part->component->osnsp, guard) &&
+           has_crossed(part, guard, value, stride, unit);
+}
+
 /* How far a guard may fall and is no event: where it is armed by rounding, `noise`, or as far as it may be touching
  * 0. */
 static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *part, int guard,
@@ -245,10 +274,37 @@ static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *par
     if (is_armed) {
         return dalcs_larger(noise, touching * doubt);
     }
+    if (part->fresh && begins_to_block(part, guard, value, stride, unit)) {
+        return dalcs_larger(dalcs_doubt_band(r, part), blocking) * scale;
+    }
     if (part->fresh) {
         return doubt_at_first(part, value, stride, end, doubt);
     }
     return value[last * stride] < (1.0 - agreeing) * value[0] ? falling_part * doubt : doubt;
+}
+
+/* Does a guard that falls at `theta` or later do so at an event that is no farther before than errors move it? Diodes
+ * in series open together, whichever has a rounding more: leaks alone would take that down, late. */
+static bool falls_with(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int guard,
+                       double event, double theta, const double *unit) {
+    if (!part->armed[guard] || theta - event > same_by_value) {
+        return false;
+    }
+    double work[DALCS_MAX_NODES];
+    int stride;
+    const double *value = values_of(part, guard, work, &stride);
+    double scale = dalcs_guard_scale(part, guard, unit);
+    return value_at(part, value, stride, event) <= dalcs_doubt_about(r, part, guard, scale, unit);
+}
+
+/* All that have crossed at `theta`. */
+static bool all_fall_with(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                          double event, double theta, const double *unit) {
+    bool all = part->n_crossed > 0;
+    for (int k = 0; k < part->n_crossed && all; k++) {
+        all = falls_with(r, part, part->crossed[k], event, theta, unit);
+    }
+    return all;
 }
 
 /* The first of the doubtful ones. */
@@ -290,10 +346,11 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         struct dalcs_crossing c = dalcs_crossing_find(part->stages.method, value, stride, end,
                                                       depth, part->n_crossed > 0 ? first : 0.0);
         bool is_late = c.theta >= too_late && value_at(part, value, stride, end) >= -band * scale;
-        if (!c.falls || is_late || c.theta > first + together) {
+        if (!c.falls || is_late ||
+            (c.theta > first + together && !falls_with(r, part, g, first, c.theta, unit))) {
             continue;
         }
-        if (c.theta < first - together) {
+        if (c.theta < first - together && !all_fall_with(r, part, c.theta, first, unit)) {
             part->n_crossed = 0;
             *at_once = false;
         }
@@ -379,20 +436,6 @@ static bool is_nothing(const struct dalcs_radau_part *part, int pair, const doub
         nothing = fabs(value[k * stride]) <= limit;
     }
     return nothing;
-}
-
-/* Has it just changed sides, and rises from node to node, above what the rounding of a map would be? That of factors
- * may be larger, but does not. */
-static bool has_crossed(const struct dalcs_radau_part *part, int pair, const double *value,
-                        int stride, const double *unit) {
-    int last = part->stages.layout.n_nodes - 1;
-    double least = dalcs_doubt_noise(part) / part->rounding * dalcs_guard_scale(part, pair, unit);
-    bool rises = part->flipped && value[last * stride] > dalcs_larger(least, fabs(value[0])) &&
-                 dalcs_guard_has_flipped(part, pair);
-    for (int k = 1; k <= last && rises; k++) {
-        rises = value[k * stride] > value[(k - 1) * stride];
-    }
-    return rises;
 }
 
 bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
