@@ -353,10 +353,13 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         if (c.theta < first - together && !all_fall_with(r, part, c.theta, first, unit)) {
             part->n_crossed = 0;
             *at_once = false;
+            part->slips = false;
         }
         first = dalcs_smaller(first, c.theta);
-        bool rests = part->fresh && !part->flipped && c.theta <= from_rest && c.peak <= depth;
-        bool soon = c.at_once || rests || (c.theta <= soon_after && c.peak <= band * scale);
+        bool slips = part->fresh && c.theta <= from_rest && c.peak <= depth;
+        part->slips = part->slips || slips;
+        bool soon = c.at_once || (slips && !part->flipped) ||
+                    (c.theta <= soon_after && c.peak <= band * scale);
         *at_once = *at_once || (!part->armed[g] && soon);
         part->crossed[part->n_crossed++] = g;
     }
@@ -367,6 +370,7 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
                                double end, const double *unit, bool *at_once) {
     part->n_crossed = 0;
     part->may_dip = false;
+    part->slips = false;
     *at_once = false;
     find_doubtful(part);
     return part->n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;

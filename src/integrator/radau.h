@@ -98,7 +98,9 @@ struct dalcs_radau_part {
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
     double *bound; /* [n_pairs + n_watched] in whole quads: none is below it in the present step */
-    bool may_dip;  /* one in doubt is below 0 in the present step, by less than its error */
+    bool
+        slips; /* what crosses in the first step of a mode does so early, from no more than its doubt */
+    bool may_dip; /* one in doubt is below 0 in the present step, by less than its error */
     int n_doubtful;
     int *doubtful; /* [n_pairs + n_watched] those whose bound is below 0 */
     int n_crossed;

@@ -528,6 +528,9 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         dalcs_step_reach(part, end, quality.unit);
         theta = dalcs_guards_first_fall(r, part, end, quality.unit, &at_once);
     }
+    if (part->slips && search->guessed && !search->front) {
+        return refuse(part, search);
+    }
     if (at_once && part->fresh) {
         return change_mode(r, part, search, quality.unit, done);
     }
