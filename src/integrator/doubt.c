@@ -54,12 +54,21 @@ double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, d
     return dalcs_doubt_noise(part) * dalcs_smaller(local, scale);
 }
 
-/* What errors of all that a guard is made of come to, which is no more than the band. */
+/* What errors of all that a guard is made of come to. */
+static double of_all(const struct dalcs_radau *r, const struct dalcs_radau_part *part, double size,
+                     double scale) {
+    return dalcs_doubts_over_tolerance * r->inner_tolerance * size +
+           dalcs_beyond_noise * dalcs_doubt_noise(part) * scale;
+}
+
+/* Which is no more than the band. */
 static double within_band(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                           double size, double scale) {
-    double own = dalcs_doubts_over_tolerance * r->inner_tolerance * size;
-    return dalcs_smaller(own + dalcs_beyond_noise * dalcs_doubt_noise(part) * scale,
-                         dalcs_doubt_band(r, part) * scale);
+    return dalcs_smaller(of_all(r, part, size, scale), dalcs_doubt_band(r, part) * scale);
+}
+
+static double spread_at_start(const struct dalcs_radau_part *part, int place) {
+    return dalcs_stage_spread(&part->stages, part->entry, place, part->in, part->scale);
 }
 
 double dalcs_doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
@@ -71,13 +80,23 @@ double dalcs_doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_p
     int place = dalcs_system_n_equations(s) + guard;
     double spread;
     if (dalcs_stage_has_map(part->entry)) {
-        spread = dalcs_stage_spread(&part->stages, part->entry, place, part->in, part->scale);
+        spread = spread_at_start(part, place);
     } else if (dalcs_osnsp_is_on(&part->component->osnsp, guard)) {
         spread = spread_of_current(part, guard, unit);
     } else {
         spread = spread_of(part, &s->C, guard, -1, unit);
     }
     return within_band(r, part, largest_of(part, place) + spread, scale);
+}
+
+double dalcs_doubt_of_closed(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                             int pair, double scale) {
+    double band = dalcs_doubt_band(r, part) * scale;
+    if (part->entry == NULL || !dalcs_stage_has_map(part->entry)) {
+        return band;
+    }
+    int place = dalcs_system_n_equations(part->component->system) + pair;
+    return dalcs_larger(band, of_all(r, part, spread_at_start(part, place), scale));
 }
 
 /* Is a row below -`least` at all nodes behind the start? */

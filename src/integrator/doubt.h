@@ -37,6 +37,11 @@ static inline double dalcs_doubt_band(const struct dalcs_radau *r,
 double dalcs_doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                          int guard, double scale, const double *unit);
 
+/* A that a pair may begin with, below 0, which has just closed: errors of voltages across milliohms, which die away
+ * within nanoseconds, may be more than the band. */
+double dalcs_doubt_of_closed(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                             int pair, double scale);
+
 /* The same of one that is not armed and may fall below 0. What errors of voltages across milliohms make of a
  * current at first dies away within the step: one that is below 0 throughout it, by more than what is left of
  * them at its end, is in no doubt. */

@@ -250,14 +250,6 @@ static bool has_crossed(const struct dalcs_radau_part *part, int pair, const dou
     return rises;
 }
 
-/* Is it a diode that has just opened, and whose reverse voltage rises? */
-static bool begins_to_block(const struct dalcs_radau_part *part, int guard, const double *value,
-                            int stride, const double *unit) {
-    return guard < part->component->system->n_pairs &&
-           !dalcs_osnsp_is_on(&part->component->osnsp, guard) &&
-           has_crossed(part, guard, value, stride, unit);
-}
-
 /* How far a guard may fall and is no event: where it is armed by rounding, `noise`, or as far as it may be touching
  * 0. */
 static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *part, int guard,
@@ -274,8 +266,11 @@ static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *par
     if (is_armed) {
         return dalcs_larger(noise, touching * doubt);
     }
-    if (part->fresh && begins_to_block(part, guard, value, stride, unit)) {
-        return dalcs_larger(dalcs_doubt_band(r, part), blocking) * scale;
+    if (part->fresh && guard < part->component->system->n_pairs &&
+        has_crossed(part, guard, value, stride, unit)) {
+        return dalcs_osnsp_is_on(&part->component->osnsp, guard)
+                   ? dalcs_doubt_of_closed(r, part, guard, scale)
+                   : dalcs_larger(dalcs_doubt_band(r, part), blocking) * scale;
     }
     if (part->fresh) {
         return doubt_at_first(part, value, stride, end, doubt);
@@ -559,6 +554,25 @@ bool dalcs_guards_turn_back(const struct dalcs_radau_part *part) {
     return turns;
 }
 
+/* Nodes at the start of the present segment at which a pair is negative and that does not count: what is over before
+ * it begins, and what a current is off by that begins. */
+static int count_excused(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int pair,
+                         const double *value, const double *unit) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    int n = 0;
+    if (!part->fresh || value[0] >= 0.0) {
+        return 0;
+    }
+    if (is_over_soon(r, part, value, l->stride, dalcs_guard_scale(part, pair, unit))) {
+        return 1;
+    }
+    bool begins = has_crossed(part, pair, value, l->stride, unit);
+    while (begins && n < l->n_nodes && value[n * l->stride] < 0.0) {
+        n++;
+    }
+    return n;
+}
+
 double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                                double end, const double *unit) {
     const struct dalcs_system *s = part->component->system;
@@ -568,10 +582,9 @@ double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_r
         int d = part->doubtful[i];
         const double *value = part->out + dalcs_system_n_equations(s) + d;
         double scale = dalcs_guard_scale(part, d, unit);
-        bool skips =
-            part->fresh && value[0] < 0.0 && is_over_soon(r, part, value, l->stride, scale);
         double least = 0.0;
-        for (int k = skips ? 1 : 0; k < l->n_nodes && part->stages.method->node[k] <= end; k++) {
+        int k = count_excused(r, part, d, value, unit);
+        for (; k < l->n_nodes && part->stages.method->node[k] <= end; k++) {
             least = dalcs_smaller(least, value[k * l->stride]);
         }
         if (least < 0.0) {
