@@ -3,7 +3,6 @@
 #include "energy.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Lengths of a micro-step over h, the next where one has no certified answer (a circuit that is not

@@ -3,7 +3,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
 /* Does input k enter an equation or a threshold, or command a switch along a curve? */
 static bool acts(const struct dalcs_excitation *excitation, int k,

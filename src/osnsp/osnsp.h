@@ -154,14 +154,14 @@ void dalcs_osnsp_find_ties(struct dalcs_osnsp *p, const double *u, const double 
 enum dalcs_status dalcs_osnsp_list_answers(struct dalcs_osnsp *p, double sigma, const double *u,
                                            int most, double *answer, int *n) DALCS_MUST_CHECK;
 
-/* May the last answer be one of several? Costs nothing where it is not. */
-static inline bool dalcs_osnsp_is_open(const struct dalcs_osnsp *p) {
-    return p->least_norm || (p->n_tied > 0 && p->form[0]->answers != DALCS_UNIQUE);
-}
-
 /* Is it known of the circuit that no answer of it is one of several, whatever is tied? */
 static inline bool dalcs_osnsp_is_unique(const struct dalcs_osnsp *p) {
     return p->n_forms > 0 && p->form[0]->answers == DALCS_UNIQUE;
+}
+
+/* May the last answer be one of several? Costs nothing where it is not. */
+static inline bool dalcs_osnsp_is_open(const struct dalcs_osnsp *p) {
+    return p->least_norm || (p->n_tied > 0 && !dalcs_osnsp_is_unique(p));
 }
 
 static inline bool dalcs_osnsp_is_on(const struct dalcs_osnsp *p, int pair) {

@@ -10,7 +10,6 @@
 #include "osnsp_internal.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Unknowns are held far more weakly than pairs, so that diodes decide what is not determined. */
@@ -83,47 +82,40 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
                                         int rung) {
     const struct dalcs_step_form *f = p->form[0];
     int n = f->n + f->n_pairs;
-    size_t capacity = (size_t)f->K.p[n] + (size_t)n;
-    int *start = dalcs_alloc((size_t)n + 1, sizeof(*start));
-    int *row = dalcs_alloc(capacity, sizeof(*row));
-    double *value = dalcs_alloc(capacity, sizeof(*value));
-    enum dalcs_status status = DALCS_E_NOMEM;
-    if (start != NULL && row != NULL && value != NULL) {
-        int out = 0;
-        for (int c = 0; c < n; c++) {
-            double diagonal = node_weight * eps_of(p, rung);
-            if (c >= f->n) {
-                int d = c - f->n;
-                diagonal = dalcs_osnsp_is_on(p, d) ? on_weight(p, d, rung) : 1.0;
-            }
-            bool seen = false;
-            for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
-                int r = f->K.j[k];
-                double a = f->K.x[k];
-                if (r >= f->n && !dalcs_osnsp_is_on(p, r - f->n)) {
-                    a *= off_weight(p, r - f->n, rung);
-                }
-                seen = seen || r == c;
-                row[out] = r;
-                value[out++] = r == c ? a + diagonal : a;
-            }
-            if (!seen) {
-                row[out] = c;
-                value[out++] = diagonal;
-            }
-            start[c + 1] = out;
+    struct dalcs_columns a;
+    DALCS_TRY(dalcs_columns_alloc(&a, n, (size_t)f->K.p[n] + (size_t)n));
+    int out = 0;
+    for (int c = 0; c < n; c++) {
+        double diagonal = node_weight * eps_of(p, rung);
+        if (c >= f->n) {
+            int d = c - f->n;
+            diagonal = dalcs_osnsp_is_on(p, d) ? on_weight(p, d, rung) : 1.0;
         }
-        /* The weights make it nonsingular; only an exact zero pivot is refused. */
-        status = DALCS_OK;
-        if (!dalcs_modes_factor_small(p, &entry->lu, n, start, row, value, 0.0)) {
-            dalcs_lu_keep_diagonal(&p->klu, true);
-            status = dalcs_lu_factor(&entry->lu, &p->klu, n, start, row, value, NULL, 0.0);
-            dalcs_lu_keep_diagonal(&p->klu, false);
+        bool seen = false;
+        for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
+            int r = f->K.j[k];
+            double value = f->K.x[k];
+            if (r >= f->n && !dalcs_osnsp_is_on(p, r - f->n)) {
+                value *= off_weight(p, r - f->n, rung);
+            }
+            seen = seen || r == c;
+            a.i[out] = r;
+            a.x[out++] = r == c ? value + diagonal : value;
         }
+        if (!seen) {
+            a.i[out] = c;
+            a.x[out++] = diagonal;
+        }
+        a.p[c + 1] = out;
     }
-    free(start);
-    free(row);
-    free(value);
+    /* The weights make it nonsingular; only an exact zero pivot is refused. */
+    enum dalcs_status status = DALCS_OK;
+    if (!dalcs_modes_factor_small(p, &entry->lu, n, a.p, a.i, a.x, 0.0)) {
+        dalcs_lu_keep_diagonal(&p->klu, true);
+        status = dalcs_lu_factor(&entry->lu, &p->klu, n, a.p, a.i, a.x, NULL, 0.0);
+        dalcs_lu_keep_diagonal(&p->klu, false);
+    }
+    dalcs_columns_finish(&a);
     return status;
 }
 
