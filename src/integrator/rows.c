@@ -2,10 +2,13 @@
 #include "rows.h"
 
 #include "dense_map.h"
+#include "extremes.h"
 #include "radau_internal.h"
 #include "recurrence.h"
+#include "step_error.h"
 #include "wide_vectors.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,11 +20,12 @@ static void count_probe(const struct dalcs_rows *rows, const struct dalcs_probe 
     }
 }
 
-static void list_probe(const struct dalcs_rows *rows, const struct dalcs_probe *probe, int output,
-                       double sign) {
+static void list_probe(const struct dalcs_rows *rows, const struct dalcs_probe *probe, bool is_all,
+                       int output, double sign) {
     if (probe->system >= 0) {
         struct dalcs_rows_part *p = &rows->part[probe->system];
-        p->signal[p->n_signals++] = (struct dalcs_row_signal){probe, output, sign};
+        bool is_column = is_all && probe->n_terms == 1 && probe->n_inputs == 0;
+        p->signal[p->n_signals++] = (struct dalcs_row_signal){probe, is_column, output, sign};
     }
 }
 
@@ -43,8 +47,8 @@ static enum dalcs_status list_signals(struct dalcs_rows *rows, const int *output
     }
     for (int i = 0; i < rows->n_outputs; i++) {
         const struct dalcs_output *out = &all[output != NULL ? output[i] : i];
-        list_probe(rows, &out->plus, i, 1.0);
-        list_probe(rows, &out->minus, i, -1.0);
+        list_probe(rows, &out->plus, out->minus.system < 0, i, 1.0);
+        list_probe(rows, &out->minus, out->plus.system < 0, i, -1.0);
     }
     return DALCS_OK;
 }
@@ -136,9 +140,11 @@ enum dalcs_status dalcs_rows_setup(struct dalcs_rows *rows, struct dalcs_radau *
                                    const int *output, int n_outputs) {
     *rows = (struct dalcs_rows){.radau = radau, .n_outputs = n_outputs};
     rows->value = dalcs_arena_alloc(&rows->arena, (size_t)n_outputs, sizeof(*rows->value));
+    rows->largest = dalcs_arena_alloc(&rows->arena, (size_t)n_outputs, sizeof(double));
     rows->part = dalcs_arena_alloc(&rows->arena, (size_t)radau->n_parts, sizeof(*rows->part));
     rows->asked = dalcs_arena_alloc(&rows->arena, (size_t)radau->n_parts, sizeof(int));
-    bool complete = rows->value != NULL && rows->part != NULL && rows->asked != NULL;
+    bool complete =
+        rows->value != NULL && rows->largest != NULL && rows->part != NULL && rows->asked != NULL;
     enum dalcs_status status = complete ? set_up_parts(rows, output) : DALCS_E_NOMEM;
     if (status != DALCS_OK) {
         dalcs_rows_finish(rows);
@@ -447,4 +453,40 @@ enum dalcs_status dalcs_rows_fill(struct dalcs_rows *rows, const double *time, i
     }
     *n_done = n;
     return DALCS_OK;
+}
+
+/* Of the tolerance: what does not jump is this close to where it was. */
+static const double join_part = 0.125;
+
+/* The largest that an output has been, as far as is known without a look at all rows. */
+static double size_of(const struct dalcs_rows *rows, const struct dalcs_radau_part *part,
+                      const struct dalcs_row_signal *signal) {
+    double size = rows->largest[signal->output];
+    if (!signal->is_column) {
+        return size;
+    }
+    const struct dalcs_probe_term *term = signal->probe->term;
+    double of_column = dalcs_step_scale(part, term->index, part->unit_scale);
+    return dalcs_larger(size, fabs(term->coefficient) * of_column);
+}
+
+static void join(struct dalcs_rows *rows, const struct dalcs_radau_part *part,
+                 const struct dalcs_row_signal *signal, double before) {
+    double *now = &rows->value[signal->output].at[0];
+    double *largest = &rows->largest[signal->output];
+    *largest = dalcs_larger(*largest, dalcs_larger(fabs(before), fabs(*now)));
+    double known = join_part * rows->radau->options.tolerance * size_of(rows, part, signal);
+    if (*now != 0.0 && fabs(*now - before) <= known) {
+        *now = before;
+    }
+}
+
+void dalcs_rows_join(struct dalcs_rows *rows, const double *before) {
+    for (int k = 0; k < rows->n_asked; k++) {
+        const struct dalcs_radau_part *part = &rows->radau->part[rows->asked[k]];
+        const struct dalcs_rows_part *p = &rows->part[rows->asked[k]];
+        for (int i = 0; i < p->n_signals && part->kind == DALCS_PART_STEPPED; i++) {
+            join(rows, part, &p->signal[i], before[p->signal[i].output]);
+        }
+    }
 }

@@ -24,7 +24,8 @@ struct dalcs_rows_part {
 
     struct dalcs_row_signal {
         const struct dalcs_probe *probe;
-        int output; /* among those of the rows */
+        bool is_column; /* of the part, and all of the output */
+        int output;     /* among those of the rows */
         double sign;
     } * signal; /* [n_signals] what outputs read of this part, those of an output in a row */
 
@@ -55,6 +56,7 @@ struct dalcs_rows {
     struct dalcs_radau *radau; /* borrowed */
     int n_outputs;
     union dalcs_row_values *value; /* [n_outputs] */
+    double *largest;               /* [n_outputs] at events */
     struct dalcs_rows_part *part;  /* [radau->n_parts] */
     int n_asked, *asked;           /* parts that are read or have to be solved */
     bool one_by_one;               /* one of them is */
@@ -74,5 +76,10 @@ void dalcs_rows_finish(struct dalcs_rows *rows);
  * first *n_done of them, at least one. */
 enum dalcs_status dalcs_rows_fill(struct dalcs_rows *rows, const double *time, int n,
                                   enum dalcs_side side, int *n_done) DALCS_MUST_CHECK;
+
+/* After the outputs on the right of an event: those that are no further from before[n_outputs], on its left,
+ * than errors may take them become that. There a step begins, where its polynomials of currents, and of what else
+ * has no memory, are least exact: what conducts from there on has a current that begins at 0, not below. */
+void dalcs_rows_join(struct dalcs_rows *rows, const double *before);
 
 #endif

@@ -199,6 +199,9 @@ static enum dalcs_status tell_progress(struct transient *c, long n) {
 static enum dalcs_status row(struct transient *c, enum dalcs_side side, bool is_due) {
     int n_done;
     DALCS_TRY(dalcs_rows_fill(&c->rows, &c->t, 1, side, &n_done));
+    if (side == DALCS_RIGHT) {
+        dalcs_rows_join(&c->rows, c->recorder->row); /* the row on the left was the last one */
+    }
     DALCS_TRY(dalcs_recorder_row(c->recorder, &c->rows, c->t, is_due));
     c->next_row = dalcs_recorder_due(c->recorder);
     return DALCS_OK;
