@@ -385,22 +385,54 @@ bool dalcs_guards_recover(const struct dalcs_radau *r, const struct dalcs_radau_
     return all;
 }
 
+/* Where in the step a guard that is below 0 at its start is above again; INFINITY if it is not. */
+static double rise_of(const struct dalcs_radau_part *part, const double *value, int stride) {
+    double negative[DALCS_MAX_NODES];
+    for (int i = 0; i < part->stages.layout.n_nodes; i++) {
+        negative[i] = -value[i * stride];
+    }
+    struct dalcs_crossing rise =
+        dalcs_crossing_find(part->stages.method, negative, 1, 1.0, 0.0, 0.0);
+    return value[0] < 0.0 && rise.falls ? rise.theta : INFINITY;
+}
+
 double dalcs_guards_recovery(const struct dalcs_radau_part *part) {
-    const struct dalcs_collocation *m = part->stages.method;
     double latest = 0.0;
     for (int k = 0; k < part->n_crossed; k++) {
         double work[DALCS_MAX_NODES];
-        double negative[DALCS_MAX_NODES];
         int stride;
         const double *value = values_of(part, part->crossed[k], work, &stride);
-        for (int i = 0; i < part->stages.layout.n_nodes; i++) {
-            negative[i] = -value[i * stride];
-        }
-        struct dalcs_crossing rise = dalcs_crossing_find(m, negative, 1, 1.0, 0.0, 0.0);
-        bool recovers = value[0] < 0.0 && rise.falls;
-        latest = dalcs_larger(latest, recovers ? rise.theta : INFINITY);
+        latest = dalcs_larger(latest, rise_of(part, value, stride));
     }
     return latest;
+}
+
+double dalcs_guards_rise(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                         double least, double most, const double *unit, bool *is_sure) {
+    int n_pairs = part->component->system->n_pairs;
+    double earliest = INFINITY;
+    *is_sure = false;
+    for (int k = 0; k < part->n_doubtful && n_pairs <= DALCS_MANY_PAIRS; k++) {
+        int d = part->doubtful[k];
+        if (d >= n_pairs) {
+            break;
+        }
+        double work[DALCS_MAX_NODES] = {0.0};
+        int stride;
+        const double *value = values_of(part, d, work, &stride);
+        double scale = dalcs_guard_scale(part, d, unit);
+        double noise = dalcs_beyond_noise * dalcs_doubt_noise(part) * scale;
+        if (!(value[0] < -noise) || !(value_at(part, value, stride, most) > 0.0)) {
+            continue;
+        }
+        noise += dalcs_guard_rounding(part, d, unit);
+        double rise = value[0] < -noise ? rise_of(part, value, stride) : INFINITY;
+        if (rise > least && rise < most) {
+            earliest = dalcs_smaller(earliest, rise);
+            *is_sure = *is_sure || value[0] < -noise - dalcs_doubt_band(r, part) * scale;
+        }
+    }
+    return earliest;
 }
 
 bool dalcs_guards_swing(const struct dalcs_radau_part *part) {

@@ -302,6 +302,7 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
         dalcs_commands_start(&part->commands);
         obey_commands(part);
         part->fresh = true;
+        part->seen = INFINITY;
         if (initial != NULL) {
             bool is_off; /* for the first segment to find */
             DALCS_TRY(dalcs_radau_restart(r, part, 0, false, &is_off));

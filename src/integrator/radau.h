@@ -114,6 +114,7 @@ struct dalcs_radau_part {
     double *cluster_charge; /* [n_equations] work of pair_laws.c */
     bool jumped;            /* at t, when the segment began */
     long held_back;         /* steps that would have been longer, had the longest one been */
+    double seen;   /* s: of the last micro-steps, both in one mode; INFINITY: not so, or none */
     bool slides;   /* micro-steps: a switch opens what closes it, and closes what opens it */
     bool by_euler; /* the segment is a step of implicit Euler */
     bool open;     /* its mode leaves something open, and nobody was told */

@@ -175,7 +175,10 @@ static enum dalcs_status micro_steps(struct dalcs_radau *r, struct dalcs_radau_p
     r->restarts++;
     DALCS_TRY(solve(r, part, h, h, part->x, part->y1));
     memcpy(part->w1, c->osnsp.w, (size_t)c->system->n_pairs * sizeof(double));
-    return solve(r, part, h, 2.0 * h, part->y1, part->y2);
+    long pivots = c->osnsp.counters.pivots;
+    DALCS_TRY(solve(r, part, h, 2.0 * h, part->y1, part->y2));
+    part->seen = c->osnsp.counters.pivots == pivots ? h : INFINITY;
+    return DALCS_OK;
 }
 
 /* Where a component is not passive, a state may jump although another one runs away, the farther the

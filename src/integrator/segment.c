@@ -275,12 +275,12 @@ static bool may_be_brief(const struct dalcs_radau *r, const struct dalcs_radau_p
 
 /* Asks the circuit by micro-steps that are shorter still, for a segment about as long as that. */
 static enum dalcs_status ask_closer(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                    struct search *search, double recovery) {
+                                    struct search *search, double recovery, bool mode_only) {
     search->closer = true;
     search->projected = false;
     search->asked_level = part->level - 2 - ilogb(recovery);
     start_over(part, search, search->asked_level);
-    return dalcs_radau_restart(r, part, search->restarts++, false, NULL);
+    return dalcs_radau_restart(r, part, search->restarts++, mode_only, NULL);
 }
 
 /* The mode is wrong from the start: asks the circuit, then tries the other sides. Unless it may be the
@@ -300,7 +300,7 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
     double recovery = may_be_brief(r, part, search) ? dalcs_guards_recovery(part) : INFINITY;
     bool is_resolved = recovery * part->h >= 64.0 * r->resolution; /* else no micro-step sees it */
     if (recovery > 0.0 && recovery < briefly && is_resolved) {
-        return ask_closer(r, part, search, recovery);
+        return ask_closer(r, part, search, recovery, false);
     }
     if (search->closer && search->flips_closer++ < MOST_FLIPS_CLOSER) {
         dalcs_guards_flip(part);
@@ -369,6 +369,40 @@ void dalcs_segment_accept(struct dalcs_radau *r, struct dalcs_radau_part *part, 
         part->fresh = false;
         part->flipped = false;
     }
+}
+
+/* At the start of a run the state is exact. A diode that is on the wrong side of 0 there, if only for picoseconds, is
+ * on the other one until then, and its change is an event. *holds: none is; micro-steps that end before say so where
+ * it may be the polynomial, which is least exact at its start. */
+static enum dalcs_status look_at_start(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       struct search *search, const double *unit, bool *holds) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    *holds = true;
+    bool is_exact = !part->jumped || r->base->jump.is_known;
+    if (!is_exact || search->closer || search->fixed) {
+        return DALCS_OK;
+    }
+    bool is_sure;
+    double least = 64.0 * r->resolution / part->h;
+    double most = dalcs_smaller(briefly, part->seen / part->h);
+    double rise = dalcs_guards_rise(r, part, least, most, unit, &is_sure);
+    if (!(rise < most)) {
+        return DALCS_OK;
+    }
+    int level = part->level;
+    memcpy(part->mode_tied, p->mode, (size_t)p->n_words * sizeof(uint64_t));
+    enum dalcs_status status = ask_closer(r, part, search, rise, true);
+    if (status < DALCS_OK) {
+        return status;
+    }
+    bool differs = status == DALCS_OK && !dalcs_mode_is(p->mode, part->mode_tied, p->n_words);
+    if (!differs) {
+        memcpy(p->mode, part->mode_tied, (size_t)p->n_words * sizeof(uint64_t));
+    }
+    *holds = !differs && !is_sure;
+    search->opened = search->opened && *holds;
+    part->level = *holds ? level : part->level;
+    return DALCS_OK;
 }
 
 /* All of a step of the ladder: a longer one may be as good. */
@@ -552,6 +586,13 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     bool may_dip = part->fresh && part->may_dip;
     if (may_refine(search) && (may_dip || dalcs_guards_swing(part))) {
         return refine(r, part, search);
+    }
+    bool holds = true;
+    if (part->t == 0.0) {
+        DALCS_TRY(look_at_start(r, part, search, quality.unit, &holds));
+    }
+    if (!holds) {
+        return DALCS_OK;
     }
     part->open = part->fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);
     accept(r, part, search, next, &quality, dalcs_stage_residual(entry));
