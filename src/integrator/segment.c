@@ -160,6 +160,25 @@ static enum dalcs_status tie_again(struct dalcs_radau_part *part, struct search 
     return DALCS_OK;
 }
 
+/* Those that have crossed cannot: they are closed again, and the others are tried without them. */
+static enum dalcs_status tie_crossed(struct dalcs_radau_part *part, struct search *search) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    bool found = false;
+    for (int k = 0; k < part->n_crossed; k++) {
+        int d = part->crossed[k];
+        bool was_on = d < p->system->n_pairs && dalcs_mode_has(part->mode_tied, d);
+        if (d < p->system->n_pairs && was_on != dalcs_osnsp_is_on(p, d)) {
+            dalcs_osnsp_command(p, d, was_on);
+            found = true;
+        }
+    }
+    if (!found) {
+        return tie_again(part, search);
+    }
+    search->opened = !dalcs_mode_is(p->mode, part->mode_tied, p->n_words);
+    return DALCS_OK;
+}
+
 static enum dalcs_status refuse(struct dalcs_radau_part *part, struct search *search) {
     bool stands = dalcs_transition_refuse(part);
     search->first_level = search->asked_level = part->level;
@@ -295,7 +314,7 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
         return refuse(part, search);
     }
     if (search->opened) {
-        return tie_again(part, search);
+        return tie_crossed(part, search);
     }
     double recovery = may_be_brief(r, part, search) ? dalcs_guards_recovery(part) : INFINITY;
     bool is_resolved = recovery * part->h >= 64.0 * r->resolution; /* else no micro-step sees it */
@@ -569,7 +588,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return change_mode(r, part, search, quality.unit, done);
     }
     if (search->opened && dalcs_guards_turn_back(part)) {
-        return tie_again(part, search);
+        return tie_crossed(part, search);
     }
     if (part->fresh && dalcs_twins_close(part, quality.unit)) {
         return DALCS_OK;
