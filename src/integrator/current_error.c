@@ -5,7 +5,8 @@
  * tolerance can make a current of 40 A wrong. And 0.1 A of two coils that meet at 70 kohm are 7 kV, so that a
  * ten millionth of them is a millivolt. Of other voltages nothing like it is asked: a coil cut off by
  * 10 Mohm has transients of 10 ps, which nobody wants to wait for. In most circuits no state has such a
- * lever; that is looked up now and then, and costs them nothing else. */
+ * lever; by maps that is looked up now and then, and costs them nothing else. Factors do not tell it: there all
+ * voltages count that resistors make of coils, and segment.c lets those pass that no shorter step mends. */
 #include "current_error.h"
 
 #include "extremes.h"
@@ -13,6 +14,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 /* What is left of the drift after its filter once more is this many times what currents are off by between
  * the nodes, while something dies away within the step to a third or less. */
@@ -46,6 +48,9 @@ static const double growth = 2.0;
 
 /* Voltages that errors of states move by no more than this, over what is allowed, are well known if states are. */
 static const double least_lever = 8.0;
+
+/* Probes of an entry on factors. */
+enum { PROBES = 2 };
 
 static double allowed_of(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int k,
                          const double unit[2], const double besides[2]) {
@@ -106,7 +111,7 @@ static void raise_parts(struct dalcs_radau_part *part, const struct dalcs_stage_
 }
 
 /* Has a state a lever in this step? The note of an entry counts its steps until that is looked up again:
- * positive without a lever, negative with one. On factors it is not looked up. */
+ * positive without a lever, negative with one. On factors it is not looked up, and the note is that of probes. */
 static bool may_matter(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                        struct dalcs_stage_entry *entry, const double unit[2],
                        const double besides[2]) {
@@ -115,18 +120,41 @@ static bool may_matter(const struct dalcs_radau *r, struct dalcs_radau_part *par
         --*note;
         return false;
     }
-    if (part->stages.n_levered == 0 || !dalcs_stage_has_map(entry)) {
-        return part->stages.n_currents > 0;
+    bool has = part->stages.n_levered > 0;
+    if (has && *note == 0 && dalcs_stage_has_map(entry)) {
+        has = has_lever(r, part, entry, unit, besides);
+        *note = has ? -STEPS_WITH : STEPS_BETWEEN;
+        if (has) {
+            raise_parts(part, entry);
+        }
     }
-    if (*note == 0) {
-        *note = has_lever(r, part, entry, unit, besides) ? -STEPS_WITH : STEPS_BETWEEN;
-    }
-    bool has = *note < 0;
-    if (*note == -STEPS_WITH) {
-        raise_parts(part, entry);
-    }
-    *note += has ? 1 : 0;
+    *note += *note < 0 ? 1 : 0;
     return has;
+}
+
+/* On factors no sum of all that states make of a voltage is known: probes of chance tell what rounding leaves in its
+ * drift. The note of the entry counts the steps until they are made again. */
+static void know_rounding(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry) {
+    struct dalcs_stages *stages = &part->stages;
+    struct dalcs_lever_probe *p = &part->probe;
+    int *note = dalcs_stage_note(entry);
+    if (dalcs_stage_has_map(entry) || (*note < 0 && p->entry == entry)) {
+        return;
+    }
+    *note = -STEPS_WITH;
+    p->entry = entry;
+    memset(p->rounding, 0, (size_t)stages->n_levered * sizeof(double));
+    for (int k = 0; k < PROBES; k++) {
+        dalcs_stages_draw(stages, k, part->in, part->scale, p->in);
+        if (dalcs_stages_try(stages, entry, p->in, part->out_tried, p->drift) != DALCS_OK) {
+            continue;
+        }
+        for (int i = stages->n_currents; i < stages->n_levered; i++) {
+            double rounding = roundings * part->rounding * fabs(p->drift[i]) +
+                              roundings_of_coils * fabs(part->out_tried[stages->levered[i]]);
+            p->rounding[i] = dalcs_larger(p->rounding[i], rounding);
+        }
+    }
 }
 
 /* What rounding may make of the drift of a current. */
@@ -138,33 +166,40 @@ static double rounding_of(const struct dalcs_radau_part *part,
         return roundings * dalcs_stage_spread_of_current(stages, entry, k, part->in, part->scale) +
                (is_current ? roundings_apart : roundings_of_coils) * part->current_parts[k];
     }
-    return on_factors * dalcs_step_rounding(part, entry) *
-           dalcs_stage_natural_units(entry)[stages->levered[k]];
+    double of_balanced = on_factors * dalcs_step_rounding(part, entry) *
+                         dalcs_stage_natural_units(entry)[stages->levered[k]];
+    return k < stages->n_currents ? of_balanced
+                                  : dalcs_larger(of_balanced, part->probe.rounding[k]);
 }
 
-double dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                           struct dalcs_stage_entry *entry, const double unit[2],
-                           const double besides[2], double *of_unit) {
+void dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                         struct dalcs_stage_entry *entry, const double unit[2],
+                         const double besides[2], struct dalcs_lever_error *e) {
     struct dalcs_stages *stages = &part->stages;
-    *of_unit = 0.0;
-    if (!may_matter(r, part, entry, unit, besides)) {
-        return 0.0;
+    *e = (struct dalcs_lever_error){0};
+    int n = may_matter(r, part, entry, unit, besides) ? stages->n_levered : 0;
+    if (n > 0) {
+        dalcs_stages_drift_of_currents(stages, entry, part->in, part->current_drift);
     }
-    dalcs_stages_drift_of_currents(stages, entry, part->in, part->current_drift);
-    double worst = noticed;
-    int n = dalcs_stage_has_map(entry) ? stages->n_levered : stages->n_currents;
+    double *worst = &e->of_currents;
     for (int k = 0; k < n; k++) {
+        worst = k < stages->n_currents ? &e->of_currents : &e->of_voltages;
         double error = fabs(part->current_drift[k]) / pessimism;
         double allowed = allowed_of(r, part, k, unit, besides);
-        bool counts = error > dalcs_smaller(worst, 1.0) * allowed &&
-                      error * pessimism > rounding_of(part, entry, k);
-        if (counts) {
-            worst = dalcs_larger(worst, error / allowed);
+        double least = dalcs_larger(noticed, dalcs_smaller(*worst, 1.0));
+        if (!(error > least * allowed)) {
+            continue;
         }
-        if (counts && error > allowed) {
+        if (k >= stages->n_currents) {
+            know_rounding(part, entry);
+        }
+        if (!(error * pessimism > rounding_of(part, entry, k))) {
+            continue;
+        }
+        *worst = dalcs_larger(*worst, error / allowed);
+        if (error > allowed) {
             double scale = unit[part->component->system->column_is_current[stages->levered[k]]];
-            *of_unit = dalcs_larger(*of_unit, error / scale);
+            e->of_unit = dalcs_larger(e->of_unit, error / scale);
         }
     }
-    return worst > noticed ? worst : 0.0;
 }

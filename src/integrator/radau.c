@@ -140,12 +140,18 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
         &part->arena, (size_t)dalcs_dense_map_rows(part->stages.n_levered), sizeof(double));
     part->current_parts =
         dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_levered, sizeof(double));
+    struct dalcs_lever_probe *probe = &part->probe;
+    size_t n_levered = (size_t)part->stages.n_levered;
+    probe->rounding = dalcs_arena_alloc(&part->arena, n_levered, sizeof(double));
+    probe->drift = dalcs_arena_alloc(&part->arena, n_levered, sizeof(double));
+    probe->in = dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_in, sizeof(double));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
                     part->in_before != NULL && part->out_before != NULL &&
                     part->out_tried != NULL && part->armed != NULL && part->crossed != NULL &&
                     part->tied != NULL && part->u != NULL && part->y1 != NULL && part->y2 != NULL &&
                     part->w1 != NULL && part->after != NULL && part->used_input != NULL &&
-                    part->current_drift != NULL && part->current_parts != NULL;
+                    part->current_drift != NULL && part->current_parts != NULL &&
+                    probe->rounding != NULL && probe->drift != NULL && probe->in != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 

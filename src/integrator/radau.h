@@ -94,7 +94,14 @@ struct dalcs_radau_part {
     struct dalcs_column_kinds *kinds; /* see step_error.c */
     double *current_drift;            /* [n_levered] in whole eights: see current_error.c */
     double *current_parts;            /* [n_levered] what they are made of, at most; ditto */
-    double unit_scale[2];             /* V, A: the largest of each */
+
+    struct dalcs_lever_probe {                 /* ditto */
+        const struct dalcs_stage_entry *entry; /* on factors, that was probed; NULL: none */
+        double *rounding;                      /* [n_levered] V, in the drift of voltages */
+        double *in, *drift;                    /* work, with out_tried */
+    } probe;
+
+    double unit_scale[2]; /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
     bool *armed;     /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
     double *bound; /* [n_pairs + n_watched] in whole quads: none is below it in the present step */

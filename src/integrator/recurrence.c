@@ -90,9 +90,11 @@ static bool is_accurate(const struct dalcs_radau *r, struct dalcs_radau_part *pa
         accurate = accurate && fabs(step->drift[x]) <= most_drift;
         *outgrows = *outgrows || fabs(step->last[x]) > most_last;
     }
-    double of_unit;
-    return accurate &&
-           dalcs_current_error(r, part, step->entry, part->unit_scale, r->besides, &of_unit) <= 1.0;
+    struct dalcs_lever_error e = {0};
+    if (accurate) {
+        dalcs_current_error(r, part, step->entry, part->unit_scale, r->besides, &e);
+    }
+    return accurate && e.of_currents <= 1.0 && e.of_voltages <= 1.0;
 }
 
 /* A step of length h from part->t, by its brief map. */

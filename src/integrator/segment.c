@@ -38,6 +38,7 @@ static const double outsized = 1e6;
 enum {
     MOST_PREFERRED = 2, /* rungs of the ladder, for the sake of factors */
     STUCK = 3,          /* smaller steps without a smaller error */
+    LEVERED_STUCK = 2,  /* of levered voltages alone */
     VERY_STUCK = 8,
     MOST_RESTARTS = 4,
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
@@ -96,6 +97,7 @@ struct search {
     double ratio_before;
     int level_before_stuck;
     double tolerated; /* the ratio that is let pass */
+    bool spared;      /* errors of states alone count */
 };
 
 /* See projection.h. */
@@ -111,6 +113,7 @@ static void start_over(struct dalcs_radau_part *part, struct search *search, int
         part->level = level;
     }
     search->stuck = 0;
+    search->spared = false;
     search->ratio_before = INFINITY;
 }
 
@@ -220,19 +223,19 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
                                  bool *done) {
     /* The step that suits a front is not remembered: it may have to be shorter. */
     bool may_shorten =
-        search->front && !search->fixed && search->stuck == 0 && quality->ratio < most_projected;
+        search->front && !search->fixed && search->stuck == 0 && quality->own < most_projected;
     if (search->guessed && !may_shorten) {
         return refuse(part, search);
     }
     if (search->opened) {
         return tie_again(part, search);
     }
-    if (part->fresh && search->restarts == 0 && is_worth_asking(part, search, quality->ratio)) {
+    if (part->fresh && search->restarts == 0 && is_worth_asking(part, search, quality->own)) {
         return restart(r, part, search, false);
     }
     bool asked = search->restarts > 0 || !part->fresh;
     bool may_project = !search->fixed && !search->projected && !search->states_free && asked;
-    if (quality->ratio < most_projected && may_project && dalcs_projection_sees(part, false)) {
+    if (quality->own < most_projected && may_project && dalcs_projection_sees(part, false)) {
         bool moved;
         DALCS_TRY(project(r, part, search, &moved));
         if (moved) {
@@ -254,12 +257,19 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
         part->level = search->level_before_stuck;
         return DALCS_OK;
     }
+    /* What allowed errors of states are levered up to, and shorter steps see as well, is over in no time: of a coil
+     * that is cut off. Maps know where that is. */
+    if (part->rounding > 1.0 && search->stuck >= LEVERED_STUCK && quality->own <= 1.0) {
+        search->spared = true;
+        part->level = search->level_before_stuck;
+        return DALCS_OK;
+    }
     bool may_be_off =
         search->stuck >= STUCK && !search->settled && !search->states_free && !search->fixed;
     if (may_be_off && settle(r, part, search, quality->unit)) {
         return DALCS_OK;
     }
-    bool wrong_flip = search->flips > 0 && !(quality->ratio < most_projected);
+    bool wrong_flip = search->flips > 0 && !(quality->own < most_projected);
     if (search->fixed || wrong_flip ||
         dalcs_radau_ladder(part, part->level) < 64.0 * r->resolution) {
         *done = true;
@@ -520,7 +530,7 @@ static double step_to_try(const struct dalcs_radau *r, struct dalcs_radau_part *
 static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                   struct search *search, bool *done) {
     struct dalcs_stage_entry *entry = NULL;
-    struct dalcs_step_quality quality = {.ratio = NAN};
+    struct dalcs_step_quality quality = {.ratio = NAN, .own = INFINITY};
     if (part->slides) {
         *done = true;
         return fall_back(r, part, search->limit, search->first_level);
@@ -546,15 +556,17 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         status == DALCS_OK && !(search->front && dalcs_stage_n_clashes(entry) > 0);
     if (means_something) {
         dalcs_step_judge(r, part, entry, end, &quality);
+        quality.ratio = search->spared ? quality.own : quality.ratio;
         means_something =
             quality.ratio == quality.ratio && !dalcs_step_clashes(part, entry, end, quality.unit);
         if (part->fresh && search->restarts == 0 && !search->fixed && is_outsized(part, &quality)) {
-            quality.ratio = INFINITY;
+            quality.ratio = quality.own = INFINITY;
         }
     }
     bool controlled = !search->fixed || (part->fresh && search->restarts == 0);
     if (!means_something || (controlled && !(quality.ratio <= search->tolerated))) {
         quality.ratio = means_something ? quality.ratio : INFINITY;
+        quality.own = means_something ? quality.own : INFINITY;
         return recover(r, part, search, &quality, done);
     }
     if (search->front && search->reopened++ < MOST_REOPENED && dalcs_front_reopen(part)) {

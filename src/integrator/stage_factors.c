@@ -378,7 +378,7 @@ void dalcs_stage_factors_currents(const struct dalcs_stages *stages,
     solve(plan, f, 0, DALCS_SHARE_NONE);
     memset(plan->missed, 0, (size_t)plan->n_rows * sizeof(double));
     add_runs(f, &plan->rest.without, plan->missed);
-    for (int k = 0; k < stages->n_currents; k++) {
+    for (int k = 0; k < stages->n_levered; k++) {
         drift[k] = plan->missed[stages->levered[k]];
     }
     memset(plan->missed, 0, (size_t)plan->n_rows * sizeof(double));

@@ -355,9 +355,13 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
     if (!(q->ratio <= 1.0)) { /* is it rounding? Few steps have to ask. */
         compare(part, &a, dalcs_stage_natural_units(entry), dalcs_step_rounding(part, entry), q);
     }
+    q->own = q->ratio;
     if (q->ratio <= 1.0) {
-        double ratio = dalcs_current_error(r, part, entry, q->unit, a.besides, &q->of_unit);
-        q->ratio = dalcs_larger(q->ratio, ratio);
+        struct dalcs_lever_error e;
+        dalcs_current_error(r, part, entry, q->unit, a.besides, &e);
+        q->own = dalcs_larger(q->ratio, e.of_currents);
+        q->ratio = dalcs_larger(q->own, e.of_voltages);
+        q->of_unit = e.of_unit;
     }
 }
 
