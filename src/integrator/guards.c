@@ -302,6 +302,30 @@ static bool all_fall_with(const struct dalcs_radau *r, const struct dalcs_radau_
     return all;
 }
 
+/* V or A that rounding makes of a pair that is 0 where its whole unit is. */
+static double rounding_across(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    return dalcs_step_crossed(part, dalcs_osnsp_is_on(&part->component->osnsp, pair) ? 1 : 0, unit);
+}
+
+/* Are all of these no more than rounding makes of 0? */
+static bool is_nothing(const struct dalcs_radau_part *part, int pair, const double *value,
+                       int stride, const double *unit) {
+    double limit = dalcs_doubt_noise(part) * dalcs_guard_scale(part, pair, unit);
+    limit += dalcs_guard_rounding(part, pair, unit) + rounding_across(part, pair, unit);
+    bool nothing = true;
+    for (int k = 0; k < part->stages.layout.n_nodes && nothing; k++) {
+        nothing = fabs(value[k * stride]) <= limit;
+    }
+    return nothing;
+}
+
+/* Has a pair been 0 for all of the segment before, on the side where it is? */
+static bool was_at_rest(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    const double *before =
+        pair < part->component->system->n_pairs ? values_before(part, pair) : NULL;
+    return before != NULL && is_nothing(part, pair, before, part->stages.layout.stride, unit);
+}
+
 /* The first of the doubtful ones. */
 static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *part, double end,
                          const double *unit, bool *at_once) {
@@ -353,7 +377,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         first = dalcs_smaller(first, c.theta);
         bool slips = part->fresh && c.theta <= from_rest && c.peak <= depth;
         part->slips = part->slips || slips;
-        bool soon = c.at_once || (slips && !part->flipped) ||
+        bool soon = c.at_once || (slips && (!part->flipped || was_at_rest(part, g, unit))) ||
                     (c.theta <= soon_after && c.peak <= band * scale);
         *at_once = *at_once || (!part->armed[g] && soon);
         part->crossed[part->n_crossed++] = g;
@@ -452,23 +476,6 @@ bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
     return all;
 }
 
-/* V or A that rounding makes of a pair that is 0 where its whole unit is. */
-static double rounding_across(const struct dalcs_radau_part *part, int pair, const double *unit) {
-    return dalcs_step_crossed(part, dalcs_osnsp_is_on(&part->component->osnsp, pair) ? 1 : 0, unit);
-}
-
-/* Are all of these no more than rounding makes of 0? */
-static bool is_nothing(const struct dalcs_radau_part *part, int pair, const double *value,
-                       int stride, const double *unit) {
-    double limit = dalcs_doubt_noise(part) * dalcs_guard_scale(part, pair, unit);
-    limit += dalcs_guard_rounding(part, pair, unit) + rounding_across(part, pair, unit);
-    bool nothing = true;
-    for (int k = 0; k < part->stages.layout.n_nodes && nothing; k++) {
-        nothing = fabs(value[k * stride]) <= limit;
-    }
-    return nothing;
-}
-
 bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
     double work[DALCS_MAX_NODES];
     int stride;
@@ -514,8 +521,7 @@ bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_
  * have got another in parallel. */
 static bool was_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
     bool is_closed = part->flipped && dalcs_osnsp_is_on(&part->component->osnsp, pair);
-    const double *before = is_closed ? values_before(part, pair) : NULL;
-    return before != NULL && is_nothing(part, pair, before, part->stages.layout.stride, unit);
+    return is_closed && was_at_rest(part, pair, unit);
 }
 
 /* Does it share a node with a pair that has just changed sides? Then something did happen to it. */
@@ -565,13 +571,30 @@ static bool grows(const struct dalcs_radau_part *part, int pair, const double *u
            dalcs_larger(fabs(value[0]), rounding_across(part, pair, unit));
 }
 
-bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit) {
+/* Does a guard that starts from nothing go below 0 from node to node, if by no more than rounding makes of it beside
+ * others? Its own digits tell, for they are those of a power of time. */
+static bool sinks(const struct dalcs_radau_part *part, int pair) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
+    double last = value[(l->n_nodes - 1) * l->stride];
+    bool does =
+        part->rounding == 1.0 && last < 0.0 && fabs(value[0]) <= -agreeing * agreeing * last;
+    for (int k = 1; k < l->n_nodes && does; k++) {
+        does = value[k * l->stride] < value[(k - 1) * l->stride];
+    }
+    return does;
+}
+
+bool dalcs_guards_turn_tied(struct dalcs_radau_part *part, const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     bool found = false;
     for (int d = 0; d < p->system->n_pairs && p->system->n_pairs <= DALCS_MANY_PAIRS; d++) {
-        if (dalcs_osnsp_is_on(p, d) && dalcs_guards_is_tied(part, d, unit) &&
-            !grows(part, d, unit)) {
-            dalcs_osnsp_command(p, d, false);
+        if (!dalcs_guards_is_tied(part, d, unit)) {
+            continue;
+        }
+        bool is_on = dalcs_osnsp_is_on(p, d);
+        if (is_on ? !grows(part, d, unit) : sinks(part, d)) {
+            dalcs_osnsp_command(p, d, !is_on);
             found = true;
         }
     }

@@ -58,8 +58,9 @@ bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determi
 /* Is this pair such a diode? */
 bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit);
 
-/* Opens the closed diodes among them but those in which a current begins. False: there is none. */
-bool dalcs_guards_open_tied(struct dalcs_radau_part *part, const double *unit);
+/* Opens the closed diodes among them but those in which a current begins, and closes the open ones whose voltage
+ * begins to rise. False: there is none. */
+bool dalcs_guards_turn_tied(struct dalcs_radau_part *part, const double *unit);
 
 /* Is there one in the first fall that was not clear of 0 before? */
 bool dalcs_guards_turn_back(const struct dalcs_radau_part *part);

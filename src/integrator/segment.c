@@ -89,7 +89,7 @@ struct search {
     bool closer;  /* micro-steps have looked for a mode that lasts for a small part of the step */
     int flips_closer;
     bool untied; /* tied diodes have been looked at */
-    bool opened; /* and are open now, to try */
+    bool opened; /* and are on their other sides now, to try */
     bool projected;
     bool settled;     /* the state has been moved by what no shorter step mended */
     bool states_free; /* in the mode of the last step, which has nothing to project on */
@@ -155,7 +155,7 @@ static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_par
     return dalcs_radau_euler_step(r, part, part->fell_back);
 }
 
-/* A tied diode that was opened to try cannot open. */
+/* A tied diode that was opened to try, or closed, cannot. */
 static enum dalcs_status tie_again(struct dalcs_radau_part *part, struct search *search) {
     search->opened = false;
     memcpy(part->component->osnsp.mode, part->mode_tied,
@@ -163,7 +163,7 @@ static enum dalcs_status tie_again(struct dalcs_radau_part *part, struct search 
     return DALCS_OK;
 }
 
-/* Those that have crossed cannot: they are closed again, and the others are tried without them. */
+/* Those that have crossed cannot: they go back to the side they were on, and the others are tried without them. */
 static enum dalcs_status tie_crossed(struct dalcs_radau_part *part, struct search *search) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     bool found = false;
@@ -365,7 +365,7 @@ static enum dalcs_status ask_of_tied(struct dalcs_radau *r, struct dalcs_radau_p
 }
 
 /* A diode without current and voltage: the circuit is asked which of its sides is of least norm, and
- * where it does not know yet, as at the event itself, whether it can open. Not beyond the next event, in
+ * where it does not know yet, as at the event itself, whether it can turn. Not beyond the next event, in
  * steps. */
 static enum dalcs_status untie(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                struct search *search, double next,
@@ -377,7 +377,7 @@ static enum dalcs_status untie(struct dalcs_radau *r, struct dalcs_radau_part *p
     search->untied = true;
     memcpy(part->mode_tied, part->component->osnsp.mode,
            (size_t)part->component->osnsp.n_words * sizeof(uint64_t));
-    search->opened = dalcs_guards_open_tied(part, quality->unit);
+    search->opened = dalcs_guards_turn_tied(part, quality->unit);
     return DALCS_OK;
 }
 
