@@ -327,7 +327,7 @@ static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, d
         return dalcs_ties_settle(p, u, y);
     }
     if (status > DALCS_OK && status != DALCS_INFEASIBLE) {
-        status = dalcs_proximal_solve(p, u, y);
+        status = dalcs_least_norm_solve(p, u, y);
     }
     if (status > DALCS_OK) {
         enum dalcs_status otherwise = dalcs_enumerate(p, u, y);

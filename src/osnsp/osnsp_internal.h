@@ -110,6 +110,9 @@ double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p, int rung);
 /* w of a pair in balanced units, from p->scaled and p->right. */
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair);
 
+/* The least push of a centre, in balanced units, that a sign tells beside the largest unknown of p->scaled. */
+double dalcs_proximal_least_push(const struct dalcs_osnsp *p, int rung);
+
 /* The proximal iteration in p->mode alone. DALCS_NOT_CONVERGED: no certified answer in this mode. */
 enum dalcs_status dalcs_proximal_in_mode(struct dalcs_osnsp *p, const double *u,
                                          double *y) DALCS_MUST_CHECK;
@@ -134,6 +137,11 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u,
  * leave open has the least norm of all unknowns, balanced, in its mode, which need not be that of diodes. */
 enum dalcs_status dalcs_singular_solve(struct dalcs_osnsp *p, const double *u,
                                        double *y) DALCS_MUST_CHECK;
+
+/* The proximal method, and in micro-steps dalcs_singular_solve() where that does not get to a certificate: what comes
+ * later takes any answer, not the one of least norm. */
+enum dalcs_status dalcs_least_norm_solve(struct dalcs_osnsp *p, const double *u,
+                                         double *y) DALCS_MUST_CHECK;
 
 /* ---- whole.c ------------------------------------------------------------------------------- */
 

@@ -18,6 +18,9 @@ static const double node_weight = 1e-3;
 /* A sign is wrong when it is so by more than this of the largest unknown (balanced units). */
 static const double sign_tolerance = 1e-13;
 
+/* What moves a centre by so many times that is seen to do so. */
+static const double beyond_tolerance = 10.0;
+
 /* How far the local conductance of a pair may pull its weight from the common one. */
 static const double weight_spread = 1e3;
 
@@ -133,14 +136,24 @@ void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e
     dalcs_lu_solve(&entry->lu, p->scaled);
 }
 
-/* The pairs whose regularised sign is wrong: closed with lambda + eps G (w - w') < 0, open with
- * w + eps/G (lambda - lambda') < 0. */
-static void find_violations(struct dalcs_osnsp *p, int rung) {
+static double largest_unknown(const struct dalcs_osnsp *p) {
     const struct dalcs_step_form *f = p->form[0];
     double largest = 0.0;
     for (int i = 0; i < f->n + f->n_pairs; i++) {
         largest = fmax(largest, fabs(p->scaled[i]));
     }
+    return largest;
+}
+
+double dalcs_proximal_least_push(const struct dalcs_osnsp *p, int rung) {
+    return beyond_tolerance * sign_tolerance * largest_unknown(p) / eps_of(p, rung);
+}
+
+/* The pairs whose regularised sign is wrong: closed with lambda + eps G (w - w') < 0, open with
+ * w + eps/G (lambda - lambda') < 0. */
+static void find_violations(struct dalcs_osnsp *p, int rung) {
+    const struct dalcs_step_form *f = p->form[0];
+    double largest = largest_unknown(p);
     p->n_violating = 0;
     for (int d = 0; d < f->n_pairs; d++) {
         if (p->system->pair[d].kind != DALCS_PAIR_DIODE) {

@@ -174,3 +174,12 @@ enum dalcs_status dalcs_singular_solve(struct dalcs_osnsp *p, const double *u, d
     }
     return status;
 }
+
+enum dalcs_status dalcs_least_norm_solve(struct dalcs_osnsp *p, const double *u, double *y) {
+    enum dalcs_status status = dalcs_proximal_solve(p, u, y);
+    if (status == DALCS_NOT_CONVERGED && p->is_passing && p->system->monotone) {
+        enum dalcs_status exactly = dalcs_singular_solve(p, u, y);
+        status = exactly <= DALCS_OK ? exactly : status;
+    }
+    return status;
+}

@@ -15,7 +15,8 @@
 static const double moved_part = 1e-2;
 
 /* The push over the largest current or voltage of a pair: small, for a choice may end soon; and where
- * all are 0, nothing is smaller. */
+ * all are 0, nothing is smaller. But currents are small beside voltages, and a sign would not tell that one has been
+ * pushed: in micro-steps it is by as much as that takes. */
 static const double push_part = 1e-3;
 
 static enum dalcs_status is_singular(struct dalcs_osnsp *p, int byte, bool *singular) {
@@ -83,6 +84,9 @@ static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u,
         push = fmax(push, push_part * fabs(p->scaled[f->n + d]));
         push_w = fmax(push_w, push_part * fabs(p->centre_w[d]));
     }
+    if (p->is_passing && push > 0.0) {
+        push = fmax(push, dalcs_proximal_least_push(p, DALCS_N_WEIGHTS));
+    }
     for (int d = 0; d < f->n_pairs; d++) {
         p->centre[f->n + d] += p->tied[d] ? push : 0.0;
         p->centre_w[d] += p->tied[d] ? push_w : 0.0;
@@ -140,7 +144,7 @@ enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, doub
         e->tie_has_choice = has_choice;
     }
     if (status == DALCS_OK && has_choice) {
-        status = dalcs_proximal_solve(p, u, y);
+        status = dalcs_least_norm_solve(p, u, y);
     }
     if (status < DALCS_OK || (status == DALCS_OK && has_choice)) {
         p->least_norm = status == DALCS_OK;

@@ -57,12 +57,40 @@ r3 h 0 1.1k
 .model mideal d(ron=0 vfwd=0)
 .tran 6u 6m
 """
+BRIDGE = """vin in 0 12
+vg g 0 pulse(0 1 0 20n 20n 2.08u 10u)
+vh h 0 pulse(0 1 5u 20n 20n 2.08u 10u)
+s1 in a g 0 sm
+s2 b 0 g 0 sm
+s3 in b h 0 sm
+s4 a 0 h 0 sm
+d1 a in mideal
+d2 0 a mideal
+d3 b in mideal
+d4 0 b mideal
+l1 a a1 786.3u
+l2 a1 b 157.2m
+l3 s t 6.29m
+k1 l2 l3 1
+d5 s x mideal
+d6 t x mideal
+d7 0 s mideal
+d8 0 t mideal
+l4 x o 629u
+c1 o 0 29.41u
+r1 o 0 17
+.model sm sw(ron=3.8m vt=0.5 vh=0)
+.model mideal d(ron=0 vfwd=0)
+.tran 90n 18u uic
+"""
+SHARED = [(1e-8, "on"), (5.099561253e-6, "off"), (7.11e-6, "on"), (1.528494827e-5, "off"), (1.711e-5, "on")]
 STOPS = [(time + period * 1e-3, "off") for period in range(3) for time in [0.0002750118272297618]]
 STARTS = [(time + period * 1e-3, "on") for period in range(1, 4) for time in [0.0000735727120890018]]
 CONDUCTION = sorted(STOPS + STARTS + [(0.0032750118272297618, "off")])
 # The events of some diodes, by an exact solution.
 KINDS = {
     "series": {SERIES: (3.37e-3, {"d4": CONDUCTION, "d5": CONDUCTION})},
+    "bridge": {BRIDGE: (18e-6, {"d5": SHARED, "d8": SHARED})},
     "rest": {
         BEHIND_A_LEAK: (6e-3, {"d2": [(0.0007872941176470588, "off"), (0.005281673866044745, "on")],
                                "d3": [(0.0007872941176470588, "on"), (0.004601269527493529, "off")]}),
