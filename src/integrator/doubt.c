@@ -1,7 +1,27 @@
 /* doubt.c - the band of a guard. */
 #include "doubt.h"
 
+#include <float.h>
 #include <math.h>
+
+/* Where nothing else flows, a current is still a difference of those that flow elsewhere. */
+static const double last_digits = 256.0 * DBL_EPSILON;
+
+/* What errors of a column are a part of: what it has been. Of a current that charges a capacitor only what it is in
+ * this step, and what errors of the voltage make of it: a spike long ago does not make it less known. */
+static double size_of(const struct dalcs_radau_part *part, int column, const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    double scale = dalcs_step_scale(part, column, unit);
+    int row = column < dalcs_system_n_equations(s) ? part->charging_row[column] : -1;
+    if (row < 0) {
+        return scale;
+    }
+    double charge = 0.0;
+    for (int k = s->P.p[row]; k < s->P.p[row + 1]; k++) {
+        charge += fabs(s->P.x[k]) * dalcs_step_scale(part, s->P.j[k], unit);
+    }
+    return dalcs_smaller(scale, part->magnitude[column] + charge / part->h);
+}
 
 /* What the columns of a row other than `but` make of errors that are the same part of each. */
 static double spread_of(const struct dalcs_radau_part *part, const struct dalcs_csr *m, int row,
@@ -9,7 +29,7 @@ static double spread_of(const struct dalcs_radau_part *part, const struct dalcs_
     double spread = 0.0;
     for (int k = m->p[row]; k < m->p[row + 1]; k++) {
         int c = m->j[k];
-        spread += c == but ? 0.0 : fabs(m->x[k]) * dalcs_step_scale(part, c, unit);
+        spread += c == but ? 0.0 : fabs(m->x[k]) * size_of(part, c, unit);
     }
     return spread;
 }
@@ -45,20 +65,22 @@ static double largest_of(const struct dalcs_radau_part *part, int row) {
 double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, double scale,
                                const double *unit) {
     const struct dalcs_system *s = part->component->system;
-    double local = scale;
+    double noise = dalcs_doubt_noise(part) * scale;
     if (part->rounding > 1.0 && guard < s->n_pairs) {
-        local = dalcs_osnsp_is_on(&part->component->osnsp, guard)
-                    ? spread_of_current(part, guard, unit)
-                    : spread_of(part, &s->C, guard, -1, unit);
+        bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
+        double local =
+            is_on ? spread_of_current(part, guard, unit) : spread_of(part, &s->C, guard, -1, unit);
+        local = dalcs_larger(dalcs_doubt_noise(part) * local, last_digits * scale);
+        noise = dalcs_smaller(noise, local);
     }
-    return dalcs_doubt_noise(part) * dalcs_smaller(local, scale);
+    return noise;
 }
 
-/* What errors of all that a guard is made of come to. */
+/* What errors of all that a guard is made of come to, with noise that is a part of `of_noise`. */
 static double of_all(const struct dalcs_radau *r, const struct dalcs_radau_part *part, double size,
-                     double scale) {
+                     double of_noise) {
     return dalcs_doubts_over_tolerance * r->inner_tolerance * size +
-           dalcs_beyond_noise * dalcs_doubt_noise(part) * scale;
+           dalcs_beyond_noise * dalcs_doubt_noise(part) * of_noise;
 }
 
 /* Which is no more than the band. */
@@ -78,15 +100,15 @@ double dalcs_doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_p
         return dalcs_doubt_band(r, part) * scale;
     }
     int place = dalcs_system_n_equations(s) + guard;
-    double spread;
+    double size = largest_of(part, place);
     if (dalcs_stage_has_map(part->entry)) {
-        spread = spread_at_start(part, place);
-    } else if (dalcs_osnsp_is_on(&part->component->osnsp, guard)) {
-        spread = spread_of_current(part, guard, unit);
-    } else {
-        spread = spread_of(part, &s->C, guard, -1, unit);
+        return within_band(r, part, size + spread_at_start(part, place), scale);
     }
-    return within_band(r, part, largest_of(part, place) + spread, scale);
+    if (!dalcs_osnsp_is_on(&part->component->osnsp, guard)) {
+        return within_band(r, part, size + spread_of(part, &s->C, guard, -1, unit), scale);
+    }
+    size += spread_of_current(part, guard, unit);
+    return dalcs_smaller(of_all(r, part, size, size), dalcs_doubt_band(r, part) * scale);
 }
 
 double dalcs_doubt_of_closed(const struct dalcs_radau *r, const struct dalcs_radau_part *part,

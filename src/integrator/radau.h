@@ -116,6 +116,7 @@ struct dalcs_radau_part {
     struct dalcs_pair_law
         *pair_law; /* [n_pairs][3] what gives the current of a pair; pair_laws.c */
     struct dalcs_pair_rate *pair_rate; /* pair_laws.h */
+    int *charging_row;      /* [n_equations] of the capacitor that a current charges, -1: none */
     int *pair_row;          /* [n_pairs][2] KCL rows that its current enters, -1: ground */
     int *cluster;           /* [n_equations] work of pair_laws.c */
     double *cluster_charge; /* [n_equations] work of pair_laws.c */
