@@ -132,15 +132,16 @@ static enum dalcs_status restart(struct dalcs_radau *r, struct dalcs_radau_part 
     return DALCS_OK;
 }
 
-/* Implicit Euler instead. It is certified and takes every event and jump that the step covers. In a
- * row its steps double, up to a part of the ladder's: sliding and accumulating events pass in few. */
+/* Implicit Euler instead, for `most` at first: where a step has been accurate, it is as short. It is certified and
+ * takes every event and jump that the step covers. In a row its steps double, up to a part of the ladder's: sliding
+ * and accumulating events pass in few. */
 static enum dalcs_status fall_back(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                   double limit, int level) {
+                                   double limit, int level, double most) {
     double fixed = r->options.fixed_step;
     double whole = fixed > 0.0 ? fixed : dalcs_radau_ladder(part, level);
     part->level = level;
     double h = ldexp(whole, part->tries - FALL_BACK);
-    h = fmin(h, ldexp(whole, -FALL_BACK_LEAST));
+    h = fmin(h, fmin(most, ldexp(whole, -FALL_BACK_LEAST)));
     h = fmax(h, 64.0 * r->resolution);
     if (part->tries > 0 && fixed == 0.0) { /* however short the ladder's step has become */
         h = fmax(h, fmin(2.0 * part->fell_back, ldexp(part->longest, -FALL_BACK)));
@@ -273,7 +274,7 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     if (search->fixed || wrong_flip ||
         dalcs_radau_ladder(part, part->level) < 64.0 * r->resolution) {
         *done = true;
-        return fall_back(r, part, search->limit, search->first_level);
+        return fall_back(r, part, search->limit, search->first_level, INFINITY);
     }
     dalcs_length_shorten(part, quality->ratio, search->stuck);
     return DALCS_OK;
@@ -343,7 +344,7 @@ static enum dalcs_status change_mode(struct dalcs_radau *r, struct dalcs_radau_p
         return DALCS_OK;
     }
     *done = true;
-    return fall_back(r, part, search->limit, search->first_level);
+    return fall_back(r, part, search->limit, search->first_level, part->h);
 }
 
 /* The present mode holds but for ties, of which micro-steps tell more than this; of a diode that crossed just
@@ -533,7 +534,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     struct dalcs_step_quality quality = {.ratio = NAN, .own = INFINITY};
     if (part->slides) {
         *done = true;
-        return fall_back(r, part, search->limit, search->first_level);
+        return fall_back(r, part, search->limit, search->first_level, INFINITY);
     }
     part->h = search->fixed ? r->options.fixed_step : step_to_try(r, part, search->limit);
     enum dalcs_status status = dalcs_segment_solve(part, &entry);
@@ -550,7 +551,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
             return tie_again(part, search);
         }
         *done = true; /* no length mends it */
-        return fall_back(r, part, search->limit, search->first_level);
+        return fall_back(r, part, search->limit, search->first_level, INFINITY);
     }
     bool means_something =
         status == DALCS_OK && !(search->front && dalcs_stage_n_clashes(entry) > 0);
@@ -675,7 +676,7 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
     double limit = dalcs_radau_limit(r, part);
     if (part->crowd > CROWD + 4 * part->component->system->n_pairs || part->flurry > FLURRY) {
         part->fresh = true;
-        return fall_back(r, part, limit, part->level);
+        return fall_back(r, part, limit, part->level, INFINITY);
     }
     bool guessed = part->fresh && part->flipped && dalcs_transition_guess(part);
     bool holds = false;
