@@ -217,6 +217,22 @@ static bool is_worth_asking(const struct dalcs_radau_part *part, const struct se
     return search->fixed || search->stuck > 0 || may_jump;
 }
 
+/* No shorter step mends the error, and it is small or over in no time: is it let pass from now on? */
+static bool lets_pass(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                      struct search *search, const struct dalcs_step_quality *quality) {
+    bool is_rounding = search->stuck >= STUCK && quality->of_unit < most_tolerated * part->rounding;
+    bool is_small = search->stuck >= VERY_STUCK && quality->of_unit < r->inner_tolerance;
+    if ((is_rounding || is_small) && isfinite(quality->ratio) && search->tolerated == 1.0) {
+        search->tolerated = 4.0 * quality->ratio;
+        return true;
+    }
+    /* What allowed errors of states are levered up to, and shorter steps see as well, is that of a coil that is cut
+     * off. Maps know where that is. */
+    bool is_levered = part->rounding > 1.0 && search->stuck >= LEVERED_STUCK && quality->own <= 1.0;
+    search->spared = search->spared || is_levered;
+    return is_levered;
+}
+
 /* After a step that is not accurate: changes the mode, the state or the length. *done: the segment is
  * one of implicit Euler. */
 static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -251,17 +267,7 @@ static enum dalcs_status recover(struct dalcs_radau *r, struct dalcs_radau_part 
     if (search->stuck == 0) {
         search->level_before_stuck = part->level;
     }
-    bool is_rounding = search->stuck >= STUCK && quality->of_unit < most_tolerated * part->rounding;
-    bool is_small = search->stuck >= VERY_STUCK && quality->of_unit < r->inner_tolerance;
-    if ((is_rounding || is_small) && isfinite(quality->ratio) && search->tolerated == 1.0) {
-        search->tolerated = 4.0 * quality->ratio;
-        part->level = search->level_before_stuck;
-        return DALCS_OK;
-    }
-    /* What allowed errors of states are levered up to, and shorter steps see as well, is over in no time: of a coil
-     * that is cut off. Maps know where that is. */
-    if (part->rounding > 1.0 && search->stuck >= LEVERED_STUCK && quality->own <= 1.0) {
-        search->spared = true;
+    if (lets_pass(r, part, search, quality)) {
         part->level = search->level_before_stuck;
         return DALCS_OK;
     }

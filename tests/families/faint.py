@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Events that are faint beside what the circuit works with, against closed forms.
 
-usage: faint.py PROGRAM leak|large_leak|flank|difference|large_difference|stray|opposed|overtaken|cut_off|late|beside|spiked|dip
+usage: faint.py PROGRAM leak|large_leak|flank|difference|large_difference|stray|opposed|overtaken|cut_off|late|
+                        beside|spiked|dip
 
 leak: a switch connects a sine to a diode that clamps it, 1000 A; open, it leaks 10 uA, which the diode
 carries as long as the source is positive, and blocks after that: at the zero of the sine, and no volt is
