@@ -187,17 +187,21 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
                                      double h) {
     const struct dalcs_system *s = part->component->system;
     double *longer = r->base->after;
+    double largest[2];
     bool jumps = false;
     bool runs_away = false;
     memcpy(longer, part->y1, (size_t)s->n_x * sizeof(double));
     DALCS_TRY(micro_steps(r, part, shorter * h));
+    find_largest(part, largest);
     for (int x = 0; x < s->n_x; x++) {
-        double scale = fmax(part->unit_scale[s->column_is_current[x]],
-                            fmax(fabs(part->x[x]), fabs(longer[x])));
+        double *of = &largest[s->column_is_current[x]];
+        *of = fmax(*of, fabs(longer[x]));
+    }
+    for (int x = 0; x < s->n_x; x++) {
         double before = fabs(longer[x] - part->x[x]);
         double now = fabs(part->y1[x] - part->x[x]);
         bool stays = fabs(part->y1[x] - longer[x]) < 0.5 * now;
-        bool moves = now > smallest_jump * scale;
+        bool moves = now > smallest_jump * largest[s->column_is_current[x]];
         jumps = jumps || (moves && stays);
         runs_away = runs_away || (moves && now > runaway * before);
     }
