@@ -309,11 +309,16 @@ static double rounding_across(const struct dalcs_radau_part *part, int pair, con
     return dalcs_step_crossed(part, dalcs_osnsp_is_on(&part->component->osnsp, pair) ? 1 : 0, unit);
 }
 
-/* Are all of these no more than rounding makes of 0? */
+/* V or A that rounding makes of a pair that is 0. */
+static double nothing_of(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    double limit = dalcs_doubt_noise(part) * dalcs_guard_scale(part, pair, unit);
+    return limit + dalcs_guard_rounding(part, pair, unit) + rounding_across(part, pair, unit);
+}
+
+/* Are all of these no more than that? */
 static bool is_nothing(const struct dalcs_radau_part *part, int pair, const double *value,
                        int stride, const double *unit) {
-    double limit = dalcs_doubt_noise(part) * dalcs_guard_scale(part, pair, unit);
-    limit += dalcs_guard_rounding(part, pair, unit) + rounding_across(part, pair, unit);
+    double limit = nothing_of(part, pair, unit);
     bool nothing = true;
     for (int k = 0; k < part->stages.layout.n_nodes && nothing; k++) {
         nothing = fabs(value[k * stride]) <= limit;
@@ -573,18 +578,52 @@ static bool grows(const struct dalcs_radau_part *part, int pair, const double *u
            dalcs_larger(fabs(value[0]), rounding_across(part, pair, unit));
 }
 
-/* Does a guard that starts from nothing go below 0 from node to node, if by no more than rounding makes of it beside
- * others? Its own digits tell, for they are those of a power of time. */
-static bool sinks(const struct dalcs_radau_part *part, int pair) {
+/* Does a guard that starts from nothing go up from node to node, or with sign -1 down, if by no more than rounding
+ * makes of it beside others? Its own digits tell, for they are those of a power of time. */
+static bool leaves(const struct dalcs_radau_part *part, int pair, double sign) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
-    double last = value[(l->n_nodes - 1) * l->stride];
-    bool does =
-        part->rounding == 1.0 && last < 0.0 && fabs(value[0]) <= -agreeing * agreeing * last;
+    double last = sign * value[(l->n_nodes - 1) * l->stride];
+    bool does = part->rounding == 1.0 && last > 0.0 && fabs(value[0]) <= agreeing * agreeing * last;
     for (int k = 1; k < l->n_nodes && does; k++) {
-        does = value[k * l->stride] < value[(k - 1) * l->stride];
+        does = sign * value[k * l->stride] > sign * value[(k - 1) * l->stride];
     }
     return does;
+}
+
+/* Is a pair above 0, by more than rounding, halfway to `end`? */
+static bool is_above(const struct dalcs_radau_part *part, int pair, double end,
+                     const double *unit) {
+    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
+    return value_at(part, value, part->stages.layout.stride, 0.5 * end) >
+           nothing_of(part, pair, unit);
+}
+
+/* The tied diodes that are open close, all of them: where there are many answers they may have a part of a current. */
+static bool close_tied(struct dalcs_radau_part *part, const double *unit) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    bool found = false;
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        if (!dalcs_osnsp_is_on(p, d) && dalcs_guards_is_tied(part, d, unit)) {
+            dalcs_osnsp_command(p, d, true);
+            found = true;
+        }
+    }
+    return found;
+}
+
+bool dalcs_guards_open_idle(struct dalcs_radau_part *part, const uint64_t *before, double end,
+                            const double *unit) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    bool found = false;
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        bool is_tried = dalcs_osnsp_is_on(p, d) && !dalcs_mode_has(before, d);
+        if (is_tried && !is_above(part, d, end, unit) && !leaves(part, d, 1.0)) {
+            dalcs_osnsp_command(p, d, false);
+            found = true;
+        }
+    }
+    return found;
 }
 
 bool dalcs_guards_turn_tied(struct dalcs_radau_part *part, const double *unit) {
@@ -595,18 +634,21 @@ bool dalcs_guards_turn_tied(struct dalcs_radau_part *part, const double *unit) {
             continue;
         }
         bool is_on = dalcs_osnsp_is_on(p, d);
-        if (is_on ? !grows(part, d, unit) : sinks(part, d)) {
+        if (is_on ? !grows(part, d, unit) : leaves(part, d, -1.0)) {
             dalcs_osnsp_command(p, d, !is_on);
             found = true;
         }
     }
-    return found;
+    bool may_share = p->system->n_pairs <= DALCS_MANY_PAIRS && !dalcs_osnsp_is_unique(p);
+    return found || (may_share && close_tied(part, unit));
 }
 
-bool dalcs_guards_turn_back(const struct dalcs_radau_part *part) {
+bool dalcs_guards_turn_back(const struct dalcs_radau_part *part, double end, const double *unit) {
     bool turns = false;
     for (int k = 0; k < part->n_crossed && !turns; k++) {
-        turns = !part->armed[part->crossed[k]];
+        int g = part->crossed[k];
+        turns = !part->armed[g] &&
+                !(g < part->component->system->n_pairs && is_above(part, g, end, unit));
     }
     return turns;
 }

@@ -59,11 +59,16 @@ bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determi
 bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit);
 
 /* Opens the closed diodes among them but those in which a current begins, and closes the open ones whose voltage
- * begins to rise. False: there is none. */
+ * begins to rise. Where there are none, and many answers, closes all that are open. False: nothing changes. */
 bool dalcs_guards_turn_tied(struct dalcs_radau_part *part, const double *unit);
 
-/* Is there one in the first fall that was not clear of 0 before? */
-bool dalcs_guards_turn_back(const struct dalcs_radau_part *part);
+/* Opens those that are closed now and were not `before`, and have no current halfway to `end`, in steps, nor begin to.
+ * False: there is none. */
+bool dalcs_guards_open_idle(struct dalcs_radau_part *part, const uint64_t *before, double end,
+                            const double *unit);
+
+/* Is there one in the first fall, at `end` in steps, that was not clear of 0 before? */
+bool dalcs_guards_turn_back(const struct dalcs_radau_part *part, double end, const double *unit);
 
 /* The most negative lambda or w at the nodes up to `end`, over the largest of its unit; 0 when none. Of
  * a step in which a first fall has been looked for. The start does not count for what is over at once. */

@@ -164,6 +164,13 @@ static enum dalcs_status tie_again(struct dalcs_radau_part *part, struct search 
     return DALCS_OK;
 }
 
+/* With the others, if any is on the other side still. */
+static enum dalcs_status go_on_trying(struct dalcs_radau_part *part, struct search *search) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    search->opened = !dalcs_mode_is(p->mode, part->mode_tied, p->n_words);
+    return DALCS_OK;
+}
+
 /* Those that have crossed cannot: they go back to the side they were on, and the others are tried without them. */
 static enum dalcs_status tie_crossed(struct dalcs_radau_part *part, struct search *search) {
     struct dalcs_osnsp *p = &part->component->osnsp;
@@ -179,8 +186,7 @@ static enum dalcs_status tie_crossed(struct dalcs_radau_part *part, struct searc
     if (!found) {
         return tie_again(part, search);
     }
-    search->opened = !dalcs_mode_is(p->mode, part->mode_tied, p->n_words);
-    return DALCS_OK;
+    return go_on_trying(part, search);
 }
 
 static enum dalcs_status refuse(struct dalcs_radau_part *part, struct search *search) {
@@ -606,13 +612,16 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (at_once && part->fresh) {
         return change_mode(r, part, search, quality.unit, done);
     }
-    if (search->opened && dalcs_guards_turn_back(part)) {
+    double next = dalcs_smaller(theta, end);
+    if (search->opened && dalcs_guards_open_idle(part, part->mode_tied, next, quality.unit)) {
+        return go_on_trying(part, search);
+    }
+    if (search->opened && dalcs_guards_turn_back(part, next, quality.unit)) {
         return tie_crossed(part, search);
     }
     if (part->fresh && dalcs_twins_close(part, quality.unit)) {
         return DALCS_OK;
     }
-    double next = dalcs_smaller(theta, end);
     if (part->fresh && search->restarts == 0 &&
         dalcs_guards_stay_negative(r, part, next, quality.unit)) {
         return search->guessed ? refuse(part, search) : restart(r, part, search, true);

@@ -83,14 +83,32 @@ r1 o 0 17
 .model mideal d(ron=0 vfwd=0)
 .tran 90n 18u uic
 """
+AT_REST = """v1 a q am(33 1 3.03k 10k 0)
+r1 q s1 450m
+l1 s1 b 9.36u
+d1 a p mideal
+d2 b p mideal
+d3 0 a mideal
+d4 0 b mideal
+r2 p x2 11
+l2 x2 x3 3.85m
+ve x3 0 -8.089
+.model mideal d(ron=0 vfwd=0)
+.tran 224n 224u uic
+"""
 SHARED = [(1e-8, "on"), (5.099561253e-6, "off"), (7.11e-6, "on"), (1.528494827e-5, "off"), (1.711e-5, "on")]
+FED = [(1.8969762025344732e-08, "off"), (4.994243326256234e-05, "on"), (0.00010301662594061053, "off"),
+       (0.0001497745422246926, "on"), (0.00020939689117161012, "off")]
 STOPS = [(time + period * 1e-3, "off") for period in range(3) for time in [0.0002750118272297618]]
 STARTS = [(time + period * 1e-3, "on") for period in range(1, 4) for time in [0.0000735727120890018]]
 CONDUCTION = sorted(STOPS + STARTS + [(0.0032750118272297618, "off")])
 # The events of some diodes, by an exact solution.
 KINDS = {
     "series": {SERIES: (3.37e-3, {"d4": CONDUCTION, "d5": CONDUCTION})},
-    "bridge": {BRIDGE: (18e-6, {"d5": SHARED, "d8": SHARED})},
+    "bridge": {
+        BRIDGE: (18e-6, {"d5": SHARED, "d8": SHARED}),
+        AT_REST: (224e-6, {"d2": FED, "d3": FED}),
+    },
     "rest": {
         BEHIND_A_LEAK: (6e-3, {"d2": [(0.0007872941176470588, "off"), (0.005281673866044745, "on")],
                                "d3": [(0.0007872941176470588, "on"), (0.004601269527493529, "off")]}),
