@@ -6,7 +6,7 @@
  * ten millionth of them is a millivolt. Of other voltages nothing like it is asked: a coil cut off by
  * 10 Mohm has transients of 10 ps, which nobody wants to wait for. In most circuits no state has such a
  * lever; by maps that is looked up now and then, and costs them nothing else. Factors do not tell it: there all
- * voltages count that resistors make of coils, and segment.c lets those pass that no shorter step mends. */
+ * voltages count that resistors make of coils, and search.c lets those pass that no shorter step mends. */
 #include "current_error.h"
 
 #include "extremes.h"
