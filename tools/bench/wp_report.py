@@ -5,6 +5,7 @@ import subprocess
 
 BEGIN, END = "<!-- work_precision begin -->", "<!-- work_precision end -->"
 SHOWN = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10)  # a method has a row for each that it reaches
+PRECISE, MODEST = "tol 1e-09", 5.05e-4  # of the summary; what rounds to 5e-4 is that
 # A colour for each method; the numbers of stages are shades of radau's.
 COLOURS = {"euler": "#7f7f7f", "radau 1": "#9ecae1", "radau 3": "#6baed6", "radau 5": "#2171b5",
            "radau 7": "#08306b", "auto": "#000000", "ngspice": "#d62728", "Siconos": "#ff7f0e"}
@@ -68,6 +69,29 @@ def table(circuit, result):
                      f"{'' if row['steps'] is None else row['steps']} | "
                      f"{'' if row['factorizations'] is None else row['factorizations']} | "
                      f"{digits(ratio(row, rows))} |")
+    return lines + [""]
+
+
+def summary(circuits, results):
+    """What ngspice needs over --tol 1e-9, where it gets to MODEST and where its error is smallest."""
+    lines = [f"### ngspice over dalcs {PRECISE.replace('tol', '--tol')}", "",
+             f"ngspice with its fastest setting for an error of {MODEST:.0e} or less, and with the "
+             "one of its smallest error.", "",
+             "| circuit | dalcs' error | its CPU ms | error of ngspice | its CPU ms | ratio "
+             "| smallest error | its CPU ms | ratio |", "|---|---|---|---|---|---|---|---|---|"]
+    for circuit in circuits:
+        rows = results[circuit.name]["rows"]
+        ours = [row for row in rows if (row["method"], row["setting"]) == ("auto", PRECISE)]
+        theirs = [row for row in rows if row["method"] == "ngspice"]
+        if not ours or not theirs:
+            continue
+        modest = [row for row in theirs if row["error"] <= MODEST]
+        cells = [f"{ours[0]['error']:.1e}", digits(1e3 * ours[0]["cpu_s"])]
+        for row in (min(modest, key=lambda row: row["cpu_s"], default=None),
+                    min(theirs, key=lambda row: row["error"])):
+            cells += [f"{row['error']:.1e}", digits(1e3 * row["cpu_s"]),
+                      digits(row["cpu_s"] / ours[0]["cpu_s"])] if row else ["none", "", ""]
+        lines.append(f"| {circuit.title} | {' | '.join(cells)} |")
     return lines + [""]
 
 
