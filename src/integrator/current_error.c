@@ -181,9 +181,8 @@ void dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part *p
     if (n > 0) {
         dalcs_stages_drift_of_currents(stages, entry, part->in, part->current_drift);
     }
-    double *worst = &e->of_currents;
     for (int k = 0; k < n; k++) {
-        worst = k < stages->n_currents ? &e->of_currents : &e->of_voltages;
+        double *worst = k < stages->n_currents ? &e->of_currents : &e->of_voltages;
         double error = fabs(part->current_drift[k]) / pessimism;
         double allowed = allowed_of(r, part, k, unit, besides);
         double least = dalcs_larger(noticed, dalcs_smaller(*worst, 1.0));

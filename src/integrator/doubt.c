@@ -3,9 +3,28 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 /* Where nothing else flows, a current is still a difference of those that flow elsewhere. */
 static const double last_digits = 256.0 * DBL_EPSILON;
+
+enum dalcs_status dalcs_doubt_setup(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    size_t n = (size_t)dalcs_system_n_equations(s);
+    part->charging_row = dalcs_arena_alloc(&part->arena, n, sizeof(int));
+    if (part->charging_row == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    memset(part->charging_row, -1, n * sizeof(int));
+    for (int r = 0; r < s->n_x; r++) {
+        int first = s->A.p[r];
+        int c = s->A.p[r + 1] == first + 1 ? s->A.j[first] : -1;
+        if (s->row_is_current[r] && c >= s->n_x && s->column_is_current[c]) {
+            part->charging_row[c] = r;
+        }
+    }
+    return DALCS_OK;
+}
 
 /* What errors of a column are a part of: what it has been. Of a current that charges a capacitor only what it is in
  * this step, and what errors of the voltage make of it: a spike long ago does not make it less known. */
@@ -52,6 +71,13 @@ static double spread_of_current(const struct dalcs_radau_part *part, int pair, c
     return least;
 }
 
+/* What such errors make of a pair, as far as its row or its nodes tell: on factors. */
+static double spread_about(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    return dalcs_osnsp_is_on(&part->component->osnsp, pair)
+               ? spread_of_current(part, pair, unit)
+               : spread_of(part, &part->component->system->C, pair, -1, unit);
+}
+
 /* The largest value of a row in the step, for what the polynomial may be off by. */
 static double largest_of(const struct dalcs_radau_part *part, int row) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
@@ -64,16 +90,12 @@ static double largest_of(const struct dalcs_radau_part *part, int row) {
 
 double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, double scale,
                                const double *unit) {
-    const struct dalcs_system *s = part->component->system;
     double noise = dalcs_doubt_noise(part) * scale;
-    if (part->rounding > 1.0 && guard < s->n_pairs) {
-        bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
-        double local =
-            is_on ? spread_of_current(part, guard, unit) : spread_of(part, &s->C, guard, -1, unit);
-        local = dalcs_larger(dalcs_doubt_noise(part) * local, last_digits * scale);
-        noise = dalcs_smaller(noise, local);
+    if (!(part->rounding > 1.0) || guard >= part->component->system->n_pairs) {
+        return noise;
     }
-    return noise;
+    double local = dalcs_doubt_noise(part) * spread_about(part, guard, unit);
+    return dalcs_smaller(noise, dalcs_larger(local, last_digits * scale));
 }
 
 /* What errors of all that a guard is made of come to, with noise that is a part of `of_noise`. */
@@ -85,8 +107,8 @@ static double of_all(const struct dalcs_radau *r, const struct dalcs_radau_part 
 
 /* Which is no more than the band. */
 static double within_band(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                          double size, double scale) {
-    return dalcs_smaller(of_all(r, part, size, scale), dalcs_doubt_band(r, part) * scale);
+                          double size, double of_noise, double scale) {
+    return dalcs_smaller(of_all(r, part, size, of_noise), dalcs_doubt_band(r, part) * scale);
 }
 
 static double spread_at_start(const struct dalcs_radau_part *part, int place) {
@@ -100,15 +122,11 @@ double dalcs_doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_p
         return dalcs_doubt_band(r, part) * scale;
     }
     int place = dalcs_system_n_equations(s) + guard;
-    double size = largest_of(part, place);
-    if (dalcs_stage_has_map(part->entry)) {
-        return within_band(r, part, size + spread_at_start(part, place), scale);
-    }
-    if (!dalcs_osnsp_is_on(&part->component->osnsp, guard)) {
-        return within_band(r, part, size + spread_of(part, &s->C, guard, -1, unit), scale);
-    }
-    size += spread_of_current(part, guard, unit);
-    return dalcs_smaller(of_all(r, part, size, size), dalcs_doubt_band(r, part) * scale);
+    bool has_map = dalcs_stage_has_map(part->entry);
+    double spread = has_map ? spread_at_start(part, place) : spread_about(part, guard, unit);
+    double size = largest_of(part, place) + spread;
+    bool is_local = !has_map && dalcs_osnsp_is_on(&part->component->osnsp, guard);
+    return within_band(r, part, size, is_local ? size : scale, scale);
 }
 
 double dalcs_doubt_of_closed(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
@@ -143,6 +161,6 @@ double dalcs_doubt_of_fall(const struct dalcs_radau *r, const struct dalcs_radau
     }
     double spread = dalcs_stage_spread(&part->stages, part->entry,
                                        (l->n_nodes - 1) * l->stride + place, part->in, part->scale);
-    double at_end = within_band(r, part, largest_of(part, place) + spread, scale);
+    double at_end = within_band(r, part, largest_of(part, place) + spread, scale, scale);
     return is_below(part, place, at_end) ? dalcs_smaller(doubt, at_end) : doubt;
 }

@@ -21,6 +21,9 @@ static inline double dalcs_doubt_noise(const struct dalcs_radau_part *part) {
     return 2e-13 * part->rounding;
 }
 
+/* Finds the capacitors of a part that may step on factors: part->charging_row. */
+enum dalcs_status dalcs_doubt_setup(struct dalcs_radau_part *part) DALCS_MUST_CHECK;
+
 /* V or A, what rounding leaves of a guard that is 0. Factors leave more than a map, of what meets at the guard's
  * nodes: what a thousand amperes elsewhere would leave is a current here. scale: of its unit. */
 double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, double scale,

@@ -82,7 +82,6 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     size_t n_equations = (size_t)dalcs_system_n_equations(s);
     part->held_charge = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
     part->held_flux = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
-    part->charging_row = dalcs_arena_alloc(&part->arena, n_equations, sizeof(int));
     part->pair_row = dalcs_arena_alloc(&part->arena, 2 * (size_t)s->n_pairs, sizeof(int));
     part->pair_law = dalcs_arena_alloc(&part->arena, DALCS_PAIR_LAWS * (size_t)s->n_pairs,
                                        sizeof(*part->pair_law));
@@ -96,13 +95,12 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     part->doubtful =
         dalcs_arena_alloc(&part->arena, (size_t)dalcs_guards_number(part), sizeof(int));
     if (part->bound == NULL || part->doubtful == NULL || part->held_charge == NULL ||
-        part->held_flux == NULL || part->charging_row == NULL || part->pair_row == NULL ||
-        part->pair_law == NULL || part->pair_rate == NULL || part->cluster == NULL ||
-        part->cluster_charge == NULL) {
+        part->held_flux == NULL || part->pair_row == NULL || part->pair_law == NULL ||
+        part->pair_rate == NULL || part->cluster == NULL || part->cluster_charge == NULL) {
         return DALCS_E_NOMEM;
     }
     dalcs_pair_laws_find(part);
-    return DALCS_OK;
+    return dalcs_stages_have_maps(&part->stages) ? DALCS_OK : dalcs_doubt_setup(part);
 }
 
 static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band,

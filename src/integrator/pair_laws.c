@@ -70,21 +70,6 @@ static void find_fluxes(struct dalcs_radau_part *part, double *at_node /* [n_equ
     }
 }
 
-/* The capacitors whose currents are unknowns without memory. */
-static void find_charging(struct dalcs_radau_part *part) {
-    const struct dalcs_system *s = part->component->system;
-    for (int c = 0; c < dalcs_system_n_equations(s); c++) {
-        part->charging_row[c] = -1;
-    }
-    for (int r = 0; r < s->n_x; r++) {
-        int first = s->A.p[r];
-        int c = s->A.p[r + 1] == first + 1 ? s->A.j[first] : -1;
-        if (s->row_is_current[r] && c >= s->n_x && s->column_is_current[c]) {
-            part->charging_row[c] = r;
-        }
-    }
-}
-
 /* row < 0: ground. */
 static struct dalcs_pair_law law_of_node(const struct dalcs_system *s, int row,
                                          const double *inductance) {
@@ -114,7 +99,6 @@ static struct dalcs_pair_law law_of_resistance(const struct dalcs_system *s, int
 void dalcs_pair_laws_find(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     find_charges(part);
-    find_charging(part);
     double *inductance = part->cluster_charge; /* [n_equations] at nodes; a work space of later */
     find_fluxes(part, inductance);
     for (int d = 0; d < s->n_pairs; d++) {

@@ -25,8 +25,7 @@ struct dalcs_pair_rate {
 /* NULL: out of memory. */
 struct dalcs_pair_rate *dalcs_pair_rate_create(struct dalcs_arena *arena, int n_pairs, int n_words);
 
-/* Fills what the part knows of its pairs: pair_row, charging_row, held_charge, held_flux,
- * pair_law. */
+/* Fills what the part knows of its pairs: pair_row, held_charge, held_flux, pair_law. */
 void dalcs_pair_laws_find(struct dalcs_radau_part *part);
 
 /* Along a chain of closed pairs the current of one rounds what all the capacitors on the chain take: in a

@@ -115,6 +115,15 @@ static size_t room_for_part(const struct dalcs_system *s) {
     return FOR_ALL + FOR_A_COLUMN * (size_t)dalcs_system_n_columns(s);
 }
 
+static bool allocate_probe(struct dalcs_radau_part *part) {
+    struct dalcs_lever_probe *p = &part->probe;
+    size_t n_levered = (size_t)part->stages.n_levered;
+    p->rounding = dalcs_arena_alloc(&part->arena, n_levered, sizeof(double));
+    p->drift = dalcs_arena_alloc(&part->arena, n_levered, sizeof(double));
+    p->in = dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_in, sizeof(double));
+    return p->rounding != NULL && p->drift != NULL && p->in != NULL;
+}
+
 static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
@@ -140,19 +149,15 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
         &part->arena, (size_t)dalcs_dense_map_rows(part->stages.n_levered), sizeof(double));
     part->current_parts =
         dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_levered, sizeof(double));
-    struct dalcs_lever_probe *probe = &part->probe;
-    size_t n_levered = (size_t)part->stages.n_levered;
-    probe->rounding = dalcs_arena_alloc(&part->arena, n_levered, sizeof(double));
-    probe->drift = dalcs_arena_alloc(&part->arena, n_levered, sizeof(double));
-    probe->in = dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_in, sizeof(double));
     bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
                     part->in_before != NULL && part->out_before != NULL &&
                     part->out_tried != NULL && part->armed != NULL && part->crossed != NULL &&
                     part->tied != NULL && part->u != NULL && part->y1 != NULL && part->y2 != NULL &&
                     part->w1 != NULL && part->after != NULL && part->used_input != NULL &&
-                    part->current_drift != NULL && part->current_parts != NULL &&
-                    probe->rounding != NULL && probe->drift != NULL && probe->in != NULL;
-    return complete ? DALCS_OK : DALCS_E_NOMEM;
+                    part->current_drift != NULL && part->current_parts != NULL;
+    return complete && (dalcs_stages_have_maps(&part->stages) || allocate_probe(part))
+               ? DALCS_OK
+               : DALCS_E_NOMEM;
 }
 
 /* Where a circuit carries no current, rounding must not be taken for one: its voltages could drive a
@@ -234,7 +239,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->level = -ilogb(fmin(first, promising) / part->rung);
     part->patience = 32;
     DALCS_TRY(dalcs_periodic_setup(r, part));
-    if (dalcs_system_n_columns(c->system) <= part->stages.dense_limit) {
+    if (dalcs_stages_have_maps(&part->stages)) {
         part->rounding = 1.0; /* before there is a step, too */
     }
     return DALCS_OK;

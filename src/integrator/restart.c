@@ -103,6 +103,14 @@ static void find_largest(const struct dalcs_radau_part *part, double *largest) {
     }
 }
 
+/* V, A: no less than |y[0..n-1]|. */
+static void raise_largest(const struct dalcs_system *s, const double *y, int n, double *largest) {
+    for (int c = 0; c < n; c++) {
+        double *of = &largest[s->column_is_current[c]];
+        *of = fmax(*of, fabs(y[c]));
+    }
+}
+
 /* The states just after part->t from the micro-steps y1 and y2. Does any jump, and by more than the
  * error that the state of an event has? A fast transient moves in both micro-steps and is left to be
  * stepped through. It may hide a jump, or the mode that it is in: *closer is how short micro-steps that
@@ -112,10 +120,7 @@ static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_pa
     const struct dalcs_system *s = part->component->system;
     double largest[2];
     find_largest(part, largest);
-    for (int c = 0; c < dalcs_system_n_equations(s); c++) {
-        int of = s->column_is_current[c];
-        largest[of] = fmax(largest[of], fabs(part->y1[c]));
-    }
+    raise_largest(s, part->y1, dalcs_system_n_equations(s), largest);
     double smallest = fmax(1e3 * r->inner_tolerance, smallest_jump);
     bool jumps = false;
     *noticeable = false;
@@ -193,10 +198,7 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
     memcpy(longer, part->y1, (size_t)s->n_x * sizeof(double));
     DALCS_TRY(micro_steps(r, part, shorter * h));
     find_largest(part, largest);
-    for (int x = 0; x < s->n_x; x++) {
-        double *of = &largest[s->column_is_current[x]];
-        *of = fmax(*of, fabs(longer[x]));
-    }
+    raise_largest(s, longer, s->n_x, largest);
     for (int x = 0; x < s->n_x; x++) {
         double before = fabs(longer[x] - part->x[x]);
         double now = fabs(part->y1[x] - part->x[x]);

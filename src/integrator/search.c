@@ -85,18 +85,31 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
     return dalcs_radau_euler_step(r, part, part->fell_back);
 }
 
+static void keep_mode(struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    memcpy(part->mode_tied, p->mode, (size_t)p->n_words * sizeof(uint64_t));
+}
+
+static void put_mode_back(struct dalcs_radau_part *part) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    memcpy(p->mode, part->mode_tied, (size_t)p->n_words * sizeof(uint64_t));
+}
+
+static bool is_mode_kept(const struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    return dalcs_mode_is(p->mode, part->mode_tied, p->n_words);
+}
+
 enum dalcs_status dalcs_search_tie_again(struct dalcs_radau_part *part,
                                          struct dalcs_search *search) {
     search->opened = false;
-    memcpy(part->component->osnsp.mode, part->mode_tied,
-           (size_t)part->component->osnsp.n_words * sizeof(uint64_t));
+    put_mode_back(part);
     return DALCS_OK;
 }
 
 enum dalcs_status dalcs_search_go_on_trying(struct dalcs_radau_part *part,
                                             struct dalcs_search *search) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    search->opened = !dalcs_mode_is(p->mode, part->mode_tied, p->n_words);
+    search->opened = !is_mode_kept(part);
     return DALCS_OK;
 }
 
@@ -168,8 +181,6 @@ static bool lets_pass(const struct dalcs_radau *r, const struct dalcs_radau_part
     return is_levered;
 }
 
-/* After a step that is not accurate: changes the mode, the state or the length. *done: the segment is
- * one of implicit Euler. */
 enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        struct dalcs_search *search,
                                        const struct dalcs_step_quality *quality, bool *done) {
@@ -233,14 +244,18 @@ enum dalcs_status dalcs_search_refine(struct dalcs_radau *r, struct dalcs_radau_
     return DALCS_OK;
 }
 
+/* Not if it has jumped and only micro-steps know how far. */
+static bool is_state_known(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    return !part->jumped || r->base->jump.is_known;
+}
+
 /* May what is wrong from the start be over so soon that micro-steps saw what comes after it? Where a
  * source begins to fall there may be a current that it has to take down first. Behind a jump that only
  * they know it is rather the state, which they left a little off. */
 static bool may_be_brief(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                          const struct dalcs_search *search) {
     bool asked = search->restarts > 0 && search->flips == 0 && !search->closer;
-    bool is_exact = !part->jumped || r->base->jump.is_known;
-    return asked && is_exact && !search->fixed;
+    return asked && is_state_known(r, part) && !search->fixed;
 }
 
 /* Asks the circuit by micro-steps that are shorter still, for a segment about as long as that. */
@@ -291,7 +306,7 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
 static enum dalcs_status ask_of_tied(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                      struct dalcs_search *search, const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
-    memcpy(part->mode_tied, p->mode, (size_t)p->n_words * sizeof(uint64_t));
+    keep_mode(part);
     for (int d = 0; d < p->system->n_pairs; d++) {
         part->tied[d] = dalcs_guards_is_tied(part, d, unit);
     }
@@ -312,8 +327,7 @@ enum dalcs_status dalcs_search_untie(struct dalcs_radau *r, struct dalcs_radau_p
         return ask_of_tied(r, part, search, quality->unit);
     }
     search->untied = true;
-    memcpy(part->mode_tied, part->component->osnsp.mode,
-           (size_t)part->component->osnsp.n_words * sizeof(uint64_t));
+    keep_mode(part);
     search->opened = dalcs_guards_turn_tied(part, quality->unit);
     return DALCS_OK;
 }
@@ -321,10 +335,8 @@ enum dalcs_status dalcs_search_untie(struct dalcs_radau *r, struct dalcs_radau_p
 enum dalcs_status dalcs_search_look_at_start(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                              struct dalcs_search *search, const double *unit,
                                              bool *holds) {
-    struct dalcs_osnsp *p = &part->component->osnsp;
     *holds = true;
-    bool is_exact = !part->jumped || r->base->jump.is_known;
-    if (!is_exact || search->closer || search->fixed) {
+    if (!is_state_known(r, part) || search->closer || search->fixed) {
         return DALCS_OK;
     }
     bool is_sure;
@@ -335,14 +347,14 @@ enum dalcs_status dalcs_search_look_at_start(struct dalcs_radau *r, struct dalcs
         return DALCS_OK;
     }
     int level = part->level;
-    memcpy(part->mode_tied, p->mode, (size_t)p->n_words * sizeof(uint64_t));
+    keep_mode(part);
     enum dalcs_status status = ask_closer(r, part, search, rise, true);
     if (status < DALCS_OK) {
         return status;
     }
-    bool differs = status == DALCS_OK && !dalcs_mode_is(p->mode, part->mode_tied, p->n_words);
+    bool differs = status == DALCS_OK && !is_mode_kept(part);
     if (!differs) {
-        memcpy(p->mode, part->mode_tied, (size_t)p->n_words * sizeof(uint64_t));
+        put_mode_back(part);
     }
     *holds = !differs && !is_sure;
     search->opened = search->opened && *holds;

@@ -132,6 +132,11 @@ const double *dalcs_stage_natural_units(const struct dalcs_stage_entry *entry);
 
 bool dalcs_stage_has_map(const struct dalcs_stage_entry *entry);
 
+/* Has every entry one, whatever its mode? */
+static inline bool dalcs_stages_have_maps(const struct dalcs_stages *stages) {
+    return dalcs_system_n_columns(stages->system) <= stages->dense_limit;
+}
+
 /* What errors in the states and sources, each the same part of them, may make of element `row` of an
  * answer, over that part, by an entry with a map; a state is at least scale[n_x]. */
 double dalcs_stage_spread(const struct dalcs_stages *stages, const struct dalcs_stage_entry *entry,

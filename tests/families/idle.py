@@ -7,6 +7,8 @@ series: two diodes stop conducting together, behind two in parallel that stay ti
 stays in the middle of what both block, at every tolerance, and both are off from then on.
 rest: diodes on capacitors without a charge. What takes them forward begins at an event as a power of time, far below
 what the largest voltage rounds to; they conduct from that event on.
+bridge: a coil's current goes on through all four diodes of a bridge, milliamperes beside 12 V, or begins to from rest: each
+has its part of it until something takes that away, which is an event.
 """
 
 import pathlib
@@ -99,9 +101,9 @@ ve x3 0 -8.089
 SHARED = [(1e-8, "on"), (5.099561253e-6, "off"), (7.11e-6, "on"), (1.528494827e-5, "off"), (1.711e-5, "on")]
 FED = [(1.8969762025344732e-08, "off"), (4.994243326256234e-05, "on"), (0.00010301662594061053, "off"),
        (0.0001497745422246926, "on"), (0.00020939689117161012, "off")]
-STOPS = [(time + period * 1e-3, "off") for period in range(3) for time in [0.0002750118272297618]]
-STARTS = [(time + period * 1e-3, "on") for period in range(1, 4) for time in [0.0000735727120890018]]
-CONDUCTION = sorted(STOPS + STARTS + [(0.0032750118272297618, "off")])
+STOPS = [(0.0002750118272297618 + period * 1e-3, "off") for period in range(4)]
+STARTS = [(0.0000735727120890018 + period * 1e-3, "on") for period in range(1, 4)]
+CONDUCTION = sorted(STOPS + STARTS)
 # The events of some diodes, by an exact solution.
 KINDS = {
     "series": {SERIES: (3.37e-3, {"d4": CONDUCTION, "d5": CONDUCTION})},
