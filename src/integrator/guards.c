@@ -1,14 +1,15 @@
-/* guards.c - guards as polynomials on the step. */
+/* guards.c - when guards fall, and what a fall means. */
 #include "guards.h"
 
 #include "crossing.h"
 #include "doubt.h"
 #include "extremes.h"
 #include "guard_scale.h"
+#include "guard_values.h"
 #include "pair_laws.h"
 #include "quads.h"
+#include "tied.h"
 
-#include <float.h>
 #include <math.h>
 
 /* The part of its doubt that counts in later steps where such a pair goes on falling, or stays where it is: a diode
@@ -18,10 +19,6 @@ static const double falling_part = 1e-3;
 /* One that comes down to 0 from above and goes up again, as that of a peak detector without a load at each peak, may
  * be on the other side by this part of its doubt. */
 static const double touching = 1e-3;
-
-/* The value of a pair at the end of a segment and that at the start of the next, whose errors have nothing
- * to do with each other, agree to this part of it: then it is known, however small it is. */
-static const double agreeing = 0.01;
 
 /* A guard that begins a mode next to 0 is off by so many times that, as far as its beginning tells. */
 static const double began = 10.0;
@@ -51,31 +48,6 @@ static const double same_by_value = 1e-10;
 /* A fall this early in a step is one from the start; so early where no pair has changed sides and it was above 0
  * by no more than its doubt: from rest a circuit may begin to move as a power of time. */
 static const double soon_after = 1e-6, from_rest = 1.0 / 64.0;
-
-/* A voltage that moves a switch, less its threshold, at a node. */
-static double control_at(const struct dalcs_radau_part *part, int guard, int node) {
-    const struct dalcs_system *s = part->component->system;
-    int d = dalcs_guard_pair(part, guard);
-    double v = part->out[node * part->stages.layout.stride + dalcs_system_n_columns(s) + guard -
-                         s->n_pairs];
-    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, d);
-    return is_on ? v - s->pair[d].turn_off : s->pair[d].turn_on - v;
-}
-
-/* Values at the nodes, with their stride; of a pair they are in the answer itself. */
-static inline const double *values_of(const struct dalcs_radau_part *part, int guard, double *work,
-                                      int *stride) {
-    const struct dalcs_system *s = part->component->system;
-    *stride = part->stages.layout.stride;
-    if (guard < s->n_pairs) {
-        return part->out + dalcs_system_n_equations(s) + guard;
-    }
-    for (int k = 0; k < part->stages.layout.n_nodes; k++) {
-        work[k] = control_at(part, guard, k);
-    }
-    *stride = 1;
-    return work;
-}
 
 enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
@@ -108,41 +80,20 @@ static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band
     int node = at_end ? part->stages.layout.n_nodes - 1 : 0;
     for (int g = part->component->system->n_pairs; g < dalcs_guards_number(part); g++) {
         if (!(at_end && part->armed[g])) {
-            part->armed[g] =
-                control_at(part, g, node) > band * dalcs_guard_control_scale(part, g, unit);
+            part->armed[g] = dalcs_guard_control_at(part, g, node) >
+                             band * dalcs_guard_control_scale(part, g, unit);
         }
     }
 }
 
-static double value_at(const struct dalcs_radau_part *part, const double *value, int stride,
-                       double theta) {
-    double weight[DALCS_MAX_NODES];
-    double sum = 0.0;
-    dalcs_collocation_weights(part->stages.method, theta, weight);
-    for (int k = 0; k < part->stages.layout.n_nodes; k++) {
-        sum += weight[k] * value[k * stride];
-    }
-    return sum;
-}
-
-/* Values at the nodes of a pair in the segment before, with their stride; NULL if they are not known or it
- * was on the other side. */
-static const double *values_before(const struct dalcs_radau_part *part, int pair) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    if (part->by_euler || dalcs_guard_has_flipped(part, pair)) {
-        return NULL;
-    }
-    return part->out_before + dalcs_system_n_equations(p->system) + pair;
-}
-
 /* Is a pair on the side that it was on in the segment before, with the same value? */
 static bool goes_on(const struct dalcs_radau_part *part, int pair, double value) {
-    const double *before = values_before(part, pair);
+    const double *before = dalcs_guard_values_before(part, pair);
     if (before == NULL) {
         return false;
     }
-    double last = value_at(part, before, part->stages.layout.stride, part->end_before);
-    return fabs(value - last) <= agreeing * value;
+    double last = dalcs_guard_value_at(part, before, part->stages.layout.stride, part->end_before);
+    return fabs(value - last) <= dalcs_guard_agreeing * value;
 }
 
 void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, bool at_end,
@@ -176,7 +127,7 @@ static void bound_controls(const struct dalcs_radau_part *part) {
     for (int g = part->component->system->n_pairs; g < dalcs_guards_number(part); g++) {
         double work[DALCS_MAX_NODES + DALCS_QUAD] = {0.0};
         int stride;
-        const double *value = values_of(part, g, work, &stride);
+        const double *value = dalcs_guard_values(part, g, work, &stride);
         dalcs_crossing_bounds(part->stages.method, 1, value, stride, part->bound + g);
     }
 }
@@ -211,8 +162,9 @@ static bool is_over_soon(const struct dalcs_radau *r, const struct dalcs_radau_p
                          const double *value, int stride, double scale) {
     double little = fmax(shallow * dalcs_doubt_band(r, part), slight) * scale;
     double instant = dalcs_smaller(1.0, 64.0 * r->resolution / part->h);
-    return (value[0] >= -little && value_at(part, value, stride, soon_after) > 0.0) ||
-           (value[0] >= -unresolved * scale && value_at(part, value, stride, instant) > 0.0);
+    return (value[0] >= -little && dalcs_guard_value_at(part, value, stride, soon_after) > 0.0) ||
+           (value[0] >= -unresolved * scale &&
+            dalcs_guard_value_at(part, value, stride, instant) > 0.0);
 }
 
 /* What crosses at the stop time, up to the error, is left to a longer run: where in the step that begins. */
@@ -236,20 +188,6 @@ static double doubt_at_first(struct dalcs_radau_part *part, const double *value,
     return depth;
 }
 
-/* Has it just changed sides, and rises from node to node, above what the rounding of a map would be? That of factors
- * may be larger, but does not. */
-static bool has_crossed(const struct dalcs_radau_part *part, int pair, const double *value,
-                        int stride, const double *unit) {
-    int last = part->stages.layout.n_nodes - 1;
-    double least = dalcs_doubt_noise(part) / part->rounding * dalcs_guard_scale(part, pair, unit);
-    bool rises = part->flipped && value[last * stride] > dalcs_larger(least, fabs(value[0])) &&
-                 dalcs_guard_has_flipped(part, pair);
-    for (int k = 1; k <= last && rises; k++) {
-        rises = value[k * stride] > value[(k - 1) * stride];
-    }
-    return rises;
-}
-
 /* How far a guard may fall and is no event: where it is armed by rounding, `noise`, or as far as it may be touching
  * 0. */
 static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *part, int guard,
@@ -258,8 +196,8 @@ static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *par
     int last = part->stages.layout.n_nodes - 1;
     double scale = dalcs_guard_scale(part, guard, unit);
     bool is_armed = part->armed[guard];
-    if (is_armed &&
-        (end < 1.0 ? value_at(part, value, stride, end) : value[last * stride]) <= noise) {
+    if (is_armed && (end < 1.0 ? dalcs_guard_value_at(part, value, stride, end)
+                               : value[last * stride]) <= noise) {
         return noise; /* it does not come back */
     }
     double doubt = dalcs_doubt_of_fall(r, part, guard, scale, unit);
@@ -267,7 +205,7 @@ static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *par
         return dalcs_larger(noise, touching * doubt);
     }
     if (part->fresh && guard < part->component->system->n_pairs &&
-        has_crossed(part, guard, value, stride, unit)) {
+        dalcs_guard_has_crossed(part, guard, value, stride, unit)) {
         return dalcs_osnsp_is_on(&part->component->osnsp, guard)
                    ? dalcs_doubt_of_closed(r, part, guard, scale)
                    : dalcs_larger(dalcs_doubt_band(r, part), blocking) * scale;
@@ -275,7 +213,8 @@ static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *par
     if (part->fresh) {
         return doubt_at_first(part, value, stride, end, doubt);
     }
-    return value[last * stride] < (1.0 - agreeing) * value[0] ? falling_part * doubt : doubt;
+    return value[last * stride] < (1.0 - dalcs_guard_agreeing) * value[0] ? falling_part * doubt
+                                                                          : doubt;
 }
 
 /* Does a guard that falls at `theta` or later do so at an event that is no farther before than errors move it? Diodes
@@ -287,9 +226,10 @@ static bool falls_with(const struct dalcs_radau *r, const struct dalcs_radau_par
     }
     double work[DALCS_MAX_NODES];
     int stride;
-    const double *value = values_of(part, guard, work, &stride);
+    const double *value = dalcs_guard_values(part, guard, work, &stride);
     double scale = dalcs_guard_scale(part, guard, unit);
-    return value_at(part, value, stride, event) <= dalcs_doubt_about(r, part, guard, scale, unit);
+    return dalcs_guard_value_at(part, value, stride, event) <=
+           dalcs_doubt_about(r, part, guard, scale, unit);
 }
 
 /* All that have crossed at `theta`. */
@@ -300,35 +240,6 @@ static bool all_fall_with(const struct dalcs_radau *r, const struct dalcs_radau_
         all = falls_with(r, part, part->crossed[k], event, theta, unit);
     }
     return all;
-}
-
-/* V or A that rounding makes of a pair that is 0 where its whole unit is. */
-static double rounding_across(const struct dalcs_radau_part *part, int pair, const double *unit) {
-    return dalcs_step_crossed(part, dalcs_osnsp_is_on(&part->component->osnsp, pair) ? 1 : 0, unit);
-}
-
-/* V or A that rounding makes of a pair that is 0. */
-static double nothing_of(const struct dalcs_radau_part *part, int pair, const double *unit) {
-    double limit = dalcs_doubt_noise(part) * dalcs_guard_scale(part, pair, unit);
-    return limit + dalcs_guard_rounding(part, pair, unit) + rounding_across(part, pair, unit);
-}
-
-/* Are all of these no more than that? */
-static bool is_nothing(const struct dalcs_radau_part *part, int pair, const double *value,
-                       int stride, const double *unit) {
-    double limit = nothing_of(part, pair, unit);
-    bool nothing = true;
-    for (int k = 0; k < part->stages.layout.n_nodes && nothing; k++) {
-        nothing = fabs(value[k * stride]) <= limit;
-    }
-    return nothing;
-}
-
-/* Has a pair been 0 for all of the segment before, on the side where it is? */
-static bool was_at_rest(const struct dalcs_radau_part *part, int pair, const double *unit) {
-    const double *before =
-        pair < part->component->system->n_pairs ? values_before(part, pair) : NULL;
-    return before != NULL && is_nothing(part, pair, before, part->stages.layout.stride, unit);
 }
 
 /* The first of the doubtful ones. */
@@ -345,7 +256,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         int g = part->doubtful[k];
         double work[DALCS_MAX_NODES];
         int stride;
-        const double *value = values_of(part, g, work, &stride);
+        const double *value = dalcs_guard_values(part, g, work, &stride);
         double scale = dalcs_guard_scale(part, g, unit);
         double rounding = dalcs_guard_rounding(part, g, unit);
         double zero = dalcs_doubt_noise_about(part, g, scale, unit);
@@ -369,7 +280,8 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         }
         struct dalcs_crossing c = dalcs_crossing_find(part->stages.method, value, stride, end,
                                                       depth, part->n_crossed > 0 ? first : 0.0);
-        bool is_late = c.theta >= too_late && value_at(part, value, stride, end) >= -band * scale;
+        bool is_late =
+            c.theta >= too_late && dalcs_guard_value_at(part, value, stride, end) >= -band * scale;
         if (!c.falls || is_late ||
             (c.theta > first + together && !falls_with(r, part, g, first, c.theta, unit))) {
             continue;
@@ -382,7 +294,8 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         first = dalcs_smaller(first, c.theta);
         bool slips = part->fresh && c.theta <= from_rest && c.peak <= depth;
         part->slips = part->slips || slips;
-        bool soon = c.at_once || (slips && (!part->flipped || was_at_rest(part, g, unit))) ||
+        bool soon = c.at_once ||
+                    (slips && (!part->flipped || dalcs_tied_was_at_rest(part, g, unit))) ||
                     (c.theta <= soon_after && c.peak <= band * scale);
         *at_once = *at_once || (!part->armed[g] && soon);
         part->crossed[part->n_crossed++] = g;
@@ -407,7 +320,7 @@ bool dalcs_guards_recover(const struct dalcs_radau *r, const struct dalcs_radau_
     for (int k = 0; k < part->n_crossed && all; k++) {
         double work[DALCS_MAX_NODES];
         int stride;
-        const double *value = values_of(part, part->crossed[k], work, &stride);
+        const double *value = dalcs_guard_values(part, part->crossed[k], work, &stride);
         double band = dalcs_doubt_band(r, part) * dalcs_guard_scale(part, part->crossed[k], unit);
         all = value[0] >= -shallow * band && value[last * stride] > 0.0;
     }
@@ -430,7 +343,7 @@ double dalcs_guards_recovery(const struct dalcs_radau_part *part) {
     for (int k = 0; k < part->n_crossed; k++) {
         double work[DALCS_MAX_NODES];
         int stride;
-        const double *value = values_of(part, part->crossed[k], work, &stride);
+        const double *value = dalcs_guard_values(part, part->crossed[k], work, &stride);
         latest = dalcs_larger(latest, rise_of(part, value, stride));
     }
     return latest;
@@ -448,10 +361,10 @@ double dalcs_guards_rise(const struct dalcs_radau *r, const struct dalcs_radau_p
         }
         double work[DALCS_MAX_NODES] = {0.0};
         int stride;
-        const double *value = values_of(part, d, work, &stride);
+        const double *value = dalcs_guard_values(part, d, work, &stride);
         double scale = dalcs_guard_scale(part, d, unit);
         double noise = dalcs_beyond_noise * dalcs_doubt_noise(part) * scale;
-        if (!(value[0] < -noise) || !(value_at(part, value, stride, most) > 0.0)) {
+        if (!(value[0] < -noise) || !(dalcs_guard_value_at(part, value, stride, most) > 0.0)) {
             continue;
         }
         noise += dalcs_guard_rounding(part, d, unit);
@@ -471,7 +384,7 @@ bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
     for (int k = 0; k < part->n_crossed && all; k++) {
         double work[DALCS_MAX_NODES];
         int stride;
-        const double *value = values_of(part, part->crossed[k], work, &stride);
+        const double *value = dalcs_guard_values(part, part->crossed[k], work, &stride);
         double least = 0.0;
         for (int i = 1; i < last; i++) {
             least = dalcs_smaller(least, value[i * stride]);
@@ -479,14 +392,6 @@ bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
         all = value[last * stride] > 0.0 && least > -part_left * value[0];
     }
     return all;
-}
-
-bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
-    double work[DALCS_MAX_NODES];
-    int stride;
-    const double *value = values_of(part, pair, work, &stride);
-    return dalcs_guard_is_one(part, pair) && is_nothing(part, pair, value, stride, unit) &&
-           !has_crossed(part, pair, value, stride, unit);
 }
 
 /* Is it below 0 from the start on, and does not come back by half up to `end`? By more than `least`, or by more
@@ -499,7 +404,7 @@ static bool stays_below(const struct dalcs_radau_part *part, int pair, double en
     bool same = true;
     for (int k = 1; k < l->n_nodes && part->stages.method->node[k] <= end && stays; k++) {
         stays = value[k * l->stride] < 0.5 * value[0];
-        same = same && fabs(value[k * l->stride] - value[0]) <= -agreeing * value[0];
+        same = same && fabs(value[k * l->stride] - value[0]) <= -dalcs_guard_agreeing * value[0];
     }
     return stays && (same || value[0] < -least);
 }
@@ -522,135 +427,6 @@ bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_
     return negative;
 }
 
-/* A closed pair that had no current in the whole segment before either? An open one without voltage may
- * have got another in parallel. */
-static bool was_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
-    bool is_closed = part->flipped && dalcs_osnsp_is_on(&part->component->osnsp, pair);
-    return is_closed && was_at_rest(part, pair, unit);
-}
-
-/* Does it share a node with a pair that has just changed sides? Then something did happen to it. */
-static bool is_beside_flipped(const struct dalcs_radau_part *part, int pair) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    const int *mine = part->pair_row + 2 * pair;
-    bool found = false;
-    for (int d = 0; d < p->system->n_pairs && !found; d++) {
-        if (dalcs_guard_has_flipped(part, d)) {
-            const int *its = part->pair_row + 2 * d;
-            for (int e = 0; e < 2; e++) {
-                found = found || (mine[e] >= 0 && (mine[e] == its[0] || mine[e] == its[1]));
-            }
-        }
-    }
-    return found;
-}
-
-/* An open pair without the least voltage, where all answers are the only ones: to close it would change nothing. */
-static bool is_settled(const struct dalcs_radau_part *part, int pair) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    const double *value = part->out + dalcs_system_n_equations(p->system) + pair;
-    bool settled = dalcs_osnsp_is_unique(p) && !dalcs_osnsp_is_on(p, pair);
-    for (int k = 0; k < l->n_nodes && settled; k++) {
-        settled = value[k * l->stride] == 0.0;
-    }
-    return settled;
-}
-
-bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determined,
-                            const double *unit) {
-    int n_pairs = part->component->system->n_pairs;
-    bool tied = false;
-    for (int d = 0; d < n_pairs && !tied && !(n_pairs > DALCS_MANY_PAIRS && part->flipped); d++) {
-        tied = dalcs_guards_is_tied(part, d, unit) && !is_settled(part, d) &&
-               !(is_determined && was_tied(part, d, unit) && !is_beside_flipped(part, d));
-    }
-    return tied;
-}
-
-/* Is its value at the end of the step above 0 by more than at the start, however little that is beyond rounding? */
-static bool grows(const struct dalcs_radau_part *part, int pair, const double *unit) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
-    return value[(l->n_nodes - 1) * l->stride] >
-           dalcs_larger(fabs(value[0]), rounding_across(part, pair, unit));
-}
-
-/* Does a guard that starts from nothing go up from node to node, or with sign -1 down, if by no more than rounding
- * makes of it beside others? Its own digits tell, for they are those of a power of time. */
-static bool leaves(const struct dalcs_radau_part *part, int pair, double sign) {
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
-    double last = sign * value[(l->n_nodes - 1) * l->stride];
-    bool does = part->rounding == 1.0 && last > 0.0 && fabs(value[0]) <= agreeing * agreeing * last;
-    for (int k = 1; k < l->n_nodes && does; k++) {
-        does = sign * value[k * l->stride] > sign * value[(k - 1) * l->stride];
-    }
-    return does;
-}
-
-/* Is a pair above 0, by more than rounding, halfway to `end`? */
-static bool is_above(const struct dalcs_radau_part *part, int pair, double end,
-                     const double *unit) {
-    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
-    return value_at(part, value, part->stages.layout.stride, 0.5 * end) >
-           nothing_of(part, pair, unit);
-}
-
-/* The tied diodes that are open close, all of them: where there are many answers they may have a part of a current. */
-static bool close_tied(struct dalcs_radau_part *part, const double *unit) {
-    struct dalcs_osnsp *p = &part->component->osnsp;
-    bool found = false;
-    for (int d = 0; d < p->system->n_pairs; d++) {
-        if (!dalcs_osnsp_is_on(p, d) && dalcs_guards_is_tied(part, d, unit)) {
-            dalcs_osnsp_command(p, d, true);
-            found = true;
-        }
-    }
-    return found;
-}
-
-bool dalcs_guards_open_idle(struct dalcs_radau_part *part, const uint64_t *before, double end,
-                            const double *unit) {
-    struct dalcs_osnsp *p = &part->component->osnsp;
-    bool found = false;
-    for (int d = 0; d < p->system->n_pairs; d++) {
-        bool is_tried = dalcs_osnsp_is_on(p, d) && !dalcs_mode_has(before, d);
-        if (is_tried && !is_above(part, d, end, unit) && !leaves(part, d, 1.0)) {
-            dalcs_osnsp_command(p, d, false);
-            found = true;
-        }
-    }
-    return found;
-}
-
-bool dalcs_guards_turn_tied(struct dalcs_radau_part *part, const double *unit) {
-    struct dalcs_osnsp *p = &part->component->osnsp;
-    bool found = false;
-    for (int d = 0; d < p->system->n_pairs && p->system->n_pairs <= DALCS_MANY_PAIRS; d++) {
-        if (!dalcs_guards_is_tied(part, d, unit)) {
-            continue;
-        }
-        bool is_on = dalcs_osnsp_is_on(p, d);
-        if (is_on ? !grows(part, d, unit) : leaves(part, d, -1.0)) {
-            dalcs_osnsp_command(p, d, !is_on);
-            found = true;
-        }
-    }
-    bool may_share = p->system->n_pairs <= DALCS_MANY_PAIRS && !dalcs_osnsp_is_unique(p);
-    return found || (may_share && close_tied(part, unit));
-}
-
-bool dalcs_guards_turn_back(const struct dalcs_radau_part *part, double end, const double *unit) {
-    bool turns = false;
-    for (int k = 0; k < part->n_crossed && !turns; k++) {
-        int g = part->crossed[k];
-        turns = !part->armed[g] &&
-                !(g < part->component->system->n_pairs && is_above(part, g, end, unit));
-    }
-    return turns;
-}
-
 /* Nodes at the start of the present segment at which a pair is negative and that does not count: what is over before
  * it begins, and what a current is off by that begins. */
 static int count_excused(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int pair,
@@ -663,7 +439,7 @@ static int count_excused(const struct dalcs_radau *r, const struct dalcs_radau_p
     if (is_over_soon(r, part, value, l->stride, dalcs_guard_scale(part, pair, unit))) {
         return 1;
     }
-    bool begins = has_crossed(part, pair, value, l->stride, unit);
+    bool begins = dalcs_guard_has_crossed(part, pair, value, l->stride, unit);
     while (begins && n < l->n_nodes && value[n * l->stride] < 0.0) {
         n++;
     }

@@ -45,31 +45,6 @@ bool dalcs_guards_swing(const struct dalcs_radau_part *part);
 bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                                 double end, const double *unit);
 
-/* Is there a diode with neither current nor voltage during the whole step? It may change sides without
- * anything else, and where that leaves a choice (sources in parallel, floating nodes) only the OSNSP
- * knows which is of least norm. A closed one that had no current before the event either is none of them
- * where the mode determines all, unless a neighbour changed sides: nothing happened to it. Nor is an open
- * one whose voltage is 0 to the last bit, as before anything has been charged, once the circuit is known to
- * leave no choice. Large components, where that is dear, are asked only at their start and at edges, not
- * after every event. */
-bool dalcs_guards_stay_tied(const struct dalcs_radau_part *part, bool is_determined,
-                            const double *unit);
-
-/* Is this pair such a diode? */
-bool dalcs_guards_is_tied(const struct dalcs_radau_part *part, int pair, const double *unit);
-
-/* Opens the closed diodes among them but those in which a current begins, and closes the open ones whose voltage
- * begins to rise. Where there are none, and many answers, closes all that are open. False: nothing changes. */
-bool dalcs_guards_turn_tied(struct dalcs_radau_part *part, const double *unit);
-
-/* Opens those that are closed now and were not `before`, and have no current halfway to `end`, in steps, nor begin to.
- * False: there is none. */
-bool dalcs_guards_open_idle(struct dalcs_radau_part *part, const uint64_t *before, double end,
-                            const double *unit);
-
-/* Is there one in the first fall, at `end` in steps, that was not clear of 0 before? */
-bool dalcs_guards_turn_back(const struct dalcs_radau_part *part, double end, const double *unit);
-
 /* The most negative lambda or w at the nodes up to `end`, over the largest of its unit; 0 when none. Of
  * a step in which a first fall has been looked for. The start does not count for what is over at once. */
 double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_radau_part *part,

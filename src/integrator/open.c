@@ -1,6 +1,6 @@
 /* open.c - segments in a mode that leaves something open: whom that concerns is told, once for each. */
-#include "guards.h"
 #include "radau_internal.h"
+#include "tied.h"
 
 /* Calls on_open for the instant t of the part's segment. */
 static enum dalcs_status tell_open_at(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -12,7 +12,7 @@ static enum dalcs_status tell_open_at(struct dalcs_radau *r, struct dalcs_radau_
     for (int d = 0; d < s->n_pairs; d++) {
         double other = part->y1[dalcs_system_n_equations(s) + d];
         part->w1[d] = dalcs_osnsp_is_on(p, d) ? 0.0 : other;
-        part->tied[d] = dalcs_guards_is_tied(part, d, part->unit_scale);
+        part->tied[d] = dalcs_tied_is(part, d, part->unit_scale);
     }
     return e->on_open(
         e->open_user,

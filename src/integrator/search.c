@@ -6,6 +6,7 @@
 #include "projection.h"
 #include "radau_internal.h"
 #include "step_length.h"
+#include "tied.h"
 
 #include <math.h>
 #include <string.h>
@@ -308,7 +309,7 @@ static enum dalcs_status ask_of_tied(struct dalcs_radau *r, struct dalcs_radau_p
     struct dalcs_osnsp *p = &part->component->osnsp;
     keep_mode(part);
     for (int d = 0; d < p->system->n_pairs; d++) {
-        part->tied[d] = dalcs_guards_is_tied(part, d, unit);
+        part->tied[d] = dalcs_tied_is(part, d, unit);
     }
     DALCS_TRY(dalcs_search_ask(r, part, search, search->restarts > 0));
     for (int d = 0; d < p->system->n_pairs; d++) {
@@ -328,7 +329,7 @@ enum dalcs_status dalcs_search_untie(struct dalcs_radau *r, struct dalcs_radau_p
     }
     search->untied = true;
     keep_mode(part);
-    search->opened = dalcs_guards_turn_tied(part, quality->unit);
+    search->opened = dalcs_tied_turn(part, quality->unit);
     return DALCS_OK;
 }
 

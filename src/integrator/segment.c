@@ -14,6 +14,7 @@
 #include "recurrence.h"
 #include "search.h"
 #include "step_length.h"
+#include "tied.h"
 #include "twins.h"
 
 #include <math.h>
@@ -249,10 +250,10 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     if (at_once && part->fresh) {
         return dalcs_search_change_mode(r, part, search, q->unit, done);
     }
-    if (search->opened && dalcs_guards_open_idle(part, part->mode_tied, *next, q->unit)) {
+    if (search->opened && dalcs_tied_open_idle(part, part->mode_tied, *next, q->unit)) {
         return dalcs_search_go_on_trying(part, search);
     }
-    if (search->opened && dalcs_guards_turn_back(part, *next, q->unit)) {
+    if (search->opened && dalcs_tied_turn_back(part, *next, q->unit)) {
         return dalcs_search_tie_crossed(part, search);
     }
     if (part->fresh && dalcs_twins_close(part, q->unit)) {
@@ -264,7 +265,7 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
                                : dalcs_search_ask(r, part, search, true);
     }
     if (part->fresh && !search->guessed && !search->untied &&
-        dalcs_guards_stay_tied(part, dalcs_stage_n_clashes(part->entry) == 0, q->unit)) {
+        dalcs_tied_stay(part, dalcs_stage_n_clashes(part->entry) == 0, q->unit)) {
         return dalcs_search_untie(r, part, search, *next, q);
     }
     bool may_dip = part->fresh && part->may_dip;

@@ -2,6 +2,7 @@
 #include "twins.h"
 
 #include "guards.h"
+#include "tied.h"
 
 static bool rows_are_equal(const struct dalcs_csr *a, int i, int k) {
     int length = a->p[i + 1] - a->p[i];
@@ -74,7 +75,7 @@ bool dalcs_twins_close(struct dalcs_radau_part *part, const double *unit) {
     bool found = false;
     for (int d = 0; part->n_twins > 0 && d < p->system->n_pairs; d++) {
         if (p->is_diode[d] && dalcs_osnsp_is_on(p, d) && has_open_twin(part, d) &&
-            !dalcs_guards_is_tied(part, d, unit)) {
+            !dalcs_tied_is(part, d, unit)) {
             command(part, d, true);
             found = true;
         }

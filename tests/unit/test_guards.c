@@ -1,5 +1,6 @@
 /* test_guards.c - which guard falls first on steps that are written down here. */
 #include "guards.h"
+#include "tied.h"
 
 #include "build_network.h"
 
@@ -282,11 +283,11 @@ START_TEST(test_signs_and_ties) {
     draw("s1", -1.0, -1.0);
     (void)first_fall(1.0);
     ck_assert_double_eq(dalcs_guards_wrong_sign(&r, &part, 0.3, unit), 0.0);
-    ck_assert(!dalcs_guards_stay_tied(&part, true, unit));
+    ck_assert(!dalcs_tied_stay(&part, true, unit));
     draw("d1", 0.0, 1e-14);
-    ck_assert(dalcs_guards_stay_tied(&part, true, unit));
+    ck_assert(dalcs_tied_stay(&part, true, unit));
     draw("d1", 0.0, 1e-9);
-    ck_assert(!dalcs_guards_stay_tied(&part, true, unit));
+    ck_assert(!dalcs_tied_stay(&part, true, unit));
     finish();
 }
 
@@ -301,19 +302,19 @@ START_TEST(test_stays) {
     draw("d2", 1.0, 1.0);
     memset(out_before, 0, sizeof(out_before));
     part.flipped = true;
-    ck_assert(dalcs_guards_stay_tied(&part, true, unit));
+    ck_assert(dalcs_tied_stay(&part, true, unit));
     dalcs_osnsp_command(&component.osnsp, d1, true);
-    ck_assert(dalcs_guards_stay_tied(&part, true, unit)); /* it was open */
+    ck_assert(dalcs_tied_stay(&part, true, unit)); /* it was open */
     modes_before[0] = component.osnsp.mode[0];
-    ck_assert(!dalcs_guards_stay_tied(&part, true, unit));
-    ck_assert(dalcs_guards_stay_tied(&part, false, unit));
+    ck_assert(!dalcs_tied_stay(&part, true, unit));
+    ck_assert(dalcs_tied_stay(&part, false, unit));
     draw("d1", 1.0, 0.0);
     memcpy(out_before, out, sizeof(out)); /* it had a current */
     draw("d1", 0.0, 1e-14);
-    ck_assert(dalcs_guards_stay_tied(&part, true, unit));
+    ck_assert(dalcs_tied_stay(&part, true, unit));
     memset(out_before, 0, sizeof(out_before));
     part.flipped = false; /* at an edge */
-    ck_assert(dalcs_guards_stay_tied(&part, true, unit));
+    ck_assert(dalcs_tied_stay(&part, true, unit));
     finish();
 }
 

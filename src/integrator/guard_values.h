@@ -1,0 +1,50 @@
+/* guard_values.h - guards as polynomials on the step: their values at its nodes, and in between. */
+#ifndef DALCS_GUARD_VALUES_H
+#define DALCS_GUARD_VALUES_H
+
+#include "guard_scale.h"
+
+/* The value of a pair at the end of a segment and that at the start of the next, whose errors have nothing
+ * to do with each other, agree to this part of it: then it is known, however small it is. */
+static const double dalcs_guard_agreeing = 0.01;
+
+/* A voltage that moves a switch, less its threshold, at a node. */
+static inline double dalcs_guard_control_at(const struct dalcs_radau_part *part, int guard,
+                                            int node) {
+    const struct dalcs_system *s = part->component->system;
+    int d = dalcs_guard_pair(part, guard);
+    double v = part->out[node * part->stages.layout.stride + dalcs_system_n_columns(s) + guard -
+                         s->n_pairs];
+    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, d);
+    return is_on ? v - s->pair[d].turn_off : s->pair[d].turn_on - v;
+}
+
+/* Values at the nodes, with their stride; of a pair they are in the answer itself. */
+static inline const double *dalcs_guard_values(const struct dalcs_radau_part *part, int guard,
+                                               double *work, int *stride) {
+    const struct dalcs_system *s = part->component->system;
+    *stride = part->stages.layout.stride;
+    if (guard < s->n_pairs) {
+        return part->out + dalcs_system_n_equations(s) + guard;
+    }
+    for (int k = 0; k < part->stages.layout.n_nodes; k++) {
+        work[k] = dalcs_guard_control_at(part, guard, k);
+    }
+    *stride = 1;
+    return work;
+}
+
+/* Between the nodes, at theta in steps. */
+double dalcs_guard_value_at(const struct dalcs_radau_part *part, const double *value, int stride,
+                            double theta);
+
+/* Values at the nodes of a pair in the segment before, with their stride; NULL if they are not known or it
+ * was on the other side. */
+const double *dalcs_guard_values_before(const struct dalcs_radau_part *part, int pair);
+
+/* Has it just changed sides, and rises from node to node, above what the rounding of a map would be? That of factors
+ * may be larger, but does not. */
+bool dalcs_guard_has_crossed(const struct dalcs_radau_part *part, int pair, const double *value,
+                             int stride, const double *unit);
+
+#endif

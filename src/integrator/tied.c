@@ -1,0 +1,173 @@
+/* tied.c - diodes that may be on either side, and attempts to tell. */
+#include "tied.h"
+
+#include "doubt.h"
+#include "extremes.h"
+#include "guard_values.h"
+
+#include <math.h>
+
+/* V or A that rounding makes of a pair that is 0 where its whole unit is. */
+static double rounding_across(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    return dalcs_step_crossed(part, dalcs_osnsp_is_on(&part->component->osnsp, pair) ? 1 : 0, unit);
+}
+
+/* V or A that rounding makes of a pair that is 0. */
+static double nothing_of(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    double limit = dalcs_doubt_noise(part) * dalcs_guard_scale(part, pair, unit);
+    return limit + dalcs_guard_rounding(part, pair, unit) + rounding_across(part, pair, unit);
+}
+
+/* Are all of these no more than that? */
+static bool is_nothing(const struct dalcs_radau_part *part, int pair, const double *value,
+                       int stride, const double *unit) {
+    double limit = nothing_of(part, pair, unit);
+    bool nothing = true;
+    for (int k = 0; k < part->stages.layout.n_nodes && nothing; k++) {
+        nothing = fabs(value[k * stride]) <= limit;
+    }
+    return nothing;
+}
+
+bool dalcs_tied_was_at_rest(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    const double *before =
+        pair < part->component->system->n_pairs ? dalcs_guard_values_before(part, pair) : NULL;
+    return before != NULL && is_nothing(part, pair, before, part->stages.layout.stride, unit);
+}
+
+bool dalcs_tied_is(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    double work[DALCS_MAX_NODES];
+    int stride;
+    const double *value = dalcs_guard_values(part, pair, work, &stride);
+    return dalcs_guard_is_one(part, pair) && is_nothing(part, pair, value, stride, unit) &&
+           !dalcs_guard_has_crossed(part, pair, value, stride, unit);
+}
+
+/* A closed pair that had no current in the whole segment before either? An open one without voltage may
+ * have got another in parallel. */
+static bool was_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    bool is_closed = part->flipped && dalcs_osnsp_is_on(&part->component->osnsp, pair);
+    return is_closed && dalcs_tied_was_at_rest(part, pair, unit);
+}
+
+/* Does it share a node with a pair that has just changed sides? Then something did happen to it. */
+static bool is_beside_flipped(const struct dalcs_radau_part *part, int pair) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const int *mine = part->pair_row + 2 * pair;
+    bool found = false;
+    for (int d = 0; d < p->system->n_pairs && !found; d++) {
+        if (dalcs_guard_has_flipped(part, d)) {
+            const int *its = part->pair_row + 2 * d;
+            for (int e = 0; e < 2; e++) {
+                found = found || (mine[e] >= 0 && (mine[e] == its[0] || mine[e] == its[1]));
+            }
+        }
+    }
+    return found;
+}
+
+/* An open pair without the least voltage, where all answers are the only ones: to close it would change nothing. */
+static bool is_settled(const struct dalcs_radau_part *part, int pair) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const double *value = part->out + dalcs_system_n_equations(p->system) + pair;
+    bool settled = dalcs_osnsp_is_unique(p) && !dalcs_osnsp_is_on(p, pair);
+    for (int k = 0; k < l->n_nodes && settled; k++) {
+        settled = value[k * l->stride] == 0.0;
+    }
+    return settled;
+}
+
+bool dalcs_tied_stay(const struct dalcs_radau_part *part, bool is_determined, const double *unit) {
+    int n_pairs = part->component->system->n_pairs;
+    bool tied = false;
+    for (int d = 0; d < n_pairs && !tied && !(n_pairs > DALCS_MANY_PAIRS && part->flipped); d++) {
+        tied = dalcs_tied_is(part, d, unit) && !is_settled(part, d) &&
+               !(is_determined && was_tied(part, d, unit) && !is_beside_flipped(part, d));
+    }
+    return tied;
+}
+
+/* Is its value at the end of the step above 0 by more than at the start, however little that is beyond rounding? */
+static bool grows(const struct dalcs_radau_part *part, int pair, const double *unit) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
+    return value[(l->n_nodes - 1) * l->stride] >
+           dalcs_larger(fabs(value[0]), rounding_across(part, pair, unit));
+}
+
+/* Does a guard that starts from nothing go up from node to node, or with sign -1 down, if by no more than rounding
+ * makes of it beside others? Its own digits tell, for they are those of a power of time. */
+static bool leaves(const struct dalcs_radau_part *part, int pair, double sign) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
+    double last = sign * value[(l->n_nodes - 1) * l->stride];
+    bool does = part->rounding == 1.0 && last > 0.0 &&
+                fabs(value[0]) <= dalcs_guard_agreeing * dalcs_guard_agreeing * last;
+    for (int k = 1; k < l->n_nodes && does; k++) {
+        does = sign * value[k * l->stride] > sign * value[(k - 1) * l->stride];
+    }
+    return does;
+}
+
+/* Is a pair above 0, by more than rounding, halfway to `end`? */
+static bool is_above(const struct dalcs_radau_part *part, int pair, double end,
+                     const double *unit) {
+    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
+    return dalcs_guard_value_at(part, value, part->stages.layout.stride, 0.5 * end) >
+           nothing_of(part, pair, unit);
+}
+
+/* The tied diodes that are open close, all of them: where there are many answers they may have a part of a current. */
+static bool close_tied(struct dalcs_radau_part *part, const double *unit) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    bool found = false;
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        if (!dalcs_osnsp_is_on(p, d) && dalcs_tied_is(part, d, unit)) {
+            dalcs_osnsp_command(p, d, true);
+            found = true;
+        }
+    }
+    return found;
+}
+
+bool dalcs_tied_open_idle(struct dalcs_radau_part *part, const uint64_t *before, double end,
+                          const double *unit) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    bool found = false;
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        bool is_tried = dalcs_osnsp_is_on(p, d) && !dalcs_mode_has(before, d);
+        if (is_tried && !is_above(part, d, end, unit) && !leaves(part, d, 1.0)) {
+            dalcs_osnsp_command(p, d, false);
+            found = true;
+        }
+    }
+    return found;
+}
+
+bool dalcs_tied_turn(struct dalcs_radau_part *part, const double *unit) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    bool found = false;
+    for (int d = 0; d < p->system->n_pairs && p->system->n_pairs <= DALCS_MANY_PAIRS; d++) {
+        if (!dalcs_tied_is(part, d, unit)) {
+            continue;
+        }
+        bool is_on = dalcs_osnsp_is_on(p, d);
+        if (is_on ? !grows(part, d, unit) : leaves(part, d, -1.0)) {
+            dalcs_osnsp_command(p, d, !is_on);
+            found = true;
+        }
+    }
+    bool may_share = p->system->n_pairs <= DALCS_MANY_PAIRS && !dalcs_osnsp_is_unique(p);
+    return found || (may_share && close_tied(part, unit));
+}
+
+bool dalcs_tied_turn_back(const struct dalcs_radau_part *part, double end, const double *unit) {
+    bool turns = false;
+    for (int k = 0; k < part->n_crossed && !turns; k++) {
+        int g = part->crossed[k];
+        turns = !part->armed[g] &&
+                !(g < part->component->system->n_pairs && is_above(part, g, end, unit));
+    }
+    return turns;
+}
