@@ -26,7 +26,7 @@ extern bool dalcs_is_wide;
 
 #define DALCS_TWICE(type, name, parameters, arguments)                                             \
     static inline __attribute__((always_inline)) type name##_body parameters;                      \
-    __attribute__((target("avx2"))) static type name##_wide parameters {                           \
+    __attribute__((target("avx2,fma"))) static type name##_wide parameters {                           \
         return name##_body arguments;                                                              \
     }                                                                                              \
     static type name parameters {                                                                  \

@@ -50,6 +50,15 @@ static void take_node(const struct dalcs_collocation *c, double theta, double *w
     }
 }
 
+void dalcs_collocation_parts(const struct dalcs_collocation *c, const double *at_stages,
+                             struct dalcs_extended_row *part) {
+    struct dalcs_extended factor[DALCS_MAX_STAGES];
+    for (int i = 0; i < c->s; i++) {
+        factor[i] = (struct dalcs_extended){at_stages[i], 0.0};
+    }
+    dalcs_extended_combine(1 + 2 * c->n_pairs, c->s, factor, c->exact_from, NULL, part);
+}
+
 void dalcs_collocation_weights(const struct dalcs_collocation *c, double theta, double *weight) {
     divide_by_distances(c, theta, weight);
     double sum = 0.0;

@@ -12,6 +12,7 @@
 #ifndef DALCS_COLLOCATION_H
 #define DALCS_COLLOCATION_H
 
+#include "extended_rows.h"
 #include "status.h"
 
 #include <complex.h>
@@ -19,7 +20,8 @@
 enum {
     DALCS_MAX_STAGES = 9,
     DALCS_MAX_NODES = 12, /* s + 1, in whole quads */
-    DALCS_MAX_CONJUGATES = DALCS_MAX_STAGES / 2
+    DALCS_MAX_CONJUGATES = DALCS_MAX_STAGES / 2,
+    DALCS_SOLUTION_PARTS = 1 + 2 * DALCS_MAX_CONJUGATES
 };
 
 struct dalcs_collocation {
@@ -36,10 +38,12 @@ struct dalcs_collocation {
 
     /* the same with the digits that their large elements (300 for s = 7, 3500 for 9) cost */
     long double exact_back[DALCS_MAX_STAGES];
-    long double exact_lambda, exact_to[DALCS_MAX_STAGES], exact_from[DALCS_MAX_STAGES];
+    long double exact_lambda;
     long double complex exact_mu[DALCS_MAX_CONJUGATES];
-    long double complex exact_to_pair[DALCS_MAX_STAGES][DALCS_MAX_CONJUGATES];
-    long double complex exact_from_pair[DALCS_MAX_CONJUGATES][DALCS_MAX_STAGES];
+    /* of solutions as 1 + 2 n_pairs parts, that of lambda and (re, im) of each of mu: what the stages, and in
+     * place s the polynomial through them at 0, take of each part; what the parts take of each stage */
+    struct dalcs_extended_row exact_to[DALCS_SOLUTION_PARTS];
+    struct dalcs_extended_row exact_from[DALCS_MAX_STAGES];
     double barycentric[DALCS_MAX_NODES]; /* weights of all s + 1 nodes */
     /* Newton's form on all nodes, which come in Leja's order for the sake of rounding: place of the k-th, itself,
      * and what the difference of the value there from that at the first adds to the coefficients */
@@ -64,6 +68,10 @@ struct dalcs_collocation {
 
 /* s must be 1, 3, 5, 7 or 9. */
 const struct dalcs_collocation *dalcs_collocation_of(int s);
+
+/* The parts of a function of time by its values at the stages. */
+void dalcs_collocation_parts(const struct dalcs_collocation *c, const double *at_stages,
+                             struct dalcs_extended_row *part);
 
 /* weight[s + 1], with room for all, such that a quantity at a finite theta (in steps) is the sum of
  * weight * value at node. */

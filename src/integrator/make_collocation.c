@@ -26,6 +26,11 @@ static real larger(real a, real b) {
     return a > b ? a : b;
 }
 
+static void put(struct dalcs_extended_row *row, int i, real x) {
+    row->high[i] = (double)x;
+    row->low[i] = (double)(x - (real)row->high[i]);
+}
+
 /* Of a complex number, up to a factor of sqrt(2). */
 static real extent(complex_real x) {
     return larger(size_of(__real__ x), size_of(__imag__ x));
@@ -235,13 +240,16 @@ static void diagonalise(struct dalcs_collocation *c, real A[MAX][MAX]) {
             complex_real back = left[i] / of_one;
             complex_real forth = right[i] * of_one / product;
             if (is_real) {
-                c->exact_from[i] = __real__(back);
-                c->exact_to[i] = __real__(forth);
+                put(&c->exact_from[i], 0, __real__(back));
+                put(&c->exact_to[0], i, __real__(forth));
                 c->from[i] = (double)__real__(back);
                 c->to[i] = (double)__real__(forth);
             } else {
-                c->exact_from_pair[c->n_pairs][i] = (long double complex)back;
-                c->exact_to_pair[i][c->n_pairs] = (long double complex)forth;
+                int part = 1 + 2 * c->n_pairs;
+                put(&c->exact_from[i], part, __real__(back));
+                put(&c->exact_from[i], part + 1, __imag__(back));
+                put(&c->exact_to[part], i, 2 * __real__(forth)); /* 2 Re(to W) */
+                put(&c->exact_to[part + 1], i, -2 * __imag__(forth));
                 c->from_pair[c->n_pairs][i] = (double complex)back;
                 c->to_pair[i][c->n_pairs] = (double complex)forth;
             }
@@ -404,6 +412,13 @@ static void compute(struct dalcs_collocation *c, int s) {
         c->exact_back[i] = value[i];
         c->back[i] = (double)value[i];
     }
+    for (int part = 0; part < 1 + 2 * c->n_pairs; part++) {
+        real at_0 = 0;
+        for (int i = 0; i < s; i++) {
+            at_0 += value[i] * ((real)c->exact_to[part].high[i] + c->exact_to[part].low[i]);
+        }
+        put(&c->exact_to[part], s, at_0);
+    }
     choose_test_node(c, node);
     bernstein_matrix(c, node);
     find_spread(c, node);
@@ -435,6 +450,24 @@ static void print_exacts(const char *name, int n, const long double *x) {
         printf("%s%.21LgL", i > 0 ? ", " : "", x[i]);
     }
     printf("},\n");
+}
+
+static void print_halves(const char *name, const double *x) {
+    printf("%s{", name);
+    for (int i = 0; i < DALCS_EXTENDED_ROW; i++) {
+        printf("%s%.17g", i > 0 ? ", " : "", x[i]);
+    }
+    printf("}");
+}
+
+static void print_rows(const char *name, int n, const struct dalcs_extended_row *row) {
+    printf("        .%s = {\n", name);
+    for (int k = 0; k < n; k++) {
+        print_halves("            {", row[k].high);
+        print_halves(", ", row[k].low);
+        printf("},\n");
+    }
+    printf("        },\n");
 }
 
 static void print_complexes(int n, const double complex *x) {
@@ -477,19 +510,8 @@ static void print_method(const struct dalcs_collocation *c) {
     print_exact_complexes(pairs, c->exact_mu);
     printf(",\n");
     print_exacts("exact_back", s, c->exact_back);
-    print_exacts("exact_to", s, c->exact_to);
-    print_exacts("exact_from", s, c->exact_from);
-    printf("        .exact_to_pair = {");
-    for (int i = 0; i < s; i++) {
-        printf("%s", i > 0 ? ", " : "");
-        print_exact_complexes(pairs, c->exact_to_pair[i]);
-    }
-    printf("},\n        .exact_from_pair = {");
-    for (int p = 0; p < pairs; p++) {
-        printf("%s", p > 0 ? ", " : "");
-        print_exact_complexes(s, c->exact_from_pair[p]);
-    }
-    printf("},\n");
+    print_rows("exact_to", 1 + 2 * c->n_pairs, c->exact_to);
+    print_rows("exact_from", s, c->exact_from);
     print_reals("binomial", s + 1, c->binomial);
     print_reals("barycentric", s + 1, c->barycentric);
     printf("        .newton_order = {");

@@ -65,24 +65,19 @@ static void find_function_shares(const struct dalcs_stages *stages, double h,
     for (int k = 0; k <= m->s; k++) {
         share[k] = dalcs_excitation_function_at(function, h, m->node[k]);
     }
-    long double real = 0.0L;
+    struct dalcs_extended_row part;
     long double drift = share[0];
     double missed = dalcs_excitation_missed(function, m, h, share);
     for (int i = 1; i <= m->s; i++) {
-        real += m->exact_from[i - 1] * share[i];
         drift -= m->exact_back[i - 1] * share[i];
     }
-    share[DALCS_SHARE_REAL] = (double)real;
+    dalcs_collocation_parts(m, share + 1, &part);
+    share[DALCS_SHARE_REAL] = part.high[0];
     share[DALCS_SHARE_DRIFT] = (double)drift;
     share[DALCS_SHARE_RIPPLE] = missed;
     share[DALCS_SHARE_RIPPLE_RATE] = missed * m->test_factor;
-    for (int p = 0; p < m->n_pairs; p++) {
-        long double complex sum = 0.0L;
-        for (int i = 1; i <= m->s; i++) {
-            sum += m->exact_from_pair[p][i - 1] * share[i];
-        }
-        share[DALCS_SHARE_PAIR + 2 * p] = (double)creall(sum);
-        share[DALCS_SHARE_PAIR + 2 * p + 1] = (double)cimagl(sum);
+    for (int k = 0; k < 2 * m->n_pairs; k++) {
+        share[DALCS_SHARE_PAIR + k] = part.high[1 + k];
     }
 }
 

@@ -132,7 +132,7 @@ static void solve(const struct dalcs_stage_plan *plan, const struct dalcs_stage_
 
 /* Some unknowns of all systems: a dense map from the weights of a node to their values there. */
 struct piece {
-    _Alignas(64) double part[DALCS_STAGE_PARTS * DALCS_STAGE_PIECE];
+    _Alignas(64) double part[DALCS_SOLUTION_PARTS * DALCS_STAGE_PIECE];
     double y[DALCS_STAGE_PIECE];
     int n_rows;
 };

@@ -1,34 +1,8 @@
 /* stage_functions.c - functions of sources at the stages of a step, as each eigenvalue's solution has them. */
 #include "stage_functions.h"
 
-#include <complex.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Parts that few stages do without. */
-static void clear_rest(const struct dalcs_collocation *m, dalcs_stage_factors_of_parts factor) {
-    int n_parts = 1 + 2 * m->n_pairs;
-    for (int i = 0; i < m->s && n_parts < DALCS_SOLUTION_PARTS; i++) {
-        memset(factor[i] + n_parts, 0,
-               (size_t)(DALCS_SOLUTION_PARTS - n_parts) * sizeof(*factor[i]));
-    }
-}
-
-/* Each coordinate sees the constant 1 as 1. */
-void dalcs_stage_functions_setup(struct dalcs_stage_functions *functions,
-                                 const struct dalcs_collocation *m,
-                                 dalcs_stage_factors_of_parts *constant_factor) {
-    *functions = (struct dalcs_stage_functions){.constant_factor = constant_factor};
-    for (int i = 0; i < m->s; i++) {
-        long double *factor = (*constant_factor)[i];
-        factor[0] = m->exact_to[i];
-        for (int p = 0; p < m->n_pairs; p++) {
-            factor[1 + 2 * p] = 2.0L * creall(m->exact_to_pair[i][p]);
-            factor[2 + 2 * p] = -2.0L * cimagl(m->exact_to_pair[i][p]);
-        }
-    }
-    clear_rest(m, *constant_factor);
-}
 
 void dalcs_stage_functions_finish(struct dalcs_stage_functions *functions) {
     for (int k = 0; k < functions->n; k++) {
@@ -36,33 +10,32 @@ void dalcs_stage_functions_finish(struct dalcs_stage_functions *functions) {
     }
 }
 
-static void find_factors(const struct dalcs_stage_functions *functions,
-                         const struct dalcs_collocation *m, struct dalcs_stage_function *of) {
-    long double weight = 0.0L;
-    for (int q = 0; q < m->s; q++) {
-        weight += m->exact_from[q] * of->share[q + 1];
-    }
+/* Each coordinate sees the constant 1 as 1, and a function of time as its values at the stages say. */
+static void find_factors(const struct dalcs_collocation *m, struct dalcs_stage_function *of) {
+    int n_parts = 1 + 2 * m->n_pairs;
+    struct dalcs_extended_row weight;
+    long double start = 0.0L;
     for (int i = 0; i < m->s; i++) {
-        of->factor[i][0] = m->exact_to[i] * weight;
+        start += m->exact_back[i] * of->share[i + 1];
     }
-    for (int p = 0; p < m->n_pairs; p++) {
-        long double re = 0.0L;
-        long double im = 0.0L;
-        for (int q = 0; q < m->s; q++) {
-            re += creall(m->exact_from_pair[p][q]) * of->share[q + 1];
-            im += cimagl(m->exact_from_pair[p][q]) * of->share[q + 1];
-        }
-        for (int i = 0; i < m->s; i++) {
-            const long double *of_pair = (*functions->constant_factor)[i] + 1 + 2 * p;
-            of->factor[i][1 + 2 * p] = of_pair[0] * re + of_pair[1] * im;
-            of->factor[i][2 + 2 * p] = of_pair[1] * re - of_pair[0] * im;
-        }
+    memset(&of->stages, 0, sizeof(of->stages));
+    memcpy(of->stages.high, of->share + 1, (size_t)m->s * sizeof(double));
+    dalcs_extended_put(&of->stages, m->s, start);
+    dalcs_collocation_parts(m, of->share + 1, &weight);
+    struct dalcs_extended real = {weight.high[0], weight.low[0]};
+    dalcs_extended_combine(m->s + 1, 1, &real, m->exact_to, NULL, &of->of_part[0]);
+    for (int part = 1; part < n_parts; part += 2) {
+        struct dalcs_extended re = {weight.high[part], weight.low[part]};
+        struct dalcs_extended im = {weight.high[part + 1], weight.low[part + 1]};
+        struct dalcs_extended of_re[2] = {re, im};
+        struct dalcs_extended of_im[2] = {{-im.high, -im.low}, re};
+        const struct dalcs_extended_row *to = m->exact_to + part;
+        dalcs_extended_combine(m->s + 1, 2, of_re, to, NULL, &of->of_part[part]);
+        dalcs_extended_combine(m->s + 1, 2, of_im, to, NULL, &of->of_part[part + 1]);
     }
-    clear_rest(m, of->factor);
 }
 
-static void fill(const struct dalcs_stage_functions *functions, const struct dalcs_stages *stages,
-                 const struct dalcs_stage_length *length) {
+static void fill(const struct dalcs_stages *stages, const struct dalcs_stage_length *length) {
     const struct dalcs_excitation *e = stages->excitation;
     const struct dalcs_collocation *m = stages->method;
     for (int f = 0; f < e->n_functions; f++) {
@@ -73,7 +46,7 @@ static void fill(const struct dalcs_stage_functions *functions, const struct dal
         }
         of->share[DALCS_RIPPLE_LANE] =
             dalcs_excitation_missed(&e->function[f], m, length->h, of->share);
-        find_factors(functions, m, of);
+        find_factors(m, of);
     }
 }
 
@@ -95,7 +68,7 @@ dalcs_stage_functions_get(struct dalcs_stage_functions *functions,
         functions->n++;
     }
     length->h = h;
-    fill(functions, stages, length);
+    fill(stages, length);
     functions->next = (functions->next + 1) % DALCS_STAGE_LENGTHS;
     return length->function;
 }

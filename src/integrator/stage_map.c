@@ -195,92 +195,58 @@ static double watched_voltage(const struct dalcs_stage_workshop *b, int d, const
     return v;
 }
 
-/* Adds up what a stage takes of the parts of a solution; n is known to the compiler where it matters. */
-static inline __attribute__((always_inline)) long double combine(int n, const long double *factor,
-                                                                 const long double *part) {
-    long double sum = factor[0] * part[0];
-#pragma GCC unroll 9
-    for (int k = 1; k < n; k++) {
-        sum += factor[k] * part[k];
-    }
-    return sum;
+/* What a column of the map is the answer to: values at the nodes and what they miss in between, 0 for a state; and of
+ * what drives it, a state or a function of time, what is said in stage_functions.h. */
+struct drive {
+    const double *share;
+    const struct dalcs_extended_row *stages, *of_part;
+};
+
+/* The stages of an unknown from its row, unscaled increments over unit, into b->lanes, and, before the filter, where
+ * the polynomial through them alone starts, into b->start. */
+static void put_stages(const struct dalcs_stage_workshop *b, int unknown,
+                       const struct dalcs_extended_row *row, double unit) {
+    int s = b->stages->method->s;
+    double scale = b->column_scale[unknown];
+    dalcs_extended_round(s, row, scale, unit, b->lanes + unknown * DALCS_LANES + 1);
+    b->start[unknown] = dalcs_extended_scaled(row->high[s], row->low[s], scale);
 }
 
-/* The stages of what is kept, into b->stage as increments and into b->lanes, and what they alone say of the
- * start, likewise. */
-static inline __attribute__((always_inline)) void
-fill_kept(struct dalcs_stage_workshop *b, int n_parts, int column, int rhs_column,
-          const long double (*factor)[DALCS_SOLUTION_PARTS]) {
-    const struct dalcs_collocation *m = b->stages->method;
-    const long double *part = b->part + rhs_column * b->n_kept * DALCS_SOLUTION_PARTS;
-    long double *stage = b->stage;
-    for (int r = 0; r < b->n_kept; r++, part += DALCS_SOLUTION_PARTS, stage += DALCS_MAX_STAGES) {
-        long double scale = b->column_scale[b->kept[r]];
-        long double unit = column < b->n_x && b->kept[r] == column ? 1.0L : 0.0L;
-        long double start = 0.0L;
-        double *lane = b->lanes + b->kept[r] * DALCS_LANES;
-        for (int i = 0; i < m->s; i++) {
-            stage[i] = combine(n_parts, factor[i], part);
-            start += m->exact_back[i] * stage[i];
-            lane[i + 1] = (double)(stage[i] * scale + unit);
-        }
-        b->kept_start[r] = start;
-        b->start[b->kept[r]] = start * scale + unit;
-    }
-}
-
-/* The stages of a follower of n unknowns, unscaled. */
-static inline __attribute__((always_inline)) void
-fill_follower(const struct dalcs_stage_workshop *b, int n, const long double *x, const int *of,
-              long double drive, const double *share, long double scale, double *lane) {
-    for (int i = 0; i < b->stages->method->s; i++) {
-        long double sum = drive * share[i];
-        for (int k = 0; k < n; k++) {
-            sum -= x[k] * b->stage[of[k] * DALCS_MAX_STAGES + i];
-        }
-        lane[i] = (double)(sum * scale);
-    }
-}
-
-static void fill_followers(struct dalcs_stage_workshop *b, int rhs_column, const double *share) {
-    const struct dalcs_collocation *m = b->stages->method;
-    long double start_share = 0.0L;
-    for (int i = 0; i < m->s; i++) {
-        start_share += m->exact_back[i] * share[i];
-    }
-    for (int f = 0; f < b->n_followers; f++) {
-        int n = b->follows_p[f + 1] - b->follows_p[f];
-        const long double *x = b->follows_x + b->follows_p[f];
-        const int *of = b->follows_j + b->follows_p[f];
-        long double scale = b->column_scale[b->follower[f]];
-        long double drive = dalcs_stage_workshop_drive(b, f, rhs_column);
-        double *lane = b->lanes + b->follower[f] * DALCS_LANES + 1;
-        long double start = drive * start_share;
-        for (int k = 0; k < n; k++) {
-            start -= x[k] * b->kept_start[of[k]];
-        }
-        b->start[b->follower[f]] = start * scale;
-        if (n == 1) {
-            fill_follower(b, 1, x, of, drive, share, scale, lane);
-        } else if (n == 2) {
-            fill_follower(b, 2, x, of, drive, share, scale, lane);
-        } else {
-            fill_follower(b, n, x, of, drive, share, scale, lane);
-        }
-    }
-}
-
-/* The stages, into b->lanes, and, before the filter, where the polynomial through them alone starts, into
- * b->start. */
+/* The stages of what is kept, as increments, and then of the followers. */
 static void fill_stages(struct dalcs_stage_workshop *b, int column, int rhs_column,
-                        const double *share, const dalcs_stage_factors_of_parts factor) {
-    static const double constant[DALCS_MAX_STAGES] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
-    if (b->stages->method->s == 7) {
-        fill_kept(b, 7, column, rhs_column, factor);
-    } else {
-        fill_kept(b, DALCS_SOLUTION_PARTS, column, rhs_column, factor);
+                        const struct drive *drive) {
+    const struct dalcs_collocation *m = b->stages->method;
+    int n_parts = 1 + 2 * m->n_pairs;
+    const struct dalcs_extended *part = b->part + rhs_column * b->n_kept * DALCS_SOLUTION_PARTS;
+    for (int r = 0; r < b->n_kept; r++, part += DALCS_SOLUTION_PARTS) {
+        bool is_unit = column < b->n_x && b->kept[r] == column;
+        dalcs_extended_combine(m->s + 1, n_parts, part, drive->of_part, NULL, &b->stage[r]);
+        put_stages(b, b->kept[r], &b->stage[r], is_unit ? 1.0 : 0.0);
     }
-    fill_followers(b, rhs_column, column < b->n_x ? constant : share + 1);
+    b->stage[b->n_kept] = *drive->stages;
+    for (int f = 0; f < b->n_followers; f++) {
+        int from = b->follows_p[f];
+        int to = b->follows_p[f + 1];
+        struct dalcs_extended_row row;
+        b->follows_x[to - 1] = dalcs_extended_of(dalcs_stage_workshop_drive(b, f, rhs_column));
+        dalcs_extended_combine(m->s + 1, to - from, b->follows_x + from, b->stage,
+                               b->follows_j + from, &row);
+        put_stages(b, b->follower[f], &row, 0.0);
+    }
+}
+
+/* What implicit Euler makes of unknowns [from, to) from what is missed in the first n rows of b->of_missed, into
+ * b->filtered, over their scales. */
+static void filter(const struct dalcs_stage_workshop *b, int n, const struct dalcs_extended *missed,
+                   int from, int to) {
+    from -= from % DALCS_QUAD;
+    dalcs_extended_combine_long(b->room, to - from, n, missed, b->real + from, b->of_missed,
+                                b->filtered + from);
+}
+
+static struct dalcs_extended filtered(const struct dalcs_stage_workshop *b, int r) {
+    return dalcs_extended_scaled(b->filtered[r], b->filtered[b->room + (size_t)r],
+                                 b->column_scale[r]);
 }
 
 /* The start and what sources do between the nodes into b->lanes, and the defect at the start after the
@@ -290,68 +256,60 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
     const struct dalcs_collocation *m = b->stages->method;
     int n = b->n;
     int n_x = b->n_x;
-    const long double *real = b->real + rhs_column * n;
+    int n_missed = column < n_x ? n_x : n_x + 1; /* a source has its own */
     long double source_drift = share[0];
     for (int i = 1; i <= m->s; i++) {
         source_drift -= m->exact_back[i - 1] * share[i];
     }
-    source_drift = column < n_x ? 0.0L : source_drift;
+    b->missed[n_x] = dalcs_extended_of(source_drift);
+    b->of_missed[n_x] = rhs_column;
     for (int x = 0; x < n_x; x++) {
-        b->missed[x] = (x == column ? 1.0L : 0.0L) - b->start[x];
+        b->missed[x] = (struct dalcs_extended){-b->start[x].high, -b->start[x].low};
     }
+    filter(b, n_missed, b->missed, 0, n_x);
+    /* What is added to the others goes with states that are off by their defects: less that. */
+    for (int x = 0; x < n_x; x++) {
+        b->lanes[x * DALCS_LANES] = x == column ? 1.0 : 0.0;
+        b->defect[x] = filtered(b, x);
+        b->missed[x] = dalcs_extended_plus(
+            b->missed[x], (struct dalcs_extended){-b->defect[x].high, -b->defect[x].low});
+    }
+    filter(b, n_missed, b->missed, n_x, n);
+    for (int r = n_x; r < n; r++) {
+        b->lanes[r * DALCS_LANES] = dalcs_extended_plus(b->start[r], filtered(b, r)).high;
+    }
+    const double *real = b->real + 2 * b->room * (size_t)rhs_column;
+    double ripple = share[DALCS_RIPPLE_LANE] * m->test_factor;
     for (int r = 0; r < n; r++) {
-        double *lane = b->lanes + r * DALCS_LANES;
-        long double defect = real[r] * source_drift;
-        for (int x = 0; x < n_x; x++) {
-            defect += b->real[x * n + r] * b->missed[x];
-        }
-        defect *= b->column_scale[r];
-        if (r < n_x) {
-            lane[0] = r == column ? 1.0 : 0.0;
-            b->defect[r] = defect;
-        } else {
-            lane[0] = (double)(b->start[r] + defect);
-        }
-        /* What is added to the others goes with states that are off by their defects: less that. */
-        for (int x = 0; x < n_x && r == n_x - 1; x++) {
-            b->missed[x] -= b->defect[x];
-        }
-        lane[DALCS_RIPPLE_LANE] =
-            (double)real[r] * b->column_scale[r] * share[DALCS_RIPPLE_LANE] * m->test_factor;
+        b->lanes[r * DALCS_LANES + DALCS_RIPPLE_LANE] = real[r] * b->column_scale[r] * ripple;
     }
-}
-
-/* What implicit Euler makes of unknown r from the states v[n_x]. */
-static long double filtered(const struct dalcs_stage_workshop *b, const long double *v, int r) {
-    long double sum = 0.0L;
-    for (int x = 0; x < b->n_x; x++) {
-        sum += b->real[x * b->n + r] * v[x];
-    }
-    return sum * b->column_scale[r];
 }
 
 /* What goes with the defects that last: what dies away at once, or what equations without memory forbid,
  * is no error of currents. */
 static void fill_currents(struct dalcs_stage_workshop *b, double *out) {
     const struct dalcs_stages *stages = b->stages;
-    for (int x = 0; x < b->n_x && stages->n_levered > 0; x++) {
-        b->lasting[x] = filtered(b, b->defect, x);
+    if (stages->n_levered > 0) {
+        filter(b, b->n_x, b->defect, 0, b->n_x);
+        for (int x = 0; x < b->n_x; x++) {
+            b->lasting[x] = filtered(b, x);
+        }
+        filter(b, b->n_x, b->lasting, 0, b->n);
     }
     for (int k = 0; k < b->entry->current_rows; k++) {
-        out[k] = k < stages->n_levered ? (double)filtered(b, b->lasting, stages->levered[k]) : 0.0;
+        out[k] = k < stages->n_levered ? filtered(b, stages->levered[k]).high : 0.0;
     }
 }
 
-/* One column of the map, with its clashes: the answer to in[column] = 1. In the lanes of share are the
- * values of the source at the nodes and what they miss of it in between; for a state all are 0. */
+/* One column of the map, with its clashes: the answer to in[column] = 1. */
 static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_column,
-                        const double *share, const dalcs_stage_factors_of_parts factor, double *out,
-                        double *currents) {
+                        const struct drive *drive, double *out, double *currents) {
+    const double *share = drive->share;
     const struct dalcs_collocation *m = b->stages->method;
     const struct dalcs_stage_layout *l = &b->stages->layout;
     const struct dalcs_system *s = b->system;
     bool is_state = column < b->n_x;
-    fill_stages(b, column, rhs_column, share, factor);
+    fill_stages(b, column, rhs_column, drive);
     fill_start(b, column, rhs_column, share);
     find_guards(b, rhs_column, share);
     if (b->nullity > 0) {
@@ -367,7 +325,7 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
         }
     }
     for (int x = 0; x < b->n_x; x++) {
-        out[l->drift + x] = (double)b->defect[x];
+        out[l->drift + x] = b->defect[x].high;
     }
     fill_currents(b, currents);
     if (b->stages->excitation->is_curved) {
@@ -445,30 +403,33 @@ static int n_columns(const struct dalcs_stage_workshop *b) {
 static void fill_map(struct dalcs_stage_workshop *b, const struct dalcs_stage_function *function) {
     const struct dalcs_excitation *e = b->stages->excitation;
     const struct dalcs_collocation *m = b->stages->method;
+    static const struct dalcs_extended_row one = {
+        .high = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0}};
     double share[DALCS_LANES] = {0.0};
+    const struct drive constant = {share, &one, m->exact_to};
     double *out = b->entry->map;
     double *currents = b->entry->current_map;
     int rows = b->entry->rows;
     int current_rows = b->entry->current_rows;
     memset(b->lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
     for (int x = 0; x < b->n_x; x++, out += rows, currents += current_rows) {
-        fill_column(b, x, x, share, *b->functions.constant_factor, out, currents);
+        fill_column(b, x, x, &constant, out, currents);
         check_column(b, x, x, 0.0);
     }
     if (b->has_constants) {
         for (int k = 0; k <= m->s; k++) {
             share[k] = 1.0;
         }
-        fill_column(b, b->n_x, b->n_x, share, *b->functions.constant_factor, out, currents);
+        fill_column(b, b->n_x, b->n_x, &constant, out, currents);
         check_column(b, b->n_x, b->n_x, 1.0);
         out += rows;
         currents += current_rows;
     }
     for (int f = 0; f < e->n_functions; f++, out += rows, currents += current_rows) {
-        const double *of = function[f].share;
+        const struct drive of = {function[f].share, &function[f].stages, function[f].of_part};
         int rhs_column = b->wave_column[e->function[f].input];
-        fill_column(b, b->n_x + 1 + f, rhs_column, of, function[f].factor, out, currents);
-        check_column(b, b->n_x + 1 + f, rhs_column, of[m->s]);
+        fill_column(b, b->n_x + 1 + f, rhs_column, &of, out, currents);
+        check_column(b, b->n_x + 1 + f, rhs_column, of.share[m->s]);
     }
 }
 

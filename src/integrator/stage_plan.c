@@ -103,22 +103,12 @@ static void fill_sources(struct dalcs_stage_plan *plan, const struct dalcs_syste
 /* Stages from parts, and the value at 0 of the polynomial through them. */
 static void fill_combination(struct dalcs_stage_plan *plan) {
     const struct dalcs_collocation *m = plan->stages->method;
-    long double at_0[DALCS_STAGE_PARTS] = {0.0L};
     plan->n_parts = 1 + 2 * m->n_pairs;
-    for (int i = 0; i < m->s; i++) {
-        long double part[DALCS_STAGE_PARTS];
-        part[0] = m->exact_to[i];
-        for (int p = 0; p < m->n_pairs; p++) { /* 2 Re(to W) */
-            part[1 + 2 * p] = 2.0L * creall(m->exact_to_pair[i][p]);
-            part[2 + 2 * p] = -2.0L * cimagl(m->exact_to_pair[i][p]);
-        }
-        for (int q = 0; q < plan->n_parts; q++) {
-            plan->to[i + 1][q] = (double)part[q];
-            at_0[q] += m->exact_back[i] * part[q];
-        }
-    }
     for (int q = 0; q < plan->n_parts; q++) {
-        plan->to[0][q] = (double)at_0[q];
+        for (int i = 0; i < m->s; i++) {
+            plan->to[i + 1][q] = m->exact_to[q].high[i];
+        }
+        plan->to[0][q] = m->exact_to[q].high[m->s];
     }
 }
 

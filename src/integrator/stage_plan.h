@@ -19,7 +19,6 @@
 enum {
     DALCS_STAGE_PIECE = 64,
     DALCS_STAGE_SYSTEMS = 1 + DALCS_MAX_CONJUGATES,
-    DALCS_STAGE_PARTS = 1 + 2 * DALCS_MAX_CONJUGATES
 };
 
 /* Where the shares of a wave in a step are: its values at the nodes, then these. */
@@ -57,7 +56,7 @@ struct dalcs_stage_plan {
     int *wave_of_input;               /* [n_inputs] -1: constant */
     /* Y_i = x_0 + sum over the parts (real, re, im, re, ...) of to[i] * part; to[0]: the value at 0
      * of the polynomial through the stages */
-    double to[DALCS_MAX_NODES][DALCS_STAGE_PARTS];
+    double to[DALCS_MAX_NODES][DALCS_SOLUTION_PARTS];
     int n_parts;
 
     /* The row that each column had its pivot in when a mode was last factored, -1: none. KLU

@@ -29,6 +29,7 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     size_t all = (size_t)dalcs_system_n_columns(s);
     size_t n = all < (size_t)b->stages->dense_limit ? all : (size_t)b->stages->dense_limit;
     size_t used = 0;
+    b->room = (size_t)dalcs_quads_of((int)n);
     b->wave_column = dalcs_carve(storage, &used, (size_t)s->n_inputs, sizeof(int));
     b->place = dalcs_carve(storage, &used, all, sizeof(int));
     b->row_scale = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
@@ -43,13 +44,14 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     b->whole_row_scale = dalcs_carve(storage, &used, n, sizeof(double));
     b->whole_column_scale = dalcs_carve(storage, &used, n, sizeof(double));
     b->S = dalcs_carve(storage, &used, n * n + DALCS_QUAD, sizeof(double));
-    b->re = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
-    b->im = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
+    b->of_real = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
+    b->of_pairs = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(*b->of_pairs));
+    b->filled = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(bool));
     b->whole = dalcs_carve(storage, &used, n * (n + n_rhs), sizeof(long double));
-    b->part = dalcs_carve(storage, &used, n * n_rhs * DALCS_SOLUTION_PARTS, sizeof(long double));
-    b->real = dalcs_carve(storage, &used, n * n_rhs, sizeof(long double));
-    b->stage = dalcs_carve(storage, &used, n * DALCS_MAX_STAGES, sizeof(long double));
-    b->follows_x = dalcs_carve(storage, &used, n * n, sizeof(long double));
+    b->part = dalcs_carve(storage, &used, n * n_rhs * DALCS_SOLUTION_PARTS, sizeof(*b->part));
+    b->real = dalcs_carve(storage, &used, n_rhs * 2 * b->room, sizeof(double));
+    b->stage = dalcs_carve(storage, &used, n + 1, sizeof(*b->stage));
+    b->follows_x = dalcs_carve(storage, &used, n * n, sizeof(*b->follows_x));
     b->follows_j = dalcs_carve(storage, &used, n * n, sizeof(int));
     b->follows_p = dalcs_carve(storage, &used, n + 1, sizeof(int));
     b->follower = dalcs_carve(storage, &used, n, sizeof(int));
@@ -58,27 +60,24 @@ static size_t lay_out(struct dalcs_stage_workshop *b, void *storage) {
     b->row_of = dalcs_carve(storage, &used, n, sizeof(int));
     b->owner = dalcs_carve(storage, &used, n, sizeof(int));
     b->lanes = dalcs_carve(storage, &used, n * DALCS_LANES, sizeof(double));
-    b->kept_start = dalcs_carve(storage, &used, n, sizeof(long double));
-    b->start = dalcs_carve(storage, &used, n, sizeof(long double));
-    b->missed = dalcs_carve(storage, &used, n_x, sizeof(long double));
-    b->defect = dalcs_carve(storage, &used, n_x, sizeof(long double));
-    b->lasting = dalcs_carve(storage, &used, n_x, sizeof(long double));
+    b->start = dalcs_carve(storage, &used, n, sizeof(*b->start));
+    b->missed = dalcs_carve(storage, &used, n_x + 1, sizeof(*b->missed));
+    b->of_missed = dalcs_carve(storage, &used, n_x + 1, sizeof(int));
+    b->filtered = dalcs_carve(storage, &used, 2 * b->room, sizeof(double));
+    b->defect = dalcs_carve(storage, &used, n_x, sizeof(*b->defect));
+    b->lasting = dalcs_carve(storage, &used, n_x, sizeof(*b->lasting));
     b->guard = dalcs_carve(storage, &used, n_pairs * DALCS_LANES, sizeof(double));
     b->residual = dalcs_carve(storage, &used, n + DALCS_QUAD, sizeof(double));
     b->in = dalcs_carve(storage, &used, (size_t)b->stages->n_in, sizeof(double));
-    b->constant_factor = dalcs_carve(storage, &used, 1, sizeof(*b->constant_factor));
     return used;
 }
 
-/* What is read before it is written has to be numbers: a quad behind matrices, and parts of solutions that few
- * stages do without. */
+/* What is read before it is written has to be numbers: a quad behind matrices. */
 static void clear(struct dalcs_stage_workshop *b) {
     memset(b->base, 0, (size_t)((char *)b->P - (char *)b->base));
-    memset(b->S, 0, (size_t)((char *)b->re - (char *)b->S));
+    memset(b->S, 0, (size_t)((char *)b->of_real - (char *)b->S));
+    memset(b->real, 0, (size_t)((char *)b->stage - (char *)b->real));
     memset(b->residual, 0, (size_t)((char *)b->in - (char *)b->residual));
-    if (b->stages->method->s < 7) {
-        memset(b->part, 0, (size_t)((char *)b->real - (char *)b->part));
-    }
 }
 
 static bool is_driven(const struct dalcs_csr *a, const double *constant) {
@@ -109,9 +108,11 @@ enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **work
     }
     lay_out(b, b->storage);
     clear(b);
-    dalcs_stage_functions_setup(&b->functions, stages->method, b->constant_factor);
     for (int k = 0; k < b->system->n_inputs; k++) {
         b->wave_column[k] = -1;
+    }
+    for (int x = 0; x < b->n_x; x++) {
+        b->of_missed[x] = x;
     }
     for (int w = e->n_waves - 1; w >= 0; w--) {
         b->wave_column[e->wave[w].input] = b->n_x + 1 + w;
@@ -360,9 +361,10 @@ static void list_followers(struct dalcs_stage_workshop *b) {
         for (int k = 0; k < b->n_kept; k++) {
             if (row[b->kept[k]] != 0.0L) {
                 b->follows_j[entries] = k;
-                b->follows_x[entries++] = row[b->kept[k]];
+                b->follows_x[entries++] = dalcs_extended_of(-row[b->kept[k]]);
             }
         }
+        b->follows_j[entries++] = b->n_kept;
         b->follows_p[f + 1] = entries;
     }
 }
@@ -427,59 +429,110 @@ static void rescale_followers(struct dalcs_stage_workshop *b) {
     list_followers(b);
 }
 
-/* The system at sigma of what is kept, with its right-hand sides. im: NULL where sigma is real. */
-static void fill_system(const struct dalcs_stage_workshop *b, long double sigma_re,
-                        long double sigma_im, long double *im) {
+/* The real system of what is kept, with its right-hand sides. */
+static void fill_real(const struct dalcs_stage_workshop *b) {
+    long double sigma = b->stages->method->exact_lambda / b->entry->h;
     int n = b->n_kept;
-    int width = n + b->n_rhs;
     for (int i = 0; i < n; i++) {
-        long double *row = b->re + i * width;
+        long double *row = b->of_real + i * (n + b->n_rhs);
         const long double *from = b->whole + b->kept_row[i] * (b->n + b->n_rhs);
         for (int j = 0; j < n; j++) {
             row[j] = from[b->kept[j]];
         }
         memcpy(row + n, from + b->n, (size_t)b->n_rhs * sizeof(*row));
         for (int j = 0; j < b->n_x && i < b->n_x; j++) {
-            row[j] += sigma_re * b->P[j * b->n_x + i];
-        }
-        for (int j = 0; j < width && im != NULL; j++) {
-            im[i * width + j] = i < b->n_x && j < b->n_x ? sigma_im * b->P[j * b->n_x + i] : 0.0L;
+            row[j] += sigma * b->P[j * b->n_x + i];
         }
     }
 }
 
-static void take_solutions(const struct dalcs_stage_workshop *b, const long double *from,
-                           int part) {
+/* What is the same in all. */
+static void put_four(long double re, struct dalcs_extended_four *to) {
+    struct dalcs_extended value = dalcs_extended_of(re);
+    for (int p = 0; p < DALCS_QUAD; p++) {
+        to->re[p] = value.high;
+        to->re_low[p] = value.low;
+        to->im[p] = 0.0;
+        to->im_low[p] = 0.0;
+    }
+}
+
+/* The complex ones likewise; where there are fewer than four, the first stands in. */
+static void fill_pairs(const struct dalcs_stage_workshop *b) {
+    const struct dalcs_collocation *m = b->stages->method;
+    int n = b->n_kept;
+    int width = n + b->n_rhs;
+    for (int i = 0; i < n; i++) {
+        struct dalcs_extended_four *row = b->of_pairs + i * width;
+        bool *filled = b->filled + i * width;
+        const long double *from = b->whole + b->kept_row[i] * (b->n + b->n_rhs);
+        for (int j = 0; j < width; j++) {
+            long double a = from[j < n ? b->kept[j] : b->n + j - n];
+            put_four(a, &row[j]);
+            filled[j] = a != 0.0L;
+        }
+        for (int j = 0; j < b->n_x && i < b->n_x; j++) {
+            double of_rate = b->P[j * b->n_x + i];
+            for (int p = 0; p < DALCS_QUAD && of_rate != 0.0; p++) {
+                long double complex sigma = m->exact_mu[p < m->n_pairs ? p : 0] / b->entry->h;
+                struct dalcs_extended re =
+                    dalcs_extended_of(from[b->kept[j]] + creall(sigma) * of_rate);
+                struct dalcs_extended im = dalcs_extended_of(cimagl(sigma) * of_rate);
+                row[j].re[p] = re.high;
+                row[j].re_low[p] = re.low;
+                row[j].im[p] = im.high;
+                row[j].im_low[p] = im.low;
+                filled[j] = true;
+            }
+        }
+    }
+}
+
+static struct dalcs_extended *parts_of(const struct dalcs_stage_workshop *b, int rhs_column,
+                                       int kept) {
+    return b->part + (rhs_column * b->n_kept + kept) * DALCS_SOLUTION_PARTS;
+}
+
+static void take_pairs(const struct dalcs_stage_workshop *b) {
     for (int i = 0; i < b->n_kept; i++) {
-        const long double *row = from + i * (b->n_kept + b->n_rhs) + b->n_kept;
+        const struct dalcs_extended_four *x = b->of_pairs + i * (b->n_kept + b->n_rhs) + b->n_kept;
         for (int j = 0; j < b->n_rhs; j++) {
-            b->part[(j * b->n_kept + i) * DALCS_SOLUTION_PARTS + part] = row[j];
+            struct dalcs_extended *part = parts_of(b, j, i) + 1;
+            for (int p = 0; p < b->stages->method->n_pairs; p++) {
+                part[2 * p] = (struct dalcs_extended){x[j].re[p], x[j].re_low[p]};
+                part[2 * p + 1] = (struct dalcs_extended){x[j].im[p], x[j].im_low[p]};
+            }
         }
     }
 }
 
 /* The solution of the real eigenvalue, of all unknowns. */
 static void take_real(const struct dalcs_stage_workshop *b) {
-    take_solutions(b, b->re, 0);
     for (int j = 0; j < b->n_rhs; j++) {
-        const long double *part = b->part + j * b->n_kept * DALCS_SOLUTION_PARTS;
-        long double *real = b->real + j * b->n;
+        double *high = b->real + 2 * b->room * (size_t)j;
+        double *low = high + b->room;
         for (int k = 0; k < b->n_kept; k++) {
-            real[b->kept[k]] = part[k * DALCS_SOLUTION_PARTS];
+            struct dalcs_extended *part = parts_of(b, j, k);
+            *part = dalcs_extended_of(b->of_real[k * (b->n_kept + b->n_rhs) + b->n_kept + j]);
+            high[b->kept[k]] = part->high;
+            low[b->kept[k]] = part->low;
         }
         for (int f = 0; f < b->n_followers; f++) {
             long double y = dalcs_stage_workshop_drive(b, f, j);
-            for (int k = b->follows_p[f]; k < b->follows_p[f + 1]; k++) {
-                y -= b->follows_x[k] * part[b->follows_j[k] * DALCS_SOLUTION_PARTS];
+            for (int k = b->follows_p[f]; k < b->follows_p[f + 1] - 1; k++) {
+                y += dalcs_extended_value(b->follows_x[k]) *
+                     dalcs_extended_value(*parts_of(b, j, b->follows_j[k]));
             }
-            real[b->follower[f]] = y;
+            struct dalcs_extended value = dalcs_extended_of(y);
+            high[b->follower[f]] = value.high;
+            low[b->follower[f]] = value.low;
         }
     }
 }
 
 static long double solve_kept(struct dalcs_stage_workshop *b) {
-    fill_system(b, b->stages->method->exact_lambda / b->entry->h, 0.0L, NULL);
-    return dalcs_extended_solve(b->n_kept, b->n_rhs, b->re, NULL);
+    fill_real(b);
+    return dalcs_extended_solve(b->n_kept, b->n_rhs, b->of_real, NULL);
 }
 
 static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
@@ -504,13 +557,14 @@ static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
     return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
 }
 
-static enum dalcs_status solve_pair(struct dalcs_stage_workshop *b, int p) {
-    long double complex sigma = b->stages->method->exact_mu[p] / b->entry->h;
-    fill_system(b, creall(sigma), cimagl(sigma), b->im);
-    long double pivot = dalcs_extended_solve(b->n_kept, b->n_rhs, b->re, b->im);
-    take_solutions(b, b->re, 1 + 2 * p);
-    take_solutions(b, b->im, 2 + 2 * p);
-    return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
+static enum dalcs_status solve_pairs(struct dalcs_stage_workshop *b) {
+    if (b->stages->method->n_pairs == 0) {
+        return DALCS_OK;
+    }
+    fill_pairs(b);
+    double pivot = dalcs_extended_solve_four(b->n_kept, b->n_rhs, b->of_pairs, b->filled);
+    take_pairs(b);
+    return pivot > 0.0 ? DALCS_OK : DALCS_SINGULAR;
 }
 
 /* What does not depend on the step length is kept from the last map if that was of the same mode. */
@@ -536,9 +590,7 @@ enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,
     balance(b);
     if (b->n > 0) {
         DALCS_TRY(solve_real(b));
-        for (int p = 0; p < b->stages->method->n_pairs; p++) {
-            DALCS_TRY(solve_pair(b, p));
-        }
+        DALCS_TRY(solve_pairs(b));
     }
     b->is_known = b->n_followers > 0;
     return DALCS_OK;

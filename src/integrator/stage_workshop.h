@@ -8,6 +8,7 @@
 #ifndef DALCS_STAGE_WORKSHOP_H
 #define DALCS_STAGE_WORKSHOP_H
 
+#include "extended_four.h"
 #include "quads.h"
 #include "stage_functions.h"
 #include "stages_internal.h"
@@ -34,23 +35,30 @@ struct dalcs_stage_workshop {
     int *follower, *row_of; /* [n_followers]; [n] row of `whole` of an unknown that follows */
     int *owner;             /* [n] the follower of a row of `whole`, or -1 */
     double *whole_row_scale, *whole_column_scale; /* [n] in which it is */
-    int *follows_p, *follows_j;                   /* what followers take of the kept, by rows */
-    long double *follows_x;
-    long double *re, *im;    /* [n_kept][n_kept + n_rhs] a system by rows, then its solutions */
-    long double *part;       /* [n_rhs][n_kept][parts] the solutions, balanced */
-    long double *real;       /* [n_rhs][n] those of the real eigenvalue */
-    long double *stage;      /* [n_kept][stages] increments */
-    double *lanes;           /* [n][lanes] the answer */
-    long double *kept_start; /* [n_kept] what these alone say of the increment at the start */
-    long double *start;      /* [n] what the stages alone say of the start */
-    long double *missed, *defect; /* [n_x] what they miss there, and what the filter leaves of it */
-    long double *lasting;         /* [n_x] and of that once more */
-    double *guard;                /* [n_pairs][lanes] */
-    double *residual;             /* [n] */
+    /* what followers take of the kept, by rows, each with a last entry for its drive */
+    int *follows_p, *follows_j;
+    struct dalcs_extended *follows_x;
+    long double *of_real; /* [n_kept][n_kept + n_rhs] the real system by rows, then its solutions */
+    struct dalcs_extended_four *of_pairs; /* likewise, of the complex ones, */
+    bool *filled;                         /* and where they have anything */
+    struct dalcs_extended *part;          /* [n_rhs][n_kept][parts] the solutions, balanced */
+    size_t room;                          /* for n unknowns, in whole quads */
+    double *real; /* [n_rhs][2][room] those of the real eigenvalue, of all unknowns */
+    struct dalcs_extended_row *stage; /* [n_kept + 1] increments, and what these alone say of that
+                                         at the start; behind them what drives the followers */
+    double *lanes;                    /* [n][lanes] the answer */
+    struct dalcs_extended *start; /* [n] what the stages alone say of the start, as increments */
+    struct dalcs_extended
+        *missed;      /* [n_x + 1] what they miss there, of the states and of a source */
+    int *of_missed;   /* [n_x + 1] and in which rows of `real` that goes in */
+    double *filtered; /* [2][room] what these make of it */
+    struct dalcs_extended *defect;  /* [n_x] that of the states */
+    struct dalcs_extended *lasting; /* [n_x] and what they make of that */
+    double *guard;                  /* [n_pairs][lanes] */
+    double *residual;               /* [n] */
     bool has_constants; /* inputs that do not vary drive something: else maps lack their column */
     double *in;         /* [n_in] of such a map */
     struct dalcs_stage_functions functions;
-    dalcs_stage_factors_of_parts *constant_factor; /* of these */
     int nullity;
     double *left, *right; /* [nullity][n] null vectors, balanced */
     double *choice;       /* [nullity][n_pairs] what the other sides of pairs add of them */
@@ -67,7 +75,7 @@ enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *worksh
                                              struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
 
 /* What a right-hand side adds to follower f, balanced; the unknowns that are kept add
- * - follows_x[k] y[follows_j[k]]. */
+ * follows_x[k] y[follows_j[k]]. */
 static inline long double dalcs_stage_workshop_drive(const struct dalcs_stage_workshop *b, int f,
                                                      int rhs_column) {
     return b->whole[b->row_of[b->follower[f]] * (b->n + b->n_rhs) + b->n + rhs_column];

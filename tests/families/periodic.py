@@ -139,8 +139,9 @@ def largest_difference(names, rows, others):
 
 
 def least_currents(program, netlist, tolerance):
-    """Of each diode, over the largest of all: rows are on both sides of every event."""
-    result = run(program, netlist.replace(".tran 100u", ".tran 10m"), method=None, tolerance=tolerance)
+    """Of each diode, over the largest of all: rows are on both sides of every event, and beside those of
+    the grid, which must not fall on zeros of the sources, for the largest is to be a peak."""
+    result = run(program, netlist.replace(".tran 100u", ".tran 1.7m"), method=None, tolerance=tolerance)
     current = {name: result.column(name) for name in result.names if name.startswith("i(d")}
     largest = max((max(values) for values in current.values()), default=1.0)
     return {name: min(values) / largest for name, values in current.items()}
