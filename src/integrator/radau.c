@@ -35,8 +35,8 @@ enum { FIRST_STEPS = 64 };
 static const double below_twice = 2.0 * (1.0 - 1e-9);
 
 /* Unknowns up to which a step is a dense map, over the limit of the OSNSP's maps: factors are cheaper
- * from about two dozen on, but a map is as exact as doubles can be, which tight tolerances need. */
-static const double maps_when_tight = 1.5, maps_when_not = 0.375;
+ * from about three dozen on, but a map is as exact as doubles can be, which tight tolerances need. */
+static const double maps_when_tight = 1.5, maps_when_not = 0.5;
 static const double tight = 1e-7;
 
 /* A part of so many unknowns, over the same limit, gains from nine stages: measured, doc/methods.md. */

@@ -166,11 +166,17 @@ static bool is_worth_asking(const struct dalcs_radau_part *part, const struct da
     return search->fixed || search->stuck > 0 || may_jump;
 }
 
+static bool is_shortest(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    return dalcs_radau_ladder(part, part->level) < 64.0 * r->resolution;
+}
+
 /* No shorter step mends the error, and it is small or over in no time: is it let pass from now on? */
 static bool lets_pass(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                       struct dalcs_search *search, const struct dalcs_step_quality *quality) {
     bool is_rounding = search->stuck >= STUCK && quality->of_unit < most_tolerated * part->rounding;
-    bool is_small = search->stuck >= VERY_STUCK && quality->of_unit < r->inner_tolerance;
+    bool is_very_stuck =
+        search->stuck >= VERY_STUCK || (search->stuck >= STUCK && is_shortest(r, part));
+    bool is_small = is_very_stuck && quality->of_unit < r->inner_tolerance;
     if ((is_rounding || is_small) && isfinite(quality->ratio) && search->tolerated == 1.0) {
         search->tolerated = 4.0 * quality->ratio;
         return true;
@@ -224,8 +230,7 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
         return DALCS_OK;
     }
     bool wrong_flip = search->flips > 0 && !(quality->own < most_projected);
-    if (search->fixed || wrong_flip ||
-        dalcs_radau_ladder(part, part->level) < 64.0 * r->resolution) {
+    if (search->fixed || wrong_flip || is_shortest(r, part)) {
         *done = true;
         return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
     }

@@ -13,7 +13,7 @@ unique is not compared, nor are times next to an event, where a signal that jump
 may fall back to implicit Euler.
 
 The seeds of meson.build were chosen because they pass. Others do not today: of the 324 seeds from 0 to 323,
-some 55 fail or take longer than a minute (126 and 243). About 40 of them fail at 1e-9 only, where the reference,
+some 53 fail or take longer than a minute (126). About 43 of them fail at 1e-9 only, where the reference,
 too, may be off. Those that have no operating point, six of twelve_pulse, run from rest.
 """
 
