@@ -26,7 +26,8 @@ static enum dalcs_status tell_open_at(struct dalcs_radau *r, struct dalcs_radau_
         vanishes);
 }
 
-/* At the start of such a segment or, where there is nothing to share yet, at its end. */
+/* At the start of such a segment or, where there is nothing to share yet, at its end; or in between: while a bridge
+ * commutates, all its diodes conduct, from the first current that one takes over to the last that another gives up. */
 enum dalcs_status dalcs_radau_tell_open(struct dalcs_radau *r) {
     for (int k = 0; k < r->n_parts; k++) {
         struct dalcs_radau_part *part = &r->part[k];
@@ -36,6 +37,10 @@ enum dalcs_status dalcs_radau_tell_open(struct dalcs_radau *r) {
         }
         if (vanishes) {
             DALCS_TRY(tell_open_at(r, part, part->t_end, DALCS_LEFT, &vanishes));
+        }
+        if (vanishes) {
+            double middle = part->t + 0.5 * (part->t_end - part->t);
+            DALCS_TRY(tell_open_at(r, part, middle, DALCS_RIGHT, &vanishes));
         }
         part->open = false;
     }

@@ -228,6 +228,35 @@ def compare(checker, name, netlist, wanted, program, method):
     return result
 
 
+COMMUTATION = """A bridge that commutates: for a while all its diodes conduct, though neither at first nor at last
+V1 in m SIN(0 118 60)
+Rs in s 2
+D1 s p DI
+D2 m p DI
+D3 0 s DI
+D4 0 m DI
+L1 p q 0.6
+R1 q 0 40
+Rg m 0 400k
+.tran 40u 40m uic
+"""
+
+
+def compare_commutation(checker, program, method):
+    """With the source's current i: between max(0, i) and the coil's current less max(0, -i) in d1, and so on."""
+    result = run(program, COMMUTATION + MODELS, method=method)
+    what = f"commutation with {method or 'the default'}"
+    found = {entry["signal"]: entry for entry in result.report["nonunique"]}
+    if not checker.check(sorted(found) == ["i(d1)", "i(d2)", "i(d3)", "i(d4)"], f"{what}: {sorted(found)}"):
+        return
+    least = {name: float(entry["lower"]) for name, entry in found.items()}
+    widths = [float(entry["upper"]) - float(entry["lower"]) for entry in found.values()]
+    current = 59 * math.sin(2 * math.pi * 60 * found["i(d1)"]["time"])
+    checker.check(min(widths) > 1e-3 and max(widths) - min(widths) < 1e-6, f"{what}: widths {widths}")
+    checker.check(abs(least["i(d1)"] - max(0, current)) < 1e-4 and abs(least["i(d2)"] - max(0, -current)) < 1e-4,
+                  f"{what}: {least} at {current} A")
+
+
 def compare_many(checker, program):
     """Only so many signals are listed, and a message says how many more there are."""
     n = 600
@@ -251,6 +280,7 @@ def main():
             else:
                 result = compare(checker, name, netlist, None, program, method)
                 checker.check("without GLPK" in result.stderr, result.stderr)
+        compare_commutation(checker, program, method)
     compare_many(checker, program)
     return checker.finish()
 
