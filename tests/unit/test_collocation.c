@@ -59,13 +59,15 @@ END_TEST
 
 /* What stage i takes of the pair's (re, im) parts is 2 Re(to W): the number `to`. */
 static long double complex to_pair(const struct dalcs_collocation *c, int i, int p) {
-    return CMPLXL(dalcs_extended_at(&c->exact_to[1 + 2 * p], i) / 2.0L,
-                  -dalcs_extended_at(&c->exact_to[2 + 2 * p], i) / 2.0L);
+    long double re = dalcs_extended_at(&c->exact_to[1 + 2 * p], i) / 2.0L;
+    long double im = -dalcs_extended_at(&c->exact_to[2 + 2 * p], i) / 2.0L;
+    return re + im * I;
 }
 
 static long double complex from_pair(const struct dalcs_collocation *c, int p, int j) {
-    return CMPLXL(dalcs_extended_at(&c->exact_from[j], 1 + 2 * p),
-                  dalcs_extended_at(&c->exact_from[j], 2 + 2 * p));
+    long double re = dalcs_extended_at(&c->exact_from[j], 1 + 2 * p);
+    long double im = dalcs_extended_at(&c->exact_from[j], 2 + 2 * p);
+    return re + im * I;
 }
 
 /* Node i as the table has it to the last digit: A 1 = c. */
