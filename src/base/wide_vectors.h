@@ -14,6 +14,14 @@
 
 #include <stdbool.h>
 
+/* Does every machine that this is compiled for multiply and add at once? Where not, fma() is a call that takes a
+ * hundred times as long. */
+#ifdef __FP_FAST_FMA
+#define DALCS_FUSES true
+#else
+#define DALCS_FUSES false
+#endif
+
 #if defined(__x86_64__) && !defined(__AVX2__) && defined(__has_include)
 #if __has_include(<sys/platform/x86.h>)
 #include <sys/platform/x86.h>
@@ -26,7 +34,7 @@ extern bool dalcs_is_wide;
 
 #define DALCS_TWICE(type, name, parameters, arguments)                                             \
     static inline __attribute__((always_inline)) type name##_body parameters;                      \
-    __attribute__((target("avx2,fma"))) static type name##_wide parameters {                           \
+    __attribute__((target("avx2,fma"))) static type name##_wide parameters {                       \
         return name##_body arguments;                                                              \
     }                                                                                              \
     static type name parameters {                                                                  \
@@ -35,6 +43,27 @@ extern bool dalcs_is_wide;
     static inline __attribute__((always_inline)) type name##_body parameters
 #else
 #define DALCS_TWICE(type, name, parameters, arguments) static type name parameters
+#endif
+
+/* Likewise a function whose first parameter says whether it may use fma():
+ *
+ *     DALCS_TWICE_FUSED(double, sum, (bool fused, int n, ...), (true, n, ...), (fused, n, ...)) { ... }
+ *
+ * called as sum(DALCS_FUSES, n, ...). */
+#ifdef DALCS_MAY_BE_WIDE
+#define DALCS_TWICE_FUSED(type, name, parameters, wide_arguments, arguments)                       \
+    static inline __attribute__((always_inline)) type name##_body parameters;                      \
+    __attribute__((target("avx2,fma"))) static type name##_wide parameters {                       \
+        (void)fused;                                                                               \
+        return name##_body wide_arguments;                                                         \
+    }                                                                                              \
+    static type name parameters {                                                                  \
+        return dalcs_is_wide ? name##_wide wide_arguments : name##_body arguments;                 \
+    }                                                                                              \
+    static inline __attribute__((always_inline)) type name##_body parameters
+#else
+#define DALCS_TWICE_FUSED(type, name, parameters, wide_arguments, arguments)                       \
+    static type name parameters
 #endif
 
 #endif

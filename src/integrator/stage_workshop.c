@@ -462,6 +462,10 @@ static void fill_pairs(const struct dalcs_stage_workshop *b) {
     const struct dalcs_collocation *m = b->stages->method;
     int n = b->n_kept;
     int width = n + b->n_rhs;
+    long double complex sigma[DALCS_QUAD];
+    for (int p = 0; p < DALCS_QUAD; p++) {
+        sigma[p] = m->exact_mu[p < m->n_pairs ? p : 0] / b->entry->h;
+    }
     for (int i = 0; i < n; i++) {
         struct dalcs_extended_four *row = b->of_pairs + i * width;
         bool *filled = b->filled + i * width;
@@ -474,10 +478,9 @@ static void fill_pairs(const struct dalcs_stage_workshop *b) {
         for (int j = 0; j < b->n_x && i < b->n_x; j++) {
             double of_rate = b->P[j * b->n_x + i];
             for (int p = 0; p < DALCS_QUAD && of_rate != 0.0; p++) {
-                long double complex sigma = m->exact_mu[p < m->n_pairs ? p : 0] / b->entry->h;
                 struct dalcs_extended re =
-                    dalcs_extended_of(from[b->kept[j]] + creall(sigma) * of_rate);
-                struct dalcs_extended im = dalcs_extended_of(cimagl(sigma) * of_rate);
+                    dalcs_extended_of(from[b->kept[j]] + creall(sigma[p]) * of_rate);
+                struct dalcs_extended im = dalcs_extended_of(cimagl(sigma[p]) * of_rate);
                 row[j].re[p] = re.high;
                 row[j].re_low[p] = re.low;
                 row[j].im[p] = im.high;

@@ -34,22 +34,22 @@ DALCS_INLINE void negate(struct dalcs_extended_quad *to, const struct dalcs_exte
 }
 
 /* sum += a * b */
-DALCS_INLINE void add_complex(struct complex_quad *sum, const struct complex_quad *a,
+DALCS_INLINE void add_complex(bool fused, struct complex_quad *sum, const struct complex_quad *a,
                               const struct complex_quad *b) {
     struct dalcs_extended_quad minus;
     negate(&minus, &a->im);
-    dalcs_add_product(&sum->re, &a->re, &b->re);
-    dalcs_add_product(&sum->re, &minus, &b->im);
-    dalcs_add_product(&sum->im, &a->re, &b->im);
-    dalcs_add_product(&sum->im, &a->im, &b->re);
+    dalcs_add_product(fused, &sum->re, &a->re, &b->re);
+    dalcs_add_product(fused, &sum->re, &minus, &b->im);
+    dalcs_add_product(fused, &sum->im, &a->re, &b->im);
+    dalcs_add_product(fused, &sum->im, &a->im, &b->re);
 }
 
 /* 1 / d: in double precision, then by a step of Newton's, which doubles the digits. */
-DALCS_INLINE void invert(struct complex_quad *inverse, const struct complex_quad *d) {
+DALCS_INLINE void invert(bool fused, struct complex_quad *inverse, const struct complex_quad *d) {
     const dalcs_quad square = d->re.high * d->re.high + d->im.high * d->im.high;
     struct complex_quad minus = {{-d->re.high / square, {0.0}}, {d->im.high / square, {0.0}}};
     struct complex_quad error = {{{1.0, 1.0, 1.0, 1.0}, {0.0}}, {{0.0}, {0.0}}};
-    add_complex(&error, &minus, d);
+    add_complex(fused, &error, &minus, d);
     const dalcs_quad re = error.re.high + error.re.low;
     const dalcs_quad im = error.im.high + error.im.low;
     inverse->re.high = -minus.re.high;
@@ -59,21 +59,22 @@ DALCS_INLINE void invert(struct complex_quad *inverse, const struct complex_quad
 }
 
 /* Row `pivot` over what it has in column c, which the others then have nothing of: in columns behind c. */
-DALCS_TWICE(void, clear_column,
-            (int n, int width, int pivot, int c, struct dalcs_extended_four *a, bool *filled),
-            (n, width, pivot, c, a, filled)) {
+DALCS_TWICE_FUSED(void, clear_column,
+                  (bool fused, int n, int width, int pivot, int c, struct dalcs_extended_four *a,
+                   bool *filled),
+                  (true, n, width, pivot, c, a, filled), (fused, n, width, pivot, c, a, filled)) {
     struct dalcs_extended_four *row = a + (size_t)pivot * (size_t)width;
     const bool *in_row = filled + (size_t)pivot * (size_t)width;
     struct complex_quad d;
     struct complex_quad inverse;
     load(&d, &row[c]);
-    invert(&inverse, &d);
+    invert(fused, &inverse, &d);
     for (int j = c + 1; j < width; j++) {
         if (in_row[j]) {
             struct complex_quad element;
             struct complex_quad quotient = {0};
             load(&element, &row[j]);
-            add_complex(&quotient, &inverse, &element);
+            add_complex(fused, &quotient, &inverse, &element);
             store(&row[j], &quotient);
         }
     }
@@ -94,7 +95,7 @@ DALCS_TWICE(void, clear_column,
                 struct complex_quad sum;
                 load(&element, &row[j]);
                 load(&sum, &other[j]);
-                add_complex(&sum, &minus, &element);
+                add_complex(fused, &sum, &minus, &element);
                 store(&other[j], &sum);
                 in_other[j] = true;
             }
@@ -144,7 +145,7 @@ double dalcs_extended_solve_four(int n, int n_rhs, struct dalcs_extended_four *a
         }
         least = largest < least ? largest : least;
         swap_rows(width, a, filled, k, pivot);
-        clear_column(n, width, k, k, a, filled);
+        clear_column(DALCS_FUSES, n, width, k, k, a, filled);
     }
     return least;
 }

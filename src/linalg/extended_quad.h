@@ -7,6 +7,8 @@
 
 #include "quads.h"
 
+#include <stdbool.h>
+
 #define DALCS_INLINE static inline __attribute__((always_inline))
 
 struct dalcs_extended_quad {
@@ -22,15 +24,38 @@ DALCS_INLINE void dalcs_add_exactly(const dalcs_quad *a, const dalcs_quad *b, da
     *sum = s;
 }
 
-DALCS_INLINE void dalcs_add_product(struct dalcs_extended_quad *sum,
+/* In two halves that have no more than 26 bits each (Veltkamp). */
+DALCS_INLINE void dalcs_halve(const dalcs_quad *a, dalcs_quad *high, dalcs_quad *low) {
+    dalcs_quad large = *a * 0x8000001p0;
+    *high = large - (large - *a);
+    *low = *a - *high;
+}
+
+/* What the product lacks of a * b, exactly, as long as nothing overflows. */
+DALCS_INLINE void dalcs_find_lack(bool fused, const dalcs_quad *a, const dalcs_quad *b,
+                                  const dalcs_quad *product, dalcs_quad *lack) {
+    if (fused) {
+        for (int k = 0; k < DALCS_QUAD; k++) {
+            (*lack)[k] = __builtin_fma((*a)[k], (*b)[k], -(*product)[k]);
+        }
+        return;
+    }
+    dalcs_quad a_high;
+    dalcs_quad a_low;
+    dalcs_quad b_high;
+    dalcs_quad b_low;
+    dalcs_halve(a, &a_high, &a_low);
+    dalcs_halve(b, &b_high, &b_low);
+    *lack = ((a_high * b_high - *product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+}
+
+DALCS_INLINE void dalcs_add_product(bool fused, struct dalcs_extended_quad *sum,
                                     const struct dalcs_extended_quad *a,
                                     const struct dalcs_extended_quad *b) {
     dalcs_quad rest;
     dalcs_quad lack;
     dalcs_quad product = a->high * b->high;
-    for (int k = 0; k < DALCS_QUAD; k++) {
-        rest[k] = __builtin_fma(a->high[k], b->high[k], -product[k]);
-    }
+    dalcs_find_lack(fused, &a->high, &b->high, &product, &rest);
     rest += a->high * b->low + a->low * b->high;
     dalcs_add_exactly(&sum->high, &product, &sum->high, &lack);
     sum->low += rest + lack;

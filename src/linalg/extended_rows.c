@@ -7,7 +7,7 @@
 enum { MOST_QUADS = 3 };
 
 /* Some quads at once: each waits for its own sums, not for those of the others. */
-DALCS_INLINE void combine_quads(int n_quads, size_t room, int n,
+DALCS_INLINE void combine_quads(bool fused, int n_quads, size_t room, int n,
                                 const struct dalcs_extended *factor, const double *high,
                                 const int *of, double *to) {
     struct dalcs_extended_quad sum[MOST_QUADS];
@@ -25,7 +25,7 @@ DALCS_INLINE void combine_quads(int n_quads, size_t room, int n,
             struct dalcs_extended_quad element;
             dalcs_quad_load(&element.high, row + q * DALCS_QUAD);
             dalcs_quad_load(&element.low, row + room + q * DALCS_QUAD);
-            dalcs_add_product(&sum[q], &times, &element);
+            dalcs_add_product(fused, &sum[q], &times, &element);
         }
     }
 #pragma GCC unroll 3
@@ -36,25 +36,26 @@ DALCS_INLINE void combine_quads(int n_quads, size_t room, int n,
     }
 }
 
-DALCS_TWICE(void, combine,
-            (size_t room, int width, int n, const struct dalcs_extended *factor, const double *high,
-             const int *of, double *sum),
-            (room, width, n, factor, high, of, sum)) {
+DALCS_TWICE_FUSED(void, combine,
+                  (bool fused, size_t room, int width, int n, const struct dalcs_extended *factor,
+                   const double *high, const int *of, double *sum),
+                  (true, room, width, n, factor, high, of, sum),
+                  (fused, room, width, n, factor, high, of, sum)) {
     for (; width > 2 * DALCS_QUAD; width -= 3 * DALCS_QUAD) {
-        combine_quads(3, room, n, factor, high, of, sum);
+        combine_quads(fused, 3, room, n, factor, high, of, sum);
         high += 3 * DALCS_QUAD;
         sum += 3 * DALCS_QUAD;
     }
     if (width > DALCS_QUAD) {
-        combine_quads(2, room, n, factor, high, of, sum);
+        combine_quads(fused, 2, room, n, factor, high, of, sum);
     } else if (width > 0) {
-        combine_quads(1, room, n, factor, high, of, sum);
+        combine_quads(fused, 1, room, n, factor, high, of, sum);
     }
 }
 
 void dalcs_extended_combine_long(size_t room, int width, int n, const struct dalcs_extended *factor,
                                  const double *high, const int *of, double *sum) {
-    combine(room, width, n, factor, high, of, sum);
+    combine(DALCS_FUSES, room, width, n, factor, high, of, sum);
 }
 
 DALCS_TWICE(void, round_row,

@@ -6,6 +6,7 @@
 #include "extended_four.h"
 
 #include "run_tests.h"
+#include "wide_vectors.h"
 
 #include <complex.h>
 #include <float.h>
@@ -196,5 +197,47 @@ START_TEST(test_four_singular) {
 
 END_TEST
 
+/* Machines without fma() get the same bits. */
+START_TEST(test_any_machine) {
+#ifdef DALCS_MAY_BE_WIDE
+    enum { TERMS = 9, ORDER = 4 };
+
+    uint64_t state = 11;
+    const bool is_wide = dalcs_is_wide;
+    for (int trial = 0; trial < 200; trial++) {
+        struct dalcs_extended_row row[TERMS];
+        struct dalcs_extended factor[TERMS];
+        struct dalcs_extended_row sum[2];
+        static struct dalcs_extended_four a[2][ORDER][ORDER + 1];
+        for (int k = 0; k < TERMS; k++) {
+            factor[k] = dalcs_extended_of(ldexpl(random_number(&state), trial % 40) / 3.0L);
+            for (int i = 0; i < DALCS_EXTENDED_ROW; i++) {
+                dalcs_extended_put(&row[k], i, random_number(&state) / 7.0L);
+            }
+        }
+        for (int i = 0; i < ORDER; i++) {
+            for (int j = 0; j <= ORDER; j++) {
+                for (int p = 0; p < FOUR; p++) {
+                    put(&a[0][i][j], p, (random_number(&state) + random_number(&state) * I) / 3.0L);
+                }
+            }
+        }
+        memcpy(a[1], a[0], sizeof(a[0]));
+        for (int wide = 0; wide < 2; wide++) {
+            bool filled[ORDER][ORDER + 1];
+            memset(filled, true, sizeof(filled));
+            dalcs_is_wide = wide == 1 && is_wide;
+            dalcs_extended_combine(DALCS_EXTENDED_ROW, TERMS, factor, row, NULL, &sum[wide]);
+            (void)dalcs_extended_solve_four(ORDER, 1, a[wide][0], filled[0]);
+        }
+        ck_assert_mem_eq(&sum[0], &sum[1], sizeof(sum[0]));
+        ck_assert_mem_eq(a[0], a[1], sizeof(a[0]));
+    }
+    dalcs_is_wide = is_wide;
+#endif
+}
+
+END_TEST
+
 RUN_TESTS("extended_rows", test_pairs, test_cancelling, test_short_rows, test_four,
-          test_four_precision, test_four_singular)
+          test_four_precision, test_four_singular, test_any_machine)
