@@ -311,17 +311,35 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     return DALCS_OK;
 }
 
+/* Nothing conducts any more: what sines have forced upon states through diodes is over, and these go on by themselves.
+ * Where pulses or commands end steps that says nothing of their length, and fewer stages would use up what is allowed:
+ * of a multiplier's voltages 0.4 of the tolerance instead of 0.01. */
+static bool is_let_go(const struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    bool only_sines = part->stages.method->s == DALCS_MAX_STAGES &&
+                      part->excitation.shortest_period < INFINITY &&
+                      part->longest_needed == INFINITY && part->commands.n == 0;
+    bool conducts = false;
+    for (int d = 0; d < p->system->n_pairs && only_sines && !conducts; d++) {
+        conducts = dalcs_osnsp_is_on(p, d);
+    }
+    return only_sines && !conducts;
+}
+
 /* A mode that has been before, though not after this one, may have the map of a longer step that suited it then,
- * or the factors of a shorter one: it costs less to begin with that. */
+ * or the factors of a shorter one: it costs less to begin with that. Else with a step as long as those before. */
 static int cheapest_level(struct dalcs_radau_part *part) {
-    int level = part->rounding == 1.0 ? dalcs_transition_longest_level(part) : part->level;
+    bool has_maps = part->rounding == 1.0;
+    int level = has_maps ? dalcs_transition_longest_level(part) : part->level;
     for (int k = 0; k <= MOST_PREFERRED; k++) {
         double h = dalcs_radau_ladder(part, level + k);
         if (dalcs_stages_have(&part->stages, part->component->osnsp.mode, h)) {
             return level + k;
         }
     }
-    return level;
+    bool may_be_longer =
+        has_maps && level == part->level && dalcs_radau_ladder(part, level - 1) <= part->longest;
+    return may_be_longer && is_let_go(part) ? level - 1 : level;
 }
 
 /* guessed: the mode is what followed the last time. */
