@@ -195,8 +195,8 @@ static double watched_voltage(const struct dalcs_stage_workshop *b, int d, const
     return v;
 }
 
-/* What a column of the map is the answer to: values at the nodes and what they miss in between, 0 for a state; and of
- * what drives it, a state or a function of time, what is said in stage_functions.h. */
+/* What drives a column of the map: a source's values at the nodes and what they miss in between, 0 for a state, and,
+ * as in stage_functions.h, the stages' share of it and what they take of each part of a solution. */
 struct drive {
     const double *share;
     const struct dalcs_extended_row *stages, *of_part;
