@@ -35,9 +35,11 @@ DALCS_INLINE void dalcs_halve(const dalcs_quad *a, dalcs_quad *high, dalcs_quad 
 DALCS_INLINE void dalcs_find_lack(bool fused, const dalcs_quad *a, const dalcs_quad *b,
                                   const dalcs_quad *product, dalcs_quad *lack) {
     if (fused) {
+        dalcs_quad exact = {0.0};
         for (int k = 0; k < DALCS_QUAD; k++) {
-            (*lack)[k] = __builtin_fma((*a)[k], (*b)[k], -(*product)[k]);
+            exact[k] = __builtin_fma((*a)[k], (*b)[k], -(*product)[k]);
         }
+        *lack = exact;
         return;
     }
     dalcs_quad a_high;
