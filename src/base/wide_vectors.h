@@ -6,6 +6,11 @@
  * bit of their results: without contraction every element is computed by the same operations in the
  * same order.
  *
+ *     DALCS_TWICE_FUSED(double, sum, (DALCS_FUSED, int n, ...), (true, n, ...), (fused, n, ...)) { ... }
+ *
+ * likewise, with a first parameter `fused` that says whether it may use fma(); called as
+ * sum(DALCS_FUSES, n, ...).
+ *
  * Which one it is was asked when the program was loaded, of what the C library had found out by then: a
  * compiler's own clones ask the processor at each start, and in a virtual machine that is as long as
  * reading a netlist. */
@@ -21,6 +26,7 @@
 #else
 #define DALCS_FUSES false
 #endif
+#define DALCS_FUSED __attribute__((unused)) bool fused /* where it is known to be true */
 
 #if defined(__x86_64__) && !defined(__AVX2__) && defined(__has_include)
 #if __has_include(<sys/platform/x86.h>)
@@ -32,29 +38,9 @@
 #define DALCS_MAY_BE_WIDE
 extern bool dalcs_is_wide;
 
-#define DALCS_TWICE(type, name, parameters, arguments)                                             \
-    static inline __attribute__((always_inline)) type name##_body parameters;                      \
-    __attribute__((target("avx2,fma"))) static type name##_wide parameters {                       \
-        return name##_body arguments;                                                              \
-    }                                                                                              \
-    static type name parameters {                                                                  \
-        return dalcs_is_wide ? name##_wide arguments : name##_body arguments;                      \
-    }                                                                                              \
-    static inline __attribute__((always_inline)) type name##_body parameters
-#else
-#define DALCS_TWICE(type, name, parameters, arguments) static type name parameters
-#endif
-
-/* Likewise a function whose first parameter says whether it may use fma():
- *
- *     DALCS_TWICE_FUSED(double, sum, (bool fused, int n, ...), (true, n, ...), (fused, n, ...)) { ... }
- *
- * called as sum(DALCS_FUSES, n, ...). */
-#ifdef DALCS_MAY_BE_WIDE
 #define DALCS_TWICE_FUSED(type, name, parameters, wide_arguments, arguments)                       \
     static inline __attribute__((always_inline)) type name##_body parameters;                      \
     __attribute__((target("avx2,fma"))) static type name##_wide parameters {                       \
-        (void)fused;                                                                               \
         return name##_body wide_arguments;                                                         \
     }                                                                                              \
     static type name parameters {                                                                  \
@@ -65,5 +51,8 @@ extern bool dalcs_is_wide;
 #define DALCS_TWICE_FUSED(type, name, parameters, wide_arguments, arguments)                       \
     static type name parameters
 #endif
+
+#define DALCS_TWICE(type, name, parameters, arguments)                                             \
+    DALCS_TWICE_FUSED(type, name, parameters, arguments, arguments)
 
 #endif

@@ -60,7 +60,7 @@ DALCS_INLINE void invert(bool fused, struct complex_quad *inverse, const struct 
 
 /* Row `pivot` over what it has in column c, which the others then have nothing of: in columns behind c. */
 DALCS_TWICE_FUSED(void, clear_column,
-                  (bool fused, int n, int width, int pivot, int c, struct dalcs_extended_four *a,
+                  (DALCS_FUSED, int n, int width, int pivot, int c, struct dalcs_extended_four *a,
                    bool *filled),
                   (true, n, width, pivot, c, a, filled), (fused, n, width, pivot, c, a, filled)) {
     struct dalcs_extended_four *row = a + (size_t)pivot * (size_t)width;

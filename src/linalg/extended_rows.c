@@ -37,7 +37,7 @@ DALCS_INLINE void combine_quads(bool fused, int n_quads, size_t room, int n,
 }
 
 DALCS_TWICE_FUSED(void, combine,
-                  (bool fused, size_t room, int width, int n, const struct dalcs_extended *factor,
+                  (DALCS_FUSED, size_t room, int width, int n, const struct dalcs_extended *factor,
                    const double *high, const int *of, double *sum),
                   (true, room, width, n, factor, high, of, sum),
                   (fused, room, width, n, factor, high, of, sum)) {
