@@ -314,31 +314,6 @@ static inline void ask_sources(struct dalcs_rows_part *p, const struct dalcs_rad
     }
 }
 
-/* A part that steps. */
-static void interpolate(struct dalcs_rows *rows, const struct dalcs_radau_part *part, int n,
-                        enum dalcs_side side) {
-    const struct dalcs_collocation *m = part->stages.method;
-    struct dalcs_rows_part *p = &rows->part[part->index];
-    int n_groups = (n + 3) / 4;
-    find_thetas(part, &rows->time, n_groups, &rows->theta);
-    ask_sources(p, part, &rows->time, n, side);
-    for (int i = 0; i < p->n_signals;) {
-        int output = p->signal[i].output;
-        double node[DALCS_MAX_NODES] = {0.0};
-        double coefficient[DALCS_MAX_NODES];
-        bool steps = false;
-        for (; i < p->n_signals && p->signal[i].output == output; i++) {
-            const struct dalcs_row_signal *signal = &p->signal[i];
-            steps = collect(p, part, part->out, signal->probe, signal->sign, node) || steps;
-            add_sources(p, part, signal->probe, signal->sign, n_groups, &rows->value[output]);
-        }
-        if (steps) {
-            find_coefficients(m, node, coefficient);
-            add_polynomial(m, coefficient, &rows->theta, n_groups, &rows->value[output]);
-        }
-    }
-}
-
 /* ---- Steps that recur -------------------------------------------------------------------------- */
 
 /* The polynomials of outputs as functions of the inputs of a step: a column of its map is an answer, too. */
@@ -382,15 +357,61 @@ static enum dalcs_status find_map(struct dalcs_rows_part *p, const struct dalcs_
     return DALCS_OK;
 }
 
-static void interpolate_by(struct dalcs_rows *rows, const struct dalcs_radau_part *part,
-                           const double *map, int n, enum dalcs_side side) {
-    const struct dalcs_collocation *m = part->stages.method;
+/* ---- Parts that step --------------------------------------------------------------------------- */
+
+static void collect_polynomials(const struct dalcs_rows_part *p,
+                                const struct dalcs_radau_part *part) {
+    double *coefficient = p->coefficient;
+    for (int i = 0; i < p->n_signals; coefficient += DALCS_MAX_NODES) {
+        int output = p->signal[i].output;
+        double node[DALCS_MAX_NODES] = {0.0};
+        bool steps = false;
+        for (; i < p->n_signals && p->signal[i].output == output; i++) {
+            const struct dalcs_row_signal *signal = &p->signal[i];
+            steps = collect(p, part, part->out, signal->probe, signal->sign, node) || steps;
+        }
+        if (steps) {
+            find_coefficients(part->stages.method, node, coefficient);
+        } else {
+            memset(coefficient, 0, DALCS_MAX_NODES * sizeof(*coefficient));
+        }
+    }
+}
+
+enum dalcs_status dalcs_rows_find_polynomials(struct dalcs_rows *rows,
+                                              struct dalcs_radau_part *part) {
     struct dalcs_rows_part *p = &rows->part[part->index];
+    const double *map = NULL;
+    if (part->brief != NULL) {
+        DALCS_TRY(find_map(p, part, &map));
+    }
+    if (map != NULL) {
+        dalcs_dense_map_apply(map_rows(p), dalcs_stage_brief_columns(&part->stages), map,
+                              dalcs_stage_brief_input(&part->stages, part->in), p->coefficient);
+    } else {
+        dalcs_recurrence_complete(part);
+        collect_polynomials(p, part);
+    }
+    return DALCS_OK;
+}
+
+/* A blocking diode's current, for one. */
+static bool vanishes(const struct dalcs_collocation *c, const double *coefficient) {
+    int k = 0;
+    while (k <= c->s && coefficient[k] == 0.0) {
+        k++;
+    }
+    return k > c->s;
+}
+
+static enum dalcs_status fill_stepped(struct dalcs_rows *rows, struct dalcs_radau_part *part, int n,
+                                      enum dalcs_side side) {
+    struct dalcs_rows_part *p = &rows->part[part->index];
+    const struct dalcs_collocation *m = part->stages.method;
     int n_groups = (n + 3) / 4;
+    DALCS_TRY(dalcs_rows_find_polynomials(rows, part));
     find_thetas(part, &rows->time, n_groups, &rows->theta);
     ask_sources(p, part, &rows->time, n, side);
-    dalcs_dense_map_apply(map_rows(p), dalcs_stage_brief_columns(&part->stages), map,
-                          dalcs_stage_brief_input(&part->stages, part->in), p->coefficient);
     const double *coefficient = p->coefficient;
     for (int i = 0; i < p->n_signals; coefficient += DALCS_MAX_NODES) {
         int output = p->signal[i].output;
@@ -398,21 +419,9 @@ static void interpolate_by(struct dalcs_rows *rows, const struct dalcs_radau_par
             const struct dalcs_row_signal *signal = &p->signal[i];
             add_sources(p, part, signal->probe, signal->sign, n_groups, &rows->value[output]);
         }
-        add_polynomial(m, coefficient, &rows->theta, n_groups, &rows->value[output]);
-    }
-}
-
-static enum dalcs_status fill_stepped(struct dalcs_rows *rows, struct dalcs_radau_part *part, int n,
-                                      enum dalcs_side side) {
-    const double *map = NULL;
-    if (part->brief != NULL) {
-        DALCS_TRY(find_map(&rows->part[part->index], part, &map));
-    }
-    if (map != NULL) {
-        interpolate_by(rows, part, map, n, side);
-    } else {
-        dalcs_recurrence_complete(part);
-        interpolate(rows, part, n, side);
+        if (!vanishes(m, coefficient)) {
+            add_polynomial(m, coefficient, &rows->theta, n_groups, &rows->value[output]);
+        }
     }
     return DALCS_OK;
 }

@@ -77,6 +77,10 @@ void dalcs_rows_finish(struct dalcs_rows *rows);
 enum dalcs_status dalcs_rows_fill(struct dalcs_rows *rows, const double *time, int n,
                                   enum dalcs_side side, int *n_done) DALCS_MUST_CHECK;
 
+/* The polynomials in the present segment of a part that steps into `coefficient`, without what sources decide. */
+enum dalcs_status dalcs_rows_find_polynomials(struct dalcs_rows *rows,
+                                              struct dalcs_radau_part *part) DALCS_MUST_CHECK;
+
 /* After the outputs on the right of an event: those that are no further from before[n_outputs], on its left,
  * than errors may take them become that. There a step begins, where its polynomials of currents, and of what else
  * has no memory, are least exact: what conducts from there on has a current that begins at 0, not below. */
