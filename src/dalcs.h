@@ -291,12 +291,19 @@ struct dalcs_run_options {
     double step;      /* s; the fixed step of euler and radau, the largest of auto; 0: .options
                            step; without either euler takes the tmax of .tran, else its tstep, and
                            radau controls its error with steps of at most tmax */
+    double
+        fill; /* add rows where the .tran grid is coarse, until curves through all of them are this
+                           near, over each signal's largest value so far; 0: .options fill, else the
+                           tolerance but at least 1e-6; INFINITY: none. At most a million */
+    const char
+        *curve;       /* which: "cubics" (and lines beside events: doc/methods.md) or "lines"; NULL:
+                           .options curve, else cubics */
     double compress;  /* leave rows out as long as straight lines through the others stay this near,
                            over each signal's scale; 0: .options compress, else keep all rows */
     const double *at; /* [n_at] ascending output times in s, none after the stop time,
                            interpolated linearly between steps by euler;
-                           NULL: the .tran grid (euler: where it falls on steps, else every step)
-                           and both sides of every event */
+                           NULL: the .tran grid (euler: where it falls on steps, else every step),
+                           both sides of every event and what fill adds */
     size_t n_at;
     bool record; /* keep events and jumps for the report */
     bool

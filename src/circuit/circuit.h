@@ -180,8 +180,10 @@ struct dalcs_circuit {
         double step;     /* 0: not given */
         int stages;      /* of radau; 0: not given */
         double compress; /* 0: not given */
+        double fill;     /* 0: not given; INFINITY: none */
+        bool lines;      /* curve=lines */
         bool ascii;      /* filetype=ascii */
-        struct dalcs_location compress_where;
+        struct dalcs_location compress_where, fill_where;
     } options;
     struct dalcs_arena arena; /* owns everything above, source text of locations included */
 };

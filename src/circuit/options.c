@@ -5,11 +5,13 @@
  * silently ignoring those has cost people days. */
 #include "builder.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Known here. */
-static const char *const OURS[] = {"reltol", "abstol",   "vntol",        "method",   "step",
-                                   "stages", "compress", "diodecurrent", "filetype", "dialect"};
+static const char *const OURS[] = {"reltol",   "abstol",  "vntol", "method",   "step",
+                                   "stages",   "fill",    "curve", "compress", "diodecurrent",
+                                   "filetype", "dialect", "interp"};
 
 static const char *const FOREIGN[] = {
     "itl1",          "itl2",        "itl3",         "itl4",        "itl5",         "itl6",
@@ -22,7 +24,7 @@ static const char *const FOREIGN[] = {
     "trytocompact",  "keepopinfo",  "savecurrents", "autostop",    "bypass",       "lvltim",
     "limpts",        "cptime",      "limtim",       "maxstep",     "mindiv",       "maxevtiter",
     "noopiter",      "noopalter",   "sollim",       "xmu",         "mu",           "measdgt",
-    "topologycheck", "fastaccess",  "interp",       "oldlimit",    "badmos3",      "minbreak",
+    "topologycheck", "fastaccess",  "nonlin",       "oldlimit",    "badmos3",      "minbreak",
     "convstep",      "convabsstep", "dgmin",        "gdsmin",      "delmax",       "absdv",
     "reldv",         "mxsolve",     "ingold",       "post",        "probe",        "csdf",
     "brief",         "co",          "width",        "seed",        "seedinfo",     "sim",
@@ -30,7 +32,7 @@ static const char *const FOREIGN[] = {
     "stepgmin",      "ptrantau",    "ptranmax",     "skipgmin",    "solver",       "altinit",
     "gear",          "trap",        "newtol",       "nopointtol",  "nomarch",      "thev_induc",
     "baudrate",      "ascii",       "meascplxfmt",  "flagloads",   "mindeltagmin", "dptran",
-    "timeint",       "parser",      "output",       "device",      "linsol",       "nonlin"};
+    "timeint",       "parser",      "output",       "device",      "linsol"};
 
 enum { N_OURS = sizeof OURS / sizeof OURS[0], N_FOREIGN = sizeof FOREIGN / sizeof FOREIGN[0] };
 
@@ -101,6 +103,37 @@ static bool read_compress(struct dalcs_reader *reader, struct dalcs_circuit_opti
     return true;
 }
 
+/* A bound, or none. */
+static bool read_fill(struct dalcs_reader *reader, struct dalcs_circuit_options *options) {
+    double value = INFINITY;
+    const struct dalcs_token *place = dalcs_reader_peek(reader, 0);
+    if (place != NULL && strcmp(place->text, "none") == 0) {
+        reader->at++;
+    } else if (!dalcs_reader_number(reader, DALCS_PLAIN, "a value or none", &value)) {
+        return false;
+    } else if (value <= 0 || value >= 1) {
+        dalcs_builder_error(reader->builder, place, NULL,
+                            "fill must be greater than 0 and less than 1, or none");
+        return false;
+    }
+    options->fill = value;
+    options->fill_where = dalcs_builder_keep_location(reader->builder, place);
+    return true;
+}
+
+static bool read_curve(struct dalcs_reader *reader) {
+    const struct dalcs_token *curve;
+    if (!dalcs_reader_name(reader, "cubics or lines", &curve)) {
+        return false;
+    }
+    if (strcmp(curve->text, "cubics") != 0 && strcmp(curve->text, "lines") != 0) {
+        dalcs_builder_error(reader->builder, curve, NULL, "curve is cubics or lines");
+        return false;
+    }
+    reader->builder->circuit->options.lines = curve->text[0] == 'l';
+    return true;
+}
+
 static bool read_filetype(struct dalcs_reader *reader) {
     const struct dalcs_token *type;
     if (!dalcs_reader_name(reader, "ascii or binary", &type)) {
@@ -138,6 +171,11 @@ static bool read_method(struct dalcs_reader *reader) {
 static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *token) {
     struct dalcs_circuit_options *options = &reader->builder->circuit->options;
     const char *name = token->text;
+    if (strcmp(name, "interp") == 0) { /* ngspice's: rows at multiples of tstep alone */
+        options->fill = INFINITY;
+        options->fill_where = dalcs_builder_keep_location(reader->builder, token);
+        return true;
+    }
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
     if (strstr(name, "tol") != NULL && options->tolerance_where.line == 0) {
         options->tolerance_where = dalcs_builder_keep_location(reader->builder, token);
@@ -159,6 +197,12 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     }
     if (strcmp(name, "diodecurrent") == 0) {
         return read_positive(reader, DALCS_CURRENT, &reader->builder->diode_current);
+    }
+    if (strcmp(name, "fill") == 0) {
+        return read_fill(reader, options);
+    }
+    if (strcmp(name, "curve") == 0) {
+        return read_curve(reader);
     }
     if (strcmp(name, "compress") == 0) {
         return read_compress(reader, options);

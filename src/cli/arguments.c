@@ -7,6 +7,7 @@
 #include "verb.h"
 
 #include <getopt.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,6 +17,8 @@ enum {
     TOL,
     STAGES,
     STEP,
+    FILL,
+    CURVE,
     COMPRESS,
     AT,
     REPORT,
@@ -34,6 +37,8 @@ static const struct option option[] = {
     {"tol", required_argument, NULL, TOL},
     {"stages", required_argument, NULL, STAGES},
     {"step", required_argument, NULL, STEP},
+    {"fill", required_argument, NULL, FILL},
+    {"curve", required_argument, NULL, CURVE},
     {"compress", required_argument, NULL, COMPRESS},
     {"at", required_argument, NULL, AT},
     {"report", required_argument, NULL, REPORT},
@@ -116,6 +121,30 @@ static enum dalcs_status parse_step(struct dalcs_arguments *arguments, const str
     return DALCS_OK;
 }
 
+static enum dalcs_status parse_fill(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
+                                    const char *text) {
+    if (strcmp(text, "none") == 0) {
+        arguments->fill = INFINITY;
+        return DALCS_OK;
+    }
+    DALCS_TRY(parse_number(cli, "--fill", text, &arguments->fill));
+    if (!(arguments->fill > 0.0 && arguments->fill < 1.0)) {
+        dalcs_cli_error(cli, "--fill: '%s' must be greater than 0 and less than 1, or none", text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status parse_curve(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
+                                     const char *text) {
+    if (strcmp(text, "cubics") != 0 && strcmp(text, "lines") != 0) {
+        dalcs_cli_error(cli, "--curve: '%s' is neither cubics nor lines", text);
+        return DALCS_E_OPTION;
+    }
+    arguments->curve = text;
+    return DALCS_OK;
+}
+
 static enum dalcs_status parse_compress(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, const char *text) {
     DALCS_TRY(parse_number(cli, "--compress", text, &arguments->compress));
@@ -141,6 +170,10 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return parse_stages(arguments, cli, optarg);
     case STEP:
         return parse_step(arguments, cli, optarg);
+    case FILL:
+        return parse_fill(arguments, cli, optarg);
+    case CURVE:
+        return parse_curve(arguments, cli, optarg);
     case COMPRESS:
         return parse_compress(arguments, cli, optarg);
     case AT:
@@ -237,6 +270,10 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
     if (status == DALCS_OK && !arguments->help && arguments->at && arguments->compress > 0.0) {
         dalcs_cli_error(cli,
                         "--compress leaves rows out, --at asks for each of its own: choose one");
+        status = DALCS_E_OPTION;
+    }
+    if (status == DALCS_OK && !arguments->help && arguments->at && arguments->fill > 0.0) {
+        dalcs_cli_error(cli, "--fill adds rows, --at asks for its own alone: choose one");
         status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && !arguments->help) {

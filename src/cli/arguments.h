@@ -15,6 +15,8 @@ struct dalcs_arguments {
     int stages;
     double step; /* s */
     double compress;
+    double fill;       /* INFINITY: none */
+    const char *curve; /* NULL: the netlist's */
     const char *at, *report, *plot;
     const char *dump;
     char *default_output, *default_dump; /* NULL: not needed */

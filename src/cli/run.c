@@ -50,6 +50,12 @@ static const char help[] =
     "                      stages of radau (default: by size and tolerance)\n"
     "      --step H        time step in s, SPICE suffixes allowed: 1u. The largest one with auto,\n"
     "                      fixed with radau and euler (default: from .tran)\n"
+    "      --fill X|none   add rows where those of .tran are too far apart, until curves through "
+    "all\n"
+    "                      rows are as near to the waveform, over its largest value (default:\n"
+    "                      .options fill, else the tolerance, but 1e-6 where that is smaller)\n"
+    "      --curve cubics|lines\n"
+    "                      which curves: cubics, and lines beside events (default), or lines\n"
     "      --compress X    leave out rows that straight lines between others give, up to X times\n"
     "                      a signal's largest value\n"
     "      --at FILE       print at exactly the times in FILE, one a line\n"
@@ -128,6 +134,7 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
         bool given;
     } option[] = {{"--tol", arguments->tolerance > 0.0}, {"--stages", arguments->stages > 0},
                   {"--step", arguments->step > 0.0},     {"--compress", arguments->compress > 0.0},
+                  {"--fill", arguments->fill > 0.0},     {"--curve", arguments->curve != NULL},
                   {"--at", arguments->at != NULL},       {"--plot", arguments->plot != NULL},
                   {"--energy", arguments->energy}};
 
@@ -195,6 +202,12 @@ static void tell_measured(void *user, struct dalcs_session *session, enum dalcs_
     }
 }
 
+/* Tables are on the grid, as ngspice's are. */
+static double fill_of(const struct dalcs_arguments *arguments) {
+    bool prints_tables = arguments->batch && arguments->n_outputs == 0;
+    return prints_tables ? (double)INFINITY : arguments->fill;
+}
+
 /* Runs a session that has read its netlist and ends all files. */
 static enum dalcs_status run_session(struct run *run, struct dalcs_session *session,
                                      const struct dalcs_arguments *arguments,
@@ -205,6 +218,8 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     options.stages = arguments->stages;
     options.step = arguments->step;
     options.compress = arguments->compress;
+    options.fill = fill_of(arguments);
+    options.curve = arguments->curve;
     options.at = times->time;
     options.n_at = times->n;
     options.dump_path = arguments->dump;

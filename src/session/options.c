@@ -12,6 +12,9 @@ static const double MOST_STEPS = 1e13;
 
 static const double USUAL_TOLERANCE = 1e-6;
 
+/* Of filling where nothing is said: who looks at rows looks no closer. */
+static const double LEAST_FILL = 1e-6;
+
 struct dalcs_run_options dalcs_run_options_default(void) {
     return (struct dalcs_run_options){.certificate_tolerance = 2e-13,
                                       .proximal_weight = {1e-8, 1e-7, 1e-6},
@@ -135,6 +138,40 @@ static enum dalcs_status choose_compression(struct dalcs_run *r) {
     return DALCS_OK;
 }
 
+/* What rows of a fixed step are for, orders and comparisons, added ones would only disturb. */
+static enum dalcs_status choose_filling(struct dalcs_run *r) {
+    const struct dalcs_run_options *o = r->options;
+    const struct dalcs_circuit_options *netlist = &r->s->circuit.options;
+    bool is_none = o->fill > 0.0 && isinf(o->fill);
+    if (o->fill != 0.0 && !is_none && !(o->fill > 0.0 && o->fill < 1.0)) {
+        return option_error(r->s, "fill must be greater than 0 and less than 1, or infinite");
+    }
+    bool is_given = o->fill > 0.0 || netlist->fill > 0.0;
+    bool is_fixed = r->method == DALCS_METHOD_EULER || o->at != NULL;
+    if (o->curve != NULL && strcmp(o->curve, "cubics") != 0 && strcmp(o->curve, "lines") != 0) {
+        return option_error(r->s, "curve is cubics or lines");
+    }
+    r->lines = o->curve != NULL ? o->curve[0] == 'l' : netlist->lines;
+    r->fill = o->fill > 0.0 ? o->fill : netlist->fill;
+    if (is_fixed && o->fill > 0.0 && !is_none) {
+        return option_error(r->s, o->at != NULL
+                                      ? "fill adds rows, output times ask for theirs alone: it is "
+                                        "one or the other"
+                                      : "fill has no meaning with euler, whose rows are its steps");
+    }
+    if (is_fixed && isfinite(netlist->fill) && netlist->fill > 0.0 && o->fill == 0.0) {
+        dalcs_diag_add(&r->s->diag, DALCS_NOTE, &netlist->fill_where, NULL,
+                       o->at != NULL ? "fill has no effect: output times ask for theirs alone"
+                                     : "fill has no effect with euler, whose rows are its steps");
+    }
+    if (is_fixed || (!is_given && r->fixed_step > 0.0)) {
+        r->fill = INFINITY;
+    } else if (!is_given) {
+        r->fill = fmax(r->tolerance, LEAST_FILL);
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status check_tolerances(struct dalcs_session *s,
                                           const struct dalcs_run_options *o) {
     bool positive = o->certificate_tolerance > 0.0 && o->max_outer > 0 && o->max_pivots > 0;
@@ -204,5 +241,6 @@ enum dalcs_status dalcs_run_choose(struct dalcs_run *r) {
     DALCS_TRY(choose_compression(r));
     DALCS_TRY(check_tolerances(r->s, r->options));
     r->osnsp = dalcs_osnsp_options_of(r->options);
-    return choose_step(r);
+    DALCS_TRY(choose_step(r));
+    return choose_filling(r);
 }

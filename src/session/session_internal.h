@@ -48,6 +48,8 @@ struct dalcs_run {
     double abstol, vntol; /* A, V; allowed on top of it */
     int stages;           /* of radau; 0: not asked for */
     double compress;      /* 0: keep all rows */
+    double fill;          /* INFINITY: add no rows */
+    bool lines;           /* of filled rows */
     double h;             /* s; the step of euler */
     double fixed_step;    /* s; of radau without error control; 0: with it */
     double max_step;      /* s; of radau with error control; 0: no bound */

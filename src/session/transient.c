@@ -7,7 +7,7 @@
 #include "cycle.h"
 #include "energy.h"
 #include "extremes.h"
-#include "rows.h"
+#include "filling.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,6 +18,9 @@ enum { PROGRESS_UNKNOWNS = 1 << 18, PROGRESS_STEPS = 4096 };
 
 /* Where more are cut short by a longest step than this, a note says so. */
 enum { MANY_STEPS = 1000 };
+
+/* Rows added to those that are due; see filling.h. */
+enum { MOST_FILLED = 1000000 };
 
 /* Where .tran has no tstep. */
 static const double ROWS_WITHOUT_A_STEP = 1000.0;
@@ -44,7 +47,8 @@ static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
 /* Rows further apart than half a period do not show a sine, nor do averages over them. */
 static void warn_of_coarse_rows(struct dalcs_run *r, const struct dalcs_schedule *schedule) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    for (int i = 0; i < c->n_devices && schedule->kind == DALCS_ON_GRID; i++) {
+    bool may_be_coarse = schedule->kind == DALCS_ON_GRID && isinf(r->fill);
+    for (int i = 0; i < c->n_devices && may_be_coarse; i++) {
         const struct dalcs_device *d = &c->device[i];
         const struct dalcs_stimulus *s = d->stimulus >= 0 ? &c->stimulus[d->stimulus] : NULL;
         if (s != NULL && s->kind == DALCS_STIMULUS_SIN && s->u.sine.amplitude != 0.0 &&
@@ -158,6 +162,7 @@ struct transient {
     struct dalcs_radau *radau;
     struct dalcs_measures *measures;
     struct dalcs_rows rows;
+    struct dalcs_filling filling;
     double t;
     double next_row;  /* s, that is due */
     double next_edge; /* s, of any source: rows are wanted there */
@@ -207,23 +212,28 @@ static enum dalcs_status row(struct transient *c, enum dalcs_side side, bool is_
     return DALCS_OK;
 }
 
-/* The rows that are due while nothing else happens: until shortly before `until`. */
-static enum dalcs_status rows(struct transient *c, double until) {
-    double due[DALCS_MOST_ROWS];
+/* The rows while nothing else happens: until shortly before `until`; ends: when something does. */
+static enum dalcs_status rows(struct transient *c, double until, bool ends) {
+    double time[DALCS_MOST_ROWS];
     double near = c->radau->resolution;
-    while (c->next_row + near < until) {
-        int n = dalcs_recorder_list_due(c->recorder, until, near, due, DALCS_MOST_ROWS);
-        DALCS_TRY(dalcs_rows_fill(&c->rows, due, n, DALCS_LEFT, &n));
-        c->t = due[n - 1];
-        DALCS_TRY(dalcs_recorder_rows(c->recorder, &c->rows, due, n));
+    int most = c->rows.one_by_one ? 1 : DALCS_MOST_ROWS;
+    int n_due;
+    DALCS_TRY(dalcs_filling_enter(&c->filling, c->recorder, c->t, until, ends));
+    for (int n; (n = dalcs_filling_list(&c->filling, c->recorder, near, time, most, &n_due)) > 0;) {
+        DALCS_TRY(dalcs_rows_fill(&c->rows, time, n, DALCS_LEFT, &n));
+        c->t = time[n - 1];
+        DALCS_TRY(dalcs_recorder_rows(c->recorder, &c->rows, time, n, n_due));
         c->next_row = dalcs_recorder_due(c->recorder);
         DALCS_TRY(tell_progress(c, n));
     }
     return DALCS_OK;
 }
 
-static bool cycles(const struct dalcs_radau *radau) {
-    return radau->cycling != NULL && radau->cycling->cycles;
+/* May the next row be in this segment, periods later? */
+static bool cycles(const struct transient *c) {
+    const struct dalcs_radau *radau = c->radau;
+    return radau->cycling != NULL && radau->cycling->cycles &&
+           !dalcs_filling_is_on(&c->filling, c->t);
 }
 
 /* Over periods of which nobody asks anything. */
@@ -246,16 +256,18 @@ static enum dalcs_status advance(struct transient *c) {
     double near = radau->resolution;
     double stop = radau->options.stop;
     bool happens;
-    if (cycles(radau)) {
+    if (cycles(c)) {
         DALCS_TRY(leap(c));
     }
     double end = dalcs_radau_next_stop(radau, &happens);
     double t = dalcs_smaller(dalcs_smaller(end, stop),
                              dalcs_smaller(c->next_edge, c->measures->next_edge));
-    if (c->next_row + near < t) {
-        DALCS_TRY(rows(c, t));
-        if (cycles(radau)) {
-            return DALCS_OK; /* the next row may be in this segment, periods later */
+    bool comes = c->next_row + near < t;
+    if (comes || dalcs_filling_is_on(&c->filling, t)) {
+        bool stops = (happens && end <= t + near) || c->next_edge <= t + near || t >= stop - near;
+        DALCS_TRY(rows(c, t, stops));
+        if (comes && cycles(c)) {
+            return DALCS_OK;
         }
     }
     t = dalcs_smaller(t, c->next_row);
@@ -273,6 +285,7 @@ static enum dalcs_status advance(struct transient *c) {
     bool written = is_due || (sides && (edge || (ends && happens)));
     if (written) {
         DALCS_TRY(row(c, DALCS_LEFT, is_due));
+        dalcs_filling_row(&c->filling, t, edge || (ends && happens));
     }
     if (t >= stop - near) {
         c->t = stop;
@@ -294,6 +307,16 @@ static enum dalcs_status advance(struct transient *c) {
     return DALCS_OK;
 }
 
+static void note_end_of_filling(struct dalcs_run *r, const struct dalcs_filling *filling) {
+    if (isfinite(filling->ended)) {
+        dalcs_diag_add(
+            &r->s->diag, DALCS_NOTE, NULL, "--fill with a larger bound, or none, or a later tstart",
+            "a million rows were added to those of .tran up to t = %.9g s: from there on "
+            "there are no more",
+            filling->ended);
+    }
+}
+
 static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau *radau,
                                         struct dalcs_measures *measures) {
     struct transient c = {
@@ -302,7 +325,8 @@ static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau 
     c.next_edge = edge_after(&c, 0.0);
     c.interval = c.to_go = progress_interval(&r->s->network);
     DALCS_TRY(dalcs_rows_setup(&c.rows, radau, NULL, r->s->network.n_outputs));
-    enum dalcs_status status = DALCS_OK;
+    enum dalcs_status status =
+        dalcs_filling_setup(&c.filling, c.recorder, &c.rows, r->fill, r->lines, MOST_FILLED);
     while (c.t < radau->options.stop && status == DALCS_OK) {
         status = advance(&c);
         status = status == DALCS_OK ? tell_progress(&c, 1) : status;
@@ -310,6 +334,8 @@ static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau 
     if (status != DALCS_OK) {
         dalcs_radau_break_off(radau, c.t);
     }
+    note_end_of_filling(r, &c.filling);
+    dalcs_filling_finish(&c.filling);
     dalcs_rows_finish(&c.rows);
     return status;
 }

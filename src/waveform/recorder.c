@@ -244,9 +244,10 @@ static int list_grid(const struct dalcs_schedule *s, double until, double near, 
     return most;
 }
 
-int dalcs_recorder_list_due(const struct dalcs_recorder *r, double until, double near, double *due,
-                            int most) {
+int dalcs_recorder_list_due(const struct dalcs_recorder *r, int after, double until, double near,
+                            double *due, int most) {
     struct dalcs_schedule s = r->schedule;
+    s.next += (size_t)after;
     int n = s.kind == DALCS_ON_GRID ? list_grid(&s, until, near, due, most) : 0;
     s.next += (size_t)n;
     for (; n < most; n++, s.next++) {
@@ -281,10 +282,10 @@ static void watch(struct dalcs_recorder *r, const struct dalcs_rows *rows, int n
 }
 
 enum dalcs_status dalcs_recorder_rows(struct dalcs_recorder *r, const struct dalcs_rows *rows,
-                                      const double *time, int n) {
+                                      const double *time, int n, int n_due) {
     const struct dalcs_sink *sink = r->sink;
     const size_t n_shown = (size_t)r->n_shown;
-    r->schedule.next += (size_t)n;
+    r->schedule.next += (size_t)n_due;
     watch(r, rows, n);
     for (size_t i = 0; i < n_shown; i++) {
         const double *value = rows->value[i].at;

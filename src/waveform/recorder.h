@@ -68,9 +68,10 @@ enum dalcs_status dalcs_recorder_cross(struct dalcs_recorder *r,
  * INFINITY when none is. */
 double dalcs_recorder_due(const struct dalcs_recorder *r);
 
-/* The next rows that are due more than `near` before `until`: their times into due[most]; how many. */
-int dalcs_recorder_list_due(const struct dalcs_recorder *r, double until, double near, double *due,
-                            int most);
+/* The next rows that are due more than `near` before `until`, after so many: their times into due[most]; how
+ * many. */
+int dalcs_recorder_list_due(const struct dalcs_recorder *r, int after, double until, double near,
+                            double *due, int most);
 
 /* Should there be rows at edges and on both sides of events, besides the due ones, at time t? */
 bool dalcs_recorder_wants_sides(const struct dalcs_recorder *r, double t);
@@ -79,9 +80,9 @@ bool dalcs_recorder_wants_sides(const struct dalcs_recorder *r, double t);
 enum dalcs_status dalcs_recorder_row(struct dalcs_recorder *r, const struct dalcs_rows *rows,
                                      double t, bool is_due) DALCS_MUST_CHECK;
 
-/* The next n that are due, at these times: the first n of `rows`. */
+/* Rows at these times: the first n of `rows`; n_due of them are the next that are due. */
 enum dalcs_status dalcs_recorder_rows(struct dalcs_recorder *r, const struct dalcs_rows *rows,
-                                      const double *time, int n) DALCS_MUST_CHECK;
+                                      const double *time, int n, int n_due) DALCS_MUST_CHECK;
 
 /* Modes that changed at e->t become events. */
 enum dalcs_status dalcs_recorder_events(struct dalcs_recorder *r,

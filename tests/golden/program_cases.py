@@ -29,6 +29,12 @@ R1 out 0 1k
 .tran 100u 40m
 .end
 """
+SINE = """a sine that its rows do not show
+V1 a 0 SIN(0 10 50)
+R1 a 0 5
+.tran 10m 20m
+.end
+"""
 BOTH = RECTIFIER.replace(".tran", ".op\n.tran")
 POINT = RECTIFIER.replace("SIN(0 10 50)", "5").replace(".tran 100u 40m", ".op")
 LONG = RECTIFIER.replace(".tran 100u 40m", ".tran 1u 1000 uic")
@@ -93,8 +99,8 @@ class Usage(Case):
 
     def test_every_option_is_in_the_help(self):
         text = self.dalcs("run", "--help").stdout
-        for option in ["--output", "--method", "--tol", "--stages", "--step", "--compress", "--at",
-                       "--report", "--plot", "--dump", "--all-signals", "--energy", "--quiet"]:
+        for option in ["--output", "--method", "--tol", "--stages", "--step", "--compress", "--at", "--fill",
+                       "--curve", "--report", "--plot", "--dump", "--all-signals", "--energy", "--quiet"]:
             self.assertIn(option, text)
 
     def test_version(self):
@@ -136,7 +142,13 @@ class Usage(Case):
         for value in "0", "1", "-1m":
             self.assertIn(f"--compress: '{value}' must be greater than 0 and less than 1",
                           self.refused("run", "a.cir", "--compress", value))
+        for value in "0", "1", "-1m":
+            self.assertIn(f"--fill: '{value}' must be greater than 0 and less than 1, or none",
+                          self.refused("run", "a.cir", "--fill", value))
+        self.assertIn("--curve: 'spline' is neither cubics nor lines",
+                      self.refused("run", "a.cir", "--curve", "spline"))
         self.assertIn("choose one", self.refused("run", "a.cir", "--compress", "1m", "--at", "x"))
+        self.assertIn("choose one", self.refused("run", "a.cir", "--fill", "1m", "--at", "x"))
         self.assertIn(".csv or .raw", self.refused("run", "a.cir", "-o", "out.txt"))
         self.assertIn(".svg, .png or .pdf", self.refused("run", "a.cir", "--plot", "p.gif"))
         self.assertIn("no netlist", self.refused("run"))
@@ -200,6 +212,49 @@ class Results(Case):
         self.write("# times\n0\n\n1m\n2.5m ignored\n* note\n0.0333\n", "times.txt")
         self.dalcs("run", self.write(RECTIFIER), "--at", "times.txt", "-o", "out.csv")
         self.assertEqual([row[0] for row in self.table("out.csv")[1]], [0.0, 1e-3, 2.5e-3, 0.0333])
+
+    def test_fill(self):
+        """Rows between those of .tran, which stay: more of them for less, for lines, and none where that is said."""
+        times = {}
+        for name, options in {"default": [], "coarse": ["--fill", "1m"], "fine": ["--fill", "1n"],
+                              "lines": ["--curve", "lines"], "none": ["--fill", "none"]}.items():
+            self.dalcs("run", self.write(SINE), "-q", "-o", "out.csv", *options)
+            times[name] = [row[0] for row in self.table("out.csv")[1]]
+            self.assertTrue(set(times.get("none", [])) <= set(times[name]))
+        self.assertEqual(len(times["none"]), 3)
+        counts = [len(times[name]) for name in ("none", "coarse", "default", "fine", "lines")]
+        self.assertEqual(counts, sorted(set(counts)))
+        for card, like in ((".options fill=1m", "coarse"), (".options curve=lines", "lines"),
+                           (".options fill=none", "none"), (".options interp", "none")):
+            self.dalcs("run", self.write(SINE.replace(".end", f"{card}\n.end")), "-q", "-o", "out.csv")
+            self.assertEqual([row[0] for row in self.table("out.csv")[1]], times[like], card)
+        self.dalcs("run", "a.cir", "-q", "-o", "out.csv", "--fill", "1n", "--curve", "cubics")
+        self.assertEqual([row[0] for row in self.table("out.csv")[1]], times["fine"])
+
+    def test_nothing_to_fill(self):
+        """Rows of implicit Euler and of --at are what is asked for."""
+        self.write(SINE.replace(".end", ".options fill=1m\n.end"))
+        done = self.dalcs("run", "a.cir", "--method", "euler", "-o", "out.csv")
+        self.assertIn("a.cir:5:15: note: fill has no effect with euler", done.stderr)
+        self.assertEqual(len(self.table("out.csv")[1]), 3)
+        self.write("0\n3m\n", "times.txt")
+        done = self.dalcs("run", "a.cir", "--at", "times.txt", "-o", "out.csv")
+        self.assertIn("a.cir:5:15: note: fill has no effect: output times", done.stderr)
+        self.assertEqual(len(self.table("out.csv")[1]), 2)
+        self.dalcs("run", "a.cir", "--method", "radau", "--step", "1m", "--fill", "1m", "-o", "out.csv")
+        self.assertGreater(len(self.table("out.csv")[1]), 3)
+        self.dalcs("run", self.write(SINE), "--method", "radau", "--step", "1m", "-o", "out.csv")
+        self.assertEqual(len(self.table("out.csv")[1]), 3)
+        done = self.dalcs("run", "a.cir", "--method", "euler", "--fill", "1m", expect=USAGE)
+        self.assertIn("fill has no meaning with euler", done.stderr)
+
+    def test_end_of_filling(self):
+        """A file has an end, and what it lacks is said."""
+        done = self.dalcs("run", self.write(SINE), "--fill", "1e-14", "--curve", "lines", "-o", "out.raw")
+        self.assertRegex(done.stderr, r"note: a million rows were added to those of .tran up to t = 0.0\d+ s: from "
+                                      r"there on there are no more\n  hint: --fill")
+        points = re.search(rb"No. Points: (\d+)", self.path("out.raw").read_bytes()[:1000])
+        self.assertTrue(1000000 < int(points[1]) < 1000010, points[1])
 
     def test_compress(self):
         """Fewer rows, each of them one of all; an operating point keeps its own."""
@@ -329,7 +384,7 @@ class Summary(Case):
 
     def test_measurements(self):
         done = self.dalcs("run", self.write("sine\nV1 a 0 SIN(0 10 50)\nR1 a 0 5\n"
-                                            ".tran 10u 20m\n.end\n"))
+                                            ".tran 10u 20m\n.end\n"), "--fill", "none")
         self.assertRegex(done.stdout, r"v\(a\) +-10\.00  V +10\.00  V +0\.000  V +7\.071  V "
                                       r"+0\.000  V\n")
 
@@ -628,7 +683,7 @@ class Terminal(Case):
     def test_progress(self):
         self.write(LONG.replace("SIN(0 10 50)", "SIN(0 10 50k)"))
         master, slave = pty.openpty()
-        with subprocess.Popen([DALCS, "run", "a.cir", "-o", "out.csv"], cwd=self.folder,
+        with subprocess.Popen([DALCS, "run", "a.cir", "-o", "out.csv", "--fill", "none"], cwd=self.folder,
                               stdout=subprocess.PIPE, stderr=slave, text=True) as process:
             os.close(slave)
             shown = b""

@@ -352,13 +352,18 @@ START_TEST(test_options) {
     ck_assert_int_eq(circuit.options.method_where.column, 56);
     ck_assert_int_eq(circuit.options.stages, 0);
     ck_assert_double_eq(circuit.options.compress, 0);
+    ck_assert_double_eq(circuit.options.fill, 0);
+    ck_assert(!circuit.options.lines);
     dalcs_circuit_finish(&circuit);
-    build_good_circuit(&circuit, "options\nV1 a 0 1\nR1 a 0 1\n"
-                                 ".options method=radau stages=7 compress=1m\n.op\n");
+    build_good_circuit(&circuit,
+                       "options\nV1 a 0 1\nR1 a 0 1\n"
+                       ".options method=radau stages=7 compress=1m fill=2u curve=lines\n.op\n");
     ck_assert_str_eq(circuit.options.method, "radau");
     ck_assert_int_eq(circuit.options.stages, 7);
     ck_assert_double_eq(circuit.options.compress, 1e-3);
     ck_assert_int_eq(circuit.options.compress_where.column, 41);
+    ck_assert_double_eq(circuit.options.fill, 2e-6);
+    ck_assert(circuit.options.lines);
     dalcs_circuit_finish(&circuit);
     build_good_circuit(&circuit, "options\nV1 a 0 1\nR1 a 0 1\n.options method=gear\n.op\n");
     ck_assert_ptr_null(circuit.options.method);

@@ -83,7 +83,7 @@ static enum dalcs_status take_rows(void *user, size_t n, const double *time, con
 START_TEST(test_rows_together) {
     struct dalcs_session *session = read_good(
         "rectifier\nV1 in 0 PULSE(-1 1 0 0 0 0.37 1)\nR1 in a 1\nD1 a out\nC1 out 0 1\nR2 out 0 3\n"
-        ".save v(out) i(d1)\n.meas tran peak MAX v(in,a)\n.tran 0.01 4\n");
+        ".save v(out) i(d1)\n.meas tran peak MAX v(in,a)\n.tran 0.01 4\n.options fill=none\n");
     ck_assert_int_eq(run_with(session, "auto", &rows), DALCS_OK);
     const size_t n_values = rows.n_values;
     static struct rows one_by_one;
@@ -110,7 +110,7 @@ static const char divider[] = "divider\nV1 in 0 1\nR1 in out 1\nC1 out 0 1\n.tra
 START_TEST(test_wrong_options) {
     struct dalcs_run_options usual = dalcs_run_options_default();
     usual.method = "euler";
-    struct dalcs_run_options wrong[25];
+    struct dalcs_run_options wrong[30];
     size_t n = 0;
     for (size_t k = 0; k < sizeof(wrong) / sizeof(*wrong); k++) {
         wrong[k] = usual;
@@ -136,6 +136,13 @@ START_TEST(test_wrong_options) {
     wrong[n++].compress = -1e-3;
     wrong[n++].compress = 1.0;
     wrong[n++].compress = NAN;
+    wrong[n++].fill = -1e-3;
+    wrong[n++].fill = 1.0;
+    wrong[n++].fill = NAN;
+    wrong[n++].curve = "spline";
+    wrong[n].fill = 1e-3;
+    wrong[n].at = late;
+    wrong[n++].n_at = 1;
     wrong[n].compress = 1e-3;
     wrong[n].at = late;
     wrong[n++].n_at = 1;

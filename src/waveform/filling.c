@@ -1,0 +1,161 @@
+/* filling.c - which times between the rows that are due get one, too. */
+#include "filling.h"
+
+#include "extremes.h"
+
+#include <math.h>
+
+/* Gaps on each side of what happens. */
+enum { BESIDE = 2 };
+
+/* Of the stop time: a gap in which nobody looks. */
+static const double least_gap = 0x1p-33;
+
+/* What rounding makes of equal gaps. */
+static const double rounding = 1e-9;
+
+enum dalcs_status dalcs_filling_setup(struct dalcs_filling *f, const struct dalcs_recorder *r,
+                                      struct dalcs_rows *rows, double bound, bool by_lines,
+                                      size_t most) {
+    const struct dalcs_schedule *s = &r->schedule;
+    *f = (struct dalcs_filling){.is_on = s->kind == DALCS_ON_GRID && isfinite(bound),
+                                .by_lines = by_lines,
+                                .start = s->start,
+                                .stop = s->stop,
+                                .least = least_gap * s->stop,
+                                .last = s->start,
+                                .before = s->start,
+                                .beside = BESIDE,
+                                .n_left = most,
+                                .ended = INFINITY};
+    return f->is_on ? dalcs_row_gaps_setup(&f->gaps, rows, r->n_shown, bound) : DALCS_OK;
+}
+
+void dalcs_filling_finish(struct dalcs_filling *f) {
+    dalcs_row_gaps_finish(&f->gaps);
+    *f = (struct dalcs_filling){0};
+}
+
+bool dalcs_filling_is_on(const struct dalcs_filling *f, double t) {
+    return f->is_on && f->n_left > 0 && t >= f->start;
+}
+
+/* Before what ends the stretch: two lines, or, where these would begin before it does, all of it in three. */
+static void choose_tail(struct dalcs_filling *f) {
+    double length = f->until - f->begin;
+    bool is_short = BESIDE * f->line > length;
+    bool were_short = f->beside == BESIDE || f->last - f->before <= f->line;
+    f->tail = is_short ? length / (BESIDE + 1) : f->line;
+    f->n_tail = is_short ? BESIDE + 1 : BESIDE;
+    if (!f->ends || (f->until - f->last <= f->line && were_short)) {
+        f->n_tail = 0;
+    }
+}
+
+enum dalcs_status dalcs_filling_enter(struct dalcs_filling *f, const struct dalcs_recorder *r,
+                                      double from, double until, bool ends) {
+    f->begin = dalcs_larger(from, f->start);
+    f->until = until;
+    f->ends = ends;
+    f->is_dense = true;
+    if (!dalcs_filling_is_on(f, f->begin) || until - f->begin <= f->least) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_row_gaps_look(&f->gaps, f->begin, until));
+    f->line = dalcs_larger(f->gaps.line, f->least);
+    f->cubic = f->by_lines ? f->line : dalcs_larger(f->gaps.cubic, f->least);
+    f->is_dense = r->schedule.step <= dalcs_smaller(f->line, f->cubic);
+    choose_tail(f);
+    f->until_tail = r->schedule.step <= f->cubic ? until - f->n_tail * f->tail : -INFINITY;
+    return DALCS_OK;
+}
+
+/* The time of the next row, where one is due later or the stretch ends. */
+static double next(const struct dalcs_filling *f, double due) {
+    double t = due;
+    for (int k = f->n_tail; k > 0; k--) {
+        double of_tail = f->until - k * f->tail;
+        if (of_tail - f->last > rounding * f->tail) {
+            t = dalcs_smaller(t, of_tail);
+            break;
+        }
+    }
+    if (f->beside > 0) {
+        t = dalcs_smaller(t, dalcs_larger(f->last + f->line, f->begin));
+    }
+    double n = ceil((t - f->last) / f->cubic - rounding);
+    return n > 1.0 ? dalcs_larger(f->last + (t - f->last) / n, f->begin) : t;
+}
+
+static void pass(struct dalcs_filling *f, double t) {
+    if (t > f->last) {
+        f->beside -= f->beside > 0 ? 1 : 0;
+        f->before = f->last;
+        f->last = t;
+    }
+}
+
+/* One that is added. */
+static void count(struct dalcs_filling *f, double t) {
+    f->n_left--;
+    if (f->n_left == 0) {
+        f->ended = t;
+        f->is_dense = true;
+    }
+}
+
+/* Those that are due and need nothing between. */
+static int list_plain(struct dalcs_filling *f, const struct dalcs_recorder *r, int after,
+                      double near, double *time, int most) {
+    if (!f->is_dense && f->beside > 0) {
+        return 0;
+    }
+    double until = f->is_dense ? f->until : f->until_tail;
+    int n = dalcs_recorder_list_due(r, after, until, near, time, most);
+    for (int k = n > BESIDE ? n - BESIDE : 0; k < n; k++) {
+        pass(f, time[k]);
+    }
+    return n;
+}
+
+/* The next one with what has to come before it; false: the stretch ends. */
+static bool list_next(struct dalcs_filling *f, const struct dalcs_recorder *r, int after,
+                      double near, double *time, bool *is_due) {
+    double due;
+    bool comes = dalcs_recorder_list_due(r, after, f->until, near, &due, 1) > 0;
+    double t = next(f, comes ? due : f->until);
+    *is_due = comes && t + near >= due;
+    *time = *is_due ? due : t;
+    if (!(*time + near < f->until)) {
+        return false;
+    }
+    if (!*is_due) {
+        count(f, t);
+    }
+    pass(f, *time);
+    return true;
+}
+
+int dalcs_filling_list(struct dalcs_filling *f, const struct dalcs_recorder *r, double near,
+                       double *time, int most, int *n_due) {
+    int n = 0;
+    *n_due = 0;
+    while (n < most) {
+        int plain = list_plain(f, r, *n_due, near, time + n, most - n);
+        *n_due += plain;
+        n += plain;
+        bool is_due = false;
+        if (n == most || f->is_dense || !list_next(f, r, *n_due, near, &time[n], &is_due)) {
+            break;
+        }
+        *n_due += is_due ? 1 : 0;
+        n++;
+    }
+    return n;
+}
+
+void dalcs_filling_row(struct dalcs_filling *f, double t, bool happens) {
+    dalcs_row_gaps_note(&f->gaps);
+    pass(f, t);
+    f->beside = happens ? BESIDE : f->beside;
+}
