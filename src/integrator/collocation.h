@@ -31,17 +31,13 @@ struct dalcs_collocation {
     double lambda;                /* the real eigenvalue of A^-1 */
     double complex mu[DALCS_MAX_CONJUGATES];
 
-    /* Y_i = to[i] W + sum over pairs of 2 Re(to_pair[i][p] W_p), and back */
-    double to[DALCS_MAX_STAGES], from[DALCS_MAX_STAGES];
-    double complex to_pair[DALCS_MAX_STAGES][DALCS_MAX_CONJUGATES];
-    double complex from_pair[DALCS_MAX_CONJUGATES][DALCS_MAX_STAGES];
-
-    /* the same with the digits that their large elements (300 for s = 7, 3500 for 9) cost */
+    /* with the digits that the large elements of the eigenvectors (300 for s = 7, 3500 for 9) cost */
     long double exact_back[DALCS_MAX_STAGES];
     long double exact_lambda;
     long double complex exact_mu[DALCS_MAX_CONJUGATES];
     /* of solutions as 1 + 2 n_pairs parts, that of lambda and (re, im) of each of mu: what the stages, and in
-     * place s the polynomial through them at 0, take of each part; what the parts take of each stage */
+     * place s the polynomial through them at 0, take of each part; what the parts take of each stage. Stage i is
+     * to[i] W + sum over pairs of 2 Re(to_pair[i][p] W_p) */
     struct dalcs_extended_row exact_to[DALCS_SOLUTION_PARTS];
     struct dalcs_extended_row exact_from[DALCS_MAX_STAGES];
     double barycentric[DALCS_MAX_NODES]; /* weights of all s + 1 nodes */

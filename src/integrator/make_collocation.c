@@ -242,16 +242,12 @@ static void diagonalise(struct dalcs_collocation *c, real A[MAX][MAX]) {
             if (is_real) {
                 put(&c->exact_from[i], 0, __real__(back));
                 put(&c->exact_to[0], i, __real__(forth));
-                c->from[i] = (double)__real__(back);
-                c->to[i] = (double)__real__(forth);
             } else {
                 int part = 1 + 2 * c->n_pairs;
                 put(&c->exact_from[i], part, __real__(back));
                 put(&c->exact_from[i], part + 1, __imag__(back));
                 put(&c->exact_to[part], i, 2 * __real__(forth)); /* 2 Re(to W) */
                 put(&c->exact_to[part + 1], i, -2 * __imag__(forth));
-                c->from_pair[c->n_pairs][i] = (double complex)back;
-                c->to_pair[i][c->n_pairs] = (double complex)forth;
             }
         }
         if (is_real) {
@@ -494,19 +490,7 @@ static void print_method(const struct dalcs_collocation *c) {
     printf("        .lambda = %.17g,\n        .mu = ", c->lambda);
     print_complexes(pairs, c->mu);
     printf(",\n");
-    print_reals("to", s, c->to);
-    print_reals("from", s, c->from);
-    printf("        .to_pair = {");
-    for (int i = 0; i < s; i++) {
-        printf("%s", i > 0 ? ", " : "");
-        print_complexes(pairs, c->to_pair[i]);
-    }
-    printf("},\n        .from_pair = {");
-    for (int p = 0; p < pairs; p++) {
-        printf("%s", p > 0 ? ", " : "");
-        print_complexes(s, c->from_pair[p]);
-    }
-    printf("},\n        .exact_lambda = %.21LgL,\n        .exact_mu = ", c->exact_lambda);
+    printf("        .exact_lambda = %.21LgL,\n        .exact_mu = ", c->exact_lambda);
     print_exact_complexes(pairs, c->exact_mu);
     printf(",\n");
     print_exacts("exact_back", s, c->exact_back);
