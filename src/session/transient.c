@@ -218,7 +218,7 @@ static enum dalcs_status rows(struct transient *c, double until, bool ends) {
     double near = c->radau->resolution;
     int most = c->rows.one_by_one ? 1 : DALCS_MOST_ROWS;
     int n_due;
-    DALCS_TRY(dalcs_filling_enter(&c->filling, c->recorder, c->t, until, ends));
+    DALCS_TRY(dalcs_filling_enter(&c->filling, c->t, until, ends));
     for (int n; (n = dalcs_filling_list(&c->filling, c->recorder, near, time, most, &n_due)) > 0;) {
         DALCS_TRY(dalcs_rows_fill(&c->rows, time, n, DALCS_LEFT, &n));
         c->t = time[n - 1];

@@ -14,6 +14,10 @@ static const double least_gap = 0x1p-33;
 /* What rounding makes of equal gaps. */
 static const double rounding = 1e-9;
 
+/* Where steps meet their polynomials may differ by what is allowed, which a cubic through rows on both sides makes as
+ * much larger as its gaps differ: behind them a gap is at most so many times the one before. */
+static const double growth = 4.0;
+
 enum dalcs_status dalcs_filling_setup(struct dalcs_filling *f, const struct dalcs_recorder *r,
                                       struct dalcs_rows *rows, double bound, bool by_lines,
                                       size_t most) {
@@ -23,6 +27,7 @@ enum dalcs_status dalcs_filling_setup(struct dalcs_filling *f, const struct dalc
                                 .start = s->start,
                                 .stop = s->stop,
                                 .least = least_gap * s->stop,
+                                .step = s->step,
                                 .last = s->start,
                                 .before = s->start,
                                 .beside = BESIDE,
@@ -40,48 +45,50 @@ bool dalcs_filling_is_on(const struct dalcs_filling *f, double t) {
     return f->is_on && f->n_left > 0 && t >= f->start;
 }
 
-/* Before what ends the stretch: two lines, or, where these would begin before it does, all of it in three. */
-static void choose_tail(struct dalcs_filling *f) {
-    double length = f->until - f->begin;
-    bool is_short = BESIDE * f->line > length;
-    bool were_short = f->beside == BESIDE || f->last - f->before <= f->line;
-    f->tail = is_short ? length / (BESIDE + 1) : f->line;
-    f->n_tail = is_short ? BESIDE + 1 : BESIDE;
-    if (!f->ends || (f->until - f->last <= f->line && were_short)) {
-        f->n_tail = 0;
-    }
-}
-
-enum dalcs_status dalcs_filling_enter(struct dalcs_filling *f, const struct dalcs_recorder *r,
-                                      double from, double until, bool ends) {
+enum dalcs_status dalcs_filling_enter(struct dalcs_filling *f, double from, double until,
+                                      bool ends) {
     f->begin = dalcs_larger(from, f->start);
     f->until = until;
-    f->ends = ends;
-    f->is_dense = true;
-    if (!dalcs_filling_is_on(f, f->begin) || until - f->begin <= f->least) {
+    f->is_closed = !dalcs_filling_is_on(f, f->begin) || until - f->begin <= f->least;
+    if (f->is_closed) {
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_row_gaps_look(&f->gaps, f->begin, until));
     f->line = dalcs_larger(f->gaps.line, f->least);
     f->cubic = f->by_lines ? f->line : dalcs_larger(f->gaps.cubic, f->least);
-    f->is_dense = r->schedule.step <= dalcs_smaller(f->line, f->cubic);
-    choose_tail(f);
-    f->until_tail = r->schedule.step <= f->cubic ? until - f->n_tail * f->tail : -INFINITY;
+    f->ends = ends && f->step > f->line;
+    f->until_plain = f->step > f->cubic ? -INFINITY
+                     : f->ends          ? until - (BESIDE + 1) * f->line
+                                        : until;
     return DALCS_OK;
+}
+
+/* The first of the gaps up to the end that must be lines: not more of them than it takes, and none much shorter than
+ * others. */
+static double next_before_end(const struct dalcs_filling *f) {
+    double rest = f->until - f->last;
+    if (rest > (BESIDE + 1) * f->line) {
+        return dalcs_larger(f->until - BESIDE * f->line, f->begin);
+    }
+    bool is_line = f->beside == BESIDE || f->last - f->before <= f->line;
+    double n = dalcs_larger(ceil(rest / f->line - rounding), is_line ? 1.0 : BESIDE);
+    return n > 1.0 ? dalcs_larger(f->last + rest / n, f->begin) : f->until;
+}
+
+/* Do steps meet in the gap before the last row, or behind that row? */
+static bool has_just_begun(const struct dalcs_filling *f) {
+    return f->beside < BESIDE && f->before < f->begin && f->before < f->last;
 }
 
 /* The time of the next row, where one is due later or the stretch ends. */
 static double next(const struct dalcs_filling *f, double due) {
-    double t = due;
-    for (int k = f->n_tail; k > 0; k--) {
-        double of_tail = f->until - k * f->tail;
-        if (of_tail - f->last > rounding * f->tail) {
-            t = dalcs_smaller(t, of_tail);
-            break;
-        }
-    }
+    double t = f->ends ? dalcs_smaller(due, next_before_end(f)) : due;
     if (f->beside > 0) {
         t = dalcs_smaller(t, dalcs_larger(f->last + f->line, f->begin));
+    }
+    if (has_just_begun(f)) {
+        double most = dalcs_larger(growth * (f->last - f->before), f->least);
+        t = dalcs_smaller(t, dalcs_larger(f->last + most, f->begin));
     }
     double n = ceil((t - f->last) / f->cubic - rounding);
     return n > 1.0 ? dalcs_larger(f->last + (t - f->last) / n, f->begin) : t;
@@ -100,17 +107,19 @@ static void count(struct dalcs_filling *f, double t) {
     f->n_left--;
     if (f->n_left == 0) {
         f->ended = t;
-        f->is_dense = true;
+        f->is_closed = true;
     }
 }
 
 /* Those that are due and need nothing between. */
 static int list_plain(struct dalcs_filling *f, const struct dalcs_recorder *r, int after,
                       double near, double *time, int most) {
-    if (!f->is_dense && f->beside > 0) {
+    bool needs_a_look =
+        f->beside > 0 || (has_just_begun(f) && f->step > growth * (f->last - f->before));
+    if (!f->is_closed && needs_a_look) {
         return 0;
     }
-    double until = f->is_dense ? f->until : f->until_tail;
+    double until = f->is_closed ? f->until : f->until_plain;
     int n = dalcs_recorder_list_due(r, after, until, near, time, most);
     for (int k = n > BESIDE ? n - BESIDE : 0; k < n; k++) {
         pass(f, time[k]);
@@ -145,7 +154,7 @@ int dalcs_filling_list(struct dalcs_filling *f, const struct dalcs_recorder *r, 
         *n_due += plain;
         n += plain;
         bool is_due = false;
-        if (n == most || f->is_dense || !list_next(f, r, *n_due, near, &time[n], &is_due)) {
+        if (n == most || f->is_closed || !list_next(f, r, *n_due, near, &time[n], &is_due)) {
             break;
         }
         *n_due += is_due ? 1 : 0;

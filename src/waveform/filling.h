@@ -17,15 +17,14 @@ struct dalcs_filling {
     double last, before; /* s, of the last row and of the one before */
     int beside;          /* gaps to come that lie beside what happened at one of them */
     double begin, until; /* s, of the stretch at hand */
-    bool ends;           /* with something that happens */
-    double line, cubic;  /* s, longest gaps in it; of what ends it, the gaps before */
-    double tail;
-    int n_tail;
-    double
-        until_tail; /* s, up to which rows that are due are enough, but for those beside what began it */
-    bool is_dense; /* the rows that are due are enough */
-    size_t n_left; /* rows that may still be added */
-    double ended;  /* s, when there were none left; INFINITY: there are */
+    bool is_closed;      /* nothing is added to it */
+    bool
+        ends; /* with something that happens, and rows that are due are too far apart for lines there */
+    double line, cubic; /* s, longest gaps in it */
+    double step;        /* s, between rows that are due */
+    double until_plain; /* s, up to which these are enough, but for those beside what began it */
+    size_t n_left;      /* rows that may still be added */
+    double ended;       /* s, when there were none left; INFINITY: there are */
 };
 
 /* For rows on a grid: from its start on, for the recorder's first n_shown outputs, at most `most` rows. by_lines: the
@@ -41,8 +40,8 @@ void dalcs_filling_finish(struct dalcs_filling *f);
 bool dalcs_filling_is_on(const struct dalcs_filling *f, double t);
 
 /* The stretch from one time to another, in the present segments: in between nothing happens; ends: but then. */
-enum dalcs_status dalcs_filling_enter(struct dalcs_filling *f, const struct dalcs_recorder *r,
-                                      double from, double until, bool ends) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_filling_enter(struct dalcs_filling *f, double from, double until,
+                                      bool ends) DALCS_MUST_CHECK;
 
 /* Like dalcs_recorder_list_due up to the end of the stretch, with what is added; *n_due of them are due. All are
  * taken to be written. */

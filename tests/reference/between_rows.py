@@ -15,35 +15,17 @@ With --curve lines the straight line is good enough everywhere. With --fill none
 events alone, each with the bits that it has among the others; in most circuits 1e-6 does not hold for them.
 """
 
-import bisect
 import json
 import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support"))
+from curves import error_at  # noqa: E402
 from dalcs_program import Checker, run  # noqa: E402
 
 SIDE = 10
 SHORTEST = 1e-8  # of the stop time, of a gap: in a shorter one rounding of times may show
-
-def line(times, values, k, t):
-    part = (t - times[k]) / (times[k + 1] - times[k])
-    return values[k] + part * (values[k + 1] - values[k])
-
-
-def cubic(times, values, k, t):
-    """Through the rows from k - 1 to k + 2; None where two of them have the same time, or there are fewer."""
-    if k < 1 or k + 2 >= len(times) or any(times[i] == times[i + 1] for i in range(k - 1, k + 2)):
-        return None
-    total = 0.0
-    for i in range(k - 1, k + 3):
-        weight = 1.0
-        for j in range(k - 1, k + 3):
-            weight *= (t - times[j]) / (times[i] - times[j]) if j != i else 1.0
-        total += weight * values[i]
-    return total
-
 
 def worst_of(case, result, curves, rows):
     """The largest error of all signals over their scales, with its signal and time."""
@@ -52,15 +34,9 @@ def worst_of(case, result, curves, rows):
     for place, (signal, scale) in enumerate(zip(case["signals"], case["scale"]), start=1):
         values = result.column(signal)
         for row in rows:
-            t, wanted = row[0], row[place]
-            if wanted is None:
-                continue
-            k = min(max(bisect.bisect_right(times, t) - 1, 0), len(times) - 2)
-            found = [line(times, values, k, t)]
-            if curves == "cubics":
-                found += [cubic(times, values, k, t)]
-            error = min(abs(value - wanted) for value in found if value is not None) / scale
-            worst = max(worst, (error, signal, t))
+            if row[place] is not None:
+                error = error_at(times, values, row[0], row[place], curves == "lines") / scale
+                worst = max(worst, (error, signal, row[0]))
     return worst
 
 
