@@ -21,9 +21,8 @@ static const double least_size = 1e-6;
 /* Polynomials of fewer stages have no fourth derivative: they bend where they meet. */
 enum { ENOUGH_STAGES = 5 };
 
-/* The k-th function of Newton's basis and its derivatives. */
+/* Derivatives of the k-th function of Newton's basis. */
 struct dalcs_row_basis {
-    double value[DALCS_MAX_NODES][N_PLACES];
     double second[DALCS_MAX_NODES][N_PLACES], fourth[DALCS_MAX_NODES][N_PLACES];
 };
 
@@ -36,7 +35,6 @@ static void make_basis(struct dalcs_row_basis *basis, const struct dalcs_colloca
         double theta = (double)place / (N_PLACES - 1);
         double derivative[FOURTH + 1] = {1.0};
         for (int k = 0; k <= c->s; k++) {
-            basis->value[k][place] = derivative[0];
             basis->second[k][place] = derivative[2];
             basis->fourth[k][place] = derivative[FOURTH];
             for (int order = FOURTH; order >= 0; order--) {
@@ -142,21 +140,36 @@ void dalcs_row_gaps_finish(struct dalcs_row_gaps *gaps) {
 
 /* ---- Derivatives ------------------------------------------------------------------------------- */
 
-/* sum of coefficient times function at the first places, its largest magnitude. */
+/* The largest magnitude of a polynomial at some places of a step's first part. */
 static inline __attribute__((always_inline)) double
-largest_of(int s, const double *coefficient, const double (*function)[N_PLACES], int n_places) {
+size_of(const struct dalcs_collocation *c, const double *coefficient, double part) {
+    static const double place[DALCS_QUAD] = {0.0, 0.4, 0.7, 1.0};
+    dalcs_quad theta;
+    dalcs_quad_load(&theta, place);
+    theta *= part;
+    dalcs_quad value = {0.0};
+    value += coefficient[c->s];
+    for (int k = c->s - 1; k >= 0; k--) {
+        value = value * (theta - c->newton_node[k]) + coefficient[k];
+    }
+    dalcs_quad_unsign(&value);
+    return dalcs_quad_largest(&value);
+}
+
+/* sum of coefficient times derivative, its largest magnitude over the places. */
+static inline __attribute__((always_inline)) double
+largest_of(int s, const double *coefficient, const double (*derivative)[N_PLACES]) {
     dalcs_quad sum[N_PLACES / DALCS_QUAD] = {{0.0}};
-    for (int k = 0; k <= s; k++) {
+    for (int k = 2; k <= s; k++) {
         for (int q = 0; q < N_PLACES / DALCS_QUAD; q++) {
             dalcs_quad factor;
-            dalcs_quad_load(&factor, function[k] + q * DALCS_QUAD);
+            dalcs_quad_load(&factor, derivative[k] + q * DALCS_QUAD);
             sum[q] += factor * coefficient[k];
         }
     }
     dalcs_quad largest = {0.0};
     for (int q = 0; q < N_PLACES / DALCS_QUAD; q++) {
         dalcs_quad_unsign(&sum[q]);
-        dalcs_quad_keep(&sum[q], n_places - q * DALCS_QUAD);
         dalcs_quad_raise(&largest, &sum[q]);
     }
     return dalcs_quad_largest(&largest);
@@ -164,16 +177,15 @@ largest_of(int s, const double *coefficient, const double (*function)[N_PLACES],
 
 /* Of polynomials in steps of length h, of which a part counts. */
 DALCS_TWICE(void, find_bends,
-            (const struct dalcs_row_basis *basis, int s, double h, double part,
-             const double *coefficient, int n, struct dalcs_bend *bend),
-            (basis, s, h, part, coefficient, n, bend)) {
+            (const struct dalcs_row_basis *basis, const struct dalcs_collocation *c, double h,
+             double part, const double *coefficient, int n, struct dalcs_bend *bend),
+            (basis, c, h, part, coefficient, n, bend)) {
     const double per_second = 1.0 / (h * h);
     const double per_fourth = per_second * per_second;
-    const int n_places = 1 + (int)(part * (N_PLACES - 1));
     for (int i = 0; i < n; i++, coefficient += DALCS_MAX_NODES) {
-        bend[i].size = largest_of(s, coefficient, basis->value, n_places);
-        bend[i].second = per_second * largest_of(s, coefficient, basis->second, N_PLACES);
-        bend[i].fourth = per_fourth * largest_of(s, coefficient, basis->fourth, N_PLACES);
+        bend[i].size = size_of(c, coefficient, part);
+        bend[i].second = per_second * largest_of(c->s, coefficient, basis->second);
+        bend[i].fourth = per_fourth * largest_of(c->s, coefficient, basis->fourth);
     }
 }
 
@@ -239,7 +251,7 @@ static enum dalcs_status look_at_stepped(struct dalcs_row_gaps *gaps,
     struct dalcs_row_gaps_part *g = &gaps->part[part->index];
     if (p->n_read > 0 && (g->since != part->t || g->length != part->h)) {
         DALCS_TRY(dalcs_rows_find_polynomials(gaps->rows, part));
-        find_bends(g->basis, part->stages.method->s, part->h, part->end, p->coefficient, p->n_read,
+        find_bends(g->basis, part->stages.method, part->h, part->end, p->coefficient, p->n_read,
                    g->bend);
         g->since = part->t;
         g->length = part->h;
@@ -293,7 +305,7 @@ static void raise_largest(struct dalcs_row_gaps *gaps, double *of_unit) {
 }
 
 /* What it is measured by. */
-static double size_of(const struct dalcs_row_gaps *gaps, int output, const double *of_unit) {
+static double scale_of(const struct dalcs_row_gaps *gaps, int output, const double *of_unit) {
     int unit = is_current(gaps, output) ? 1 : 0;
     double least =
         dalcs_larger(least_size * of_unit[unit], gaps->cross[output] * of_unit[1 - unit]);
@@ -305,7 +317,7 @@ static void choose_gaps(struct dalcs_row_gaps *gaps) {
     raise_largest(gaps, of_unit);
     struct dalcs_bend most = gaps->algebraic;
     for (int i = 0; i < gaps->n_outputs; i++) {
-        double size = size_of(gaps, i, of_unit);
+        double size = scale_of(gaps, i, of_unit);
         double second = gaps->of_steps[i].second + gaps->of_sources[i].second;
         double fourth = gaps->of_steps[i].fourth + gaps->of_sources[i].fourth;
         if (size > 0.0 && second > most.second * size) {
