@@ -285,19 +285,18 @@ const char *dalcs_method_name(size_t index);
 struct dalcs_run_options {
     const char *method; /* "auto", "radau" or "euler", the papers' implicit Euler; NULL: the
                            netlist's or the default */
-    double tolerance; /* of radau and auto: largest error of a waveform over its scale; 0: .options
+    double tolerance;  /* of radau and auto: largest error of a waveform over its scale; 0: .options
                            reltol, else 1e-6 */
-    int stages;       /* of radau, auto: 1, 3, 5, 7 or 9; 0: .options stages, else chosen */
-    double step;      /* s; the fixed step of euler and radau, the largest of auto; 0: .options
+    int stages;        /* of radau, auto: 1, 3, 5, 7 or 9; 0: .options stages, else chosen */
+    double step;       /* s; the fixed step of euler and radau, the largest of auto; 0: .options
                            step; without either euler takes the tmax of .tran, else its tstep, and
                            radau controls its error with steps of at most tmax */
-    double
-        fill; /* add rows where the .tran grid is coarse, until curves through all of them are this
-                           near, over each signal's largest value so far; 0: .options fill, else the
-                           tolerance but at least 1e-6; INFINITY: none. At most a million */
-    const char
-        *curve;       /* which: "cubics" (and lines beside events: doc/methods.md) or "lines"; NULL:
-                           .options curve, else cubics */
+    double fill;       /* add rows where those of .tran are far apart, until curves through all are
+                           this near, over each signal's largest value so far; 0: .options fill,
+                           else the tolerance but at least 1e-6; INFINITY: none. At most 100,000,
+                           and four for each row that there is anyway */
+    const char *curve; /* which: "cubics", and lines beside events (doc/methods.md), or "lines";
+                           NULL: .options curve, else cubics */
     double compress;  /* leave rows out as long as straight lines through the others stay this near,
                            over each signal's scale; 0: .options compress, else keep all rows */
     const double *at; /* [n_at] ascending output times in s, none after the stop time,

@@ -19,8 +19,8 @@ enum { PROGRESS_UNKNOWNS = 1 << 18, PROGRESS_STEPS = 4096 };
 /* Where more are cut short by a longest step than this, a note says so. */
 enum { MANY_STEPS = 1000 };
 
-/* Rows added to those that are due; see filling.h. */
-enum { MOST_FILLED = 1000000 };
+/* A file has an end, too, where a circuit rings all the time a thousand times as fast as its clock. */
+static const struct dalcs_filling_limit FILLING_LIMIT = {100000, 4};
 
 /* Where .tran has no tstep. */
 static const double ROWS_WITHOUT_A_STEP = 1000.0;
@@ -309,11 +309,11 @@ static enum dalcs_status advance(struct transient *c) {
 
 static void note_end_of_filling(struct dalcs_run *r, const struct dalcs_filling *filling) {
     if (isfinite(filling->ended)) {
-        dalcs_diag_add(
-            &r->s->diag, DALCS_NOTE, NULL, "--fill with a larger bound, or none, or a later tstart",
-            "a million rows were added to those of .tran up to t = %.9g s: from there on "
-            "there are no more",
-            filling->ended);
+        dalcs_diag_add(&r->s->diag, DALCS_NOTE, NULL,
+                       "--fill with a larger bound, or none, or a later tstart",
+                       "%zu rows, and %zu for each that there is anyway, were added up to t = %.9g "
+                       "s: from there on there are no more",
+                       FILLING_LIMIT.most, FILLING_LIMIT.for_each, filling->ended);
     }
 }
 
@@ -326,7 +326,7 @@ static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau 
     c.interval = c.to_go = progress_interval(&r->s->network);
     DALCS_TRY(dalcs_rows_setup(&c.rows, radau, NULL, r->s->network.n_outputs));
     enum dalcs_status status =
-        dalcs_filling_setup(&c.filling, c.recorder, &c.rows, r->fill, r->lines, MOST_FILLED);
+        dalcs_filling_setup(&c.filling, c.recorder, &c.rows, r->fill, r->lines, &FILLING_LIMIT);
     while (c.t < radau->options.stop && status == DALCS_OK) {
         status = advance(&c);
         status = status == DALCS_OK ? tell_progress(&c, 1) : status;

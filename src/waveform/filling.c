@@ -20,7 +20,7 @@ static const double growth = 4.0;
 
 enum dalcs_status dalcs_filling_setup(struct dalcs_filling *f, const struct dalcs_recorder *r,
                                       struct dalcs_rows *rows, double bound, bool by_lines,
-                                      size_t most) {
+                                      const struct dalcs_filling_limit *limit) {
     const struct dalcs_schedule *s = &r->schedule;
     *f = (struct dalcs_filling){.is_on = s->kind == DALCS_ON_GRID && isfinite(bound),
                                 .by_lines = by_lines,
@@ -31,7 +31,8 @@ enum dalcs_status dalcs_filling_setup(struct dalcs_filling *f, const struct dalc
                                 .last = s->start,
                                 .before = s->start,
                                 .beside = BESIDE,
-                                .n_left = most,
+                                .n_left = limit->most,
+                                .n_for_each = limit->for_each,
                                 .ended = INFINITY};
     return f->is_on ? dalcs_row_gaps_setup(&f->gaps, rows, r->n_shown, bound) : DALCS_OK;
 }
@@ -102,6 +103,11 @@ static void pass(struct dalcs_filling *f, double t) {
     }
 }
 
+/* After so many rows that are there anyway. */
+static void allow(struct dalcs_filling *f, size_t n) {
+    f->n_left += f->n_left > 0 ? n * f->n_for_each : 0;
+}
+
 /* One that is added. */
 static void count(struct dalcs_filling *f, double t) {
     f->n_left--;
@@ -124,6 +130,7 @@ static int list_plain(struct dalcs_filling *f, const struct dalcs_recorder *r, i
     for (int k = n > BESIDE ? n - BESIDE : 0; k < n; k++) {
         pass(f, time[k]);
     }
+    allow(f, (size_t)n);
     return n;
 }
 
@@ -138,7 +145,9 @@ static bool list_next(struct dalcs_filling *f, const struct dalcs_recorder *r, i
     if (!(*time + near < f->until)) {
         return false;
     }
-    if (!*is_due) {
+    if (*is_due) {
+        allow(f, 1);
+    } else {
         count(f, t);
     }
     pass(f, *time);
@@ -166,5 +175,6 @@ int dalcs_filling_list(struct dalcs_filling *f, const struct dalcs_recorder *r, 
 void dalcs_filling_row(struct dalcs_filling *f, double t, bool happens) {
     dalcs_row_gaps_note(&f->gaps);
     pass(f, t);
+    allow(f, 1);
     f->beside = happens ? BESIDE : f->beside;
 }

@@ -23,15 +23,20 @@ struct dalcs_filling {
     double line, cubic; /* s, longest gaps in it */
     double step;        /* s, between rows that are due */
     double until_plain; /* s, up to which these are enough, but for those beside what began it */
-    size_t n_left;      /* rows that may still be added */
-    double ended;       /* s, when there were none left; INFINITY: there are */
+    size_t n_left, n_for_each; /* rows that may still be added; more of them for each other row */
+    double ended;              /* s, when there were none left; INFINITY: there are */
 };
 
-/* For rows on a grid: from its start on, for the recorder's first n_shown outputs, at most `most` rows. by_lines: the
- * curves are straight lines everywhere. */
+/* At most so many rows are added, and for_each more for each row that there is anyway. */
+struct dalcs_filling_limit {
+    size_t most, for_each;
+};
+
+/* For rows on a grid: from its start on, for the recorder's first n_shown outputs. by_lines: the curves are straight
+ * lines everywhere. */
 enum dalcs_status dalcs_filling_setup(struct dalcs_filling *f, const struct dalcs_recorder *r,
                                       struct dalcs_rows *rows, double bound, bool by_lines,
-                                      size_t most) DALCS_MUST_CHECK;
+                                      const struct dalcs_filling_limit *limit) DALCS_MUST_CHECK;
 
 /* Accepts a zeroed one, which never is on. */
 void dalcs_filling_finish(struct dalcs_filling *f);
