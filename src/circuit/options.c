@@ -6,6 +6,7 @@
 #include "builder.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* Known here. */
@@ -121,29 +122,20 @@ static bool read_fill(struct dalcs_reader *reader, struct dalcs_circuit_options 
     return true;
 }
 
-static bool read_curve(struct dalcs_reader *reader) {
-    const struct dalcs_token *curve;
-    if (!dalcs_reader_name(reader, "cubics or lines", &curve)) {
+/* `one` or `other`: the former? */
+static bool read_either(struct dalcs_reader *reader, const char *option, const char *one,
+                        const char *other, bool *is_one) {
+    char either[64];
+    const struct dalcs_token *word;
+    (void)snprintf(either, sizeof either, "%s or %s", one, other);
+    if (!dalcs_reader_name(reader, either, &word)) {
         return false;
     }
-    if (strcmp(curve->text, "cubics") != 0 && strcmp(curve->text, "lines") != 0) {
-        dalcs_builder_error(reader->builder, curve, NULL, "curve is cubics or lines");
+    *is_one = strcmp(word->text, one) == 0;
+    if (!*is_one && strcmp(word->text, other) != 0) {
+        dalcs_builder_error(reader->builder, word, NULL, "%s is %s", option, either);
         return false;
     }
-    reader->builder->circuit->options.lines = curve->text[0] == 'l';
-    return true;
-}
-
-static bool read_filetype(struct dalcs_reader *reader) {
-    const struct dalcs_token *type;
-    if (!dalcs_reader_name(reader, "ascii or binary", &type)) {
-        return false;
-    }
-    if (strcmp(type->text, "ascii") != 0 && strcmp(type->text, "binary") != 0) {
-        dalcs_builder_error(reader->builder, type, NULL, "filetype is ascii or binary");
-        return false;
-    }
-    reader->builder->circuit->options.ascii = type->text[0] == 'a';
     return true;
 }
 
@@ -202,13 +194,13 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
         return read_fill(reader, options);
     }
     if (strcmp(name, "curve") == 0) {
-        return read_curve(reader);
+        return read_either(reader, name, "lines", "cubics", &options->lines);
     }
     if (strcmp(name, "compress") == 0) {
         return read_compress(reader, options);
     }
     if (strcmp(name, "filetype") == 0) {
-        return read_filetype(reader);
+        return read_either(reader, name, "ascii", "binary", &options->ascii);
     }
     if (strcmp(name, "dialect") == 0) {
         const struct dalcs_token *read_before; /* by dalcs_dialect_settle */

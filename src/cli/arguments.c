@@ -121,18 +121,25 @@ static enum dalcs_status parse_step(struct dalcs_arguments *arguments, const str
     return DALCS_OK;
 }
 
+/* Of a largest value; or_none: what else there is, "" or ", or none". */
+static enum dalcs_status parse_part(const struct dalcs_cli *cli, const char *name, const char *text,
+                                    const char *or_none, double *value) {
+    DALCS_TRY(parse_number(cli, name, text, value));
+    if (!(*value > 0.0 && *value < 1.0)) {
+        dalcs_cli_error(cli, "%s: '%s' must be greater than 0 and less than 1%s", name, text,
+                        or_none);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status parse_fill(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                                     const char *text) {
     if (strcmp(text, "none") == 0) {
         arguments->fill = INFINITY;
         return DALCS_OK;
     }
-    DALCS_TRY(parse_number(cli, "--fill", text, &arguments->fill));
-    if (!(arguments->fill > 0.0 && arguments->fill < 1.0)) {
-        dalcs_cli_error(cli, "--fill: '%s' must be greater than 0 and less than 1, or none", text);
-        return DALCS_E_OPTION;
-    }
-    return DALCS_OK;
+    return parse_part(cli, "--fill", text, ", or none", &arguments->fill);
 }
 
 static enum dalcs_status parse_curve(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
@@ -142,16 +149,6 @@ static enum dalcs_status parse_curve(struct dalcs_arguments *arguments, const st
         return DALCS_E_OPTION;
     }
     arguments->curve = text;
-    return DALCS_OK;
-}
-
-static enum dalcs_status parse_compress(struct dalcs_arguments *arguments,
-                                        const struct dalcs_cli *cli, const char *text) {
-    DALCS_TRY(parse_number(cli, "--compress", text, &arguments->compress));
-    if (!(arguments->compress > 0.0 && arguments->compress < 1.0)) {
-        dalcs_cli_error(cli, "--compress: '%s' must be greater than 0 and less than 1", text);
-        return DALCS_E_OPTION;
-    }
     return DALCS_OK;
 }
 
@@ -175,7 +172,7 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     case CURVE:
         return parse_curve(arguments, cli, optarg);
     case COMPRESS:
-        return parse_compress(arguments, cli, optarg);
+        return parse_part(cli, "--compress", optarg, "", &arguments->compress);
     case AT:
         arguments->at = optarg;
         return DALCS_OK;
