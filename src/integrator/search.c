@@ -50,10 +50,9 @@ static void start_over(struct dalcs_radau_part *part, struct dalcs_search *searc
     search->ratio_before = INFINITY;
 }
 
-enum dalcs_status dalcs_search_ask(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                   struct dalcs_search *search, bool mode_only) {
-    bool is_off;
-    DALCS_TRY(dalcs_radau_restart(r, part, search->restarts++, mode_only, &is_off));
+/* After micro-steps, in the mode that is to be tried. is_off: see dalcs_radau_restart(). */
+static enum dalcs_status go_on_from_answer(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                           struct dalcs_search *search, bool is_off) {
     search->projected = false;
     if (is_off) {
         /* Micro-steps may see a transient that is as fast as they are; a projecting step is far
@@ -63,6 +62,13 @@ enum dalcs_status dalcs_search_ask(struct dalcs_radau *r, struct dalcs_radau_par
     }
     start_over(part, search, search->asked_level);
     return DALCS_OK;
+}
+
+enum dalcs_status dalcs_search_ask(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                   struct dalcs_search *search, bool mode_only) {
+    bool is_off;
+    DALCS_TRY(dalcs_radau_restart(r, part, search->restarts++, mode_only, &is_off));
+    return go_on_from_answer(r, part, search, is_off);
 }
 
 enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -308,7 +314,8 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
 }
 
 /* The present mode holds but for ties, of which micro-steps tell more than this; of a diode that crossed just
- * now, less. */
+ * now, less. So of others their mode is not taken, nor is the state put on it: what rounding makes of large
+ * capacitors in steps so short may be more current than there is, and where it goes another mode. */
 static enum dalcs_status ask_of_tied(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                      struct dalcs_search *search, const double *unit) {
     struct dalcs_osnsp *p = &part->component->osnsp;
@@ -316,13 +323,15 @@ static enum dalcs_status ask_of_tied(struct dalcs_radau *r, struct dalcs_radau_p
     for (int d = 0; d < p->system->n_pairs; d++) {
         part->tied[d] = dalcs_tied_is(part, d, unit);
     }
-    DALCS_TRY(dalcs_search_ask(r, part, search, search->restarts > 0));
+    bool mode_only = search->restarts > 0;
+    bool is_off;
+    DALCS_TRY(dalcs_radau_restart(r, part, search->restarts++, mode_only, &is_off));
     for (int d = 0; d < p->system->n_pairs; d++) {
         if (!part->tied[d] && p->is_diode[d]) {
             dalcs_osnsp_command(p, d, dalcs_mode_has(part->mode_tied, d));
         }
     }
-    return DALCS_OK;
+    return go_on_from_answer(r, part, search, is_off);
 }
 
 enum dalcs_status dalcs_search_untie(struct dalcs_radau *r, struct dalcs_radau_part *part,
