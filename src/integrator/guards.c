@@ -155,16 +155,21 @@ static void find_doubtful(struct dalcs_radau_part *part) {
     part->n_doubtful = n_doubtful;
 }
 
+/* Is a guard above 0 before times can be told apart? */
+static bool is_over_at_once(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                            const double *value, int stride) {
+    double instant = dalcs_smaller(1.0, 64.0 * r->resolution / part->h);
+    return dalcs_guard_value_at(part, value, stride, instant) > 0.0;
+}
+
 /* A guard that starts a little below 0 and is above after next to no time: the flank of a source, when it
  * begins, may take over from a current within 1e-16 s. Or after less than times can be told apart: the
  * last digit of a time makes volts of a current that has nowhere to go but a leak. */
 static bool is_over_soon(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                          const double *value, int stride, double scale) {
     double little = fmax(shallow * dalcs_doubt_band(r, part), slight) * scale;
-    double instant = dalcs_smaller(1.0, 64.0 * r->resolution / part->h);
     return (value[0] >= -little && dalcs_guard_value_at(part, value, stride, soon_after) > 0.0) ||
-           (value[0] >= -unresolved * scale &&
-            dalcs_guard_value_at(part, value, stride, instant) > 0.0);
+           (value[0] >= -unresolved * scale && is_over_at_once(r, part, value, stride));
 }
 
 /* What crosses at the stop time, up to the error, is left to a longer run: where in the step that begins. */
@@ -436,7 +441,8 @@ static int count_excused(const struct dalcs_radau *r, const struct dalcs_radau_p
     if (!part->fresh || value[0] >= 0.0) {
         return 0;
     }
-    if (is_over_soon(r, part, value, l->stride, dalcs_guard_scale(part, pair, unit))) {
+    if (is_over_at_once(r, part, value, l->stride) ||
+        is_over_soon(r, part, value, l->stride, dalcs_guard_scale(part, pair, unit))) {
         return 1;
     }
     bool begins = dalcs_guard_has_crossed(part, pair, value, l->stride, unit);

@@ -233,8 +233,11 @@ static enum dalcs_status list_redundant(struct dalcs_stage_singular *g, const st
 static enum dalcs_status fill(struct dalcs_stage_singular *g, struct search *s,
                               const struct dalcs_null_space *rows,
                               const struct dalcs_null_space *columns) {
-    if (rows->n_redundant == 0 || rows->n_redundant != columns->n_free) {
+    if (rows->n_redundant != columns->n_free) {
         return DALCS_SINGULAR;
+    }
+    if (rows->n_redundant == 0) {
+        return DALCS_OK;
     }
     DALCS_TRY(list_redundant(g, s, rows));
     size_t n = (size_t)g->n;

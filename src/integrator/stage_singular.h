@@ -21,7 +21,7 @@ struct dalcs_stage_singular {
 
 struct dalcs_stage_entry;
 
-/* DALCS_SINGULAR: the mode leaves nothing open, or in a way that no choice closes. */
+/* g->n is 0 if the mode leaves nothing open. DALCS_SINGULAR: it does, in a way that no choice closes. */
 enum dalcs_status dalcs_stage_singular_find(struct dalcs_stage_singular *g,
                                             const struct dalcs_stage_plan *plan,
                                             const struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;

@@ -42,7 +42,9 @@ The end of a coil of 0.4 H without current comes by the other one's voltage: the
 opens in the same moment, though what tells, 1e-16 A, is nothing beside the 250 A of a capacitor. And a diode at the
 other end of 0.4 H closes in time, which rounding of these 250 A says nothing about. Else currents of 10 nA are
 passed from diode to diode, a thousand times in a microsecond. Where a switch opens, a diode is tied, and what
-micro-steps of 1e-18 s say of the others is rounding of 61 uF: the state stays as it is.
+micro-steps of 1e-18 s say of the others is rounding of 61 uF: the state stays as it is. Where another one closes,
+3 pF are discharged through 2 mohm, in steps in which a node behind a coil of 0.4 H hangs on 1e-15 of what joins it
+to the next node, and is no island.
 
 spiked: a Vienna rectifier (seed 171 of converters.py) with 6 pF behind a diode, which opens when what charges
 them, nanoamperes, ends. That they once took a spike does not make that current less known: it says what voltage they
@@ -313,7 +315,7 @@ def beside(program, checker):
     checker.check(found < 4 * enough, f"beside: {found} events, {enough} at 1e-8")
     checker.check(wrong <= 1e-6, f"beside: a diode has had the wrong sign, {wrong:.1e}")
     euler_steps = coarse.report["work"]["euler_steps"]
-    checker.check(euler_steps <= 1, f"beside: {euler_steps} steps of implicit Euler")
+    checker.check(euler_steps == 0, f"beside: {euler_steps} steps of implicit Euler")
 
 
 def spiked(program, checker):
