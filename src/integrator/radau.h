@@ -65,6 +65,7 @@ struct dalcs_radau_part {
     enum dalcs_radau_end why;
     double rung;          /* s, of level 0 */
     int level;            /* h = rung 2^-level */
+    int held_level;       /* of the step before; what is refused may be shortened to that */
     int waited, patience; /* steps since the length changed; until a longer one is tried anyhow */
     bool grew;            /* the present length is such a try */
     double longest;       /* s, step worth trying */

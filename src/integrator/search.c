@@ -172,8 +172,10 @@ static bool is_worth_asking(const struct dalcs_radau_part *part, const struct da
     return search->fixed || search->stuck > 0 || may_jump;
 }
 
+/* So short that a shorter one is not tried, unless that has just held. */
 static bool is_shortest(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
-    return dalcs_radau_ladder(part, part->level) < 64.0 * r->resolution;
+    bool has_grown = !part->fresh && part->held_level > part->level;
+    return dalcs_radau_ladder(part, part->level) < 64.0 * r->resolution && !has_grown;
 }
 
 /* No shorter step mends the error, and it is small or over in no time: is it let pass from now on? */

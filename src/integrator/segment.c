@@ -133,6 +133,7 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         learn(r, part, search, theta, quality->ratio);
     }
     dalcs_segment_accept(r, part, theta, residual);
+    part->held_level = part->level;
     if (!search->fixed && is_whole(part, theta)) {
         dalcs_length_lengthen(r, part, quality->ratio);
     }
