@@ -145,16 +145,18 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->w1 = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
     part->after = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
     part->used_input = dalcs_arena_alloc(&part->arena, (size_t)s->n_inputs, sizeof(int));
-    part->current_drift = dalcs_arena_alloc(
-        &part->arena, (size_t)dalcs_dense_map_rows(part->stages.n_levered), sizeof(double));
+    int most_levered = part->stages.n_levered > s->n_pairs ? part->stages.n_levered : s->n_pairs;
+    part->current_drift =
+        dalcs_arena_alloc(&part->arena, (size_t)dalcs_dense_map_rows(most_levered), sizeof(double));
+    part->pair_parts = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
     part->current_parts =
         dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_levered, sizeof(double));
-    bool complete = part->x != NULL && part->in != NULL && part->out != NULL &&
-                    part->in_before != NULL && part->out_before != NULL &&
-                    part->out_tried != NULL && part->armed != NULL && part->crossed != NULL &&
-                    part->tied != NULL && part->u != NULL && part->y1 != NULL && part->y2 != NULL &&
-                    part->w1 != NULL && part->after != NULL && part->used_input != NULL &&
-                    part->current_drift != NULL && part->current_parts != NULL;
+    bool complete =
+        part->x != NULL && part->in != NULL && part->out != NULL && part->in_before != NULL &&
+        part->out_before != NULL && part->out_tried != NULL && part->armed != NULL &&
+        part->crossed != NULL && part->tied != NULL && part->u != NULL && part->y1 != NULL &&
+        part->y2 != NULL && part->w1 != NULL && part->after != NULL && part->used_input != NULL &&
+        part->current_drift != NULL && part->current_parts != NULL && part->pair_parts != NULL;
     return complete && (dalcs_stages_have_maps(&part->stages) || allocate_probe(part))
                ? DALCS_OK
                : DALCS_E_NOMEM;

@@ -93,8 +93,9 @@ struct dalcs_radau_part {
     double *magnitude; /* [n_columns] in the present step up to magnitude_end, in steps */
     double magnitude_end;
     struct dalcs_column_kinds *kinds; /* see step_error.c */
-    double *current_drift;            /* [n_levered] in whole eights: see current_error.c */
+    double *current_drift;            /* of these or of pairs, in whole eights: current_error.c */
     double *current_parts;            /* [n_levered] what they are made of, at most; ditto */
+    double *pair_parts;               /* [n_pairs] likewise; ditto */
 
     struct dalcs_lever_probe {                 /* ditto */
         const struct dalcs_stage_entry *entry; /* on factors, that was probed; NULL: none */

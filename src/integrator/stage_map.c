@@ -287,9 +287,9 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
 
 /* What goes with the defects that last: what dies away at once, or what equations without memory forbid,
  * is no error of currents. */
-static void fill_currents(struct dalcs_stage_workshop *b, double *out) {
+static void fill_currents(struct dalcs_stage_workshop *b, double *out, double *pairs) {
     const struct dalcs_stages *stages = b->stages;
-    if (stages->n_levered > 0) {
+    if (stages->n_levered + b->entry->n_on > 0) {
         filter(b, b->n_x, b->defect, 0, b->n_x);
         for (int x = 0; x < b->n_x; x++) {
             b->lasting[x] = filtered(b, x);
@@ -299,11 +299,21 @@ static void fill_currents(struct dalcs_stage_workshop *b, double *out) {
     for (int k = 0; k < b->entry->current_rows; k++) {
         out[k] = k < stages->n_levered ? filtered(b, stages->levered[k]).high : 0.0;
     }
+    int first = b->n - b->entry->n_on; /* closed pairs are the last unknowns */
+    for (int k = 0; k < b->entry->pair_rows; k++) {
+        pairs[k] = k < b->entry->n_on ? filtered(b, first + k).high : 0.0;
+    }
 }
 
-/* One column of the map, with its clashes: the answer to in[column] = 1. */
+/* Where a column of the map goes, and of those of the drift of currents. */
+struct map_column {
+    double *out, *currents, *pairs;
+};
+
+/* One column of the map, with its clashes: the answer to in[column] = 1. And on to the next. */
 static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_column,
-                        const struct drive *drive, double *out, double *currents) {
+                        const struct drive *drive, struct map_column *to) {
+    double *out = to->out;
     const double *share = drive->share;
     const struct dalcs_collocation *m = b->stages->method;
     const struct dalcs_stage_layout *l = &b->stages->layout;
@@ -327,7 +337,7 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
     for (int x = 0; x < b->n_x; x++) {
         out[l->drift + x] = b->defect[x].high;
     }
-    fill_currents(b, currents);
+    fill_currents(b, to->currents, to->pairs);
     if (b->stages->excitation->is_curved) {
         put_columns(b, DALCS_RIPPLE_LANE, out + l->ripple);
     }
@@ -343,6 +353,9 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
     for (int i = l->n_fixed + b->entry->n_clashes; i < b->entry->rows; i++) {
         out[i] = 0.0;
     }
+    to->out += b->entry->rows;
+    to->currents += b->entry->current_rows;
+    to->pairs += b->entry->pair_rows;
 }
 
 /* residual += value * column of n entries, with room for whole quads behind both. Returns the largest
@@ -407,28 +420,23 @@ static void fill_map(struct dalcs_stage_workshop *b, const struct dalcs_stage_fu
         .high = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0}};
     double share[DALCS_LANES] = {0.0};
     const struct drive constant = {share, &one, m->exact_to};
-    double *out = b->entry->map;
-    double *currents = b->entry->current_map;
-    int rows = b->entry->rows;
-    int current_rows = b->entry->current_rows;
+    struct map_column to = {b->entry->map, b->entry->current_map, b->entry->pair_map};
     memset(b->lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
-    for (int x = 0; x < b->n_x; x++, out += rows, currents += current_rows) {
-        fill_column(b, x, x, &constant, out, currents);
+    for (int x = 0; x < b->n_x; x++) {
+        fill_column(b, x, x, &constant, &to);
         check_column(b, x, x, 0.0);
     }
     if (b->has_constants) {
         for (int k = 0; k <= m->s; k++) {
             share[k] = 1.0;
         }
-        fill_column(b, b->n_x, b->n_x, &constant, out, currents);
+        fill_column(b, b->n_x, b->n_x, &constant, &to);
         check_column(b, b->n_x, b->n_x, 1.0);
-        out += rows;
-        currents += current_rows;
     }
-    for (int f = 0; f < e->n_functions; f++, out += rows, currents += current_rows) {
+    for (int f = 0; f < e->n_functions; f++) {
         const struct drive of = {function[f].share, &function[f].stages, function[f].of_part};
         int rhs_column = b->wave_column[e->function[f].input];
-        fill_column(b, b->n_x + 1 + f, rhs_column, &of, out, currents);
+        fill_column(b, b->n_x + 1 + f, rhs_column, &of, &to);
         check_column(b, b->n_x + 1 + f, rhs_column, of.share[m->s]);
     }
 }
@@ -449,13 +457,15 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
     entry->n_clashes = b->nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
     entry->current_rows = dalcs_dense_map_rows(stages->n_levered);
-    entry->map = dalcs_dense_map_alloc(entry->rows + entry->current_rows, n_columns(b));
+    entry->pair_rows = dalcs_dense_map_rows(entry->n_on);
+    int all_rows = entry->rows + entry->current_rows + entry->pair_rows;
+    entry->map = dalcs_dense_map_alloc(all_rows, n_columns(b));
     if (entry->map == NULL) {
         return DALCS_E_NOMEM;
     }
     entry->current_map = entry->map + entry->rows * n_columns(b);
-    entry->bytes +=
-        (size_t)(entry->rows + entry->current_rows) * (size_t)n_columns(b) * sizeof(double);
+    entry->pair_map = entry->current_map + entry->current_rows * n_columns(b);
+    entry->bytes += (size_t)all_rows * (size_t)n_columns(b) * sizeof(double);
     fill_map(b, function);
     return DALCS_OK;
 }
@@ -491,6 +501,13 @@ void dalcs_stage_map_currents(const struct dalcs_stages *stages,
                           dalcs_stage_map_input(stages, in), drift);
 }
 
+void dalcs_stages_drift_of_pairs(const struct dalcs_stages *stages,
+                                 const struct dalcs_stage_entry *entry, const double *in,
+                                 double *drift) {
+    dalcs_dense_map_apply(entry->pair_rows, n_columns(stages->workshop), entry->pair_map,
+                          dalcs_stage_map_input(stages, in), drift);
+}
+
 bool dalcs_stage_has_map(const struct dalcs_stage_entry *entry) {
     return entry->map != NULL;
 }
@@ -520,4 +537,10 @@ double dalcs_stage_spread_of_current(const struct dalcs_stages *stages,
                                      const struct dalcs_stage_entry *entry, int k, const double *in,
                                      const double *scale) {
     return spread(stages, entry->current_map + k, entry->current_rows, in, scale);
+}
+
+double dalcs_stage_spread_of_pair(const struct dalcs_stages *stages,
+                                  const struct dalcs_stage_entry *entry, int k, const double *in,
+                                  const double *scale) {
+    return spread(stages, entry->pair_map + k, entry->pair_rows, in, scale);
 }
