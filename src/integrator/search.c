@@ -14,6 +14,9 @@
 /* Defects of a state, over what is allowed, that interpolation may leave; more is a jump. */
 static const double most_projected = 1e4;
 
+/* And errors that one or two steps half as long mend. */
+static const double nearly = 1e3;
+
 /* Errors over their unit that no smaller step mends are rounding's up to this. */
 static const double most_tolerated = 2e-13;
 
@@ -179,6 +182,13 @@ static bool is_shortest(const struct dalcs_radau *r, const struct dalcs_radau_pa
     return dalcs_radau_ladder(part, part->level) < 64.0 * r->resolution && !has_grown;
 }
 
+/* Will steps do that are not much shorter, though it is that short? They are no less exact for it: the last digit of the
+ * time at which one begins moves only sources. */
+static bool is_nearly_right(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                            const struct dalcs_step_quality *quality) {
+    return quality->own < nearly && dalcs_radau_ladder(part, part->level) >= 8.0 * r->resolution;
+}
+
 /* No shorter step mends the error, and it is small or over in no time: is it let pass from now on? */
 static bool lets_pass(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                       struct dalcs_search *search, const struct dalcs_step_quality *quality) {
@@ -239,7 +249,8 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
         return DALCS_OK;
     }
     bool wrong_flip = search->flips > 0 && !(quality->own < most_projected);
-    if (search->fixed || wrong_flip || is_shortest(r, part)) {
+    if (search->fixed || wrong_flip ||
+        (is_shortest(r, part) && !is_nearly_right(r, part, quality))) {
         *done = true;
         return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
     }
