@@ -248,18 +248,25 @@ static enum dalcs_status factor_singular(struct dalcs_stages *stages,
 }
 
 /* After pivots next to 0: a mode that leaves something open, or none. In a step of 1e-15 s a resistor beside a coil
- * of 0.4 H is 1e15 times as conductive, and where nothing else leads on, such pivots are all there is. */
+ * of 0.4 H is 1e15 times as conductive, and where nothing else leads on, such pivots are all there is, or all that
+ * are left once the choice is made. */
 static enum dalcs_status factor_doubtful(struct dalcs_stages *stages,
                                          struct dalcs_stage_entry *entry,
                                          struct dalcs_stage_factors *f,
-                                         struct dalcs_stage_matrix *m) {
+                                         struct dalcs_stage_matrix *m, double *largest) {
     drop_systems(f);
     DALCS_TRY(dalcs_stage_singular_find(&f->singular, stages->plan, entry));
     if (f->singular.n > 0) {
         entry->n_clashes = f->singular.n * stages->method->s;
-        return factor_singular(stages, entry, f, m);
+        enum dalcs_status status = factor_singular(stages, entry, f, m);
+        if (status != DALCS_SINGULAR) {
+            return status;
+        }
+        drop_systems(f);
+    } else {
+        entry->frees_states = dalcs_stage_freedom_of_mode(stages->plan, entry);
     }
-    entry->frees_states = dalcs_stage_freedom_of_mode(stages->plan, entry);
+    *largest = largest_of_doubtful;
     return factor_all(stages, entry, f, m, stages->rcond_min * stages->rcond_min);
 }
 
@@ -293,8 +300,7 @@ static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_e
         remember_pivots(plan, m, f);
         entry->frees_states = dalcs_stage_freedom_of_mode(plan, entry);
     } else if (status == DALCS_SINGULAR && s->n_pairs > 0 && !plan->rest.any) {
-        DALCS_TRY(factor_doubtful(stages, entry, f, m));
-        largest = f->singular.n > 0 ? largest_residual : largest_of_doubtful;
+        DALCS_TRY(factor_doubtful(stages, entry, f, m, &largest));
     } else {
         return status;
     }
