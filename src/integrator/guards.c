@@ -441,11 +441,13 @@ static int count_excused(const struct dalcs_radau *r, const struct dalcs_radau_p
     if (!part->fresh || value[0] >= 0.0) {
         return 0;
     }
-    if (is_over_at_once(r, part, value, l->stride) ||
-        is_over_soon(r, part, value, l->stride, dalcs_guard_scale(part, pair, unit))) {
+    if (is_over_soon(r, part, value, l->stride, dalcs_guard_scale(part, pair, unit))) {
         return 1;
     }
     bool begins = dalcs_guard_has_crossed(part, pair, value, l->stride, unit);
+    if (!begins && is_over_at_once(r, part, value, l->stride)) {
+        return 1;
+    }
     while (begins && n < l->n_nodes && value[n * l->stride] < 0.0) {
         n++;
     }

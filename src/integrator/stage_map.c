@@ -300,8 +300,11 @@ static void fill_currents(struct dalcs_stage_workshop *b, double *out, double *p
         out[k] = k < stages->n_levered ? filtered(b, stages->levered[k]).high : 0.0;
     }
     int first = b->n - b->entry->n_on; /* closed pairs are the last unknowns */
-    for (int k = 0; k < b->entry->pair_rows; k++) {
-        pairs[k] = k < b->entry->n_on ? filtered(b, first + k).high : 0.0;
+    for (int k = 0; k < b->entry->n_on; k++) {
+        pairs[k] = filtered(b, first + k).high;
+    }
+    for (int k = b->entry->n_on; k < b->entry->pair_rows; k++) {
+        pairs[k] = 0.0;
     }
 }
 
