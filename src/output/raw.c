@@ -19,6 +19,8 @@
 
 enum { BLOCK_DOUBLES = 1 << 9 }; /* and of a large circuit one point */
 
+enum { FEW_VALUES = 16 };
+
 struct raw {
     size_t n_columns, n_points;
     bool has_scale, is_complex, is_ascii;
@@ -212,10 +214,38 @@ static void add_row(struct raw *raw, FILE *stream, double time, const double *va
     memcpy(point + raw->n_before, value, raw->n_values * sizeof(double));
 }
 
+/* As many as there is room for. Column by column: few values are no work for a memcpy each. */
+static size_t add_rows(struct raw *raw, FILE *stream, size_t n, const double *time,
+                       const double *value) {
+    if (raw->next == raw->end) {
+        release(raw, stream);
+    }
+    const size_t room = (size_t)(raw->end - raw->next) / raw->width;
+    const size_t n_added = n < room ? n : room;
+    double *point = raw->next;
+    for (size_t k = 0; k < n_added; k++) {
+        point[k * raw->width] = time[k];
+    }
+    for (size_t i = 0; i < raw->n_values; i++) {
+        for (size_t k = 0; k < n_added; k++) {
+            point[k * raw->width + 1 + i] = value[k * raw->n_values + i];
+        }
+    }
+    raw->next += n_added * raw->width;
+    return n_added;
+}
+
 static void rows(void *state, FILE *stream, size_t n, const double *time, const double *value) {
     struct raw *raw = state;
-    for (size_t k = 0; k < n; k++) {
-        add_row(raw, stream, time[k], value + k * raw->n_values);
+    const bool is_simple = raw->has_scale && raw->n_before == 1 && !raw->is_stepped;
+    for (size_t k = 0; k < n;) {
+        const double *first = value + k * raw->n_values;
+        if (is_simple && raw->n_values <= FEW_VALUES) {
+            k += add_rows(raw, stream, n - k, time + k, first);
+        } else {
+            add_row(raw, stream, time[k], first);
+            k++;
+        }
     }
 }
 

@@ -228,15 +228,22 @@ double dalcs_recorder_due(const struct dalcs_recorder *r) {
     return due_before_stop(&r->schedule);
 }
 
-/* Those of a grid before both `until` and the stop time. */
+/* Those of a grid before both `until` and the stop time. They ascend, so the last one may tell of all. */
 static int list_grid(const struct dalcs_schedule *s, double until, double near, double *due,
                      int most) {
     const double start = s->start;
     const double step = s->step;
     const double stop = s->stop;
-    const long long next = (long long)s->next;
+    const double next = (double)s->next; /* whole, as is each sum below */
+    double last = start + (next + (most - 1)) * step;
+    if (last + near < until && last <= stop) {
+        for (int n = 0; n < most; n++) {
+            due[n] = start + (next + n) * step;
+        }
+        return most;
+    }
     for (int n = 0; n < most; n++) {
-        due[n] = start + (double)(next + n) * step;
+        due[n] = start + (next + n) * step;
         if (!(due[n] + near < until && due[n] <= stop)) {
             return n;
         }
