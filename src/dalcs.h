@@ -286,7 +286,8 @@ struct dalcs_run_options {
     const char *method; /* "auto", "radau" or "euler", the papers' implicit Euler; NULL: the
                            netlist's or the default */
     double tolerance;  /* of radau and auto: largest error of a waveform over its scale; 0: .options
-                           reltol, else 1e-6 */
+                           reltol, else 1e-6. Small parts are held to 1e-9 where more is allowed,
+                           unless stages or a fixed step are given */
     int stages;        /* of radau, auto: 1, 3, 5, 7 or 9; 0: .options stages, else chosen */
     double step;       /* s; the fixed step of euler and radau, the largest of auto; 0: .options
                            step; without either euler takes the tmax of .tran, else its tstep, and

@@ -45,7 +45,7 @@ static const char help[] =
     "fixed\n"
     "                      step; auto chooses for each part (default: the netlist's, else auto)\n"
     "      --tol X         how far a waveform may be wrong, over its largest value; 1e-13 to 0.1\n"
-    "                      (default: .options reltol, else 1e-6)\n"
+    "                      (default: .options reltol, else 1e-6); small circuits do better\n"
     "      --stages 1|3|5|7|9\n"
     "                      stages of radau (default: by size and tolerance)\n"
     "      --step H        time step in s, SPICE suffixes allowed: 1u. The largest one with auto,\n"

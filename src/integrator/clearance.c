@@ -33,9 +33,8 @@ static double threshold(const struct dalcs_radau_part *part, int guard, double *
 }
 
 /* What a guard has to be above so that it is beyond doubt, but for rounding. */
-static double doubtless(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                        int guard) {
-    return clear * dalcs_doubt_band(r, part) * dalcs_guard_scale(part, guard, part->unit_scale);
+static double doubtless(const struct dalcs_radau_part *part, int guard) {
+    return clear * dalcs_doubt_band(part) * dalcs_guard_scale(part, guard, part->unit_scale);
 }
 
 static bool is_beyond_rounding(const struct dalcs_radau_part *part, int guard, double value) {
@@ -44,28 +43,27 @@ static bool is_beyond_rounding(const struct dalcs_radau_part *part, int guard, d
 }
 
 /* Of one guard. */
-static bool is_clear(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int guard,
-                     const double *coefficient) {
+static bool is_clear(const struct dalcs_radau_part *part, int guard, const double *coefficient) {
     double sign;
-    double least = -threshold(part, guard, &sign) - doubtless(r, part, guard);
+    double least = -threshold(part, guard, &sign) - doubtless(part, guard);
     least += lowest(part, coefficient, sign);
     return is_beyond_rounding(part, guard, least);
 }
 
-bool dalcs_guards_clearance(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                            int guard, double *sign, double *bound) {
-    *bound = threshold(part, guard, sign) + doubtless(r, part, guard) +
+bool dalcs_guards_clearance(const struct dalcs_radau_part *part, int guard, double *sign,
+                            double *bound) {
+    *bound = threshold(part, guard, sign) + doubtless(part, guard) +
              clear * dalcs_guard_most_rounding(part, guard, part->unit_scale);
     return dalcs_guard_is_one(part, guard);
 }
 
 /* Is a guard plain up to `end`? Then *theta is brought forward to its fall, if it has one. */
-static bool is_plain(const struct dalcs_radau *r, struct dalcs_radau_part *part, int guard,
-                     const double *coefficient, double end, double *theta) {
+static bool is_plain(struct dalcs_radau_part *part, int guard, const double *coefficient,
+                     double end, double *theta) {
     double above[DALCS_MAX_NODES];
     double sign;
     double zero = threshold(part, guard, &sign);
-    double bound = doubtless(r, part, guard);
+    double bound = doubtless(part, guard);
     const int last = part->stages.method->s;
     double least = INFINITY;
     above[0] = sign * coefficient[0] - zero;
@@ -92,29 +90,28 @@ static bool is_plain(const struct dalcs_radau *r, struct dalcs_radau_part *part,
 }
 
 /* Of all guards: theta is NULL where none may fall. */
-static inline bool look_at_all(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                               const double *coefficient, double end, double *theta) {
+static inline bool look_at_all(struct dalcs_radau_part *part, const double *coefficient, double end,
+                               double *theta) {
     bool all = true;
     part->n_crossed = 0;
     part->n_doubtful = 0;
     for (int g = 0; g < dalcs_guards_number(part) && all; g++) {
         part->armed[g] = dalcs_guard_is_one(part, g);
         if (part->armed[g]) {
-            all = theta != NULL ? is_plain(r, part, g, coefficient, end, theta)
-                                : is_clear(r, part, g, coefficient);
+            all = theta != NULL ? is_plain(part, g, coefficient, end, theta)
+                                : is_clear(part, g, coefficient);
             coefficient += part->stages.layout.n_nodes;
         }
     }
     return all;
 }
 
-bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                        const double *coefficient) {
-    return look_at_all(r, part, coefficient, 1.0, NULL);
+bool dalcs_guards_clear(struct dalcs_radau_part *part, const double *coefficient) {
+    return look_at_all(part, coefficient, 1.0, NULL);
 }
 
-bool dalcs_guards_plain(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                        const double *coefficient, double end, double *theta) {
+bool dalcs_guards_plain(struct dalcs_radau_part *part, const double *coefficient, double end,
+                        double *theta) {
     *theta = end;
-    return look_at_all(r, part, coefficient, end, theta);
+    return look_at_all(part, coefficient, end, theta);
 }

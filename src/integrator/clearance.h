@@ -8,17 +8,16 @@
 #include "radau.h"
 
 /* Is every guard so far above 0 during the whole step? Then all are armed. */
-bool dalcs_guards_clear(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                        const double *coefficient);
+bool dalcs_guards_clear(struct dalcs_radau_part *part, const double *coefficient);
 
 /* Does just one fall, up to `end` in steps, and no other? Then it is part->crossed. *theta: when; `end` where none
  * does at all. A pair that has just changed sides may begin at 0. */
-bool dalcs_guards_plain(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                        const double *coefficient, double end, double *theta);
+bool dalcs_guards_plain(struct dalcs_radau_part *part, const double *coefficient, double end,
+                        double *theta);
 
 /* Of a step of length part->h in the present mode: sign times each coefficient of this guard is above *bound, in V
  * or A, where it is as clear as that. false: a switch by itself, which has none. */
-bool dalcs_guards_clearance(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                            int guard, double *sign, double *bound);
+bool dalcs_guards_clearance(const struct dalcs_radau_part *part, int guard, double *sign,
+                            double *bound);
 
 #endif

@@ -53,12 +53,12 @@ static const double least_lever = 8.0;
 /* Probes of an entry on factors. */
 enum { PROBES = 2 };
 
-static double allowed_of(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int k,
-                         const double unit[2], const double besides[2]) {
+static double allowed_of(const struct dalcs_radau_part *part, int k, const double unit[2],
+                         const double besides[2]) {
     int column = part->stages.levered[k];
     bool is_current = part->component->system->column_is_current[column];
     double least = is_current ? least_tolerance : least_of_voltages;
-    return dalcs_larger(r->inner_tolerance, least) * dalcs_step_scale(part, column, unit) +
+    return dalcs_larger(part->inner_tolerance, least) * dalcs_step_scale(part, column, unit) +
            besides[is_current];
 }
 
@@ -69,13 +69,13 @@ static int column_of(const struct dalcs_radau_part *part, int pair) {
 
 static double allowed_of_pair(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                               int pair, const double unit[2]) {
-    return dalcs_larger(r->inner_tolerance, least_tolerance) *
+    return dalcs_larger(part->inner_tolerance, least_tolerance) *
                dalcs_step_scale(part, column_of(part, pair), unit) +
            r->besides[1];
 }
 
 /* The largest drift of a state, over what is allowed, that states as large as they have been could make. */
-static double spread_of_states(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+static double spread_of_states(const struct dalcs_radau_part *part,
                                const struct dalcs_stage_entry *entry, const double unit[2],
                                const double besides[2]) {
     const struct dalcs_system *s = part->component->system;
@@ -83,8 +83,8 @@ static double spread_of_states(const struct dalcs_radau *r, const struct dalcs_r
     for (int x = 0; x < s->n_x; x++) {
         double spread = dalcs_stage_spread(&part->stages, entry, part->stages.layout.drift + x,
                                            part->in, part->scale);
-        double allowed =
-            r->inner_tolerance * dalcs_step_scale(part, x, unit) + besides[s->column_is_current[x]];
+        double allowed = part->inner_tolerance * dalcs_step_scale(part, x, unit) +
+                         besides[s->column_is_current[x]];
         largest = dalcs_larger(largest, spread / allowed);
     }
     return largest;
@@ -92,18 +92,16 @@ static double spread_of_states(const struct dalcs_radau *r, const struct dalcs_r
 
 /* Could states as large as they have been make an error that is noticed? In a voltage one that is much larger than
  * in states: most voltages follow them. */
-static bool has_lever(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                      const struct dalcs_stage_entry *entry, const double unit[2],
-                      const double besides[2]) {
+static bool has_lever(const struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry,
+                      const double unit[2], const double besides[2]) {
     const struct dalcs_stages *stages = &part->stages;
     const bool *is_current = part->component->system->column_is_current;
     double of_states = -1.0;
     for (int k = 0; k < stages->n_levered; k++) {
         double spread = dalcs_stage_spread_of_current(stages, entry, k, part->in, part->scale);
-        double least = pessimism * allowed_of(r, part, k, unit, besides);
+        double least = pessimism * allowed_of(part, k, unit, besides);
         if (growth * spread > noticed * least && !is_current[stages->levered[k]]) {
-            of_states =
-                of_states < 0.0 ? spread_of_states(r, part, entry, unit, besides) : of_states;
+            of_states = of_states < 0.0 ? spread_of_states(part, entry, unit, besides) : of_states;
             least *= dalcs_larger(1.0, least_lever * growth * of_states / noticed);
         }
         if (growth * spread > noticed * least) {
@@ -151,9 +149,8 @@ static void raise_parts(struct dalcs_radau_part *part, const struct dalcs_stage_
 
 /* Has a state a lever in this step? The note of an entry counts its steps until that is looked up again:
  * positive without a lever, negative with one. On factors it is not looked up, and the note is that of probes. */
-static bool may_matter(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                       struct dalcs_stage_entry *entry, const double unit[2],
-                       const double besides[2]) {
+static bool may_matter(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry,
+                       const double unit[2], const double besides[2]) {
     int *note = dalcs_stage_note(entry);
     if (*note > 0) {
         --*note;
@@ -161,7 +158,7 @@ static bool may_matter(const struct dalcs_radau *r, struct dalcs_radau_part *par
     }
     bool has = part->stages.n_levered > 0;
     if (has && *note == 0 && dalcs_stage_has_map(entry)) {
-        has = has_lever(r, part, entry, unit, besides);
+        has = has_lever(part, entry, unit, besides);
         *note = has ? -STEPS_WITH : STEPS_BETWEEN;
         if (has) {
             raise_parts(part, entry);
@@ -230,19 +227,19 @@ static double rounding_of(const struct dalcs_radau_part *part,
                                   : dalcs_larger(of_balanced, part->probe.rounding[k]);
 }
 
-void dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                         struct dalcs_stage_entry *entry, const double unit[2],
-                         const double besides[2], struct dalcs_lever_error *e) {
+void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry,
+                         const double unit[2], const double besides[2],
+                         struct dalcs_lever_error *e) {
     struct dalcs_stages *stages = &part->stages;
     *e = (struct dalcs_lever_error){0};
-    int n = may_matter(r, part, entry, unit, besides) ? stages->n_levered : 0;
+    int n = may_matter(part, entry, unit, besides) ? stages->n_levered : 0;
     if (n > 0) {
         dalcs_stages_drift_of_currents(stages, entry, part->in, part->current_drift);
     }
     for (int k = 0; k < n; k++) {
         double *worst = k < stages->n_currents ? &e->of_currents : &e->of_voltages;
         double error = fabs(part->current_drift[k]) / pessimism;
-        double allowed = allowed_of(r, part, k, unit, besides);
+        double allowed = allowed_of(part, k, unit, besides);
         double least = dalcs_larger(noticed, dalcs_smaller(*worst, 1.0));
         if (!(error > least * allowed)) {
             continue;

@@ -13,9 +13,9 @@ struct dalcs_lever_error {
 };
 
 /* Those of the step that was solved last. */
-void dalcs_current_error(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                         struct dalcs_stage_entry *entry, const double unit[2],
-                         const double besides[2], struct dalcs_lever_error *error);
+void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry,
+                         const double unit[2], const double besides[2],
+                         struct dalcs_lever_error *error);
 
 /* The largest of a current of a closed pair, by a map, over what is allowed; 0: none is more. For the first step of a
  * mode: there states have the errors of an event, and what they make of diodes' currents dies away between two

@@ -187,8 +187,7 @@ static enum dalcs_status take_last(const struct dalcs_radau_part *part,
 }
 
 /* What recurrence.c asks of the step: of states at its end and their drift, of guards. */
-static enum dalcs_status take_conditions(const struct dalcs_radau *r,
-                                         const struct dalcs_radau_part *part,
+static enum dalcs_status take_conditions(const struct dalcs_radau_part *part,
                                          struct cycle_segment *segment) {
     const struct dalcs_system *s = part->component->system;
     int n_nodes = part->stages.layout.n_nodes;
@@ -202,7 +201,7 @@ static enum dalcs_status take_conditions(const struct dalcs_radau *r,
     for (int x = 0; x < s->n_x; x++) {
         double most_last;
         double most_drift;
-        dalcs_recurrence_limits(r, part, segment->brief, x, &most_last, &most_drift);
+        dalcs_recurrence_limits(part, segment->brief, x, &most_last, &most_drift);
         for (double sign = -1.0; sign <= 1.0; sign += 2.0) {
             row = put_row(part, segment->brief, x, sign, -most_last, row);
             row = put_row(part, segment->brief, s->n_x + x, sign, -most_drift, row);
@@ -212,7 +211,7 @@ static enum dalcs_status take_conditions(const struct dalcs_radau *r,
     for (int g = 0; g < n_guards; g++) {
         double sign;
         double bound;
-        if (dalcs_guards_clearance(r, part, g, &sign, &bound)) {
+        if (dalcs_guards_clearance(part, g, &sign, &bound)) {
             for (int k = 0; k < n_nodes; k++) {
                 row = put_row(part, segment->brief, which++, sign, bound, row);
             }
@@ -244,11 +243,11 @@ static bool is_segment(const struct dalcs_radau_part *part, int k,
     return is;
 }
 
-static enum dalcs_status take_rows(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+static enum dalcs_status take_rows(struct dalcs_radau_part *part) {
     struct dalcs_cycle *cycle = part->cycle;
     struct cycle_segment *segment = &cycle->segment[cycle->at];
     DALCS_TRY(take_last(part, segment));
-    DALCS_TRY(take_conditions(r, part, segment));
+    DALCS_TRY(take_conditions(part, segment));
     cycle->n_taken++;
     part->cycles = cycle->n_taken == cycle->n;
     return DALCS_OK;
@@ -278,7 +277,7 @@ enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r, struct dalcs_rad
     if (cycle->n > 0 && is_segment(part, next, &began)) {
         cycle->is_closed = true;
         cycle->at = next;
-        return cycle->n_taken < cycle->n ? take_rows(r, part) : DALCS_OK;
+        return cycle->n_taken < cycle->n ? take_rows(part) : DALCS_OK;
     }
     if (cycle->is_closed || cycle->n == MOST_SEGMENTS) {
         forget(part);

@@ -99,44 +99,42 @@ double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, d
 }
 
 /* What errors of all that a guard is made of come to, with noise that is a part of `of_noise`. */
-static double of_all(const struct dalcs_radau *r, const struct dalcs_radau_part *part, double size,
-                     double of_noise) {
-    return dalcs_doubts_over_tolerance * r->inner_tolerance * size +
+static double of_all(const struct dalcs_radau_part *part, double size, double of_noise) {
+    return dalcs_doubts_over_tolerance * part->inner_tolerance * size +
            dalcs_beyond_noise * dalcs_doubt_noise(part) * of_noise;
 }
 
 /* Which is no more than the band. */
-static double within_band(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                          double size, double of_noise, double scale) {
-    return dalcs_smaller(of_all(r, part, size, of_noise), dalcs_doubt_band(r, part) * scale);
+static double within_band(const struct dalcs_radau_part *part, double size, double of_noise,
+                          double scale) {
+    return dalcs_smaller(of_all(part, size, of_noise), dalcs_doubt_band(part) * scale);
 }
 
 static double spread_at_start(const struct dalcs_radau_part *part, int place) {
     return dalcs_stage_spread(&part->stages, part->entry, place, part->in, part->scale);
 }
 
-double dalcs_doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                         int guard, double scale, const double *unit) {
+double dalcs_doubt_about(const struct dalcs_radau_part *part, int guard, double scale,
+                         const double *unit) {
     const struct dalcs_system *s = part->component->system;
     if (guard >= s->n_pairs || part->entry == NULL) {
-        return dalcs_doubt_band(r, part) * scale;
+        return dalcs_doubt_band(part) * scale;
     }
     int place = dalcs_system_n_equations(s) + guard;
     bool has_map = dalcs_stage_has_map(part->entry);
     double spread = has_map ? spread_at_start(part, place) : spread_about(part, guard, unit);
     double size = largest_of(part, place) + spread;
     bool is_local = !has_map && dalcs_osnsp_is_on(&part->component->osnsp, guard);
-    return within_band(r, part, size, is_local ? size : scale, scale);
+    return within_band(part, size, is_local ? size : scale, scale);
 }
 
-double dalcs_doubt_of_closed(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                             int pair, double scale) {
-    double band = dalcs_doubt_band(r, part) * scale;
+double dalcs_doubt_of_closed(const struct dalcs_radau_part *part, int pair, double scale) {
+    double band = dalcs_doubt_band(part) * scale;
     if (part->entry == NULL || !dalcs_stage_has_map(part->entry)) {
         return band;
     }
     int place = dalcs_system_n_equations(part->component->system) + pair;
-    return dalcs_larger(band, of_all(r, part, spread_at_start(part, place), scale));
+    return dalcs_larger(band, of_all(part, spread_at_start(part, place), scale));
 }
 
 /* Is a row below -`least` at all nodes behind the start? */
@@ -149,11 +147,11 @@ static bool is_below(const struct dalcs_radau_part *part, int row, double least)
     return below;
 }
 
-double dalcs_doubt_of_fall(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                           int guard, double scale, const double *unit) {
+double dalcs_doubt_of_fall(const struct dalcs_radau_part *part, int guard, double scale,
+                           const double *unit) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const struct dalcs_system *s = part->component->system;
-    double doubt = dalcs_doubt_about(r, part, guard, scale, unit);
+    double doubt = dalcs_doubt_about(part, guard, scale, unit);
     int place = dalcs_system_n_equations(s) + guard;
     bool has_map = part->entry != NULL && dalcs_stage_has_map(part->entry);
     if (guard >= s->n_pairs || !has_map || !is_below(part, place, 0.0)) {
@@ -161,6 +159,6 @@ double dalcs_doubt_of_fall(const struct dalcs_radau *r, const struct dalcs_radau
     }
     double spread = dalcs_stage_spread(&part->stages, part->entry,
                                        (l->n_nodes - 1) * l->stride + place, part->in, part->scale);
-    double at_end = within_band(r, part, largest_of(part, place) + spread, scale, scale);
+    double at_end = within_band(part, largest_of(part, place) + spread, scale, scale);
     return is_below(part, place, at_end) ? dalcs_smaller(doubt, at_end) : doubt;
 }

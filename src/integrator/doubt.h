@@ -30,25 +30,23 @@ double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, d
                                const double *unit);
 
 /* The band of errors, over the unit's scale: no guard is in doubt beyond it. */
-static inline double dalcs_doubt_band(const struct dalcs_radau *r,
-                                      const struct dalcs_radau_part *part) {
-    return dalcs_larger(dalcs_doubts_over_tolerance * r->inner_tolerance,
+static inline double dalcs_doubt_band(const struct dalcs_radau_part *part) {
+    return dalcs_larger(dalcs_doubts_over_tolerance * part->inner_tolerance,
                         dalcs_beyond_noise * dalcs_doubt_noise(part));
 }
 
 /* V or A that a guard may be off by in the present step, of part->entry; scale: of its unit. */
-double dalcs_doubt_about(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                         int guard, double scale, const double *unit);
+double dalcs_doubt_about(const struct dalcs_radau_part *part, int guard, double scale,
+                         const double *unit);
 
 /* A that a pair may begin with, below 0, which has just closed: errors of voltages across milliohms, which die away
  * within nanoseconds, may be more than the band. */
-double dalcs_doubt_of_closed(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                             int pair, double scale);
+double dalcs_doubt_of_closed(const struct dalcs_radau_part *part, int pair, double scale);
 
 /* The same of one that is not armed and may fall below 0. What errors of voltages across milliohms make of a
  * current at first dies away within the step: one that is below 0 throughout it, by more than what is left of
  * them at its end, is in no doubt. */
-double dalcs_doubt_of_fall(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                           int guard, double scale, const double *unit);
+double dalcs_doubt_of_fall(const struct dalcs_radau_part *part, int guard, double scale,
+                           const double *unit);
 
 #endif

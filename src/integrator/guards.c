@@ -96,12 +96,11 @@ static bool goes_on(const struct dalcs_radau_part *part, int pair, double value)
     return fabs(value - last) <= dalcs_guard_agreeing * value;
 }
 
-void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, bool at_end,
-                      const double *unit) {
+void dalcs_guards_arm(struct dalcs_radau_part *part, bool at_end, const double *unit) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     int n_pairs = p->system->n_pairs;
-    double band = dalcs_doubt_band(r, part);
+    double band = dalcs_doubt_band(part);
     double known = dalcs_doubt_noise(part);
     if (!at_end && n_pairs > DALCS_MANY_PAIRS) {
         dalcs_pair_laws_gather(part);
@@ -112,10 +111,10 @@ void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part
     for (int d = 0; d < n_pairs; d++) {
         if (p->is_diode[d] && !(at_end && armed[d])) {
             double scale = unit[dalcs_osnsp_is_on(p, d)];
-            armed[d] = value[d] > band * scale ||
-                       (value[d] > known * scale &&
-                        ((!at_end && goes_on(part, d, value[d])) ||
-                         value[d] > dalcs_doubt_about(r, part, d, scale, unit)));
+            armed[d] =
+                value[d] > band * scale ||
+                (value[d] > known * scale && ((!at_end && goes_on(part, d, value[d])) ||
+                                              value[d] > dalcs_doubt_about(part, d, scale, unit)));
         }
     }
     if (part->stages.n_watched > 0) {
@@ -167,7 +166,7 @@ static bool is_over_at_once(const struct dalcs_radau *r, const struct dalcs_rada
  * last digit of a time makes volts of a current that has nowhere to go but a leak. */
 static bool is_over_soon(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                          const double *value, int stride, double scale) {
-    double little = fmax(shallow * dalcs_doubt_band(r, part), slight) * scale;
+    double little = fmax(shallow * dalcs_doubt_band(part), slight) * scale;
     return (value[0] >= -little && dalcs_guard_value_at(part, value, stride, soon_after) > 0.0) ||
            (value[0] >= -unresolved * scale && is_over_at_once(r, part, value, stride));
 }
@@ -195,9 +194,8 @@ static double doubt_at_first(struct dalcs_radau_part *part, const double *value,
 
 /* How far a guard may fall and is no event: where it is armed by rounding, `noise`, or as far as it may be touching
  * 0. */
-static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *part, int guard,
-                       const double *value, int stride, double end, double noise,
-                       const double *unit) {
+static double doubt_of(struct dalcs_radau_part *part, int guard, const double *value, int stride,
+                       double end, double noise, const double *unit) {
     int last = part->stages.layout.n_nodes - 1;
     double scale = dalcs_guard_scale(part, guard, unit);
     bool is_armed = part->armed[guard];
@@ -205,15 +203,15 @@ static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *par
                                : value[last * stride]) <= noise) {
         return noise; /* it does not come back */
     }
-    double doubt = dalcs_doubt_of_fall(r, part, guard, scale, unit);
+    double doubt = dalcs_doubt_of_fall(part, guard, scale, unit);
     if (is_armed) {
         return dalcs_larger(noise, touching * doubt);
     }
     if (part->fresh && guard < part->component->system->n_pairs &&
         dalcs_guard_has_crossed(part, guard, value, stride, unit)) {
         return dalcs_osnsp_is_on(&part->component->osnsp, guard)
-                   ? dalcs_doubt_of_closed(r, part, guard, scale)
-                   : dalcs_larger(dalcs_doubt_band(r, part), blocking) * scale;
+                   ? dalcs_doubt_of_closed(part, guard, scale)
+                   : dalcs_larger(dalcs_doubt_band(part), blocking) * scale;
     }
     if (part->fresh) {
         return doubt_at_first(part, value, stride, end, doubt);
@@ -224,8 +222,8 @@ static double doubt_of(const struct dalcs_radau *r, struct dalcs_radau_part *par
 
 /* Does a guard that falls at `theta` or later do so at an event that is no farther before than errors move it? Diodes
  * in series open together, whichever has a rounding more: leaks alone would take that down, late. */
-static bool falls_with(const struct dalcs_radau *r, const struct dalcs_radau_part *part, int guard,
-                       double event, double theta, const double *unit) {
+static bool falls_with(const struct dalcs_radau_part *part, int guard, double event, double theta,
+                       const double *unit) {
     if (!part->armed[guard] || theta - event > same_by_value) {
         return false;
     }
@@ -234,15 +232,15 @@ static bool falls_with(const struct dalcs_radau *r, const struct dalcs_radau_par
     const double *value = dalcs_guard_values(part, guard, work, &stride);
     double scale = dalcs_guard_scale(part, guard, unit);
     return dalcs_guard_value_at(part, value, stride, event) <=
-           dalcs_doubt_about(r, part, guard, scale, unit);
+           dalcs_doubt_about(part, guard, scale, unit);
 }
 
 /* All that have crossed at `theta`. */
-static bool all_fall_with(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                          double event, double theta, const double *unit) {
+static bool all_fall_with(const struct dalcs_radau_part *part, double event, double theta,
+                          const double *unit) {
     bool all = part->n_crossed > 0;
     for (int k = 0; k < part->n_crossed && all; k++) {
-        all = falls_with(r, part, part->crossed[k], event, theta, unit);
+        all = falls_with(part, part->crossed[k], event, theta, unit);
     }
     return all;
 }
@@ -253,7 +251,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
     double first = INFINITY;
     double same = part->rounding > 1.0 ? same_on_factors : same_on_maps;
     double together = dalcs_larger(same, 2.0 * r->resolution / part->h);
-    double band = dalcs_doubt_band(r, part);
+    double band = dalcs_doubt_band(part);
     double too_late = end_of_events(r, part, end, band);
     int last = part->stages.layout.n_nodes - 1;
     int n_pairs = part->component->system->n_pairs;
@@ -275,7 +273,7 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         if (!part->armed[g] && !part->fresh && value[0] > zero + rounding) {
             part->armed[g] = g < n_pairs && goes_on(part, g, value[0]);
         }
-        double depth = doubt_of(r, part, g, value, stride, end, zero, unit);
+        double depth = doubt_of(part, g, value, stride, end, zero, unit);
         depth += rounding;
         if (part->bound[g] >= -depth) {
             continue;
@@ -288,10 +286,10 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
         bool is_late =
             c.theta >= too_late && dalcs_guard_value_at(part, value, stride, end) >= -band * scale;
         if (!c.falls || is_late ||
-            (c.theta > first + together && !falls_with(r, part, g, first, c.theta, unit))) {
+            (c.theta > first + together && !falls_with(part, g, first, c.theta, unit))) {
             continue;
         }
-        if (c.theta < first - together && !all_fall_with(r, part, c.theta, first, unit)) {
+        if (c.theta < first - together && !all_fall_with(part, c.theta, first, unit)) {
             part->n_crossed = 0;
             *at_once = false;
             part->slips = false;
@@ -318,15 +316,14 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
     return part->n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;
 }
 
-bool dalcs_guards_recover(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                          const double *unit) {
+bool dalcs_guards_recover(const struct dalcs_radau_part *part, const double *unit) {
     int last = part->stages.layout.n_nodes - 1;
     bool all = true;
     for (int k = 0; k < part->n_crossed && all; k++) {
         double work[DALCS_MAX_NODES];
         int stride;
         const double *value = dalcs_guard_values(part, part->crossed[k], work, &stride);
-        double band = dalcs_doubt_band(r, part) * dalcs_guard_scale(part, part->crossed[k], unit);
+        double band = dalcs_doubt_band(part) * dalcs_guard_scale(part, part->crossed[k], unit);
         all = value[0] >= -shallow * band && value[last * stride] > 0.0;
     }
     return all;
@@ -354,8 +351,8 @@ double dalcs_guards_recovery(const struct dalcs_radau_part *part) {
     return latest;
 }
 
-double dalcs_guards_rise(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                         double least, double most, const double *unit, bool *is_sure) {
+double dalcs_guards_rise(const struct dalcs_radau_part *part, double least, double most,
+                         const double *unit, bool *is_sure) {
     int n_pairs = part->component->system->n_pairs;
     double earliest = INFINITY;
     *is_sure = false;
@@ -376,7 +373,7 @@ double dalcs_guards_rise(const struct dalcs_radau *r, const struct dalcs_radau_p
         double rise = value[0] < -noise ? rise_of(part, value, stride) : INFINITY;
         if (rise > least && rise < most) {
             earliest = dalcs_smaller(earliest, rise);
-            *is_sure = *is_sure || value[0] < -noise - dalcs_doubt_band(r, part) * scale;
+            *is_sure = *is_sure || value[0] < -noise - dalcs_doubt_band(part) * scale;
         }
     }
     return earliest;
@@ -414,11 +411,11 @@ static bool stays_below(const struct dalcs_radau_part *part, int pair, double en
     return stays && (same || value[0] < -least);
 }
 
-bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                                double end, const double *unit) {
+bool dalcs_guards_stay_negative(const struct dalcs_radau_part *part, double end,
+                                const double *unit) {
     int n_pairs = part->component->system->n_pairs;
     double noise = dalcs_beyond_noise * dalcs_doubt_noise(part);
-    double least = fmax(falling_part * dalcs_doubt_band(r, part), noise);
+    double least = fmax(falling_part * dalcs_doubt_band(part), noise);
     bool negative = false;
     for (int k = 0; k < part->n_doubtful && !negative && n_pairs <= DALCS_MANY_PAIRS; k++) {
         int d = part->doubtful[k];

@@ -12,8 +12,7 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) DALCS_MUST_C
 /* Guards that are clear of 0 at the start, or at the end, of a step are armed: from then on every fall
  * below 0 counts. Those that start within the error of 0, because they have just crossed it, count when
  * they leave it downwards (doubt.h). */
-void dalcs_guards_arm(const struct dalcs_radau *r, struct dalcs_radau_part *part, bool at_end,
-                      const double *unit);
+void dalcs_guards_arm(struct dalcs_radau_part *part, bool at_end, const double *unit);
 
 /* The first to fall up to `end`, listed in part->crossed; INFINITY when none does. *at_once: one that
  * is not armed was never positive, so the mode is wrong from the start. */
@@ -22,8 +21,7 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
 
 /* Do the guards of a first fall at once come back within the step, and from no farther below 0 than an error
  * of the polynomial may put them, which is least exact at its start? */
-bool dalcs_guards_recover(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                          const double *unit);
+bool dalcs_guards_recover(const struct dalcs_radau_part *part, const double *unit);
 
 /* Where in the step the guards that have just fallen, all below 0 from the start, are above it again;
  * INFINITY if one is not. */
@@ -32,8 +30,8 @@ double dalcs_guards_recovery(const struct dalcs_radau_part *part);
 /* The earliest rise above 0, between `least` and `most` in steps, of a pair that begins the step below it by more than
  * rounding and is above at `most`, among those that a first fall has been looked for; INFINITY if there is none.
  * *is_sure: one of these is beyond doubt. Large components are not asked. */
-double dalcs_guards_rise(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                         double least, double most, const double *unit, bool *is_sure);
+double dalcs_guards_rise(const struct dalcs_radau_part *part, double least, double most,
+                         const double *unit, bool *is_sure);
 
 /* Did what crossed only dip below 0, by a part of what it began with, and is it above at the end? That may be
  * two crossings, or the polynomial, which swings where something has died away between two nodes. */
@@ -42,8 +40,8 @@ bool dalcs_guards_swing(const struct dalcs_radau_part *part);
 /* Is there a diode that is on the wrong side from the start of the step up to `end`, in steps? By no more
  * than the error, or it would have ended the segment; but an error of 0 grows, or goes. Of the guards that
  * dalcs_guards_first_fall looked at; large components are not asked. */
-bool dalcs_guards_stay_negative(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                                double end, const double *unit);
+bool dalcs_guards_stay_negative(const struct dalcs_radau_part *part, double end,
+                                const double *unit);
 
 /* The most negative lambda or w at the nodes up to `end`, over the largest of its unit; 0 when none. Of
  * a step in which a first fall has been looked for. The start does not count for what is over at once. */

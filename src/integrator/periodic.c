@@ -18,7 +18,7 @@ enum { MOST_PERIODS = 64 };
 static const double fewest_periods = 3.0;
 
 /* What states may miss by coming back, over what a step may: in all periods to come together. */
-static const double part_of_step = 0.1;
+static const double part_of_step = 1.0;
 
 /* As good as rounding lets them. */
 static const double rounded = 4.0 * DBL_EPSILON;
@@ -143,7 +143,7 @@ static double distance(const struct dalcs_radau *r, const struct dalcs_radau_par
     const struct dalcs_periodic *periodic = part->periodic;
     const struct dalcs_osnsp *p = &part->component->osnsp;
     double to_come = (r->options.stop - part->t) / periodic->period;
-    double share = dalcs_larger(part_of_step * r->inner_tolerance / to_come, rounded);
+    double share = dalcs_larger(part_of_step * part->inner_tolerance / to_come, rounded);
     double late = fabs(part->t - periodic->since - periodic->period);
     if (late > same_event * periodic->period ||
         !dalcs_mode_is(periodic->mode, p->mode, p->n_words)) {
@@ -270,7 +270,7 @@ bool dalcs_periodic_repeats(const struct dalcs_radau *r, struct dalcs_radau_part
     if (!periodic->repeats) {
         return false;
     }
-    double last = r->options.stop * (1.0 - near_stop * r->inner_tolerance) - r->resolution;
+    double last = r->options.stop * (1.0 - near_stop * part->inner_tolerance) - r->resolution;
     bool goes_on = next_end(periodic) < last;
     if (!goes_on) {
         stop_repeating(part);

@@ -93,7 +93,7 @@ bool dalcs_projection_settle(const struct dalcs_radau *r, struct dalcs_radau_par
     find_beginning(part, &moves);
     const struct dalcs_system *s = part->component->system;
     for (int x = 0; x < s->n_x; x++) {
-        double most = r->inner_tolerance * unit[s->column_is_current[x]];
+        double most = part->inner_tolerance * unit[s->column_is_current[x]];
         if (!(fabs(part->after[x] - part->x[x]) <= most)) {
             return false;
         }

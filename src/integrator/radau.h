@@ -55,7 +55,8 @@ struct dalcs_radau_part {
         DALCS_PART_STEPPED
     } kind;
 
-    const char *because; /* why this kind and number of stages; NULL: asked for */
+    const char *because;    /* why this kind and number of stages; NULL: asked for */
+    double inner_tolerance; /* error that a step may have, over the scale of a signal */
     struct dalcs_excitation excitation;
     struct dalcs_commands commands;
     struct dalcs_stages stages;
@@ -175,8 +176,9 @@ struct dalcs_radau {
     struct dalcs_radau_part *part;
     struct dalcs_radau_part *cycling; /* the one that may leap; NULL: none */
     double resolution;                /* s: times nearer than this are the same */
-    double inner_tolerance;
-    double besides[2]; /* V, A: error allowed besides, of a step */
+    double
+        inner_tolerance; /* what a step may be off by where a part does no better than asked for */
+    double besides[2];   /* V, A: error allowed besides, of a step */
     long steps, rejected, restarts, euler_steps;
     long periodic_steps;   /* of them; periodic.h */
     long leapt_steps;      /* likewise; cycle.h */

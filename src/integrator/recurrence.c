@@ -68,11 +68,11 @@ static enum dalcs_status find_map(struct dalcs_radau_part *part, double h, bool 
 }
 
 /* Errors as in step_error.c, of the states, beside no more than their own scales. */
-void dalcs_recurrence_limits(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+void dalcs_recurrence_limits(const struct dalcs_radau_part *part,
                              const struct dalcs_stage_brief *step, int x, double *most_last,
                              double *most_drift) {
     bool states_free = dalcs_stage_frees_states(step->entry);
-    double allowed = (states_free ? 1.0 : dalcs_worth_projecting) * r->inner_tolerance;
+    double allowed = (states_free ? 1.0 : dalcs_worth_projecting) * part->inner_tolerance;
     double of_unit = part->unit_scale[part->component->system->column_is_current[x] ? 1 : 0];
     *most_last = dalcs_larger(most_growth * part->scale[x], of_unit);
     *most_drift = allowed * part->scale[x];
@@ -86,13 +86,13 @@ static bool is_accurate(const struct dalcs_radau *r, struct dalcs_radau_part *pa
     for (int x = 0; x < n_x; x++) {
         double most_last;
         double most_drift;
-        dalcs_recurrence_limits(r, part, step, x, &most_last, &most_drift);
+        dalcs_recurrence_limits(part, step, x, &most_last, &most_drift);
         accurate = accurate && fabs(step->drift[x]) <= most_drift;
         *outgrows = *outgrows || fabs(step->last[x]) > most_last;
     }
     struct dalcs_lever_error e = {0};
     if (accurate) {
-        dalcs_current_error(r, part, step->entry, part->unit_scale, r->besides, &e);
+        dalcs_current_error(part, step->entry, part->unit_scale, r->besides, &e);
     }
     return accurate && e.of_currents <= 1.0 && e.of_voltages <= 1.0;
 }
@@ -136,8 +136,7 @@ static enum dalcs_status try_span(struct dalcs_radau *r, struct dalcs_radau_part
     }
     apply(part, step, span->length);
     bool outgrows;
-    bool may_hold =
-        is_accurate(r, part, step, &outgrows) && dalcs_guards_clear(r, part, step->guard);
+    bool may_hold = is_accurate(r, part, step, &outgrows) && dalcs_guards_clear(part, step->guard);
     *holds = may_hold && !outgrows;
     if (*holds) {
         part->t_end = limit;
@@ -176,8 +175,8 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     double end = dalcs_smaller(1.0, (limit - part->t) / part->h);
     double theta = end;
     bool outgrows;
-    bool may_hold = is_accurate(r, part, step, &outgrows) &&
-                    dalcs_guards_plain(r, part, step->guard, end, &theta);
+    bool may_hold =
+        is_accurate(r, part, step, &outgrows) && dalcs_guards_plain(part, step->guard, end, &theta);
     double t_end = part->t + theta * part->h;
     bool happens = part->n_crossed > 0;
     if (!happens && may_hold) {

@@ -23,7 +23,7 @@ enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau
 void dalcs_recurrence_note(struct dalcs_radau_part *part);
 
 /* What such a step is held to at a state: how large it may become, and its drift; in the present mode. */
-void dalcs_recurrence_limits(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+void dalcs_recurrence_limits(const struct dalcs_radau_part *part,
                              const struct dalcs_stage_brief *step, int x, double *most_last,
                              double *most_drift);
 

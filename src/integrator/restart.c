@@ -64,7 +64,7 @@ static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *p
             bool is_current = dalcs_system_control_is_current(s, d);
             double v = p->is_direct ? dalcs_csr_row_dot(&s->direct_control, d, part->u + s->n_x)
                                     : dalcs_csr_row_dot(&s->control, d, y);
-            double slack = part->t > 0.0 ? 10.0 * r->inner_tolerance *
+            double slack = part->t > 0.0 ? 10.0 * part->inner_tolerance *
                                                fmax(part->unit_scale[is_current], fabs(p->turn_on))
                                          : 0.0;
             bool wants = is_on ? !(v < p->turn_off - slack) : v > p->turn_on + slack;
@@ -115,13 +115,13 @@ static void raise_largest(const struct dalcs_system *s, const double *y, int n, 
  * error that the state of an event has? A fast transient moves in both micro-steps and is left to be
  * stepped through. It may hide a jump, or the mode that it is in: *closer is how short micro-steps that
  * show it are, over these. */
-static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                        double *after, bool *noticeable, double *closer) {
+static bool extrapolate(const struct dalcs_radau_part *part, double *after, bool *noticeable,
+                        double *closer) {
     const struct dalcs_system *s = part->component->system;
     double largest[2];
     find_largest(part, largest);
     raise_largest(s, part->y1, dalcs_system_n_equations(s), largest);
-    double smallest = fmax(1e3 * r->inner_tolerance, smallest_jump);
+    double smallest = fmax(1e3 * part->inner_tolerance, smallest_jump);
     bool jumps = false;
     *noticeable = false;
     *closer = 1.0;
@@ -135,7 +135,7 @@ static bool extrapolate(const struct dalcs_radau *r, const struct dalcs_radau_pa
         bool dies_away = !moved && second < steady * first;
         if (dies_away && first > smallest * scale) {
             *closer = shorter;
-        } else if (dies_away && first > beyond_error * r->inner_tolerance * scale) {
+        } else if (dies_away && first > beyond_error * part->inner_tolerance * scale) {
             *closer = fmin(*closer, a_little_shorter);
         }
         after[x] = 2.0 * part->y1[x] - part->y2[x];
@@ -218,7 +218,7 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
 static bool is_noticeable(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     const double *after = r->base->jump.after;
-    double smallest = fmax(1e3 * r->inner_tolerance, smallest_jump);
+    double smallest = fmax(1e3 * part->inner_tolerance, smallest_jump);
     bool noticeable = false;
     for (int x = 0; x < s->n_x && !noticeable; x++) {
         double scale =
@@ -299,12 +299,12 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         enum dalcs_status status = micro_steps(r, part, shorter * h);
         if (status > DALCS_OK) { /* too short for a certificate: the last ones have to do */
             DALCS_TRY(micro_steps(r, part, h));
-            moves = extrapolate(r, part, part->after, &noticeable, &closer);
+            moves = extrapolate(part, part->after, &noticeable, &closer);
             break;
         }
         DALCS_TRY(status);
         h *= shorter;
-        moves = extrapolate(r, part, part->after, &noticeable, &closer);
+        moves = extrapolate(part, part->after, &noticeable, &closer);
     }
     bool is_over = moves && noticeable && !e->jump.is_known;
     *moves_little = moves && !is_over;
@@ -325,7 +325,7 @@ static enum dalcs_status look_closer(struct dalcs_radau *r, struct dalcs_radau_p
         status = micro_steps(r, part, *h);
     }
     DALCS_TRY(status);
-    *jumps = extrapolate(r, part, part->after, noticeable, &closer);
+    *jumps = extrapolate(part, part->after, noticeable, &closer);
     return DALCS_OK;
 }
 
@@ -348,7 +348,7 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     }
     bool noticeable;
     double closer;
-    bool jumps = extrapolate(r, part, part->after, &noticeable, &closer);
+    bool jumps = extrapolate(part, part->after, &noticeable, &closer);
     if (closer < 1.0 && !noticeable && closer * h >= 64.0 * r->resolution) {
         DALCS_TRY(look_closer(r, part, closer, &h, &jumps, &noticeable));
     }

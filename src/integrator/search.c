@@ -195,7 +195,7 @@ static bool lets_pass(const struct dalcs_radau *r, const struct dalcs_radau_part
     bool is_rounding = search->stuck >= STUCK && quality->of_unit < most_tolerated * part->rounding;
     bool is_very_stuck =
         search->stuck >= VERY_STUCK || (search->stuck >= STUCK && is_shortest(r, part));
-    bool is_small = is_very_stuck && quality->of_unit < r->inner_tolerance;
+    bool is_small = is_very_stuck && quality->of_unit < part->inner_tolerance;
     if ((is_rounding || is_small) && isfinite(quality->ratio) && search->tolerated == 1.0) {
         search->tolerated = 4.0 * quality->ratio;
         return true;
@@ -311,7 +311,7 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
                                            struct dalcs_search *search, const double *unit,
                                            bool *done) {
     bool is_remembered = search->guessed && !search->front;
-    if (!is_remembered && dalcs_search_may_refine(search) && dalcs_guards_recover(r, part, unit)) {
+    if (!is_remembered && dalcs_search_may_refine(search) && dalcs_guards_recover(part, unit)) {
         return dalcs_search_refine(r, part, search);
     }
     if (search->guessed) {
@@ -384,7 +384,7 @@ enum dalcs_status dalcs_search_look_at_start(struct dalcs_radau *r, struct dalcs
     bool is_sure;
     double least = 64.0 * r->resolution / part->h;
     double most = dalcs_smaller(briefly, part->seen / part->h);
-    double rise = dalcs_guards_rise(r, part, least, most, unit, &is_sure);
+    double rise = dalcs_guards_rise(part, least, most, unit, &is_sure);
     if (!(rise < most)) {
         return DALCS_OK;
     }

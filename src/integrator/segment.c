@@ -85,17 +85,17 @@ static bool is_whole(const struct dalcs_radau_part *part, double theta) {
 }
 
 /* What began after pairs changed sides. */
-static void learn(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                  const struct dalcs_search *search, double theta, double error) {
-    double ratio = error * fmax(1.0, r->inner_tolerance / fine);
+static void learn(struct dalcs_radau_part *part, const struct dalcs_search *search, double theta,
+                  double error) {
+    double ratio = error * fmax(1.0, part->inner_tolerance / fine);
     bool longer = !search->fixed && is_whole(part, theta) && part->n_crossed == 0 &&
-                  dalcs_length_rungs_promised(r, part, ratio) > 1.0 &&
+                  dalcs_length_rungs_promised(part, ratio) > 1.0 &&
                   dalcs_radau_ladder(part, part->level - 1) <=
                       dalcs_smaller(part->longest, part->longest_needed);
     int spare = longer ? 1 : 0; /* rungs that the first step may have more the next time */
     if (!search->guessed) {
         double promised =
-            dalcs_smaller(dalcs_length_rungs_promised(r, part, error), DALCS_LENGTH_MOST_RUNGS);
+            dalcs_smaller(dalcs_length_rungs_promised(part, error), DALCS_LENGTH_MOST_RUNGS);
         int by_analogy = search->first_level - part->level_before;
         dalcs_transition_began(part, search->first_level, (int)promised);
         spare = (int)dalcs_larger(spare, dalcs_smaller(promised, by_analogy));
@@ -126,7 +126,7 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
     part->t_end = dalcs_smaller(t_end, search->limit);
     dalcs_step_remember(part, theta, quality->unit);
     if (theta == 1.0) {
-        dalcs_guards_arm(r, part, true, quality->unit);
+        dalcs_guards_arm(part, true, quality->unit);
     }
     double wrong_sign = dalcs_guards_wrong_sign(r, part, theta, quality->unit);
     if (wrong_sign > r->wrong_sign) {
@@ -134,12 +134,12 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         r->wrong_time = part->t;
     }
     if (part->fresh && part->flipped) {
-        learn(r, part, search, theta, quality->ratio);
+        learn(part, search, theta, quality->ratio);
     }
     dalcs_segment_accept(r, part, theta, residual);
     part->held_level = part->level;
     if (!search->fixed && is_whole(part, theta)) {
-        dalcs_length_lengthen(r, part, quality->ratio);
+        dalcs_length_lengthen(part, quality->ratio);
     }
 }
 
@@ -255,7 +255,7 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     *holds = false;
     double end = end_of(part, search);
     if (part->fresh) {
-        dalcs_guards_arm(r, part, false, q->unit);
+        dalcs_guards_arm(part, false, q->unit);
     }
     bool at_once;
     double theta = dalcs_guards_first_fall(r, part, end, q->unit, &at_once);
@@ -279,8 +279,7 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     if (part->fresh && dalcs_twins_close(part, q->unit)) {
         return DALCS_OK;
     }
-    if (part->fresh && search->restarts == 0 &&
-        dalcs_guards_stay_negative(r, part, *next, q->unit)) {
+    if (part->fresh && search->restarts == 0 && dalcs_guards_stay_negative(part, *next, q->unit)) {
         return search->guessed ? dalcs_search_refuse(part, search)
                                : dalcs_search_ask(r, part, search, true);
     }

@@ -238,7 +238,7 @@ struct allowance {
 
 static void find_allowance(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                            const struct dalcs_step_quality *q, struct allowance *a) {
-    a->tolerance = r->inner_tolerance;
+    a->tolerance = part->inner_tolerance;
     a->least[0] = smallest_scale * q->unit[0];
     a->least[1] = smallest_scale * q->unit[1];
     a->least[2] = smallest_pair * q->unit[1];
@@ -358,7 +358,7 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
     q->own = q->ratio;
     if (q->ratio <= 1.0) {
         struct dalcs_lever_error e;
-        dalcs_current_error(r, part, entry, q->unit, a.besides, &e);
+        dalcs_current_error(part, entry, q->unit, a.besides, &e);
         q->own = dalcs_larger(q->ratio, e.of_currents);
         q->ratio = dalcs_larger(q->own, e.of_voltages);
         q->of_unit = e.of_unit;

@@ -91,7 +91,7 @@ double dalcs_length_fitted(struct dalcs_radau_part *part, double limit) {
     return known > 0.0 ? known : h;
 }
 
-double dalcs_length_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+double dalcs_length_promising(const struct dalcs_radau_part *part) {
     const struct dalcs_collocation *m = part->stages.method;
     if (isinf(part->excitation.shortest_period)) {
         return INFINITY;
@@ -101,7 +101,7 @@ double dalcs_length_promising(const struct dalcs_radau *r, const struct dalcs_ra
         factorial *= k;
     }
     double size = m->test_size * m->test_factor * m->lambda / factorial;
-    double angle = pow(r->inner_tolerance / size, 1.0 / (m->s + 1));
+    double angle = pow(part->inner_tolerance / size, 1.0 / (m->s + 1));
     return angle * part->excitation.shortest_period / 6.283185307179586;
 }
 
@@ -126,15 +126,13 @@ void dalcs_length_shorten(struct dalcs_radau_part *part, double ratio, int stuck
     part->grew = false;
 }
 
-double dalcs_length_rungs_promised(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                                   double ratio) {
+double dalcs_length_rungs_promised(const struct dalcs_radau_part *part, double ratio) {
     double rungs = log2(safety / ratio) / (double)(part->stages.method->s + 1);
-    return ratio * r->inner_tolerance < unseen ? dalcs_larger(rungs, rungs_unseen) : rungs;
+    return ratio * part->inner_tolerance < unseen ? dalcs_larger(rungs, rungs_unseen) : rungs;
 }
 
-void dalcs_length_lengthen(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                           double ratio) {
-    double rungs = dalcs_length_rungs_promised(r, part, ratio);
+void dalcs_length_lengthen(struct dalcs_radau_part *part, double ratio) {
+    double rungs = dalcs_length_rungs_promised(part, ratio);
     bool promising = rungs > 1.0;
     int up = rungs > DALCS_LENGTH_MOST_RUNGS ? DALCS_LENGTH_MOST_RUNGS : promising ? (int)rungs : 1;
     while (up > 0 && dalcs_radau_ladder(part, part->level - up) > part->longest) {

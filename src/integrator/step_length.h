@@ -30,12 +30,11 @@ double dalcs_length_known_span(const struct dalcs_radau_part *part, double from,
 double dalcs_length_fitted(struct dalcs_radau_part *part, double limit);
 
 /* s; the step at which the error of following the fastest source is about what is allowed. */
-double dalcs_length_promising(const struct dalcs_radau *r, const struct dalcs_radau_part *part);
+double dalcs_length_promising(const struct dalcs_radau_part *part);
 
 /* How many rungs longer a step would be as accurate as it need be; ratio: its error over what is
  * allowed. */
-double dalcs_length_rungs_promised(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                                   double ratio);
+double dalcs_length_rungs_promised(const struct dalcs_radau_part *part, double ratio);
 
 /* Moves part->level down after a step that is not accurate; stuck: so many in a row, before this one,
  * that were no better for being shorter. */
@@ -43,7 +42,6 @@ void dalcs_length_shorten(struct dalcs_radau_part *part, double ratio, int stuck
 
 /* Moves part->level up after a step that is, if the error promises it, or, as errors near rounding
  * promise nothing, now and then to see. */
-void dalcs_length_lengthen(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                           double ratio);
+void dalcs_length_lengthen(struct dalcs_radau_part *part, double ratio);
 
 #endif

@@ -24,12 +24,12 @@ Kinds of entries, for `--method euler`:
 Without "tol" the tolerance is 1e-12 of the value, or of the scale (the largest voltage or current
 of the run, or "scale") where the value is zero.
 
-The default method has no step of its own: it runs with tolerances of 1e-6 and of 1e-9, and each
-value of be, tran and diff must be the exact one to that part of the largest value of its signal
-(of the largest voltage or current of the run for a sum of signals and for what is zero). "exact"
+The default method has no step of its own: it runs with tolerances of 1e-6 and of 1e-9. Small
+circuits are right to 1e-9 with either, so each value of be, tran and diff must be the exact one to
+1e-9 of the largest value of its signal (of the largest voltage or current of the run for a sum of signals and for what is zero). "exact"
 is a closed form of the circuit where "val" is one of implicit Euler, or an approximation. range,
 op, mean, rcp, infeasible and multi mean the same as above; event times are exact to 1e-11 of the
-stop time at 1e-9; sum, hmax and what has a "step" belong to implicit Euler alone.
+stop time; sum, hmax and what has a "step" belong to implicit Euler alone.
 """
 
 import json
@@ -50,7 +50,7 @@ INTERVAL = 1e-9      # relative, bounds of what is not determined
 FRACTIONS = (1, 2, 5)
 DEFAULT = 1e-6       # the default tolerance
 FINE = 1e-9
-EVENT_TIME = 1e-11   # of the stop time, at the fine tolerance
+EVENT_TIME = 1e-11   # of the stop time
 NOTHING = 1e-9       # of the largest signal of its kind: a signal that is zero
 
 
@@ -299,7 +299,7 @@ class DefaultCase(HardCase):
             if re.search(r"\)[+-]", entry["q"]) or largest <= NOTHING * scale:
                 largest = scale
             self.checker.close(result.at(entry["q"], entry["t"]), wanted,
-                               (tolerance or DEFAULT) * largest,
+                               FINE * largest,
                                f"{entry['q']} at {entry['t']}, tolerance {tolerance or DEFAULT:g}")
 
     tran = be
@@ -309,7 +309,10 @@ class DefaultCase(HardCase):
         return [(None, self.toleranced(FINE))]
 
     def event(self, entry):
-        result = self.toleranced(FINE)
+        for tolerance in (None, FINE):
+            self.event_at(entry, self.toleranced(tolerance))
+
+    def event_at(self, entry, result):
         state = "on" if entry["on"] else "off"
         times = [event["time"] for event in result.report["events"]
                  if event["element"] == entry["q"] and event["state"] == state]

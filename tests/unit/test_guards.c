@@ -39,8 +39,8 @@ static void start_with(const char *netlist) {
     component = (struct dalcs_component){.system = s, .circuit = &t.circuit};
     component.osnsp = osnsp;
     r = (struct dalcs_radau){.options = {.stop = 100.0}, .resolution = 1e-13};
-    r.inner_tolerance = 3e-8;
     part = (struct dalcs_radau_part){.component = &component,
+                                     .inner_tolerance = 3e-8,
                                      .h = 1.0,
                                      .rounding = 1.0,
                                      .out = out,
@@ -97,7 +97,7 @@ static bool falls_at_once(void) {
 }
 
 static void arm(void) {
-    dalcs_guards_arm(&r, &part, false, unit);
+    dalcs_guards_arm(&part, false, unit);
 }
 
 /* One line for d1, all else far above 0. */
@@ -169,7 +169,7 @@ START_TEST(test_arming) {
     draw("d1", -1e-9, 0.5);
     arm();
     ck_assert(isinf(first_fall(1.0)));
-    dalcs_guards_arm(&r, &part, true, unit); /* later on it is clear */
+    dalcs_guards_arm(&part, true, unit); /* later on it is clear */
     ck_assert(armed[find_pair(component.system, "d1")]);
     draw("d1", 1e-9, -1e-9); /* an armed one falls */
     ck_assert_double_eq_tol(first_fall(1.0), 0.5, 1e-14);
@@ -224,12 +224,12 @@ END_TEST
 START_TEST(test_recover) {
     start();
     arm_beside(-1e-6, 0.5);
-    ck_assert(falls_at_once() && dalcs_guards_recover(&r, &part, unit));
+    ck_assert(falls_at_once() && dalcs_guards_recover(&part, unit));
     draw("d2", -1e-6, -1e-7);
-    ck_assert(falls_at_once() && !dalcs_guards_recover(&r, &part, unit));
+    ck_assert(falls_at_once() && !dalcs_guards_recover(&part, unit));
     draw("d2", 1.0, 1.0);
     draw("d1", -1e-4, 0.5);
-    ck_assert(falls_at_once() && !dalcs_guards_recover(&r, &part, unit));
+    ck_assert(falls_at_once() && !dalcs_guards_recover(&part, unit));
     finish();
 }
 
