@@ -173,17 +173,22 @@ double dalcs_radau_micro_length(const struct dalcs_radau *r, const struct dalcs_
     return h;
 }
 
-/* y1 and y2 by two micro-steps of length h. */
-static enum dalcs_status micro_steps(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                     double h) {
+/* y1 and y2 by two micro-steps of length h, in each of which sources go on by tau. */
+static enum dalcs_status pair_of_steps(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       double h, double tau) {
     struct dalcs_component *c = part->component;
     r->restarts++;
-    DALCS_TRY(solve(r, part, h, h, part->x, part->y1));
+    DALCS_TRY(solve(r, part, h, tau, part->x, part->y1));
     memcpy(part->w1, c->osnsp.w, (size_t)c->system->n_pairs * sizeof(double));
     long pivots = c->osnsp.counters.pivots;
-    DALCS_TRY(solve(r, part, h, 2.0 * h, part->y1, part->y2));
+    DALCS_TRY(solve(r, part, h, 2.0 * tau, part->y1, part->y2));
     part->seen = c->osnsp.counters.pivots == pivots ? h : INFINITY;
     return DALCS_OK;
+}
+
+static enum dalcs_status micro_steps(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                     double h) {
+    return pair_of_steps(r, part, h, h);
 }
 
 /* Where a component is not passive, a state may jump although another one runs away, the farther the
@@ -260,6 +265,21 @@ static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_par
     return DALCS_OK;
 }
 
+/* A jump that no problem without time tells is what micro-steps of length h see of it with the sources as they are just
+ * behind it: where they fall at once, the state would follow them for a while only. */
+static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                        double h) {
+    bool noticeable;
+    double closer;
+    enum dalcs_status status = pair_of_steps(r, part, h, 0.0);
+    if (status == DALCS_OK && extrapolate(part, part->after, &noticeable, &closer)) {
+        DALCS_TRY(find_jump(r, part, h));
+    }
+    DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+    DALCS_TRY(micro_steps(r, part, h)); /* for the mode */
+    return take_jump(r, part);
+}
+
 void dalcs_radau_go_after(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     if (r->base->energy != NULL) {
         dalcs_energy_move(r->base->energy, part, part->after);
@@ -283,10 +303,13 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
     }
     while (moves && noticeable) {
         DALCS_TRY(find_jump(r, part, h));
+        if (!e->jump.is_covered) {
+            return take_seen_jump(r, part, h);
+        }
         bool is_last = shorter * h < 64.0 * r->resolution;
         bool is_whole = e->jump.is_known
                             ? dalcs_jumps_agree(s, part->x, part->after, part->y1, e->jump.after)
-                            : is_last || !e->jump.is_covered;
+                            : is_last;
         if (is_whole || (e->jump.is_known && is_noticeable(r, part))) {
             DALCS_TRY(take_jump(r, part));
         }

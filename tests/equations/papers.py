@@ -147,9 +147,10 @@ def check_closed_forms(checker, program):
     for time, value in ((8e-3, 4.31117304732), (18e-3, 4.72092260618)):
         checker.close(at(held, "z", time), value, 1e-6, f"figure 2.1: z({time})")
         checker.close(at(circuit, "v(2,3)", time), value, 1e-6, f"figure 2.1: v({time})")
-    _, sweeping, _ = run(program, "bt10_fig_2_2.dalcs")
-    for time, value in ((1, 0.75), (3, 1.5), (4.9, 1.5), (6, 3), (8.5, 3.125), (10, 3.5)):
-        checker.close(at(sweeping, "x", time), value, 1e-9, f"figure 2.2: x({time})")
+    for tolerance in ("1e-3", "1e-6", "1e-9", "1e-12"):  # the jump is seen by micro-steps alone
+        _, sweeping, _ = run(program, "bt10_fig_2_2.dalcs", "--tol", tolerance)
+        for time, value in ((1, 0.75), (3, 1.5), (4.9, 1.5), (6, 3), (8.5, 3.125), (10, 3.5)):
+            checker.close(at(sweeping, "x", time), value, 1e-9, f"figure 2.2, {tolerance}: x({time})")
     for name, signals in (("bt10_two_coils.dalcs", ("x1", "x2")),
                           ("bt10_two_coils.cir", ("i(l1)", "i(l2)"))):
         _, coils, _ = run(program, name)
