@@ -32,7 +32,7 @@ enum {
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
     MOST_FLIPS = 12,
     MOST_FLIPS_CLOSER = 2,
-    MOST_REFINED = 2,
+    MOST_REFINED = 4,
     FALL_BACK_LEAST = 5,
     FALL_BACK = 14, /* steps of implicit Euler start this many rungs below */
     SLIDING = 12    /* and are this many below the longest one where a switch slides */
