@@ -40,15 +40,27 @@ enum { FIRST_STEPS = 64 };
 static const double below_twice = 2.0 * (1.0 - 1e-9);
 
 /* Unknowns up to which a step is a dense map, over the limit of the OSNSP's maps: factors are cheaper
- * from about three dozen on, but a map is as exact as doubles can be, which tight tolerances need. */
+ * from about three dozen on, but a map is as exact as doubles can be, which tight tolerances need where
+ * conductances spread by so much: random converters lose digits on factors from 1e7 on. With few stages
+ * steps are short, and there are enough of them for each map. */
 static const double maps_when_tight = 1.5, maps_when_not = 0.5;
-static const double tight = 1e-7;
+static const double tight = 1e-7, spread_of_mild = 1e6;
+
+enum { MANY_STAGES = 7 };
 
 /* A part of so many unknowns, over the same limit, gains from nine stages: measured, doc/methods.md. */
 static const double very_small = 0.25;
 
-static int map_limit(const struct dalcs_radau_options *o, int dense_limit) {
-    return (int)((o->tolerance < tight ? maps_when_tight : maps_when_not) * dense_limit);
+/* S: the least and the most that tie a voltage to a current in a part. */
+struct conductances {
+    double least, most; /* INFINITY and 0: none */
+};
+
+static int map_limit(const struct dalcs_radau_options *o, const struct conductances *g, int stages,
+                     int dense_limit) {
+    bool is_worth_it = g->most > spread_of_mild * g->least || stages < MANY_STAGES;
+    bool more = o->tolerance < tight && is_worth_it;
+    return (int)((more ? maps_when_tight : maps_when_not) * dense_limit);
 }
 
 /* The tolerance that a part is held to. Whoever chooses the stages or the step gets what is asked for. */
@@ -183,34 +195,37 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
  * current through the least of its conductances, and a millionth of that counts as nothing. */
 static const double nothing = 1e-6;
 
-/* S: the least and the most that tie a voltage to a current in a row, over `time` where it is one of rates. */
-static void find_conductances(const struct dalcs_system *s, const struct dalcs_csr *m, int row,
-                              bool is_current, double time, double *least, double *most) {
+/* Those of a row, over `time` where it is one of rates. */
+static void see_conductances(const struct dalcs_system *s, const struct dalcs_csr *m, int row,
+                             bool is_current, double time, struct conductances *seen) {
     for (int k = m->p[row]; k < m->p[row + 1]; k++) {
         if (s->column_is_current[m->j[k]] != is_current && m->x[k] != 0.0) {
             double size = fabs(m->x[k]) / time;
             double g = is_current ? size : 1.0 / size;
-            *least = fmin(*least, g);
-            *most = fmax(*most, g);
+            seen->least = fmin(seen->least, g);
+            seen->most = fmax(seen->most, g);
         }
     }
 }
 
-static void find_cross_scales(const struct dalcs_system *s, double stop, double *cross) {
-    double least = INFINITY;
-    double most = 0.0;
+static struct conductances find_conductances(const struct dalcs_system *s, double stop) {
+    struct conductances g = {.least = INFINITY};
     int n_equations = dalcs_system_n_equations(s);
     for (int r = 0; r < n_equations; r++) {
-        find_conductances(s, &s->A, r, s->row_is_current[r], 1.0, &least, &most);
+        see_conductances(s, &s->A, r, s->row_is_current[r], 1.0, &g);
         if (r < s->n_x) {
-            find_conductances(s, &s->P, r, s->row_is_current[r], stop, &least, &most);
+            see_conductances(s, &s->P, r, s->row_is_current[r], stop, &g);
         }
     }
     for (int d = 0; d < s->n_pairs; d++) {
-        find_conductances(s, &s->C, d, !s->column_is_current[n_equations + d], 1.0, &least, &most);
+        see_conductances(s, &s->C, d, !s->column_is_current[n_equations + d], 1.0, &g);
     }
-    cross[0] = most > 0.0 ? nothing / most : nothing;
-    cross[1] = most > 0.0 ? nothing * least : nothing;
+    return g;
+}
+
+static void find_cross_scales(const struct conductances *g, double *cross) {
+    cross[0] = g->most > 0.0 ? nothing / g->most : nothing;
+    cross[1] = g->most > 0.0 ? nothing * g->least : nothing;
 }
 
 /* One of the rungs is a step that follows the fastest source, which sets the pace where nothing else
@@ -236,9 +251,11 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->because = steps ? part->because : "no state, no diode and no switch";
     DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system));
     DALCS_TRY(dalcs_commands_setup(&part->commands, c->circuit, c->system));
+    struct conductances g = find_conductances(c->system, r->options.stop);
+    find_cross_scales(&g, part->cross);
     DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, stages,
-                                 map_limit(&r->options, osnsp->dense_limit), osnsp->rcond_min,
-                                 osnsp->cache_bytes / (size_t)r->n_parts));
+                                 map_limit(&r->options, &g, stages, osnsp->dense_limit),
+                                 osnsp->rcond_min, osnsp->cache_bytes / (size_t)r->n_parts));
     part->stages.unseen = r->options.fixed_step > 0.0 ? 0.0 : unseen_part * part->inner_tolerance;
     DALCS_TRY(dalcs_arena_reserve(&part->arena, room_for_part(c->system)));
     DALCS_TRY(allocate(part));
@@ -251,7 +268,6 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
         return DALCS_E_NOMEM;
     }
     list_used_inputs(part, r->base->network, used);
-    find_cross_scales(c->system, r->options.stop, part->cross);
     part->longest = dalcs_length_longest(r, part);
     part->longest_needed = below_twice * dalcs_length_of_spans(part);
     double first = fmin(part->longest_needed, fmin(part->longest, r->options.stop / FIRST_STEPS));
