@@ -1,4 +1,5 @@
 /* radau.c - the parts of a run: set up, started, passed from segment to segment, evaluated. */
+#include "choice.h"
 #include "cycle.h"
 #include "dense_map.h"
 #include "energy.h"
@@ -17,18 +18,11 @@
 /* Errors are kept this much smaller than asked for: they add up over a run. */
 static const double inner_part = 0.03;
 
-/* What a part aims at whose steps are all dense maps, where less is asked for: measured, doc/methods.md. A run
- * takes no longer for it, and an event is where it should be to 1e-11 of the run. */
-static const double aimed = 1e-9;
-
 static const double largest_inner = 3e-7;
 static const double smallest_inner = 1e-12;
 
 /* So much of them is lost among them, though rounding may be in currents that follow from voltages. */
 static const double unseen_part = 1e-5;
-
-/* Where the number of stages of a large component without a sine changes: measured, doc/methods.md. */
-static const double loose = 1e-4;
 
 /* A step that follows the fastest source, over the one that just would if nothing else were there:
  * measured, currents of capacitors are more demanding than the source. */
@@ -39,75 +33,8 @@ enum { FIRST_STEPS = 64 };
 /* There is a power of 2 from a length up to twice that. */
 static const double below_twice = 2.0 * (1.0 - 1e-9);
 
-/* Unknowns up to which a step is a dense map, over the limit of the OSNSP's maps: factors are cheaper
- * from about three dozen on, but a map is as exact as doubles can be, which tight tolerances need where
- * conductances spread by so much: random converters lose digits on factors from 1e7 on. With few stages
- * steps are short, and there are enough of them for each map. */
-static const double maps_when_tight = 1.5, maps_when_not = 0.5;
-static const double tight = 1e-7, spread_of_mild = 1e6;
-
-enum { MANY_STAGES = 7 };
-
-/* A part of so many unknowns, over the same limit, gains from nine stages: measured, doc/methods.md. */
-static const double very_small = 0.25;
-
-/* S: the least and the most that tie a voltage to a current in a part. */
-struct conductances {
-    double least, most; /* INFINITY and 0: none */
-};
-
-static int map_limit(const struct dalcs_radau_options *o, const struct conductances *g, int stages,
-                     int dense_limit) {
-    bool is_worth_it = g->most > spread_of_mild * g->least || stages < MANY_STAGES;
-    bool more = o->tolerance < tight && is_worth_it;
-    return (int)((more ? maps_when_tight : maps_when_not) * dense_limit);
-}
-
-/* The tolerance that a part is held to. Whoever chooses the stages or the step gets what is asked for. */
-static double tolerance_of(const struct dalcs_radau_options *o, const struct dalcs_component *c,
-                           int dense_limit) {
-    bool is_small = dalcs_system_n_columns(c->system) <= (int)(maps_when_not * dense_limit);
-    bool is_free = o->stages == 0 && !(o->fixed_step > 0.0);
-    return is_small && is_free ? fmin(o->tolerance, aimed) : o->tolerance;
-}
-
 static double inner_tolerance_of(double tolerance) {
     return fmax(smallest_inner, fmin(largest_inner, inner_part * tolerance));
-}
-
-static bool has_source(const struct dalcs_component *c, enum dalcs_stimulus_kind kind) {
-    bool found = false;
-    for (int k = 1; k < c->system->n_inputs && !found; k++) {
-        found = c->circuit->stimulus[c->system->stimulus[k]].kind == kind;
-    }
-    return found;
-}
-
-static bool is_pulsed(const struct dalcs_component *c) {
-    return has_source(c, DALCS_STIMULUS_PULSE);
-}
-
-static bool is_swinging(const struct dalcs_component *c) {
-    return has_source(c, DALCS_STIMULUS_SIN) || has_source(c, DALCS_STIMULUS_TONES);
-}
-
-/* Small components pay little for more stages, mostly as dense maps, and save steps and maps. Nine are
- * too many where pulses end steps before errors do, where a map is dear, and where controlled sources may
- * make the index 3: second derivatives show ten times the rounding of seven. Large components pay for each
- * stage with a factorisation in some new modes, and save steps where a sine sets their length. */
-static int choose_stages(double tolerance, const struct dalcs_component *c, int dense_limit,
-                         const char **because) {
-    int n = dalcs_system_n_columns(c->system);
-    if (n > dense_limit) {
-        bool few = is_pulsed(c) || !is_swinging(c);
-        bool fewer = few && tolerance >= loose;
-        *because = fewer ? "large, loose tolerance" : few ? "large" : "large, sine";
-        return fewer ? 3 : few ? 5 : 7;
-    }
-    bool many = tolerance < tight && n <= (int)(very_small * dense_limit) && c->system->monotone &&
-                !is_pulsed(c);
-    *because = many ? "very small" : "small";
-    return many ? 9 : 7;
 }
 
 static bool has_memory_or_sides(const struct dalcs_system *s) {
@@ -195,35 +122,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
  * current through the least of its conductances, and a millionth of that counts as nothing. */
 static const double nothing = 1e-6;
 
-/* Those of a row, over `time` where it is one of rates. */
-static void see_conductances(const struct dalcs_system *s, const struct dalcs_csr *m, int row,
-                             bool is_current, double time, struct conductances *seen) {
-    for (int k = m->p[row]; k < m->p[row + 1]; k++) {
-        if (s->column_is_current[m->j[k]] != is_current && m->x[k] != 0.0) {
-            double size = fabs(m->x[k]) / time;
-            double g = is_current ? size : 1.0 / size;
-            seen->least = fmin(seen->least, g);
-            seen->most = fmax(seen->most, g);
-        }
-    }
-}
-
-static struct conductances find_conductances(const struct dalcs_system *s, double stop) {
-    struct conductances g = {.least = INFINITY};
-    int n_equations = dalcs_system_n_equations(s);
-    for (int r = 0; r < n_equations; r++) {
-        see_conductances(s, &s->A, r, s->row_is_current[r], 1.0, &g);
-        if (r < s->n_x) {
-            see_conductances(s, &s->P, r, s->row_is_current[r], stop, &g);
-        }
-    }
-    for (int d = 0; d < s->n_pairs; d++) {
-        see_conductances(s, &s->C, d, !s->column_is_current[n_equations + d], 1.0, &g);
-    }
-    return g;
-}
-
-static void find_cross_scales(const struct conductances *g, double *cross) {
+static void find_cross_scales(const struct dalcs_conductances *g, double *cross) {
     cross[0] = g->most > 0.0 ? nothing / g->most : nothing;
     cross[1] = g->most > 0.0 ? nothing * g->least : nothing;
 }
@@ -242,20 +141,16 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     c->osnsp.is_passing = true;
     bool steps = has_memory_or_sides(c->system);
     part->kind = steps ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
-    double tolerance = tolerance_of(&r->options, c, osnsp->dense_limit);
-    part->inner_tolerance = inner_tolerance_of(tolerance);
-    int stages = r->options.stages;
-    if (stages == 0) {
-        stages = choose_stages(tolerance, c, osnsp->dense_limit, &part->because);
-    }
-    part->because = steps ? part->because : "no state, no diode and no switch";
+    struct dalcs_conductances g = dalcs_conductances_find(c->system, r->options.stop);
+    find_cross_scales(&g, part->cross);
+    struct dalcs_choice choice = dalcs_choice_make(&r->options, c, &g, osnsp->dense_limit);
+    part->inner_tolerance = inner_tolerance_of(choice.tolerance);
+    part->because = steps ? choice.because : "no state, no diode and no switch";
     DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system));
     DALCS_TRY(dalcs_commands_setup(&part->commands, c->circuit, c->system));
-    struct conductances g = find_conductances(c->system, r->options.stop);
-    find_cross_scales(&g, part->cross);
-    DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, stages,
-                                 map_limit(&r->options, &g, stages, osnsp->dense_limit),
-                                 osnsp->rcond_min, osnsp->cache_bytes / (size_t)r->n_parts));
+    DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, choice.stages,
+                                 choice.map_limit, osnsp->rcond_min,
+                                 osnsp->cache_bytes / (size_t)r->n_parts));
     part->stages.unseen = r->options.fixed_step > 0.0 ? 0.0 : unseen_part * part->inner_tolerance;
     DALCS_TRY(dalcs_arena_reserve(&part->arena, room_for_part(c->system)));
     DALCS_TRY(allocate(part));
