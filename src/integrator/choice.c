@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/* What a part aims at whose steps are all dense maps, where less is asked for. A run takes no longer for it, and an
- * event is where it should be to 1e-11 of the run. */
+/* What a small part aims at where less is asked for. A run takes hardly longer for it, and an event is where it should
+ * be to 1e-11 of the run. */
 static const double aimed = 1e-9;
 
 /* Where the number of stages of a large part without a sine changes. */
@@ -68,9 +68,8 @@ static bool is_swinging(const struct dalcs_component *c) {
 
 /* Whoever chooses the stages or the step gets what is asked for. */
 static double choose_tolerance(const struct dalcs_radau_options *o, int n, int dense_limit) {
-    bool is_small = n <= (int)(maps_when_not * dense_limit);
     bool is_free = o->stages == 0 && !(o->fixed_step > 0.0);
-    return is_small && is_free ? fmin(o->tolerance, aimed) : o->tolerance;
+    return n <= dense_limit && is_free ? fmin(o->tolerance, aimed) : o->tolerance;
 }
 
 /* Small parts pay little for more stages, mostly as dense maps, and save steps and maps. Nine are

@@ -42,7 +42,8 @@ START_TEST(test_small_parts_aim_higher) {
     struct dalcs_radau_options fine = usual;
     fine.tolerance = 1e-11;
     ck_assert_double_eq(choice_of(source, 2, 1e-3, &fine).tolerance, 1e-11);
-    ck_assert_double_eq(choice_of(source, 20, 1e-3, &usual).tolerance, 1e-6);
+    ck_assert_double_eq(choice_of(source, 15, 1e-3, &usual).tolerance, 1e-9);
+    ck_assert_double_eq(choice_of(source, 40, 1e-3, &usual).tolerance, 1e-6);
 }
 
 END_TEST
@@ -65,12 +66,12 @@ END_TEST
 START_TEST(test_maps) {
     struct dalcs_radau_options fine = usual;
     fine.tolerance = 1e-9;
-    ck_assert_int_eq(choice_of(source, 20, 1e-3, &usual).map_limit, 32);
-    ck_assert_int_eq(choice_of(source, 20, 1e-3, &fine).map_limit, 32);
-    ck_assert_int_eq(choice_of(source, 20, 1e-7, &fine).map_limit, 96);
-    ck_assert_int_eq(choice_of(source, 20, 1e-7, &usual).map_limit, 32);
+    ck_assert_int_eq(choice_of(source, 40, 1e-3, &usual).map_limit, 32);
+    ck_assert_int_eq(choice_of(source, 40, 1e-3, &fine).map_limit, 32);
+    ck_assert_int_eq(choice_of(source, 40, 1e-7, &fine).map_limit, 96);
+    ck_assert_int_eq(choice_of(source, 40, 1e-7, &usual).map_limit, 32);
     fine.stages = 3;
-    ck_assert_int_eq(choice_of(source, 20, 1e-3, &fine).map_limit, 96);
+    ck_assert_int_eq(choice_of(source, 40, 1e-3, &fine).map_limit, 96);
 }
 
 END_TEST
