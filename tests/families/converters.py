@@ -15,9 +15,8 @@ may fall back to implicit Euler.
 The seeds of meson.build were chosen because they pass. Others do not today: of the 324 seeds from 0 to 323,
 some 50 fail, one of them at 1e-6: 171, by 1.4e-6; parts of up to 64 unknowns are held to 1e-9 there, too. At
 1e-9 the time of an event, or a current that is right to 1e-9, sets what rings or rises behind it, and the
-reference may be off as well. 126 takes minutes:
-ringing of 24 ns that nothing damps is followed for 50 ms. Those that have no operating point, six of twelve_pulse,
-run from rest.
+reference may be off as well. 126 takes minutes: ringing of 24 ns that nothing damps is followed for 50 ms.
+Those that have no operating point, six of twelve_pulse, run from rest.
 """
 
 import bisect
