@@ -464,7 +464,7 @@ struct dalcs_report {
     const struct dalcs_component_method {
         const char *method;  /* "euler", "radau", or "algebraic": no memory, solved where wanted */
         int stages;          /* of radau, else 1 */
-        const char *because; /* "tolerance 1e-06", "no state and no diode"; NULL: asked for */
+        const char *because; /* "very small, held to 1e-9"; NULL: asked for */
     } * component;           /* [n_components], .tran only */
 
     struct {

@@ -5,7 +5,7 @@
 
 /* What a small part aims at where less is asked for. A run takes hardly longer for it, and an event is where it should
  * be to 1e-11 of the run. */
-static const double aimed = 1e-9;
+static const double aimed = 1e-9; /* as choose_stages() says in words */
 
 /* Where the number of stages of a large part without a sine changes. */
 static const double loose = 1e-4;
@@ -76,8 +76,8 @@ static double choose_tolerance(const struct dalcs_radau_options *o, int n, int d
  * too many where pulses end steps before errors do, where a map is dear, and where controlled sources may
  * make the index 3: second derivatives show ten times the rounding of seven. Large parts pay for each
  * stage with a factorisation in some new modes, and save steps where a sine sets their length. */
-static int choose_stages(double tolerance, const struct dalcs_component *c, int n, int dense_limit,
-                         const char **because) {
+static int choose_stages(double tolerance, bool does_better, const struct dalcs_component *c, int n,
+                         int dense_limit, const char **because) {
     if (n > dense_limit) {
         bool few = is_pulsed(c) || !is_swinging(c);
         bool fewer = few && tolerance >= loose;
@@ -86,7 +86,9 @@ static int choose_stages(double tolerance, const struct dalcs_component *c, int 
     }
     bool many = tolerance < tight && n <= (int)(very_small * dense_limit) && c->system->monotone &&
                 !is_pulsed(c);
-    *because = many ? "very small" : "small";
+    static const char *const why[2][2] = {{"small", "very small"},
+                                          {"small, held to 1e-9", "very small, held to 1e-9"}};
+    *because = why[does_better][many];
     return many ? 9 : 7;
 }
 
@@ -104,7 +106,8 @@ struct dalcs_choice dalcs_choice_make(const struct dalcs_radau_options *o,
     struct dalcs_choice choice = {.tolerance = choose_tolerance(o, n, dense_limit),
                                   .stages = o->stages};
     if (choice.stages == 0) {
-        choice.stages = choose_stages(choice.tolerance, c, n, dense_limit, &choice.because);
+        choice.stages = choose_stages(choice.tolerance, choice.tolerance < o->tolerance, c, n,
+                                      dense_limit, &choice.because);
     }
     choice.map_limit = choose_map_limit(choice.tolerance, g, choice.stages, dense_limit);
     return choice;

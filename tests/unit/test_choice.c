@@ -37,11 +37,13 @@ START_TEST(test_small_parts_aim_higher) {
     struct dalcs_choice few = choice_of(source, 2, 1e-3, &usual);
     ck_assert_double_eq(few.tolerance, 1e-9);
     ck_assert_int_eq(few.stages, 9);
+    ck_assert_str_eq(few.because, "very small, held to 1e-9");
     ck_assert_double_eq(choice_of(gate, 2, 1e-3, &usual).tolerance, 1e-9);
     ck_assert_int_eq(choice_of(gate, 2, 1e-3, &usual).stages, 7);
     struct dalcs_radau_options fine = usual;
     fine.tolerance = 1e-11;
     ck_assert_double_eq(choice_of(source, 2, 1e-3, &fine).tolerance, 1e-11);
+    ck_assert_str_eq(choice_of(source, 2, 1e-3, &fine).because, "very small");
     ck_assert_double_eq(choice_of(source, 15, 1e-3, &usual).tolerance, 1e-9);
     ck_assert_double_eq(choice_of(source, 40, 1e-3, &usual).tolerance, 1e-6);
 }
