@@ -17,9 +17,6 @@ enum { MOST_PERIODS = 64 };
 /* Shorter runs have nothing to repeat. */
 static const double fewest_periods = 3.0;
 
-/* What states may miss by coming back, over what a step may: in all periods to come together. */
-static const double part_of_step = 1.0;
-
 /* As good as rounding lets them. */
 static const double rounded = 4.0 * DBL_EPSILON;
 
@@ -143,7 +140,8 @@ static double distance(const struct dalcs_radau *r, const struct dalcs_radau_par
     const struct dalcs_periodic *periodic = part->periodic;
     const struct dalcs_osnsp *p = &part->component->osnsp;
     double to_come = (r->options.stop - part->t) / periodic->period;
-    double share = dalcs_larger(part_of_step * part->inner_tolerance / to_come, rounded);
+    /* In all periods to come together states may miss what a step may. */
+    double share = dalcs_larger(part->inner_tolerance / to_come, rounded);
     double late = fabs(part->t - periodic->since - periodic->period);
     if (late > same_event * periodic->period ||
         !dalcs_mode_is(periodic->mode, p->mode, p->n_words)) {
