@@ -1,6 +1,7 @@
 """The whole process on the half-wave rectifier: from the netlist to a raw file that was not there."""
 
 import os
+import shutil
 import statistics
 import subprocess
 import time
@@ -25,13 +26,15 @@ def once(command, folder):
 
 
 def measure(dalcs, netlist, settings, methods, folder):
-    """`settings`: of ngspice, from its search."""
+    """`settings`: of ngspice, from its search. dalcs is copied first, as installing does: a program as the linker
+    has written it, piece by piece, takes 0.06 ms more, for it lies in the page cache in smaller pieces."""
+    installed = shutil.copy(dalcs, folder / "dalcs")
     commands = {"true, which does nothing": (["/bin/true"], None)}
     choices = {"euler": ["--method", "euler", "--step", "2u"],
                "radau": ["--method", "radau"], "auto": ["--method", "auto"]}
     for method in methods:
         commands[f"dalcs {' '.join(choices[method])}"] = (
-            [dalcs, "run", netlist, "--quiet", "-o", "dalcs.raw", *choices[method]], "dalcs.raw")
+            [installed, "run", netlist, "--quiet", "-o", "dalcs.raw", *choices[method]], "dalcs.raw")
     for number, setting in enumerate(settings):
         path = folder / f"half_wave_{number}.cir"
         text = ngspice_deck.deck(netlist.read_text(encoding="utf-8"), setting, ["v(out)"], 0)
