@@ -17,7 +17,6 @@
 
 /* Errors are kept this much smaller than asked for: they add up over a run. */
 static const double inner_part = 0.03;
-
 static const double largest_inner = 3e-7;
 static const double smallest_inner = 1e-12;
 

@@ -26,10 +26,11 @@ of the run, or "scale") where the value is zero.
 
 The default method has no step of its own: it runs with tolerances of 1e-6 and of 1e-9. Small
 circuits are right to 1e-9 with either, so each value of be, tran and diff must be the exact one to
-1e-9 of the largest value of its signal (of the largest voltage or current of the run for a sum of signals and for what is zero). "exact"
-is a closed form of the circuit where "val" is one of implicit Euler, or an approximation. range,
-op, mean, rcp, infeasible and multi mean the same as above; event times are exact to 1e-11 of the
-stop time; sum, hmax and what has a "step" belong to implicit Euler alone.
+1e-9 of the largest value of its signal (of the largest voltage or current of the run for a sum of
+signals and for what is zero). "exact" is a closed form of the circuit where "val" is one of implicit
+Euler, or an approximation. range, op, mean, rcp, infeasible and multi mean the same as above; event
+times are exact to 1e-11 of the stop time; sum, hmax and what has a "step" belong to implicit Euler
+alone.
 """
 
 import json
