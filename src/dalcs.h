@@ -282,6 +282,13 @@ const char *dalcs_method_name(size_t index);
 /* Is there a method with so many stages? Of any number, whole or not. */
 #define DALCS_HAS_STAGES(n) ((n) == 1 || (n) == 3 || (n) == 5 || (n) == 7 || (n) == 9)
 
+/* How much of a waveform is checked against the netlist's devices (doc/methods.md). */
+enum dalcs_audit_mode {
+    DALCS_AUDIT_SAMPLE, /* as much as costs at most 5 % of the run, drawn with a fixed seed */
+    DALCS_AUDIT_FULL,   /* every segment */
+    DALCS_AUDIT_OFF
+};
+
 struct dalcs_run_options {
     const char *method; /* "auto", "radau" or "euler", the papers' implicit Euler; NULL: the
                            netlist's or the default */
@@ -312,15 +319,17 @@ struct dalcs_run_options {
     /* Tolerances of the certificate and of the OSNSP; see doc/methods.md. All dimensionless. */
     double certificate_tolerance; /* residual over its physical scale, 2e-13 */
     double proximal_weight[3];    /* the eps ladder 1e-8, 1e-7, 1e-6 */
-    double rcond_min;      /* a mode whose 1/condition is estimated smaller is singular, 1e-14 */
-    int max_outer;         /* proximal iterations per rung, 40 */
-    int max_pivots;        /* per solve, on top of twice the number of pairs, 200 */
-    size_t cache_bytes;    /* bound on factorisations kept over all components, 256 MiB */
-    int dense_limit;       /* components up to this many unknowns use dense step maps, 64 (radau:
+    double rcond_min;   /* a mode whose 1/condition is estimated smaller is singular, 1e-14 */
+    int max_outer;      /* proximal iterations per rung, 40 */
+    int max_pivots;     /* per solve, on top of twice the number of pairs, 200 */
+    size_t cache_bytes; /* bound on factorisations kept over all components, 256 MiB */
+    int dense_limit;    /* components up to this many unknowns use dense step maps, 64 (radau:
                               see doc/methods.md); this and the bound may change the last bits of
                               results */
-    size_t max_events;     /* events and jumps kept when recording, 1e6 */
-    const char *dump_path; /* where to write an OSNSP that failed; NULL: nowhere */
+    size_t max_events;  /* events and jumps kept when recording, 1e6 */
+    enum dalcs_audit_mode audit; /* of .tran; a defect above the tolerance ends the run with
+                                    DALCS_NOT_CONVERGED */
+    const char *dump_path;       /* where to write an OSNSP that failed; NULL: nowhere */
 };
 
 /* The values named above, all else 0. Owns nothing. */
@@ -495,6 +504,25 @@ struct dalcs_report {
                               the largest current or voltage; where one has just changed sides it may
                               be as large as the tolerance */
     } certificate;
+
+    /* Of .tran: laws of the netlist's devices, checked on the finished waveform. */
+    struct {
+        const char *mode;      /* "sample" or "full"; NULL: nothing was audited */
+        long instants;         /* at which laws were checked */
+        long segments;         /* between two events or ends of steps, of all parts */
+        long audited;          /* of them, those that were looked into */
+        long positions;        /* of switches, compared with their controls */
+        double worst, allowed; /* the worst defect over its scale, and what it was held to */
+        double time;           /* s, of that */
+        const char *where;     /* "d1", "KCL at out", "position of s1", "energy" */
+        size_t n_laws;
+
+        const struct dalcs_audited {
+            const char *law;
+            double defect; /* the worst, over its scale */
+            double time;   /* s */
+        } * law;           /* [n_laws] whose defect is not 0 */
+    } audit;
 
     size_t n_states;
     const char *const *state_name; /* [n_states] element names of capacitors and inductors */

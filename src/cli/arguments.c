@@ -27,7 +27,8 @@ enum {
     ALL_SIGNALS,
     ENERGY,
     ASCII,
-    SPLIT_STEPS
+    SPLIT_STEPS,
+    AUDIT
 };
 
 static const struct option option[] = {
@@ -46,6 +47,7 @@ static const struct option option[] = {
     {"dump", required_argument, NULL, DUMP},
     {"all-signals", no_argument, NULL, ALL_SIGNALS},
     {"energy", no_argument, NULL, ENERGY},
+    {"audit", required_argument, NULL, AUDIT},
     {"ascii", no_argument, NULL, ASCII},
     {"split-steps", no_argument, NULL, SPLIT_STEPS},
     {"quiet", no_argument, NULL, 'q'},
@@ -152,6 +154,19 @@ static enum dalcs_status parse_curve(struct dalcs_arguments *arguments, const st
     return DALCS_OK;
 }
 
+static enum dalcs_status parse_audit(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
+                                     const char *text) {
+    static const char *const name[] = {"sample", "full", "off"};
+    for (int k = 0; k < 3; k++) {
+        if (strcmp(text, name[k]) == 0) {
+            arguments->audit = (enum dalcs_audit_mode)k;
+            return DALCS_OK;
+        }
+    }
+    dalcs_cli_error(cli, "--audit: '%s' is none of sample, full and off", text);
+    return DALCS_E_OPTION;
+}
+
 static enum dalcs_status take(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                               int code, char **argv) {
     switch (code) {
@@ -196,6 +211,8 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     case ENERGY:
         arguments->energy = true;
         return DALCS_OK;
+    case AUDIT:
+        return parse_audit(arguments, cli, optarg);
     case ASCII:
         arguments->ascii = true;
         return DALCS_OK;

@@ -64,6 +64,8 @@ static const char help[] =
     "      --dump FILE     where to leave a one-step problem that could not be solved (default:\n"
     "                      beside the output, out.failed.dalcs for out.csv)\n"
     "      --all-signals   print the measurements of all signals, not of the first 24\n"
+    "      --audit HOW     check the waveform against the netlist's devices: sample (default; at\n"
+    "                      most 5 % of the run), full or off\n"
     "      --energy        print where the energy came from and where it went\n"
     "      --ascii         write raw files as text (default: .options filetype, else binary)\n"
     "      --dialect ngspice|ltspice|xyce\n"
@@ -227,6 +229,7 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     if (!arguments->report && !arguments->plot) {
         options.max_events = SHOWN_EVENTS;
     }
+    options.audit = arguments->audit;
     options.energy = arguments->report || arguments->energy;
     const struct dalcs_sink sink = {
         .user = run, .begin = begin, .row = row, .end = end, .progress = progress, .rows = rows};

@@ -125,8 +125,29 @@ static void write_work(FILE *out, const struct dalcs_report *report) {
     fprintf(out, ", %s wall\n", dalcs_quantity_write(text, report->work.wall_s, "s", 3));
 }
 
+/* "proof     audited at 4812 instants: worst defect 3.1e-10 of d1 at 1.24 ms; 511 switch positions right" */
+static void write_audit(FILE *out, const struct dalcs_report *report) {
+    char text[DALCS_QUANTITY_SIZE];
+    fprintf(out, "  proof     audited at %ld instant%s: worst defect %.2g", report->audit.instants,
+            plural(report->audit.instants), report->audit.worst);
+    if (report->audit.worst > 0.0) {
+        fprintf(out, " of %s at %s", report->audit.where,
+                dalcs_quantity_write(text, report->audit.time, "s", DIGITS));
+    }
+    const bool is_wrong = report->audit.worst > report->audit.allowed;
+    if (report->audit.positions > 0 && !is_wrong) {
+        fprintf(out, "; %ld switch position%s right", report->audit.positions,
+                plural(report->audit.positions));
+    }
+    fputs(is_wrong ? ", too much\n" : "\n", out);
+}
+
 static void write_certificate(FILE *out, const struct dalcs_report *report) {
     char text[DALCS_QUANTITY_SIZE];
+    if (report->audit.mode != NULL) {
+        write_audit(out, report);
+        return;
+    }
     fprintf(out, "  proof     worst residual %.2g", report->certificate.worst);
     if (report->certificate.where && report->certificate.where[0]) {
         fprintf(out, " at %s (%s)",

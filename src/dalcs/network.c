@@ -454,6 +454,9 @@ enum dalcs_status dalcs_network_build(struct dalcs_network *network,
     if (status == DALCS_OK) {
         status = dalcs_power_build(network, &layout);
     }
+    if (status == DALCS_OK && options->with_readout) {
+        status = dalcs_readout_build(network, &layout);
+    }
 done:
     free(wants_current);
     layout_finish(&layout);

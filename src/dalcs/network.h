@@ -7,6 +7,7 @@
 
 #include "circuit.h"
 #include "power.h"
+#include "readout.h"
 #include "system.h"
 
 /* A linear function of one system's solution: sum of coefficient * column, plus inputs. */
@@ -41,7 +42,8 @@ struct dalcs_network {
         struct dalcs_probe probe;
     } * state;
 
-    struct dalcs_power *power; /* [n_systems] what its devices give and take */
+    struct dalcs_power *power;     /* [n_systems] what its devices give and take */
+    struct dalcs_readout *readout; /* NULL: of a system file, or not asked for */
     double **initial;          /* [n_systems][n_x] x(0-) for uic: IC=, else .ic, else 0 */
     int n_nodes;               /* without ground */
     struct dalcs_arena arena;
@@ -56,6 +58,7 @@ struct dalcs_network {
 struct dalcs_network_options {
     bool clamp_initial_conditions; /* hold .ic voltages: the operating point of a .tran */
     bool silent;                   /* nothing that a person has not been told before */
+    bool with_readout;
 };
 
 /* Builds *network; the circuit must outlive it (names are borrowed). User errors (inductance that is

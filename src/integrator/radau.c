@@ -143,6 +143,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     struct dalcs_conductances g = dalcs_conductances_find(c->system, r->options.stop);
     find_cross_scales(&g, part->cross);
     struct dalcs_choice choice = dalcs_choice_make(&r->options, c, &g, osnsp->dense_limit);
+    part->tolerance = choice.tolerance;
     part->inner_tolerance = inner_tolerance_of(choice.tolerance);
     part->because = steps ? choice.because : "no state, no diode and no switch";
     DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system));
@@ -453,6 +454,10 @@ static void evaluate_stepped(struct dalcs_radau_part *part, double t, enum dalcs
         int k = part->used_input[i];
         c->u[s->n_x + k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
     }
+}
+
+void dalcs_radau_read(struct dalcs_radau *r, int part, double t, enum dalcs_side side) {
+    evaluate_stepped(&r->part[part], t, side);
 }
 
 static void evaluate_all_stepped(struct dalcs_radau *r, double t, enum dalcs_side side) {

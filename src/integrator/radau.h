@@ -56,6 +56,7 @@ struct dalcs_radau_part {
     } kind;
 
     const char *because;    /* why this kind and number of stages; NULL: asked for */
+    double tolerance;       /* that its waveforms are held to */
     double inner_tolerance; /* error that a step may have, over the scale of a signal */
     struct dalcs_excitation excitation;
     struct dalcs_commands commands;
@@ -208,6 +209,9 @@ enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) DALCS_MUST_C
  * the right one at their starts. Of few outputs or at many times: rows.h. */
 enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t,
                                        enum dalcs_side side) DALCS_MUST_CHECK;
+
+/* y and u of one component that steps, likewise. */
+void dalcs_radau_read(struct dalcs_radau *r, int part, double t, enum dalcs_side side);
 
 /* After a failure at t: y as far as each component came. */
 void dalcs_radau_break_off(struct dalcs_radau *r, double t);

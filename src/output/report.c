@@ -59,6 +59,34 @@ static void write_certificate(struct dalcs_json *json, const struct dalcs_report
     dalcs_json_close(json, '}');
 }
 
+/* Of every law that was checked the worst defect. */
+static void write_audit(struct dalcs_json *json, const struct dalcs_report *report) {
+    if (report->audit.mode == NULL) {
+        return;
+    }
+    dalcs_json_open(json, "audit", '{', false);
+    dalcs_json_string(json, "mode", report->audit.mode);
+    dalcs_json_integer(json, "instants", report->audit.instants);
+    dalcs_json_integer(json, "segments", report->audit.segments);
+    dalcs_json_integer(json, "audited", report->audit.audited);
+    dalcs_json_integer(json, "positions", report->audit.positions);
+    dalcs_json_number(json, "worst", report->audit.worst);
+    dalcs_json_number(json, "allowed", report->audit.allowed);
+    dalcs_json_number(json, "time", report->audit.time);
+    dalcs_json_string(json, "where", report->audit.where);
+    dalcs_json_open(json, "laws", '[', false);
+    for (size_t i = 0; i < report->audit.n_laws; i++) {
+        const struct dalcs_audited *law = &report->audit.law[i];
+        dalcs_json_open(json, NULL, '{', true);
+        dalcs_json_string(json, "law", law->law);
+        dalcs_json_number(json, "defect", law->defect);
+        dalcs_json_number(json, "time", law->time);
+        dalcs_json_close(json, '}');
+    }
+    dalcs_json_close(json, ']');
+    dalcs_json_close(json, '}');
+}
+
 static void write_states(struct dalcs_json *json, const char *key,
                          const struct dalcs_report *report, const double *value) {
     dalcs_json_open(json, key, '{', false);
@@ -249,6 +277,7 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     write_size(&json, report);
     write_work(&json, report);
     write_certificate(&json, report);
+    write_audit(&json, report);
     write_states(&json, "start", report, report->start);
     write_states(&json, "final", report, report->final);
     write_events(&json, report);

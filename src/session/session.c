@@ -104,8 +104,10 @@ static enum dalcs_status build(struct dalcs_session *s, struct dalcs_netlist *ne
         status = dalcs_source_conflicts(&s->circuit, &s->diag);
     }
     if (status == DALCS_OK) {
-        status = dalcs_network_build(&s->network, &s->circuit, &(struct dalcs_network_options){0},
-                                     &s->diag);
+        status = dalcs_network_build(
+            &s->network, &s->circuit,
+            &(struct dalcs_network_options){.with_readout = s->circuit.transient.present},
+            &s->diag);
         s->has_network = status == DALCS_OK;
     }
     return status;

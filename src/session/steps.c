@@ -67,7 +67,8 @@ enum dalcs_status dalcs_session_build(struct dalcs_session *session,
     if (status == DALCS_OK) {
         status = dalcs_source_conflicts(circuit, &diag);
         if (status == DALCS_OK) {
-            const struct dalcs_network_options options = {.silent = true};
+            const struct dalcs_network_options options = {
+                .silent = true, .with_readout = circuit->transient.present};
             status = dalcs_network_build(network, circuit, &options, &diag);
         }
         if (status != DALCS_OK) {

@@ -4,6 +4,8 @@
  * rows are evaluated when they are due. dalcs_transient_run at the end is the table of contents. */
 #include "measures.h"
 
+#include "audit_run.h"
+
 #include "cycle.h"
 #include "energy.h"
 #include "extremes.h"
@@ -134,11 +136,13 @@ static long progress_interval(const struct dalcs_network *n) {
 }
 
 static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct dalcs_euler *e,
-                                         struct dalcs_measures *measures) {
+                                         struct dalcs_measures *measures,
+                                         struct dalcs_audit_run *audit) {
     struct dalcs_recorder *recorder = &r->s->recorder;
     const long interval = progress_interval(&r->s->network);
     while (!dalcs_grid_at_end(&e->grid)) {
         DALCS_TRY(dalcs_euler_step(e));
+        dalcs_audit_run_step(audit);
         DALCS_TRY(dalcs_recorder_step(recorder, e));
         dalcs_measures_step(measures, e);
         if (e->at_jump && !dalcs_grid_at_end(&e->grid)) {
@@ -161,6 +165,7 @@ struct transient {
     struct dalcs_recorder *recorder;
     struct dalcs_radau *radau;
     struct dalcs_measures *measures;
+    struct dalcs_audit_run *audit;
     struct dalcs_rows rows;
     struct dalcs_filling filling;
     double t;
@@ -208,6 +213,7 @@ static enum dalcs_status row(struct transient *c, enum dalcs_side side, bool is_
         dalcs_rows_join(&c->rows, c->recorder->row); /* the row on the left was the last one */
     }
     DALCS_TRY(dalcs_recorder_row(c->recorder, &c->rows, c->t, is_due));
+    dalcs_audit_run_rows(c->audit, c->t, side, 1);
     c->next_row = dalcs_recorder_due(c->recorder);
     return DALCS_OK;
 }
@@ -223,6 +229,7 @@ static enum dalcs_status rows(struct transient *c, double until, bool ends) {
         DALCS_TRY(dalcs_rows_fill(&c->rows, time, n, DALCS_LEFT, &n));
         c->t = time[n - 1];
         DALCS_TRY(dalcs_recorder_rows(c->recorder, &c->rows, time, n, n_due));
+        dalcs_audit_run_rows(c->audit, c->t, DALCS_LEFT, n);
         c->next_row = dalcs_recorder_due(c->recorder);
         DALCS_TRY(tell_progress(c, n));
     }
@@ -287,6 +294,9 @@ static enum dalcs_status advance(struct transient *c) {
         DALCS_TRY(row(c, DALCS_LEFT, is_due));
         dalcs_filling_row(&c->filling, t, edge || (ends && happens));
     }
+    if (ends || t >= stop - near) {
+        dalcs_audit_run_leave(c->audit, t >= stop - near ? stop : t);
+    }
     if (t >= stop - near) {
         c->t = stop;
         return DALCS_OK;
@@ -294,6 +304,7 @@ static enum dalcs_status advance(struct transient *c) {
     if (ends) {
         radau->base->t = t;
         DALCS_TRY(dalcs_radau_pass(radau, t));
+        dalcs_audit_run_enter(c->audit, t);
         radau->base->t = t;
         DALCS_TRY(dalcs_recorder_events(c->recorder, radau->base));
     }
@@ -318,15 +329,20 @@ static void note_end_of_filling(struct dalcs_run *r, const struct dalcs_filling 
 }
 
 static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau *radau,
-                                        struct dalcs_measures *measures) {
-    struct transient c = {
-        .run = r, .recorder = &r->s->recorder, .radau = radau, .measures = measures};
+                                        struct dalcs_measures *measures,
+                                        struct dalcs_audit_run *audit) {
+    struct transient c = {.run = r,
+                          .recorder = &r->s->recorder,
+                          .radau = radau,
+                          .measures = measures,
+                          .audit = audit};
     c.next_row = dalcs_recorder_due(c.recorder);
     c.next_edge = edge_after(&c, 0.0);
     c.interval = c.to_go = progress_interval(&r->s->network);
     DALCS_TRY(dalcs_rows_setup(&c.rows, radau, NULL, r->s->network.n_outputs));
     enum dalcs_status status =
         dalcs_filling_setup(&c.filling, c.recorder, &c.rows, r->fill, r->lines, &FILLING_LIMIT);
+    dalcs_audit_run_begin(audit);
     while (c.t < radau->options.stop && status == DALCS_OK) {
         status = advance(&c);
         status = status == DALCS_OK ? tell_progress(&c, 1) : status;
@@ -364,7 +380,7 @@ static enum dalcs_status report_methods(struct dalcs_run *r, const struct dalcs_
 }
 
 static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct dalcs_radau *radau,
-                              struct dalcs_measures *measures) {
+                              struct dalcs_measures *measures, struct dalcs_audit_run *audit) {
     struct dalcs_session *s = r->s;
     DALCS_TRY(report_methods(r, radau));
     DALCS_TRY(start_transient(r, e, radau));
@@ -376,13 +392,16 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct
     DALCS_TRY(dalcs_run_begin_plot(r, DALCS_TRANSIENT));
     DALCS_TRY(dalcs_recorder_start(&s->recorder, e));
     DALCS_TRY(dalcs_measures_start(measures, r, e, radau));
-    enum dalcs_status status =
-        radau != NULL ? run_to_the_end(r, radau, measures) : step_to_the_end(r, e, measures);
+    enum dalcs_status status = radau != NULL ? run_to_the_end(r, radau, measures, audit)
+                                             : step_to_the_end(r, e, measures, audit);
     if (status == DALCS_OK && radau != NULL) {
         status = dalcs_radau_evaluate(radau, radau->options.stop, DALCS_LEFT);
     }
     dalcs_recorder_states(&s->network, e, s->final);
     DALCS_TRY(status);
+    if (dalcs_audit_run_failed(audit)) {
+        return DALCS_NOT_CONVERGED; /* the rows stay what they are: partial */
+    }
     return r->sink->end(r->sink->user);
 }
 
@@ -480,6 +499,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     struct dalcs_radau radau = {0};
     struct dalcs_energy energy = {0};
     struct dalcs_measures measures = {0};
+    struct dalcs_audit_run audit = {0};
     struct dalcs_schedule schedule = choose_schedule(r);
     warn_of_coarse_rows(r, &schedule);
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
@@ -510,7 +530,10 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
         e.energy = &energy;
     }
     if (status == DALCS_OK) {
-        status = walk(r, &e, is_euler ? NULL : &radau, &measures);
+        status = dalcs_audit_run_start(&audit, r, &e, is_euler ? NULL : &radau);
+    }
+    if (status == DALCS_OK) {
+        status = walk(r, &e, is_euler ? NULL : &radau, &measures, &audit);
         enum dalcs_status reported = dalcs_measures_report(&measures, r, status);
         status = status == DALCS_OK ? reported : status;
     }
@@ -520,9 +543,15 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     if (status == DALCS_OK) {
         dalcs_tangents_judge(r);
     }
-    dalcs_explain_failure(r, &e, status);
+    const bool is_wrong = dalcs_audit_run_failed(&audit);
+    const enum dalcs_status audited = dalcs_audit_run_report(&audit);
+    status = status == DALCS_OK ? audited : status;
+    if (!is_wrong) {
+        dalcs_explain_failure(r, &e, status);
+    }
     dalcs_run_add_work(r, &e);
     add_radau_work(r, &radau);
+    dalcs_audit_run_finish(&audit);
     dalcs_measures_finish(&measures);
     dalcs_energy_finish(&energy);
     dalcs_radau_finish(&radau);

@@ -1,0 +1,131 @@
+/* audit.h - is a waveform one of this circuit? Asked of the devices as the netlist gave them.
+ *
+ * The auditor knows the circuit and a way to read voltages and currents at any time. It knows no equations
+ * of the engine, no modes but the positions of switches, and chooses its own times. It checks
+ *
+ *     Kirchhoff's current law at each node, as charges between two times where capacitors hang on it,
+ *     the law of each branch, of coils as fluxes between two times,
+ *     each diode's line, signs and complementarity (Brogliato 2022, (2.1)),
+ *     each switch's position against its control, hysteresis and initial position included,
+ *     each source against its stimulus,
+ *     charge and flux across each event: clusters of nodes that no impulse can leave keep their charge,
+ *     loops of coils that no impulse of voltage is in keep their flux,
+ *     and that over an interval what is stored is what was delivered (Tellegen).
+ *
+ * A defect is over the scale of what it is in: the largest value in the whole run of each voltage and current
+ * that the law adds up. What rounding alone makes of these sums is no defect. */
+#ifndef DALCS_AUDIT_H
+#define DALCS_AUDIT_H
+
+#include "circuit.h"
+
+/* All of a part at one time. */
+struct dalcs_audit_state {
+    double t;
+    enum dalcs_side side;
+    double *v;       /* [n_nodes] V, ground is 0 */
+    double *i;       /* [n_devices] A, of V, L, D, S and of E, H and B; of others not used */
+    double *lambda;  /* [n_lambdas] of formulas, in their own units */
+    bool *is_closed; /* [n_devices] of switches */
+};
+
+/* How a waveform is read. */
+struct dalcs_audit_reader {
+    void *user;
+    /* The state of the part at state->t, as the limit from state->side. */
+    void (*read)(void *user, int part, struct dalcs_audit_state *state);
+    /* Raises v[n_nodes] and i[n_devices] to the largest magnitudes of the part so far. */
+    void (*raise)(void *user, int part, double *v, double *i, double *lambda);
+};
+
+/* A stretch of the waveform of one part without an event inside. */
+struct dalcs_audit_stretch {
+    int part;
+    double from, to;   /* s */
+    double step;       /* s, of the method: rounding of stored charge is a current over it */
+    double work;       /* what it took to make, in instructions, about */
+    double first_look; /* likewise, what the first look at it takes besides */
+
+    enum dalcs_audit_rule {
+        DALCS_AUDIT_SMOOTH, /* a polynomial, right at all times to the tolerance */
+        DALCS_AUDIT_COARSE  /* right at its ends: nobody controls the error in between */
+    } rule;
+};
+
+/* Which of the things that can be wrong. */
+enum dalcs_audit_law {
+    DALCS_AUDIT_KCL,      /* at a node */
+    DALCS_AUDIT_BRANCH,   /* the law of a device */
+    DALCS_AUDIT_POSITION, /* of a switch against its control */
+    DALCS_AUDIT_ENERGY,   /* of a part */
+    DALCS_AUDIT_N_LAWS
+};
+
+struct dalcs_audit_finding {
+    double defect; /* over the scale; 0: none was found */
+    double time;   /* s */
+};
+
+struct dalcs_audit; /* audit_internal.h */
+
+struct dalcs_audit_options {
+    enum dalcs_audit_mode mode;
+
+    double share; /* of the work of the run that samples may cost */
+    double vntol, abstol;
+    double resolution;      /* s; times closer than this are one */
+    const int *device_part; /* [n_devices] the part that a device is in, -1: none */
+    int n_parts;
+    const double *tolerance; /* [n_parts] largest defect that is none */
+    const double *read_work; /* [n_parts] what reading a state costs, in instructions, about */
+};
+
+/* Borrows the circuit, and the arrays of the options during the call. */
+enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
+                                     const struct dalcs_circuit *circuit,
+                                     const struct dalcs_audit_options *options,
+                                     const struct dalcs_audit_reader *reader) DALCS_MUST_CHECK;
+
+void dalcs_audit_destroy(struct dalcs_audit *audit);
+
+/* A stretch is complete and can be read, up to its end. */
+void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
+
+/* The next one begins where it ended, or the first one of all, and can be read there. */
+void dalcs_audit_enter(struct dalcs_audit *audit, int part, double t);
+
+/* A step of implicit Euler from one time to the other, both of which can be read: the first as a limit from
+ * the right, the second from the left. */
+void dalcs_audit_step(struct dalcs_audit *audit, const struct dalcs_audit_stretch *step);
+
+/* A part without memory at time t. */
+void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dalcs_side side,
+                         double work);
+
+/* More that the run has done, in instructions, about: rows. */
+void dalcs_audit_earn(struct dalcs_audit *audit, double work);
+
+/* The worst defect over its part's tolerance; more than 1: something is wrong. */
+struct dalcs_audit_summary {
+    long instants;  /* at which laws were checked */
+    long stretches; /* of all, and those that were looked into */
+    long audited;
+    long positions; /* of switches that were compared with their controls */
+    double defect;  /* over the scale, of the law that is worst against what is allowed */
+    double allowed; /* what it was held to */
+    double time;    /* s */
+    enum dalcs_audit_law law;
+    int index; /* node, device or part; -1: nothing was checked */
+};
+
+struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit);
+
+/* The worst defect of one law: of a node, device or part. */
+struct dalcs_audit_finding dalcs_audit_finding_of(const struct dalcs_audit *audit,
+                                                  enum dalcs_audit_law law, int index);
+
+/* "KCL at out", "d1", "position of s1", "energy"; into text[size]. */
+void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
+                          char *text, size_t size);
+
+#endif

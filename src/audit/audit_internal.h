@@ -1,0 +1,135 @@
+/* audit_internal.h - what the files of src/audit share. */
+#ifndef DALCS_AUDIT_INTERNAL_H
+#define DALCS_AUDIT_INTERNAL_H
+
+#include "audit.h"
+
+#include <math.h>
+#include <stdint.h>
+
+/* A part: its devices and the nodes that they hang on, shorts merged, without ground. */
+struct audit_part {
+    int n_devices, *device;
+    int n_nodes, *node;
+    int n_couplings, *coupling;
+    double tolerance;
+    double volt, ampere; /* scales that every voltage and current is at least held to */
+    double least, most;  /* S, of its conductances; 0: it has none */
+    double step;         /* s, of the stretch at hand */
+    double cost;         /* of one instant, in instructions, about */
+    bool has_entered;    /* the state at its last event is in `before` */
+    bool is_open;        /* `before` is the end of the stretch that was just left */
+};
+
+/* Sums over the branches at each node, or of each coil, while a law is checked. */
+struct audit_sums {
+    double *current;             /* [n_nodes] A that leaves, or C */
+    double *scale;               /* [n_nodes] of what was added up */
+    double *rounding;            /* [n_nodes] that is in it */
+    double *volt_rounding;       /* [n_nodes] V, from the fluxes of coils */
+    double *flux;                /* [n_devices] Wb, of coils */
+    double energy, energy_scale; /* J, or W */
+};
+
+struct dalcs_audit {
+    const struct dalcs_circuit *circuit;
+    struct dalcs_audit_options options;
+    struct dalcs_audit_reader reader;
+    int n_lambdas;
+    int *node_of;      /* [n_nodes] that stands for all that shorts join with it */
+    bool *has_charge;  /* [n_nodes] a capacitor hangs on it */
+    int *first_lambda; /* [n_devices] */
+    struct audit_part *part;
+    double *v_scale, *i_scale, *lambda_scale;     /* largest so far */
+    struct dalcs_audit_state now, later, shifted; /* work */
+    struct dalcs_audit_state *before; /* [n_parts] where a stretch ended; arrays in common */
+    struct audit_sums sums;
+    int *cluster;   /* [n_nodes] work of crossing.c */
+    double *offset; /* [n_nodes] likewise */
+
+    struct audit_worst {
+        double defect, scale; /* the largest of each, in the law's own unit */
+        double time;          /* s, of the defect */
+        int part;
+    } * worst_of[DALCS_AUDIT_N_LAWS]; /* by node, device, device, part */
+
+    struct dalcs_audit_summary count; /* of it, what is counted */
+    uint64_t seed;
+    double credit, threshold; /* instructions */
+    struct dalcs_arena arena;
+};
+
+/* 0 <= draw < 1, the same in each run. */
+static inline double audit_draw(struct dalcs_audit *audit) {
+    audit->seed ^= audit->seed << 13; /* Marsaglia, Xorshift RNGs, J. Stat. Soft. 8 (2003) */
+    audit->seed ^= audit->seed >> 7;
+    audit->seed ^= audit->seed << 17;
+    return (double)(audit->seed >> 11) * 0x1p-53;
+}
+
+/* Where nothing is, a value is as much as there is. */
+static inline double audit_ratio(double value, double scale) {
+    return value == 0.0 ? 0.0 : value / fmax(scale, 0x1p-1022);
+}
+
+/* Sums of a dozen terms that were each rounded once or twice. */
+#define AUDIT_ROUNDING (16.0 * 0x1p-52)
+
+static inline double audit_voltage(const struct dalcs_audit_state *s,
+                                   const struct dalcs_device *d) {
+    return s->v[d->node[0]] - s->v[d->node[1]];
+}
+
+/* What a voltage between two nodes is held to. */
+static inline double audit_volts(const struct dalcs_audit *audit, const struct audit_part *part,
+                                 int a, int b) {
+    return fmax(fmax(audit->v_scale[a], audit->v_scale[b]), part->volt);
+}
+
+static inline double audit_amperes(const struct dalcs_audit *audit, const struct audit_part *part,
+                                   int device) {
+    return fmax(audit->i_scale[device], part->ampere);
+}
+
+/* The current of a branch that is no capacitor, from the device's own law where that gives it. */
+double audit_current(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
+                     int device);
+
+/* What controls a switch, less its threshold, and half the width of its hysteresis. */
+double audit_control(const struct dalcs_audit *audit, const struct dalcs_audit_state *s, int device,
+                     double *half_width);
+
+/* ... and what it is held to, in V or A. */
+double audit_control_scale(const struct dalcs_audit *audit, const struct audit_part *part,
+                           int device);
+
+/* How far a control moves while times cannot be told apart, at a state that can be read. */
+double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *s, int device);
+
+/* A defect and its scale, in one unit for each law and index; what rounding explains and what besides is allowed are taken off. */
+void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
+                int index, double defect, double scale, double time);
+
+/* laws.c: all that holds at one time. */
+void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
+                         const struct dalcs_audit_state *s);
+
+/* Raises scales to what the state has. */
+void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
+                       const struct dalcs_audit_state *s);
+
+/* intervals.c: what holds between two times in one stretch. */
+void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, double from,
+                          double to);
+
+/* The same of a step of implicit Euler, whose ends are these. */
+void audit_check_euler(struct dalcs_audit *audit, struct audit_part *part,
+                       const struct dalcs_audit_state *from, const struct dalcs_audit_state *to);
+
+/* crossing.c: what holds from one side of an event to the other. */
+void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,
+                          const struct dalcs_audit_state *before,
+                          const struct dalcs_audit_state *after);
+
+#endif

@@ -1,0 +1,232 @@
+/* crossing.c - what holds across an event, where states may jump.
+ *
+ * In no time a branch can carry charge only if an impulse of current can be in it, and take flux only if an
+ * impulse of voltage can (Brogliato and Thibault 2010, the jump law; Heemels, Schumacher and Weiland 1999).
+ * Nodes that branches of the first kind join are a cluster: all charge on it stays, but for the one with
+ * ground. Nodes that branches of the second kind do not separate have one potential: around a loop of coils
+ * between such sets the fluxes that changed add up to 0. No state can jump but by such charges and fluxes,
+ * and one that does not jump is where it was. */
+#include "audit_internal.h"
+
+#include "union_find.h"
+
+/* May charge pass in no time? The impulse of a diode's current needs that it stands at its knee thereafter. */
+static bool passes_charge(const struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *before,
+                          const struct dalcs_audit_state *after, int device) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    switch (d->kind) {
+    case DALCS_VSOURCE:
+    case DALCS_VCVS:
+    case DALCS_CCVS:
+    case DALCS_CCCS:
+        return true;
+    case DALCS_VCCS:
+        return d->behaviour != NULL;
+    case DALCS_SWITCH:
+        return audit->circuit->switch_model[d->model].ron == 0.0 &&
+               (before->is_closed[device] || after->is_closed[device]);
+    case DALCS_DIODE: {
+        const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
+        const double v = audit_voltage(after, d);
+        const double allowed = part->tolerance * audit_volts(audit, part, d->node[0], d->node[1]);
+        return (m->ron == 0.0 && v >= m->vfwd - allowed) ||
+               (m->rrev == 0.0 && v <= -m->vrev + allowed);
+    }
+    default:
+        return false;
+    }
+}
+
+/* Does a finite voltage stand across it, whatever happens? */
+static bool bounds_voltage(const struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *before,
+                           const struct dalcs_audit_state *after, int device) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    switch (d->kind) {
+    case DALCS_RESISTOR:
+    case DALCS_CAPACITOR:
+    case DALCS_VSOURCE:
+        return true;
+    case DALCS_SWITCH:
+        return isfinite(audit->circuit->switch_model[d->model].roff) ||
+               (before->is_closed[device] && after->is_closed[device]);
+    case DALCS_DIODE: {
+        const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
+        return isfinite(m->roff) || isfinite(m->vrev) ||
+               after->i[device] > part->tolerance * audit_amperes(audit, part, device);
+    }
+    default: /* I, E, F, G, H, formulas: whatever their controls have */
+        return false;
+    }
+}
+
+typedef bool joins(const struct dalcs_audit *, const struct audit_part *,
+                   const struct dalcs_audit_state *, const struct dalcs_audit_state *, int);
+
+static void find_clusters(const struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *before,
+                          const struct dalcs_audit_state *after, joins *join) {
+    audit->cluster[0] = 0;
+    for (int k = 0; k < part->n_nodes; k++) {
+        audit->cluster[part->node[k]] = part->node[k];
+    }
+    for (int k = 0; k < part->n_devices; k++) {
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        if (join(audit, part, before, after, part->device[k])) {
+            dalcs_union_join(audit->cluster, audit->node_of[d->node[0]],
+                             audit->node_of[d->node[1]]);
+        }
+    }
+}
+
+/* ---- Charge -------------------------------------------------------------------------------------- */
+
+static void gather_charge(struct dalcs_audit *audit, const struct dalcs_device *d, int end,
+                          double charge, double scale) {
+    const int cluster = dalcs_union_find(audit->cluster, audit->node_of[d->node[end]]);
+    audit->sums.current[cluster] += charge;
+    audit->sums.scale[cluster] += scale;
+}
+
+static void check_charge(struct dalcs_audit *audit, const struct audit_part *part,
+                         const struct dalcs_audit_state *before,
+                         const struct dalcs_audit_state *after) {
+    find_clusters(audit, part, before, after, passes_charge);
+    for (int k = 0; k < part->n_nodes; k++) {
+        audit->sums.current[part->node[k]] = audit->sums.scale[part->node[k]] = 0.0;
+    }
+    for (int k = 0; k < part->n_devices; k++) {
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        if (d->kind != DALCS_CAPACITOR) {
+            continue;
+        }
+        const double charge = d->value * (audit_voltage(after, d) - audit_voltage(before, d));
+        const double scale = d->value * audit_volts(audit, part, d->node[0], d->node[1]);
+        gather_charge(audit, d, 0, charge, scale);
+        gather_charge(audit, d, 1, -charge, scale);
+    }
+    for (int k = 0; k < part->n_nodes; k++) {
+        const int node = part->node[k];
+        const double scale = audit->sums.scale[node];
+        if (scale > 0.0 && dalcs_union_find(audit->cluster, node) == node) {
+            audit_find(audit, part, DALCS_AUDIT_KCL, node,
+                       fabs(audit->sums.current[node]) - AUDIT_ROUNDING * scale, scale, after->t);
+        }
+    }
+}
+
+/* ---- Flux ---------------------------------------------------------------------------------------- */
+
+/* The root of a node, and the flux between the two: offset[n] is that of n over its parent. */
+static int find_root(const struct dalcs_audit *audit, int node, double *flux) {
+    *flux = 0.0;
+    while (audit->cluster[node] != node) {
+        *flux += audit->offset[node];
+        node = audit->cluster[node];
+    }
+    return node;
+}
+
+static void sum_fluxes(struct dalcs_audit *audit, const struct audit_part *part,
+                       const struct dalcs_audit_state *before,
+                       const struct dalcs_audit_state *after) {
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        const struct dalcs_device *d = &audit->circuit->device[device];
+        audit->sums.flux[device] =
+            d->kind == DALCS_INDUCTOR ? d->value * (after->i[device] - before->i[device]) : 0.0;
+    }
+    for (int k = 0; k < part->n_couplings; k++) {
+        const struct dalcs_coupling *m = &audit->circuit->coupling[part->coupling[k]];
+        const int a = m->inductor[0];
+        const int b = m->inductor[1];
+        const double mutual =
+            m->k * sqrt(audit->circuit->device[a].value * audit->circuit->device[b].value);
+        audit->sums.flux[a] += mutual * (after->i[b] - before->i[b]);
+        audit->sums.flux[b] += mutual * (after->i[a] - before->i[a]);
+    }
+}
+
+static double flux_scale(const struct dalcs_audit *audit, const struct audit_part *part,
+                         int device) {
+    double scale = audit->circuit->device[device].value * audit_amperes(audit, part, device);
+    for (int k = 0; k < part->n_couplings; k++) {
+        const struct dalcs_coupling *m = &audit->circuit->coupling[part->coupling[k]];
+        for (int e = 0; e < 2; e++) {
+            const int other = m->inductor[1 - e];
+            if (m->inductor[e] == device) {
+                scale += fabs(m->k) *
+                         sqrt(audit->circuit->device[device].value *
+                              audit->circuit->device[other].value) *
+                         audit_amperes(audit, part, other);
+            }
+        }
+    }
+    return scale;
+}
+
+static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
+                       const struct dalcs_audit_state *before,
+                       const struct dalcs_audit_state *after) {
+    find_clusters(audit, part, before, after, bounds_voltage);
+    sum_fluxes(audit, part, before, after);
+    for (int k = 0; k < part->n_nodes; k++) {
+        const int node = part->node[k];
+        audit->cluster[node] = dalcs_union_find(audit->cluster, node);
+        audit->offset[node] = audit->sums.scale[node] = 0.0;
+    }
+    audit->sums.scale[0] = 0.0; /* here of what was added up in the tree of a root */
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        const struct dalcs_device *d = &audit->circuit->device[device];
+        if (d->kind != DALCS_INDUCTOR) {
+            continue;
+        }
+        double flux[2];
+        const int a = find_root(audit, audit->node_of[d->node[0]], &flux[0]);
+        const int b = find_root(audit, audit->node_of[d->node[1]], &flux[1]);
+        const double over = audit->sums.flux[device] - (flux[0] - flux[1]);
+        const double scale = flux_scale(audit, part, device);
+        if (a != b) {
+            audit->cluster[a] = b;
+            audit->offset[a] = over;
+            audit->sums.scale[b] += audit->sums.scale[a] + scale;
+        } else {
+            audit_find(audit, part, DALCS_AUDIT_BRANCH, device, fabs(over) - AUDIT_ROUNDING * scale,
+                       scale + audit->sums.scale[a], after->t);
+        }
+    }
+}
+
+/* ---- Positions ----------------------------------------------------------------------------------- */
+
+/* A switch changes over where its control reaches the threshold on that side, before or behind the event. */
+static void check_changes(struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *before,
+                          const struct dalcs_audit_state *after) {
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        if (audit->circuit->device[device].kind != DALCS_SWITCH ||
+            before->is_closed[device] == after->is_closed[device]) {
+            continue;
+        }
+        double half_width;
+        const double control[2] = {audit_control(audit, before, device, &half_width),
+                                   audit_control(audit, after, device, &half_width)};
+        double short_of = after->is_closed[device] ? half_width - fmax(control[0], control[1])
+                                                   : half_width + fmin(control[0], control[1]);
+        short_of -= short_of > 0.0 ? audit_control_slack(audit, part, after, device) : 0.0;
+        audit_find(audit, part, DALCS_AUDIT_POSITION, device, short_of,
+                   audit_control_scale(audit, part, device), after->t);
+        audit->count.positions++;
+    }
+}
+
+void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,
+                          const struct dalcs_audit_state *before,
+                          const struct dalcs_audit_state *after) {
+    check_charge(audit, part, before, after);
+    check_flux(audit, part, before, after);
+    check_changes(audit, part, before, after);
+}

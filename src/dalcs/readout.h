@@ -1,0 +1,28 @@
+/* readout.h - every voltage and current of a circuit as columns of its systems, for who checks them. */
+#ifndef DALCS_READOUT_H
+#define DALCS_READOUT_H
+
+#include "system.h"
+
+struct dalcs_readout {
+    int n_nodes, n_devices;
+    int *node_column;   /* [n_nodes] in the system of the node; -1: 0 V */
+    int *device_system; /* [n_devices] -1: no equation knows it */
+    int *first_pair;    /* [n_devices] of a diode, a switch or a formula, -1: none */
+    int *start; /* [n_devices + 1] the current of a device is the sum of term[start[d]] to before
+                           term[start[d + 1]]; of V, L, D, S, E, H, B */
+
+    struct dalcs_readout_term {
+        int column;
+        double coefficient;
+    } * term;
+};
+
+struct dalcs_layout;
+struct dalcs_network;
+
+/* network->readout, in the network's arena. */
+enum dalcs_status dalcs_readout_build(struct dalcs_network *network,
+                                      const struct dalcs_layout *layout) DALCS_MUST_CHECK;
+
+#endif

@@ -1,0 +1,384 @@
+/* audit_run.c - reads the engine's answers for the auditor, and tells what it found. */
+#include "audit_run.h"
+
+#include "quantity.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Who belongs to a part, and where its columns are. */
+struct audit_members {
+    int n_nodes, n_devices, n_lambdas;
+    int *node, *node_column;
+    int *device; /* [n_devices] with currents of their own; others are the auditor's matter */
+    int *lambda, *lambda_pair;
+    bool was_left; /* its segment ended at the present time */
+};
+
+/* ---- Reading ------------------------------------------------------------------------------------- */
+
+static void copy_answer(const struct dalcs_audit_run *a, int index, const double *y,
+                        struct dalcs_audit_state *s) {
+    const struct audit_members *m = &a->part[index];
+    const struct dalcs_readout *readout = a->run->s->network.readout;
+    const struct dalcs_component *c = &a->euler->component[index];
+    for (int k = 0; k < m->n_nodes; k++) {
+        s->v[m->node[k]] = y[m->node_column[k]];
+    }
+    for (int k = 0; k < m->n_devices; k++) {
+        const int d = m->device[k];
+        double current = 0.0;
+        for (int j = readout->start[d]; j < readout->start[d + 1]; j++) {
+            current += readout->term[j].coefficient * y[readout->term[j].column];
+        }
+        s->i[d] = current;
+        if (a->run->s->circuit.device[d].kind == DALCS_SWITCH) {
+            s->is_closed[d] = dalcs_osnsp_is_on(&c->osnsp, readout->first_pair[d]);
+        }
+    }
+    const int n_equations = dalcs_system_n_equations(c->system);
+    for (int k = 0; k < m->n_lambdas; k++) {
+        s->lambda[m->lambda[k]] = y[n_equations + m->lambda_pair[k]];
+    }
+}
+
+static void read_state(void *user, int part, struct dalcs_audit_state *s) {
+    const struct dalcs_audit_run *a = user;
+    const struct dalcs_component *c = &a->euler->component[part];
+    if (a->radau == NULL) {
+        copy_answer(a, part, s->t == a->euler->t ? c->y : c->y_before, s);
+        return;
+    }
+    if (a->radau->part[part].kind == DALCS_PART_STEPPED) {
+        dalcs_radau_read(a->radau, part, s->t, s->side);
+    }
+    copy_answer(a, part, c->y, s);
+}
+
+static void raise(double *largest, double value) {
+    *largest = value > *largest ? value : *largest;
+}
+
+/* The engine's scales are of whole segments, the auditor has seen instants. */
+static void raise_scales(void *user, int part, double *v, double *i, double *lambda) {
+    const struct dalcs_audit_run *a = user;
+    if (a->radau == NULL || a->radau->part[part].kind != DALCS_PART_STEPPED) {
+        return;
+    }
+    const struct audit_members *m = &a->part[part];
+    const struct dalcs_readout *readout = a->run->s->network.readout;
+    const double *scale = a->radau->part[part].scale;
+    for (int k = 0; k < m->n_nodes; k++) {
+        raise(&v[m->node[k]], scale[m->node_column[k]]);
+    }
+    for (int k = 0; k < m->n_devices; k++) {
+        const int d = m->device[k];
+        if (readout->start[d + 1] == readout->start[d] + 1) {
+            const struct dalcs_readout_term *term = &readout->term[readout->start[d]];
+            raise(&i[d], fabs(term->coefficient) * scale[term->column]);
+        }
+    }
+    const int n_equations = dalcs_system_n_equations(a->euler->component[part].system);
+    for (int k = 0; k < m->n_lambdas; k++) {
+        raise(&lambda[m->lambda[k]], scale[n_equations + m->lambda_pair[k]]);
+    }
+}
+
+/* ---- Who belongs to which part ------------------------------------------------------------------- */
+
+static bool is_new(bool *seen, int node) {
+    const bool was = seen[node];
+    seen[node] = true;
+    return !was;
+}
+
+/* Counts, or lists where there is room, the nodes and currents of all parts. */
+static void list_members(const struct dalcs_audit_run *a, bool *seen, bool lists) {
+    const struct dalcs_circuit *c = &a->run->s->circuit;
+    const struct dalcs_readout *r = a->run->s->network.readout;
+    int next_lambda = 0;
+    memset(seen, 0, (size_t)c->n_nodes * sizeof *seen);
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        const int n_lambdas = d->behaviour != NULL ? d->behaviour->n_pairs : 0;
+        if (r->device_system[i] < 0) {
+            next_lambda += n_lambdas;
+            continue;
+        }
+        struct audit_members *m = &a->part[r->device_system[i]];
+        for (int e = 0; e < 4; e++) {
+            const int node = d->node[e];
+            if (node > 0 && r->node_column[node] >= 0 && is_new(seen, node)) {
+                if (lists) {
+                    m->node[m->n_nodes] = node;
+                    m->node_column[m->n_nodes] = r->node_column[node];
+                }
+                m->n_nodes++;
+            }
+        }
+        if (r->start[i + 1] > r->start[i] || d->kind == DALCS_SWITCH) {
+            if (lists) {
+                m->device[m->n_devices] = i;
+            }
+            m->n_devices++;
+        }
+        for (int k = 0; k < n_lambdas; k++) {
+            if (lists) {
+                m->lambda[m->n_lambdas] = next_lambda + k;
+                m->lambda_pair[m->n_lambdas] = r->first_pair[i] + k;
+            }
+            m->n_lambdas++;
+        }
+        next_lambda += n_lambdas;
+    }
+}
+
+static enum dalcs_status make_members(struct dalcs_audit_run *a) {
+    const int n = a->run->s->network.n_systems;
+    bool *seen = dalcs_arena_alloc(&a->arena, (size_t)a->run->s->circuit.n_nodes, sizeof(*seen));
+    a->part = dalcs_arena_alloc(&a->arena, (size_t)n, sizeof(*a->part));
+    if (seen == NULL || a->part == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    list_members(a, seen, false);
+    for (int k = 0; k < n; k++) {
+        struct audit_members *m = &a->part[k];
+        m->node = dalcs_arena_alloc(&a->arena, (size_t)m->n_nodes, sizeof(int));
+        m->node_column = dalcs_arena_alloc(&a->arena, (size_t)m->n_nodes, sizeof(int));
+        m->device = dalcs_arena_alloc(&a->arena, (size_t)m->n_devices, sizeof(int));
+        m->lambda = dalcs_arena_alloc(&a->arena, (size_t)m->n_lambdas, sizeof(int));
+        m->lambda_pair = dalcs_arena_alloc(&a->arena, (size_t)m->n_lambdas, sizeof(int));
+        if (m->node == NULL || m->node_column == NULL || m->device == NULL || m->lambda == NULL ||
+            m->lambda_pair == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        m->n_nodes = m->n_devices = m->n_lambdas = 0;
+    }
+    list_members(a, seen, true);
+    return DALCS_OK;
+}
+
+/* ---- Start and end ------------------------------------------------------------------------------- */
+
+/* Instructions, about, as callgrind counts them (doc/testing.md): a value of a polynomial, of a source; a segment
+ * beside its map, an element of a map; a value of a row. */
+static const double value_work = 6.0, source_work = 120.0;
+static const double segment_work = 2500.0, element_work = 0.6, row_work = 30.0;
+
+/* What a sample may cost of a run. */
+static const double share = 0.05;
+
+static double read_work(const struct dalcs_audit_run *a, int part) {
+    const struct dalcs_component *c = &a->euler->component[part];
+    return value_work * dalcs_system_n_columns(c->system) + source_work * c->n_varying;
+}
+
+static enum dalcs_status create(struct dalcs_audit_run *a) {
+    const struct dalcs_run *run = a->run;
+    const int n = run->s->network.n_systems;
+    double *tolerance = dalcs_arena_alloc(&a->arena, (size_t)n, sizeof(double));
+    double *work = dalcs_arena_alloc(&a->arena, (size_t)n, sizeof(double));
+    if (tolerance == NULL || work == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < n; k++) {
+        const struct dalcs_radau_part *part = a->radau != NULL ? &a->radau->part[k] : NULL;
+        tolerance[k] = part != NULL ? part->tolerance : run->osnsp.certificate_tolerance * 1e3;
+        work[k] = read_work(a, k);
+    }
+    const struct dalcs_audit_options options = {
+        .mode = run->options->audit,
+        .share = share,
+        .resolution = a->radau != NULL ? a->radau->resolution : 0.0,
+        .vntol = run->vntol,
+        .abstol = run->abstol,
+        .device_part = run->s->network.readout->device_system,
+        .n_parts = n,
+        .tolerance = tolerance,
+        .read_work = work};
+    const struct dalcs_audit_reader reader = {a, read_state, raise_scales};
+    return dalcs_audit_create(&a->audit, &run->s->circuit, &options, &reader);
+}
+
+enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_run *run,
+                                        struct dalcs_euler *euler, struct dalcs_radau *radau) {
+    *a = (struct dalcs_audit_run){.run = run, .euler = euler, .radau = radau};
+    if (run->options->audit == DALCS_AUDIT_OFF || run->s->network.readout == NULL) {
+        return DALCS_OK;
+    }
+    enum dalcs_status status = make_members(a);
+    status = status == DALCS_OK ? create(a) : status;
+    if (status != DALCS_OK) {
+        dalcs_audit_run_finish(a);
+    }
+    return status;
+}
+
+void dalcs_audit_run_finish(struct dalcs_audit_run *a) {
+    dalcs_audit_destroy(a->audit);
+    dalcs_arena_finish(&a->arena);
+    *a = (struct dalcs_audit_run){0};
+}
+
+/* ---- On the way ---------------------------------------------------------------------------------- */
+
+void dalcs_audit_run_begin(struct dalcs_audit_run *a) {
+    for (int k = 0; a->audit != NULL && k < a->radau->n_parts; k++) {
+        if (a->radau->part[k].kind == DALCS_PART_STEPPED) {
+            dalcs_audit_enter(a->audit, k, 0.0);
+        }
+    }
+}
+
+static void leave(struct dalcs_audit_run *a, int k, double to) {
+    const struct dalcs_radau_part *part = &a->radau->part[k];
+    const struct dalcs_stages *stages = &part->stages;
+    const double elements = (double)stages->n_in * stages->layout.n_fixed;
+    const bool is_brief =
+        part->late != NULL; /* of which only what tells that it is one was computed */
+    struct dalcs_audit_stretch stretch = {
+        .part = k, .from = part->t, .to = to, .step = part->h, .rule = DALCS_AUDIT_SMOOTH};
+    stretch.work = segment_work + element_work * (is_brief ? 0.1 : 1.0) * elements;
+    stretch.first_look = is_brief ? element_work * elements : 0.0;
+    if (part->by_euler || a->run->fixed_step > 0.0) {
+        stretch.rule = DALCS_AUDIT_COARSE;
+    }
+    dalcs_audit_leave(a->audit, &stretch);
+}
+
+void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
+    if (a->audit == NULL) {
+        return;
+    }
+    const double stop = a->radau->options.stop;
+    for (int k = 0; k < a->radau->n_parts; k++) {
+        const struct dalcs_radau_part *part = &a->radau->part[k];
+        const bool ends = part->t_end <= t || t >= stop;
+        a->part[k].was_left = part->kind == DALCS_PART_STEPPED && ends && part->t < stop;
+        if (a->part[k].was_left) {
+            leave(a, k, part->t_end < stop ? part->t_end : stop);
+        }
+    }
+}
+
+void dalcs_audit_run_enter(struct dalcs_audit_run *a, double t) {
+    for (int k = 0; a->audit != NULL && k < a->radau->n_parts; k++) {
+        if (a->part[k].was_left && a->radau->part[k].t < a->radau->options.stop) {
+            dalcs_audit_enter(a->audit, k, t);
+        }
+    }
+}
+
+void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side side, long n) {
+    if (a->audit == NULL) {
+        return;
+    }
+    const double work = row_work * (double)n * a->run->s->network.n_outputs;
+    dalcs_audit_earn(a->audit, work);
+    for (int k = 0; k < a->radau->n_parts; k++) {
+        if (a->radau->part[k].kind == DALCS_PART_ALGEBRAIC) {
+            dalcs_audit_instant(a->audit, k, t, side, segment_work);
+        }
+    }
+}
+
+void dalcs_audit_run_step(struct dalcs_audit_run *a) {
+    const struct dalcs_euler *e = a->euler;
+    for (int k = 0; a->audit != NULL && k < e->n_components; k++) {
+        const struct dalcs_audit_stretch step = {.part = k,
+                                                 .from = e->t_before,
+                                                 .to = e->t,
+                                                 .step = e->h,
+                                                 .work = segment_work,
+                                                 .rule = DALCS_AUDIT_COARSE};
+        dalcs_audit_step(a->audit, &step);
+    }
+}
+
+/* ---- What was found ------------------------------------------------------------------------------ */
+
+enum { NAME_SIZE = 512 };
+
+bool dalcs_audit_run_failed(const struct dalcs_audit_run *a) {
+    if (a->audit == NULL) {
+        return false;
+    }
+    const struct dalcs_audit_summary s = dalcs_audit_summarise(a->audit);
+    return s.index >= 0 && s.defect > s.allowed;
+}
+
+/* All laws that were found broken by more than nothing, into the report's list. */
+static enum dalcs_status list_laws(struct dalcs_audit_run *a) {
+    const struct dalcs_circuit *c = &a->run->s->circuit;
+    struct dalcs_arena *arena = &a->run->s->arena;
+    const int n_of[] = {c->n_nodes, c->n_devices, c->n_devices, a->run->s->network.n_systems};
+    struct dalcs_report *report = &a->run->s->report;
+    size_t n = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        struct dalcs_audited *list = NULL;
+        if (pass == 1) {
+            list = dalcs_arena_alloc(arena, n, sizeof *list);
+            if (list == NULL) {
+                return DALCS_E_NOMEM;
+            }
+            n = 0;
+        }
+        for (int law = 0; law < DALCS_AUDIT_N_LAWS; law++) {
+            for (int i = 0; i < n_of[law]; i++) {
+                const struct dalcs_audit_finding f = dalcs_audit_finding_of(a->audit, law, i);
+                if (!(f.defect > 0.0)) {
+                    continue;
+                }
+                if (pass == 1) {
+                    char name[NAME_SIZE];
+                    dalcs_audit_law_name(a->audit, law, i, name, sizeof name);
+                    list[n] = (struct dalcs_audited){dalcs_arena_copy(arena, name, strlen(name)),
+                                                     f.defect, f.time};
+                    if (list[n].law == NULL) {
+                        return DALCS_E_NOMEM;
+                    }
+                }
+                n++;
+            }
+        }
+        report->audit.law = list;
+        report->audit.n_laws = pass == 1 ? n : 0;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) {
+    if (a->audit == NULL) {
+        return DALCS_OK;
+    }
+    struct dalcs_session *s = a->run->s;
+    const struct dalcs_audit_summary found = dalcs_audit_summarise(a->audit);
+    char name[NAME_SIZE] = "";
+    if (found.index >= 0) {
+        dalcs_audit_law_name(a->audit, found.law, found.index, name, sizeof name);
+    }
+    s->report.audit.mode = a->run->options->audit == DALCS_AUDIT_FULL ? "full" : "sample";
+    s->report.audit.instants = found.instants;
+    s->report.audit.segments = found.stretches;
+    s->report.audit.audited = found.audited;
+    s->report.audit.positions = found.positions;
+    s->report.audit.worst = found.defect;
+    s->report.audit.allowed = found.allowed;
+    s->report.audit.time = found.time;
+    s->report.audit.where = dalcs_arena_copy(&s->arena, name, strlen(name));
+    if (s->report.audit.where == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(list_laws(a));
+    if (!dalcs_audit_run_failed(a)) {
+        return DALCS_OK;
+    }
+    char time[DALCS_QUANTITY_SIZE];
+    dalcs_diag_add(
+        &s->diag, DALCS_ERROR, NULL,
+        "--audit full says which laws are broken, and from when on; please report this netlist",
+        "the waveform is wrong: the audit finds %s broken by %.2g of its scale at t = %s, "
+        "and %.2g is allowed",
+        name, found.defect, dalcs_quantity_write(time, found.time, "s", 9), found.allowed);
+    return DALCS_NOT_CONVERGED;
+}

@@ -1,0 +1,45 @@
+/* audit_run.h - the engine's segments and steps, handed to the auditor. */
+#ifndef DALCS_AUDIT_RUN_H
+#define DALCS_AUDIT_RUN_H
+
+#include "session_internal.h"
+
+#include "audit.h"
+#include "radau.h"
+
+struct dalcs_audit_run {
+    struct dalcs_run *run;
+    struct dalcs_euler *euler;
+    struct dalcs_radau *radau;  /* NULL: the method is euler */
+    struct dalcs_audit *audit;  /* NULL: nothing is audited */
+    struct audit_members *part; /* [n_systems] */
+    struct dalcs_arena arena;
+};
+
+/* radau: NULL with euler. */
+enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_run *run,
+                                        struct dalcs_euler *euler,
+                                        struct dalcs_radau *radau) DALCS_MUST_CHECK;
+
+void dalcs_audit_run_finish(struct dalcs_audit_run *a);
+
+/* All parts of radau have begun their first segments. */
+void dalcs_audit_run_begin(struct dalcs_audit_run *a);
+
+/* Segments that end at t, before and after they are passed; the ones that go on at the end of the run. */
+void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t);
+void dalcs_audit_run_enter(struct dalcs_audit_run *a, double t);
+
+/* Rows were made, the last of them at t. */
+void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side side, long n);
+
+/* A step of euler. */
+void dalcs_audit_run_step(struct dalcs_audit_run *a);
+
+/* Into the report. DALCS_NOT_CONVERGED and a message where a defect is more than is allowed. */
+enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) DALCS_MUST_CHECK;
+
+/* Is there a defect that is more than is allowed? */
+bool dalcs_audit_run_failed(const struct dalcs_audit_run *a);
+
+#endif
