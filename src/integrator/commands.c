@@ -1,4 +1,4 @@
-/* commands.c - walking the edges of control sources, or counting the periods of a PULSE. */
+/* commands.c - walking the edges of control sources and the curves between them, or counting the periods of a PULSE. */
 #include "commands.h"
 
 #include "extremes.h"
@@ -9,36 +9,6 @@
 
 /* Edges looked at in one search; a control that never crosses must not cost its whole future. */
 enum { EDGES_AT_A_TIME = 64 };
-
-static bool is_straight(const struct dalcs_stimulus *s) {
-    return s->kind == DALCS_STIMULUS_DC || s->kind == DALCS_STIMULUS_PULSE ||
-           s->kind == DALCS_STIMULUS_PWL;
-}
-
-static const struct dalcs_stimulus *stimulus_of(const struct dalcs_commands *c, int input) {
-    int index = c->system->stimulus[input];
-    return index < 0 ? NULL : &c->circuit->stimulus[index];
-}
-
-static double control_at(const struct dalcs_commands *c, int pair, double t, enum dalcs_side side) {
-    const struct dalcs_csr *a = &c->system->direct_control;
-    double sum = 0.0;
-    for (int k = a->p[pair]; k < a->p[pair + 1]; k++) {
-        const struct dalcs_stimulus *s = stimulus_of(c, a->j[k]);
-        sum += a->x[k] * (s != NULL ? dalcs_stimulus_value(s, t, side) : 1.0);
-    }
-    return sum;
-}
-
-static double edge_after(const struct dalcs_commands *c, int pair, double t) {
-    const struct dalcs_csr *a = &c->system->direct_control;
-    double edge = INFINITY;
-    for (int k = a->p[pair]; k < a->p[pair + 1]; k++) {
-        const struct dalcs_stimulus *s = stimulus_of(c, a->j[k]);
-        edge = s != NULL ? fmin(edge, dalcs_stimulus_next_edge(s, t)) : edge;
-    }
-    return edge;
-}
 
 /* Where the switch wants to be at this control, coming from where it is. */
 static bool wants(const struct dalcs_pair *s, bool is_on, double control) {
@@ -51,35 +21,60 @@ static bool comes_to_rest(const struct dalcs_pair *s, double first, double last)
     return s->turn_off == s->turn_on && first <= s->turn_on && last <= s->turn_on;
 }
 
+/* From `first` at t along a straight line to `last` at its edge: does it move on the way? */
+static bool moves_on_line(const struct dalcs_pair *pair, struct dalcs_command *m, double t,
+                          double edge, double first, double last) {
+    double threshold = m->is_on ? pair->turn_off : pair->turn_on;
+    if (m->is_on && comes_to_rest(pair, first, last)) {
+        m->next = t;
+        return true;
+    }
+    if (isinf(edge) || wants(pair, m->is_on, last) == m->is_on) {
+        m->next = edge;
+        return false;
+    }
+    m->next = t + (edge - t) * fmax(0.0, (threshold - first) / (last - first));
+    m->on_ramp = true;
+    return true;
+}
+
+/* The same along a curve; m->next is its edge, or how far it was looked at, where it does not. */
+static bool moves_on_curve(const struct dalcs_commands *c, struct dalcs_command *m, double t,
+                           double edge) {
+    const struct dalcs_pair *pair = &c->system->pair[m->pair];
+    m->next = t;
+    m->on_ramp = dalcs_control_follow(&c->control, m->pair, m->is_on ? 1.0 : -1.0,
+                                      m->is_on ? pair->turn_off : pair->turn_on, edge, &m->next);
+    return m->on_ramp;
+}
+
 static void search(const struct dalcs_commands *c, struct dalcs_command *m) {
     const struct dalcs_pair *pair = &c->system->pair[m->pair];
     double t = m->searched;
-    double threshold = m->is_on ? pair->turn_off : pair->turn_on;
     bool on_ramp = m->on_ramp;
     m->moves = true;
     m->on_ramp = false;
     for (int k = 0; k < EDGES_AT_A_TIME; k++, on_ramp = false) {
-        double first = control_at(c, m->pair, t, DALCS_RIGHT);
+        double first = dalcs_control_value(&c->control, m->pair, t, DALCS_RIGHT);
         if (!on_ramp && wants(pair, m->is_on, first) != m->is_on) {
             m->next = t;
             return;
         }
-        double edge = edge_after(c, m->pair, t);
-        double last = isinf(edge) ? first : control_at(c, m->pair, edge, DALCS_LEFT);
-        if (m->is_on && comes_to_rest(pair, first, last)) {
-            m->next = t;
+        double edge = dalcs_control_next_edge(&c->control, m->pair, t);
+        double last =
+            isinf(edge) ? first : dalcs_control_value(&c->control, m->pair, edge, DALCS_LEFT);
+        if (dalcs_control_is_straight(&c->control, m->pair, t)
+                ? moves_on_line(pair, m, t, edge, first, last)
+                : moves_on_curve(c, m, t, edge)) {
             return;
         }
-        if (isinf(edge)) {
-            m->next = INFINITY;
+        if (isinf(m->next)) {
             return;
         }
-        if (wants(pair, m->is_on, last) != m->is_on) {
-            m->next = t + (edge - t) * fmax(0.0, (threshold - first) / (last - first));
-            m->on_ramp = true;
-            return;
+        t = m->next;
+        if (t < edge) {
+            break;
         }
-        t = edge;
     }
     m->moves = false;
     m->next = t;
@@ -94,7 +89,7 @@ static void recognise_pulse(const struct dalcs_commands *c, struct dalcs_command
     double level = 0.0;
     double factor = 0.0;
     for (int k = a->p[m->pair]; k < a->p[m->pair + 1]; k++) {
-        const struct dalcs_stimulus *s = stimulus_of(c, a->j[k]);
+        const struct dalcs_stimulus *s = dalcs_control_stimulus(&c->control, a->j[k]);
         if (s == NULL || s->kind == DALCS_STIMULUS_DC) {
             level += a->x[k] * (s != NULL ? s->dc : 1.0);
         } else if (s->kind == DALCS_STIMULUS_PULSE && pulse == NULL) {
@@ -134,19 +129,17 @@ static void next_of_pulse(struct dalcs_command *m) {
 enum dalcs_status dalcs_commands_setup(struct dalcs_commands *commands,
                                        const struct dalcs_circuit *circuit,
                                        const struct dalcs_system *system) {
-    *commands = (struct dalcs_commands){.circuit = circuit, .system = system, .next = INFINITY};
+    *commands = (struct dalcs_commands){
+        .system = system, .control = {.circuit = circuit, .system = system}, .next = INFINITY};
+    size_t n_terms = (size_t)dalcs_control_most_terms(&commands->control);
     commands->command = dalcs_alloc((size_t)system->n_pairs, sizeof(*commands->command));
-    if (commands->command == NULL) {
+    commands->control.term = dalcs_alloc(n_terms, sizeof(*commands->control.term));
+    if (commands->command == NULL || commands->control.term == NULL) {
+        dalcs_commands_finish(commands);
         return DALCS_E_NOMEM;
     }
     for (int d = 0; d < system->n_pairs; d++) {
-        bool straight = system->pair[d].kind == DALCS_PAIR_SWITCH && system->pair[d].is_direct;
-        for (int k = system->direct_control.p[d]; straight && k < system->direct_control.p[d + 1];
-             k++) {
-            const struct dalcs_stimulus *s = stimulus_of(commands, system->direct_control.j[k]);
-            straight = s == NULL || is_straight(s);
-        }
-        if (straight) {
+        if (system->pair[d].kind == DALCS_PAIR_SWITCH && system->pair[d].is_direct) {
             commands->command[commands->n++] = (struct dalcs_command){
                 .pair = d, .is_on = system->pair[d].initially_on, .next = INFINITY};
         }
@@ -156,6 +149,7 @@ enum dalcs_status dalcs_commands_setup(struct dalcs_commands *commands,
 
 void dalcs_commands_finish(struct dalcs_commands *commands) {
     free(commands->command);
+    free(commands->control.term);
     *commands = (struct dalcs_commands){0};
 }
 
@@ -170,7 +164,8 @@ void dalcs_commands_start(struct dalcs_commands *commands) {
     for (int k = 0; k < commands->n; k++) {
         struct dalcs_command *m = &commands->command[k];
         const struct dalcs_pair *pair = &commands->system->pair[m->pair];
-        m->is_on = wants(pair, m->is_on, control_at(commands, m->pair, 0.0, DALCS_RIGHT));
+        m->is_on = wants(pair, m->is_on,
+                         dalcs_control_value(&commands->control, m->pair, 0.0, DALCS_RIGHT));
         m->searched = 0.0;
         recognise_pulse(commands, m);
         if (m->pulse == NULL) {

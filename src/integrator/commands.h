@@ -1,13 +1,12 @@
 /* commands.h - when sources open and close the switches of one system.
  *
- * A switch whose control is a sum of sources that run along straight lines moves at times that are
- * known beforehand. They come from the sources' own edges, counted by periods, never accumulated.
- * The edges themselves are no reason for a step to end. */
+ * A switch whose control is a sum of sources moves at times that are known beforehand. Along straight lines
+ * they come from the sources' own edges, counted by periods, never accumulated; along curves and their sums with
+ * lines from the sources' own terms (control_course.h). The edges themselves are no reason for a step to end. */
 #ifndef DALCS_COMMANDS_H
 #define DALCS_COMMANDS_H
 
-#include "circuit.h"
-#include "system.h"
+#include "control_course.h"
 
 struct dalcs_command {
     int pair;
@@ -15,7 +14,8 @@ struct dalcs_command {
     double searched; /* s: no move up to here that is not `next` */
     double next;     /* s: it moves then, or when `moves` is false the search goes on then */
     bool moves;
-    bool on_ramp; /* `next` is in the middle of a ramp, on which the control then runs away from the
+    bool
+        on_ramp; /* `next` is in the middle of a ramp or a curve, on which the control then runs away from the
                      threshold */
 
     /* a PULSE alone that crosses both thresholds in every period: at delay + n period + offset */
@@ -30,8 +30,8 @@ static inline double dalcs_command_time(const struct dalcs_command *m, int way, 
 }
 
 struct dalcs_commands {
-    const struct dalcs_circuit *circuit;
     const struct dalcs_system *system;
+    struct dalcs_control control;
     int n;
     struct dalcs_command *command;
     double next; /* s, the earliest */

@@ -4,9 +4,8 @@
 #include <float.h>
 #include <math.h>
 
-/* Does input k enter an equation or a threshold, or command a switch along a curve? */
-static bool acts(const struct dalcs_excitation *excitation, int k,
-                 const struct dalcs_stimulus *stimulus) {
+/* Does input k enter an equation or a threshold? */
+static bool acts(const struct dalcs_excitation *excitation, int k) {
     const struct dalcs_system *s = excitation->system;
     bool found = false;
     for (int r = 0; r < s->E.n_rows && !found; r++) {
@@ -16,9 +15,6 @@ static bool acts(const struct dalcs_excitation *excitation, int k,
     }
     for (int i = 0; i < s->F.p[s->F.n_rows] && !found; i++) {
         found = s->F.j[i] == k;
-    }
-    for (int i = 0; i < s->direct_control.p[s->n_pairs] && !found; i++) {
-        found = s->direct_control.j[i] == k && !dalcs_excitation_is_straight(stimulus);
     }
     return found;
 }
@@ -106,7 +102,7 @@ enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
         const struct dalcs_stimulus *stimulus = &circuit->stimulus[system->stimulus[k]];
         if (stimulus->kind == DALCS_STIMULUS_DC) {
             excitation->constant[k] = stimulus->dc;
-        } else if (acts(excitation, k, stimulus)) {
+        } else if (acts(excitation, k)) {
             add_wave(excitation, k, stimulus);
         }
     }

@@ -52,8 +52,8 @@ struct dalcs_excitation {
     struct dalcs_arena arena;            /* all arrays */
 };
 
-/* Inputs that only command switches, and do so along straight lines, are left out, for commands have
- * their own schedule; and those that only bystanders see. */
+/* Inputs that only command switches are left out, for commands have their own schedule; and those that only
+ * bystanders see. */
 enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
                                          const struct dalcs_circuit *circuit,
                                          const struct dalcs_system *system) DALCS_MUST_CHECK;
@@ -79,11 +79,5 @@ double dalcs_excitation_missed(const struct dalcs_excitation_function *f,
 /* inputs[n_inputs] at t + tau, continuing the present pieces, over edges if need be. */
 void dalcs_excitation_inputs(const struct dalcs_excitation *excitation, double t, double tau,
                              double *inputs);
-
-/* Do straight lines between edges describe the stimulus? */
-static inline bool dalcs_excitation_is_straight(const struct dalcs_stimulus *s) {
-    return s->kind == DALCS_STIMULUS_DC || s->kind == DALCS_STIMULUS_PULSE ||
-           s->kind == DALCS_STIMULUS_PWL;
-}
 
 #endif

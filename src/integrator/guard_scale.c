@@ -3,6 +3,7 @@
 
 #include "extremes.h"
 #include "pair_laws.h"
+#include "step_error.h"
 
 #include <math.h>
 
@@ -10,24 +11,38 @@ double dalcs_guard_control_scale(const struct dalcs_radau_part *part, int guard,
                                  const double *unit) {
     const struct dalcs_system *s = part->component->system;
     int d = dalcs_guard_pair(part, guard);
-    return fmax(unit[dalcs_system_control_is_current(s, d)],
-                fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off)));
+    double size = 0.0;
+    for (int k = s->control.p[d]; k < s->control.p[d + 1]; k++) {
+        size += fabs(s->control.x[k]) * dalcs_step_scale(part, s->control.j[k], unit);
+    }
+    return fmax(size, fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off)));
+}
+
+/* Of a guard by the map of the step; `most` where there is none. */
+static double rounding_by_map(const struct dalcs_radau_part *part, int place, double most) {
+    if (part->entry == NULL || !dalcs_stage_has_map(part->entry)) {
+        return most;
+    }
+    return dalcs_smaller(most,
+                         dalcs_guard_rounded * dalcs_stage_spread(&part->stages, part->entry, place,
+                                                                  part->in, part->scale));
 }
 
 double dalcs_guard_rounding(const struct dalcs_radau_part *part, int guard, const double *unit) {
-    if (!(dalcs_guard_most_rounding(part, guard, unit) > 0.0)) {
+    const struct dalcs_system *s = part->component->system;
+    double most = dalcs_guard_most_rounding(part, guard, unit);
+    if (!(most > 0.0)) {
         return 0.0;
     }
+    if (guard >= s->n_pairs) {
+        return rounding_by_map(part, dalcs_system_n_columns(s) + guard - s->n_pairs, most);
+    }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
-    double most = is_on ? dalcs_pair_charge_rate(part, guard) * unit[0]
-                        : part->held_flux[guard] / part->h * unit[1];
-    if (part->entry != NULL && dalcs_stage_has_map(part->entry)) {
-        int place = dalcs_system_n_equations(part->component->system) + guard;
-        double by_map =
-            dalcs_stage_spread(&part->stages, part->entry, place, part->in, part->scale);
-        most = dalcs_smaller(most, by_map);
-    } else if (!is_on) {
+    bool has_map = part->entry != NULL && dalcs_stage_has_map(part->entry);
+    most = is_on ? dalcs_pair_charge_rate(part, guard) * unit[0]
+                 : part->held_flux[guard] / part->h * unit[1];
+    if (!has_map && !is_on) {
         most = dalcs_smaller(most, dalcs_pair_flux(part, guard) / part->h);
     }
-    return dalcs_guard_rounded * most;
+    return rounding_by_map(part, dalcs_system_n_equations(s) + guard, dalcs_guard_rounded * most);
 }

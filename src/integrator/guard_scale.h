@@ -11,6 +11,10 @@
  * tells what rounding of states and sources makes of a guard itself, which is often far less. */
 static const double dalcs_guard_rounded = 16.0 * DBL_EPSILON;
 
+/* Where the voltage or current that moves a switch is small beside others, the answer that it is a part of is still
+ * right to so many digits of those. A dense map tells what they make of it. */
+static const double dalcs_control_rounded = 256.0 * DBL_EPSILON;
+
 static inline int dalcs_guards_number(const struct dalcs_radau_part *part) {
     return part->component->system->n_pairs + part->stages.n_watched;
 }
@@ -33,7 +37,8 @@ static inline bool dalcs_guard_has_flipped(const struct dalcs_radau_part *part, 
            dalcs_osnsp_is_on(&part->component->osnsp, pair);
 }
 
-/* V or A; of a voltage or current that moves a switch. */
+/* V or A; of a voltage or current that moves a switch: its own, as large as what it is a sum of has been, or its
+ * thresholds. What is switched may be a million times as much. */
 double dalcs_guard_control_scale(const struct dalcs_radau_part *part, int guard,
                                  const double *unit);
 
@@ -48,8 +53,10 @@ static inline double dalcs_guard_scale(const struct dalcs_radau_part *part, int 
 /* What rounding makes of a guard that is 0 at most, in V or A: as far as what is held beside it tells. */
 static inline double dalcs_guard_most_rounding(const struct dalcs_radau_part *part, int guard,
                                                const double *unit) {
-    if (guard >= part->component->system->n_pairs) {
-        return 0.0;
+    const struct dalcs_system *s = part->component->system;
+    if (guard >= s->n_pairs) {
+        return dalcs_control_rounded *
+               unit[dalcs_system_control_is_current(s, dalcs_guard_pair(part, guard))];
     }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
     return dalcs_guard_rounded / part->h *

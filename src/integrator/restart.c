@@ -4,7 +4,9 @@
  * interpolation error of an event); from there a second one sees how the circuit goes on. The jump is
  * the limit of vanishing steps, which for passive circuits is the projection in the energy norm
  * (Heemels, Schumacher and Weiland 1999; Brogliato 2022, sec. 4). */
+#include "doubt.h"
 #include "energy.h"
+#include "guard_scale.h"
 #include "radau_internal.h"
 
 #include <math.h>
@@ -45,6 +47,13 @@ static enum dalcs_status fail(struct dalcs_radau *r, struct dalcs_radau_part *pa
     return status;
 }
 
+/* What the control of a watched switch may be off by: its guard, but for what only a step tells. */
+static double slack_of(const struct dalcs_radau_part *part, int guard) {
+    return dalcs_doubts_over_tolerance * part->inner_tolerance *
+               dalcs_guard_control_scale(part, guard, part->unit_scale) +
+           dalcs_guard_most_rounding(part, guard, part->unit_scale);
+}
+
 /* Solves one step of length h to t + tau from state[n_x], following the voltages that move switches. */
 static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
                                double tau, const double *state, double *y) {
@@ -61,12 +70,8 @@ static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *p
             int d = part->stages.watched[i];
             const struct dalcs_pair *p = &s->pair[d];
             bool is_on = dalcs_osnsp_is_on(&c->osnsp, d);
-            bool is_current = dalcs_system_control_is_current(s, d);
-            double v = p->is_direct ? dalcs_csr_row_dot(&s->direct_control, d, part->u + s->n_x)
-                                    : dalcs_csr_row_dot(&s->control, d, y);
-            double slack = part->t > 0.0 ? 10.0 * part->inner_tolerance *
-                                               fmax(part->unit_scale[is_current], fabs(p->turn_on))
-                                         : 0.0;
+            double v = dalcs_csr_row_dot(&s->control, d, y);
+            double slack = part->t > 0.0 ? slack_of(part, s->n_pairs + i) : 0.0;
             bool wants = is_on ? !(v < p->turn_off - slack) : v > p->turn_on + slack;
             if (wants != is_on) {
                 dalcs_osnsp_command(&c->osnsp, d, wants);

@@ -256,18 +256,7 @@ static void put_other_sides(const struct dalcs_stage_plan *plan,
     }
     for (int i = 0; with_watched && i < stages->n_watched; i++) {
         int d = stages->watched[i];
-        double v = 0.0;
-        if (!s->pair[d].is_direct) {
-            v = dalcs_csr_row_dot(&s->control, d, columns);
-        } else {
-            const struct dalcs_csr *c = &s->direct_control;
-            for (int k = c->p[d]; k < c->p[d + 1]; k++) {
-                int wave = plan->wave_of_input[c->j[k]];
-                v += c->x[k] * (wave >= 0 ? plan->share[wave * DALCS_N_SHARES + share]
-                                          : constant * stages->excitation->constant[c->j[k]]);
-            }
-        }
-        columns[dalcs_system_n_columns(s) + i] = v;
+        columns[dalcs_system_n_columns(s) + i] = dalcs_csr_row_dot(&s->control, d, columns);
     }
     for (int k = 0; k < seen->n; k++) {
         memcpy(lambda + seen->run[k].begin, plan->guard + seen->run[k].begin,

@@ -170,27 +170,15 @@ static void put_columns(const struct dalcs_stage_workshop *b, int lane, double *
     }
 }
 
-/* A watched voltage from columns and the share of a source. */
-static double watched_voltage(const struct dalcs_stage_workshop *b, int d, const double *columns,
-                              int rhs_column, double share) {
+/* A watched voltage from columns. */
+static double watched_voltage(const struct dalcs_stage_workshop *b, int d, const double *columns) {
     const struct dalcs_system *s = b->system;
     int n_equations = dalcs_system_n_equations(s);
     double v = 0.0;
-    if (!s->pair[d].is_direct) {
-        for (int k = s->control.p[d]; k < s->control.p[d + 1]; k++) {
-            int c = s->control.j[k];
-            bool open = c >= n_equations && !dalcs_stage_is_on(b->entry, c - n_equations);
-            v += open ? 0.0 : s->control.x[k] * columns[c];
-        }
-        return v;
-    }
-    for (int k = s->direct_control.p[d]; k < s->direct_control.p[d + 1]; k++) {
-        int wave = b->wave_column[s->direct_control.j[k]];
-        if (wave >= 0 && wave == rhs_column) {
-            v += s->direct_control.x[k] * share;
-        } else if (wave < 0 && rhs_column == b->n_x) {
-            v += s->direct_control.x[k] * b->stages->excitation->constant[s->direct_control.j[k]];
-        }
+    for (int k = s->control.p[d]; k < s->control.p[d + 1]; k++) {
+        int c = s->control.j[k];
+        bool open = c >= n_equations && !dalcs_stage_is_on(b->entry, c - n_equations);
+        v += open ? 0.0 : s->control.x[k] * columns[c];
     }
     return v;
 }
@@ -334,7 +322,7 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
         put_columns(b, k, columns);
         for (int i = 0; i < b->stages->n_watched; i++) {
             columns[dalcs_system_n_columns(s) + i] =
-                watched_voltage(b, b->stages->watched[i], columns, rhs_column, share[k]);
+                watched_voltage(b, b->stages->watched[i], columns);
         }
     }
     for (int x = 0; x < b->n_x; x++) {

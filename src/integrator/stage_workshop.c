@@ -118,8 +118,7 @@ enum dalcs_status dalcs_stage_workshop_create(struct dalcs_stage_workshop **work
         b->wave_column[e->wave[w].input] = b->n_x + 1 + w;
     }
     const struct dalcs_system *s = b->system;
-    b->has_constants = is_driven(&s->E, e->constant) || is_driven(&s->F, e->constant) ||
-                       is_driven(&s->direct_control, e->constant);
+    b->has_constants = is_driven(&s->E, e->constant) || is_driven(&s->F, e->constant);
     return DALCS_OK;
 }
 

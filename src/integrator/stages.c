@@ -71,19 +71,7 @@ enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct d
     list_levered(stages);
     for (int d = 0; d < system->n_pairs; d++) {
         const struct dalcs_pair *p = &system->pair[d];
-        if (p->kind != DALCS_PAIR_SWITCH) {
-            continue;
-        }
-        bool is_curved = false;
-        for (int k = system->direct_control.p[d];
-             p->is_direct && k < system->direct_control.p[d + 1]; k++) {
-            int input = system->direct_control.j[k];
-            for (int w = 0; w < excitation->n_waves; w++) {
-                const struct dalcs_excitation_wave *wave = &excitation->wave[w];
-                is_curved = is_curved || (wave->input == input && wave->is_curved);
-            }
-        }
-        if (!p->is_direct || is_curved) {
+        if (p->kind == DALCS_PAIR_SWITCH && !p->is_direct) {
             stages->watched[stages->n_watched++] = d;
         }
     }

@@ -34,8 +34,24 @@ static bool is_on(const struct dalcs_radau_part *part, int pair) {
 struct dalcs_column_kinds {
     uint64_t *mode;
     double *is_volt, *is_ampere, *is_closed; /* 1 or 0: V or A of an equation, A of a closed pair */
+    double *leans; /* 1; 0: it moves a switch, and is held to its own scale however small that is */
     uint64_t *counts; /* all bits, but none of an open pair, whose voltage is one of the columns */
 };
+
+/* Columns that move switches: their scale is at least what takes the control to its threshold. */
+static void find_controls(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    for (int d = 0; d < s->n_pairs; d++) {
+        double threshold = fmax(fabs(s->pair[d].turn_on), fabs(s->pair[d].turn_off));
+        for (int k = s->control.p[d]; k < s->control.p[d + 1]; k++) {
+            int c = s->control.j[k];
+            if (c < dalcs_system_n_equations(s)) {
+                part->kinds->leans[c] = 0.0;
+                part->scale[c] = dalcs_larger(part->scale[c], threshold / fabs(s->control.x[k]));
+            }
+        }
+    }
+}
 
 enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
@@ -52,17 +68,20 @@ enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
     kinds->is_volt = dalcs_arena_alloc(&part->arena, n, sizeof(double));
     kinds->is_ampere = dalcs_arena_alloc(&part->arena, n, sizeof(double));
     kinds->is_closed = dalcs_arena_alloc(&part->arena, n, sizeof(double));
+    kinds->leans = dalcs_arena_alloc(&part->arena, n, sizeof(double));
     kinds->counts = dalcs_arena_alloc(&part->arena, n, sizeof(*kinds->counts));
-    if (kinds->mode == NULL || kinds->is_volt == NULL || kinds->is_ampere == NULL ||
-        kinds->is_closed == NULL || kinds->counts == NULL) {
+    if (kinds->leans == NULL || kinds->mode == NULL || kinds->is_volt == NULL ||
+        kinds->is_ampere == NULL || kinds->is_closed == NULL || kinds->counts == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int c = 0; c < dalcs_system_n_columns(s); c++) { /* of the mode with all pairs open */
         bool is_pair = c >= dalcs_system_n_equations(s);
         kinds->is_ampere[c] = !is_pair && s->column_is_current[c] ? 1.0 : 0.0;
         kinds->is_volt[c] = 1.0 - kinds->is_ampere[c];
+        kinds->leans[c] = 1.0;
         kinds->counts[c] = is_pair ? 0 : UINT64_MAX;
     }
+    find_controls(part);
     return DALCS_OK;
 }
 
@@ -253,9 +272,9 @@ double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const d
     if (pair >= 0 && !is_on(part, pair)) {
         return 0.0;
     }
-    double least = pair >= 0                      ? smallest_pair * unit[1]
-                   : s->column_is_current[column] ? smallest_scale * unit[1]
-                                                  : smallest_scale * unit[0];
+    double least = pair >= 0 ? smallest_pair * unit[1]
+                             : part->kinds->leans[column] * smallest_scale *
+                                   unit[s->column_is_current[column] ? 1 : 0];
     return dalcs_larger(least, dalcs_larger(part->scale[column], part->magnitude[column]));
 }
 
@@ -304,13 +323,16 @@ DALCS_TWICE(void, compare_all,
         dalcs_quad is_closed;
         dalcs_quad scale;
         dalcs_quad magnitude;
+        dalcs_quad leans;
         dalcs_quad_load(&is_volt, kinds->is_volt + c);
         dalcs_quad_load(&is_ampere, kinds->is_ampere + c);
         dalcs_quad_load(&is_closed, kinds->is_closed + c);
+        dalcs_quad_load(&leans, kinds->leans + c);
         dalcs_quad_load(&scale, part->scale + c);
         dalcs_quad_load(&magnitude, part->magnitude + c);
         dalcs_quad_raise(&scale, &magnitude);
-        magnitude = a->least[0] * is_volt + a->least[1] * is_ampere + a->least[2] * is_closed;
+        magnitude =
+            leans * (a->least[0] * is_volt + a->least[1] * is_ampere) + a->least[2] * is_closed;
         dalcs_quad_raise(&scale, &magnitude);
         dalcs_quad allowed =
             a->tolerance * scale +

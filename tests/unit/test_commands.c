@@ -118,12 +118,26 @@ START_TEST(test_sums) {
 
 END_TEST
 
-/* Sources along curves have no such schedule, nor has a control that the circuit makes. */
+/* Sines, an approach, and both with straight lines: closed forms. */
+START_TEST(test_curves) {
+    CHECK_MOVES("SIN(0 1 1)", HARD, false, 1 / 12.0, 5 / 12.0, 13 / 12.0, 17 / 12.0);
+    CHECK_MOVES("SIN(0 1 0.125 0 0 60)", "Vz z 0 0\n.model sm SW(Vt=0 Vh=0.5)", true, 10 / 3.0,
+                22 / 3.0, 34 / 3.0);
+    CHECK_MOVES("SIN(0 1 1)", "Vz z 0 0\n.model sm SW", false, 0, 0.5, 1, 1.5);
+    CHECK_MOVES("SIN(0 0.5 1)", HARD, false, INFINITY); /* touches it at each peak */
+    CHECK_MOVES("SIN(0 1 1 0 0 0 1.5)", "Vz z 0 0\n.model sm SW", false, 0, 0.5, 1, 1.5, INFINITY);
+    CHECK_MOVES("EXP(0 1 1 2 1e9 1)", HARD, false, 1 + 2 * log(2.0), INFINITY);
+    CHECK_MOVES("EXP(1 0 1 2 1e9 1)", HYSTERESIS, true, 1 + 2 * log(4.0), INFINITY);
+    CHECK_MOVES("SIN(0 1 1)", "Vz 0 z PULSE(0 1 1 0 0 1 10)\n.model sm SW(Vt=0.5)", false, 1 / 12.0,
+                5 / 12.0, 2 + 1 / 12.0, 2 + 5 / 12.0);
+    CHECK_MOVES("SIN(0 1 1)", "Vz z 0 PULSE(0 1 1 0 0 1 10)\n.model sm SW(Vt=0.5)", false, 1 / 12.0,
+                5 / 12.0, 1, 1 + 7 / 12.0, 1 + 11 / 12.0, 2, 2 + 1 / 12.0);
+}
+
+END_TEST
+
+/* A control that the circuit makes has no such schedule. */
 START_TEST(test_not_commands) {
-    start("SIN(0 1 1)", HARD);
-    ck_assert_int_eq(c.n, 0);
-    ck_assert(isinf(c.next));
-    finish();
     start("PULSE(0 1 1 0 0 2 5)", "Cz z 0 1\n.model sm SW(Vt=0.5)");
     ck_assert_int_eq(c.n, 0);
     finish();
@@ -228,5 +242,5 @@ START_TEST(test_two) {
 
 END_TEST
 
-RUN_TESTS("commands", test_pulse, test_odd_pulses, test_sums, test_not_commands,
+RUN_TESTS("commands", test_pulse, test_odd_pulses, test_sums, test_curves, test_not_commands,
           test_counted_and_walked, test_late, test_two)

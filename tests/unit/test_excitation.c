@@ -153,16 +153,15 @@ START_TEST(test_over_edges) {
 END_TEST
 
 START_TEST(test_left_out) {
-    /* A gate driver only commands; a curved one is watched; both at once is seen as well. */
+    /* A gate driver only commands, along a curve, too; one that feeds the circuit besides is a wave. */
     start("gates\nV1 in 0 1\nS1 in o g 0 sm\nS2 in o h 0 sm\nS3 in o k 0 sm\n.model sm SW(Vt=0.5)\n"
           "Vg g 0 PULSE(0 1 0 0 0 1 2)\nRg g 0 1\nVh h 0 SIN(0 1 1)\nRh h 0 1\n"
           "Vk k 0 PULSE(0 1 0 0 0 1 2)\nRk k o 1k\nC1 o 0 1\nR1 o 0 1\n.tran 1 10\n");
     ck_assert_ptr_null(wave_named("vg"));
-    ck_assert_ptr_nonnull(wave_named("vh"));
-    ck_assert(wave_named("vh")->is_curved);
+    ck_assert_ptr_null(wave_named("vh"));
     ck_assert_ptr_nonnull(wave_named("vk"));
     ck_assert_int_eq(wave_named("vk")->n_functions, 2);
-    ck_assert_int_eq(x.n_waves, 2);
+    ck_assert_int_eq(x.n_waves, 1);
     finish();
     /* Constants of every kind make no wave, and without waves nothing ends. */
     start("constant\nV1 a 0 1\nR1 a o 1\nC1 o 0 1\n.tran 1 10\n");

@@ -377,8 +377,9 @@ START_TEST(test_next_to_open) {
 END_TEST
 
 START_TEST(test_watched) {
-    start("watched\nV1 a 0 SIN(0 1 0.1)\nR1 a b 1\nC1 b 0 1\nS1 b 0 b 0 sm\nS2 b 0 a 0 sm\n"
-          "S3 b 0 g 0 sm\nVg g 0 PULSE(0 1 0 0 0 1 2)\n.model sm SW(Vt=0.5 Roff=10 Ron=1)\n"
+    start("watched\nV1 a 0 SIN(0 1 0.1)\nR1 a b 1\nC1 b 0 1\nS1 b 0 b 0 sm\nS2 b 0 e 0 sm\n"
+          "E1 e 0 a 0 1\nS3 b 0 g 0 sm\nS4 b 0 a 0 sm\nVg g 0 PULSE(0 1 0 0 0 1 2)\n.model sm "
+          "SW(Vt=0.5 Roff=10 Ron=1)\n"
           ".tran 1 1\n",
           3);
     const double state[] = {0.25};
@@ -389,7 +390,7 @@ START_TEST(test_watched) {
         ck_assert(on_state || stages.watched[i] == find_pair(s, "s2"));
         for (int k = 0; k <= 3; k++) {
             double v = out[k * stages.layout.stride + dalcs_system_n_columns(s) + i];
-            double expected = column_at(k, DALCS_LABEL_NODE, on_state ? "b" : "a");
+            double expected = column_at(k, DALCS_LABEL_NODE, on_state ? "b" : "e");
             ck_assert_double_eq_tol(v, expected, 1e-15);
         }
     }
