@@ -43,6 +43,27 @@ R0 a b 0
 R1 b 0 1k
 .op
 """, {"i(d1)": (0, INF, "d1 parallel to r0")}),
+    "measured, not saved": ("""Two diodes in parallel of which rows have none: their names are in messages all the same
+I1 0 a DC 5m
+D1 a b DI
+D2 a b DI
+R1 b 0 1k
+.save v(a)
+.tran 1m 10m
+.meas tran x AVG i(D2)
+.meas tran y MAX i(D1)
+""", {"i(d1)": (0, 5e-3, "d1 parallel to d2"), "i(d2)": (0, 5e-3, "d1 parallel to d2")}),
+    "a formula that measures": ("""A voltage that only .meas names floats
+V1 in 0 DC -10
+D1 in m DI
+D2 m 0 DI
+.save v(in)
+.op
+.tran 1m 10m
+.meas tran x AVG v(m)
+.meas tran y PARAM='2*x'
+.four 100 v(in,m)
+""", {"v(m)": (-10, 0, "stack d1-d2 blocks"), "v(in,m)": (-10, 0, "stack d1-d2 blocks")}),
     "parallel to a switch": ("""A closed switch and a diode
 S1 c 0 ctl 0 SW ON
 V1 ctl 0 1
