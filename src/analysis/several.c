@@ -12,6 +12,11 @@
 /* Diodes up to which 2^n modes are tried; answers kept. */
 enum { MOST_DIODES = 6, MOST_ANSWERS = 8 };
 
+/* Values of a signal that differ by less than this part of the larger are the same, and so are those that differ by
+ * what factors may leave of the largest voltage or current of all. */
+static const double same_value = 1e-9;
+static const double rounding = 1e-13;
+
 /* The first step over the stop time, the second over the first. */
 static const double first_part = 1e-6;
 static const double second_part = 1e-3;
@@ -74,6 +79,14 @@ static int count(struct dalcs_view *view, const struct dalcs_system *s, const do
     return n_different > 1 ? n_different : n;
 }
 
+/* Beside an integrator of 1e7 V a latch of 1 V has two states all the same. */
+static bool is_open(const struct dalcs_view *view, bool is_current,
+                    const struct dalcs_open_signal *signal) {
+    double apart = signal->upper - signal->lower;
+    return apart > same_value * fmax(fabs(signal->lower), fabs(signal->upper)) &&
+           apart > rounding * view->largest[is_current ? 1 : 0];
+}
+
 static enum dalcs_status tell(struct dalcs_undetermined *u, const struct dalcs_euler *e, int system,
                               double h, const double *inputs, const double *answer, int n) {
     const struct dalcs_system *s = &e->network->system[system];
@@ -110,7 +123,7 @@ static enum dalcs_status tell(struct dalcs_undetermined *u, const struct dalcs_e
             signal->lower = fmin(signal->lower, value);
             signal->upper = fmax(signal->upper, value);
         }
-        bool open = dalcs_view_is_open(&view, out->is_current, signal->lower, signal->upper);
+        bool open = is_open(&view, out->is_current, signal);
         u->told[i] = (struct dalcs_told){.is_told = open, .system = system, .time = -1.0};
         finding.n_signals += open ? 1 : 0;
     }

@@ -83,4 +83,13 @@ static inline double dalcs_probe_value(const struct dalcs_probe *probe, const do
     return sum;
 }
 
+/* Does the probe read nothing but the first n columns? */
+static inline bool dalcs_probe_is_known(const struct dalcs_probe *probe, int n) {
+    bool is_known = probe->n_inputs == 0;
+    for (int k = 0; k < probe->n_terms && is_known; k++) {
+        is_known = probe->term[k].index < n;
+    }
+    return is_known;
+}
+
 #endif

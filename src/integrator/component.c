@@ -19,6 +19,7 @@ enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
     c->u = dalcs_arena_alloc(&c->arena, n_u, sizeof(double));
     c->probe_u = dalcs_arena_alloc(&c->arena, n_u, sizeof(double));
     c->probe_y = dalcs_arena_alloc(&c->arena, n_columns, sizeof(double));
+    c->largest = dalcs_arena_alloc(&c->arena, (size_t)system->n_x, sizeof(double));
     c->y = dalcs_arena_alloc(&c->arena, n_columns, sizeof(double));
     c->y_before = dalcs_arena_alloc(&c->arena, n_columns, sizeof(double));
     c->scratch = dalcs_arena_alloc(&c->arena, n_columns, sizeof(double));
@@ -27,8 +28,8 @@ enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
     c->piece = dalcs_arena_alloc(&c->arena, (size_t)system->n_inputs, sizeof(*c->piece));
     c->switch_pair = dalcs_arena_alloc(&c->arena, (size_t)system->n_pairs, sizeof(int));
     if (c->u == NULL || c->probe_u == NULL || c->probe_y == NULL || c->y == NULL ||
-        c->y_before == NULL || c->scratch == NULL || c->saved_mode == NULL || c->varying == NULL ||
-        c->piece == NULL || c->switch_pair == NULL) {
+        c->y_before == NULL || c->largest == NULL || c->scratch == NULL || c->saved_mode == NULL ||
+        c->varying == NULL || c->piece == NULL || c->switch_pair == NULL) {
         dalcs_component_finish(c);
         return DALCS_E_NOMEM;
     }

@@ -15,6 +15,8 @@ struct dalcs_component {
     double *scratch;  /* [n_columns] */
     double *probe_u;  /* [n_x + n_inputs] */
     double *probe_y;  /* [n_columns] */
+    double *largest;  /* [n_x] magnitudes of states so far, of steps of implicit Euler */
+    double scale[2];  /* V, A: the physical scales of their answers */
     uint64_t *saved_mode;
 
     struct dalcs_input_piece {

@@ -248,7 +248,19 @@ static void fetch_input(const struct dalcs_radau_part *part, int input, double *
     }
 }
 
-static double integral_of(const struct dalcs_radau_part *part, const struct dalcs_stage_rule *rule,
+/* A source drives this much, whatever power that is: a voltage through a current, or the other way round. */
+static void note_drive(struct dalcs_energy_part *ledger, const struct dalcs_power_term *term,
+                       const double *value, int n) {
+    int column = term->first[0] >= 0 ? term->first[0] : term->first[1];
+    double *largest =
+        &ledger->largest[column >= 0 && ledger->system->column_is_current[column] ? 0 : 1];
+    for (int i = 0; i < n; i++) {
+        *largest = dalcs_larger(*largest, fabs(value[i]));
+    }
+}
+
+static double integral_of(struct dalcs_energy_part *ledger, const struct dalcs_radau_part *part,
+                          const struct dalcs_stage_rule *rule,
                           const struct dalcs_power_term *term) {
     double first[DALCS_MAX_STAGES];
     double second[DALCS_MAX_STAGES];
@@ -263,10 +275,12 @@ static double integral_of(const struct dalcs_radau_part *part, const struct dalc
         return term->coefficient * dalcs_stage_rule_product(rule, first, second);
     case DALCS_POWER_INPUT:
         if (!varies(&part->excitation, term->input)) {
+            note_drive(ledger, term, &part->excitation.constant[term->input], 1);
             return term->coefficient * part->excitation.constant[term->input] *
                    dalcs_stage_rule_integral(rule, first);
         }
         fetch_input(part, term->input, second);
+        note_drive(ledger, term, second, part->stages.method->s);
         return term->coefficient * dalcs_stage_rule_product(rule, first, second);
     }
     return 0.0;
@@ -305,7 +319,7 @@ static double loss_of(const struct dalcs_energy_part *ledger, const struct dalcs
 
 void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_part *part,
                           const double *start) {
-    const struct dalcs_energy_part *ledger = &energy->part[part->index];
+    struct dalcs_energy_part *ledger = &energy->part[part->index];
     struct dalcs_stage_rule rule;
     if (part->by_euler) {
         return; /* entered when it was made */
@@ -314,7 +328,8 @@ void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_
     for (int i = 0; i < ledger->n_stepped; i++) {
         const struct dalcs_power_term *term = &ledger->term[i];
         if (term->pair < 0 || dalcs_osnsp_is_on(&part->component->osnsp, term->pair)) {
-            dalcs_energy_enter(energy, term->account, part->h * integral_of(part, &rule, term));
+            dalcs_energy_enter(energy, term->account,
+                               part->h * integral_of(ledger, part, &rule, term));
         }
     }
     double loss = loss_of(ledger, part, &rule, start);
@@ -364,8 +379,8 @@ static enum dalcs_status close_radau(struct dalcs_energy *energy, struct dalcs_r
         dalcs_energy_segment(energy, radau, radau->after);
         energy->stored_change +=
             dalcs_euler_stored_energy(part->system, radau->x) - part->stored_at_start;
-        largest[0] = radau->unit_scale[0];
-        largest[1] = radau->unit_scale[1];
+        largest[0] = dalcs_larger(radau->unit_scale[0], part->largest[0]);
+        largest[1] = dalcs_larger(radau->unit_scale[1], part->largest[1]);
     }
     return dalcs_energy_enter_decided(energy, part, radau->component, &radau->excitation.bystanders,
                                       stop);

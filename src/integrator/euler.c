@@ -15,6 +15,11 @@ static const double micro_part[] = {1e-6, 1e-3, 1.0};
 static const double jump_part = 0.5;
 static const double jump_floor = 1e-9;
 
+/* What is left of a state that falls to 0, over the largest that it was; and of one that has always been 0, over the
+ * physical scale of its unit. */
+static const double micro_error = 1e-6; /* what two micro-steps tell of what is no state */
+static const double jump_remainder = 1e-12, jump_rounding = 1e-15;
+
 /* Where vanishing steps have a limit, half a micro-step moves the state as far as a whole one, or half
  * as far; with the derivative of an impulse it moves it twice as far. */
 static const double runaway = 1.5;
@@ -49,11 +54,15 @@ enum dalcs_status dalcs_euler_setup(struct dalcs_euler *e, const struct dalcs_ci
     e->after = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
     e->charge = dalcs_arena_alloc(&e->arena, pairs, sizeof(double));
     e->flux = dalcs_arena_alloc(&e->arena, pairs, sizeof(double));
+    e->told = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
+    e->told_from = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
+    e->noise = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
     e->jump.after = dalcs_arena_alloc(&e->arena, columns, sizeof(double));
     e->jump.charge = dalcs_arena_alloc(&e->arena, pairs, sizeof(double));
     e->jump.flux = dalcs_arena_alloc(&e->arena, pairs, sizeof(double));
-    bool complete = e->after != NULL && e->charge != NULL && e->flux != NULL &&
-                    e->jump.after != NULL && e->jump.charge != NULL && e->jump.flux != NULL;
+    bool complete = e->after != NULL && e->charge != NULL && e->flux != NULL && e->told != NULL &&
+                    e->noise != NULL && e->jump.after != NULL && e->jump.charge != NULL &&
+                    e->jump.flux != NULL;
     if (status == DALCS_OK && !complete) {
         status = DALCS_E_NOMEM;
     }
@@ -196,14 +205,48 @@ enum dalcs_status dalcs_euler_refuse_derivative(struct dalcs_euler *e, int k, co
     return DALCS_INFEASIBLE;
 }
 
+/* e->told_from and e->told: the states before and after a jump, without what is rounding. Impulses of charge come with
+ * voltages that jump, those of flux with currents. */
+static bool tell_states(struct dalcs_euler *e, const struct dalcs_system *s, const double *before) {
+    bool jumps[2] = {false, false};
+    for (int x = 0; x < s->n_x; x++) {
+        bool is_told = fabs(e->jump.after[x] - before[x]) > e->noise[x];
+        e->told_from[x] = before[x];
+        e->told[x] = is_told ? e->jump.after[x] : before[x];
+        jumps[s->column_is_current[x]] = jumps[s->column_is_current[x]] || is_told;
+    }
+    if (!jumps[0]) {
+        memset(e->jump.charge, 0, (size_t)s->n_pairs * sizeof(double));
+    }
+    if (!jumps[1]) {
+        memset(e->jump.flux, 0, (size_t)s->n_pairs * sizeof(double));
+    }
+    return jumps[0] || jumps[1];
+}
+
+/* And the other columns of the equations, as far as they are known. */
+static void tell_columns(struct dalcs_euler *e, const struct dalcs_system *s, const double *from,
+                         const double *to) {
+    for (int c = s->n_x; c < dalcs_system_n_equations(s); c++) {
+        double size = fmax(fabs(from[c]), fabs(to[c]));
+        e->told_from[c] = from[c];
+        e->told[c] = fabs(to[c] - from[c]) <= micro_error * size  ? from[c]
+                     : fabs(to[c]) <= micro_error * fabs(from[c]) ? 0.0
+                                                                  : to[c];
+    }
+}
+
 enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double time,
-                                          const double *before) {
+                                          const double *before, const double *from,
+                                          const double *to) {
     const struct dalcs_system *s = e->component[k].system;
-    const struct dalcs_euler_jump jump = {
+    struct dalcs_euler_jump jump = {
         .time = time,
         .system = k,
+        .mode = e->component[k].osnsp.mode,
         .before = before,
         .after = e->jump.after,
+        .n_known = s->n_x,
         .charge = e->jump.charge,
         .flux = e->jump.flux,
         .energy_lost = dalcs_euler_jump_energy(s, before, e->jump.after),
@@ -212,7 +255,36 @@ enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double t
     if (e->energy != NULL) {
         dalcs_energy_jump(e->energy, &jump);
     }
-    return e->on_jump != NULL ? e->on_jump(e->jump_user, &jump) : DALCS_OK;
+    if (e->on_jump == NULL || !tell_states(e, s, before)) {
+        return DALCS_OK;
+    }
+    if (from != NULL && to != NULL) {
+        tell_columns(e, s, from, to);
+        jump.n_known = dalcs_system_n_equations(s);
+    }
+    jump.before = e->told_from;
+    jump.after = e->told;
+    jump.energy_lost = dalcs_euler_jump_energy(s, before, e->told);
+    return e->on_jump(e->jump_user, &jump);
+}
+
+/* What certificates may leave of the states' own sizes, or rounding of the largest of their unit so far and of what the
+ * other unit vouches for. */
+static void find_noise(struct dalcs_euler *e, int k, const double *before) {
+    const struct dalcs_component *c = &e->component[k];
+    const struct dalcs_system *s = c->system;
+    const struct dalcs_step_form *f = c->osnsp.form[0];
+    double unit[2];
+    for (int of = 0; of < 2; of++) {
+        unit[of] = fmax(c->scale[of], fmax(largest_state(s, before, of == 1),
+                                           largest_state(s, e->jump.after, of == 1)));
+    }
+    const double scale[2] = {fmax(unit[0], f->ampere_in_volts * unit[1]),
+                             fmax(unit[1], f->volt_in_amperes * unit[0])};
+    for (int x = 0; x < s->n_x; x++) {
+        double own = fmax(c->largest[x], fmax(fabs(before[x]), fabs(e->jump.after[x])));
+        e->noise[x] = fmax(jump_remainder * own, jump_rounding * scale[s->column_is_current[x]]);
+    }
 }
 
 /* What two micro-steps, y of length h and the component's scratch of half of it, say of a jump. */
@@ -321,7 +393,8 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
         return DALCS_OK; /* a transient faster than a micro-step, which is not a jump */
     }
     memcpy(e->after, e->jump.after, (size_t)s->n_x * sizeof(double));
-    return dalcs_euler_report_jump(e, k, e->t, before);
+    find_noise(e, k, before);
+    return dalcs_euler_report_jump(e, k, e->t, before, e->t > 0.0 ? before : NULL, c->scratch);
 }
 
 /* y becomes all values just after a discontinuity, with the state after it. A micro-step from that
@@ -402,6 +475,16 @@ static enum dalcs_status tell_what_stays_open(struct dalcs_euler *e) {
     return DALCS_OK;
 }
 
+/* After a step: how large states and answers have been. */
+static void note_scale(struct dalcs_component *c) {
+    for (int x = 0; x < c->system->n_x; x++) {
+        double size = fabs(c->y[x]);
+        c->largest[x] = size > c->largest[x] ? size : c->largest[x];
+    }
+    c->scale[0] = fmax(c->scale[0], c->osnsp.certificate.volt);
+    c->scale[1] = fmax(c->scale[1], c->osnsp.certificate.ampere);
+}
+
 enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
     e->t_before = e->t;
     double h = dalcs_grid_advance(&e->grid, &e->at_jump);
@@ -419,6 +502,7 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
         size_t n_x = (size_t)c->system->n_x;
         dalcs_component_sample(c, e->t, DALCS_LEFT, c->u);
         DALCS_TRY(solve(e, k, n_x > 0 ? sigma : 0.0, c->u, c->y));
+        note_scale(c);
         if (e->energy != NULL) {
             dalcs_energy_scale(e->energy, k, &c->osnsp.certificate);
         }

@@ -15,10 +15,13 @@
 struct dalcs_euler_jump {
     double time;
     int system;
-    const double *before, *after; /* [n_columns], x and z and lambda just before and after */
-    const double *charge, *flux;  /* [n_pairs] */
-    double energy_lost;           /* J */
-    double source_work;           /* J, delivered by the sources in the jump */
+    const uint64_t *mode; /* just after */
+    const double *before,
+        *after;  /* [n_known] just before and after; equal where rounding alone tells them apart */
+    int n_known; /* columns: the states, or all of the equations */
+    const double *charge, *flux; /* [n_pairs] */
+    double energy_lost;          /* J */
+    double source_work;          /* J, delivered by the sources in the jump */
 };
 
 struct dalcs_euler;
@@ -64,6 +67,8 @@ struct dalcs_euler {
                                  bool *vanishes); /* may be NULL */
     struct dalcs_energy *energy;                  /* the ledger, borrowed; NULL: none is kept */
     double *after, *charge, *flux;                /* what micro-steps see, the largest component */
+    double *noise;            /* [n_x] of a jump, which the caller fills: what is rounding */
+    double *told_from, *told; /* work: the columns that a jump is told with */
     struct dalcs_jumps jumps;
     struct dalcs_jump_answer jump; /* the last one */
     struct dalcs_arena arena;      /* what has the same size during the run */
@@ -91,9 +96,12 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) DALCS_MUST_CHECK;
 /* At a jump of the sources: y becomes the values just after e->t; the state stays. */
 enum dalcs_status dalcs_euler_cross(struct dalcs_euler *e) DALCS_MUST_CHECK;
 
-/* Hands a jump of component k, from `before` to e->jump.after, to the ledger and to on_jump. */
+/* Hands a jump of component k, from before[n_x] to e->jump.after, to the ledger, and to on_jump unless no state
+ * changes by more than e->noise. Impulses of a unit of which none does are rounding as well, and become 0. from and
+ * to[n_columns] tell what the other columns are just before and after; NULL: nobody knows. */
 enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double time,
-                                          const double *before) DALCS_MUST_CHECK;
+                                          const double *before, const double *from,
+                                          const double *to) DALCS_MUST_CHECK;
 
 /* The jump of component k from u = (x, s), with the mode after it, into e->jump: exactly where it is
  * covered, else from e->after, e->charge and e->flux. */

@@ -8,6 +8,8 @@
 #include "energy.h"
 #include "guard_scale.h"
 #include "radau_internal.h"
+#include "recurrence.h"
+#include "step_error.h"
 
 #include <math.h>
 #include <string.h>
@@ -108,6 +110,22 @@ static void find_largest(const struct dalcs_radau_part *part, double *largest) {
     }
 }
 
+/* V, A: and of what sources and thresholds drive, in the inputs of the last micro-step. */
+static void raise_to_drives(const struct dalcs_radau_part *part, double *largest) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    for (int k = 0; k < p->n_drives; k++) {
+        const struct dalcs_drive *d = &p->drive[k];
+        double *of = &largest[d->is_current];
+        *of = fmax(*of, d->coefficient * fabs(part->u[d->input]));
+    }
+}
+
+/* V or A: a state that changes by less has not: rounding of the largest of its unit, or what rounding of the other unit
+ * drives. */
+static double rounding_of(const struct dalcs_radau_part *part, int of, const double *largest) {
+    return fmax(rounding * largest[of], dalcs_step_crossed(part, of, largest));
+}
+
 /* V, A: no less than |y[0..n-1]|. */
 static void raise_largest(const struct dalcs_system *s, const double *y, int n, double *largest) {
     for (int c = 0; c < n; c++) {
@@ -127,6 +145,9 @@ static bool extrapolate(const struct dalcs_radau_part *part, double *after, bool
     find_largest(part, largest);
     raise_largest(s, part->y1, dalcs_system_n_equations(s), largest);
     double smallest = fmax(1e3 * part->inner_tolerance, smallest_jump);
+    double driven[2] = {largest[0], largest[1]};
+    raise_to_drives(part, driven);
+    const double nothing[2] = {rounding_of(part, 0, driven), rounding_of(part, 1, driven)};
     bool jumps = false;
     *noticeable = false;
     *closer = 1.0;
@@ -134,7 +155,7 @@ static bool extrapolate(const struct dalcs_radau_part *part, double *after, bool
         double first = fabs(part->y1[x] - part->x[x]);
         double second = fabs(part->y2[x] - part->y1[x]);
         double scale = largest[s->column_is_current[x]];
-        bool moved = first > jump_ratio * second && first > rounding * scale;
+        bool moved = first > jump_ratio * second && first > nothing[s->column_is_current[x]];
         jumps = jumps || moved;
         *noticeable = *noticeable || (moved && first > smallest * scale);
         bool dies_away = !moved && second < steady * first;
@@ -148,6 +169,11 @@ static bool extrapolate(const struct dalcs_radau_part *part, double *after, bool
     return jumps;
 }
 
+/* A regular current changes little in a micro-step, an impulse, which may be negative in a switch, goes. */
+static bool goes(double change, double first) {
+    return change * first > 0.5 * first * first;
+}
+
 /* The impulses of the micro-steps y1 and y2 of length h. */
 static void extrapolate_impulses(struct dalcs_radau *r, const struct dalcs_radau_part *part,
                                  double h) {
@@ -157,9 +183,8 @@ static void extrapolate_impulses(struct dalcs_radau *r, const struct dalcs_radau
     for (int d = 0; d < s->n_pairs; d++) {
         double charge = h * (part->y1[n_equations + d] - part->y2[n_equations + d]);
         double flux = h * (part->w1[d] - part->component->osnsp.w[d]);
-        /* a regular current changes little in a micro-step, an impulse goes */
-        e->charge[d] = charge > 0.5 * h * part->y1[n_equations + d] ? charge : 0.0;
-        e->flux[d] = flux > 0.5 * h * part->w1[d] ? flux : 0.0;
+        e->charge[d] = goes(charge, h * part->y1[n_equations + d]) ? charge : 0.0;
+        e->flux[d] = goes(flux, h * part->w1[d]) ? flux : 0.0;
     }
     memcpy(e->after, part->after, (size_t)s->n_x * sizeof(double));
 }
@@ -260,11 +285,40 @@ static void drop_remainders(const struct dalcs_radau_part *part, double *after) 
     }
 }
 
+/* The change of each state that is not worth a word: what is left of it where it falls to 0, over its own scale, or
+ * rounding. */
+static void find_noise(const struct dalcs_radau_part *part, const double *after, double *noise) {
+    const struct dalcs_system *s = part->component->system;
+    double largest[2];
+    find_largest(part, largest);
+    raise_to_drives(part, largest);
+    for (int x = 0; x < s->n_x; x++) {
+        double own = fmax(dalcs_step_scale(part, x, part->unit_scale),
+                          fmax(fabs(part->x[x]), fabs(after[x])));
+        noise[x] =
+            fmax(remainder_of_jump * own, rounding_of(part, s->column_is_current[x], largest));
+    }
+}
+
+/* All columns at the end of the segment that ended at part->t, into part->y2; NULL at the start. */
+static const double *columns_before(struct dalcs_radau_part *part) {
+    if (!(part->t > 0.0)) {
+        return NULL;
+    }
+    dalcs_recurrence_complete_before(part);
+    dalcs_radau_swap_out(part, &part->out_before);
+    dalcs_step_values(part, part->end_before, part->y2);
+    dalcs_radau_swap_out(part, &part->out_before);
+    return part->y2;
+}
+
 static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     struct dalcs_euler *e = r->base;
     e->t = part->t;
     drop_remainders(part, e->jump.after);
-    DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->t, part->x));
+    find_noise(part, e->jump.after, e->noise);
+    DALCS_TRY(
+        dalcs_euler_report_jump(e, part->index, part->t, part->x, columns_before(part), part->y1));
     memcpy(part->x, e->jump.after, (size_t)part->component->system->n_x * sizeof(double));
     part->jumped = true;
     return DALCS_OK;
@@ -412,6 +466,7 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
         }
     }
     if (r->base->energy != NULL) {
+        dalcs_energy_scale(r->base->energy, part->index, &part->component->osnsp.certificate);
         dalcs_energy_step(r->base->energy, part->index, part->x, part->y1, part->u + s->n_x, h);
     }
     part->by_euler = true;

@@ -296,6 +296,37 @@ static void check_references(struct dalcs_osnsp *p, const double *y, struct scal
     }
 }
 
+/* What the terms of the equations that hold lambda_d add up to: the currents around the pair. */
+static double current_size(const struct dalcs_osnsp *p, const double *u, const double *y, int d) {
+    const struct dalcs_system *s = p->system;
+    double largest = 0.0;
+    for (int k = p->pair_rows_p[d]; k < p->pair_rows_p[d + 1]; k++) {
+        int r = p->pair_rows[k];
+        double size = 0.0;
+        for (int i = s->A.p[r]; i < s->A.p[r + 1]; i++) {
+            size += fabs(s->A.x[i] * y[s->A.j[i]]);
+        }
+        for (int i = s->E.p[r]; i < s->E.p[r + 1]; i++) {
+            size += fabs(s->E.x[i] * u[s->n_x + s->E.j[i]]);
+        }
+        largest = fmax(largest, size);
+    }
+    return largest;
+}
+
+bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, const double *y) {
+    const double *lambda = y + dalcs_system_n_equations(p->system);
+    double tolerance = p->options.certificate_tolerance;
+    bool hold = true;
+    for (int d = 0; d < p->system->n_pairs && hold; d++) {
+        bool is_on = dalcs_osnsp_is_on(p, d);
+        double value = is_on ? lambda[d] : p->w[d];
+        hold = !p->is_diode[d] || !(value < 0.0) ||
+               -value <= tolerance * (is_on ? current_size(p, u, y, d) : pair_size(p, u, y, d));
+    }
+    return hold;
+}
+
 /* V, A: rows of larger ones may overflow, and infinite rows would vouch for any residual. */
 static const double largest_scale = 1e250;
 

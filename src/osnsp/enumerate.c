@@ -92,7 +92,8 @@ static enum dalcs_status list_answers(struct dalcs_osnsp *p, const double *u, in
         if (status < DALCS_OK) {
             return status;
         }
-        bool is_new = status == DALCS_OK && dalcs_certificate_holds(p, sources_clash);
+        bool is_new = status == DALCS_OK && dalcs_certificate_holds(p, sources_clash) &&
+                      dalcs_certificate_signs_hold(p, u, y);
         for (int k = 0; k < *n && is_new; k++) {
             is_new = !are_same(p->system, answer + (size_t)k * n_columns, y);
         }

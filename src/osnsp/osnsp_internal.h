@@ -82,6 +82,10 @@ static inline bool dalcs_certificate_holds(const struct dalcs_osnsp *p, bool sou
            p->certificate.worst <= p->options.certificate_tolerance;
 }
 
+/* Of the answer evaluated last: is each wrong sign of a diode rounding beside what is next to that very diode?
+ * The certificate measures it by the largest voltage and current anywhere, beside which a true one may be small. */
+bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, const double *y);
+
 /* ---- proximal.c ---------------------------------------------------------------------------- */
 
 enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u,

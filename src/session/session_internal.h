@@ -57,7 +57,8 @@ struct dalcs_run {
     struct dalcs_measurement *measurement; /* [n_measures] of the report; NULL: none yet */
     double *result;                        /* [n_measures] NAN: could not be measured */
     const struct dalcs_plot *step;         /* its step and parameters; NULL without .step */
-    const char **name;
+    const char *
+        *name; /* [n_outputs] of the network: rows have the first n_shown, messages may name any */
     enum dalcs_unit *unit;
     struct dalcs_names interrupting; /* switches that a warning has named */
     struct dalcs_undetermined undetermined;

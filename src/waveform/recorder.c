@@ -8,9 +8,6 @@
 /* Output times this close to a step's end, over the step, are at its end. */
 static const double same_time = 1e-9;
 
-/* V or A: what extrapolation leaves of a state that stays at 0. */
-static const double smallest_jump = 1e-15;
-
 enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
                                        const struct dalcs_network *network,
                                        const struct dalcs_sink *sink,
@@ -348,14 +345,13 @@ static size_t list_jump_states(const struct dalcs_recorder *r, const struct dalc
     size_t n = 0;
     for (int i = 0; i < r->network->n_states; i++) {
         const struct dalcs_state *x = &r->network->state[i];
-        if (x->probe.system != j->system) {
+        if (x->probe.system != j->system || !dalcs_probe_is_known(&x->probe, j->n_known)) {
             continue;
         }
         double before = dalcs_probe_value(&x->probe, j->before, no_inputs);
         double after = dalcs_probe_value(&x->probe, j->after, no_inputs);
         double change = after - before;
-        if (fabs(change) > smallest_jump &&
-            is_noticeable(change, fmax(fabs(before), fabs(after)))) {
+        if (is_noticeable(change, fmax(fabs(before), fabs(after)))) {
             r->jump_state[n++] =
                 (struct dalcs_jump_state){.element = x->element, .before = before, .after = after};
         }
@@ -390,12 +386,12 @@ enum dalcs_status dalcs_recorder_jump(void *user, const struct dalcs_euler_jump 
     if (!r->keep) {
         return DALCS_OK;
     }
-    if (r->n_jumps == r->limit) {
-        r->n_jumps_dropped++;
-        return DALCS_OK;
-    }
     size_t n_states = list_jump_states(r, j);
     size_t n_impulses = list_impulses(r, j);
+    if (n_states + n_impulses == 0 || r->n_jumps == r->limit) {
+        r->n_jumps_dropped += n_states + n_impulses > 0 ? 1 : 0;
+        return DALCS_OK;
+    }
     struct dalcs_jump_state *state = dalcs_arena_alloc(&r->arena, n_states, sizeof(*state));
     struct dalcs_impulse *impulse = dalcs_arena_alloc(&r->arena, n_impulses, sizeof(*impulse));
     DALCS_TRY(dalcs_grow(&r->jump, &r->jump_capacity, r->n_jumps + 1, sizeof(*r->jump)));

@@ -43,6 +43,27 @@ R0 a b 0
 R1 b 0 1k
 .op
 """, {"i(d1)": (0, INF, "d1 parallel to r0")}),
+    "measured, not saved": ("""Two diodes in parallel of which rows have none: their names are in messages all the same
+I1 0 a DC 5m
+D1 a b DI
+D2 a b DI
+R1 b 0 1k
+.save v(a)
+.tran 1m 10m
+.meas tran x AVG i(D2)
+.meas tran y MAX i(D1)
+""", {"i(d1)": (0, 5e-3, "d1 parallel to d2"), "i(d2)": (0, 5e-3, "d1 parallel to d2")}),
+    "a formula that measures": ("""A voltage that only .meas names floats
+V1 in 0 DC -10
+D1 in m DI
+D2 m 0 DI
+.save v(in)
+.op
+.tran 1m 10m
+.meas tran x AVG v(m)
+.meas tran y PARAM='2*x'
+.four 100 v(in,m)
+""", {"v(m)": (-10, 0, "stack d1-d2 blocks"), "v(in,m)": (-10, 0, "stack d1-d2 blocks")}),
     "parallel to a switch": ("""A closed switch and a diode
 S1 c 0 ctl 0 SW ON
 V1 ctl 0 1
@@ -169,6 +190,38 @@ I1 0 a DC -1
 """, {signal: (lower, upper, "2 solutions of a circuit that is not passive")
       for signal, lower, upper in (("v(e)", -3, 3), ("v(a)", -1, 1), ("v(b)", -1, 3),
                                    ("i(e1)", -2, 0), ("i(d1)", 0, 2))}),
+    "not passive, beside an integrator": ("""The same while the source of an integrator drives 1 TA
+E1 e 0 a 0 3
+D1 e b DI
+R1 b a 1
+R2 a 0 1
+I1 0 a DC -1
+G2 0 psi a 0 1e12
+Rp psi 0 1
+.op
+""", {signal: (lower, upper, "2 solutions of a circuit that is not passive")
+      for signal, lower, upper in (("v(e)", -3, 3), ("v(a)", -1, 1), ("v(b)", -1, 3),
+                                   ("i(e1)", -2, 0), ("i(d1)", 0, 2), ("v(psi)", -1e12, 1e12))}),
+    "one solution beside an integrator": ("""A diode blocks 20 mV for good: 0.2 mA of its neighbours are nothing beside 10 TA
+V1 in 0 PULSE(20 -20 0 0 0 10u 20u)
+Rm in a 1k
+B2 0 psi I=1e12*v(in,a)
+C1 psi 0 1
+D1 a out DI
+Rr a out 1k
+R1 out 0 10
+.tran 0.2u 1u uic
+""", {}),
+    "a core beside an integrator": ("""A core that saturates, its flux by an integrator of 1 V for each uVs
+V1 in 0 PULSE(20 -20 0 0 0 10u 20u)
+B1 in a I=pwl(v(psi)*1u, -100u, -12.5025, -50u, -2.5m, 50u, 2.5m, 100u, 12.5025)
+B2 0 psi I=1e6*v(in,a)
+C1 psi 0 1
+D1 a out DI
+Rr a out 1k
+R1 out 0 10
+.tran 2u 2m uic
+""", {}),
     "before the first switch closes": ("""No current yet: 12 V across two coils are not to be taken for one
 V1 in 0 DC 12
 V2 g 0 PULSE(0 1 0 10n 10n 2u 10u)
