@@ -68,6 +68,26 @@ static enum dalcs_status start_at(struct dalcs_euler *e, struct dalcs_radau *rad
     return radau != NULL ? dalcs_radau_start(radau, initial) : dalcs_euler_start(e, initial);
 }
 
+static bool sources_jump(const struct dalcs_circuit *circuit, double t) {
+    bool jumps = false;
+    for (int i = 0; i < circuit->n_stimuli && !jumps; i++) {
+        jumps = dalcs_stimulus_jumps_at(&circuit->stimulus[i], t);
+    }
+    return jumps;
+}
+
+/* A hysteresis goes on from the operating point. */
+static void take_over_switches(struct dalcs_euler *e, const struct dalcs_euler *held) {
+    for (int k = 0; k < e->n_components; k++) {
+        struct dalcs_component *c = &e->component[k];
+        const struct dalcs_osnsp *before = &held->component[k].osnsp;
+        for (int i = 0; i < c->n_switches; i++) {
+            int d = c->switch_pair[i];
+            dalcs_osnsp_command(&c->osnsp, d, dalcs_osnsp_is_on(before, d));
+        }
+    }
+}
+
 /* The operating point of `clamped`, in which .ic are held; its states start the transient. */
 static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
                                     struct dalcs_radau *radau,
@@ -87,6 +107,7 @@ static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
         for (int k = 0; k < held.n_components; k++) {
             initial[k] = held.component[k].u; /* the same x: clamps add algebraic unknowns only */
         }
+        take_over_switches(e, &held);
         status = start_at(e, radau, initial);
     }
     free(initial);
@@ -120,6 +141,9 @@ static enum dalcs_status start_transient(struct dalcs_run *r, struct dalcs_euler
         return start_from_clamps(r, e, radau);
     }
     DALCS_TRY(dalcs_euler_operating_point(e, true));
+    if (sources_jump(c, 0.0)) {
+        DALCS_TRY(dalcs_recorder_before_start(&r->s->recorder, e));
+    }
     return start_at(e, radau, NULL);
 }
 
@@ -180,15 +204,6 @@ static double edge_after(const struct transient *c, double t) {
         edge = fmin(edge, dalcs_stimulus_next_edge(&circuit->stimulus[i], t));
     }
     return edge;
-}
-
-static bool source_jumps(const struct transient *c) {
-    const struct dalcs_circuit *circuit = &c->run->s->circuit;
-    bool jumps = false;
-    for (int i = 0; i < circuit->n_stimuli && !jumps; i++) {
-        jumps = dalcs_stimulus_jumps_at(&circuit->stimulus[i], c->t);
-    }
-    return jumps;
 }
 
 /* After so many steps and rows more. */
@@ -297,7 +312,7 @@ static enum dalcs_status advance(struct transient *c) {
         radau->base->t = t;
         DALCS_TRY(dalcs_recorder_events(c->recorder, radau->base));
     }
-    bool jumps = edge && source_jumps(c);
+    bool jumps = edge && sources_jump(&c->run->s->circuit, c->t);
     if (edge) {
         c->next_edge = edge_after(c, t);
     }
