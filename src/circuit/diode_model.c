@@ -343,6 +343,14 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_tok
     if (!is_ideal && (has(parameter, FIRST_BERKELEY, NBV) || ignored[0] != '\0')) {
         return set_berkeley(reader, type, parameter, card, model);
     }
+    if (!is_block && !is_ideal) {
+        const struct dalcs_exponential spice = {1e-14, THERMAL_VOLTAGE, 0, builder->diode_current};
+        dalcs_builder_note(builder, type, "D(IS=1e-14) is SPICE's, D(Ron=0) this one",
+                           "a model without parameters is exactly ideal here; SPICE's default "
+                           "diode would drop %.4g V at %g A",
+                           dalcs_exponential_voltage(&spice, builder->diode_current),
+                           builder->diode_current);
+    }
     if (ignored[0] != '\0') {
         dalcs_builder_note(builder, type, NULL, "an idealised diode (LTspice)%s", ignored);
     }

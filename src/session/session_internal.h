@@ -61,8 +61,9 @@ struct dalcs_run {
     enum dalcs_unit *unit;
     struct dalcs_names interrupting; /* switches that a warning has named */
     struct dalcs_undetermined undetermined;
-    int n_warnings;              /* of what is not determined */
-    long n_untold, n_unreported; /* signals of which there is no warning, no entry in the report */
+    int n_told[DALCS_FINDING_KINDS];    /* messages of what is not determined */
+    long n_untold[DALCS_FINDING_KINDS]; /* signals of which there is no message */
+    long n_unreported;                  /* and no entry in the report */
 };
 
 /* Does the run keep a ledger of energies? A system file has no devices to keep it of. */

@@ -25,6 +25,14 @@ static const struct dalcs_filling_limit FILLING_LIMIT = {100000, 4};
 /* Where .tran has no tstep. */
 static const double ROWS_WITHOUT_A_STEP = 1000.0;
 
+static double row_distance(const struct dalcs_circuit *c) {
+    const struct dalcs_transient *t = &c->transient;
+    return c->options.initial_interval > 0.0 ? c->options.initial_interval
+           : t->step > 0.0                   ? t->step
+           : t->interval > 0.0               ? t->interval
+                                             : t->stop / ROWS_WITHOUT_A_STEP;
+}
+
 static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
     const struct dalcs_transient *t = &r->s->circuit.transient;
     struct dalcs_schedule schedule = {.start = t->start, .step = t->step, .stop = t->stop};
@@ -35,7 +43,7 @@ static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
         schedule.n_at = r->options->n_at;
     } else if (r->method != DALCS_METHOD_EULER) {
         schedule.kind = DALCS_ON_GRID;
-        schedule.step = t->step > 0.0 ? t->step : t->stop / ROWS_WITHOUT_A_STEP;
+        schedule.step = row_distance(&r->s->circuit);
     } else if (ratio >= 1.0 - 1e-9 && fabs(ratio - rint(ratio)) <= 1e-9 * ratio) {
         schedule.kind = DALCS_ON_GRID;
     } else {
@@ -44,19 +52,22 @@ static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
     return schedule;
 }
 
-/* Rows further apart than half a period do not show a sine, nor do averages over them. */
-static void warn_of_coarse_rows(struct dalcs_run *r, const struct dalcs_schedule *schedule) {
+/* Rows further apart than half a period do not show a sine, nor do averages over them. `since` when there are no
+ * others; INFINITY: never. */
+static void warn_of_coarse_rows(struct dalcs_run *r, const struct dalcs_schedule *schedule,
+                                double since) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    bool may_be_coarse = schedule->kind == DALCS_ON_GRID && isinf(r->fill);
+    bool may_be_coarse = schedule->kind == DALCS_ON_GRID && isfinite(since);
     for (int i = 0; i < c->n_devices && may_be_coarse; i++) {
         const struct dalcs_device *d = &c->device[i];
         const struct dalcs_stimulus *s = d->stimulus >= 0 ? &c->stimulus[d->stimulus] : NULL;
         if (s != NULL && s->kind == DALCS_STIMULUS_SIN && s->u.sine.amplitude != 0.0 &&
             schedule->step * s->u.sine.frequency > 0.5) {
             dalcs_diag_add(&r->s->diag, DALCS_WARNING, &d->where, "a smaller tstep in .tran",
-                           "rows are %g s apart and a period of '%s' is %g s: they do not show it, "
-                           "nor what is computed from them",
-                           schedule->step, d->name, 1.0 / s->u.sine.frequency);
+                           "rows are %g s apart%s and a period of '%s' is %g s: they do not show "
+                           "it, nor what is computed from them",
+                           schedule->step, since > schedule->start ? " there" : "", d->name,
+                           1.0 / s->u.sine.frequency);
             return;
         }
     }
@@ -329,6 +340,7 @@ static void note_end_of_filling(struct dalcs_run *r, const struct dalcs_filling 
                        "%zu rows, and %zu for each that there is anyway, were added up to t = %.9g "
                        "s: from there on there are no more",
                        FILLING_LIMIT.most, FILLING_LIMIT.for_each, filling->ended);
+        warn_of_coarse_rows(r, &r->s->recorder.schedule, filling->ended);
     }
 }
 
@@ -496,7 +508,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     struct dalcs_energy energy = {0};
     struct dalcs_measures measures = {0};
     struct dalcs_schedule schedule = choose_schedule(r);
-    warn_of_coarse_rows(r, &schedule);
+    warn_of_coarse_rows(r, &schedule, isinf(r->fill) ? schedule.start : INFINITY);
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
     s->recorder.n_shown = s->circuit.n_shown;
