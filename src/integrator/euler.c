@@ -123,6 +123,9 @@ enum dalcs_status dalcs_euler_operating_point(struct dalcs_euler *e, bool transi
         DALCS_TRY(solve(e, k, 0.0, c->u, c->y));
         memcpy(c->u, c->y, (size_t)c->system->n_x * sizeof(double));
     }
+    if (e->on_operating_point != NULL) {
+        DALCS_TRY(e->on_operating_point(e->circuit, e));
+    }
     for (int k = 0; k < e->n_components; k++) {
         DALCS_TRY(dalcs_euler_tell_open(e, k));
     }

@@ -62,8 +62,11 @@ struct dalcs_euler {
     void *open_user;
     enum dalcs_status (*on_open)(void *user, const struct dalcs_open_instant *instant,
                                  bool *vanishes); /* may be NULL */
-    struct dalcs_energy *energy;                  /* the ledger, borrowed; NULL: none is kept */
-    double *after, *charge, *flux;                /* what micro-steps see, the largest component */
+    /* An operating point was found, before anything is said of it; may be NULL. */
+    enum dalcs_status (*on_operating_point)(const struct dalcs_circuit *circuit,
+                                            struct dalcs_euler *e);
+    struct dalcs_energy *energy;   /* the ledger, borrowed; NULL: none is kept */
+    double *after, *charge, *flux; /* what micro-steps see, the largest component */
     struct dalcs_jumps jumps;
     struct dalcs_jump_answer jump; /* the last one */
     struct dalcs_arena arena;      /* what has the same size during the run */

@@ -159,4 +159,10 @@ enum dalcs_status dalcs_loop_shorts_find(const struct dalcs_circuit *circuit, co
 void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
                            enum dalcs_status status);
 
+/* ---- held_coils.c ---------------------------------------------------------------------------- */
+
+/* The operating point of `held`, in which .ic are: coils do not carry what goes around loops with them. */
+enum dalcs_status dalcs_held_coils_rest(const struct dalcs_circuit *circuit,
+                                        struct dalcs_euler *held) DALCS_MUST_CHECK;
+
 #endif

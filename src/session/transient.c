@@ -109,6 +109,7 @@ static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
     r->undetermined.clamped = clamped;
     held.open_user = &r->undetermined;
     held.on_open = dalcs_undetermined_at;
+    held.on_operating_point = dalcs_held_coils_rest;
     double **initial = dalcs_alloc((size_t)held.n_components, sizeof(*initial));
     enum dalcs_status status =
         initial == NULL ? DALCS_E_NOMEM : dalcs_euler_operating_point(&held, true);
