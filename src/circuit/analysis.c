@@ -1,8 +1,6 @@
 /* analysis.c - .tran and .op: what is to be computed. */
 #include "builder.h"
 
-#include <math.h>
-
 static const char TRAN_USAGE[] = ".tran tstep tstop [tstart [tmax]] [uic]";
 
 enum { TSTEP, TSTOP, TSTART, TMAX, N_TIMES };
@@ -110,15 +108,12 @@ void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs
     transient->max_step = time[TMAX];
     transient->present = check_times(builder, transient, place);
     if (dialect.name == DALCS_DIALECT_XYCE && transient->step > 0) {
-        const double thousandth = transient->stop / 1000;
-        const double longest = transient->max_step; /* Xyce has a row for each step */
-        transient->interval = longest > 0 ? fmin(longest, thousandth) : thousandth;
         if (!dialect.is_told) {
             dalcs_builder_note(builder, place[TSTEP],
                                ".options output initial_interval=seconds asks for others",
                                "the first time on Xyce's .tran is its first step, which is chosen "
                                "here: there are rows every %g s",
-                               transient->interval);
+                               transient->stop / 1000);
         }
         transient->first_step = transient->step;
         transient->step = 0;

@@ -131,8 +131,7 @@ struct dalcs_transient {
     bool present;
     double step, stop, start, max_step; /* step 0: rows every stop/1000; max_step 0: not given */
     double first_step;                  /* Xyce's, which other simulators may want; else 0 */
-    double interval; /* s, of rows, where there is no step; 0: a thousandth of the stop time */
-    bool use_initial_conditions; /* uic */
+    bool use_initial_conditions;        /* uic */
     struct dalcs_location where;
 };
 

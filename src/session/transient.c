@@ -29,7 +29,6 @@ static double row_distance(const struct dalcs_circuit *c) {
     const struct dalcs_transient *t = &c->transient;
     return c->options.initial_interval > 0.0 ? c->options.initial_interval
            : t->step > 0.0                   ? t->step
-           : t->interval > 0.0               ? t->interval
                                              : t->stop / ROWS_WITHOUT_A_STEP;
 }
 
