@@ -86,10 +86,14 @@ enum dalcs_status dalcs_islands_find(struct dalcs_view *view) DALCS_MUST_CHECK;
 /* "d1 parallel to d2", "loop d1-d2-d3" for the branches part[n] of the view; NULL without memory. */
 const char *dalcs_words_for_loop(const struct dalcs_view *view, int n, const int *part);
 
+/* Are they all between the same two nodes? */
+bool dalcs_view_are_parallel(const struct dalcs_view *view, int n, const int *part);
+
 /* "stack d1-d2 blocks" where the elements border[n] are all that is between the nodes node[n_nodes] and
- * the rest; vertices of one island have the same number island_of, those of ground's 0. */
+ * the rest; vertices of one island have the same number island_of, those of ground's 0. *brief: the same
+ * in fewer words; unchanged where there are none. */
 const char *dalcs_words_for_island(const struct dalcs_view *view, const int *island_of, int n_nodes,
-                                   const int *node, int n, const int *border);
+                                   const int *node, int n, const int *border, const char **brief);
 
 /* ---- coils.c --------------------------------------------------------------------------------- */
 

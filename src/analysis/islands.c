@@ -238,7 +238,9 @@ static void describe(struct islands *s, int cause, struct dalcs_finding *finding
     for (int k = 0; k < n_nodes; k++) { /* of the view's vertices to the circuit's nodes */
         node[k] = view->node[node[k]];
     }
-    finding->because = dalcs_words_for_island(view, s->island_of, n_nodes, node, n, border);
+    finding->kind = DALCS_OPEN_VOLTAGES;
+    finding->because =
+        dalcs_words_for_island(view, s->island_of, n_nodes, node, n, border, &finding->brief);
 }
 
 enum dalcs_status dalcs_islands_find(struct dalcs_view *view) {

@@ -149,6 +149,20 @@ static enum dalcs_status sort_signals(struct loops *l) {
     return dalcs_view_sort_signals(l->view, l->n_blocks, part, &l->first_signal, &l->signal);
 }
 
+/* Switches, and diodes across them? */
+static bool is_shunted_switch(const struct dalcs_view *view, int n, const int *part) {
+    int n_switches = 0;
+    bool has_others = false;
+    for (int k = 0; k < n; k++) {
+        const struct dalcs_freedom *f = &view->freedom[part[k]];
+        bool is_switch = f->device >= 0 && view->u->circuit->device[f->device].kind == DALCS_SWITCH;
+        n_switches += is_switch ? 1 : 0;
+        has_others = has_others || !(is_switch || f->is_diode);
+    }
+    return n_switches > 0 && n_switches < n && !has_others &&
+           dalcs_view_are_parallel(view, n, part);
+}
+
 static enum dalcs_status tell_block(struct loops *l, int k) {
     struct dalcs_view *view = l->view;
     int n = l->start[k + 1] - l->start[k];
@@ -184,6 +198,7 @@ static enum dalcs_status tell_block(struct loops *l, int k) {
         }
     }
     finding.n_signals = n_open;
+    finding.kind = is_shunted_switch(view, n, part) ? DALCS_SHUNTED_SWITCHES : DALCS_OPEN_CURRENTS;
     finding.because = n_open > 0 ? dalcs_words_for_loop(view, n, part) : "";
     return dalcs_view_tell(view, &finding);
 }

@@ -20,10 +20,19 @@ struct dalcs_finding {
     bool at_operating_point;
     const char *hint;    /* for a message; or NULL */
     const char *because; /* "d1 parallel to d2", "stack d1-d2 blocks" */
-    int device;          /* one of them, for its place in the netlist; -1: none */
-    bool has_diodes;     /* the least-norm choice is taken; else any */
-    bool has_intervals;  /* false: built without GLPK, or GLPK gave none */
-    int n_answers;       /* of a circuit that is not passive: that many and none between; else 0 */
+    const char *brief;   /* the same in fewer words, or NULL */
+
+    enum dalcs_finding_kind {
+        DALCS_OPEN_CURRENTS,    /* no device says how they are shared: worth a warning */
+        DALCS_OPEN_VOLTAGES,    /* of what blocking elements leave alone */
+        DALCS_SHUNTED_SWITCHES, /* currents of a switch and of a diode across it, as in each MOSFET */
+        DALCS_FINDING_KINDS
+    } kind;
+
+    int device;         /* one of them, for its place in the netlist; -1: none */
+    bool has_diodes;    /* the least-norm choice is taken; else any */
+    bool has_intervals; /* false: built without GLPK, or GLPK gave none */
+    int n_answers;      /* of a circuit that is not passive: that many and none between; else 0 */
     int n_signals;
 
     struct dalcs_open_signal {

@@ -50,7 +50,7 @@ static int vertex(const struct dalcs_view *view, int freedom, int end) {
     return view->u->vertex_of[view->freedom[freedom].node[end]];
 }
 
-static bool are_parallel(const struct dalcs_view *view, int n, const int *part) {
+bool dalcs_view_are_parallel(const struct dalcs_view *view, int n, const int *part) {
     bool parallel = true;
     for (int k = 1; k < n; k++) {
         int a = vertex(view, part[k], 0);
@@ -98,7 +98,7 @@ const char *dalcs_words_for_loop(const struct dalcs_view *view, int n, const int
     if (n == 1) {
         return dalcs_arena_printf(view->work, "both ends of %s on one node", first);
     }
-    if (are_parallel(view, n, part)) {
+    if (dalcs_view_are_parallel(view, n, part)) {
         if (n > 2) {
             const char *list = list_names(view, n, part);
             return list == NULL ? NULL : dalcs_arena_printf(view->work, "%s in parallel", list);
@@ -150,20 +150,26 @@ static const char *list_nodes(const struct dalcs_view *view, int n, const int *n
     return list;
 }
 
+static const char *words_for_border(const struct dalcs_view *view, int n, const int *border) {
+    const char *elements = list_names(view, n, border);
+    return elements == NULL ? NULL
+                            : dalcs_arena_printf(view->work, "%s block%s", elements,
+                                                 count_names(view, n, border) == 1 ? "s" : "");
+}
+
 const char *dalcs_words_for_island(const struct dalcs_view *view, const int *island_of, int n_nodes,
-                                   const int *node, int n, const int *border) {
+                                   const int *node, int n, const int *border, const char **brief) {
     const char *stack = follow_stack(view, island_of, n, border);
     if (stack != NULL && stack[0] != '\0') {
         return dalcs_arena_printf(view->work, "stack %s blocks", stack);
     }
     const char *nodes = list_nodes(view, n_nodes, node);
-    const char *elements = list_names(view, n, border);
-    if (stack == NULL || nodes == NULL || elements == NULL) {
+    const char *blocking = words_for_border(view, n, border);
+    *brief = n > 0 ? blocking : NULL;
+    if (stack == NULL || nodes == NULL || blocking == NULL) {
         return NULL;
     }
-    return n == 0
-               ? dalcs_arena_printf(view->work, "nothing sets the voltage of %s", nodes)
-               : dalcs_arena_printf(view->work,
-                                    "nothing conducts between %s and the rest: %s block%s", nodes,
-                                    elements, count_names(view, n, border) == 1 ? "s" : "");
+    return n == 0 ? dalcs_arena_printf(view->work, "nothing sets the voltage of %s", nodes)
+                  : dalcs_arena_printf(view->work, "nothing conducts between %s and the rest: %s",
+                                       nodes, blocking);
 }

@@ -136,6 +136,16 @@ const struct dalcs_levels *dalcs_levels_add(struct dalcs_compiler *c, const stru
 bool dalcs_levels_multiply(struct dalcs_compiler *c, const struct dalcs_form *a,
                            const struct dalcs_form *b, const struct dalcs_form **product);
 
+/* ---- gate_levels.c -------------------------------------------------------------------------------- */
+
+/* The values that a source of this form has; NULL: any, or too many. */
+const struct dalcs_gate *dalcs_gate_find(struct dalcs_compiler *c,
+                                         const struct dalcs_device *device,
+                                         const struct dalcs_form *form);
+
+/* Switches without hysteresis that this gate commands, and a Vt that is one of its values. */
+void dalcs_gate_settle(struct dalcs_builder *builder, const struct dalcs_gate *gate);
+
 /* ---- wave.c: functions of time --------------------------------------------------------------------- */
 
 /* sin(2 pi (frequency t + phase)) exp(-decay t) as a value. */

@@ -10,6 +10,7 @@ struct dalcs_formula_source {
     const struct dalcs_token *token; /* its formula; NULL: the voltage of its controlling nodes */
     bool has_table;
     struct dalcs_piecewise table;
+    const struct dalcs_gate *gate; /* once it is compiled: the values that it has, or NULL */
 };
 
 static const char USAGE[] =
@@ -211,7 +212,7 @@ const struct dalcs_formula *dalcs_behavioural_formula_of(const struct dalcs_buil
     return NULL;
 }
 
-static void resolve(struct dalcs_compiler *c, const struct dalcs_formula_source *source) {
+static void resolve(struct dalcs_compiler *c, struct dalcs_formula_source *source) {
     struct dalcs_device *device = &c->builder->circuit->device[source->device];
     c->failed = false;
     c->n_waves = 0;
@@ -227,6 +228,7 @@ static void resolve(struct dalcs_compiler *c, const struct dalcs_formula_source 
     device->node[2] = device->node[3] = 0;
     if (form != NULL && !c->failed) {
         device->behaviour = dalcs_behaviour_make(c, form);
+        source->gate = dalcs_gate_find(c, device, form);
     }
 }
 
@@ -251,6 +253,11 @@ void dalcs_behavioural_resolve(struct dalcs_builder *builder) {
     struct dalcs_compiler c = {.builder = builder, .arena = &builder->scratch};
     for (size_t k = 0; k < builder->n_formulas && !builder->out_of_memory; k++) {
         resolve(&c, &builder->formula[k]);
+    }
+    for (size_t k = 0; k < builder->n_formulas && !builder->out_of_memory; k++) {
+        if (builder->formula[k].gate != NULL) {
+            dalcs_gate_settle(builder, builder->formula[k].gate);
+        }
     }
     if (c.n_stimuli > 0 && !builder->out_of_memory) {
         take_stimuli(&c);

@@ -177,12 +177,13 @@ struct dalcs_circuit {
         struct dalcs_location tolerance_where; /* of the first of these */
         const char *method;                    /* NULL: not given */
         struct dalcs_location method_where;
-        double step;     /* 0: not given */
-        int stages;      /* of radau; 0: not given */
-        double compress; /* 0: not given */
-        double fill;     /* 0: not given; INFINITY: none */
-        bool lines;      /* curve=lines */
-        bool ascii;      /* filetype=ascii */
+        double step;             /* 0: not given */
+        double initial_interval; /* s, of rows, Xyce's; 0: not given */
+        int stages;              /* of radau; 0: not given */
+        double compress;         /* 0: not given */
+        double fill;             /* 0: not given; INFINITY: none */
+        bool lines;              /* curve=lines */
+        bool ascii;              /* filetype=ascii */
         struct dalcs_location compress_where, fill_where;
     } options;
     struct dalcs_arena arena; /* owns everything above, source text of locations included */

@@ -310,6 +310,15 @@ static bool has(const struct dalcs_parameter *p, int first, int last) {
     return found;
 }
 
+/* .model name D, .model name D() */
+static bool is_bare(const struct dalcs_card *card, const struct dalcs_token *type) {
+    bool is_bare = true;
+    for (const struct dalcs_token *t = type + 1; t < card->token + card->n; t++) {
+        is_bare = is_bare && (t->kind == DALCS_TOKEN_OPEN || t->kind == DALCS_TOKEN_CLOSE);
+    }
+    return is_bare;
+}
+
 bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
                              struct dalcs_diode_card *card, struct dalcs_diode_model *model) {
     const double infinite = (double)INFINITY;
@@ -342,6 +351,14 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_tok
     const char *ignored = ignored_text(builder, reader->card, parameter, is_ideal);
     if (!is_ideal && (has(parameter, FIRST_BERKELEY, NBV) || ignored[0] != '\0')) {
         return set_berkeley(reader, type, parameter, card, model);
+    }
+    if (!is_block && is_bare(reader->card, type)) {
+        const struct dalcs_exponential spice = {1e-14, THERMAL_VOLTAGE, 0, builder->diode_current};
+        dalcs_builder_note(builder, type, "D(IS=1e-14) is SPICE's, D(Ron=0) this one",
+                           "a model without parameters is exactly ideal here; SPICE's default "
+                           "diode would drop %.4g V at %g A",
+                           dalcs_exponential_voltage(&spice, builder->diode_current),
+                           builder->diode_current);
     }
     if (ignored[0] != '\0') {
         dalcs_builder_note(builder, type, NULL, "an idealised diode (LTspice)%s", ignored);

@@ -10,9 +10,9 @@
 #include <string.h>
 
 /* Known here. */
-static const char *const OURS[] = {"reltol",   "abstol",  "vntol", "method",   "step",
-                                   "stages",   "fill",    "curve", "compress", "diodecurrent",
-                                   "filetype", "dialect", "interp"};
+static const char *const OURS[] = {
+    "reltol", "abstol",   "vntol",        "method",   "step",    "stages", "fill",
+    "curve",  "compress", "diodecurrent", "filetype", "dialect", "interp", "initial_interval"};
 
 static const char *const FOREIGN[] = {
     "itl1",          "itl2",        "itl3",         "itl4",        "itl5",         "itl6",
@@ -122,6 +122,23 @@ static bool read_fill(struct dalcs_reader *reader, struct dalcs_circuit_options 
     return true;
 }
 
+/* Xyce's distance of rows, which may be followed by pairs of a time and another one from there on. */
+static bool read_interval(struct dalcs_reader *reader, double *value) {
+    if (!read_positive(reader, DALCS_SECOND, value)) {
+        return false;
+    }
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
+    if (next != NULL && dalcs_reader_is_number(next)) {
+        dalcs_builder_note(reader->builder, next, NULL,
+                           "the first interval counts from start to stop");
+    }
+    while (next != NULL && dalcs_reader_is_number(next)) {
+        reader->at++;
+        next = dalcs_reader_peek(reader, 0);
+    }
+    return true;
+}
+
 /* `one` or `other`: the former? */
 static bool read_either(struct dalcs_reader *reader, const char *option, const char *one,
                         const char *other, bool *is_one) {
@@ -183,6 +200,9 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     }
     if (strcmp(name, "step") == 0) {
         return read_positive(reader, DALCS_SECOND, &options->step);
+    }
+    if (strcmp(name, "initial_interval") == 0) {
+        return read_interval(reader, &options->initial_interval);
     }
     if (strcmp(name, "stages") == 0) {
         return read_stages(reader, &options->stages);

@@ -177,13 +177,15 @@ static void warn_of_suffix(struct dalcs_builder *builder, const struct dalcs_tok
                                               "write %.*s for farads, %.*sfF for femtofarads",
                                               number->digits, digits, number->digits, digits),
                            "F is femto: this is %g F", number->value);
-    } else if (number->suffix == 'a' && (*tail == '\0' || strncmp(tail, "mp", 2) == 0)) {
-        dalcs_builder_warn(builder, token,
-                           dalcs_builder_hint(builder, "write %.*s", number->digits, digits),
-                           "A is atto: this is %g", number->value);
     } else if (number->suffix == 'i') {
         dalcs_builder_warn(builder, token, "write m for milli", "mil is 25.4e-6: this is %g",
                            number->value);
+    } else if (number->suffix == 0 && *tail == 'a' &&
+               builder->netlist->dialect.name <= DALCS_DIALECT_NGSPICE) {
+        dalcs_builder_warn(builder, token,
+                           dalcs_builder_hint(builder, "write %.*s", number->digits, digits),
+                           "A is the unit: this is %g; HSPICE and ngspice from 40 on read %g",
+                           number->value, 1e-18 * number->value);
     } else if (number->suffix == 0 && *tail == 'x' &&
                !dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_NGSPICE)) {
         dalcs_builder_warn(

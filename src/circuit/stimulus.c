@@ -478,5 +478,5 @@ double dalcs_stimulus_operating_value(const struct dalcs_stimulus *s, bool trans
     if (s->has_dc && !transient_follows) {
         return s->dc;
     }
-    return dalcs_stimulus_value(s, 0, DALCS_RIGHT);
+    return dalcs_stimulus_value(s, 0, DALCS_LEFT);
 }

@@ -116,7 +116,7 @@ void dalcs_stimulus_terms_at(const struct dalcs_stimulus *s, double t,
                              struct dalcs_stimulus_term *term);
 
 /* The value for the operating point, as ngspice chooses it: for a plain .op the card's DC value
- * when it has one; for the start of a transient, or without a DC value, the right limit at 0. */
+ * when it has one; for the start of a transient, or without a DC value, the left limit at 0. */
 double dalcs_stimulus_operating_value(const struct dalcs_stimulus *s, bool transient_follows);
 
 #endif

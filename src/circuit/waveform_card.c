@@ -137,6 +137,32 @@ static bool read_arguments(struct dalcs_reader *reader, const struct form *form,
     return true;
 }
 
+/* ngspice 39 takes a width of 0 for one that is left out. LTspice and Xyce do not. */
+static void warn_of_no_width(struct dalcs_builder *builder, const struct dalcs_token *place,
+                             const struct dalcs_stimulus *s) {
+    const double period = s->u.pulse.period;
+    const double rise = s->u.pulse.rise;
+    const double height = s->u.pulse.high - s->u.pulse.low;
+    if (s->u.pulse.width != 0 || height == 0 || rise >= period ||
+        builder->netlist->dialect.name > DALCS_DIALECT_NGSPICE) {
+        return;
+    }
+    static const char hint[] = "write a width of 1f, or .options dialect=ltspice";
+    if (isinf(period)) {
+        dalcs_builder_warn(builder, place, hint,
+                           "a width of 0 is none: this pulse falls from %g at once; ngspice 39 "
+                           "takes it for the stop time and stays there",
+                           s->u.pulse.high);
+        return;
+    }
+    const double here = s->u.pulse.low + 0.5 * height * fmin(1, (rise + s->u.pulse.fall) / period);
+    const double there = s->u.pulse.low + height * (1 - 0.5 * rise / period);
+    dalcs_builder_warn(builder, place, hint,
+                       "a width of 0 is none: the mean of this pulse is %.4g; ngspice 39 takes it "
+                       "for the stop time, which makes %.4g",
+                       here, there);
+}
+
 /* ---- All forms ----------------------------------------------------------------------------- */
 
 static bool set_stimulus(struct dalcs_reader *reader, const struct form *form, const double *value,
@@ -199,6 +225,9 @@ bool dalcs_waveform_card_parse(struct dalcs_reader *reader, enum dalcs_quantity 
     if (!read_arguments(reader, form, quantity, value) ||
         !set_stimulus(reader, form, value, stimulus)) {
         return false;
+    }
+    if (stimulus->kind == DALCS_STIMULUS_PULSE) {
+        warn_of_no_width(reader->builder, name, stimulus);
     }
     if (opened && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
         if (dalcs_reader_at_end(reader)) {

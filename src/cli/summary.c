@@ -159,7 +159,7 @@ static void write_certificate(FILE *out, const struct dalcs_report *report) {
 
 static void write_nonunique(FILE *out, const struct dalcs_report *report) {
     if (report->n_nonunique > 0) {
-        fprintf(out, "  open      %zu signal%s not determined by the circuit: see the warnings\n",
+        fprintf(out, "  open      %zu signal%s not determined by the circuit: see the messages\n",
                 report->n_nonunique, report->n_nonunique == 1 ? " is" : "s are");
     }
 }

@@ -103,6 +103,16 @@ static inline int dalcs_system_n_columns(const struct dalcs_system *s) {
     return s->n_x + s->n_z + s->n_pairs;
 }
 
+/* V: w of a diode, or of its breakdown, that has no voltage: how far its knee is from 0. */
+static inline double dalcs_system_knee(const struct dalcs_system *s, int pair) {
+    double knee = 0.0;
+    bool has_knee = s->pair[pair].kind == DALCS_PAIR_DIODE && !s->pair[pair].is_formula;
+    for (int k = s->F.p[pair]; k < s->F.p[pair + 1] && has_knee; k++) {
+        knee += s->F.j[k] == 0 ? s->F.x[k] : 0.0;
+    }
+    return knee;
+}
+
 /* Does a current command switch `pair`, or a voltage? */
 static inline bool dalcs_system_control_is_current(const struct dalcs_system *s, int pair) {
     int first = s->control.p[pair];

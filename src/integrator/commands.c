@@ -164,8 +164,9 @@ void dalcs_commands_start(struct dalcs_commands *commands) {
     for (int k = 0; k < commands->n; k++) {
         struct dalcs_command *m = &commands->command[k];
         const struct dalcs_pair *pair = &commands->system->pair[m->pair];
-        m->is_on = wants(pair, m->is_on,
-                         dalcs_control_value(&commands->control, m->pair, 0.0, DALCS_RIGHT));
+        const double control = dalcs_control_value(&commands->control, m->pair, 0.0, DALCS_RIGHT);
+        const bool stays = m->is_on && pair->turn_off < pair->turn_on;
+        m->is_on = wants(pair, stays, control);
         m->searched = 0.0;
         recognise_pulse(commands, m);
         if (m->pulse == NULL) {

@@ -43,7 +43,7 @@ enum dalcs_status dalcs_commands_setup(struct dalcs_commands *commands,
 
 void dalcs_commands_finish(struct dalcs_commands *commands);
 
-/* At t = 0: is_on of every command from its control; the first search. */
+/* At t = 0: is_on of every command from its control, and from what it was before; the first search. */
 void dalcs_commands_start(struct dalcs_commands *commands);
 
 /* Moves what is due at t, and looks for the next. Returns whether anything moved. */

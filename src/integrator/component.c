@@ -104,6 +104,15 @@ void dalcs_component_look_ahead(const struct dalcs_component *c, double t, doubl
     }
 }
 
+bool dalcs_component_jumps_at_start(const struct dalcs_component *c) {
+    bool jumps = false;
+    for (int i = 0; i < c->n_varying && !jumps; i++) {
+        int input = c->system->stimulus[c->varying[i]];
+        jumps = dalcs_stimulus_jumps_at(&c->circuit->stimulus[input], 0.0);
+    }
+    return jumps;
+}
+
 void dalcs_component_sample_operating(const struct dalcs_component *c, bool transient_follows,
                                       double *u) {
     const struct dalcs_system *s = c->system;

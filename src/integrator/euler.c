@@ -132,6 +132,9 @@ enum dalcs_status dalcs_euler_operating_point(struct dalcs_euler *e, bool transi
         DALCS_TRY(solve(e, k, 0.0, c->u, c->y));
         memcpy(c->u, c->y, (size_t)c->system->n_x * sizeof(double));
     }
+    if (e->on_operating_point != NULL) {
+        DALCS_TRY(e->on_operating_point(e->circuit, e));
+    }
     for (int k = 0; k < e->n_components; k++) {
         DALCS_TRY(dalcs_euler_tell_open(e, k));
     }
@@ -438,16 +441,19 @@ enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initia
     for (int k = 0; k < e->n_components; k++) {
         struct dalcs_component *c = &e->component[k];
         size_t n_x = (size_t)c->system->n_x;
+        size_t n_columns = (size_t)dalcs_system_n_columns(c->system);
         dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->u);
         if (initial != NULL) {
             memcpy(c->u, initial[k], n_x * sizeof(double));
-            memset(c->y_before, 0, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
+            memset(c->y_before, 0, n_columns * sizeof(double));
             memcpy(c->y_before, c->u, n_x * sizeof(double));
+        } else {
+            memcpy(c->y_before, c->y, n_columns * sizeof(double));
         }
         if (e->energy != NULL) {
             dalcs_energy_start(e->energy, k, c->u);
         }
-        if (initial != NULL) {
+        if (initial != NULL || dalcs_component_jumps_at_start(c)) {
             DALCS_TRY(settle_after(e, k, c->y_before, c->u, c->y));
         }
     }

@@ -65,6 +65,9 @@ struct dalcs_euler {
     void *open_user;
     enum dalcs_status (*on_open)(void *user, const struct dalcs_open_instant *instant,
                                  bool *vanishes); /* may be NULL */
+    /* An operating point was found, before anything is said of it; may be NULL. */
+    enum dalcs_status (*on_operating_point)(const struct dalcs_circuit *circuit,
+                                            struct dalcs_euler *e);
     struct dalcs_energy *energy;                  /* the ledger, borrowed; NULL: none is kept */
     double *after, *charge, *flux;                /* what micro-steps see, the largest component */
     double *noise;            /* [n_x] of a jump, which the caller fills: what is rounding */

@@ -228,6 +228,14 @@ static void obey_commands(struct dalcs_radau_part *part) {
     }
 }
 
+/* Those of the operating point, where there was one: a hysteresis goes on from there. */
+static void remember_switches(struct dalcs_radau_part *part) {
+    for (int k = 0; k < part->commands.n; k++) {
+        struct dalcs_command *m = &part->commands.command[k];
+        m->is_on = dalcs_osnsp_is_on(&part->component->osnsp, m->pair);
+    }
+}
+
 enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initial) {
     for (int k = 0; k < r->n_parts; k++) {
         struct dalcs_radau_part *part = &r->part[k];
@@ -242,11 +250,12 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
             part->t_end = INFINITY;
             continue;
         }
+        remember_switches(part);
         dalcs_commands_start(&part->commands);
         obey_commands(part);
         part->fresh = true;
         part->seen = INFINITY;
-        if (initial != NULL) {
+        if (initial != NULL || dalcs_component_jumps_at_start(c)) {
             bool is_off; /* for the first segment to find */
             DALCS_TRY(dalcs_radau_restart(r, part, 0, false, &is_off));
         }

@@ -52,7 +52,9 @@ static void find_drive(const struct dalcs_stage_plan *plan, const struct dalcs_s
         const struct dalcs_csr *shore = &f->singular.shore;
         double sum = -dalcs_csr_row_dot(&f->singular.choice, k, y);
         for (int e = shore->p[k]; e < shore->p[k + 1]; e++) {
-            sum += factor * shore->x[e] * plan->constant[n_equations + shore->j[e]];
+            int pair = shore->j[e];
+            double knee = dalcs_system_knee(plan->stages->system, pair);
+            sum += factor * shore->x[e] * (plan->constant[n_equations + pair] + knee);
         }
         plan->rhs[plan->n_rows + k] = sum;
     }

@@ -123,7 +123,8 @@ static enum dalcs_status choose_among(struct dalcs_stage_workshop *b, double *gu
 }
 
 /* choice = - pseudoinverse of the guards of the null vectors: adding choice * guards of them makes the
- * diodes' lambda and w as small as possible. Diodes only: a switch's current is a wire's. */
+ * diodes' lambda, and the voltages of open ones, as small as possible. Diodes only: a switch's current is a
+ * wire's. */
 static enum dalcs_status prepare_choice(struct dalcs_stage_workshop *b) {
     int n_pairs = b->system->n_pairs;
     if (b->nullity == 0 || n_pairs == 0 || b->choice != NULL) {
@@ -141,6 +142,16 @@ static enum dalcs_status prepare_choice(struct dalcs_stage_workshop *b) {
         return DALCS_OK;
     }
     return choose_among(b, guards);
+}
+
+/* From reverse voltages to those that are to be small: knees are the constant sources' share. */
+static void take_knees_off(const struct dalcs_stage_workshop *b, const double *share) {
+    for (int d = 0; d < b->system->n_pairs; d++) {
+        double knee = dalcs_stage_is_on(b->entry, d) ? 0.0 : dalcs_system_knee(b->system, d);
+        if (knee != 0.0) {
+            add_lanes(b->guard + d * DALCS_LANES, -knee, share);
+        }
+    }
 }
 
 /* Adds what is to be added of the null vectors at the nodes. */
@@ -314,6 +325,9 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
     fill_start(b, column, rhs_column, share);
     find_guards(b, rhs_column, share);
     if (b->nullity > 0) {
+        if (rhs_column == b->n_x) {
+            take_knees_off(b, share);
+        }
         choose(b);
         find_guards(b, rhs_column, share);
     }

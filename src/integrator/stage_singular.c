@@ -2,8 +2,8 @@
  *
  * Equations that follow are found among those without derivatives, in all columns; what is open among
  * the columns without memory, in all rows (dalcs_null_space). Least norm means that of the currents
- * of closed and the reverse voltages of open diodes: the limit of equal small on-resistances and equal
- * small leaks. What is open and no diode's has the least norm of all unknowns. */
+ * of closed and the voltages of open diodes: the limit of equal small on-resistances and equal small
+ * leaks. What is open and no diode's has the least norm of all unknowns. */
 #include "stage_singular.h"
 
 #include "null_space.h"

@@ -34,6 +34,11 @@ static bool starts_with(const char *text, const char *prefix) {
     return *prefix == '\0';
 }
 
+/* 2A, 2Amp and 2 amperes are not atto; 2aF is. */
+static bool is_ampere(const char *text) {
+    return dalcs_lower(text[0]) == 'a' && (!is_unit_letter(text[1]) || starts_with(text, "amp"));
+}
+
 /* The suffix at text: its length, its letter in *suffix and its power of ten in *power. */
 static int read_suffix(const char *text, char *suffix, int *power) {
     static const struct {
@@ -48,7 +53,8 @@ static int read_suffix(const char *text, char *suffix, int *power) {
         {"\xCE\xBC", 'u', -6}, /* the micro sign and the Greek mu */
     };
 
-    for (size_t k = 0; *text != '\0' && k < sizeof table / sizeof table[0]; k++) {
+    const size_t n = *text == '\0' || is_ampere(text) ? 0 : sizeof table / sizeof table[0];
+    for (size_t k = 0; k < n; k++) {
         if (dalcs_lower(*text) == table[k].text[0] && starts_with(text, table[k].text)) {
             *suffix = table[k].suffix;
             *power = table[k].power;

@@ -91,7 +91,10 @@ bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, 
 enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u,
                                        double *y) DALCS_MUST_CHECK;
 
-/* p->right = R u, and the centre is 0. */
+/* The centre of diodes without current and without voltage, which are as far from their knees as these from 0. */
+void dalcs_proximal_rest(struct dalcs_osnsp *p);
+
+/* p->right = R u, and the centre is that of diodes at rest. */
 void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u);
 
 /* Factors the regularised matrix of p->mode; the columns are all n + n_pairs. */

@@ -4,8 +4,8 @@
  *     open pair:    lambda + (eps G) (w - w') = 0           (a leak with memory)
  *     unknown z_i:  + mu eps (z_i - z_i')                   on the balanced diagonal,
  * has exactly one solution with a nonsingular matrix, and the iterates converge to a solution of the
- * problem itself: the weights vanish with the differences. From centre 0 that is, as eps -> 0, the
- * least-norm one, the limit of equal small r_on and g_off. If there is no solution, the differences
+ * problem itself: the weights vanish with the differences. From diodes without current and without
+ * voltage that is, as eps -> 0, the least-norm one, the limit of equal small r_on and g_off. If there is no solution, the differences
  * converge to a ray that says why (Pazy 1971): see witness.c. */
 #include "osnsp_internal.h"
 
@@ -288,10 +288,17 @@ static bool is_certified(struct dalcs_osnsp *p, const double *u, double *y, bool
     return dalcs_certificate_holds(p, *sources_clash);
 }
 
-static void restart(struct dalcs_osnsp *p) {
+void dalcs_proximal_rest(struct dalcs_osnsp *p) {
     const struct dalcs_step_form *f = p->form[0];
     memset(p->centre, 0, (size_t)(f->n + f->n_pairs) * sizeof(double));
-    memset(p->centre_w, 0, (size_t)f->n_pairs * sizeof(double));
+    for (int d = 0; d < f->n_pairs; d++) {
+        p->centre_w[d] = f->row_scale[f->n + d] * dalcs_system_knee(p->system, d);
+    }
+}
+
+static void restart(struct dalcs_osnsp *p) {
+    const struct dalcs_step_form *f = p->form[0];
+    dalcs_proximal_rest(p);
     memset(p->step_now, 0, (size_t)(f->n + 2 * f->n_pairs) * sizeof(double));
 }
 

@@ -25,7 +25,7 @@ bool dalcs_step_map_pays(const struct dalcs_osnsp *p) {
 }
 
 /* p->scaled = the answer to the unit input u_j. */
-static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, int kind) {
+static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, int kind, int j) {
     const struct dalcs_step_form *f = p->form[0];
     size_t n = (size_t)(f->n + f->n_pairs);
     memset(p->scaled, 0, n * sizeof(double));
@@ -41,8 +41,10 @@ static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, 
         }
         return;
     }
-    memset(p->centre, 0, n * sizeof(double));
-    memset(p->centre_w, 0, (size_t)f->n_pairs * sizeof(double));
+    dalcs_proximal_rest(p);
+    if (j != p->system->n_x) { /* knees are multiples of the constant input */
+        memset(p->centre_w, 0, (size_t)f->n_pairs * sizeof(double));
+    }
     for (int round = 0; round < PROXIMAL_ROUNDS; round++) {
         dalcs_proximal_step(p, e, kind - 1);
         bool unknowns_only = round < UNKNOWN_ROUNDS;
@@ -78,7 +80,7 @@ enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_
                 p->right[i] = f->R.j[k] == j ? f->R.x[k] : p->right[i];
             }
         }
-        solve_unit(p, factors, kind);
+        solve_unit(p, factors, kind, j);
         double *column = map + rows * (size_t)j;
         memset(column, 0, rows * sizeof(double));
         for (int i = 0; i < n; i++) {

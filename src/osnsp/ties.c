@@ -82,7 +82,8 @@ static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u,
     for (int d = 0; d < f->n_pairs; d++) {
         p->centre_w[d] = f->row_scale[f->n + d] * p->w[d];
         push = fmax(push, push_part * fabs(p->scaled[f->n + d]));
-        push_w = fmax(push_w, push_part * fabs(p->centre_w[d]));
+        double v = p->centre_w[d] - f->row_scale[f->n + d] * dalcs_system_knee(p->system, d);
+        push_w = fmax(push_w, push_part * fmax(fabs(p->centre_w[d]), fabs(v)));
     }
     if (p->is_passing && push > 0.0) {
         push = fmax(push, dalcs_proximal_least_push(p, DALCS_N_WEIGHTS));

@@ -86,6 +86,13 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
     measures->wanted = true;
     measures->begin = dalcs_measuring_begin(&measures->measuring);
     DALCS_TRY(allocate(measures, c, &r->s->network));
+    const struct dalcs_recorder *recorder = &r->s->recorder;
+    if (recorder->starts_on_edge) {
+        for (int k = 0; k < c->n_measured; k++) {
+            measures->before[k] = recorder->before[c->measured[k]];
+        }
+        dalcs_measuring_before_start(&measures->measuring, measures->before);
+    }
     if (radau == NULL) {
         read_signals(measures, e, measures->now);
         return DALCS_OK;

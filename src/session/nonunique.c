@@ -4,8 +4,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Messages; signals in one, those of them with intervals; signals in the report. */
-enum { MOST_WARNINGS = 50, MOST_NAMED = 12, MOST_TOLD = 3, MOST_REPORTED = 1000 };
+/* Signals in a message, those of them with intervals, and in a note; signals in the report. */
+enum { MOST_NAMED = 12, MOST_TOLD = 3, MOST_NOTED = 1, MOST_REPORTED = 1000 };
+
+/* Messages of each kind: what is so by design, as in each MOSFET, is said once. */
+static const int MOST_MESSAGES[] = {
+    [DALCS_OPEN_CURRENTS] = 50, [DALCS_OPEN_VOLTAGES] = 3, [DALCS_SHUNTED_SWITCHES] = 1};
 
 static const char *unit_of(const struct dalcs_run *r, int output) {
     return r->s->network.output[output].is_current ? "A" : "V";
@@ -33,7 +37,8 @@ static const char *say_interval(struct dalcs_run *r, const struct dalcs_open_sig
 
 static const char *say_intervals(struct dalcs_run *r, const struct dalcs_finding *f) {
     const char *text = "";
-    for (int k = 0; k < f->n_signals && k < MOST_TOLD && text != NULL; k++) {
+    const int most = f->kind == DALCS_OPEN_CURRENTS ? MOST_TOLD : MOST_NOTED;
+    for (int k = 0; k < f->n_signals && k < most && text != NULL; k++) {
         const char *one = say_interval(r, &f->signal[k], f->n_answers == 0);
         text = one == NULL ? NULL : dalcs_arena_printf(&r->s->arena, "%s; %s", text, one);
     }
@@ -56,8 +61,7 @@ static const char *list_signals(struct dalcs_run *r, const struct dalcs_finding 
                : dalcs_arena_printf(&r->s->arena, "%s and %d more", list, more);
 }
 
-static enum dalcs_status warn(struct dalcs_run *r, const struct dalcs_finding *f,
-                              const char *because) {
+static enum dalcs_status say(struct dalcs_run *r, const struct dalcs_finding *f) {
     struct dalcs_session *s = r->s;
     const char *when = f->at_operating_point
                            ? "at the operating point"
@@ -67,10 +71,11 @@ static enum dalcs_status warn(struct dalcs_run *r, const struct dalcs_finding *f
     if (when == NULL || signals == NULL || intervals == NULL) {
         return DALCS_E_NOMEM;
     }
-    dalcs_diag_add(
-        &s->diag, DALCS_WARNING, f->device >= 0 ? &s->circuit.device[f->device].where : NULL,
-        f->hint, "%s %s %s not determined: %s%s%s", when, signals, f->n_signals == 1 ? "is" : "are",
-        because, intervals, f->has_intervals && f->has_diodes ? " (least norm)" : "");
+    dalcs_diag_add(&s->diag, f->kind == DALCS_OPEN_CURRENTS ? DALCS_WARNING : DALCS_NOTE,
+                   f->device >= 0 ? &s->circuit.device[f->device].where : NULL, f->hint,
+                   "%s %s %s not determined: %s%s%s", when, signals,
+                   f->n_signals == 1 ? "is" : "are", f->brief != NULL ? f->brief : f->because,
+                   intervals, f->has_intervals && f->has_diodes ? " (least norm)" : "");
     return DALCS_OK;
 }
 
@@ -119,20 +124,26 @@ enum dalcs_status dalcs_nonunique_found(void *run, const struct dalcs_finding *f
     if (because == NULL) {
         return DALCS_E_NOMEM;
     }
-    if (r->n_warnings < MOST_WARNINGS) {
-        r->n_warnings++;
-        DALCS_TRY(warn(r, finding, because));
+    if (r->n_told[finding->kind] < MOST_MESSAGES[finding->kind]) {
+        r->n_told[finding->kind]++;
+        DALCS_TRY(say(r, finding));
     } else {
-        r->n_untold += finding->n_signals;
+        r->n_untold[finding->kind] += finding->n_signals;
     }
     return keep(r, finding, because);
 }
 
 void dalcs_nonunique_count_rest(struct dalcs_run *r) {
-    if (r->n_untold > 0) {
-        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, NULL,
-                       "%ld more signal%s not determined; the report lists %s%d", r->n_untold,
-                       r->n_untold == 1 ? " is" : "s are", r->n_unreported > 0 ? "the first " : "",
-                       (int)r->s->n_nonunique);
+    static const char *const like[] = {
+        [DALCS_OPEN_CURRENTS] = "",
+        [DALCS_OPEN_VOLTAGES] = ", voltages of what blocking elements leave alone",
+        [DALCS_SHUNTED_SWITCHES] = ", currents that a switch shares with a diode across it"};
+    for (int kind = 0; kind < DALCS_FINDING_KINDS; kind++) {
+        if (r->n_untold[kind] > 0) {
+            dalcs_diag_add(&r->s->diag, kind == DALCS_OPEN_CURRENTS ? DALCS_WARNING : DALCS_NOTE,
+                           NULL, NULL, "%ld more signal%s not determined%s; the report lists %s%d",
+                           r->n_untold[kind], r->n_untold[kind] == 1 ? " is" : "s are", like[kind],
+                           r->n_unreported > 0 ? "the first " : "", (int)r->s->n_nonunique);
+        }
     }
 }

@@ -62,8 +62,9 @@ struct dalcs_run {
     enum dalcs_unit *unit;
     struct dalcs_names interrupting; /* switches that a warning has named */
     struct dalcs_undetermined undetermined;
-    int n_warnings;              /* of what is not determined */
-    long n_untold, n_unreported; /* signals of which there is no warning, no entry in the report */
+    int n_told[DALCS_FINDING_KINDS];    /* messages of what is not determined */
+    long n_untold[DALCS_FINDING_KINDS]; /* signals of which there is no message */
+    long n_unreported;                  /* and no entry in the report */
 };
 
 /* Does the run keep a ledger of energies? A system file has no devices to keep it of. */
@@ -158,5 +159,11 @@ enum dalcs_status dalcs_loop_shorts_find(const struct dalcs_circuit *circuit, co
  * statuses explain themselves elsewhere. */
 void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
                            enum dalcs_status status);
+
+/* ---- held_coils.c ---------------------------------------------------------------------------- */
+
+/* The operating point of `held`, in which .ic are: coils do not carry what goes around loops with them. */
+enum dalcs_status dalcs_held_coils_rest(const struct dalcs_circuit *circuit,
+                                        struct dalcs_euler *held) DALCS_MUST_CHECK;
 
 #endif

@@ -27,6 +27,13 @@ static const struct dalcs_filling_limit FILLING_LIMIT = {100000, 4};
 /* Where .tran has no tstep. */
 static const double ROWS_WITHOUT_A_STEP = 1000.0;
 
+static double row_distance(const struct dalcs_circuit *c) {
+    const struct dalcs_transient *t = &c->transient;
+    return c->options.initial_interval > 0.0 ? c->options.initial_interval
+           : t->step > 0.0                   ? t->step
+                                             : t->stop / ROWS_WITHOUT_A_STEP;
+}
+
 static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
     const struct dalcs_transient *t = &r->s->circuit.transient;
     struct dalcs_schedule schedule = {.start = t->start, .step = t->step, .stop = t->stop};
@@ -37,7 +44,7 @@ static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
         schedule.n_at = r->options->n_at;
     } else if (r->method != DALCS_METHOD_EULER) {
         schedule.kind = DALCS_ON_GRID;
-        schedule.step = t->step > 0.0 ? t->step : t->stop / ROWS_WITHOUT_A_STEP;
+        schedule.step = row_distance(&r->s->circuit);
     } else if (ratio >= 1.0 - 1e-9 && fabs(ratio - rint(ratio)) <= 1e-9 * ratio) {
         schedule.kind = DALCS_ON_GRID;
     } else {
@@ -46,19 +53,22 @@ static struct dalcs_schedule choose_schedule(const struct dalcs_run *r) {
     return schedule;
 }
 
-/* Rows further apart than half a period do not show a sine, nor do averages over them. */
-static void warn_of_coarse_rows(struct dalcs_run *r, const struct dalcs_schedule *schedule) {
+/* Rows further apart than half a period do not show a sine, nor do averages over them. `since` when there are no
+ * others; INFINITY: never. */
+static void warn_of_coarse_rows(struct dalcs_run *r, const struct dalcs_schedule *schedule,
+                                double since) {
     const struct dalcs_circuit *c = &r->s->circuit;
-    bool may_be_coarse = schedule->kind == DALCS_ON_GRID && isinf(r->fill);
+    bool may_be_coarse = schedule->kind == DALCS_ON_GRID && isfinite(since);
     for (int i = 0; i < c->n_devices && may_be_coarse; i++) {
         const struct dalcs_device *d = &c->device[i];
         const struct dalcs_stimulus *s = d->stimulus >= 0 ? &c->stimulus[d->stimulus] : NULL;
         if (s != NULL && s->kind == DALCS_STIMULUS_SIN && s->u.sine.amplitude != 0.0 &&
             schedule->step * s->u.sine.frequency > 0.5) {
             dalcs_diag_add(&r->s->diag, DALCS_WARNING, &d->where, "a smaller tstep in .tran",
-                           "rows are %g s apart and a period of '%s' is %g s: they do not show it, "
-                           "nor what is computed from them",
-                           schedule->step, d->name, 1.0 / s->u.sine.frequency);
+                           "rows are %g s apart%s and a period of '%s' is %g s: they do not show "
+                           "it, nor what is computed from them",
+                           schedule->step, since > schedule->start ? " there" : "", d->name,
+                           1.0 / s->u.sine.frequency);
             return;
         }
     }
@@ -68,6 +78,26 @@ static void warn_of_coarse_rows(struct dalcs_run *r, const struct dalcs_schedule
 static enum dalcs_status start_at(struct dalcs_euler *e, struct dalcs_radau *radau,
                                   double *const *initial) {
     return radau != NULL ? dalcs_radau_start(radau, initial) : dalcs_euler_start(e, initial);
+}
+
+static bool sources_jump(const struct dalcs_circuit *circuit, double t) {
+    bool jumps = false;
+    for (int i = 0; i < circuit->n_stimuli && !jumps; i++) {
+        jumps = dalcs_stimulus_jumps_at(&circuit->stimulus[i], t);
+    }
+    return jumps;
+}
+
+/* A hysteresis goes on from the operating point. */
+static void take_over_switches(struct dalcs_euler *e, const struct dalcs_euler *held) {
+    for (int k = 0; k < e->n_components; k++) {
+        struct dalcs_component *c = &e->component[k];
+        const struct dalcs_osnsp *before = &held->component[k].osnsp;
+        for (int i = 0; i < c->n_switches; i++) {
+            int d = c->switch_pair[i];
+            dalcs_osnsp_command(&c->osnsp, d, dalcs_osnsp_is_on(before, d));
+        }
+    }
 }
 
 /* The operating point of `clamped`, in which .ic are held; its states start the transient. */
@@ -80,6 +110,7 @@ static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
     r->undetermined.clamped = clamped;
     held.open_user = &r->undetermined;
     held.on_open = dalcs_undetermined_at;
+    held.on_operating_point = dalcs_held_coils_rest;
     double **initial = dalcs_alloc((size_t)held.n_components, sizeof(*initial));
     enum dalcs_status status =
         initial == NULL ? DALCS_E_NOMEM : dalcs_euler_operating_point(&held, true);
@@ -89,6 +120,7 @@ static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
         for (int k = 0; k < held.n_components; k++) {
             initial[k] = held.component[k].u; /* the same x: clamps add algebraic unknowns only */
         }
+        take_over_switches(e, &held);
         status = start_at(e, radau, initial);
     }
     free(initial);
@@ -122,6 +154,9 @@ static enum dalcs_status start_transient(struct dalcs_run *r, struct dalcs_euler
         return start_from_clamps(r, e, radau);
     }
     DALCS_TRY(dalcs_euler_operating_point(e, true));
+    if (sources_jump(c, 0.0)) {
+        DALCS_TRY(dalcs_recorder_before_start(&r->s->recorder, e));
+    }
     return start_at(e, radau, NULL);
 }
 
@@ -185,15 +220,6 @@ static double edge_after(const struct transient *c, double t) {
         edge = fmin(edge, dalcs_stimulus_next_edge(&circuit->stimulus[i], t));
     }
     return edge;
-}
-
-static bool source_jumps(const struct transient *c) {
-    const struct dalcs_circuit *circuit = &c->run->s->circuit;
-    bool jumps = false;
-    for (int i = 0; i < circuit->n_stimuli && !jumps; i++) {
-        jumps = dalcs_stimulus_jumps_at(&circuit->stimulus[i], c->t);
-    }
-    return jumps;
 }
 
 /* After so many steps and rows more. */
@@ -308,7 +334,7 @@ static enum dalcs_status advance(struct transient *c) {
         radau->base->t = t;
         DALCS_TRY(dalcs_recorder_events(c->recorder, radau->base));
     }
-    bool jumps = edge && source_jumps(c);
+    bool jumps = edge && sources_jump(&c->run->s->circuit, c->t);
     if (edge) {
         c->next_edge = edge_after(c, t);
     }
@@ -325,6 +351,7 @@ static void note_end_of_filling(struct dalcs_run *r, const struct dalcs_filling 
                        "%zu rows, and %zu for each that there is anyway, were added up to t = %.9g "
                        "s: from there on there are no more",
                        FILLING_LIMIT.most, FILLING_LIMIT.for_each, filling->ended);
+        warn_of_coarse_rows(r, &r->s->recorder.schedule, filling->ended);
     }
 }
 
@@ -501,7 +528,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     struct dalcs_measures measures = {0};
     struct dalcs_audit_run audit = {0};
     struct dalcs_schedule schedule = choose_schedule(r);
-    warn_of_coarse_rows(r, &schedule);
+    warn_of_coarse_rows(r, &schedule, isinf(r->fill) ? schedule.start : INFINITY);
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
     s->recorder.n_shown = s->circuit.n_shown;

@@ -1,8 +1,7 @@
 /* spice_source.c - functions of time in ngspice's words.
  *
  * ngspice has no edge without width: given a rise time of 0 it takes tstep. A short ramp centred on the
- * edge stands for it, and a pulse that begins with an edge at time 0 is turned around, for nothing
- * happens before. */
+ * edge stands for it; where that would begin before time 0 it begins there. */
 #include "spice.h"
 
 #include <float.h>
@@ -33,24 +32,14 @@ struct pulse {
     double low, high, delay, rise, fall, width, period;
 };
 
-/* The same from its first fall on. */
-static struct pulse turn_around(const struct pulse *p) {
-    return (struct pulse){.low = p->high,
-                          .high = p->low,
-                          .delay = p->width,
-                          .rise = p->fall,
-                          .fall = p->rise,
-                          .width = p->period - p->width - p->fall - p->rise,
-                          .period = p->period};
-}
-
 static void widen_edges(struct pulse *p, double edge) {
     double rest = p->period - p->rise - p->width - p->fall;
     edge = fmin(edge, 0.1 * fmin(p->width, rest > 0.0 ? rest : p->width));
-    double rise = p->rise > 0.0 ? 0.0 : fmin(edge, 2.0 * p->delay);
+    double rise = p->rise > 0.0 ? 0.0 : edge;
     double fall = p->fall > 0.0 ? 0.0 : edge;
-    p->delay -= 0.5 * rise;
-    p->width -= 0.5 * (rise + fall);
+    double early = fmin(0.5 * rise, p->delay);
+    p->delay -= early;
+    p->width -= (rise - early) + 0.5 * fall;
     p->rise += rise;
     p->fall += fall;
 }
@@ -59,18 +48,9 @@ static const char *write_pulse(FILE *stream, const struct dalcs_stimulus *s, dou
                                double stop) {
     struct pulse p = {s->u.pulse.low,  s->u.pulse.high,  s->u.pulse.delay, s->u.pulse.rise,
                       s->u.pulse.fall, s->u.pulse.width, s->u.pulse.period};
-    bool begins_high = p.delay == 0.0 && p.rise == 0.0;
-    if (begins_high && isinf(p.width)) {
-        dalcs_spice_write_number(stream, p.high);
-        return NULL;
-    }
-    if (begins_high && s->u.pulse.n_periods > 0.0) {
-        return "PULSE with a number of periods that begins with an edge at time 0";
-    }
     if (p.rise + p.width + p.fall > p.period * (1.0 + 4.0 * DBL_EPSILON)) {
         return "PULSE longer than its period";
     }
-    p = begins_high ? turn_around(&p) : p;
     widen_edges(&p, edge);
     if (!(p.rise > 0.0 && p.fall > 0.0)) {
         return "PULSE without width";
@@ -107,8 +87,8 @@ static void write_points(FILE *stream, const struct dalcs_stimulus *s, double ed
 
 static const char *write_pwl(FILE *stream, const struct dalcs_stimulus *s, double edge) {
     int n = s->u.pwl.n;
-    if (n > 1 && s->u.pwl.t[0] == 0.0 && s->u.pwl.t[1] == 0.0) {
-        return "PWL that jumps at time 0";
+    if (n > 1 && s->u.pwl.repeats && s->u.pwl.t[1] == 0.0 && s->u.pwl.repeat_from == 0.0) {
+        return "PWL that jumps at time 0 and repeats from there";
     }
     for (int i = 2; i < n; i++) {
         if (s->u.pwl.t[i] == s->u.pwl.t[i - 2]) {

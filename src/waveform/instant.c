@@ -153,6 +153,19 @@ struct dalcs_instant dalcs_instant_start(const struct dalcs_measure_instant *car
     return (struct dalcs_instant){.card = card, .at = card->at, .delay = card->delay};
 }
 
+void dalcs_instant_look_before(struct dalcs_instant *instant, const struct dalcs_stretch *stretch) {
+    const struct dalcs_measure_instant *card = instant->card;
+    const double at = stretch->from;
+    if (card->kind == DALCS_INSTANT_AT || card->kind == DALCS_INSTANT_NONE || instant->delay > at) {
+        return;
+    }
+    double value = dalcs_stretch_value(stretch, &card->difference, at);
+    if (!isnan(value)) {
+        instant->scale = fmax(fabs(dalcs_stretch_value(stretch, &card->left, at)), fabs(value));
+        take_side(instant, value);
+    }
+}
+
 bool dalcs_instant_look(struct dalcs_instant *instant, const struct dalcs_stretch *stretch,
                         double from, double to) {
     const struct dalcs_measure_instant *card = instant->card;

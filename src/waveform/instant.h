@@ -22,6 +22,9 @@ struct dalcs_instant {
 /* At the start of a run. */
 struct dalcs_instant dalcs_instant_start(const struct dalcs_measure_instant *card);
 
+/* At the one point of a stretch that has no more, before an edge at the start. */
+void dalcs_instant_look_before(struct dalcs_instant *instant, const struct dalcs_stretch *stretch);
+
 /* Looks at [from, to] of a stretch; true when `time` is a new one. */
 bool dalcs_instant_look(struct dalcs_instant *instant, const struct dalcs_stretch *stretch,
                         double from, double to);

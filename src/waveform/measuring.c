@@ -320,8 +320,32 @@ void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to) 
     }
 }
 
+/* Before an edge at the start of a transient: levels are passed from there, and extremes may be there. */
+static void measure_before_start(const struct dalcs_measuring *m, struct dalcs_measured *item) {
+    const struct dalcs_measure_card *card = item->card;
+    const double at = m->stretch.from;
+    for (int k = 0; k < 2; k++) {
+        dalcs_instant_look_before(&item->instant[k], &m->stretch);
+    }
+    bool is_extreme = card->kind > DALCS_MEASURE_INTEGRAL && card->kind <= DALCS_MEASURE_MAX_AT;
+    if (!is_extreme || card->instant[0].kind != DALCS_INSTANT_NONE || item->from > at) {
+        return;
+    }
+    const double value = dalcs_stretch_value(&m->stretch, &card->formula, at);
+    item->scale = fabs(value);
+    consider(&(struct climb){&m->rule, 1.0, item->scale, &item->most, &item->most_at}, value, at);
+    consider(&(struct climb){&m->rule, -1.0, item->scale, &item->least, &item->least_at}, value,
+             at);
+}
+
 static void measure_at_point(const struct dalcs_measuring *m, struct dalcs_measured *item) {
     const struct dalcs_measure_card *card = item->card;
+    if (m->analysis == DALCS_MEASURED_TRAN) {
+        if (card->analysis == m->analysis && card->kind != DALCS_MEASURE_PARAM) {
+            measure_before_start(m, item);
+        }
+        return;
+    }
     if (card->analysis == m->analysis && card->formula.n > 0 && card->kind != DALCS_MEASURE_PARAM &&
         card->instant[0].kind == DALCS_INSTANT_NONE) {
         item->value = dalcs_stretch_value(&m->stretch, &card->formula, m->stretch.from);
@@ -351,6 +375,12 @@ static void measure_point(struct dalcs_measuring *m, double at, const double *re
         if (!m->item[k].card->is_late) {
             measure_at_point(m, &m->item[k]);
         }
+    }
+}
+
+void dalcs_measuring_before_start(struct dalcs_measuring *m, const double *value) {
+    if (m->start <= 0.0) {
+        measure_point(m, 0.0, value, NULL);
     }
 }
 

@@ -58,6 +58,9 @@ double dalcs_measuring_begin(const struct dalcs_measuring *m);
  * follow each other. */
 void dalcs_measuring_stretch(struct dalcs_measuring *m, double from, double to);
 
+/* Before the first stretch: value[n_measured] before an edge at t = 0. */
+void dalcs_measuring_before_start(struct dalcs_measuring *m, const double *value);
+
 /* A row of a sweep or an operating point: `at` is what is swept, not descending, in between straight
  * lines; re and, of an .ac, im hold the measured signals [circuit->n_measured]. */
 void dalcs_measuring_row(struct dalcs_measuring *m, double at, const double *re, const double *im);

@@ -140,14 +140,26 @@ static enum dalcs_status note_events(struct dalcs_recorder *r, const struct dalc
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_recorder_start(struct dalcs_recorder *r, const struct dalcs_euler *e) {
+enum dalcs_status dalcs_recorder_before_start(struct dalcs_recorder *r,
+                                              const struct dalcs_euler *e) {
     if (r->keep) {
         DALCS_TRY(note_events(r, e, false));
+    }
+    dalcs_recorder_evaluate(r->network, e, r->before);
+    r->starts_on_edge = true;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_recorder_start(struct dalcs_recorder *r, const struct dalcs_euler *e) {
+    if (r->keep) {
+        DALCS_TRY(note_events(r, e, r->starts_on_edge));
     }
     dalcs_recorder_evaluate(r->network, e, r->now);
     r->have_before = true;
     if (next_output(&r->schedule) <= 0.0) {
-        DALCS_TRY(emit(r, 0.0, r->now));
+        bool both = r->starts_on_edge && r->schedule.kind != DALCS_AT_TIMES;
+        DALCS_TRY(emit(r, 0.0, r->starts_on_edge ? r->before : r->now));
+        DALCS_TRY(both ? emit(r, 0.0, r->now) : DALCS_OK);
         r->schedule.next++;
     }
     return DALCS_OK;

@@ -28,7 +28,8 @@ struct dalcs_recorder {
     double *row;          /* work [DALCS_MOST_ROWS * n_outputs]: what is handed on */
     int n_shown;          /* the first outputs, which rows have: all, unless set after the setup */
     bool have_before;
-    int n_watched; /* outputs whose largest value in all rows is wanted */
+    bool starts_on_edge; /* `before` is what was before an edge at t = 0 */
+    int n_watched;       /* outputs whose largest value in all rows is wanted */
     const int *watched;
     double *largest; /* [n_watched] as `watched`; both borrowed */
 
@@ -51,6 +52,10 @@ enum dalcs_status dalcs_recorder_setup(struct dalcs_recorder *r,
                                        size_t limit) DALCS_MUST_CHECK;
 
 void dalcs_recorder_finish(struct dalcs_recorder *r);
+
+/* At the operating point before an edge at t = 0: a row of its own, and the modes to compare with. */
+enum dalcs_status dalcs_recorder_before_start(struct dalcs_recorder *r,
+                                              const struct dalcs_euler *e) DALCS_MUST_CHECK;
 
 /* After the start: the row at t = 0 and the modes to compare with. */
 enum dalcs_status dalcs_recorder_start(struct dalcs_recorder *r,

@@ -45,7 +45,9 @@ CASES = [
     ("a source that commands a switch drives a resistor as well",
      "V1 a 0 3\nR1 a b 10\nS1 b 0 g 0 SW\nC1 b 0 1n\nVg g 0 PULSE(0 2 0 0 0 1m 2m)\nRg g 0 100\n"
      ".model SW SW(Ron=0 Vt=1)\n.tran 0.1m 1m",
-     {"sources": 0.9e-3 + 40e-6, "resistors": 0.9e-3 + 40e-6}, 1e-9, 1e-4),
+     # C1 is at 3 V before the switch closes at t = 0
+     {"sources": 0.9e-3 + 40e-6, "resistors": 0.9e-3 + 40e-6, "jumps": 4.5e-9,
+      "stored_change": -4.5e-9}, 1e-9, 1e-4),
     ("a diode with a threshold and a resistance",
      "I1 0 a 2\nD1 a 0 DF\n.model DF D(Vfwd=0.7 Ron=0.1)\n.tran 0.1m 1m",
      {"sources": 1.8e-3, "diodes": 1.8e-3}, 1e-12, 1e-12),

@@ -88,7 +88,7 @@ class HardCase:
 
     def accepted(self, label, **options):
         """A run that must succeed, with certified steps and finite values."""
-        result = run(self.program, self.netlist, **options)
+        result = run(self.program, self.netlist, **options, quiet=False)
         if not self.checker.check(result.status == 0 and result.rows,
                                   f"exit {result.status} at {label}: {result.stderr}"):
             raise SystemExit(self.checker.finish())
@@ -174,7 +174,7 @@ class HardCase:
                 return " ".join(card.split()[:3] + [f"DC {sources[name]!r}"])
             return ".op" if name == ".tran" else card
         text = "\n".join(hold(card) for card in self.netlist.read_text().splitlines())
-        result = run(self.program, text + "\n", method=self.method)
+        result = run(self.program, text + "\n", method=self.method, quiet=False)
         self.checker.check(result.status == 0, f"exit {result.status}: {result.stderr}")
         return result
 

@@ -191,7 +191,7 @@ R1 a b 10
 .tran 1u 100u
 .meas tran mean AVG v(a)
 .meas tran rms RMS v(b)
-.meas tran width TRIG v(a) VAL=5 RISE=2 TARG v(a) VAL=5 FALL=3
+.meas tran width TRIG v(a) VAL=5 RISE=3 TARG v(a) VAL=5 FALL=3
 .meas tran on TRIG v(b)=1 RISE=3 TARG v(b)=1 FALL=3
 .meas tran ten WHEN v(a)=5 FALL=10
 .meas tran p AVG i(r1)*v(a,b)

@@ -103,7 +103,8 @@ class Network:
 
     def answers(self, quantities):
         """quantities: rows of n coefficients. Returns None where there is no answer, else the interval
-        of each quantity, and the least-norm (currents, reverse voltages) of the diodes."""
+        of each quantity, and the currents and reverse voltages of the diodes where the norm of currents
+        and voltages is least: reverse voltages count from where a diode has none, not from its knee."""
         common = solve(self.equations(), self.n)
         if common is None:
             return None
@@ -113,11 +114,12 @@ class Network:
             """A function of all unknowns, as one of the coordinates along the basis."""
             return [dot(row[:self.n], d) for d in basis], dot(row[:self.n], start) + constant
 
-        pairs = []
+        pairs, voltages = [], []
         for k in self.diodes:
             w = self.reverse_voltage(k)
             current = self.forward_current(k)
             pairs.append((restrict(current, Fraction(0)), restrict(w, w[self.n])))
+            voltages.append(restrict(w, Fraction(0)))
         values = [restrict(q + [Fraction(0)], Fraction(0)) for q in quantities]
         bounds = [[INFINITY, -INFINITY] for _ in quantities]
         best = None
@@ -127,7 +129,7 @@ class Network:
             polyhedron = Polyhedron(len(basis), zero, positive)
             if not polyhedron.is_empty():
                 polyhedron.widen(values, bounds)
-                found = polyhedron.least([p[0] for p in pairs] + [p[1] for p in pairs],
+                found = polyhedron.least([p[0] for p in pairs] + voltages,
                                          INFINITY if best is None else best[0])
                 if found is not None:
                     best = (found[0], [at(p[0], found[1]) for p in pairs],

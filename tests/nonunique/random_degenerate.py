@@ -6,7 +6,7 @@ usage: random_degenerate.py PROGRAM [COUNT [SEED]]
 
 COUNT networks that are not unique, and those that come up between them and are. All signals are compared:
 what is unique must not be reported, and every interval must be exact to 1e-9. The diodes' currents and
-reverse voltages must be those of least norm. Networks share a netlist, in groups: they are independent
+voltages must be those of least norm. Networks share a netlist, in groups: they are independent
 parts."""
 
 import pathlib

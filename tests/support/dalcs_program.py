@@ -86,7 +86,7 @@ class Run:
 
 
 def run(program, netlist, step=None, at=None, options=(), report=True, environment=None,
-        method="euler", tolerance=None, stages=None):
+        method="euler", tolerance=None, stages=None, quiet=True):
     """Runs a netlist (a path, or text) and returns a Run. `at` lists the output times.
 
     method None leaves the choice to the program, as tolerance None and stages None do."""
@@ -98,7 +98,8 @@ def run(program, netlist, step=None, at=None, options=(), report=True, environme
         else:
             path = pathlib.Path(netlist)
         output, saved_report = folder / "out.csv", folder / "report.json"
-        command = [program, "run", str(path), "-o", str(output), "--quiet"]
+        command = [program, "run", str(path), "-o", str(output)]
+        command += ["--quiet"] if quiet else []
         if method is not None:
             command += ["--method", method]
         if tolerance is not None:

@@ -57,7 +57,11 @@ START_TEST(test_suffixes) {
     check_value("100n", 100e-9);
     check_value("22pF", 22e-12);
     check_value("1F", 1e-15);
-    check_value("7a", 7e-18);
+    check_value("7a", 7); /* amperes */
+    check_value("-2A", -2);
+    check_value("2e-3Amp", 2e-3);
+    check_value("10mA", 10e-3);
+    check_value("7aF", 7e-18);
     check_value("5V", 5.0);
     check_value("50Hz", 50.0);
     check_value("1mil", 25.4e-6);
@@ -72,7 +76,7 @@ START_TEST(test_rounding) {
         const char *suffix;
         int power;
     } table[] = {{"t", 12}, {"g", 9},  {"meg", 6}, {"k", 3},   {"m", -3},
-                 {"u", -6}, {"n", -9}, {"p", -12}, {"f", -15}, {"a", -18}};
+                 {"u", -6}, {"n", -9}, {"p", -12}, {"f", -15}, {"aF", -18}};
 
     uint64_t state = 2385;
     int multiplying_differs = 0;

@@ -258,18 +258,19 @@ START_TEST(test_pwl) {
     static const double v0[] = {0, 5, 5};
     s = make_pwl(t0, v0, 3);
     check_limits(&s, 0, 0, 5);
-    ck_assert_double_eq(dalcs_stimulus_operating_value(&s, true), 5);
+    ck_assert_double_eq(dalcs_stimulus_operating_value(&s, true), 0);
 }
 
 END_TEST
 
+/* An operating point lies before an edge at t = 0. */
 START_TEST(test_operating_value) {
     struct dalcs_stimulus s = make_pulse(1, 2, 0, 0, 0, 1, 2);
-    ck_assert_double_eq(dalcs_stimulus_operating_value(&s, false), 2);
+    ck_assert_double_eq(dalcs_stimulus_operating_value(&s, false), 1);
     s.has_dc = true;
     s.dc = 7;
     ck_assert_double_eq(dalcs_stimulus_operating_value(&s, false), 7);
-    ck_assert_double_eq(dalcs_stimulus_operating_value(&s, true), 2);
+    ck_assert_double_eq(dalcs_stimulus_operating_value(&s, true), 1);
     s = (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .dc = 5, .has_dc = true};
     ck_assert_double_eq(dalcs_stimulus_operating_value(&s, true), 5);
     ck_assert(isinf(dalcs_stimulus_next_edge(&s, 0)));

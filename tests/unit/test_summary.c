@@ -32,10 +32,10 @@ START_TEST(test_open) {
     check_kind(&report, "  open      ", "");
     report.n_nonunique = 1;
     check_kind(&report, "  open      ",
-               "1 signal is not determined by the circuit: see the warnings");
+               "1 signal is not determined by the circuit: see the messages");
     report.n_nonunique = 4;
     check_kind(&report, "  open      ",
-               "4 signals are not determined by the circuit: see the warnings");
+               "4 signals are not determined by the circuit: see the messages");
 }
 
 END_TEST

@@ -1,0 +1,110 @@
+/* gate_levels.c - switches whose threshold is a value that their control rests at.
+ *
+ * A gate that a formula makes of numbers, such as v(a) > v(b) ? 1 : 0, has a few values and no others
+ * between its jumps. A switch without hysteresis is on above Vt alone, and so off at a value that is Vt
+ * itself: with Vt half way to the next value above it does the same, and rounding no longer decides. */
+#include "behaviour.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST_STEPS = 6, MOST_VALUES = 1 << MOST_STEPS, DEEPEST = 4 };
+
+/* v(node[0]) - v(node[1]) has these values. */
+struct dalcs_gate {
+    int node[2];
+    int n;
+    double value[MOST_VALUES];
+};
+
+/* Each step is on or off, whatever the others are: of some values a circuit may know no way. */
+static bool list_values(const struct dalcs_levels *levels, struct dalcs_gate *gate) {
+    if (levels == NULL || levels->n < 1 || levels->n > MOST_STEPS) {
+        return false;
+    }
+    gate->n = 1 << levels->n;
+    for (int k = 0; k < gate->n; k++) {
+        gate->value[k] = levels->base;
+        for (int i = 0; i < levels->n; i++) {
+            gate->value[k] += (k >> i & 1) != 0 ? levels->level[i].height : 0;
+        }
+    }
+    return true;
+}
+
+/* Vt, or half way to the next value above it where it is one itself. */
+static double threshold(const struct dalcs_gate *gate, double sign, double vt) {
+    bool is_value = false;
+    double next = INFINITY;
+    for (int k = 0; k < gate->n; k++) {
+        const double value = sign * gate->value[k];
+        is_value = is_value || value == vt;
+        next = value > vt ? fmin(next, value) : next;
+    }
+    return is_value && isfinite(next) ? vt + 0.5 * (next - vt) : vt;
+}
+
+static void set_threshold(struct dalcs_builder *builder, struct dalcs_device *device, double vt) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    const size_t n = (size_t)circuit->n_switch_models;
+    struct dalcs_switch_model *model = dalcs_arena_alloc(&circuit->arena, n + 1, sizeof *model);
+    if (model == NULL) {
+        builder->out_of_memory = true;
+        return;
+    }
+    memcpy(model, circuit->switch_model, n * sizeof *model);
+    model[n] = model[device->model];
+    model[n].vt = vt;
+    device->model = circuit->n_switch_models++;
+    circuit->switch_model = model;
+}
+
+/* +1, -1: is this the gate, or turned around? 0: it is another voltage. */
+static double sign_of(const struct dalcs_gate *gate, const int *node) {
+    const bool is_same = node[0] == gate->node[0] && node[1] == gate->node[1];
+    const bool is_turned = node[0] == gate->node[1] && node[1] == gate->node[0];
+    return is_same ? 1 : is_turned ? -1 : 0;
+}
+
+static void settle(struct dalcs_builder *builder, const struct dalcs_gate *gate, int depth) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    for (int i = 0; i < circuit->n_devices && !builder->out_of_memory; i++) {
+        struct dalcs_device *device = &circuit->device[i];
+        const double sign = sign_of(gate, device->node + 2);
+        if (device->kind == DALCS_SWITCH && device->model >= 0 && sign != 0) {
+            const struct dalcs_switch_model *model = &circuit->switch_model[device->model];
+            const double vt = threshold(gate, sign, model->vt);
+            if (model->vh == 0 && !model->is_inverted && vt != model->vt) {
+                set_threshold(builder, device, vt);
+            }
+        } else if (device->kind == DALCS_VCVS && device->behaviour == NULL && sign != 0 &&
+                   depth < DEEPEST) {
+            struct dalcs_gate driven = {.node = {device->node[0], device->node[1]}, .n = gate->n};
+            for (int k = 0; k < gate->n; k++) {
+                driven.value[k] = device->value * sign * gate->value[k];
+            }
+            settle(builder, &driven, depth + 1);
+        }
+    }
+}
+
+const struct dalcs_gate *dalcs_gate_find(struct dalcs_compiler *c,
+                                         const struct dalcs_device *device,
+                                         const struct dalcs_form *form) {
+    struct dalcs_gate found = {.node = {device->node[0], device->node[1]}};
+    if (device->kind != DALCS_VCVS || c->builder->circuit->n_switch_models == 0 ||
+        !list_values(dalcs_levels_of(c, form), &found)) {
+        return NULL;
+    }
+    struct dalcs_gate *gate = dalcs_arena_alloc(c->arena, 1, sizeof *gate);
+    if (gate == NULL) {
+        c->builder->out_of_memory = true;
+        return NULL;
+    }
+    *gate = found;
+    return gate;
+}
+
+void dalcs_gate_settle(struct dalcs_builder *builder, const struct dalcs_gate *gate) {
+    settle(builder, gate, 0);
+}
