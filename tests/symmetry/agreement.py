@@ -98,7 +98,9 @@ class Reference:
         self.slack = SLACK * self.tolerance * circuit.stop
         self.times = chosen_times(circuit, random, self.slack)
         self.answer = Answer(program, circuit, self.times)
-        self.rows = Answer(program, circuit, None)
+        coarse = circuit.copy()
+        coarse.step = circuit.stop / 500
+        self.rows = Answer(program, coarse, None, options=["--fill", "0.01"])
         self.scale = {}
         self.traces = {}
         if self.answer.status == 0 and self.rows.status == 0:

@@ -28,9 +28,10 @@ OF_EACH = 3  # transformations of one netlist in a short run
 
 
 def shortened(circuit):
-    """Forty periods of its fastest clock, and no more."""
-    periods = [e.function[1][6] for e in circuit.of("v")
+    """Forty periods of its fastest source, and no more."""
+    periods = [e.function[1][6] for e in circuit.of("vi")
                if e.function and e.function[0] == "pulse" and len(e.function[1]) > 6]
+    periods += [1 / e.function[1][2] for e in circuit.of("vi") if e.function and e.function[0] == "sin"]
     if periods and circuit.stop > PERIODS * min(periods):
         circuit.stop = PERIODS * min(periods)
         circuit.step = min(circuit.step, circuit.stop / 100)
