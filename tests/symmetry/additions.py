@@ -172,10 +172,16 @@ def through(how):
     return gates
 
 
+def fed_by_sources(circuit, node):
+    return node == "0" or any(set(e.nodes) == {node, "0"} for e in circuit.of("v"))
+
+
 def separable(circuit, how):
     """Whether a control that the circuit makes commands as one that sources make: one without hysteresis that comes
-    to rest at its threshold need not. Behind an RC there must be no second switch that moves at the same time."""
-    if how == "rc" and len(circuit.of("s")) > 1:
+    to rest at its threshold need not. Behind an RC there must be no second switch that moves at the same time, and
+    no loop, in which the delay adds up."""
+    if how == "rc" and (len(circuit.of("s")) > 1 or not all(fed_by_sources(circuit, n) for e in circuit.of("s")
+                                                            for n in e.nodes[2:])):
         return False
     levels = [0.0] + [x for e in circuit.of("v") for x in [e.dc] + (list(e.function[1])[:2] if e.function and
               e.function[0] == "pulse" else [])]

@@ -19,6 +19,8 @@ from circuits import signal_text, write  # noqa: E402
 TIMES = 300
 SLACK = 1.0
 TOLERANCE = 1e-6
+NOTHING = 1e-6  # over the largest of its unit: a signal that stays below is what others leave of each other, such as
+FLOOR = 1e-9  # the voltage of a star's middle; it is known to this, to which small parts are held, of the others
 MANY_STEPS = 10  # of implicit Euler: so few pass by a tie, many are an answer of another accuracy
 
 
@@ -108,6 +110,8 @@ class Reference:
             for s in circuit.signals:
                 self.scale[s] = max((abs(x) for x in self.rows.column(s)), default=0.0)
                 largest[s[0]] = max(largest[s[0]], self.scale[s])
+            self.least = {s: 0.0 if x > NOTHING * largest[s[0]] else FLOOR * largest[s[0]]
+                          for s, x in self.scale.items()}
             self.scale = {s: max(x, 1e-5 * largest[s[0]]) for s, x in self.scale.items()}
 
     def waveforms(self, answer, change, tolerance):
@@ -121,13 +125,13 @@ class Reference:
                 continue
             factor = change.factor(s) if change.factor else 1.0
             x, y = self.answer.column(s), [v / factor for v in answer.column(after)]
-            allowed = 2 * tolerance * self.scale[s] + 1e-300
+            allowed = max(2 * tolerance * self.scale[s], self.least[s], 1e-300)
             for k in range(0, len(x) - 2, 3):
                 gap = max(min(x[k:k + 3]) - max(y[k:k + 3]), min(y[k:k + 3]) - max(x[k:k + 3]), 0.0)
                 if not gap / allowed <= worst[0]:
                     worst = (gap / allowed, f"{signal_text(s)} is {y[k + 1]:.9g}, not {x[k + 1]:.9g}, at "
-                                            f"{self.times[k + 1]:.6g} s: {gap / self.scale[s]:.1e} of its "
-                                            f"largest value")
+                                            f"{self.times[k + 1]:.6g} s: {gap / allowed:.1e} times what is "
+                                            f"allowed")
         return worst[1]
 
     def carries(self, e, state, start, end, tolerance):
