@@ -10,15 +10,15 @@
 #include <string.h>
 #include <time.h>
 
+/* All of them: a warning may be about one that is only measured. */
 enum dalcs_status dalcs_run_name_signals(struct dalcs_run *r, bool copies) {
     const struct dalcs_network *n = &r->s->network;
-    const int n_shown = r->s->circuit.n_shown;
-    r->name = dalcs_arena_alloc(&r->s->arena, (size_t)n_shown, sizeof(*r->name));
-    r->unit = dalcs_arena_alloc(&r->s->arena, (size_t)n_shown, sizeof(*r->unit));
+    r->name = dalcs_arena_alloc(&r->s->arena, (size_t)n->n_outputs, sizeof(*r->name));
+    r->unit = dalcs_arena_alloc(&r->s->arena, (size_t)n->n_outputs, sizeof(*r->unit));
     if (r->name == NULL || r->unit == NULL) {
         return DALCS_E_NOMEM;
     }
-    for (int i = 0; i < n_shown; i++) {
+    for (int i = 0; i < n->n_outputs; i++) {
         const char *name = n->output[i].name;
         r->name[i] = copies ? dalcs_arena_copy(&r->s->arena, name, strlen(name)) : name;
         if (r->name[i] == NULL) {
