@@ -33,9 +33,10 @@ static void let_go(struct dalcs_radau_part *part, struct dalcs_recurring *recurr
     wait_longer(recurring);
 }
 
-/* It is time to try one at once. */
+/* It is time to try one at once. Where sources curve none is ever looked at, and there is no length to try. */
 static bool is_due(const struct dalcs_recurring *recurring) {
-    return recurring->brief == NULL && recurring->times >= recurring->patience;
+    return recurring->brief == NULL && recurring->patience > 0 &&
+           recurring->times >= recurring->patience;
 }
 
 /* As the first such span had it: its map may be there. */
@@ -53,14 +54,15 @@ static double first_span(const struct dalcs_radau_part *part, double span) {
     return span;
 }
 
-/* A step of length h in the present mode, if it can be judged by its states and guards alone; NULL: not so. */
+/* A step of length h in the present mode, if it has a map and can be judged by its states and guards alone; NULL: not
+ * so. A part near the largest size of maps has factors in the modes in which most pairs conduct. */
 static enum dalcs_status find_map(struct dalcs_radau_part *part, double h, bool with_nodes,
                                   struct dalcs_stage_brief **step) {
     struct dalcs_stage_entry *entry;
     enum dalcs_status status =
         dalcs_stages_get(&part->stages, part->component->osnsp.mode, h, &entry);
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
-    if (status == DALCS_OK && dalcs_stage_n_clashes(entry) == 0 &&
+    if (status == DALCS_OK && dalcs_stage_has_map(entry) && dalcs_stage_n_clashes(entry) == 0 &&
         dalcs_stage_residual(entry) <= dalcs_largest_residual) {
         return dalcs_stage_brief_create(&part->stages, entry, with_nodes, step);
     }

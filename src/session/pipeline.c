@@ -10,6 +10,7 @@
 #include <string.h>
 #include <time.h>
 
+/* All of them: a warning may be about one that is only measured. */
 enum dalcs_status dalcs_run_name_signals(struct dalcs_run *r, bool copies) {
     const struct dalcs_network *n = &r->s->network;
     const size_t n_outputs = (size_t)n->n_outputs;
