@@ -17,6 +17,7 @@ struct audit_part {
     double least, most;  /* S, of its conductances; 0: it has none */
     double step;         /* s, of the stretch at hand */
     double cost;         /* of one instant, in instructions, about */
+    bool has_formula;    /* one that bends or jumps: in no time it may be anything between */
     bool has_entered;    /* the state at its last event is in `before` */
     bool is_open;        /* `before` is the end of the stretch that was just left */
 };

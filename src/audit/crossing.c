@@ -201,11 +201,13 @@ static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
 
 /* ---- Positions ----------------------------------------------------------------------------------- */
 
-/* A switch changes over where its control reaches the threshold on that side, before or behind the event. */
+/* A switch changes over where its control reaches the threshold on that side, before or behind the event.
+ * Not where the control may have been beyond it in between: what a formula jumps to while pairs change sides
+ * one after the other, a latch keeps. */
 static void check_changes(struct dalcs_audit *audit, const struct audit_part *part,
                           const struct dalcs_audit_state *before,
                           const struct dalcs_audit_state *after) {
-    for (int k = 0; k < part->n_devices; k++) {
+    for (int k = 0; k < part->n_devices && !part->has_formula; k++) {
         const int device = part->device[k];
         if (audit->circuit->device[device].kind != DALCS_SWITCH ||
             before->is_closed[device] == after->is_closed[device]) {
