@@ -406,26 +406,6 @@ void dalcs_audit_enter(struct dalcs_audit *audit, int index, double t) {
     part->is_open = false;
 }
 
-void dalcs_audit_step(struct dalcs_audit *audit, const struct dalcs_audit_stretch *step) {
-    struct audit_part *part = &audit->part[step->part];
-    audit->count.stretches++;
-    audit->credit += audit->options.share * step->work;
-    part->step = step->step;
-    if (!is_drawn(audit, 2.0 * part->cost)) {
-        return;
-    }
-    audit->count.audited++;
-    audit->now.t = step->from;
-    audit->now.side = DALCS_RIGHT;
-    audit->reader.read(audit->reader.user, step->part, &audit->now);
-    audit_note_scales(audit, part, &audit->now);
-    audit->later.t = step->to;
-    audit->later.side = DALCS_LEFT;
-    look(audit, step->part, &audit->later);
-    audit_check_euler(audit, part, &audit->now, &audit->later);
-    audit->credit -= part->cost;
-}
-
 void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dalcs_side side,
                          double work) {
     dalcs_audit_earn(audit, work);

@@ -94,10 +94,6 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
 /* The next one begins where it ended, or the first one of all, and can be read there. */
 void dalcs_audit_enter(struct dalcs_audit *audit, int part, double t);
 
-/* A step of implicit Euler from one time to the other, both of which can be read: the first as a limit from
- * the right, the second from the left. */
-void dalcs_audit_step(struct dalcs_audit *audit, const struct dalcs_audit_stretch *step);
-
 /* A part without memory at time t. */
 void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dalcs_side side,
                          double work);

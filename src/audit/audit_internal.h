@@ -124,10 +124,6 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
 void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, double from,
                           double to);
 
-/* The same of a step of implicit Euler, whose ends are these. */
-void audit_check_euler(struct dalcs_audit *audit, struct audit_part *part,
-                       const struct dalcs_audit_state *from, const struct dalcs_audit_state *to);
-
 /* crossing.c: what holds from one side of an event to the other. */
 void audit_check_crossing(struct dalcs_audit *audit, struct audit_part *part,
                           const struct dalcs_audit_state *before,

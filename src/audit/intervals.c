@@ -155,12 +155,3 @@ void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, do
     audit_find(audit, part, DALCS_AUDIT_ENERGY, index, fabs(audit->sums.energy),
                audit->sums.energy_scale, to);
 }
-
-void audit_check_euler(struct dalcs_audit *audit, struct audit_part *part,
-                       const struct dalcs_audit_state *from, const struct dalcs_audit_state *to) {
-    clear(audit, part);
-    add_storage(audit, part, from, -1.0);
-    add_flow(audit, part, to, to->t - from->t);
-    add_storage(audit, part, to, 1.0);
-    judge(audit, part, to->t - from->t, to->t);
-}

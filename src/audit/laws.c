@@ -90,11 +90,6 @@ static double volt_rounding(const struct dalcs_audit *audit, const struct dalcs_
            audit->sums.volt_rounding[audit->node_of[d->node[1]]];
 }
 
-/* What is in series with the knee, so that with roff beside both it is r. */
-static double beyond(double r, double roff) {
-    return r / (1.0 - r / roff);
-}
-
 static void check_diode(struct dalcs_audit *audit, const struct audit_part *part,
                         const struct dalcs_audit_state *s, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
@@ -112,11 +107,9 @@ static void check_diode(struct dalcs_audit *audit, const struct audit_part *part
                                  audit_volts(audit, part, d->node[0], d->node[1]) +
                                  m->ron * amperes,
                              amperes + rounding / part->tolerance};
-    check_pair(audit, part, device, forward, m->vfwd + beyond(m->ron, m->roff) * forward - v, scale,
-               s->t);
+    check_pair(audit, part, device, forward, m->vfwd + m->ron * forward - v, scale, s->t);
     if (isfinite(m->vrev)) {
-        check_pair(audit, part, device, reverse, m->vrev + beyond(m->rrev, m->roff) * reverse + v,
-                   scale, s->t);
+        check_pair(audit, part, device, reverse, m->vrev + m->rrev * reverse + v, scale, s->t);
     } else {
         audit_find(audit, part, DALCS_AUDIT_BRANCH, device, reverse - audit->options.abstol,
                    scale[1], s->t);

@@ -45,10 +45,6 @@ static void copy_answer(const struct dalcs_audit_run *a, int index, const double
 static void read_state(void *user, int part, struct dalcs_audit_state *s) {
     const struct dalcs_audit_run *a = user;
     const struct dalcs_component *c = &a->euler->component[part];
-    if (a->radau == NULL) {
-        copy_answer(a, part, s->t == a->euler->t ? c->y : c->y_before, s);
-        return;
-    }
     if (a->radau->part[part].kind == DALCS_PART_STEPPED) {
         dalcs_radau_read(a->radau, part, s->t, s->side);
     }
@@ -62,7 +58,7 @@ static void raise(double *largest, double value) {
 /* The engine's scales are of whole segments, the auditor has seen instants. */
 static void raise_scales(void *user, int part, double *v, double *i, double *lambda) {
     const struct dalcs_audit_run *a = user;
-    if (a->radau == NULL || a->radau->part[part].kind != DALCS_PART_STEPPED) {
+    if (a->radau->part[part].kind != DALCS_PART_STEPPED) {
         return;
     }
     const struct audit_members *m = &a->part[part];
@@ -182,20 +178,19 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
         return DALCS_E_NOMEM;
     }
     for (int k = 0; k < n; k++) {
-        const struct dalcs_radau_part *part = a->radau != NULL ? &a->radau->part[k] : NULL;
-        tolerance[k] = part != NULL ? part->tolerance : run->osnsp.certificate_tolerance * 1e3;
+        tolerance[k] = a->radau->part[k].tolerance;
         work[k] = read_work(a, k);
     }
-    const struct dalcs_audit_options options = {
-        .mode = run->options->audit,
-        .share = share,
-        .resolution = a->radau != NULL ? a->radau->resolution : 0.0,
-        .vntol = run->vntol,
-        .abstol = run->abstol,
-        .device_part = run->s->network.readout->device_system,
-        .n_parts = n,
-        .tolerance = tolerance,
-        .read_work = work};
+    const struct dalcs_audit_options options = {.mode = run->options->audit,
+                                                .share = share,
+                                                .resolution = a->radau->resolution,
+                                                .vntol = run->vntol,
+                                                .abstol = run->abstol,
+                                                .device_part =
+                                                    run->s->network.readout->device_system,
+                                                .n_parts = n,
+                                                .tolerance = tolerance,
+                                                .read_work = work};
     const struct dalcs_audit_reader reader = {a, read_state, raise_scales};
     return dalcs_audit_create(&a->audit, &run->s->circuit, &options, &reader);
 }
@@ -279,19 +274,6 @@ void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side s
         if (a->radau->part[k].kind == DALCS_PART_ALGEBRAIC) {
             dalcs_audit_instant(a->audit, k, t, side, segment_work);
         }
-    }
-}
-
-void dalcs_audit_run_step(struct dalcs_audit_run *a) {
-    const struct dalcs_euler *e = a->euler;
-    for (int k = 0; a->audit != NULL && k < e->n_components; k++) {
-        const struct dalcs_audit_stretch step = {.part = k,
-                                                 .from = e->t_before,
-                                                 .to = e->t,
-                                                 .step = e->h,
-                                                 .work = segment_work,
-                                                 .rule = DALCS_AUDIT_COARSE};
-        dalcs_audit_step(a->audit, &step);
     }
 }
 

@@ -1,4 +1,4 @@
-/* audit_run.h - the engine's segments and steps, handed to the auditor. */
+/* audit_run.h - radau's segments, handed to the auditor. Of euler each step has a certificate. */
 #ifndef DALCS_AUDIT_RUN_H
 #define DALCS_AUDIT_RUN_H
 
@@ -10,13 +10,12 @@
 struct dalcs_audit_run {
     struct dalcs_run *run;
     struct dalcs_euler *euler;
-    struct dalcs_radau *radau;  /* NULL: the method is euler */
+    struct dalcs_radau *radau;
     struct dalcs_audit *audit;  /* NULL: nothing is audited */
     struct audit_members *part; /* [n_systems] */
     struct dalcs_arena arena;
 };
 
-/* radau: NULL with euler. */
 enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_run *run,
                                         struct dalcs_euler *euler,
                                         struct dalcs_radau *radau) DALCS_MUST_CHECK;
@@ -32,9 +31,6 @@ void dalcs_audit_run_enter(struct dalcs_audit_run *a, double t);
 
 /* Rows were made, the last of them at t. */
 void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side side, long n);
-
-/* A step of euler. */
-void dalcs_audit_run_step(struct dalcs_audit_run *a);
 
 /* Into the report. DALCS_NOT_CONVERGED and a message where a defect is more than is allowed. */
 enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) DALCS_MUST_CHECK;

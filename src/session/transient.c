@@ -171,13 +171,11 @@ static long progress_interval(const struct dalcs_network *n) {
 }
 
 static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct dalcs_euler *e,
-                                         struct dalcs_measures *measures,
-                                         struct dalcs_audit_run *audit) {
+                                         struct dalcs_measures *measures) {
     struct dalcs_recorder *recorder = &r->s->recorder;
     const long interval = progress_interval(&r->s->network);
     while (!dalcs_grid_at_end(&e->grid)) {
         DALCS_TRY(dalcs_euler_step(e));
-        dalcs_audit_run_step(audit);
         DALCS_TRY(dalcs_recorder_step(recorder, e));
         dalcs_measures_step(measures, e);
         if (e->at_jump && !dalcs_grid_at_end(&e->grid)) {
@@ -419,8 +417,8 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct
     DALCS_TRY(dalcs_run_begin_plot(r, DALCS_TRANSIENT));
     DALCS_TRY(dalcs_recorder_start(&s->recorder, e));
     DALCS_TRY(dalcs_measures_start(measures, r, e, radau));
-    enum dalcs_status status = radau != NULL ? run_to_the_end(r, radau, measures, audit)
-                                             : step_to_the_end(r, e, measures, audit);
+    enum dalcs_status status =
+        radau != NULL ? run_to_the_end(r, radau, measures, audit) : step_to_the_end(r, e, measures);
     if (status == DALCS_OK && radau != NULL) {
         status = dalcs_radau_evaluate(radau, radau->options.stop, DALCS_LEFT);
     }
@@ -557,7 +555,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
         e.energy = &energy;
     }
     if (status == DALCS_OK) {
-        status = dalcs_audit_run_start(&audit, r, &e, is_euler ? NULL : &radau);
+        status = is_euler ? DALCS_OK : dalcs_audit_run_start(&audit, r, &e, &radau);
     }
     if (status == DALCS_OK) {
         status = walk(r, &e, is_euler ? NULL : &radau, &measures, &audit);

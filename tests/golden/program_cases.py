@@ -100,7 +100,7 @@ class Usage(Case):
     def test_every_option_is_in_the_help(self):
         text = self.dalcs("run", "--help").stdout
         for option in ["--output", "--method", "--tol", "--stages", "--step", "--compress", "--at", "--fill",
-                       "--curve", "--report", "--plot", "--dump", "--all-signals", "--energy", "--quiet"]:
+                       "--curve", "--report", "--plot", "--dump", "--all-signals", "--energy", "--audit", "--quiet"]:
             self.assertIn(option, text)
 
     def test_version(self):
