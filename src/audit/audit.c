@@ -64,6 +64,8 @@ static void list_members(struct dalcs_audit *audit, const int *part_of_node) {
         part->has_formula |= d->behaviour != NULL && d->behaviour->n_pairs > 0;
         if (d->kind == DALCS_RESISTOR) {
             see_conductance(part, fabs(1.0 / d->value));
+        } else if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
+            see_conductance(part, fabs(d->value));
         } else if (d->kind == DALCS_SWITCH) {
             see_conductance(part, 1.0 / c->switch_model[d->model].ron);
             see_conductance(part, 1.0 / c->switch_model[d->model].roff);
@@ -301,7 +303,7 @@ void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law 
         snprintf(text, size, "position of %s", c->device[index].name);
         break;
     default:
-        snprintf(text, size, "energy");
+        snprintf(text, size, "Tellegen");
         break;
     }
 }

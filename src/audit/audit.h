@@ -120,7 +120,7 @@ struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit
 struct dalcs_audit_finding dalcs_audit_finding_of(const struct dalcs_audit *audit,
                                                   enum dalcs_audit_law law, int index);
 
-/* "KCL at out", "d1", "position of s1", "energy"; into text[size]. */
+/* "KCL at out", "d1", "position of s1", "Tellegen"; into text[size]. */
 void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
                           char *text, size_t size);
 

@@ -14,6 +14,7 @@ struct audit_part {
     int n_couplings, *coupling;
     double tolerance;
     double volt, ampere; /* scales that every voltage and current is at least held to */
+    double formula[2];   /* V, A: the largest terms of its formulas */
     double least, most;  /* S, of its conductances; 0: it has none */
     double step;         /* s, of the stretch at hand */
     double cost;         /* of one instant, in instructions, about */

@@ -54,12 +54,14 @@ static void raise_lambdas(struct dalcs_audit *audit, int device, const struct da
 }
 
 /* A formula's output, less what the device puts out; each of its pairs. */
-static void check_formula(struct dalcs_audit *audit, const struct audit_part *part,
+static void check_formula(struct dalcs_audit *audit, struct audit_part *part,
                           const struct dalcs_audit_state *s, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
     double size;
     const double f = affine_value(audit, part, s, device, &d->behaviour->output, &size);
     const bool is_voltage = d->kind == DALCS_VCVS;
+    double *largest = &part->formula[is_voltage ? 0 : 1];
+    *largest = fmax(*largest, size);
     const double is = is_voltage ? audit_voltage(s, d) : s->i[device];
     const double scale = is_voltage ? audit_volts(audit, part, d->node[0], d->node[1])
                                     : audit_amperes(audit, part, device);
@@ -203,7 +205,7 @@ static double source_slack(const struct dalcs_audit *audit, const struct dalcs_s
     return fabs(later - sooner);
 }
 
-static void check_branch(struct dalcs_audit *audit, const struct audit_part *part,
+static void check_branch(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
     if (d->behaviour != NULL) {
@@ -292,8 +294,8 @@ static void sum_currents(struct dalcs_audit *audit, const struct audit_part *par
 
 void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
                        const struct dalcs_audit_state *s) {
-    double volt = 0.0;
-    double ampere = 0.0;
+    double volt = part->formula[0]; /* what cancels in a formula leaves its rounding */
+    double ampere = part->formula[1];
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
