@@ -214,8 +214,8 @@ static enum dalcs_status set_up(struct dalcs_audit *audit) {
 
 /* What a start of the program costs, and how much an instant does for a device, in instructions: measured with
  * callgrind on the netlists of the repository (doc/testing.md). */
-static const double start_work = 2e6;
-static const double device_work = 120.0, node_work = 40.0;
+static const double start_work = 8e5;
+static const double device_work = 300.0, node_work = 100.0;
 
 static const uint64_t first_seed = 0x9e3779b97f4a7c15u;
 

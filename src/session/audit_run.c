@@ -158,7 +158,7 @@ static enum dalcs_status make_members(struct dalcs_audit_run *a) {
 
 /* Instructions, about, as callgrind counts them (doc/testing.md): a value of a polynomial, of a source; a segment
  * beside its map, an element of a map; a value of a row. */
-static const double value_work = 6.0, source_work = 120.0;
+static const double value_work = 15.0, source_work = 200.0;
 static const double segment_work = 2500.0, element_work = 0.6, row_work = 30.0;
 
 /* What a sample may cost of a run. */
