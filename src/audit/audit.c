@@ -339,6 +339,15 @@ void dalcs_audit_earn(struct dalcs_audit *audit, double work) {
 /* Instants in a stretch with --audit full, beside its ends, and pieces that integrals are taken over. */
 enum { FULL_INSTANTS = 3, FULL_PIECES = 2, INTERVAL_INSTANTS = 7 };
 
+/* Times in a stretch are known to a rounding of t, over its length that is what a value in it may be off by where it
+ * changes by its whole scale: it has to be less than the tolerance. */
+static bool can_look_inside(const struct dalcs_audit *audit,
+                            const struct dalcs_audit_stretch *stretch) {
+    const double tolerance = audit->part[stretch->part].tolerance;
+    return stretch->rule == DALCS_AUDIT_SMOOTH &&
+           (stretch->to - stretch->from) * tolerance > 4.0 * 0x1p-52 * stretch->to;
+}
+
 static void look_inside(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     const int n = audit->options.mode == DALCS_AUDIT_FULL ? FULL_INSTANTS : 1;
     for (int k = 0; k < n; k++) {
@@ -379,7 +388,7 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     }
     audit->count.audited++;
     audit->credit -= stretch->first_look;
-    if (stretch->rule == DALCS_AUDIT_SMOOTH) {
+    if (can_look_inside(audit, stretch)) {
         look_inside(audit, stretch);
     }
     struct dalcs_audit_state *end = &audit->before[stretch->part];
@@ -387,7 +396,7 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     end->side = DALCS_LEFT;
     look(audit, stretch->part, end);
     part->is_open = true;
-    if (stretch->rule == DALCS_AUDIT_SMOOTH) {
+    if (can_look_inside(audit, stretch)) {
         integrate(audit, stretch);
     }
 }

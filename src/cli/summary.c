@@ -139,7 +139,10 @@ static void write_audit(FILE *out, const struct dalcs_report *report) {
         fprintf(out, "; %ld switch position%s right", report->audit.positions,
                 plural(report->audit.positions));
     }
-    fputs(is_wrong ? ", too much\n" : "\n", out);
+    if (is_wrong) {
+        fprintf(out, ", more than %.2g", report->audit.allowed);
+    }
+    fputc('\n', out);
 }
 
 static void write_certificate(FILE *out, const struct dalcs_report *report) {
