@@ -205,6 +205,17 @@ bool dalcs_commands_obey(struct dalcs_commands *commands, double t) {
     return moved;
 }
 
+void dalcs_commands_look(struct dalcs_commands *commands, double until) {
+    for (int k = 0; k < commands->n; k++) {
+        struct dalcs_command *m = &commands->command[k];
+        while (!m->moves && m->next < until) {
+            m->searched = m->next;
+            search(commands, m);
+        }
+    }
+    find_earliest(commands);
+}
+
 double dalcs_commands_period(const struct dalcs_commands *commands) {
     const struct dalcs_stimulus *first = commands->n > 0 ? commands->command[0].pulse : NULL;
     bool is_common = first != NULL;

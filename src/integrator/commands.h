@@ -49,6 +49,9 @@ void dalcs_commands_start(struct dalcs_commands *commands);
 /* Moves what is due at t, and looks for the next. Returns whether anything moved. */
 bool dalcs_commands_obey(struct dalcs_commands *commands, double t);
 
+/* Goes on with searches that have found nothing so far, up to a time. */
+void dalcs_commands_look(struct dalcs_commands *commands, double until);
+
 /* s; of all, if they are PULSEs of one period; 0: they are not. After the start. */
 double dalcs_commands_period(const struct dalcs_commands *commands);
 

@@ -46,6 +46,7 @@ struct periodic_segment {
 struct dalcs_periodic {
     double
         period; /* s, of all sources; 0: that of the commands, which is not known before the start */
+    bool by_commands; /* it is that of PULSEs */
 
     /* The event: mode and states there. */
     bool has_event;
@@ -69,22 +70,46 @@ struct dalcs_periodic {
     double *own_out; /* while part->out is one of those kept */
 };
 
+/* omega[*n], in 1/s, of all that oscillates: sources as the part sees them, and those that command its switches.
+ * false: there is something else, which has no such period. */
+static bool list_oscillations(const struct dalcs_radau_part *part, double *omega, int *n) {
+    const struct dalcs_excitation *e = &part->excitation;
+    const struct dalcs_control *control = &part->commands.control;
+    const struct dalcs_csr *a = &part->component->system->direct_control;
+    bool all = true;
+    *n = 0;
+    for (int k = 0; k < e->n_functions && all; k++) {
+        omega[*n] = fabs(e->function[k].omega);
+        *n += omega[*n] != 0.0 ? 1 : 0;
+        all = e->function[k].decay == 0.0;
+    }
+    for (int k = 0; k < a->p[a->n_rows] && all; k++) {
+        const struct dalcs_stimulus *s = dalcs_control_stimulus(control, a->j[k]);
+        if (s == NULL || s->kind == DALCS_STIMULUS_DC) {
+            continue;
+        }
+        struct dalcs_stimulus_piece piece = {.term = control->term};
+        dalcs_stimulus_piece_at(s, 0.0, &piece);
+        all = piece.n_terms > 0;
+        for (int i = 0; i < piece.n_terms && all; i++) {
+            omega[*n] = fabs(piece.term[i].omega);
+            *n += omega[*n] != 0.0 ? 1 : 0;
+            all = piece.term[i].decay == 0.0;
+        }
+    }
+    return all;
+}
+
 /* Of oscillations; 0: they have none. */
-static double common_period(const struct dalcs_excitation *e) {
+static double common_period(const double *omega, int n_omegas) {
     double slowest = INFINITY;
-    for (int k = 0; k < e->n_functions; k++) {
-        const struct dalcs_excitation_function *f = &e->function[k];
-        if (f->decay != 0.0) {
-            return 0.0;
-        }
-        if (f->omega != 0.0) {
-            slowest = fmin(slowest, fabs(f->omega));
-        }
+    for (int k = 0; k < n_omegas; k++) {
+        slowest = fmin(slowest, omega[k]);
     }
     for (int n = 1; n <= MOST_PERIODS && isfinite(slowest); n++) {
         bool is_common = true;
-        for (int k = 0; k < e->n_functions && is_common; k++) {
-            double periods = n * fabs(e->function[k].omega) / slowest;
+        for (int k = 0; k < n_omegas && is_common; k++) {
+            double periods = n * omega[k] / slowest;
             is_common = fabs(periods - rint(periods)) <= rounded * periods;
         }
         if (is_common) {
@@ -94,12 +119,28 @@ static double common_period(const struct dalcs_excitation *e) {
     return 0.0;
 }
 
+/* Of all sources, if each is a constant or oscillates; 0: it is not so. */
+static enum dalcs_status find_period(const struct dalcs_radau_part *part, double *period) {
+    const struct dalcs_csr *a = &part->component->system->direct_control;
+    size_t most =
+        (size_t)part->excitation.n_functions +
+        (size_t)a->p[a->n_rows] * (size_t)dalcs_control_most_terms(&part->commands.control);
+    double *omega = dalcs_alloc(most + 1, sizeof(*omega));
+    if (omega == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    int n;
+    *period = list_oscillations(part, omega, &n) ? common_period(omega, n) : 0.0;
+    free(omega);
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    double period = common_period(&part->excitation);
+    double period;
+    DALCS_TRY(find_period(part, &period));
     bool is_commanded = part->commands.n > 0 && !part->excitation.is_curved;
-    bool is_sinusoidal =
-        part->commands.n == 0 && period > 0.0 && fewest_periods * period < r->options.stop;
+    bool is_sinusoidal = period > 0.0 && fewest_periods * period < r->options.stop;
     bool may_come_back = (is_sinusoidal || is_commanded) && part->component->system->monotone &&
                          r->options.fixed_step == 0.0;
     if (!may_come_back) {
@@ -112,6 +153,7 @@ enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r, struct dalcs
         return DALCS_E_NOMEM;
     }
     periodic->period = period;
+    periodic->by_commands = period == 0.0;
     periodic->n_out = (size_t)l->n_nodes * (size_t)l->stride;
     periodic->n_in = (size_t)part->stages.n_in;
     periodic->n_x = (size_t)p->system->n_x;
@@ -158,10 +200,27 @@ static double distance(const struct dalcs_radau *r, const struct dalcs_radau_par
     return farthest;
 }
 
+/* Of sources that act on the part, or on what commands its switches; those of PULSEs are periodic themselves. */
+static bool has_edges_to_come(const struct dalcs_radau_part *part) {
+    const struct dalcs_commands *c = &part->commands;
+    bool has = isfinite(part->excitation.next_edge);
+    for (int k = 0; k < c->n && !has && !part->periodic->by_commands; k++) {
+        has = isfinite(dalcs_control_next_edge(&c->control, c->command[k].pair, part->t));
+    }
+    return has;
+}
+
+void dalcs_periodic_look_ahead(struct dalcs_radau_part *part) {
+    if (!part->periodic->by_commands) {
+        dalcs_commands_look(&part->commands, part->t + (1.0 + same_event) * part->periodic->period);
+    }
+}
+
 void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     struct dalcs_periodic *periodic = part->periodic;
-    if (isfinite(part->excitation.next_edge)) {
-        return;
+    bool is_command = part->n_crossed == 0;
+    if (has_edges_to_come(part) || (is_command && periodic->by_commands)) {
+        return; /* the times of PULSEs are counted, not taken from an event that is one of them */
     }
     if (periodic->period == 0.0) {
         periodic->period = dalcs_commands_period(&part->commands);
@@ -174,7 +233,7 @@ void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *
     double off = is_first ? INFINITY : distance(r, part);
     periodic->repeats = periodic->keeps && off <= 1.0;
     /* The period of a converter is short, and what happens in it moves about for many: that is not worth a copy. */
-    periodic->keeps = off < far || (isinf(off) && part->commands.n == 0);
+    periodic->keeps = off < far || (isinf(off) && !periodic->by_commands);
     if (periodic->repeats) {
         periodic->start = part->t;
         return;

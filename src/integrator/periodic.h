@@ -6,7 +6,7 @@
  * from one such event on, and once the circuit has come back to it, they are taken as they are, later by
  * whole periods.
  *
- * Of a component under sines with a common period, or one whose commanded switches follow PULSEs with one, and
+ * Of a component under sines with a common period, which may command switches, or one whose commanded switches follow PULSEs with one, and
  * passive: there what the states miss by coming back cannot grow. It is held to a part of the tolerance, over
  * all periods to come. */
 #ifndef DALCS_PERIODIC_H
@@ -20,7 +20,10 @@ enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r,
 
 void dalcs_periodic_finish(struct dalcs_radau_part *part);
 
-/* At part->t pairs have changed sides. */
+/* No search for a command ends within a period from part->t on, unless it finds one: each period has the same ends. */
+void dalcs_periodic_look_ahead(struct dalcs_radau_part *part);
+
+/* At part->t pairs have changed sides, or been commanded to. */
 void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *part);
 
 /* The present segment has been looked for, and found. */

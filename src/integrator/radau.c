@@ -338,8 +338,9 @@ static void go_to_end(struct dalcs_radau_part *part) {
 
 /* The next segment of a part that may come back to where it was; repeats: it is known to. */
 static enum dalcs_status repeat_or_begin(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                         bool repeats) {
-    if (!repeats && part->n_crossed > 0) {
+                                         bool commanded, bool repeats) {
+    dalcs_periodic_look_ahead(part);
+    if (!repeats && (part->n_crossed > 0 || commanded)) {
         dalcs_periodic_event(r, part);
         repeats = dalcs_periodic_repeats(r, part);
     }
@@ -379,8 +380,9 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
         dalcs_excitation_enter(&part->excitation, part->t);
         part->fresh = true;
     }
-    if (part->commands.next <= part->t + r->resolution &&
-        dalcs_commands_obey(&part->commands, part->t)) {
+    bool commanded = part->commands.next <= part->t + r->resolution &&
+                     dalcs_commands_obey(&part->commands, part->t);
+    if (commanded) {
         obey_commands(part);
         part->fresh = true;
         part->flipped = true;
@@ -389,7 +391,7 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
         return DALCS_OK;
     }
     if (part->periodic != NULL) {
-        DALCS_TRY(repeat_or_begin(r, part, repeats));
+        DALCS_TRY(repeat_or_begin(r, part, commanded, repeats));
     } else {
         set_aside(part);
         DALCS_TRY(dalcs_segment_begin(r, part));
