@@ -32,10 +32,11 @@ void dalcs_audit_run_enter(struct dalcs_audit_run *a, double t);
 /* Rows were made, the last of them at t. */
 void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side side, long n);
 
-/* Into the report. DALCS_NOT_CONVERGED and a message where a defect is more than is allowed. */
+/* Into the report. A message where a defect is more than is allowed, and DALCS_NOT_CONVERGED where that ends the
+ * run. */
 enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) DALCS_MUST_CHECK;
 
-/* Is there a defect that is more than is allowed? */
-bool dalcs_audit_run_failed(const struct dalcs_audit_run *a);
+/* Is there a defect that is more than is allowed, and does it end the run? */
+bool dalcs_audit_run_fails(const struct dalcs_audit_run *a);
 
 #endif

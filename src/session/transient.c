@@ -424,7 +424,7 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct
     }
     dalcs_recorder_states(&s->network, e, s->final);
     DALCS_TRY(status);
-    if (dalcs_audit_run_failed(audit)) {
+    if (dalcs_audit_run_fails(audit)) {
         return DALCS_NOT_CONVERGED; /* the rows stay what they are: partial */
     }
     return r->sink->end(r->sink->user);
@@ -568,7 +568,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     if (status == DALCS_OK) {
         dalcs_tangents_judge(r);
     }
-    const bool is_wrong = dalcs_audit_run_failed(&audit);
+    const bool is_wrong = dalcs_audit_run_fails(&audit);
     const enum dalcs_status audited = dalcs_audit_run_report(&audit);
     status = status == DALCS_OK ? audited : status;
     if (!is_wrong) {
