@@ -44,8 +44,8 @@ struct dalcs_network {
 
     struct dalcs_power *power;     /* [n_systems] what its devices give and take */
     struct dalcs_readout *readout; /* NULL: of a system file, or not asked for */
-    double **initial;          /* [n_systems][n_x] x(0-) for uic: IC=, else .ic, else 0 */
-    int n_nodes;               /* without ground */
+    double **initial;              /* [n_systems][n_x] x(0-) for uic: IC=, else .ic, else 0 */
+    int n_nodes;                   /* without ground */
     struct dalcs_arena arena;
 
     /* Of a system file, which has no circuit to build them from; else NULL. Owned. */

@@ -68,10 +68,10 @@ struct dalcs_euler {
     /* An operating point was found, before anything is said of it; may be NULL. */
     enum dalcs_status (*on_operating_point)(const struct dalcs_circuit *circuit,
                                             struct dalcs_euler *e);
-    struct dalcs_energy *energy;                  /* the ledger, borrowed; NULL: none is kept */
-    double *after, *charge, *flux;                /* what micro-steps see, the largest component */
-    double *noise;            /* [n_x] of a jump, which the caller fills: what is rounding */
-    double *told_from, *told; /* work: the columns that a jump is told with */
+    struct dalcs_energy *energy;   /* the ledger, borrowed; NULL: none is kept */
+    double *after, *charge, *flux; /* what micro-steps see, the largest component */
+    double *noise;                 /* [n_x] of a jump, which the caller fills: what is rounding */
+    double *told_from, *told;      /* work: the columns that a jump is told with */
     struct dalcs_jumps jumps;
     struct dalcs_jump_answer jump; /* the last one */
     struct dalcs_arena arena;      /* what has the same size during the run */

@@ -113,8 +113,7 @@ START_TEST(test_the_exact_waveform) {
     const struct dalcs_audit_summary found = audited(NONE);
     ck_assert_msg(found.defect < 1e-9, "%g", found.defect);
     ck_assert_int_eq(found.audited, 2);
-    ck_assert_int_eq(found.positions,
-                     12); /* five instants each, the far side, a change */
+    ck_assert_int_eq(found.positions, 11); /* five instants each, the far side, a change */
     text_network_finish(&t);
 }
 
