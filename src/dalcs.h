@@ -514,7 +514,7 @@ struct dalcs_report {
         long positions;        /* of switches, compared with their controls */
         double worst, allowed; /* the worst defect over its scale, and what it was held to */
         double time;           /* s, of that */
-        const char *where;     /* "d1", "KCL at out", "position of s1", "Tellegen" */
+        const char *where;     /* "d1", "i(d1)", "KCL at out", "position of s1", "Tellegen" */
         size_t n_laws;
 
         const struct dalcs_audited {

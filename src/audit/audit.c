@@ -9,15 +9,11 @@
 
 /* ---- Parts --------------------------------------------------------------------------------------- */
 
-static bool carries(const struct dalcs_device *d) {
-    return !dalcs_device_is_short(d);
-}
-
 static void count_members(struct dalcs_audit *audit, int *part_of_node) {
     const struct dalcs_circuit *c = audit->circuit;
     for (int i = 0; i < c->n_devices; i++) {
         const int k = audit->options.device_part[i];
-        if (k < 0 || !carries(&c->device[i])) {
+        if (k < 0 || dalcs_device_is_short(&c->device[i])) {
             continue;
         }
         audit->part[k].n_devices++;
@@ -52,7 +48,7 @@ static void list_members(struct dalcs_audit *audit, const int *part_of_node) {
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
         const int k = audit->options.device_part[i];
-        if (k < 0 || !carries(d)) {
+        if (k < 0 || dalcs_device_is_short(d)) {
             continue;
         }
         struct audit_part *part = &audit->part[k];
@@ -139,7 +135,7 @@ static enum dalcs_status make_state(struct dalcs_audit *audit, struct dalcs_audi
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-static int n_of(const struct dalcs_audit *audit, enum dalcs_audit_law law) {
+int dalcs_audit_n_of(const struct dalcs_audit *audit, enum dalcs_audit_law law) {
     return law == DALCS_AUDIT_KCL      ? audit->circuit->n_nodes
            : law == DALCS_AUDIT_ENERGY ? audit->options.n_parts
                                        : audit->circuit->n_devices;
@@ -161,8 +157,8 @@ static enum dalcs_status make_sums(struct dalcs_audit *audit) {
         complete = complete && *per_device[k] != NULL;
     }
     for (int law = 0; law < DALCS_AUDIT_N_LAWS; law++) {
-        audit->worst_of[law] = dalcs_arena_alloc(&audit->arena, (size_t)n_of(audit, law),
-                                                 sizeof(*audit->worst_of[law]));
+        audit->worst_of[law] = dalcs_arena_alloc(
+            &audit->arena, (size_t)dalcs_audit_n_of(audit, law), sizeof(*audit->worst_of[law]));
         complete = complete && audit->worst_of[law] != NULL;
     }
     audit->lambda_scale =
@@ -199,16 +195,7 @@ static enum dalcs_status set_up(struct dalcs_audit *audit) {
     DALCS_TRY(make_state(audit, &audit->now));
     DALCS_TRY(make_state(audit, &audit->later));
     DALCS_TRY(make_state(audit, &audit->shifted));
-    audit->before =
-        dalcs_arena_alloc(&audit->arena, (size_t)audit->options.n_parts, sizeof(*audit->before));
-    if (audit->before == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    /* Parts share only ground, so one set of arrays holds the states of all of them. */
-    DALCS_TRY(make_state(audit, &audit->before[0]));
-    for (int k = 1; k < audit->options.n_parts; k++) {
-        audit->before[k] = audit->before[0];
-    }
+    DALCS_TRY(make_state(audit, &audit->before));
     return DALCS_OK;
 }
 
@@ -274,7 +261,7 @@ struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit
     struct dalcs_audit_summary sum = audit->count;
     sum.index = -1;
     for (int law = 0; law < DALCS_AUDIT_N_LAWS && audit->options.n_parts > 0; law++) {
-        for (int i = 0; i < n_of(audit, law); i++) {
+        for (int i = 0; i < dalcs_audit_n_of(audit, law); i++) {
             const struct dalcs_audit_finding f = dalcs_audit_finding_of(audit, law, i);
             const double allowed = audit->part[audit->worst_of[law][i].part].tolerance;
             if (sum.index < 0 || f.defect * sum.allowed > sum.defect * allowed) {
@@ -299,6 +286,9 @@ void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law 
     case DALCS_AUDIT_BRANCH:
         snprintf(text, size, "%s", c->device[index].name);
         break;
+    case DALCS_AUDIT_CURRENT:
+        snprintf(text, size, "i(%s)", c->device[index].name);
+        break;
     case DALCS_AUDIT_POSITION:
         snprintf(text, size, "position of %s", c->device[index].name);
         break;
@@ -310,10 +300,14 @@ void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law 
 
 /* ---- What is looked at --------------------------------------------------------------------------- */
 
-static void look(struct dalcs_audit *audit, int index, struct dalcs_audit_state *s) {
-    struct audit_part *part = &audit->part[index];
+/* What the largest values so far are, at the beginning of each look at a stretch. */
+static void raise_scales(struct dalcs_audit *audit, int index) {
     audit->reader.raise(audit->reader.user, index, audit->v_scale, audit->i_scale,
                         audit->lambda_scale);
+}
+
+static void look(struct dalcs_audit *audit, int index, struct dalcs_audit_state *s) {
+    struct audit_part *part = &audit->part[index];
     audit->reader.read(audit->reader.user, index, s);
     audit_note_scales(audit, part, s);
     audit_check_instant(audit, part, s);
@@ -388,10 +382,11 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     }
     audit->count.audited++;
     audit->credit -= stretch->first_look;
+    raise_scales(audit, stretch->part);
     if (can_look_inside(audit, stretch)) {
         look_inside(audit, stretch);
     }
-    struct dalcs_audit_state *end = &audit->before[stretch->part];
+    struct dalcs_audit_state *end = &audit->before;
     end->t = stretch->to;
     end->side = DALCS_LEFT;
     look(audit, stretch->part, end);
@@ -406,11 +401,12 @@ void dalcs_audit_enter(struct dalcs_audit *audit, int index, double t) {
     if (!part->is_open && part->has_entered) {
         return;
     }
+    raise_scales(audit, index);
     audit->now.t = t;
     audit->now.side = DALCS_RIGHT;
     look(audit, index, &audit->now);
     if (part->is_open) {
-        audit_check_crossing(audit, part, &audit->before[index], &audit->now);
+        audit_check_crossing(audit, part, &audit->before, &audit->now);
         audit->credit -= part->cost;
     }
     part->has_entered = true;

@@ -55,7 +55,8 @@ struct dalcs_audit_stretch {
 /* Which of the things that can be wrong. */
 enum dalcs_audit_law {
     DALCS_AUDIT_KCL,      /* at a node */
-    DALCS_AUDIT_BRANCH,   /* the law of a device */
+    DALCS_AUDIT_BRANCH,   /* the law of a device, as a voltage or a flux */
+    DALCS_AUDIT_CURRENT,  /* likewise, as a current */
     DALCS_AUDIT_POSITION, /* of a switch against its control */
     DALCS_AUDIT_ENERGY,   /* of a part */
     DALCS_AUDIT_N_LAWS
@@ -120,7 +121,10 @@ struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit
 struct dalcs_audit_finding dalcs_audit_finding_of(const struct dalcs_audit *audit,
                                                   enum dalcs_audit_law law, int index);
 
-/* "KCL at out", "d1", "position of s1", "Tellegen"; into text[size]. */
+/* How many nodes, devices or parts a law is of. */
+int dalcs_audit_n_of(const struct dalcs_audit *audit, enum dalcs_audit_law law);
+
+/* "KCL at out", "d1", "i(s1)", "position of s1", "Tellegen"; into text[size]. */
 void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
                           char *text, size_t size);
 

@@ -44,7 +44,7 @@ struct dalcs_audit {
     struct audit_part *part;
     double *v_scale, *i_scale, *lambda_scale;     /* largest so far */
     struct dalcs_audit_state now, later, shifted; /* work */
-    struct dalcs_audit_state *before; /* [n_parts] where a stretch ended; arrays in common */
+    struct dalcs_audit_state before; /* where stretches ended: parts share only ground */
     struct audit_sums sums;
     int *cluster;   /* [n_nodes] work of crossing.c */
     double *offset; /* [n_nodes] likewise */
@@ -53,7 +53,7 @@ struct dalcs_audit {
         double defect, scale; /* the largest of each, in the law's own unit */
         double time;          /* s, of the defect */
         int part;
-    } * worst_of[DALCS_AUDIT_N_LAWS]; /* by node, device, device, part */
+    } * worst_of[DALCS_AUDIT_N_LAWS]; /* [dalcs_audit_n_of] */
 
     struct dalcs_audit_summary count; /* of it, what is counted */
     uint64_t seed;
@@ -109,7 +109,8 @@ double audit_control_scale(const struct dalcs_audit *audit, const struct audit_p
 double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *part,
                            const struct dalcs_audit_state *s, int device);
 
-/* A defect and its scale, in one unit for each law and index; what rounding explains and what besides is allowed are taken off. */
+/* A defect and its scale, in one unit for each law and index. What rounding explains, and what is allowed
+ * besides, is taken off. */
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time);
 
@@ -120,6 +121,9 @@ void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
 /* Raises scales to what the state has. */
 void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
                        const struct dalcs_audit_state *s);
+
+/* Wb: what the currents that make a coil's flux are held to. */
+double audit_flux_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device);
 
 /* intervals.c: what holds between two times in one stretch. */
 void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, double from,

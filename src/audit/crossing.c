@@ -148,24 +148,6 @@ static void sum_fluxes(struct dalcs_audit *audit, const struct audit_part *part,
     }
 }
 
-static double flux_scale(const struct dalcs_audit *audit, const struct audit_part *part,
-                         int device) {
-    double scale = audit->circuit->device[device].value * audit_amperes(audit, part, device);
-    for (int k = 0; k < part->n_couplings; k++) {
-        const struct dalcs_coupling *m = &audit->circuit->coupling[part->coupling[k]];
-        for (int e = 0; e < 2; e++) {
-            const int other = m->inductor[1 - e];
-            if (m->inductor[e] == device) {
-                scale += fabs(m->k) *
-                         sqrt(audit->circuit->device[device].value *
-                              audit->circuit->device[other].value) *
-                         audit_amperes(audit, part, other);
-            }
-        }
-    }
-    return scale;
-}
-
 static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_state *before,
                        const struct dalcs_audit_state *after) {
@@ -187,7 +169,7 @@ static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
         const int a = find_root(audit, audit->node_of[d->node[0]], &flux[0]);
         const int b = find_root(audit, audit->node_of[d->node[1]], &flux[1]);
         const double over = audit->sums.flux[device] - (flux[0] - flux[1]);
-        const double scale = flux_scale(audit, part, device);
+        const double scale = audit_flux_scale(audit, part, device);
         if (a != b) {
             audit->cluster[a] = b;
             audit->offset[a] = over;

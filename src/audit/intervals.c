@@ -91,12 +91,10 @@ static void add_storage(struct dalcs_audit *audit, const struct audit_part *part
     }
 }
 
-/* Of a flux: what currents and voltages are held to makes of it. */
-static double flux_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device,
-                         double duration) {
+double audit_flux_scale(const struct dalcs_audit *audit, const struct audit_part *part,
+                        int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
-    double scale = d->value * audit_amperes(audit, part, device) +
-                   audit_volts(audit, part, d->node[0], d->node[1]) * duration;
+    double scale = d->value * audit_amperes(audit, part, device);
     for (int k = 0; k < part->n_couplings; k++) {
         const struct dalcs_coupling *m = &audit->circuit->coupling[part->coupling[k]];
         for (int e = 0; e < 2; e++) {
@@ -123,8 +121,10 @@ static void judge(struct dalcs_audit *audit, const struct audit_part *part, doub
     }
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
-        if (audit->circuit->device[device].kind == DALCS_INDUCTOR) {
-            const double scale = flux_scale(audit, part, device, duration);
+        const struct dalcs_device *d = &audit->circuit->device[device];
+        if (d->kind == DALCS_INDUCTOR) {
+            const double scale = audit_flux_scale(audit, part, device) +
+                                 audit_volts(audit, part, d->node[0], d->node[1]) * duration;
             audit_find(audit, part, DALCS_AUDIT_BRANCH, device,
                        fabs(audit->sums.flux[device]) - AUDIT_ROUNDING * scale -
                            audit->options.vntol * duration,

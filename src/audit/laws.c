@@ -1,8 +1,6 @@
 /* laws.c - what holds at each time: branches, signs, positions and Kirchhoff's current law. */
 #include "audit_internal.h"
 
-#include <string.h>
-
 static double affine_value(const struct dalcs_audit *audit, const struct audit_part *part,
                            const struct dalcs_audit_state *s, int device,
                            const struct dalcs_affine *a, double *size) {
@@ -65,16 +63,16 @@ static void check_formula(struct dalcs_audit *audit, struct audit_part *part,
     const double is = is_voltage ? audit_voltage(s, d) : s->i[device];
     const double scale = is_voltage ? audit_volts(audit, part, d->node[0], d->node[1])
                                     : audit_amperes(audit, part, device);
-    audit_find(audit, part, DALCS_AUDIT_BRANCH, device, fabs(is - f) - AUDIT_ROUNDING * size,
-               size + scale, s->t);
+    const double held = size + scale;
+    const enum dalcs_audit_law law = is_voltage ? DALCS_AUDIT_BRANCH : DALCS_AUDIT_CURRENT;
+    audit_find(audit, part, law, device, fabs(is - f) - AUDIT_ROUNDING * size, held, s->t);
     for (int k = 0; k < d->behaviour->n_pairs; k++) {
         const int pair = audit->first_lambda[device] + k;
         const double w = affine_value(audit, part, s, device, &d->behaviour->w[k], &size);
         raise_lambdas(audit, device, &d->behaviour->w[k], size);
         const double lambda = audit_ratio(s->lambda[pair], audit->lambda_scale[pair]);
-        const double over = audit_ratio(w, size);
-        audit_find(audit, part, DALCS_AUDIT_BRANCH, device,
-                   fabs(fmin(lambda, over)) - AUDIT_ROUNDING, 1.0, s->t);
+        const double over = fabs(fmin(lambda, audit_ratio(w, size))) - AUDIT_ROUNDING;
+        audit_find(audit, part, law, device, over * held, held, s->t);
     }
 }
 
@@ -84,6 +82,12 @@ static void check_pair(struct dalcs_audit *audit, const struct audit_part *part,
     const double over[2] = {audit_ratio(beyond, scale[0]), audit_ratio(current, scale[1])};
     const double defect = fmax(-over[0], fmin(over[0], over[1]));
     audit_find(audit, part, DALCS_AUDIT_BRANCH, device, defect * scale[0], scale[0], time);
+}
+
+/* A, in the currents at the two ends of a device. */
+static double ampere_rounding(const struct dalcs_audit *audit, const struct dalcs_device *d) {
+    return fmax(audit->sums.rounding[audit->node_of[d->node[0]]],
+                audit->sums.rounding[audit->node_of[d->node[1]]]);
 }
 
 /* What rounding of the fluxes of coils makes of the voltage across a device. */
@@ -101,8 +105,8 @@ static void check_diode(struct dalcs_audit *audit, const struct audit_part *part
     const double own = s->i[device] - leak;
     const double forward = fmax(own, 0.0);
     const double reverse = fmax(-own, 0.0);
-    const double rounding = fmax(audit->sums.rounding[audit->node_of[d->node[0]]],
-                                 audit->sums.rounding[audit->node_of[d->node[1]]]);
+    const double rounding = ampere_rounding(audit, d);
+    /* currents of pairs are held to 1e-2 of the largest, others to 1e-5 (doc/methods.md) */
     const double amperes = fmax(audit_amperes(audit, part, device), 1e3 * part->ampere);
     /* what is within rounding of 0 is nothing: it is over a scale that is not less */
     const double scale[2] = {volt_rounding(audit, d) / part->tolerance +
@@ -113,7 +117,7 @@ static void check_diode(struct dalcs_audit *audit, const struct audit_part *part
     if (isfinite(m->vrev)) {
         check_pair(audit, part, device, reverse, m->vrev + m->rrev * reverse + v, scale, s->t);
     } else {
-        audit_find(audit, part, DALCS_AUDIT_BRANCH, device, reverse - audit->options.abstol,
+        audit_find(audit, part, DALCS_AUDIT_CURRENT, device, reverse - audit->options.abstol,
                    scale[1], s->t);
     }
 }
@@ -154,15 +158,14 @@ static void check_switch(struct dalcs_audit *audit, const struct audit_part *par
     const bool is_closed = s->is_closed[device];
     const double v = audit_voltage(s, d);
     const double i = s->i[device];
-    const double rounding = fmax(audit->sums.rounding[audit->node_of[d->node[0]]],
-                                 audit->sums.rounding[audit->node_of[d->node[1]]]);
+    const double rounding = ampere_rounding(audit, d);
     if (is_closed) {
         audit_find(audit, part, DALCS_AUDIT_BRANCH, device,
                    fabs(v - m->ron * i) - m->ron * rounding - audit->options.vntol,
                    audit_volts(audit, part, d->node[0], d->node[1]), s->t);
     } else {
         const double leak = isfinite(m->roff) ? v / m->roff : 0.0;
-        audit_find(audit, part, DALCS_AUDIT_BRANCH, device,
+        audit_find(audit, part, DALCS_AUDIT_CURRENT, device,
                    fabs(i - leak) - rounding - audit->options.abstol,
                    audit_amperes(audit, part, device), s->t);
     }

@@ -24,6 +24,7 @@ static bool has_own_current(const struct dalcs_device *d) {
 struct terms {
     struct dalcs_readout_term *term; /* heap */
     size_t n, capacity;
+    struct dalcs_arena arena; /* work */
 };
 
 static enum dalcs_status add_current(const struct dalcs_layout *l,
@@ -33,10 +34,9 @@ static enum dalcs_status add_current(const struct dalcs_layout *l,
     if (system < 0 || !has_own_current(&l->circuit->device[device])) {
         return DALCS_OK;
     }
-    struct dalcs_arena arena = {0};
     struct dalcs_current current = {0};
     enum dalcs_status status =
-        dalcs_layout_current(l, &network->system[system], device, &arena, &current);
+        dalcs_layout_current(l, &network->system[system], device, &all->arena, &current);
     if (status == DALCS_OK) {
         status = dalcs_grow(&all->term, &all->capacity, all->n + (size_t)current.n_terms,
                             sizeof *all->term);
@@ -45,7 +45,6 @@ static enum dalcs_status add_current(const struct dalcs_layout *l,
         all->term[all->n++] =
             (struct dalcs_readout_term){current.term[k].index, current.term[k].coefficient};
     }
-    dalcs_arena_finish(&arena);
     return status;
 }
 
@@ -91,6 +90,7 @@ enum dalcs_status dalcs_readout_build(struct dalcs_network *network,
         r->term[k] = all.term[k];
     }
     free(all.term);
+    dalcs_arena_finish(&all.arena);
     network->readout = status == DALCS_OK ? r : NULL;
     return status;
 }

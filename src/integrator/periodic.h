@@ -6,8 +6,8 @@
  * from one such event on, and once the circuit has come back to it, they are taken as they are, later by
  * whole periods.
  *
- * Of a component under sines with a common period, which may command switches, or one whose commanded switches follow PULSEs with one, and
- * passive: there what the states miss by coming back cannot grow. It is held to a part of the tolerance, over
+ * Of a component under sines with a common period, which may command switches, or one whose commanded switches
+ * follow PULSEs with one, and passive: there what the states miss by coming back cannot grow. It is held to a part of the tolerance, over
  * all periods to come. */
 #ifndef DALCS_PERIODIC_H
 #define DALCS_PERIODIC_H

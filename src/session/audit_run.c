@@ -303,44 +303,42 @@ bool dalcs_audit_run_fails(const struct dalcs_audit_run *a) {
     return a->audit != NULL && a->run->options->audit == DALCS_AUDIT_FULL && is_broken(a);
 }
 
-/* All laws that were found broken by more than nothing, into the report's list. */
-static enum dalcs_status list_laws(struct dalcs_audit_run *a) {
-    const struct dalcs_circuit *c = &a->run->s->circuit;
-    struct dalcs_arena *arena = &a->run->s->arena;
-    const int n_of[] = {c->n_nodes, c->n_devices, c->n_devices, a->run->s->network.n_systems};
-    struct dalcs_report *report = &a->run->s->report;
-    size_t n = 0;
-    for (int pass = 0; pass < 2; pass++) {
-        struct dalcs_audited *list = NULL;
-        if (pass == 1) {
-            list = dalcs_arena_alloc(arena, n, sizeof *list);
-            if (list == NULL) {
-                return DALCS_E_NOMEM;
+static enum dalcs_status tell_law(const struct dalcs_audit_run *a, enum dalcs_audit_law law,
+                                  int index, const struct dalcs_audit_finding *f,
+                                  struct dalcs_audited *to) {
+    char name[NAME_SIZE];
+    dalcs_audit_law_name(a->audit, law, index, name, sizeof name);
+    const char *copy = dalcs_arena_copy(&a->run->s->arena, name, strlen(name));
+    *to = (struct dalcs_audited){copy, f->defect, f->time};
+    return copy != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* Laws with a defect: how many, and into list[] where that is not NULL. */
+static enum dalcs_status list_laws(const struct dalcs_audit_run *a, struct dalcs_audited *list,
+                                   size_t *n) {
+    *n = 0;
+    for (int law = 0; law < DALCS_AUDIT_N_LAWS; law++) {
+        for (int i = 0; i < dalcs_audit_n_of(a->audit, law); i++) {
+            const struct dalcs_audit_finding f = dalcs_audit_finding_of(a->audit, law, i);
+            if (f.defect > 0.0 && list != NULL) {
+                DALCS_TRY(tell_law(a, law, i, &f, &list[*n]));
             }
-            n = 0;
+            *n += f.defect > 0.0 ? 1 : 0;
         }
-        for (int law = 0; law < DALCS_AUDIT_N_LAWS; law++) {
-            for (int i = 0; i < n_of[law]; i++) {
-                const struct dalcs_audit_finding f = dalcs_audit_finding_of(a->audit, law, i);
-                if (!(f.defect > 0.0)) {
-                    continue;
-                }
-                if (pass == 1) {
-                    char name[NAME_SIZE];
-                    dalcs_audit_law_name(a->audit, law, i, name, sizeof name);
-                    list[n] = (struct dalcs_audited){dalcs_arena_copy(arena, name, strlen(name)),
-                                                     f.defect, f.time};
-                    if (list[n].law == NULL) {
-                        return DALCS_E_NOMEM;
-                    }
-                }
-                n++;
-            }
-        }
-        report->audit.law = list;
-        report->audit.n_laws = pass == 1 ? n : 0;
     }
     return DALCS_OK;
+}
+
+static enum dalcs_status report_laws(const struct dalcs_audit_run *a) {
+    struct dalcs_report *report = &a->run->s->report;
+    size_t n;
+    DALCS_TRY(list_laws(a, NULL, &n));
+    struct dalcs_audited *list = dalcs_arena_alloc(&a->run->s->arena, n, sizeof *list);
+    if (list == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    report->audit.law = list;
+    return list_laws(a, list, &report->audit.n_laws);
 }
 
 enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) {
@@ -365,7 +363,7 @@ enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) {
     if (s->report.audit.where == NULL) {
         return DALCS_E_NOMEM;
     }
-    DALCS_TRY(list_laws(a));
+    DALCS_TRY(report_laws(a));
     if (!is_broken(a)) {
         return DALCS_OK;
     }

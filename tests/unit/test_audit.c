@@ -63,7 +63,7 @@ static void read_exact(void *user, int part, struct dalcs_audit_state *s) {
     const double charged = gate && fault != LOST_GATE ? -10.0 * expm1(-(s->t - CLOSES) / tau) : 0.0;
     const double v = charged + (gate && fault == NUDGED ? 1e-6 : 0.0);
     const double i = is_closed ? (10.0 - v) / 10.0 : 0.0;
-    const double leak = fault == LEAK ? 1e-6 : 0.0;
+    const double leak = fault == LEAK && is_closed ? 1e-6 : 0.0;
     memset(s->i, 0, (size_t)t.circuit.n_devices * sizeof *s->i);
     s->v[node("a")] = fault == WRONG_SOURCE ? 10.0 + 1e-5 : 10.0;
     s->v[node("b")] = v + 9.0 * i;
@@ -127,7 +127,7 @@ START_TEST(test_what_is_wrong) {
     } spoilt[] = {
         {NUDGED, DALCS_AUDIT_KCL, "c"},          {SLOW, DALCS_AUDIT_KCL, "c"},
         {LOST_GATE, DALCS_AUDIT_POSITION, "s1"}, {EARLY_GATE, DALCS_AUDIT_POSITION, "s1"},
-        {LEAK, DALCS_AUDIT_BRANCH, "d1"},        {WRONG_SOURCE, DALCS_AUDIT_BRANCH, "v1"}};
+        {LEAK, DALCS_AUDIT_CURRENT, "d1"},       {WRONG_SOURCE, DALCS_AUDIT_BRANCH, "v1"}};
 
     for (size_t k = 0; k < sizeof spoilt / sizeof *spoilt; k++) {
         const struct dalcs_audit_summary found = audited(spoilt[k].fault);
