@@ -327,8 +327,7 @@ struct dalcs_run_options {
                               see doc/methods.md); this and the bound may change the last bits of
                               results */
     size_t max_events;  /* events and jumps kept when recording, 1e6 */
-    enum dalcs_audit_mode audit; /* of .tran; a defect above the tolerance is a note, with FULL
-                                    DALCS_NOT_CONVERGED */
+    enum dalcs_audit_mode audit; /* of .tran; a defect above the tolerance is DALCS_NOT_CONVERGED */
     const char *dump_path;       /* where to write an OSNSP that failed; NULL: nowhere */
 };
 

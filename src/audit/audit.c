@@ -137,15 +137,15 @@ static enum dalcs_status make_state(struct dalcs_audit *audit, struct dalcs_audi
 
 int dalcs_audit_n_of(const struct dalcs_audit *audit, enum dalcs_audit_law law) {
     return law == DALCS_AUDIT_KCL      ? audit->circuit->n_nodes
-           : law == DALCS_AUDIT_ENERGY ? audit->options.n_parts
+           : law >= DALCS_AUDIT_ENERGY ? audit->options.n_parts
                                        : audit->circuit->n_devices;
 }
 
 static enum dalcs_status make_sums(struct dalcs_audit *audit) {
     const size_t n_nodes = (size_t)audit->circuit->n_nodes;
     const size_t n_devices = (size_t)audit->circuit->n_devices;
-    double **per_node[] = {&audit->sums.current,       &audit->sums.scale, &audit->sums.rounding,
-                           &audit->sums.volt_rounding, &audit->v_scale,    &audit->offset};
+    double **per_node[] = {&audit->sums.current, &audit->sums.scale, &audit->sums.rounding,
+                           &audit->v_scale, &audit->offset};
     double **per_device[] = {&audit->sums.flux, &audit->i_scale};
     bool complete = true;
     for (size_t k = 0; k < sizeof per_node / sizeof *per_node; k++) {
@@ -240,9 +240,23 @@ void dalcs_audit_destroy(struct dalcs_audit *audit) {
 
 /* ---- What is found ------------------------------------------------------------------------------- */
 
+static void find_coarse(struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
+                        double defect, double time) {
+    if (!(defect <= audit->coarse.defect)) {
+        audit->coarse.defect = isnan(defect) ? INFINITY : defect;
+        audit->coarse.time = time;
+        audit->coarse_law = law;
+        audit->coarse_index = index;
+    }
+}
+
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time) {
     struct audit_worst *worst = &audit->worst_of[law][index];
+    if (part->is_coarse) {
+        find_coarse(audit, law, index, audit_ratio(defect, scale), time);
+        return;
+    }
     worst->part = (int)(part - audit->part);
     worst->scale = fmax(worst->scale, scale);
     if (!(defect <= worst->defect)) { /* not a number is as wrong as can be */
@@ -264,7 +278,11 @@ struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit
         for (int i = 0; i < dalcs_audit_n_of(audit, law); i++) {
             const struct dalcs_audit_finding f = dalcs_audit_finding_of(audit, law, i);
             const double allowed = audit->part[audit->worst_of[law][i].part].tolerance;
-            if (sum.index < 0 || f.defect * sum.allowed > sum.defect * allowed) {
+            const bool is_broken = f.defect > audit->options.failure;
+            const bool is_worse = f.defect * sum.allowed > sum.defect * allowed;
+            if (sum.index < 0 || is_broken > sum.is_broken ||
+                (is_broken == sum.is_broken && is_worse)) {
+                sum.is_broken = is_broken;
                 sum.defect = f.defect;
                 sum.allowed = allowed;
                 sum.time = f.time;
@@ -273,6 +291,15 @@ struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit
             }
         }
     }
+    return sum;
+}
+
+struct dalcs_audit_summary dalcs_audit_summarise_coarse(const struct dalcs_audit *audit) {
+    struct dalcs_audit_summary sum = audit->count;
+    sum.index = audit->coarse.defect > 0.0 ? audit->coarse_index : -1;
+    sum.defect = audit->coarse.defect;
+    sum.time = audit->coarse.time;
+    sum.law = audit->coarse_law;
     return sum;
 }
 
@@ -292,8 +319,11 @@ void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law 
     case DALCS_AUDIT_POSITION:
         snprintf(text, size, "position of %s", c->device[index].name);
         break;
-    default:
+    case DALCS_AUDIT_ENERGY:
         snprintf(text, size, "Tellegen");
+        break;
+    default:
+        snprintf(text, size, "periods leapt over");
         break;
     }
 }
@@ -324,6 +354,17 @@ static bool is_drawn(struct dalcs_audit *audit, double cost) {
     }
     audit->threshold = 2.0 * cost * audit_draw(audit);
     return true;
+}
+
+bool dalcs_audit_may(struct dalcs_audit *audit, double work) {
+    const bool may = is_drawn(audit, work);
+    audit->credit -= may ? work : 0.0;
+    return may;
+}
+
+void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int index, double defect,
+                     double time) {
+    audit_find(audit, &audit->part[index], law, index, defect, 1.0, time);
 }
 
 void dalcs_audit_earn(struct dalcs_audit *audit, double work) {
@@ -363,20 +404,30 @@ static void integrate(struct dalcs_audit *audit, const struct dalcs_audit_stretc
     }
     const double from = stretch->from + 0.5 * audit_draw(audit) * length;
     const double to = stretch->to - 0.5 * audit_draw(audit) * length;
-    if (audit->credit >= 0.0 && from < to) {
+    if ((audit->credit >= 0.0 || stretch->is_last) && from < to) {
         audit_check_interval(audit, part, from, to);
         audit->credit -= INTERVAL_INSTANTS * part->cost;
     }
+}
+
+/* The derivative of a polynomial of degree s on an interval of length h is at most 2 s^2/h times its largest value
+ * (A. and V. Markov): what rounding of charges makes of currents, and of fluxes of voltages. */
+static void take_up(struct audit_part *part, const struct dalcs_audit_stretch *stretch) {
+    const double s = stretch->degree;
+    part->is_coarse = stretch->rule == DALCS_AUDIT_COARSE;
+    part->step = stretch->step;
+    part->slope = stretch->step > 0.0 ? 2.0 * s * s / stretch->step : 0.0;
 }
 
 void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
     audit->count.stretches++;
     audit->credit += audit->options.share * stretch->work;
-    part->step = stretch->step;
+    take_up(part, stretch);
     const double instants = 3.0;
     const double cost = instants * part->cost + stretch->first_look;
-    if (!is_drawn(audit, cost)) {
+    part->past = stretch->to - stretch->from;
+    if (!is_drawn(audit, cost) && !stretch->is_last) {
         part->is_open = false;
         return;
     }
@@ -396,15 +447,22 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     }
 }
 
-void dalcs_audit_enter(struct dalcs_audit *audit, int index, double t) {
+void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    const int index = stretch->part;
     struct audit_part *part = &audit->part[index];
-    if (!part->is_open && part->has_entered) {
+    if ((!part->is_open && part->has_entered) || stretch->rule == DALCS_AUDIT_COARSE) {
+        part->is_open = false;
         return;
     }
+    take_up(part, stretch);
     raise_scales(audit, index);
-    audit->now.t = t;
+    audit->now.t = stretch->from;
     audit->now.side = DALCS_RIGHT;
+    /* An event is early or late by what changes no value by more than the tolerance: that share of the stretch that it
+     * ended, over which values change by their scales at most. A diode may have its signs that much later. */
+    part->lateness = fmin(part->tolerance * part->past, stretch->to - stretch->from);
     look(audit, index, &audit->now);
+    part->lateness = 0.0;
     if (part->is_open) {
         audit_check_crossing(audit, part, &audit->before, &audit->now);
         audit->credit -= part->cost;

@@ -43,12 +43,14 @@ struct dalcs_audit_stretch {
     int part;
     double from, to;   /* s */
     double step;       /* s, of the method: rounding of stored charge is a current over it */
+    int degree;        /* of its polynomials over such a step */
     double work;       /* what it took to make, in instructions, about */
     double first_look; /* likewise, what the first look at it takes besides */
+    bool is_last;      /* of the part: it is looked at for the scales that the run ends with */
 
     enum dalcs_audit_rule {
         DALCS_AUDIT_SMOOTH, /* a polynomial, right at all times to the tolerance */
-        DALCS_AUDIT_COARSE  /* right at its ends: nobody controls the error in between */
+        DALCS_AUDIT_COARSE  /* a step whose error nobody controls: its end can be looked at */
     } rule;
 };
 
@@ -59,6 +61,7 @@ enum dalcs_audit_law {
     DALCS_AUDIT_CURRENT,  /* likewise, as a current */
     DALCS_AUDIT_POSITION, /* of a switch against its control */
     DALCS_AUDIT_ENERGY,   /* of a part */
+    DALCS_AUDIT_PERIOD,   /* likewise: where a leap over periods leads to, against steps */
     DALCS_AUDIT_N_LAWS
 };
 
@@ -78,6 +81,7 @@ struct dalcs_audit_options {
     const int *device_part; /* [n_devices] the part that a device is in, -1: none */
     int n_parts;
     const double *tolerance; /* [n_parts] largest defect that is none */
+    double failure;          /* a larger one breaks the run, at least as much as all of these */
     const double *read_work; /* [n_parts] what reading a state costs, in instructions, about */
 };
 
@@ -92,17 +96,25 @@ void dalcs_audit_destroy(struct dalcs_audit *audit);
 /* A stretch is complete and can be read, up to its end. */
 void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
 
-/* The next one begins where it ended, or the first one of all, and can be read there. */
-void dalcs_audit_enter(struct dalcs_audit *audit, int part, double t);
+/* The next one begins where the last one ended, or is the first one of all, and can be read there; `work` and `first_look`
+ * are not used. */
+void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
 
 /* A part without memory at time t. */
 void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dalcs_side side,
                          double work);
 
+/* A finding of another one than the auditor, on its scale. */
+void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int index, double defect,
+                     double time);
+
+/* May so much more be looked at, in instructions, about? It is charged where it may. */
+bool dalcs_audit_may(struct dalcs_audit *audit, double work);
+
 /* More that the run has done, in instructions, about: rows. */
 void dalcs_audit_earn(struct dalcs_audit *audit, double work);
 
-/* The worst defect over its part's tolerance; more than 1: something is wrong. */
+/* The worst defect over its part's tolerance, of those that break the run where there are any. */
 struct dalcs_audit_summary {
     long instants;  /* at which laws were checked */
     long stretches; /* of all, and those that were looked into */
@@ -112,10 +124,14 @@ struct dalcs_audit_summary {
     double allowed; /* what it was held to */
     double time;    /* s */
     enum dalcs_audit_law law;
-    int index; /* node, device or part; -1: nothing was checked */
+    int index;      /* node, device or part; -1: nothing was checked */
+    bool is_broken; /* more than options.failure */
 };
 
 struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit);
+
+/* What is worst at the ends of coarse stretches; index -1: nothing was found. Not in the others. */
+struct dalcs_audit_summary dalcs_audit_summarise_coarse(const struct dalcs_audit *audit);
 
 /* The worst defect of one law: of a node, device or part. */
 struct dalcs_audit_finding dalcs_audit_finding_of(const struct dalcs_audit *audit,

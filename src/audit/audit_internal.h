@@ -17,10 +17,14 @@ struct audit_part {
     double formula[2];   /* V, A: the largest terms of its formulas */
     double least, most;  /* S, of its conductances; 0: it has none */
     double step;         /* s, of the stretch at hand */
-    double cost;         /* of one instant, in instructions, about */
-    bool has_formula;    /* one that bends or jumps: in no time it may be anything between */
-    bool has_entered;    /* the state at its last event is in `before` */
-    bool is_open;        /* `before` is the end of the stretch that was just left */
+    double past;         /* s, of the stretch before it */
+    double lateness;     /* s, that an event may be early by, while its far side is looked at */
+    double slope; /* 1/s: most that a derivative in the stretch at hand may be of what it is of */
+    double cost;  /* of one instant, in instructions, about */
+    bool has_formula; /* one that bends or jumps: in no time it may be anything between */
+    bool has_entered; /* the state at its last event is in `before` */
+    bool is_open;     /* `before` is the end of the stretch that was just left */
+    bool is_coarse;   /* the stretch at hand */
 };
 
 /* Sums over the branches at each node, or of each coil, while a law is checked. */
@@ -28,7 +32,7 @@ struct audit_sums {
     double *current;             /* [n_nodes] A that leaves, or C */
     double *scale;               /* [n_nodes] of what was added up */
     double *rounding;            /* [n_nodes] that is in it */
-    double *volt_rounding;       /* [n_nodes] V, from the fluxes of coils */
+    double volts, amperes;       /* ... from the fluxes of coils, and the charges of capacitors */
     double *flux;                /* [n_devices] Wb, of coils */
     double energy, energy_scale; /* J, or W */
 };
@@ -54,6 +58,9 @@ struct dalcs_audit {
         double time;          /* s, of the defect */
         int part;
     } * worst_of[DALCS_AUDIT_N_LAWS]; /* [dalcs_audit_n_of] */
+    struct audit_worst coarse; /* of all of them, over its scale, at ends of coarse stretches */
+    enum dalcs_audit_law coarse_law;
+    int coarse_index;
 
     struct dalcs_audit_summary count; /* of it, what is counted */
     uint64_t seed;

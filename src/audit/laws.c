@@ -1,11 +1,12 @@
 /* laws.c - what holds at each time: branches, signs, positions and Kirchhoff's current law. */
 #include "audit_internal.h"
 
+/* *size: what the terms are held to, added up; *terms: what they are. */
 static double affine_value(const struct dalcs_audit *audit, const struct audit_part *part,
                            const struct dalcs_audit_state *s, int device,
-                           const struct dalcs_affine *a, double *size) {
+                           const struct dalcs_affine *a, double *size, double *terms) {
     double sum = a->constant;
-    *size = fabs(a->constant);
+    *size = *terms = fabs(a->constant);
     for (int k = 0; k < a->n; k++) {
         const struct dalcs_affine_term *term = &a->term[k];
         double value;
@@ -30,6 +31,7 @@ static double affine_value(const struct dalcs_audit *audit, const struct audit_p
         }
         sum += term->coefficient * value;
         *size += fabs(term->coefficient) * fmax(scale, fabs(value));
+        *terms += fabs(term->coefficient * value);
     }
     return sum;
 }
@@ -56,10 +58,11 @@ static void check_formula(struct dalcs_audit *audit, struct audit_part *part,
                           const struct dalcs_audit_state *s, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
     double size;
-    const double f = affine_value(audit, part, s, device, &d->behaviour->output, &size);
+    double terms;
+    const double f = affine_value(audit, part, s, device, &d->behaviour->output, &size, &terms);
     const bool is_voltage = d->kind == DALCS_VCVS;
     double *largest = &part->formula[is_voltage ? 0 : 1];
-    *largest = fmax(*largest, size);
+    *largest = fmax(*largest, terms);
     const double is = is_voltage ? audit_voltage(s, d) : s->i[device];
     const double scale = is_voltage ? audit_volts(audit, part, d->node[0], d->node[1])
                                     : audit_amperes(audit, part, device);
@@ -68,7 +71,7 @@ static void check_formula(struct dalcs_audit *audit, struct audit_part *part,
     audit_find(audit, part, law, device, fabs(is - f) - AUDIT_ROUNDING * size, held, s->t);
     for (int k = 0; k < d->behaviour->n_pairs; k++) {
         const int pair = audit->first_lambda[device] + k;
-        const double w = affine_value(audit, part, s, device, &d->behaviour->w[k], &size);
+        const double w = affine_value(audit, part, s, device, &d->behaviour->w[k], &size, &terms);
         raise_lambdas(audit, device, &d->behaviour->w[k], size);
         const double lambda = audit_ratio(s->lambda[pair], audit->lambda_scale[pair]);
         const double over = fabs(fmin(lambda, audit_ratio(w, size))) - AUDIT_ROUNDING;
@@ -76,28 +79,21 @@ static void check_formula(struct dalcs_audit *audit, struct audit_part *part,
     }
 }
 
-/* One of the two branches of a diode, 0 <= current _|_ beyond = v + ron current - v_at >= 0. */
-static void check_pair(struct dalcs_audit *audit, const struct audit_part *part, int device,
-                       double current, double beyond, const double scale[2], double time) {
+/* One of the two branches of a diode, 0 <= current _|_ beyond = v + ron current - v_at >= 0, over its scales. */
+static double pair_defect(double current, double beyond, const double scale[2]) {
     const double over[2] = {audit_ratio(beyond, scale[0]), audit_ratio(current, scale[1])};
-    const double defect = fmax(-over[0], fmin(over[0], over[1]));
-    audit_find(audit, part, DALCS_AUDIT_BRANCH, device, defect * scale[0], scale[0], time);
+    return fmax(-over[0], fmin(over[0], over[1]));
 }
 
 /* A, in the currents at the two ends of a device. */
 static double ampere_rounding(const struct dalcs_audit *audit, const struct dalcs_device *d) {
-    return fmax(audit->sums.rounding[audit->node_of[d->node[0]]],
-                audit->sums.rounding[audit->node_of[d->node[1]]]);
+    return audit->sums.amperes + fmax(audit->sums.rounding[audit->node_of[d->node[0]]],
+                                      audit->sums.rounding[audit->node_of[d->node[1]]]);
 }
 
-/* What rounding of the fluxes of coils makes of the voltage across a device. */
-static double volt_rounding(const struct dalcs_audit *audit, const struct dalcs_device *d) {
-    return audit->sums.volt_rounding[audit->node_of[d->node[0]]] +
-           audit->sums.volt_rounding[audit->node_of[d->node[1]]];
-}
-
-static void check_diode(struct dalcs_audit *audit, const struct audit_part *part,
-                        const struct dalcs_audit_state *s, int device) {
+/* How wrong a diode's branches are, and the current that it blocks, over scale[2] in V and A. */
+static void diode_defects(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
+                          int device, const double scale[2], double *branch, double *blocked) {
     const struct dalcs_device *d = &audit->circuit->device[device];
     const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
     const double v = audit_voltage(s, d);
@@ -105,21 +101,40 @@ static void check_diode(struct dalcs_audit *audit, const struct audit_part *part
     const double own = s->i[device] - leak;
     const double forward = fmax(own, 0.0);
     const double reverse = fmax(-own, 0.0);
-    const double rounding = ampere_rounding(audit, d);
+    *branch = pair_defect(forward, m->vfwd + m->ron * forward - v, scale);
+    *blocked = 0.0;
+    if (isfinite(m->vrev)) {
+        *branch = fmax(*branch, pair_defect(reverse, m->vrev + m->rrev * reverse + v, scale));
+    } else {
+        *blocked = audit_ratio(reverse - audit->options.abstol, scale[1]);
+    }
+}
+
+static void check_diode(struct dalcs_audit *audit, const struct audit_part *part,
+                        const struct dalcs_audit_state *s, int device) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
     /* currents of pairs are held to 1e-2 of the largest, others to 1e-5 (doc/methods.md) */
     const double amperes = fmax(audit_amperes(audit, part, device), 1e3 * part->ampere);
     /* what is within rounding of 0 is nothing: it is over a scale that is not less */
-    const double scale[2] = {volt_rounding(audit, d) / part->tolerance +
+    const double scale[2] = {audit->sums.volts / part->tolerance +
                                  audit_volts(audit, part, d->node[0], d->node[1]) +
                                  m->ron * amperes,
-                             amperes + rounding / part->tolerance};
-    check_pair(audit, part, device, forward, m->vfwd + m->ron * forward - v, scale, s->t);
-    if (isfinite(m->vrev)) {
-        check_pair(audit, part, device, reverse, m->vrev + m->rrev * reverse + v, scale, s->t);
-    } else {
-        audit_find(audit, part, DALCS_AUDIT_CURRENT, device, reverse - audit->options.abstol,
-                   scale[1], s->t);
+                             amperes + ampere_rounding(audit, d) / part->tolerance};
+    double branch;
+    double blocked;
+    diode_defects(audit, s, device, scale, &branch, &blocked);
+    if (fmax(branch, blocked) > part->tolerance && part->lateness > 0.0) {
+        audit->shifted.side = s->side;
+        audit->shifted.t = s->t + part->lateness;
+        audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
+        double later[2];
+        diode_defects(audit, &audit->shifted, device, scale, &later[0], &later[1]);
+        branch = fmin(branch, later[0]);
+        blocked = fmin(blocked, later[1]);
     }
+    audit_find(audit, part, DALCS_AUDIT_BRANCH, device, branch * scale[0], scale[0], s->t);
+    audit_find(audit, part, DALCS_AUDIT_CURRENT, device, blocked * scale[1], scale[1], s->t);
 }
 
 double audit_control(const struct dalcs_audit *audit, const struct dalcs_audit_state *s, int device,
@@ -255,19 +270,43 @@ static void leave(const struct dalcs_audit *audit, int node, double current, dou
     audit->sums.rounding[node] += rounding;
 }
 
-/* What rounding of the voltages at a device makes of its current, or of a charge over a step. */
-static double rounding_of(const struct dalcs_audit_state *s, const struct audit_part *part,
-                          const struct dalcs_device *d, double current) {
-    const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
-    double g = 0.0;
-    if (d->kind == DALCS_RESISTOR && d->value != 0.0) {
-        g = fabs(1.0 / d->value);
-    } else if (d->kind == DALCS_CAPACITOR && part->step > 0.0) {
-        g = d->value / part->step;
-    } else if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
-        return AUDIT_ROUNDING * fabs(d->value) * (fabs(s->v[d->node[2]]) + fabs(s->v[d->node[3]]));
+/* Charge and flux are each a product and a sum, at the two ends that a derivative is taken between. */
+#define STORED_ROUNDING (4.0 * 0x1p-52)
+
+/* What rounding of fluxes makes of voltages and of charges of currents. Conducting branches hand it on, and along a chain
+ * of them it adds up: what is at one device may come from all others. */
+static void round_storage(struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *s) {
+    const double least = STORED_ROUNDING * part->slope;
+    audit->sums.volts = audit->sums.amperes = 0.0;
+    for (int k = 0; k < part->n_devices; k++) {
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        if (d->kind == DALCS_INDUCTOR) {
+            audit->sums.volts += least * audit_flux_scale(audit, part, part->device[k]);
+        } else if (d->kind == DALCS_CAPACITOR) {
+            const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
+            audit->sums.amperes += least * d->value * volts;
+        }
     }
-    return AUDIT_ROUNDING * (g * volts + fabs(current));
+}
+
+/* What rounding of the voltages at a device makes of its current, of a charge over a step, or over a step of a flux. */
+static double rounding_of(const struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *s, const struct dalcs_device *d,
+                          double current) {
+    const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
+    if (d->kind == DALCS_CAPACITOR) {
+        return STORED_ROUNDING * d->value * part->slope * volts;
+    }
+    if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
+        const double controls = fabs(s->v[d->node[2]]) + fabs(s->v[d->node[3]]);
+        return fabs(d->value) * (AUDIT_ROUNDING * controls + audit->sums.volts);
+    }
+    if (d->kind == DALCS_INDUCTOR) {
+        return AUDIT_ROUNDING * fabs(current) + STORED_ROUNDING * volts * part->step / d->value;
+    }
+    const double g = d->kind == DALCS_RESISTOR && d->value != 0.0 ? fabs(1.0 / d->value) : 0.0;
+    return AUDIT_ROUNDING * (g * volts + fabs(current)) + 2.0 * g * audit->sums.volts;
 }
 
 static void sum_currents(struct dalcs_audit *audit, const struct audit_part *part,
@@ -275,24 +314,19 @@ static void sum_currents(struct dalcs_audit *audit, const struct audit_part *par
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
         audit->sums.current[node] = audit->sums.scale[node] = audit->sums.rounding[node] = 0.0;
-        audit->sums.volt_rounding[node] = 0.0;
     }
+    round_storage(audit, part, s);
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
         const bool is_charge = d->kind == DALCS_CAPACITOR;
         const double current = is_charge ? 0.0 : audit_current(audit, s, device);
         const double scale = is_charge ? 0.0 : audit_amperes(audit, part, device);
-        const double rounding = rounding_of(s, part, d, current);
+        const double rounding = rounding_of(audit, part, s, d, current);
         leave(audit, d->node[0], current, scale, rounding);
         leave(audit, d->node[1], -current, scale, rounding);
-        if (d->kind == DALCS_INDUCTOR && part->step > 0.0) {
-            const double volts = AUDIT_ROUNDING * d->value * scale / part->step;
-            audit->sums.volt_rounding[audit->node_of[d->node[0]]] += volts;
-            audit->sums.volt_rounding[audit->node_of[d->node[1]]] += volts;
-        }
     }
-    audit->sums.rounding[0] = audit->sums.volt_rounding[0] = 0.0;
+    audit->sums.rounding[0] = 0.0;
 }
 
 void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,

@@ -440,6 +440,14 @@ static double periods_until(const struct dalcs_radau *r, const struct dalcs_rada
     return floor(room / part->cycle->period);
 }
 
+/* s; when the present segment begins n periods later. */
+static double start_later(struct cycle_segment *segment, long n) {
+    for (int i = 0; i < segment->began.n_moves; i++) {
+        segment->began.move[i].n = segment->began.move[i].command->n[segment->began.move[i].way];
+    }
+    return dalcs_leap_time(&segment->began, n - 1);
+}
+
 /* The present segment, with part->x as its state, n periods later. */
 static void put_off(struct dalcs_radau *r, struct dalcs_radau_part *part, long n) {
     struct dalcs_cycle *cycle = part->cycle;
@@ -454,7 +462,7 @@ static void put_off(struct dalcs_radau *r, struct dalcs_radau_part *part, long n
             began->move[i].n = began->move[i].command->n[began->move[i].way];
         }
     }
-    part->t = dalcs_leap_time(&segment->began, n - 1);
+    part->t = start_later(segment, n);
     dalcs_commands_leap(&part->commands, n);
     part->t_end = dalcs_radau_limit(r, part);
     memcpy(part->in, part->x, (size_t)part->component->system->n_x * sizeof(double));
@@ -463,16 +471,17 @@ static void put_off(struct dalcs_radau *r, struct dalcs_radau_part *part, long n
     r->leapt_steps += cycle->leap.n_steps;
 }
 
-enum dalcs_status dalcs_cycle_leap(struct dalcs_radau *r, double until, long most_steps,
-                                   const struct dalcs_leap **leap) {
+/* Takes the states of the present segment as many periods on as they may be, *n. */
+static enum dalcs_status pass_periods(const struct dalcs_radau *r, double until, double most,
+                                      long *n) {
     struct dalcs_radau_part *part = r->cycling;
     struct dalcs_cycle *cycle = part->cycle;
-    *leap = NULL;
+    *n = 0;
     if (cycle->waits > 0) {
         cycle->waits--;
         return DALCS_OK;
     }
-    double most = periods_until(r, part, until);
+    most = dalcs_smaller(most, periods_until(r, part, until));
     if (!(most >= fewest_periods)) {
         return DALCS_OK;
     }
@@ -480,15 +489,46 @@ enum dalcs_status dalcs_cycle_leap(struct dalcs_radau *r, double until, long mos
     if (!cycle->segment[cycle->at].is_composed) {
         DALCS_TRY(compose_period(part, &done));
     }
-    most = dalcs_smaller(most, 1.0 + (double)most_steps / cycle->n);
-    long n = done && has_no_lever(part) ? go_on(part, (long)most) : 0;
-    if (n == 0) {
+    *n = done && has_no_lever(part) ? go_on(part, (long)most) : 0;
+    if (*n == 0) {
         cycle->waits = cycle->patience;
         cycle->patience = cycle->patience < MOST_PATIENCE ? 2 * cycle->patience : MOST_PATIENCE;
         return DALCS_OK;
     }
     cycle->patience = 1;
-    put_off(r, part, n);
-    *leap = &cycle->leap;
     return DALCS_OK;
+}
+
+enum dalcs_status dalcs_cycle_leap(struct dalcs_radau *r, double until, long most_steps,
+                                   const struct dalcs_leap **leap) {
+    struct dalcs_radau_part *part = r->cycling;
+    struct dalcs_cycle *cycle = part->cycle;
+    long n;
+    *leap = NULL;
+    DALCS_TRY(pass_periods(r, until, 1.0 + (double)most_steps / cycle->n, &n));
+    if (n > 0) {
+        put_off(r, part, n);
+        *leap = &cycle->leap;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_cycle_try(const struct dalcs_radau *r, double until, long most_periods,
+                                  double *x, double *t) {
+    struct dalcs_radau_part *part = r->cycling;
+    const size_t bytes = (size_t)part->component->system->n_x * sizeof(double);
+    long n;
+    memcpy(x, part->x, bytes);
+    enum dalcs_status status = pass_periods(r, until, (double)most_periods, &n);
+    for (int k = 0; k < part->component->system->n_x; k++) {
+        const double before = x[k];
+        x[k] = part->x[k];
+        part->x[k] = before;
+    }
+    *t = n > 0 ? start_later(&part->cycle->segment[part->cycle->at], n) : INFINITY;
+    return status;
+}
+
+int dalcs_cycle_n_segments(const struct dalcs_cycle *cycle) {
+    return cycle->n;
 }

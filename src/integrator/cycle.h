@@ -66,4 +66,12 @@ enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r,
 enum dalcs_status dalcs_cycle_leap(struct dalcs_radau *r, double until, long most_steps,
                                    const struct dalcs_leap **leap) DALCS_MUST_CHECK;
 
+/* Segments of a period. */
+int dalcs_cycle_n_segments(const struct dalcs_cycle *cycle);
+
+/* Where a leap of at most so many periods would lead to, which then are stepped all the same, so that the two can be
+ * compared: the states x[n_x] with which the present segment begins at *t (s; INFINITY: no leap). */
+enum dalcs_status dalcs_cycle_try(const struct dalcs_radau *r, double until, long most_periods,
+                                  double *x, double *t) DALCS_MUST_CHECK;
+
 #endif

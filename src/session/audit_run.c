@@ -1,6 +1,7 @@
 /* audit_run.c - reads the engine's answers for the auditor, and tells what it found. */
 #include "audit_run.h"
 
+#include "cycle.h"
 #include "quantity.h"
 
 #include <math.h>
@@ -190,6 +191,7 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
                                                     run->s->network.readout->device_system,
                                                 .n_parts = n,
                                                 .tolerance = tolerance,
+                                                .failure = run->tolerance,
                                                 .read_work = work};
     const struct dalcs_audit_reader reader = {a, read_state, raise_scales};
     return dalcs_audit_create(&a->audit, &run->s->circuit, &options, &reader);
@@ -197,12 +199,18 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
 
 enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_run *run,
                                         struct dalcs_euler *euler, struct dalcs_radau *radau) {
-    *a = (struct dalcs_audit_run){.run = run, .euler = euler, .radau = radau};
+    *a = (struct dalcs_audit_run){
+        .run = run, .euler = euler, .radau = radau, .tried_time = INFINITY};
     if (run->options->audit == DALCS_AUDIT_OFF || run->s->network.readout == NULL ||
         run->fixed_step > 0.0 /* whose error nobody controls */) {
         return DALCS_OK;
     }
     enum dalcs_status status = make_members(a);
+    if (status == DALCS_OK && radau->cycling != NULL) {
+        const int n_x = radau->cycling->component->system->n_x;
+        a->tried = dalcs_arena_alloc(&a->arena, (size_t)n_x, sizeof(double));
+        status = a->tried != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    }
     status = status == DALCS_OK ? create(a) : status;
     if (status != DALCS_OK) {
         dalcs_audit_run_finish(a);
@@ -218,10 +226,26 @@ void dalcs_audit_run_finish(struct dalcs_audit_run *a) {
 
 /* ---- On the way ---------------------------------------------------------------------------------- */
 
+static struct dalcs_audit_stretch stretch_of(const struct dalcs_audit_run *a, int k, double to) {
+    const struct dalcs_radau_part *part = &a->radau->part[k];
+    return (struct dalcs_audit_stretch){.part = k,
+                                        .from = part->t,
+                                        .to = to,
+                                        .step = part->h,
+                                        .degree = part->stages.method->s,
+                                        .rule = part->by_euler ? DALCS_AUDIT_COARSE
+                                                               : DALCS_AUDIT_SMOOTH};
+}
+
+static void enter(struct dalcs_audit_run *a, int k) {
+    const struct dalcs_audit_stretch stretch = stretch_of(a, k, a->radau->part[k].t_end);
+    dalcs_audit_enter(a->audit, &stretch);
+}
+
 void dalcs_audit_run_begin(struct dalcs_audit_run *a) {
     for (int k = 0; a->audit != NULL && k < a->radau->n_parts; k++) {
         if (a->radau->part[k].kind == DALCS_PART_STEPPED) {
-            dalcs_audit_enter(a->audit, k, 0.0);
+            enter(a, k);
         }
     }
 }
@@ -232,13 +256,10 @@ static void leave(struct dalcs_audit_run *a, int k, double to) {
     const double elements = (double)stages->n_in * stages->layout.n_fixed;
     const bool is_brief =
         part->late != NULL; /* of which only what tells that it is one was computed */
-    struct dalcs_audit_stretch stretch = {
-        .part = k, .from = part->t, .to = to, .step = part->h, .rule = DALCS_AUDIT_SMOOTH};
+    struct dalcs_audit_stretch stretch = stretch_of(a, k, to);
+    stretch.is_last = to >= a->radau->options.stop;
     stretch.work = segment_work + element_work * (is_brief ? 0.1 : 1.0) * elements;
     stretch.first_look = is_brief ? element_work * elements : 0.0;
-    if (part->by_euler) {
-        stretch.rule = DALCS_AUDIT_COARSE;
-    }
     dalcs_audit_leave(a->audit, &stretch);
 }
 
@@ -257,10 +278,50 @@ void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
     }
 }
 
-void dalcs_audit_run_enter(struct dalcs_audit_run *a, double t) {
+enum { TRIED_PERIODS = 3 };
+
+enum dalcs_status dalcs_audit_run_leap(struct dalcs_audit_run *a, double until, bool *may) {
+    const struct dalcs_radau_part *part = a->radau->cycling;
+    *may = a->tried_time == INFINITY;
+    if (a->audit == NULL || !*may || a->was_tried) {
+        a->was_tried = false;
+        return DALCS_OK;
+    }
+    const double work = TRIED_PERIODS * dalcs_cycle_n_segments(part->cycle) * segment_work;
+    if (!dalcs_audit_may(a->audit, work) && a->has_tried) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_cycle_try(a->radau, until, TRIED_PERIODS, a->tried, &a->tried_time));
+    *may = a->tried_time == INFINITY;
+    a->has_tried |= !*may;
+    return DALCS_OK;
+}
+
+/* The segment that a leap was tried to has begun, or another one has instead. */
+static void compare_tried(struct dalcs_audit_run *a) {
+    const struct dalcs_radau_part *part = a->radau->cycling;
+    const double near = 4.0 * a->radau->resolution;
+    if (part == NULL || part->t < a->tried_time - near) {
+        return;
+    }
+    double worst = part->t > a->tried_time + near ? 1.0 : 0.0;
+    for (int k = 0; k < part->component->system->n_x; k++) {
+        const double scale = part->scale[k];
+        const double off = fabs(a->tried[k] - part->x[k]);
+        worst = off > worst * scale ? off / scale : worst;
+    }
+    dalcs_audit_add(a->audit, DALCS_AUDIT_PERIOD, part->index, worst, part->t);
+    a->tried_time = INFINITY;
+    a->was_tried = true;
+}
+
+void dalcs_audit_run_enter(struct dalcs_audit_run *a) {
+    if (a->audit != NULL) {
+        compare_tried(a);
+    }
     for (int k = 0; a->audit != NULL && k < a->radau->n_parts; k++) {
         if (a->part[k].was_left && a->radau->part[k].t < a->radau->options.stop) {
-            dalcs_audit_enter(a->audit, k, t);
+            enter(a, k);
         }
     }
 }
@@ -282,25 +343,10 @@ void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side s
 
 enum { NAME_SIZE = 512 };
 
-/* A component may be held to more than was asked for, and no run fails that is as good as asked. With tolerances
- * below the usual one rounding of the first instants is seen (doc/methods.md). */
-static const double least_failure = 1e-6;
-
-static double fail_tolerance(const struct dalcs_audit_run *a) {
-    return fmax(a->run->tolerance, least_failure);
-}
-
-static bool is_broken(const struct dalcs_audit_run *a) {
-    if (a->audit == NULL) {
-        return false;
-    }
-    const struct dalcs_audit_summary s = dalcs_audit_summarise(a->audit);
-    return s.index >= 0 && s.defect > fail_tolerance(a);
-}
-
-/* Of a sample a note tells: where events crowd or slide it knows some waveforms that are right for wrong. */
+/* Each value that a law adds up is promised to the tolerance times its scale, so is their sum to that times the sum of
+ * scales, by which a defect is divided. */
 bool dalcs_audit_run_fails(const struct dalcs_audit_run *a) {
-    return a->audit != NULL && a->run->options->audit == DALCS_AUDIT_FULL && is_broken(a);
+    return a->audit != NULL && dalcs_audit_summarise(a->audit).is_broken;
 }
 
 static enum dalcs_status tell_law(const struct dalcs_audit_run *a, enum dalcs_audit_law law,
@@ -341,6 +387,33 @@ static enum dalcs_status report_laws(const struct dalcs_audit_run *a) {
     return list_laws(a, list, &report->audit.n_laws);
 }
 
+static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
+                                     const struct dalcs_audit_summary *found, const char *name) {
+    char time[DALCS_QUANTITY_SIZE];
+    dalcs_diag_add(
+        &a->run->s->diag, DALCS_ERROR, NULL,
+        "the report lists the laws that are broken; please report this netlist",
+        "the waveform seems wrong: the audit finds %s broken by %.2g of its scale at t = "
+        "%s, and %.2g is allowed",
+        name, found->defect, dalcs_quantity_write(time, found->time, "s", 9), a->run->tolerance);
+    return DALCS_NOT_CONVERGED;
+}
+
+/* Where the run fell back to implicit Euler, nobody controls the error: it is told. */
+static void tell_coarse(const struct dalcs_audit_run *a) {
+    const struct dalcs_audit_summary coarse = dalcs_audit_summarise_coarse(a->audit);
+    if (coarse.index < 0 || coarse.defect <= a->run->tolerance) {
+        return;
+    }
+    char name[NAME_SIZE];
+    char time[DALCS_QUANTITY_SIZE];
+    dalcs_audit_law_name(a->audit, coarse.law, coarse.index, name, sizeof name);
+    dalcs_diag_add(&a->run->s->diag, DALCS_WARNING, NULL, NULL,
+                   "the waveform is coarse where the run fell back to implicit Euler: the audit "
+                   "finds %s broken by %.2g of its scale at t = %s",
+                   name, coarse.defect, dalcs_quantity_write(time, coarse.time, "s", 9));
+}
+
 enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) {
     if (a->audit == NULL) {
         return DALCS_OK;
@@ -364,17 +437,6 @@ enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) {
         return DALCS_E_NOMEM;
     }
     DALCS_TRY(report_laws(a));
-    if (!is_broken(a)) {
-        return DALCS_OK;
-    }
-    char time[DALCS_QUANTITY_SIZE];
-    const bool ends_run = dalcs_audit_run_fails(a);
-    dalcs_diag_add(
-        &s->diag, ends_run ? DALCS_ERROR : DALCS_NOTE, NULL,
-        ends_run ? "the report lists the laws that are broken; please report this netlist"
-                 : "--audit full looks at all of it",
-        "the waveform seems wrong: the audit finds %s broken by %.2g of its scale at t = %s, "
-        "and %.2g is allowed",
-        name, found.defect, dalcs_quantity_write(time, found.time, "s", 9), fail_tolerance(a));
-    return ends_run ? DALCS_NOT_CONVERGED : DALCS_OK;
+    tell_coarse(a);
+    return found.is_broken ? tell_broken(a, &found, name) : DALCS_OK;
 }

@@ -13,6 +13,10 @@ struct dalcs_audit_run {
     struct dalcs_radau *radau;
     struct dalcs_audit *audit;  /* NULL: nothing is audited */
     struct audit_members *part; /* [n_systems] */
+    double *tried;              /* states that a leap would lead to */
+    double tried_time;          /* s, when; INFINITY: none is tried */
+    bool has_tried;             /* at least once */
+    bool was_tried;             /* the next leap needs no trial */
     struct dalcs_arena arena;
 };
 
@@ -27,7 +31,11 @@ void dalcs_audit_run_begin(struct dalcs_audit_run *a);
 
 /* Segments that end at t, before and after they are passed; the ones that go on at the end of the run. */
 void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t);
-void dalcs_audit_run_enter(struct dalcs_audit_run *a, double t);
+void dalcs_audit_run_enter(struct dalcs_audit_run *a);
+
+/* May the cycling part leap now? Not while periods are stepped that a leap was tried over. */
+enum dalcs_status dalcs_audit_run_leap(struct dalcs_audit_run *a, double until,
+                                       bool *may) DALCS_MUST_CHECK;
 
 /* Rows were made, the last of them at t. */
 void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side side, long n);

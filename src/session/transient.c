@@ -271,6 +271,11 @@ static bool cycles(const struct transient *c) {
 static enum dalcs_status leap(struct transient *c) {
     const struct dalcs_leap *leap;
     double until = dalcs_smaller(dalcs_smaller(c->next_row, c->next_edge), c->measures->begin);
+    bool may;
+    DALCS_TRY(dalcs_audit_run_leap(c->audit, until, &may));
+    if (!may) {
+        return DALCS_OK;
+    }
     DALCS_TRY(dalcs_cycle_leap(c->radau, until, c->to_go, &leap));
     if (leap == NULL) {
         return DALCS_OK;
@@ -328,7 +333,7 @@ static enum dalcs_status advance(struct transient *c) {
     if (ends) {
         radau->base->t = t;
         DALCS_TRY(dalcs_radau_pass(radau, t));
-        dalcs_audit_run_enter(c->audit, t);
+        dalcs_audit_run_enter(c->audit);
         radau->base->t = t;
         DALCS_TRY(dalcs_recorder_events(c->recorder, radau->base));
     }

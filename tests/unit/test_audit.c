@@ -93,16 +93,18 @@ static struct dalcs_audit_summary audited(enum fault which) {
                                                 .device_part = part,
                                                 .n_parts = 1,
                                                 .tolerance = &tolerance,
+                                                .failure = tolerance,
                                                 .read_work = &work};
     const struct dalcs_audit_reader reader = {NULL, read_exact, raise_nothing};
     struct dalcs_audit *audit;
     ck_assert_int_eq(dalcs_audit_create(&audit, &t.circuit, &options, &reader), DALCS_OK);
-    dalcs_audit_enter(audit, 0, 0.0);
-    const struct dalcs_audit_stretch open = {0, 0.0, CLOSES, CLOSES, 1.0, 0.0, DALCS_AUDIT_SMOOTH};
-    const struct dalcs_audit_stretch closed = {0,   CLOSES, CLOSES + LONG,     LONG,
-                                               1.0, 0.0,    DALCS_AUDIT_SMOOTH};
+    const struct dalcs_audit_stretch open = {
+        .to = CLOSES, .step = CLOSES, .degree = 3, .work = 1.0};
+    const struct dalcs_audit_stretch closed = {
+        .from = CLOSES, .to = CLOSES + LONG, .step = LONG, .degree = 3, .work = 1.0};
+    dalcs_audit_enter(audit, &open);
     dalcs_audit_leave(audit, &open);
-    dalcs_audit_enter(audit, 0, CLOSES);
+    dalcs_audit_enter(audit, &closed);
     dalcs_audit_leave(audit, &closed);
     const struct dalcs_audit_summary found = dalcs_audit_summarise(audit);
     dalcs_audit_destroy(audit);
