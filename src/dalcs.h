@@ -657,6 +657,60 @@ struct dalcs_check {
 enum dalcs_status dalcs_session_check(struct dalcs_session *session, double step,
                                       const struct dalcs_check **check) DALCS_MUST_CHECK;
 
+/* ---- Auditing a file --------------------------------------------------------------------------- */
+
+/* Waveforms that anybody made, of a .tran: the time in s is column 0. Borrowed during a call. */
+struct dalcs_wave_table {
+    size_t n_columns, n_rows;
+    const char *const
+        *name; /* [n_columns] "time", "V(out)", "i(d1)", "v1#branch", "@r1[i]", "I(x1:D1)" */
+    const double *
+        value; /* [n_rows * n_columns] row after row, no time before the one above; NAN: not known */
+    const double *relative,
+        *absolute; /* [n_columns] by its digits x may be off by relative |x| + absolute */
+};
+
+struct dalcs_table_audit_options {
+    double tolerance; /* over the largest value of a signal; 0: 1e-3, the reltol of SPICE */
+    size_t run;       /* of .step: the how manieth, from 0; its values are the circuit's */
+};
+
+/* A law of an element or node, where it is broken most. */
+struct dalcs_table_law {
+    const char *law;        /* "KCL", "BRANCH", "CURRENT", "POSITION", "ENERGY" */
+    const char *where;      /* "out", "d1" */
+    const char *unit;       /* of the next two: "V", "A", "C", "Wb", "J" */
+    double defect, allowed; /* broken where the first is larger */
+    double from, to;        /* s; the same where it is about one time */
+    size_t n_checked, n_broken;
+};
+
+/* A law that could not be asked. */
+struct dalcs_table_gap {
+    const char *law, *where;
+    const char *because; /* "v(a), i(d1) are not in the file" */
+};
+
+struct dalcs_table_audit {
+    const char *netlist, *title;
+    double tolerance, from, to; /* s */
+    size_t n_rows, n_used;      /* signals of the circuit among the columns */
+    size_t n_laws, n_broken;
+    const struct dalcs_table_law *law; /* [n_laws] the worst over what is allowed first */
+    size_t n_gaps;
+    const struct dalcs_table_gap *gap;
+    size_t n_foreign;
+    const char *const *foreign; /* columns that are nothing of the circuit */
+};
+
+/* Which laws of the netlist's elements does the table break, and by how much (doc/audit.md)? Needs no run.
+ * The answer lives until the session's next one. DALCS_E_OPTION: the table is not one of this circuit; a
+ * message says why. */
+enum dalcs_status
+dalcs_session_audit_table(struct dalcs_session *session, const struct dalcs_wave_table *table,
+                          const struct dalcs_table_audit_options *options,
+                          const struct dalcs_table_audit **audit) DALCS_MUST_CHECK;
+
 /* ---- In ngspice's language ------------------------------------------------------------------ */
 
 /* What stands for a diode. */

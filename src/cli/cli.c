@@ -15,6 +15,7 @@ static const struct {
     {"run", "simulate a netlist and write its waveforms", dalcs_cli_run},
     {"equations", "write the complementarity system of a netlist", dalcs_cli_equations},
     {"check", "what theory says of a netlist before it runs", dalcs_cli_check},
+    {"audit", "which laws of a netlist a file of waveforms breaks", dalcs_cli_audit},
     {"plot", "draw the waveforms of a file", dalcs_cli_plot},
     {"compare", "run a netlist here and in ngspice: errors, times, waveforms", dalcs_cli_compare},
     {"converge", "errors and orders of fixed steps", dalcs_cli_converge},

@@ -43,6 +43,7 @@ void dalcs_cli_write_messages(const struct dalcs_cli *cli, const struct dalcs_se
 enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv);
 enum dalcs_exit dalcs_cli_equations(const struct dalcs_cli *cli, int argc, char **argv);
 enum dalcs_exit dalcs_cli_check(const struct dalcs_cli *cli, int argc, char **argv);
+enum dalcs_exit dalcs_cli_audit(const struct dalcs_cli *cli, int argc, char **argv);
 enum dalcs_exit dalcs_cli_plot(const struct dalcs_cli *cli, int argc, char **argv);
 enum dalcs_exit dalcs_cli_compare(const struct dalcs_cli *cli, int argc, char **argv);
 enum dalcs_exit dalcs_cli_converge(const struct dalcs_cli *cli, int argc, char **argv);

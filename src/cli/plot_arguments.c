@@ -36,18 +36,6 @@ static enum dalcs_status parse_number(const struct dalcs_cli *cli, const char *n
     return DALCS_OK;
 }
 
-static enum dalcs_status parse_count(const struct dalcs_cli *cli, const char *name,
-                                     const char *text, size_t *count) {
-    char *rest = NULL;
-    long value = strtol(text, &rest, 10);
-    if (rest == text || *rest != '\0' || value < 1) {
-        dalcs_cli_error(cli, "%s: '%s' is not a number from 1 on", name, text);
-        return DALCS_E_OPTION;
-    }
-    *count = (size_t)value;
-    return DALCS_OK;
-}
-
 static enum dalcs_status parse_output(struct dalcs_plot_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *path) {
     const char *dot = strrchr(path, '.');
@@ -90,9 +78,9 @@ static enum dalcs_status take(struct dalcs_plot_arguments *arguments, const stru
         }
         return DALCS_OK;
     case PLOT:
-        return parse_count(cli, "--plot", optarg, &arguments->plot);
+        return dalcs_verb_take_count(cli, "--plot", optarg, &arguments->plot);
     case RUN:
-        return parse_count(cli, "--run", optarg, &arguments->run);
+        return dalcs_verb_take_count(cli, "--run", optarg, &arguments->run);
     case 'q':
         arguments->quiet = true;
         return DALCS_OK;

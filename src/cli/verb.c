@@ -3,6 +3,7 @@
 
 #include "names.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
@@ -57,6 +58,18 @@ enum dalcs_status dalcs_verb_take_positive(const struct dalcs_cli *cli, const ch
         dalcs_cli_error(cli, "%s: '%s' is not a number greater than 0", name, text);
         return DALCS_E_OPTION;
     }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_verb_take_count(const struct dalcs_cli *cli, const char *name,
+                                        const char *text, size_t *count) {
+    char *rest = NULL;
+    long value = strtol(text, &rest, 10);
+    if (rest == text || *rest != '\0' || value < 1) {
+        dalcs_cli_error(cli, "%s: '%s' is not a number from 1 on", name, text);
+        return DALCS_E_OPTION;
+    }
+    *count = (size_t)value;
     return DALCS_OK;
 }
 

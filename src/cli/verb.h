@@ -19,6 +19,10 @@ enum dalcs_status dalcs_verb_take_netlist(const struct dalcs_cli *cli, const cha
 enum dalcs_status dalcs_verb_take_positive(const struct dalcs_cli *cli, const char *name,
                                            const char *text, double *value) DALCS_MUST_CHECK;
 
+/* ... a whole number from 1 on. */
+enum dalcs_status dalcs_verb_take_count(const struct dalcs_cli *cli, const char *name,
+                                        const char *text, size_t *count) DALCS_MUST_CHECK;
+
 /* An output named `path` must have one of these endings, NULL at the end, and must not be the
  * netlist. */
 enum dalcs_status dalcs_verb_check_output(const struct dalcs_cli *cli, const char *path,

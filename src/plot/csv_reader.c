@@ -92,10 +92,11 @@ static size_t read_name(struct reader *reader, char *name) {
 
 static enum dalcs_status refuse(const struct reader *reader, const char *path,
                                 struct dalcs_diag *diag) {
-    dalcs_diag_add(diag, DALCS_ERROR, NULL,
-                   "dalcs plot reads .raw files of SPICE and .csv files whose first line has names",
-                   "'%s' holds no waveforms: line %ld is neither of a raw file nor of a table",
-                   path, reader->line);
+    dalcs_diag_add(
+        diag, DALCS_ERROR, NULL,
+        "waveforms are read from .raw files of SPICE and .csv files whose first line has names",
+        "'%s' holds no waveforms: line %ld is neither of a raw file nor of a table", path,
+        reader->line);
     return DALCS_E_OPTION;
 }
 
@@ -157,9 +158,14 @@ static bool read_number(struct reader *reader, double *value) {
     return found;
 }
 
-static bool read_row(struct reader *reader, double *cell, size_t n) {
+static bool read_row(struct reader *reader, double *cell, struct dalcs_digits *digits, size_t n) {
     for (size_t i = 0; i < n; i++) {
-        if (!read_number(reader, &cell[i]) || (take_separator(reader) != (i + 1 < n))) {
+        const char *from = reader->at;
+        if (!read_number(reader, &cell[i])) {
+            return false;
+        }
+        dalcs_digits_note(&digits[i], from, reader->at);
+        if (take_separator(reader) != (i + 1 < n)) {
             return false;
         }
     }
@@ -187,7 +193,7 @@ enum dalcs_status dalcs_waveforms_read_csv(struct dalcs_waveforms *waveforms, co
         }
         DALCS_TRY(dalcs_grow(&waveforms->value, &capacity, (waveforms->n_rows + 1) * n,
                              sizeof *waveforms->value));
-        if (read_row(&reader, waveforms->value + waveforms->n_rows * n, n)) {
+        if (read_row(&reader, waveforms->value + waveforms->n_rows * n, waveforms->digits, n)) {
             waveforms->n_rows++;
         } else if (!unended) { /* a last line without its end may be cut short */
             return refuse(&reader, path, diag);

@@ -1,6 +1,10 @@
 /* raw_reader.c - SPICE's raw files: a text header, then numbers, as text or as bytes; plot after
  * plot. Written from what ngspice writes (its manual, section 11.4) and what spicelib reads.
  *
+ * LTspice's binary files have times of 8 bytes and, of real signals, values of 4, unless a flag says "double";
+ * with the flag "fastaccess" signal after signal. The sign of a time marks a point that was kept when others
+ * were left out, and all times are counted from the header's offset.
+ *
  * A count in a header is what a writer meant; how many points there are is what the file has room
  * for. An interrupted writer leaves 0 there and a last point cut short. */
 #include "waveforms.h"
@@ -14,6 +18,8 @@
 struct plot {
     const char *title, *name, *variables; /* places in the text; NULL: not there */
     bool complex_values, ascii;
+    bool is_ltspice, says_double, by_signal;
+    double offset; /* of the axis */
     size_t n_variables, n_points;
     const char *data;
 };
@@ -58,6 +64,24 @@ static enum dalcs_status refuse(struct dalcs_diag *diag, const char *path, const
     return DALCS_E_OPTION;
 }
 
+static bool has_word(const char *text, size_t length, const char *word) {
+    const size_t n = strlen(word);
+    for (size_t k = 0; k + n <= length; k++) {
+        if (strncasecmp(text + k, word, n) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What the header says of how numbers are written. */
+static void read_flags(struct plot *plot, const char *value, const char *end) {
+    const size_t length = (size_t)(end - value);
+    plot->complex_values = strncasecmp(value, "complex", 7) == 0;
+    plot->says_double = has_word(value, length, "double");
+    plot->by_signal = has_word(value, length, "fastaccess");
+}
+
 /* Stops behind "Binary:" or "Values:"; plot->data stays NULL where the text ends before. */
 static void read_header(struct plot *plot, struct text *text) {
     const char *line = NULL, *value;
@@ -69,7 +93,11 @@ static void read_header(struct plot *plot, struct text *text) {
         } else if ((value = value_of(line, length, "Plotname"))) {
             plot->name = value;
         } else if ((value = value_of(line, length, "Flags"))) {
-            plot->complex_values = strncasecmp(value, "complex", 7) == 0;
+            read_flags(plot, value, line + length);
+        } else if ((value = value_of(line, length, "Offset"))) {
+            plot->offset = strtod(value, NULL);
+        } else if ((value = value_of(line, length, "Command"))) {
+            plot->is_ltspice = has_word(value, (size_t)(line + length - value), "LTspice");
         } else if ((value = value_of(line, length, "No. Variables"))) {
             plot->n_variables = strtoul(value, NULL, 10);
         } else if ((value = value_of(line, length, "No. Points"))) {
@@ -85,10 +113,17 @@ static void read_header(struct plot *plot, struct text *text) {
     }
 }
 
+/* Are its values, but for the axis, of 4 bytes? */
+static bool is_single(const struct plot *plot) {
+    return plot->is_ltspice && !plot->ascii && !plot->complex_values && !plot->says_double;
+}
+
 /* Bytes that a point takes, at least. */
 static size_t point_size(const struct plot *plot) {
     size_t parts = plot->complex_values ? 2 : 1;
-    return plot->n_variables * parts * (plot->ascii ? 2 : sizeof(double));
+    size_t others = plot->n_variables - 1;
+    return is_single(plot) ? sizeof(double) + others * sizeof(float)
+                           : plot->n_variables * parts * (plot->ascii ? 2 : sizeof(double));
 }
 
 /* A plot that another one follows has the points that it says; where it says 0 all that is left
@@ -210,17 +245,46 @@ static double *put(double *cell, bool axis, bool complex_values, double re, doub
     return cell;
 }
 
+/* Where value i of a point is in a file that goes signal by signal. */
+static size_t place_by_signal(const struct plot *plot, size_t row, size_t i, size_t width) {
+    const size_t axis = (plot->complex_values ? 2 : 1) * sizeof(double) * plot->n_points;
+    return i == 0 ? row * (axis / plot->n_points) : axis + ((i - 1) * plot->n_points + row) * width;
+}
+
 static void read_binary(struct dalcs_waveforms *waveforms, const struct plot *plot) {
-    size_t parts = plot->complex_values ? 2 : 1;
+    const size_t wide = (plot->complex_values ? 2 : 1) * sizeof(double);
+    const size_t width = is_single(plot) ? sizeof(float) : wide;
     double *cell = waveforms->value;
     const char *at = plot->data;
     for (size_t k = 0; k < plot->n_points * plot->n_variables; k++) {
+        const size_t i = k % plot->n_variables;
+        const size_t size = i == 0 ? wide : width;
+        const char *from = plot->by_signal
+                               ? plot->data + place_by_signal(plot, k / plot->n_variables, i, width)
+                               : at;
         double part[2] = {0.0, 0.0};
-        memcpy(part, at, parts * sizeof(double));
-        at += parts * sizeof(double);
-        cell = put(cell, k % plot->n_variables == 0, plot->complex_values, part[0], part[1]);
+        float single;
+        if (size == sizeof single) {
+            memcpy(&single, from, size);
+            part[0] = single;
+        } else {
+            memcpy(part, from, size);
+        }
+        at += size;
+        cell = put(cell, i == 0, plot->complex_values, part[0], part[1]);
     }
     waveforms->n_rows = plot->n_points;
+    for (size_t c = 0; c < waveforms->n_columns; c++) {
+        waveforms->precision[c].relative = is_single(plot) && c > 0 ? 0x1p-24 : 0x1p-53;
+    }
+}
+
+/* Times of LTspice. */
+static void shift_axis(struct dalcs_waveforms *waveforms, const struct plot *plot) {
+    for (size_t k = 0; k < waveforms->n_rows && plot->is_ltspice; k++) {
+        double *time = &waveforms->value[k * waveforms->n_columns];
+        *time = (waveforms->dimension[0].second == 1 ? fabs(*time) : *time) + plot->offset;
+    }
 }
 
 static bool next_number(const char **at, const char *end, double *value) {
@@ -243,8 +307,12 @@ static void read_ascii(struct dalcs_waveforms *waveforms, const struct plot *plo
         }
         for (size_t i = 0; i < plot->n_variables; i++) {
             double re = 0.0, im = 0.0;
+            const char *from = at;
             if (!next_number(&at, all->end, &re)) {
                 return;
+            }
+            if (!plot->complex_values) {
+                dalcs_digits_note(&waveforms->digits[i], from, at);
             }
             if (plot->complex_values && at < all->end && *at == ',') {
                 at++;
@@ -286,6 +354,7 @@ static enum dalcs_status read_plot(struct dalcs_waveforms *waveforms, const stru
     } else {
         read_binary(waveforms, plot);
     }
+    shift_axis(waveforms, plot);
     return DALCS_OK;
 }
 

@@ -2,6 +2,7 @@
 #include "waveforms.h"
 
 #include "text_file.h"
+#include "utf16.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -9,9 +10,9 @@
 /* More than a run of an hour writes, and less than what makes a machine swap for long. */
 static const size_t most_bytes = (size_t)4 << 30;
 
-enum dalcs_status dalcs_waveforms_read_text(struct dalcs_waveforms *waveforms, const char *path,
-                                            const char *text, size_t length, size_t plot,
-                                            struct dalcs_diag *diag) {
+static enum dalcs_status read_plain(struct dalcs_waveforms *waveforms, const char *path,
+                                    const char *text, size_t length, size_t plot,
+                                    struct dalcs_diag *diag) {
     *waveforms = (struct dalcs_waveforms){.title = "", .plot_name = ""};
     enum dalcs_status status =
         dalcs_waveforms_is_raw(text, length)
@@ -19,7 +20,24 @@ enum dalcs_status dalcs_waveforms_read_text(struct dalcs_waveforms *waveforms, c
             : dalcs_waveforms_read_csv(waveforms, path, text, length, diag);
     if (status != DALCS_OK) {
         dalcs_waveforms_finish(waveforms);
+        return status;
     }
+    dalcs_digits_judge(waveforms->digits, waveforms->n_columns, waveforms->precision);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_waveforms_read_text(struct dalcs_waveforms *waveforms, const char *path,
+                                            const char *text, size_t length, size_t plot,
+                                            struct dalcs_diag *diag) {
+    if (!dalcs_utf16_is_header(text, length)) {
+        return read_plain(waveforms, path, text, length, plot, diag);
+    }
+    size_t plain_length;
+    char *plain = dalcs_utf16_to_plain(text, length, &plain_length);
+    *waveforms = (struct dalcs_waveforms){0};
+    enum dalcs_status status =
+        plain ? read_plain(waveforms, path, plain, plain_length, plot, diag) : DALCS_E_NOMEM;
+    free(plain);
     return status;
 }
 
@@ -50,8 +68,12 @@ enum dalcs_status dalcs_waveforms_set_columns(struct dalcs_waveforms *waveforms,
     waveforms->name = dalcs_arena_alloc(&waveforms->arena, n_columns, sizeof *waveforms->name);
     waveforms->dimension =
         dalcs_arena_alloc(&waveforms->arena, n_columns, sizeof *waveforms->dimension);
+    waveforms->precision =
+        dalcs_arena_alloc(&waveforms->arena, n_columns, sizeof *waveforms->precision);
+    waveforms->digits = dalcs_arena_alloc(&waveforms->arena, n_columns, sizeof *waveforms->digits);
     waveforms->n_columns = n_columns;
-    return waveforms->name && waveforms->dimension ? DALCS_OK : DALCS_E_NOMEM;
+    bool complete = waveforms->name && waveforms->dimension && waveforms->precision;
+    return complete && waveforms->digits ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 static double axis_at(const struct dalcs_waveforms *waveforms, size_t row) {

@@ -5,6 +5,7 @@
 
 #include "dalcs.h"
 #include "diag.h"
+#include "digits.h"
 #include "dimension.h"
 
 /* Zero-initialise; finish frees everything. */
@@ -14,6 +15,9 @@ struct dalcs_waveforms {
     size_t n_columns;      /* at least 1; column 0 is the axis: time, frequency or what was swept */
     const char **name;     /* [n_columns], as in the file */
     struct dalcs_dimension *dimension; /* [n_columns] */
+    struct dalcs_precision
+        *precision;              /* [n_columns] what a number x may be off by, for its digits */
+    struct dalcs_digits *digits; /* [n_columns] of text, while it is read */
     size_t n_rows;
     double *value;       /* [n_rows * n_columns], row after row */
     size_t n_plots;      /* in the file */

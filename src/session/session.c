@@ -51,6 +51,7 @@ void dalcs_session_destroy(struct dalcs_session *session) {
     dalcs_diag_finish(&session->diag);
     dalcs_arena_finish(&session->arena);
     dalcs_arena_finish(&session->checked);
+    dalcs_arena_finish(&session->audited);
     free(session);
 }
 

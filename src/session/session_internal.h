@@ -31,6 +31,7 @@ struct dalcs_session {
     struct dalcs_spice_names spice; /* made when first asked for */
     struct dalcs_arena arena;       /* names of the report and of the plots */
     struct dalcs_arena checked;     /* the last check */
+    struct dalcs_arena audited;     /* the last audit of a table */
 };
 
 /* In the order of dalcs_method_name. */

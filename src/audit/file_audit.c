@@ -1,0 +1,247 @@
+/* file_audit.c - the passes over the rows of a table, and the worst that was found. */
+#include "file_internal.h"
+
+#include "union_find.h"
+
+#include <stdlib.h>
+
+/* SPICE's own reltol: what a simulator that was not asked for more promises of each signal. */
+static const double default_tolerance = 1e-3;
+
+/* ---- Room --------------------------------------------------------------------------------------- */
+
+static bool make(struct file_audit *a, void *array, size_t n, size_t size) {
+    void *made = dalcs_arena_alloc(&a->arena, n, size);
+    *(void **)array = made;
+    return made != NULL;
+}
+
+static bool make_row(struct file_audit *a, struct file_row *row) {
+    const size_t n_nodes = (size_t)a->circuit->n_nodes, n_devices = (size_t)a->circuit->n_devices;
+    return make(a, &row->v, n_nodes, sizeof *row->v) &&
+           make(a, &row->u, n_devices, sizeof *row->u) &&
+           make(a, &row->i, n_devices, sizeof *row->i) &&
+           make(a, &row->is_assumed, n_devices, sizeof *row->is_assumed) &&
+           make(a, &row->position, n_devices, sizeof *row->position) &&
+           make(a, &row->is_spent, n_nodes, sizeof *row->is_spent);
+}
+
+static bool make_for_nodes(struct file_audit *a) {
+    const size_t n = (size_t)a->circuit->n_nodes;
+    return make(a, &a->node_of, n, sizeof *a->node_of) &&
+           make(a, &a->first_branch, n + 1, sizeof *a->first_branch) &&
+           make(a, &a->potential, n, sizeof *a->potential) &&
+           make(a, &a->potential_of, n, sizeof *a->potential_of) &&
+           make(a, &a->v_scale, n, sizeof *a->v_scale) &&
+           make(a, &a->is_covered, n, sizeof *a->is_covered) &&
+           make(a, &a->is_checked, n, sizeof *a->is_checked) &&
+           make(a, &a->count, n, sizeof *a->count) && make(a, &a->stack, n, sizeof *a->stack) &&
+           make(a, &a->cluster, n, sizeof *a->cluster) &&
+           make(a, &a->has_unspent, n, sizeof *a->has_unspent) &&
+           make(a, &a->sum, n, sizeof *a->sum) && make(a, &a->largest, n, sizeof *a->largest) &&
+           make(a, &a->set_law, n, sizeof *a->set_law) &&
+           make(a, &a->of_node, n, sizeof *a->of_node);
+}
+
+static bool make_for_devices(struct file_audit *a) {
+    const size_t n = (size_t)a->circuit->n_devices;
+    return make(a, &a->branch, 2 * n, sizeof *a->branch) &&
+           make(a, &a->current_column, n, sizeof *a->current_column) &&
+           make(a, &a->u_scale, n, sizeof *a->u_scale) &&
+           make(a, &a->i_scale, n, sizeof *a->i_scale) &&
+           make(a, &a->ever_known, n, sizeof *a->ever_known) &&
+           make(a, &a->ever_seen, n, sizeof *a->ever_seen) &&
+           make(a, &a->charge, n, sizeof *a->charge) &&
+           make(a, &a->takes_charge, n, sizeof *a->takes_charge) &&
+           make(a, &a->of_device, n, sizeof *a->of_device) &&
+           make(a, &a->is_used, a->table->n_columns, sizeof *a->is_used);
+}
+
+static enum dalcs_status make_room(struct file_audit *a) {
+    int most = 0;
+    for (int d = 0; d < a->circuit->n_devices; d++) {
+        const struct dalcs_behaviour *b = a->circuit->device[d].behaviour;
+        most = b != NULL && b->n_pairs > most ? b->n_pairs : most;
+    }
+    bool complete = make_for_nodes(a) && make_for_devices(a) &&
+                    make(a, &a->lambda_value, (size_t)most, sizeof *a->lambda_value) &&
+                    make(a, &a->lambda_error, (size_t)most, sizeof *a->lambda_error);
+    for (int k = 0; k < 4; k++) {
+        complete = complete && make_row(a, &a->row[k]);
+    }
+    for (int law = 0; law < DALCS_AUDIT_N_LAWS; law++) {
+        const int n = law == DALCS_AUDIT_KCL ? a->circuit->n_nodes : a->circuit->n_devices;
+        complete = complete && make(a, &a->worst[law], (size_t)n, sizeof **a->worst);
+    }
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* ---- The circuit -------------------------------------------------------------------------------- */
+
+static void merge_shorts(struct file_audit *a) {
+    const struct dalcs_circuit *c = a->circuit;
+    dalcs_union_reset(a->node_of, c->n_nodes);
+    for (int d = 0; d < c->n_devices; d++) {
+        if (dalcs_device_is_short(&c->device[d])) {
+            dalcs_union_join(a->node_of, c->device[d].node[0], c->device[d].node[1]);
+        }
+    }
+    for (int n = 0; n < c->n_nodes; n++) {
+        a->node_of[n] = dalcs_union_find(a->node_of, n);
+    }
+}
+
+/* Branches by the nodes that they hang on; those with both ends on one carry nothing to it. */
+static void list_branches(struct file_audit *a) {
+    const struct dalcs_circuit *c = a->circuit;
+    for (int fill = 0; fill < 2; fill++) {
+        for (int d = 0; d < c->n_devices; d++) {
+            const int end[2] = {a->node_of[c->device[d].node[0]], a->node_of[c->device[d].node[1]]};
+            for (int e = 0; e < 2 && end[0] != end[1]; e++) {
+                if (fill) {
+                    a->branch[a->first_branch[end[e]] + a->count[end[e]]++] = d;
+                } else {
+                    a->first_branch[end[e] + 1]++;
+                }
+            }
+        }
+        for (int n = 0; n < c->n_nodes && !fill; n++) {
+            a->first_branch[n + 1] += a->first_branch[n];
+        }
+    }
+}
+
+/* ---- What is found ------------------------------------------------------------------------------ */
+
+bool file_find(struct file_audit *a, enum dalcs_audit_law law, int index, const char *unit,
+               double defect, double allowed, double from, double to) {
+    struct file_worst *w = &a->worst[law][index];
+    const double ratio = defect == 0.0 ? 0.0 : defect / fmax(allowed, 0x1p-1022);
+    const bool is_worst = w->n_checked == 0 || ratio > w->ratio;
+    w->n_checked++;
+    w->n_broken += ratio > 1.0 ? 1 : 0;
+    if (is_worst) {
+        w->ratio = ratio;
+        w->defect = defect;
+        w->allowed = allowed;
+        w->from = from;
+        w->to = to;
+        w->unit = unit;
+    }
+    return is_worst;
+}
+
+/* ---- Passes ------------------------------------------------------------------------------------- */
+
+static void raise(double *scale, double *most, struct file_number x) {
+    if (x.known) {
+        *scale = fmax(*scale, fabs(x.value));
+        *most = fmax(*most, *scale);
+    }
+}
+
+static void note_scales(struct file_audit *a, const struct file_row *row) {
+    for (int d = 0; d < a->circuit->n_devices; d++) {
+        raise(&a->u_scale[d], &a->volts, row->u[d]);
+        raise(&a->i_scale[d], &a->amperes, row->i[d]);
+        a->ever_known[d] = a->ever_known[d] || row->i[d].known;
+        a->ever_seen[d] = a->ever_seen[d] || (row->i[d].known && !row->is_assumed[d]);
+    }
+    for (int n = 0; n < a->circuit->n_nodes; n++) {
+        raise(&a->v_scale[n], &a->volts, row->v[n]);
+    }
+}
+
+static void check_row(struct file_audit *a, size_t k) {
+    const size_t n = a->table->n_rows;
+    struct file_row *now = &a->row[k % 4];
+    file_check_branches(a, now);
+    file_check_nodes(a, now);
+    struct file_row *const around[4] = {k >= 3 ? &a->row[(k - 3) % 4] : NULL,
+                                        k >= 2 ? &a->row[(k - 2) % 4] : NULL,
+                                        k >= 1 ? &a->row[(k - 1) % 4] : NULL, now};
+    if (k >= 2 && around[2]->t > around[1]->t) {
+        file_check_interval(a, around);
+    }
+    if (k >= 1 && now->t == around[2]->t) {
+        file_check_jump(a, around[2], now);
+    }
+    struct file_row *const last[4] = {around[1], around[2], now, NULL};
+    if (k + 1 == n && k >= 1 && now->t > around[2]->t) {
+        file_check_interval(a, last);
+    }
+}
+
+static void pass(struct file_audit *a, bool checks) {
+    for (size_t k = 0; k < a->table->n_rows; k++) {
+        file_evaluate(a, k, &a->row[k % 4], k > 0 ? &a->row[(k - 1) % 4] : NULL);
+        if (checks) {
+            check_row(a, k);
+        } else {
+            note_scales(a, &a->row[k % 4]);
+        }
+    }
+}
+
+/* ngspice gives an edge of no width the rise time tstep, and lets what follows the rise come as much later; a file
+ * with two rows at one time knows jumps as they are. */
+static double ramp_of(const struct file_audit *a) {
+    const struct dalcs_wave_table *t = a->table;
+    for (size_t k = 1; k < t->n_rows; k++) {
+        if (t->value[k * t->n_columns] == t->value[(k - 1) * t->n_columns]) {
+            return 0.0;
+        }
+    }
+    return 2.0 * a->circuit->transient.step;
+}
+
+static enum dalcs_status check_times(const struct file_audit *a, struct dalcs_diag *diag) {
+    const struct dalcs_wave_table *t = a->table;
+    for (size_t k = 0; k < t->n_rows; k++) {
+        const double now = t->value[k * t->n_columns];
+        if (!isfinite(now) || now < 0.0 || (k > 0 && now < t->value[(k - 1) * t->n_columns])) {
+            dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL,
+                           "the times of row %zu and the one above do not ascend from 0 on", k + 1);
+            return DALCS_E_OPTION;
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status audit(struct file_audit *a, struct dalcs_diag *diag) {
+    DALCS_TRY(check_times(a, diag));
+    DALCS_TRY(make_room(a));
+    merge_shorts(a);
+    list_branches(a);
+    for (int n = 0; n < a->circuit->n_nodes; n++) {
+        a->potential_of[n] = -1;
+    }
+    for (int d = 0; d < a->circuit->n_devices; d++) {
+        a->current_column[d] = -1;
+    }
+    DALCS_TRY(file_find_columns(a, diag));
+    a->ramp = ramp_of(a);
+    pass(a, false);
+    pass(a, true);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_file_audit(const struct dalcs_circuit *circuit,
+                                   const struct dalcs_wave_table *table, double tolerance,
+                                   struct dalcs_arena *arena, struct dalcs_diag *diag,
+                                   struct dalcs_table_audit *result) {
+    struct file_audit *a = dalcs_alloc(1, sizeof *a);
+    if (a == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    *a = (struct file_audit){.circuit = circuit,
+                             .table = table,
+                             .tolerance = tolerance > 0.0 ? tolerance : default_tolerance};
+    enum dalcs_status status = audit(a, diag);
+    if (status == DALCS_OK) {
+        status = file_report(a, arena, result);
+    }
+    dalcs_arena_finish(&a->arena);
+    free(a);
+    return status;
+}

@@ -1,0 +1,18 @@
+/* file_audit.h - is a table of waveforms one of this circuit?
+ *
+ * The same laws as audit.h asks of a waveform that can be read anywhere, here of one that is known at rows
+ * only, with so many digits and maybe without all signals. */
+#ifndef DALCS_FILE_AUDIT_H
+#define DALCS_FILE_AUDIT_H
+
+#include "circuit.h"
+
+#include "dalcs.h"
+
+/* The answer's texts are in `arena`. DALCS_E_OPTION comes with a message. */
+enum dalcs_status dalcs_file_audit(const struct dalcs_circuit *circuit,
+                                   const struct dalcs_wave_table *table, double tolerance,
+                                   struct dalcs_arena *arena, struct dalcs_diag *diag,
+                                   struct dalcs_table_audit *result) DALCS_MUST_CHECK;
+
+#endif

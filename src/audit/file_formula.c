@@ -1,0 +1,85 @@
+/* file_formula.c - what a formula puts out at a row: its pairs, one behind the other, from what they read.
+ *
+ * circuit/pairs.c makes of a kink 0 <= lambda _|_ lambda / g - a >= 0, and of a saturation or a jump two pairs,
+ *     0 <= lambda _|_ nu + lambda / g - a >= 0    and    0 <= nu _|_ H - lambda >= 0.
+ * An argument a has lambdas of earlier pairs only. */
+#include "file_internal.h"
+
+static struct file_number term_value(const struct file_audit *a, const struct file_row *row,
+                                     const struct dalcs_affine_term *term) {
+    switch (term->kind) {
+    case DALCS_QUANTITY_VOLTAGE:
+        return row->v[term->index];
+    case DALCS_QUANTITY_CURRENT:
+        return row->i[term->index];
+    case DALCS_QUANTITY_PAIR:
+        return (struct file_number){a->lambda_value[term->index], a->lambda_error[term->index],
+                                    true};
+    default:
+        return file_stimulus(a, row, term->index);
+    }
+}
+
+/* Without the lambdas from `first_left_out` on. */
+static struct file_number evaluate(const struct file_audit *a, const struct file_row *row,
+                                   const struct dalcs_affine *f, int first_left_out) {
+    struct file_number sum = file_exactly(f->constant);
+    for (int k = 0; k < f->n; k++) {
+        if (f->term[k].kind != DALCS_QUANTITY_PAIR || f->term[k].index < first_left_out) {
+            sum = file_add(sum, f->term[k].coefficient, term_value(a, row, &f->term[k]));
+        }
+    }
+    return sum;
+}
+
+static double coefficient_of(const struct dalcs_affine *f, int pair) {
+    for (int k = 0; k < f->n; k++) {
+        if (f->term[k].kind == DALCS_QUANTITY_PAIR && f->term[k].index == pair) {
+            return f->term[k].coefficient;
+        }
+    }
+    return 0.0;
+}
+
+static void set_lambda(struct file_audit *a, int pair, double low, double high) {
+    a->lambda_value[pair] = 0.5 * (low + high);
+    a->lambda_error[pair] = 0.5 * (high - low);
+}
+
+/* How large a lambda is for an argument: 1/g is its resistance. */
+static double lambda_at(double argument, double resistance, double height, bool is_high) {
+    if (resistance > 0.0) {
+        return fmin(fmax(argument / resistance, 0.0), height);
+    }
+    return argument > 0.0 || (argument == 0.0 && is_high) ? height : 0.0;
+}
+
+/* The pair number k, and the one behind it where the two are one cell: how many. */
+static int solve_cell(struct file_audit *a, const struct file_row *row,
+                      const struct dalcs_behaviour *b, int k, bool *is_known) {
+    struct file_number argument = evaluate(a, row, &b->w[k], k);
+    *is_known = *is_known && argument.known;
+    argument.value = -argument.value;
+    const double resistance = coefficient_of(&b->w[k], k);
+    const bool is_cell = k + 1 < b->n_pairs && coefficient_of(&b->w[k], k + 1) != 0.0;
+    const double height = is_cell ? b->w[k + 1].constant : INFINITY;
+    const double low = argument.value - argument.error, high = argument.value + argument.error;
+    set_lambda(a, k, lambda_at(low, resistance, height, false),
+               lambda_at(high, resistance, height, true));
+    if (is_cell) {
+        set_lambda(a, k + 1, fmax(low - height * resistance, 0.0),
+                   fmax(high - height * resistance, 0.0));
+    }
+    return is_cell ? 2 : 1;
+}
+
+struct file_number file_formula(struct file_audit *a, const struct file_row *row, int device) {
+    const struct dalcs_behaviour *b = a->circuit->device[device].behaviour;
+    bool is_known = true;
+    for (int k = 0; k < b->n_pairs;) {
+        k += solve_cell(a, row, b, k, &is_known);
+    }
+    struct file_number output = evaluate(a, row, &b->output, b->n_pairs);
+    output.known = output.known && is_known && isfinite(output.error);
+    return output;
+}

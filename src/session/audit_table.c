@@ -1,0 +1,56 @@
+/* audit_table.c - a table of waveforms that anybody made under the laws of the session's circuit. */
+#include "session_internal.h"
+
+#include "file_audit.h"
+
+#include <math.h>
+
+static enum dalcs_status refuse(struct dalcs_session *s, const char *what) {
+    dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, NULL, "%s", what);
+    return DALCS_E_OPTION;
+}
+
+/* The circuit of a step of .step. */
+static enum dalcs_status take_run(struct dalcs_session *s, size_t run) {
+    struct dalcs_plot plot;
+    if (run >= dalcs_steps_count(&s->circuit)) {
+        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, NULL,
+                       "the file has a run number %zu, and the netlist asks for %zu", run + 1,
+                       dalcs_steps_count(&s->circuit));
+        return DALCS_E_OPTION;
+    }
+    return s->circuit.n_steps > 0 ? dalcs_session_take_step(s, run, &plot) : DALCS_OK;
+}
+
+enum dalcs_status dalcs_session_audit_table(struct dalcs_session *s,
+                                            const struct dalcs_wave_table *table,
+                                            const struct dalcs_table_audit_options *options,
+                                            const struct dalcs_table_audit **result) {
+    *result = NULL;
+    if (!s->has_network) {
+        return DALCS_E_NETLIST;
+    }
+    if (s->circuit.n_devices == 0) {
+        return refuse(s,
+                      "a system given by its matrices has no elements whose laws could be asked");
+    }
+    if (!(options->tolerance >= 0.0) || !isfinite(options->tolerance)) {
+        return refuse(s, "the tolerance must be positive");
+    }
+    if (table->n_rows == 0 || table->n_columns < 2) {
+        return refuse(s, "the file has no rows of signals");
+    }
+    DALCS_TRY(take_run(s, options->run));
+    dalcs_arena_finish(&s->audited);
+    struct dalcs_table_audit *audit = dalcs_arena_alloc(&s->audited, 1, sizeof *audit);
+    if (audit == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(
+        dalcs_file_audit(&s->circuit, table, options->tolerance, &s->audited, &s->diag, audit));
+    audit->netlist = s->name;
+    audit->title =
+        s->circuit.title != NULL ? dalcs_arena_printf(&s->audited, "%s", s->circuit.title) : NULL;
+    *result = audit;
+    return DALCS_OK;
+}
