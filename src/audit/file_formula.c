@@ -32,6 +32,23 @@ static struct file_number evaluate(const struct file_audit *a, const struct file
     return sum;
 }
 
+/* What the tolerance makes of an argument: a jump may come that much sooner or later, a steep slope is as far off
+ * as it lets it be. */
+static double tolerance_of(const struct file_audit *a, const struct file_row *row,
+                           const struct dalcs_affine *f) {
+    double sum = 0.0;
+    for (int k = 0; k < f->n; k++) {
+        const struct dalcs_affine_term *term = &f->term[k];
+        const double scale = term->kind == DALCS_QUANTITY_VOLTAGE   ? a->v_scale[term->index]
+                             : term->kind == DALCS_QUANTITY_CURRENT ? a->i_scale[term->index]
+                             : term->kind == DALCS_QUANTITY_PAIR
+                                 ? 0.0 /* in its error */
+                                 : fabs(term_value(a, row, term).value);
+        sum += a->tolerance * fabs(term->coefficient) * scale;
+    }
+    return sum;
+}
+
 static double coefficient_of(const struct dalcs_affine *f, int pair) {
     for (int k = 0; k < f->n; k++) {
         if (f->term[k].kind == DALCS_QUANTITY_PAIR && f->term[k].index == pair) {
@@ -60,6 +77,7 @@ static int solve_cell(struct file_audit *a, const struct file_row *row,
     struct file_number argument = evaluate(a, row, &b->w[k], k);
     *is_known = *is_known && argument.known;
     argument.value = -argument.value;
+    argument.error += tolerance_of(a, row, &b->w[k]);
     const double resistance = coefficient_of(&b->w[k], k);
     const bool is_cell = k + 1 < b->n_pairs && coefficient_of(&b->w[k], k + 1) != 0.0;
     const double height = is_cell ? b->w[k + 1].constant : INFINITY;
