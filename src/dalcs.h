@@ -659,7 +659,8 @@ enum dalcs_status dalcs_session_check(struct dalcs_session *session, double step
 
 /* ---- Auditing a file --------------------------------------------------------------------------- */
 
-/* Waveforms that anybody made, of a .tran: the time in s is column 0. Borrowed during a call. */
+/* Waveforms that anybody made, of a .tran: the time in s is column 0. One row at time 0 is an operating point.
+ * Borrowed during a call. */
 struct dalcs_wave_table {
     size_t n_columns, n_rows;
     const char *const
@@ -677,11 +678,12 @@ struct dalcs_table_audit_options {
 
 /* A law of an element or node, where it is broken most. */
 struct dalcs_table_law {
-    const char *law;        /* "KCL", "BRANCH", "CURRENT", "POSITION", "ENERGY" */
+    const char *law;        /* "KCL", "BRANCH", "CURRENT", "POSITION" */
     const char *where;      /* "out", "d1" */
     const char *unit;       /* of the next two: "V", "A", "C", "Wb", "J" */
     double defect, allowed; /* broken where the first is larger */
     double from, to;        /* s; the same where it is about one time */
+    double since;           /* s, broken for the first time */
     size_t n_checked, n_broken;
 };
 

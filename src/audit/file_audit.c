@@ -119,6 +119,7 @@ bool file_find(struct file_audit *a, enum dalcs_audit_law law, int index, const 
     const double ratio = defect == 0.0 ? 0.0 : defect / fmax(allowed, 0x1p-1022);
     const bool is_worst = w->n_checked == 0 || ratio > w->ratio;
     w->n_checked++;
+    w->since = ratio > 1.0 && w->n_broken == 0 ? to : w->since;
     w->n_broken += ratio > 1.0 ? 1 : 0;
     if (is_worst) {
         w->ratio = ratio;
@@ -220,6 +221,7 @@ static enum dalcs_status audit(struct file_audit *a, struct dalcs_diag *diag) {
         a->current_column[d] = -1;
     }
     DALCS_TRY(file_find_columns(a, diag));
+    a->is_at_rest = a->table->n_rows == 1 && a->table->value[0] == 0.0;
     a->ramp = ramp_of(a);
     pass(a, false);
     pass(a, true);

@@ -107,7 +107,12 @@ static void check_branch(struct file_audit *a, const struct file_row *row, int d
     case DALCS_SWITCH:
         file_check_switch(a, row, device);
         break;
-    default: /* coils and capacitors: file_storage.c */
+    case DALCS_INDUCTOR:
+        if (a->is_at_rest) {
+            check_voltage(a, row, device, zero);
+        }
+        break;
+    default: /* else coils and capacitors: file_storage.c */
         break;
     }
 }

@@ -52,7 +52,7 @@ struct file_potential {
 };
 
 struct file_worst {
-    double ratio, defect, allowed, from, to;
+    double ratio, defect, allowed, from, to, since;
     const char *unit;
     size_t n_checked, n_broken;
     int other, n_nodes; /* of KCL: another node of the set, and how many there are */
@@ -82,7 +82,8 @@ struct file_audit {
     const struct dalcs_circuit *circuit;
     const struct dalcs_wave_table *table;
     double tolerance;
-    double ramp; /* s; a jump of a source may take so long in the file */
+    bool is_at_rest; /* an operating point: no charge and no flux changes */
+    double ramp;     /* s; a jump of a source may take so long in the file */
     int *node_of;
     int *first_branch, *branch; /* devices at each node, no shorts and loops */
     int n_potentials;

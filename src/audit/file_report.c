@@ -59,11 +59,16 @@ static enum dalcs_status list_laws(struct file_audit *a, struct dalcs_arena *are
                 continue;
             }
             struct dalcs_table_law *to = &list[result->n_laws];
-            *to = (struct dalcs_table_law){law_name[law], name_of(a, law, i, arena),
-                                           w->unit,       w->defect,
-                                           w->allowed,    w->from,
-                                           w->to,         w->n_checked,
-                                           w->n_broken};
+            *to = (struct dalcs_table_law){.law = law_name[law],
+                                           .where = name_of(a, law, i, arena),
+                                           .unit = w->unit,
+                                           .defect = w->defect,
+                                           .allowed = w->allowed,
+                                           .from = w->from,
+                                           .to = w->to,
+                                           .since = w->since,
+                                           .n_checked = w->n_checked,
+                                           .n_broken = w->n_broken};
             if (to->where == NULL) {
                 return DALCS_E_NOMEM;
             }

@@ -9,13 +9,15 @@ static void widen(double *low, double *high, double value) {
     *high = fmax(*high, value);
 }
 
-/* Edges that a window of time is searched for, at most: a source that has more in it may be anything that it
- * is at these. */
+/* Edges that a window of time is searched for, at most: what a source is at these it may be. */
 enum { MOST_EDGES = 16 };
 
 struct file_number file_stimulus(const struct file_audit *a, const struct file_row *row,
                                  int stimulus) {
     const struct dalcs_stimulus *s = &a->circuit->stimulus[stimulus];
+    if (a->is_at_rest) {
+        return file_exactly(dalcs_stimulus_operating_value(s, a->circuit->transient.present));
+    }
     const double first = dalcs_stimulus_value(s, row->t, row->is_right ? DALCS_RIGHT : DALCS_LEFT);
     double low = first, high = first;
     if (!row->is_left && !row->is_right) {
@@ -26,7 +28,7 @@ struct file_number file_stimulus(const struct file_audit *a, const struct file_r
         widen(&low, &high, dalcs_stimulus_value(s, fmax(row->t - row->t_error, 0.0), DALCS_RIGHT));
     }
     const double from = row->t - row->t_error - a->ramp;
-    double edge = dalcs_stimulus_next_edge(s, fmax(from, 0.0));
+    double edge = from > 0.0 ? dalcs_stimulus_next_edge(s, from) : 0.0;
     for (int k = 0; k < MOST_EDGES && edge <= row->t + row->t_error; k++) {
         const bool is_near = edge >= row->t - row->t_error && row->t_error > 0.0;
         if (is_near || (a->ramp > 0.0 && dalcs_stimulus_jumps_at(s, edge))) {
@@ -108,6 +110,8 @@ static struct file_number of_law(struct file_audit *a, const struct file_row *ro
                               file_add(row->v[d->node[2]], -1.0, row->v[d->node[3]]));
     case DALCS_CCCS:
         return file_add(zero, d->value, row->i[d->control]);
+    case DALCS_CAPACITOR:
+        return a->is_at_rest ? zero : none;
     default:
         return none;
     }

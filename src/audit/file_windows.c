@@ -2,9 +2,9 @@
  *
  * What is stored at the two ends of a window may be off by the tolerance, however short it is: so a short one
  * sees a spoilt number, and a long one an element of another value. The error of a trapezoid is estimated by
- * how the slope changes at the two ends of its interval, |l| and |r|: h^2/4 (|l| + |r|) is what a jump makes
- * of it that lies anywhere between two rows, its neighbours flat; twice what a kink makes; and six times h^3/12
- * |x''|, the one of a smooth curve at equal distances. */
+ * how the slope changes at the two ends of its interval: h^2/2 times the larger change is what a jump makes of
+ * it that lies anywhere between two rows, with a straight line on either side of it that goes on beyond them;
+ * four times what a kink makes at most; and six times h^3/12 |x''|, the one of a smooth curve at equal distances. */
 #include "file_internal.h"
 
 static double slope(const struct file_row *from, const struct file_row *to, double x0, double x1) {
@@ -26,7 +26,7 @@ struct file_number file_trapezoid(struct file_row *const row[4], const struct fi
     bend[0] = has_left ? bend[0] : bend[1];
     bend[1] = has_right ? bend[1] : bend[0];
     const double error = has_left || has_right
-                             ? 0.25 * h * h * (bend[0] + bend[1])
+                             ? 0.5 * h * h * fmax(bend[0], bend[1])
                              : 0.5 * h * fabs(x[2].value - x[1].value); /* any monotone curve */
     const double digits =
         0.5 * h * (x[1].error + x[2].error) +

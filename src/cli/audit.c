@@ -6,6 +6,8 @@
 #include "waveforms.h"
 
 #include <stdlib.h>
+#include <string.h>
+#include <strings.h>
 
 static const char help[] =
     "usage: dalcs audit NETLIST FILE [options]\n"
@@ -108,27 +110,91 @@ static enum dalcs_status parse(struct arguments *arguments, const struct dalcs_c
 
 /* ---- The file ------------------------------------------------------------------------------------ */
 
-static bool is_transient(const struct dalcs_waveforms *w) {
-    return w->dimension[0].second == 1 && !w->complex_values;
+static bool is_rest(const struct dalcs_waveforms *w) {
+    return strncasecmp(w->plot_name, "Operati", strlen("Operati")) ==
+           0; /* ng- and LTspice's words */
 }
 
-/* The plot that was asked for, else the last one whose axis is a time. */
+static bool is_over_time(const struct dalcs_waveforms *w) {
+    return !w->complex_values && (w->dimension[0].second == 1 || is_rest(w));
+}
+
+/* An operating point has no axis in a .raw file: it gets one at time 0. */
+static enum dalcs_status add_time(struct dalcs_waveforms *w) {
+    const size_t n = w->n_columns + 1;
+    const struct dalcs_waveforms old = *w;
+    double *value = dalcs_alloc(w->n_rows, n * sizeof *value);
+    if (value == NULL || dalcs_waveforms_set_columns(w, n) != DALCS_OK) {
+        free(value);
+        return DALCS_E_NOMEM;
+    }
+    w->name[0] = "time";
+    w->dimension[0] = (struct dalcs_dimension){.second = 1};
+    for (size_t c = 1; c < n; c++) {
+        w->name[c] = old.name[c - 1];
+        w->dimension[c] = old.dimension[c - 1];
+        w->precision[c] = old.precision[c - 1];
+    }
+    for (size_t k = 0; k < w->n_rows; k++) {
+        memcpy(value + k * n + 1, w->value + k * (n - 1), (n - 1) * sizeof *value);
+    }
+    free(w->value);
+    w->value = value;
+    return DALCS_OK;
+}
+
+/* Tables of .step have what it changes before the time. */
+static void put_time_first(struct dalcs_waveforms *w) {
+    size_t c = 0;
+    while (c + 1 < w->n_columns && w->dimension[c].second != 1) {
+        c++;
+    }
+    if (c == 0 || w->dimension[c].second != 1) {
+        return;
+    }
+    const char *name = w->name[0];
+    const struct dalcs_dimension dimension = w->dimension[0];
+    const struct dalcs_precision precision = w->precision[0];
+    w->name[0] = w->name[c];
+    w->dimension[0] = w->dimension[c];
+    w->precision[0] = w->precision[c];
+    w->name[c] = name;
+    w->dimension[c] = dimension;
+    w->precision[c] = precision;
+    for (size_t k = 0; k < w->n_rows; k++) {
+        double *row = w->value + k * w->n_columns;
+        const double first = row[0];
+        row[0] = row[c];
+        row[c] = first;
+    }
+}
+
+/* Reads it, with the time as its axis if it has one. */
+static enum dalcs_status read_one(const struct arguments *arguments,
+                                  struct dalcs_waveforms *waveforms, size_t plot,
+                                  struct dalcs_diag *diag) {
+    DALCS_TRY(dalcs_waveforms_read_file(waveforms, arguments->file, plot, diag));
+    put_time_first(waveforms);
+    return DALCS_OK;
+}
+
+/* The plot that was asked for, else the last one over time. */
 static enum dalcs_status read_plot(const struct arguments *arguments,
                                    struct dalcs_waveforms *waveforms, struct dalcs_diag *diag) {
     size_t plot = arguments->plot;
-    DALCS_TRY(dalcs_waveforms_read_file(waveforms, arguments->file, plot, diag));
+    DALCS_TRY(read_one(arguments, waveforms, plot, diag));
     const size_t n_plots = waveforms->n_plots;
-    for (plot = n_plots; plot > 0 && arguments->plot == 0 && !is_transient(waveforms); plot--) {
+    for (plot = n_plots; plot > 0 && arguments->plot == 0 && !is_over_time(waveforms); plot--) {
         dalcs_waveforms_finish(waveforms);
-        DALCS_TRY(dalcs_waveforms_read_file(waveforms, arguments->file, plot, diag));
+        DALCS_TRY(read_one(arguments, waveforms, plot, diag));
     }
-    if (!is_transient(waveforms)) {
+    if (!is_over_time(waveforms)) {
         dalcs_diag_add(diag, DALCS_ERROR, NULL, NULL,
                        "'%s': the laws are asked of waveforms over time, and the axis is '%s'",
                        arguments->file, waveforms->name[0]);
         return DALCS_E_OPTION;
     }
-    return DALCS_OK;
+    return waveforms->dimension[0].second == 1 ? DALCS_OK : add_time(waveforms);
 }
 
 static enum dalcs_status read_file(const struct arguments *arguments,

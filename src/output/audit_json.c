@@ -12,6 +12,9 @@ static void write_law(struct dalcs_json *json, const struct dalcs_table_law *law
     dalcs_json_number(json, "allowed", law->allowed);
     dalcs_json_number(json, "from", law->from);
     dalcs_json_number(json, "to", law->to);
+    if (law->n_broken > 0) {
+        dalcs_json_number(json, "since", law->since);
+    }
     dalcs_json_integer(json, "checked", (long)law->n_checked);
     dalcs_json_integer(json, "broken", (long)law->n_broken);
     dalcs_json_close(json, '}');

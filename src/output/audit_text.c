@@ -26,7 +26,10 @@ static void write_law(FILE *stream, const struct dalcs_table_law *law, int width
             dalcs_quantity_write(defect, law->defect, law->unit, DIGITS),
             dalcs_quantity_write(allowed, law->allowed, law->unit, 2), write_span(span, law));
     if (law->n_broken > 0) {
-        fprintf(stream, "broken, %zu of %zu times\n", law->n_broken, law->n_checked);
+        char since[DALCS_QUANTITY_SIZE];
+        fprintf(stream, "broken since %s, %zu of %zu times\n",
+                dalcs_quantity_write(since, law->since, "s", TIME_DIGITS), law->n_broken,
+                law->n_checked);
     } else {
         fputs("holds\n", stream);
     }
@@ -84,13 +87,17 @@ static void write_verdict(FILE *stream, const struct dalcs_table_audit *audit) {
     if (audit->n_laws == 0) {
         fputs("\n  no law could be asked\n", stream);
     } else if (audit->n_broken == 0) {
-        fprintf(stream, "\n  all %zu laws that could be asked hold\n", audit->n_laws);
+        fprintf(stream,
+                audit->n_laws == 1 ? "\n  the one law that could be asked holds\n"
+                                   : "\n  all %zu laws that could be asked hold\n",
+                audit->n_laws);
     } else {
         const struct dalcs_table_law *worst = &audit->law[0];
         char span[SPAN_SIZE], defect[DALCS_QUANTITY_SIZE];
-        fprintf(stream, "\n  %zu of %zu laws %s broken, most %s of %s: by %s at %s\n",
-                audit->n_broken, audit->n_laws, audit->n_broken == 1 ? "is" : "are", worst->law,
-                worst->where, dalcs_quantity_write(defect, worst->defect, worst->unit, DIGITS),
+        fprintf(stream, "\n  %zu of %zu law%s %s broken, most %s of %s: by %s at %s\n",
+                audit->n_broken, audit->n_laws, audit->n_laws == 1 ? "" : "s",
+                audit->n_broken == 1 ? "is" : "are", worst->law, worst->where,
+                dalcs_quantity_write(defect, worst->defect, worst->unit, DIGITS),
                 write_span(span, worst));
     }
 }
