@@ -158,6 +158,9 @@ static void check_row(struct file_audit *a, size_t k) {
     struct file_row *now = &a->row[k % 4];
     file_check_branches(a, now);
     file_check_nodes(a, now);
+    if (k == 0) {
+        file_check_start(a, now, &a->row[3]);
+    }
     struct file_row *const around[4] = {k >= 3 ? &a->row[(k - 3) % 4] : NULL,
                                         k >= 2 ? &a->row[(k - 2) % 4] : NULL,
                                         k >= 1 ? &a->row[(k - 1) % 4] : NULL, now};

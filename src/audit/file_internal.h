@@ -197,6 +197,9 @@ void file_check_interval(struct file_audit *a, struct file_row *const row[4]);
 void file_check_jump(struct file_audit *a, const struct file_row *left,
                      const struct file_row *right);
 
+/* The first row against initial conditions; before: room for a row. */
+void file_check_start(struct file_audit *a, const struct file_row *first, struct file_row *before);
+
 /* ---- file_report.c ---- */
 
 enum dalcs_status file_report(struct file_audit *a, struct dalcs_arena *arena,

@@ -291,3 +291,21 @@ void file_check_jump(struct file_audit *a, const struct file_row *left,
         a->of_node[n].n = 0;
     }
 }
+
+/* With uic a run begins with what IC= says, and may jump from there: a row at 0 that is on the other side. What
+ * .ic says of nodes is not followed to the elements between them. */
+void file_check_start(struct file_audit *a, const struct file_row *first, struct file_row *before) {
+    const struct dalcs_circuit *c = a->circuit;
+    if (first->t != 0.0 || !c->transient.use_initial_conditions || c->n_initial_conditions > 0) {
+        return;
+    }
+    for (int d = 0; d < c->n_devices; d++) {
+        const struct dalcs_device *device = &c->device[d];
+        const struct file_number initial =
+            file_exactly(device->has_initial ? device->initial : 0.0);
+        before->u[d] = device->kind == DALCS_CAPACITOR ? initial : first->u[d];
+        before->i[d] = device->kind == DALCS_INDUCTOR ? initial : first->i[d];
+        before->position[d] = first->position[d];
+    }
+    file_check_jump(a, before, first);
+}

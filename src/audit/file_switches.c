@@ -66,8 +66,9 @@ unsigned char file_position(const struct file_audit *a, const struct file_row *r
     }
     const double margin = now.error + control_tolerance(a, device);
     unsigned char position = d->initially_on ? FILE_CLOSED : FILE_OPEN;
-    if (before == NULL && row->t > 0.0) {
-        position = FILE_OPEN | FILE_CLOSED;
+    const bool is_start = a->is_at_rest || a->circuit->transient.use_initial_conditions;
+    if (before == NULL && (row->t > 0.0 || !(is_start || row->is_left))) {
+        position = FILE_OPEN | FILE_CLOSED; /* what the control did before is not in the file */
     }
     double low = now.value, high = now.value;
     const struct file_number then = control_at(a, row, device, k - 1);

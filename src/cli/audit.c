@@ -34,9 +34,9 @@ static const char help[] =
     "  dalcs audit buck.cir buck.raw --tol 1e-6 --all\n"
     "  dalcs audit buck.cir buck.csv --json\n"
     "\n"
-    "exit status: 0 all laws hold, 1 one is broken, 2 usage, or FILE holds no such waveforms, 3 "
-    "error\n"
-    "in the netlist, 4 input/output\n";
+    "exit status: 0 all laws hold, 1 one is broken, 2 usage, or FILE has no waveforms of the "
+    "netlist,\n"
+    "or too few to ask any law, 3 error in the netlist, 4 input/output\n";
 
 enum { TOL = 256, PLOT, RUN, ALL, DIALECT, JSON };
 
@@ -220,7 +220,7 @@ static enum dalcs_status read_file(const struct arguments *arguments,
 
 static enum dalcs_status audit_table(const struct dalcs_cli *cli, const struct arguments *arguments,
                                      struct dalcs_session *session, const struct dalcs_waveforms *w,
-                                     bool *is_broken) {
+                                     enum dalcs_exit *verdict) {
     double *precision = dalcs_alloc(2 * w->n_columns, sizeof *precision);
     for (size_t c = 0; c < w->n_columns && precision != NULL; c++) {
         precision[c] = w->precision[c].relative;
@@ -240,7 +240,11 @@ static enum dalcs_status audit_table(const struct dalcs_cli *cli, const struct a
     } else if (status == DALCS_OK) {
         dalcs_audit_write_text(cli->out, audit, arguments->file, arguments->all);
     }
-    *is_broken = status == DALCS_OK && audit->n_broken > 0;
+    if (status == DALCS_OK) {
+        *verdict = audit->n_broken > 0 ? DALCS_EXIT_RUN
+                   : audit->n_laws > 0 ? DALCS_EXIT_OK
+                                       : DALCS_EXIT_USAGE;
+    }
     return status;
 }
 
@@ -251,7 +255,7 @@ static void write_diag(const struct dalcs_cli *cli, const struct dalcs_diag *dia
 }
 
 static enum dalcs_status audit_file(const struct dalcs_cli *cli, const struct arguments *arguments,
-                                    struct dalcs_session *session, bool *is_broken) {
+                                    struct dalcs_session *session, enum dalcs_exit *verdict) {
     struct dalcs_diag diag = {0};
     struct dalcs_waveforms waveforms = {0};
     enum dalcs_status status = dalcs_verb_read(session, arguments->netlist, arguments->dialect);
@@ -260,7 +264,7 @@ static enum dalcs_status audit_file(const struct dalcs_cli *cli, const struct ar
         write_diag(cli, &diag);
     }
     if (status == DALCS_OK) {
-        status = audit_table(cli, arguments, session, &waveforms, is_broken);
+        status = audit_table(cli, arguments, session, &waveforms, verdict);
     }
     size_t n_written = 0;
     dalcs_cli_write_messages(cli, session, &n_written, true);
@@ -278,7 +282,7 @@ static enum dalcs_status audit_file(const struct dalcs_cli *cli, const struct ar
 
 enum dalcs_exit dalcs_cli_audit(const struct dalcs_cli *cli, int argc, char **argv) {
     struct arguments arguments;
-    bool is_broken = false;
+    enum dalcs_exit verdict = DALCS_EXIT_OK;
     enum dalcs_status status = parse(&arguments, cli, argc, argv);
     if (status == DALCS_OK && arguments.help) {
         fputs(help, cli->out);
@@ -286,11 +290,11 @@ enum dalcs_exit dalcs_cli_audit(const struct dalcs_cli *cli, int argc, char **ar
         struct dalcs_session *session = NULL;
         status = dalcs_session_create(&session);
         if (status == DALCS_OK) {
-            status = audit_file(cli, &arguments, session, &is_broken);
+            status = audit_file(cli, &arguments, session, &verdict);
         } else {
             dalcs_cli_error(cli, "%s", dalcs_status_text(status));
         }
         dalcs_session_destroy(session);
     }
-    return status == DALCS_OK && is_broken ? DALCS_EXIT_RUN : dalcs_cli_exit(status);
+    return status == DALCS_OK ? verdict : dalcs_cli_exit(status);
 }

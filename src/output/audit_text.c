@@ -94,9 +94,10 @@ static void write_verdict(FILE *stream, const struct dalcs_table_audit *audit) {
     } else {
         const struct dalcs_table_law *worst = &audit->law[0];
         char span[SPAN_SIZE], defect[DALCS_QUANTITY_SIZE];
-        fprintf(stream, "\n  %zu of %zu law%s %s broken, most %s of %s: by %s at %s\n",
+        const bool is_one = audit->n_broken == 1;
+        fprintf(stream, "\n  %zu of %zu law%s %s broken, %s%s of %s: by %s at %s\n",
                 audit->n_broken, audit->n_laws, audit->n_laws == 1 ? "" : "s",
-                audit->n_broken == 1 ? "is" : "are", worst->law, worst->where,
+                is_one ? "is" : "are", is_one ? "" : "most ", worst->law, worst->where,
                 dalcs_quantity_write(defect, worst->defect, worst->unit, DIGITS),
                 write_span(span, worst));
     }

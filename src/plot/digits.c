@@ -25,22 +25,35 @@ void dalcs_digits_note(struct dalcs_digits *digits, const char *from, const char
     digits->most = significant > digits->most ? significant : digits->most;
 }
 
-static double unit_of(int most) {
-    return most > 0 ? 0.5 * pow(10.0, 1 - most) : 0.0;
+/* Of the columns [first, end), taken together. */
+static struct dalcs_digits join(const struct dalcs_digits *digits, size_t first, size_t end) {
+    struct dalcs_digits all = digits[first];
+    for (size_t c = first; c < end; c++) {
+        all.most = digits[c].most > all.most ? digits[c].most : all.most;
+        all.varies = all.varies || digits[c].varies || digits[c].decimals != all.decimals;
+        all.is_fixed = all.is_fixed && digits[c].is_fixed;
+    }
+    return all;
+}
+
+static struct dalcs_precision precision_of(struct dalcs_digits d) {
+    struct dalcs_precision p = {0};
+    if (d.decimals > 1 && d.is_fixed && !d.varies) {
+        p.absolute = 0.5 * pow(10.0, 1 - d.decimals);
+    } else if (d.most > 0) {
+        p.relative = 0.5 * pow(10.0, 1 - d.most);
+    }
+    return p;
 }
 
 void dalcs_digits_judge(const struct dalcs_digits *digits, size_t n_columns,
                         struct dalcs_precision *precision) {
-    int most = 0;
-    for (size_t c = 1; c < n_columns; c++) {
-        most = digits[c].most > most ? digits[c].most : most;
-    }
-    for (size_t c = 0; c < n_columns; c++) {
-        const struct dalcs_digits *d = &digits[c];
-        if (d->decimals > 1 && d->is_fixed && !d->varies) {
-            precision[c].absolute = 0.5 * pow(10.0, 1 - d->decimals);
-        } else if (d->decimals > 0) {
-            precision[c].relative = unit_of(c == 0 ? d->most : most);
+    const size_t part[] = {0, 1, n_columns};
+    for (size_t k = 0; k < 2; k++) {
+        for (size_t c = part[k]; c < part[k + 1]; c++) {
+            if (digits[c].decimals > 0) {
+                precision[c] = precision_of(join(digits, part[k], part[k + 1]));
+            }
         }
     }
 }

@@ -4,11 +4,24 @@
 #include "text_file.h"
 #include "utf16.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* More than a run of an hour writes, and less than what makes a machine swap for long. */
 static const size_t most_bytes = (size_t)4 << 30;
+
+/* Equal distances are there because the axis is right, however few digits it has: rounding would show in them. */
+static bool has_equal_distances(const struct dalcs_waveforms *w) {
+    const double first = w->n_rows > 0 ? w->value[0] : 0.0;
+    const double last = w->n_rows > 0 ? w->value[(w->n_rows - 1) * w->n_columns] : 0.0;
+    const double distance = w->n_rows > 1 ? (last - first) / (double)(w->n_rows - 1) : 0.0;
+    double worst = 0.0;
+    for (size_t k = 0; k < w->n_rows; k++) {
+        worst = fmax(worst, fabs(w->value[k * w->n_columns] - first - (double)k * distance));
+    }
+    return w->n_rows > 2 && worst <= 1e-6 * fabs(distance);
+}
 
 static enum dalcs_status read_plain(struct dalcs_waveforms *waveforms, const char *path,
                                     const char *text, size_t length, size_t plot,
@@ -23,6 +36,9 @@ static enum dalcs_status read_plain(struct dalcs_waveforms *waveforms, const cha
         return status;
     }
     dalcs_digits_judge(waveforms->digits, waveforms->n_columns, waveforms->precision);
+    if (has_equal_distances(waveforms)) {
+        waveforms->precision[0] = (struct dalcs_precision){.relative = 0x1p-53};
+    }
     return DALCS_OK;
 }
 
