@@ -34,9 +34,9 @@ static const char help[] =
     "  dalcs audit buck.cir buck.raw --tol 1e-6 --all\n"
     "  dalcs audit buck.cir buck.csv --json\n"
     "\n"
-    "exit status: 0 all laws hold, 1 one is broken, 2 usage, or FILE has no waveforms of the "
-    "netlist,\n"
-    "or too few to ask any law, 3 error in the netlist, 4 input/output\n";
+    "exit status: 0 ok, all laws hold, 1 one is broken, 2 usage or no such signals, 3 error in "
+    "the\n"
+    "netlist, 4 input/output\n";
 
 enum { TOL = 256, PLOT, RUN, ALL, DIALECT, JSON };
 

@@ -50,7 +50,7 @@ static void write_laws(FILE *stream, const struct dalcs_table_audit *audit, bool
         n = audit->n_broken + MOST_HELD;
     }
     const int width = widest(audit, n);
-    fprintf(stream, "\n  %-9s %-*s %11s %11s  %-26s\n", "law", width, "element", "defect",
+    fprintf(stream, "\n  %-9s %-*s %11s %11s  %-26s verdict\n", "law", width, "element", "defect",
             "allowed", "at");
     for (size_t i = 0; i < n; i++) {
         write_law(stream, &audit->law[i], width);

@@ -15,6 +15,7 @@ FORMATS = {".raw": "1e-6", ".csv": "1e-3"}
 
 
 def main(program):
+    program = pathlib.Path(program).resolve()
     checker = dalcs_program.Checker("laws of dalcs's own files")
     asked = 0
     for netlist in sorted(dalcs_program.NETLISTS.rglob("*.cir")):
