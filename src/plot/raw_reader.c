@@ -1,12 +1,9 @@
 /* raw_reader.c - SPICE's raw files: a text header, then numbers, as text or as bytes; plot after
  * plot. Written from what ngspice writes (its manual, section 11.4) and what spicelib reads.
  *
- * LTspice's binary files have times of 8 bytes and, of real signals, values of 4, unless a flag says "double";
- * with the flag "fastaccess" signal after signal. The sign of a time marks a point that was kept when others
- * were left out, and all times are counted from the header's offset.
- *
  * A count in a header is what a writer meant; how many points there are is what the file has room
  * for. An interrupted writer leaves 0 there and a last point cut short. */
+#include "raw_header.h"
 #include "waveforms.h"
 
 #include <math.h>
@@ -14,142 +11,10 @@
 #include <string.h>
 #include <strings.h>
 
-/* One plot of a file. */
-struct plot {
-    const char *title, *name, *variables; /* places in the text; NULL: not there */
-    bool complex_values, ascii;
-    bool is_ltspice, says_double, by_signal;
-    double offset; /* of the axis */
-    size_t n_variables, n_points;
-    const char *data;
-};
-
-struct text {
-    const char *at, *end;
-};
-
-/* The next line without its end; false at the end of the text. */
-static bool next_line(struct text *text, const char **line, size_t *length) {
-    if (text->at >= text->end) {
-        return false;
-    }
-    const char *newline = memchr(text->at, '\n', (size_t)(text->end - text->at));
-    const char *end = newline ? newline : text->end;
-    *line = text->at;
-    *length = (size_t)(end - text->at);
-    if (*length > 0 && end[-1] == '\r') {
-        --*length;
-    }
-    text->at = newline ? newline + 1 : text->end;
-    return true;
-}
-
-/* What follows "key:" on a line; NULL when it is another line. */
-static const char *value_of(const char *line, size_t length, const char *key) {
-    size_t n = strlen(key);
-    if (length < n + 1 || strncasecmp(line, key, n) != 0 || line[n] != ':') {
-        return NULL;
-    }
-    const char *value = line + n + 1;
-    return value + (value < line + length && *value == ' ' ? 1 : 0);
-}
-
-bool dalcs_waveforms_is_raw(const char *text, size_t length) {
-    return value_of(text, length, "Title") || value_of(text, length, "Plotname");
-}
-
 static enum dalcs_status refuse(struct dalcs_diag *diag, const char *path, const char *hint,
                                 const char *what) {
     dalcs_diag_add(diag, DALCS_ERROR, NULL, hint, "'%s': %s", path, what);
     return DALCS_E_OPTION;
-}
-
-static bool has_word(const char *text, size_t length, const char *word) {
-    const size_t n = strlen(word);
-    for (size_t k = 0; k + n <= length; k++) {
-        if (strncasecmp(text + k, word, n) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* What the header says of how numbers are written. */
-static void read_flags(struct plot *plot, const char *value, const char *end) {
-    const size_t length = (size_t)(end - value);
-    plot->complex_values = strncasecmp(value, "complex", 7) == 0;
-    plot->says_double = has_word(value, length, "double");
-    plot->by_signal = has_word(value, length, "fastaccess");
-}
-
-/* Stops behind "Binary:" or "Values:"; plot->data stays NULL where the text ends before. */
-static void read_header(struct plot *plot, struct text *text) {
-    const char *line = NULL, *value;
-    size_t length = 0;
-    *plot = (struct plot){0};
-    while (!plot->data && next_line(text, &line, &length)) {
-        if ((value = value_of(line, length, "Title"))) {
-            plot->title = value;
-        } else if ((value = value_of(line, length, "Plotname"))) {
-            plot->name = value;
-        } else if ((value = value_of(line, length, "Flags"))) {
-            read_flags(plot, value, line + length);
-        } else if ((value = value_of(line, length, "Offset"))) {
-            plot->offset = strtod(value, NULL);
-        } else if ((value = value_of(line, length, "Command"))) {
-            plot->is_ltspice = has_word(value, (size_t)(line + length - value), "LTspice");
-        } else if ((value = value_of(line, length, "No. Variables"))) {
-            plot->n_variables = strtoul(value, NULL, 10);
-        } else if ((value = value_of(line, length, "No. Points"))) {
-            plot->n_points = strtoul(value, NULL, 10);
-        } else if (value_of(line, length, "Variables")) {
-            plot->variables = text->at;
-            for (size_t i = 0; i < plot->n_variables && next_line(text, &line, &length); i++) {
-            }
-        } else if (value_of(line, length, "Binary") || value_of(line, length, "Values")) {
-            plot->ascii = value_of(line, length, "Values") != NULL;
-            plot->data = text->at;
-        }
-    }
-}
-
-/* Are its values, but for the axis, of 4 bytes? */
-static bool is_single(const struct plot *plot) {
-    return plot->is_ltspice && !plot->ascii && !plot->complex_values && !plot->says_double;
-}
-
-/* Bytes that a point takes, at least. */
-static size_t point_size(const struct plot *plot) {
-    size_t parts = plot->complex_values ? 2 : 1;
-    size_t others = plot->n_variables - 1;
-    return is_single(plot) ? sizeof(double) + others * sizeof(float)
-                           : plot->n_variables * parts * (plot->ascii ? 2 : sizeof(double));
-}
-
-/* A plot that another one follows has the points that it says; where it says 0 all that is left
- * belongs to it. */
-static size_t count_points(const struct plot *plot, const struct text *text) {
-    size_t room = (size_t)(text->end - plot->data) / point_size(plot);
-    return plot->n_points == 0 || plot->n_points > room ? room : plot->n_points;
-}
-
-/* Where the header of the next plot starts. */
-static void skip_points(struct plot *plot, struct text *text) {
-    plot->n_points = count_points(plot, text);
-    if (!plot->ascii) {
-        text->at = plot->data + plot->n_points * point_size(plot);
-        return;
-    }
-    const char *line = NULL;
-    size_t length = 0;
-    struct text before = *text;
-    while (next_line(text, &line, &length)) {
-        if (value_of(line, length, "Title") || value_of(line, length, "Plotname")) {
-            *text = before;
-            return;
-        }
-        before = *text;
-    }
 }
 
 /* ---- One plot ------------------------------------------------------------------------------- */
@@ -216,16 +81,17 @@ static enum dalcs_status read_variable(struct dalcs_waveforms *waveforms, const 
     return DALCS_OK;
 }
 
-static enum dalcs_status read_variables(struct dalcs_waveforms *waveforms, const struct plot *plot,
-                                        const struct text *all) {
-    struct text text = {plot->variables, all->end};
+static enum dalcs_status read_variables(struct dalcs_waveforms *waveforms,
+                                        const struct dalcs_raw_plot *plot,
+                                        const struct dalcs_raw_text *all) {
+    struct dalcs_raw_text text = {plot->variables, all->end};
     size_t n = plot->n_variables, c = 0;
     DALCS_TRY(dalcs_waveforms_set_columns(waveforms, plot->complex_values ? 2 * n - 1 : n));
     for (size_t i = 0; i < n; i++) {
         const char *line = NULL;
         size_t length = 0;
         bool with_phase = plot->complex_values && i > 0;
-        if (!next_line(&text, &line, &length)) {
+        if (!dalcs_raw_next_line(&text, &line, &length)) {
             return DALCS_E_OPTION;
         }
         DALCS_TRY(read_variable(waveforms, line, length, c, with_phase));
@@ -246,14 +112,15 @@ static double *put(double *cell, bool axis, bool complex_values, double re, doub
 }
 
 /* Where value i of a point is in a file that goes signal by signal. */
-static size_t place_by_signal(const struct plot *plot, size_t row, size_t i, size_t width) {
+static size_t place_by_signal(const struct dalcs_raw_plot *plot, size_t row, size_t i,
+                              size_t width) {
     const size_t axis = (plot->complex_values ? 2 : 1) * sizeof(double) * plot->n_points;
     return i == 0 ? row * (axis / plot->n_points) : axis + ((i - 1) * plot->n_points + row) * width;
 }
 
-static void read_binary(struct dalcs_waveforms *waveforms, const struct plot *plot) {
+static void read_binary(struct dalcs_waveforms *waveforms, const struct dalcs_raw_plot *plot) {
     const size_t wide = (plot->complex_values ? 2 : 1) * sizeof(double);
-    const size_t width = is_single(plot) ? sizeof(float) : wide;
+    const size_t width = dalcs_raw_is_single(plot) ? sizeof(float) : wide;
     double *cell = waveforms->value;
     const char *at = plot->data;
     for (size_t k = 0; k < plot->n_points * plot->n_variables; k++) {
@@ -275,12 +142,12 @@ static void read_binary(struct dalcs_waveforms *waveforms, const struct plot *pl
     }
     waveforms->n_rows = plot->n_points;
     for (size_t c = 0; c < waveforms->n_columns; c++) {
-        waveforms->precision[c].relative = is_single(plot) && c > 0 ? 0x1p-24 : 0x1p-53;
+        waveforms->precision[c].relative = dalcs_raw_is_single(plot) && c > 0 ? 0x1p-24 : 0x1p-53;
     }
 }
 
 /* Times of LTspice. */
-static void shift_axis(struct dalcs_waveforms *waveforms, const struct plot *plot) {
+static void shift_axis(struct dalcs_waveforms *waveforms, const struct dalcs_raw_plot *plot) {
     for (size_t k = 0; k < waveforms->n_rows && plot->is_ltspice; k++) {
         double *time = &waveforms->value[k * waveforms->n_columns];
         *time = (waveforms->dimension[0].second == 1 ? fabs(*time) : *time) + plot->offset;
@@ -296,8 +163,8 @@ static bool next_number(const char **at, const char *end, double *value) {
 }
 
 /* Each point is its number, then its values. What is not whole at the end is left out. */
-static void read_ascii(struct dalcs_waveforms *waveforms, const struct plot *plot,
-                       const struct text *all) {
+static void read_ascii(struct dalcs_waveforms *waveforms, const struct dalcs_raw_plot *plot,
+                       const struct dalcs_raw_text *all) {
     const char *at = plot->data;
     for (size_t row = 0; row < plot->n_points; row++) {
         double *cell = waveforms->value + row * waveforms->n_columns;
@@ -327,17 +194,18 @@ static void read_ascii(struct dalcs_waveforms *waveforms, const struct plot *plo
 }
 
 static const char *copy_line(struct dalcs_arena *arena, const char *at, const char *end) {
-    struct text text = {at, end};
+    struct dalcs_raw_text text = {at, end};
     const char *line = "";
     size_t length = 0;
     if (at) {
-        (void)next_line(&text, &line, &length);
+        (void)dalcs_raw_next_line(&text, &line, &length);
     }
     return dalcs_arena_copy(arena, line, length);
 }
 
-static enum dalcs_status read_plot(struct dalcs_waveforms *waveforms, const struct plot *plot,
-                                   const struct text *all) {
+static enum dalcs_status read_plot(struct dalcs_waveforms *waveforms,
+                                   const struct dalcs_raw_plot *plot,
+                                   const struct dalcs_raw_text *all) {
     waveforms->title = copy_line(&waveforms->arena, plot->title, all->end);
     waveforms->plot_name = copy_line(&waveforms->arena, plot->name, all->end);
     waveforms->complex_values = plot->complex_values;
@@ -359,9 +227,9 @@ static enum dalcs_status read_plot(struct dalcs_waveforms *waveforms, const stru
 }
 
 /* The header of the next plot, good or bad; false behind the last one. */
-static enum dalcs_status next_plot(struct plot *plot, struct text *text, const char *path,
-                                   struct dalcs_diag *diag) {
-    read_header(plot, text);
+static enum dalcs_status next_plot(struct dalcs_raw_plot *plot, struct dalcs_raw_text *text,
+                                   const char *path, struct dalcs_diag *diag) {
+    dalcs_raw_read_header(plot, text);
     if (!plot->data) {
         return refuse(diag, path, NULL, "the header of the raw file has no 'Binary:' or 'Values:'");
     }
@@ -370,11 +238,11 @@ static enum dalcs_status next_plot(struct plot *plot, struct text *text, const c
     if (plot->n_variables == 0 || plot->n_variables > most) {
         return refuse(diag, path, NULL, "the raw file does not list its variables");
     }
-    skip_points(plot, text);
+    dalcs_raw_skip_points(plot, text);
     return DALCS_OK;
 }
 
-static bool is_blank(const struct text *text) {
+static bool is_blank(const struct dalcs_raw_text *text) {
     for (const char *c = text->at; c < text->end; c++) {
         if (*c != '\n' && *c != '\r' && *c != ' ' && *c != '\0') {
             return false;
@@ -386,12 +254,12 @@ static bool is_blank(const struct text *text) {
 enum dalcs_status dalcs_waveforms_read_raw(struct dalcs_waveforms *waveforms, const char *path,
                                            const char *text, size_t length, size_t plot,
                                            struct dalcs_diag *diag) {
-    const struct text all = {text, text + length};
-    struct text rest = all;
-    struct plot chosen = {0};
+    const struct dalcs_raw_text all = {text, text + length};
+    struct dalcs_raw_text rest = all;
+    struct dalcs_raw_plot chosen = {0};
     size_t n = 0;
     while (!is_blank(&rest)) {
-        struct plot next;
+        struct dalcs_raw_plot next;
         if (n > 0 && !dalcs_waveforms_is_raw(rest.at, (size_t)(rest.end - rest.at))) {
             break; /* the last point of an interrupted writer */
         }

@@ -129,8 +129,10 @@ static void swap_rows(double *a, double *b, size_t n) {
 
 void dalcs_waveforms_keep_rows(struct dalcs_waveforms *waveforms, size_t first, size_t end) {
     size_t n = waveforms->n_columns;
-    memmove(waveforms->value, waveforms->value + first * n, (end - first) * n * sizeof(double));
     waveforms->n_rows = end - first;
+    if (end > first) { /* without rows there is no room for any */
+        memmove(waveforms->value, waveforms->value + first * n, (end - first) * n * sizeof(double));
+    }
     if (end - first < 2 || axis_at(waveforms, 0) <= axis_at(waveforms, end - first - 1)) {
         return;
     }
