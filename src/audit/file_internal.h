@@ -53,6 +53,7 @@ struct file_potential {
 
 struct file_worst {
     double ratio, defect, allowed, from, to, since;
+    double sees; /* of coils and capacitors */
     const char *unit;
     size_t n_checked, n_broken;
     int other, n_nodes; /* of KCL: another node of the set, and how many there are */
@@ -66,7 +67,8 @@ struct file_window {
     unsigned long signature; /* of what is summed */
 
     struct file_window_sum {
-        double residual, error, time, end; /* the last: error of a stored charge or flux there */
+        double residual, error, time, moved; /* the last: what was stored more */
+        double end;                          /* error of what is stored there */
     } now, at[FILE_LEVELS];
 };
 
@@ -188,7 +190,8 @@ struct file_window_law {
 /* Goes on by an interval; `end` is the error of what is stored at its end. */
 void file_window_begin(struct file_window *w, double end);
 void file_window_add(struct file_audit *a, struct file_window *w, const struct file_window_law *law,
-                     struct file_number residual, double duration, double end, double to);
+                     struct file_number residual, double moved, double duration, double end,
+                     double to);
 
 /* ---- file_storage.c ---- */
 

@@ -67,6 +67,7 @@ static enum dalcs_status list_laws(struct file_audit *a, struct dalcs_arena *are
                                            .from = w->from,
                                            .to = w->to,
                                            .since = w->since,
+                                           .sees = w->sees,
                                            .n_checked = w->n_checked,
                                            .n_broken = w->n_broken};
             if (to->where == NULL) {

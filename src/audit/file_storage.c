@@ -84,7 +84,8 @@ static void check_element(struct file_audit *a, struct file_row *const row[4], i
     if (is_known) {
         const struct file_number residual = {after.value - before.value - brought.value,
                                              brought.error, true};
-        file_window_add(a, w, &law, residual, row[2]->t - row[1]->t, after.error, row[2]->t);
+        file_window_add(a, w, &law, residual, after.value - before.value, row[2]->t - row[1]->t,
+                        after.error, row[2]->t);
     }
 }
 
@@ -154,7 +155,8 @@ static void check_sets(struct file_audit *a, struct file_row *const row[4]) {
             file_window_begin(w, law[n].end_error);
         }
         a->is_checked[n] = true;
-        file_window_add(a, w, &of, a->sum[n], row[2]->t - row[1]->t, law[n].end_error, row[2]->t);
+        file_window_add(a, w, &of, a->sum[n], 0.0, row[2]->t - row[1]->t, law[n].end_error,
+                        row[2]->t);
     }
     file_note_covered(a);
 }
@@ -286,6 +288,7 @@ void file_check_jump(struct file_audit *a, const struct file_row *left,
         any = any || (jumps && !is_coil);
         a->of_device[d].n = jumps ? 0 : a->of_device[d].n;
         a->of_device[d].now.residual += change.value;
+        a->of_device[d].now.moved += change.value;
     }
     for (int n = 0; n < a->circuit->n_nodes && any; n++) {
         a->of_node[n].n = 0;

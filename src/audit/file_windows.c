@@ -51,14 +51,19 @@ static void judge(struct file_audit *a, const struct file_window *w,
     const double defect = fabs(w->now.residual - from->residual);
     if (law->law == DALCS_AUDIT_KCL) {
         file_find_set(a, law->index, law->unit, defect, allowed, to - duration, to);
-    } else {
-        file_find(a, law->law, law->index, law->unit, defect, allowed, to - duration, to);
+        return;
     }
+    struct file_worst *worst = &a->worst[law->law][law->index];
+    const double sees = allowed / fabs(w->now.moved - from->moved);
+    worst->sees = worst->sees > 0.0 ? fmin(worst->sees, sees) : sees;
+    file_find(a, law->law, law->index, law->unit, defect, allowed, to - duration, to);
 }
 
 void file_window_add(struct file_audit *a, struct file_window *w, const struct file_window_law *law,
-                     struct file_number residual, double duration, double end, double to) {
+                     struct file_number residual, double moved, double duration, double end,
+                     double to) {
     w->n++;
+    w->now.moved += moved;
     w->now.residual += residual.value;
     w->now.error += residual.error;
     w->now.time += duration;

@@ -15,6 +15,9 @@ static void write_law(struct dalcs_json *json, const struct dalcs_table_law *law
     if (law->n_broken > 0) {
         dalcs_json_number(json, "since", law->since);
     }
+    if (law->sees > 0.0) {
+        dalcs_json_number(json, "sees", law->sees);
+    }
     dalcs_json_integer(json, "checked", (long)law->n_checked);
     dalcs_json_integer(json, "broken", (long)law->n_broken);
     dalcs_json_close(json, '}');

@@ -30,6 +30,10 @@ static void write_law(FILE *stream, const struct dalcs_table_law *law, int width
         fprintf(stream, "broken since %s, %zu of %zu times\n",
                 dalcs_quantity_write(since, law->since, "s", TIME_DIGITS), law->n_broken,
                 law->n_checked);
+    } else if (law->sees > 1.0) {
+        fputs("holds, but hardly anything moved\n", stream);
+    } else if (law->sees > 0.0) {
+        fprintf(stream, "holds, to %.2g %%\n", 100.0 * law->sees);
     } else {
         fputs("holds\n", stream);
     }

@@ -177,6 +177,20 @@ def check_lost_command(checker, program, folder):
     checker.check(law is not None and 100e-6 <= law["since"] <= 100.2e-6, f"a lost command: {law}")
 
 
+def check_sees(checker, program, folder):
+    """What is said to be noticed is: a capacitor or coil that is off by a fifth more is, by half of it is not."""
+    for netlist, old, form, element in ((RECTIFIER, "20u\nR", "{:.9g}u\nR", "c1"),
+                                        (CHOPPER, "100u\nC", "{:.9g}u\nC", "l1")):
+        table = simulate(program, netlist)
+        sees = audit(program, folder, netlist, table).law("BRANCH", element)["sees"]
+        checker.check(0.0 < sees < 0.02, f"{element} sees {sees}")
+        value = float(old.split("u")[0])
+        for part, broken in ((1.2, True), (0.5, False)):
+            made = netlist.replace(old, form.format(value * (1.0 + part * sees)))
+            found = audit(program, folder, made, table)
+            checker.check((("BRANCH", element) in found.broken) == broken, f"{element} by {part} of {sees}")
+
+
 def check_jumps(checker, program, folder):
     table = simulate(program, SHARING)
     right = audit(program, folder, SHARING, table)
@@ -199,6 +213,7 @@ def main(program):
         check_nudges(checker, program, folder)
         check_signs(checker, program, folder)
         check_lost_command(checker, program, folder)
+        check_sees(checker, program, folder)
         check_jumps(checker, program, folder)
     return checker.finish()
 
