@@ -5,6 +5,7 @@
  * The residuals are worked out here, from the matrices in the file and the answer, and not by the
  * engine. Exit status: 0 certified, 1 not, 2 usage, 3 a damaged file, 4 input/output. */
 #include "osnsp.h"
+#include "refute.h"
 #include "system_file.h"
 
 #include <math.h>
@@ -103,7 +104,20 @@ static void print_pairs(const struct replay *r) {
     }
 }
 
-static void print_verdict(const struct replay *r, enum dalcs_status status) {
+static void print_refusal(const struct dalcs_witness *w, bool is_certain) {
+    static const char *const kind[] = {[DALCS_WITNESS_LOOP] = "loop",
+                                       [DALCS_WITNESS_CUTSET] = "cutset",
+                                       [DALCS_WITNESS_MODE] = "no mode of"};
+    printf("verdict   %s: %s",
+           is_certain ? "no solution exists" : "a solution may exist, but none was found",
+           kind[w->kind]);
+    for (int k = 0; k < w->n_elements; k++) {
+        printf("%s %s", k > 0 ? "," : "", w->element[k]);
+    }
+    printf("\n");
+}
+
+static void print_verdict(const struct replay *r, enum dalcs_status status, bool is_certain) {
     const struct dalcs_osnsp *p = &r->osnsp;
     printf("work      %ld mode changes, %ld factorisations\n", p->counters.pivots,
            p->counters.factorizations);
@@ -112,14 +126,7 @@ static void print_verdict(const struct replay *r, enum dalcs_status status) {
                p->least_norm ? ", the least-norm solution of a singular mode" : "",
                p->certificate.worst);
     } else if (status == DALCS_INFEASIBLE) {
-        static const char *const kind[] = {[DALCS_WITNESS_LOOP] = "loop",
-                                           [DALCS_WITNESS_CUTSET] = "cutset",
-                                           [DALCS_WITNESS_MODE] = "no mode of"};
-        printf("verdict   no solution exists: %s", kind[p->witness.kind]);
-        for (int k = 0; k < p->witness.n_elements; k++) {
-            printf("%s %s", k > 0 ? "," : "", p->witness.element[k]);
-        }
-        printf("\n");
+        print_refusal(&p->witness, is_certain);
     } else {
         printf("verdict   %s\n", dalcs_status_text(status));
     }
@@ -137,13 +144,19 @@ static enum dalcs_status replay(struct replay *r) {
     DALCS_TRY(dalcs_osnsp_setup(&r->osnsp, s, &options));
     memcpy(r->osnsp.mode, r->file.mode, (size_t)r->osnsp.n_words * sizeof(*r->osnsp.mode));
     enum dalcs_status status = dalcs_osnsp_solve(&r->osnsp, r->file.sigma, r->file.u, r->y);
+    bool is_certain = false;
+    if (status == DALCS_INFEASIBLE) {
+        enum dalcs_status asked =
+            dalcs_osnsp_refute(&r->osnsp, r->file.sigma, r->file.u, &is_certain);
+        status = asked < DALCS_OK ? asked : status;
+    }
     if (status >= DALCS_OK) {
         print_problem(&r->file);
         printf(status == DALCS_OK ? "answer\n" : "what was tried last\n");
         print_unknowns(r);
         print_pairs(r);
         print_residuals(r);
-        print_verdict(r, status);
+        print_verdict(r, status, is_certain);
     }
     dalcs_osnsp_finish(&r->osnsp);
     return status;

@@ -197,8 +197,10 @@ enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k, const doub
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_euler_refuse_derivative(struct dalcs_euler *e, int k, const double *x,
-                                                const double *y1, const double *y2) {
+/* The step from x is one of impulses of higher order than implicit Euler can follow: y1 and y2 are answers of steps one of
+ * which is shorter. */
+static enum dalcs_status refuse_derivative(struct dalcs_euler *e, int k, const double *x,
+                                           const double *y1, const double *y2) {
     dalcs_osnsp_blame_states(&e->component[k].osnsp, x, y1, y2);
     e->component[k].failed_sigma = 1.0 / e->h;
     e->component[k].failed_u = e->component[k].u;
@@ -381,7 +383,7 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
         return DALCS_OK; /* a switch moved in between: the two tell nothing together */
     }
     if (!s->monotone && runs_away(c, u, y, limit)) {
-        return dalcs_euler_refuse_derivative(e, k, u, y, c->scratch);
+        return refuse_derivative(e, k, u, y, c->scratch);
     }
     if (!extrapolate(e, k, u, y, limit)) {
         return DALCS_OK;

@@ -111,11 +111,6 @@ enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double t
 enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k,
                                         const double *u) DALCS_MUST_CHECK;
 
-/* The step from x of component k is one of impulses of higher order than implicit Euler can follow:
- * y1 and y2 are answers of steps one of which is shorter. DALCS_INFEASIBLE, the states named. */
-enum dalcs_status dalcs_euler_refuse_derivative(struct dalcs_euler *e, int k, const double *x,
-                                                const double *y1,
-                                                const double *y2) DALCS_MUST_CHECK;
 /* Calls on_open if the last answer of component k, now in its y, may be one of several. */
 enum dalcs_status dalcs_euler_tell_open(struct dalcs_euler *e, int k) DALCS_MUST_CHECK;
 

@@ -243,8 +243,10 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
         runs_away = runs_away || (moves && now > runaway * before);
     }
     if (jumps && runs_away) {
-        r->base->t = part->t;
-        return dalcs_euler_refuse_derivative(r->base, part->index, part->x, longer, part->y1);
+        dalcs_osnsp_blame_states(&part->component->osnsp, part->x, longer, part->y1);
+        memcpy(part->u, part->x, (size_t)s->n_x * sizeof(double));
+        dalcs_excitation_inputs(&part->excitation, part->t, 0.0, part->u + s->n_x);
+        return fail(r, part, 1.0 / h, part->u, DALCS_INFEASIBLE);
     }
     return micro_steps(r, part, h);
 }

@@ -165,13 +165,15 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
     p->centre_w = dalcs_arena_alloc(&p->arena, n_pairs, sizeof(double));
     p->step_before = dalcs_arena_alloc(&p->arena, n_columns + n_pairs, sizeof(double));
     p->step_now = dalcs_arena_alloc(&p->arena, n_columns + n_pairs, sizeof(double));
+    p->witness.ray = dalcs_arena_alloc(&p->arena, n_columns, sizeof(double));
     enum dalcs_status status = DALCS_E_NOMEM;
-    if (p->mode != NULL && p->key != NULL && p->regularised_mode != NULL && p->w != NULL &&
-        p->form != NULL && p->form_id != NULL && p->difference != NULL && p->run != NULL &&
-        p->w_ends != NULL && p->is_diode != NULL && p->violating != NULL && p->tied != NULL &&
-        p->tied_mode != NULL && p->tied_answer != NULL && p->mapped != NULL && p->right != NULL &&
-        p->scaled != NULL && p->rhs != NULL && p->residual != NULL && p->centre != NULL &&
-        p->centre_w != NULL && p->step_before != NULL && p->step_now != NULL) {
+    if (p->witness.ray != NULL && p->mode != NULL && p->key != NULL &&
+        p->regularised_mode != NULL && p->w != NULL && p->form != NULL && p->form_id != NULL &&
+        p->difference != NULL && p->run != NULL && p->w_ends != NULL && p->is_diode != NULL &&
+        p->violating != NULL && p->tied != NULL && p->tied_mode != NULL && p->tied_answer != NULL &&
+        p->mapped != NULL && p->right != NULL && p->scaled != NULL && p->rhs != NULL &&
+        p->residual != NULL && p->centre != NULL && p->centre_w != NULL && p->step_before != NULL &&
+        p->step_now != NULL) {
         list_runs(p);
         list_w_ends(p);
         status = list_pair_rows(p);

@@ -55,6 +55,8 @@ struct dalcs_witness {
 
     int n_elements, capacity;
     const char **element; /* borrowed names */
+    bool has_ray;
+    double *ray; /* [n_columns] the direction */
 };
 
 struct dalcs_mode_entry;

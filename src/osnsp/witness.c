@@ -60,6 +60,32 @@ static void add_sources(struct dalcs_osnsp *p, const double *d, double largest) 
     }
 }
 
+static double but_rounding(double entry, double largest) {
+    return fabs(entry) > zero_part * largest ? entry : 0.0;
+}
+
+/* The direction in volts and amperes, of the states as well. */
+static void keep_ray(struct dalcs_osnsp *p, const double *d, double largest) {
+    const struct dalcs_system *s = p->system;
+    const struct dalcs_step_form *f = p->form[0];
+    double *ray = p->witness.ray;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int i = 0; i < f->n; i++) {
+        ray[f->column_of[i]] = f->scale[i] * but_rounding(d[i], largest);
+    }
+    for (int k = 0; k < f->n_pairs; k++) {
+        ray[n_equations + k] = f->scale[f->n + k] * but_rounding(d[f->n + k], largest);
+    }
+    for (int x = 0; x < s->n_x; x++) {
+        double sum = 0.0;
+        for (int k = f->X.p[x]; k < f->X.p[x + 1]; k++) {
+            sum += f->X.x[k] * ray[f->X.j[k]];
+        }
+        ray[x] = sum;
+    }
+    p->witness.has_ray = true;
+}
+
 bool dalcs_witness_from_ray(struct dalcs_osnsp *p) {
     const struct dalcs_system *s = p->system;
     const struct dalcs_step_form *f = p->form[0];
@@ -93,6 +119,7 @@ bool dalcs_witness_from_ray(struct dalcs_osnsp *p) {
         }
     }
     p->witness.n_elements = 0;
+    keep_ray(p, d, largest);
     double current = 0.0;
     double voltage = 0.0;
     for (int i = 0; i < f->n; i++) {
@@ -125,6 +152,12 @@ void dalcs_witness_from_clash(struct dalcs_osnsp *p) {
     const struct dalcs_system *s = p->system;
     p->witness.n_elements = 0;
     p->witness.kind = DALCS_WITNESS_CUTSET;
+    for (int c = 0; c < dalcs_system_n_columns(s); c++) { /* all nodes rise together */
+        bool is_node =
+            c >= s->n_x && c < dalcs_system_n_equations(s) && s->column[c].kind == DALCS_LABEL_NODE;
+        p->witness.ray[c] = is_node ? 1.0 : 0.0;
+    }
+    p->witness.has_ray = true;
     for (int r = 0; r < dalcs_system_n_equations(s); r++) {
         for (int k = s->E.p[r]; s->row_is_current[r] && k < s->E.p[r + 1]; k++) {
             if (s->E.j[k] > 0) {
@@ -151,6 +184,7 @@ void dalcs_osnsp_blame_states(struct dalcs_osnsp *p, const double *x, const doub
     }
     p->witness.n_elements = 0;
     p->witness.kind = DALCS_WITNESS_DERIVATIVE;
+    p->witness.has_ray = false;
     for (int i = 0; i < s->n_x; i++) {
         if (fmax(fabs(y1[i] - x[i]), fabs(y2[i] - x[i])) >= 0.5 * largest) {
             add_element(p, s->column[i].element);
@@ -161,6 +195,7 @@ void dalcs_osnsp_blame_states(struct dalcs_osnsp *p, const double *x, const doub
 void dalcs_witness_from_modes(struct dalcs_osnsp *p) {
     p->witness.n_elements = 0;
     p->witness.kind = DALCS_WITNESS_MODE;
+    p->witness.has_ray = false;
     for (int d = 0; d < p->system->n_pairs; d++) {
         add_element(p, p->system->pair[d].element);
     }

@@ -94,9 +94,9 @@ static enum dalcs_status solve_point(struct sweep *s, struct dalcs_euler *e,
                                      const struct dalcs_network *network) {
     struct dalcs_run *r = s->run;
     const size_t n_outer = (size_t)s->n_dc - 1;
-    const enum dalcs_status status = dalcs_euler_operating_point(e, false);
+    enum dalcs_status status = dalcs_euler_operating_point(e, false);
     if (status != DALCS_OK) {
-        dalcs_explain_failure(r, e, status);
+        status = dalcs_explain_failure(r, e, status);
         if (status > DALCS_OK) {
             blame_point(s);
         }

@@ -1,6 +1,7 @@
 /* explain.c - numerical failures in words: the time, the elements, what to look at. */
 #include "refusal.h"
 
+#include "refute.h"
 #include "system_file.h"
 
 #include <errno.h>
@@ -96,10 +97,26 @@ static void list_values(struct dalcs_refusal *x, const struct dalcs_component *c
     }
 }
 
-static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e, bool is_from,
-                               const char *when, const char *hint) {
+/* Micro-steps this many times shorter must have no answer either. */
+static const double shorter = 1024.0;
+
+/* Has the problem no answer for certain? What a step sees of a circuit that is not passive is no more than that where
+ * shorter ones see something else. */
+static enum dalcs_status find_certainty(struct dalcs_component *c, bool is_from, bool *is_certain) {
+    bool is_mode = c->osnsp.witness.kind == DALCS_WITNESS_MODE;
+    DALCS_TRY(dalcs_osnsp_refute(&c->osnsp, c->failed_sigma, c->failed_u, is_certain));
+    if (*is_certain && is_from && is_mode && c->failed_sigma > 0.0) {
+        DALCS_TRY(
+            dalcs_osnsp_refute(&c->osnsp, shorter * c->failed_sigma, c->failed_u, is_certain));
+    }
+    return DALCS_OK;
+}
+
+/* DALCS_NOT_CONVERGED where it is not certain. */
+static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e,
+                                            bool is_from, const char *when, const char *hint) {
     struct dalcs_session *s = r->s;
-    const struct dalcs_component *c = &e->component[e->failed_system];
+    struct dalcs_component *c = &e->component[e->failed_system];
     const struct dalcs_witness *w = &c->osnsp.witness;
     static const char *const kind[] = {[DALCS_WITNESS_LOOP] = "loop",
                                        [DALCS_WITNESS_CUTSET] = "cutset",
@@ -120,9 +137,9 @@ static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e,
     };
     x.element = whole_witness(s, w, &x.n_elements);
     if (x.element == NULL || x.is_named == NULL || x.value == NULL || x.shown == NULL) {
-        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, hint, "%s no solution exists", when);
-        return;
+        return DALCS_E_NOMEM;
     }
+    DALCS_TRY(find_certainty(c, is_from, &x.is_certain));
     for (size_t i = 0; i < n_devices; i++) {
         x.is_named[i] = contains(x.element, x.n_elements, s->circuit.device[i].name);
     }
@@ -132,14 +149,19 @@ static void explain_infeasible(struct dalcs_run *r, const struct dalcs_euler *e,
     for (size_t k = 0; k < x.n_elements && where == NULL; k++) {
         where = dalcs_place_of(&s->circuit, x.element[k]);
     }
-    dalcs_diag_add(&s->diag, DALCS_ERROR, where, hint, "%s no solution exists: %s", when,
+    dalcs_diag_add(&s->diag, DALCS_ERROR, where, hint, "%s %s: %s", when,
+                   x.is_certain ? "no solution exists" : "a solution may exist, but none was found",
                    x.because);
+    if (!x.is_certain) {
+        return DALCS_NOT_CONVERGED;
+    }
     s->report.infeasible.present = true;
     s->report.infeasible.time = e->failed_time;
-    s->report.infeasible.kind = kind[w->kind];
+    s->report.infeasible.kind = kind[x.kind];
     s->report.infeasible.n_elements = x.n_elements;
     s->report.infeasible.element = x.element;
     s->report.infeasible.because = x.because;
+    return DALCS_INFEASIBLE;
 }
 
 /* Writes the problem if that is wanted. Returns the hint that says where it is, or NULL. */
@@ -165,11 +187,11 @@ static const char *dump_problem(struct dalcs_run *r, const struct dalcs_euler *e
         &s->arena, "the one-step problem is in '%s'; tools/replay solves it again", path);
 }
 
-void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
-                           enum dalcs_status status) {
+enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
+                                        enum dalcs_status status) {
     struct dalcs_session *s = r->s;
     if (status <= DALCS_OK || e->failed_system < 0) {
-        return;
+        return status;
     }
     /* Radau sees what comes right behind a time; a step of Euler sees its end. */
     bool is_from = !e->at_operating_point && (e->looks_behind || r->method != DALCS_METHOD_EULER);
@@ -182,14 +204,12 @@ void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
     when = when == NULL ? "" : when;
     const char *hint = dump_problem(r, e, when);
     if (status == DALCS_INFEASIBLE) {
-        explain_infeasible(r, e, is_from, when, hint);
-    } else {
-        const struct dalcs_certificate *c = &e->component[e->failed_system].osnsp.certificate;
-        const char *row = dalcs_explain_row(s, e, e->failed_system, c->where);
-        dalcs_diag_add(
-            &s->diag, DALCS_ERROR, NULL, hint,
-            "%s no certified solution was found: the best residual is %.3g of its scale, "
-            "%s",
-            when, c->worst, row == NULL ? "" : row);
+        return explain_infeasible(r, e, is_from, when, hint);
     }
+    const struct dalcs_certificate *c = &e->component[e->failed_system].osnsp.certificate;
+    const char *row = dalcs_explain_row(s, e, e->failed_system, c->where);
+    dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, hint,
+                   "%s no certified solution was found: the best residual is %.3g of its scale, %s",
+                   when, c->worst, row == NULL ? "" : row);
+    return status;
 }

@@ -148,7 +148,7 @@ static enum dalcs_status run_operating_point(struct dalcs_run *r) {
         dalcs_recorder_states(&s->network, &e, s->final);
     }
     free(row);
-    dalcs_explain_failure(r, &e, status);
+    status = dalcs_explain_failure(r, &e, status);
     dalcs_run_add_work(r, &e);
     dalcs_euler_finish(&e);
     return status;

@@ -432,8 +432,12 @@ static const char *explain_modes(const struct dalcs_refusal *r) {
     int first = r->n_elements > 0 ? device_of(r->circuit, r->element[0]) : -1;
     bool is_formula = first >= 0 && r->circuit->device[first].behaviour != NULL;
     const char *format =
-        !has_modes(r) ? "the equations contradict each other, most at %s; %s %s the circuit from "
-                        "being passive"
+        !r->is_certain && !has_modes(r) ? "the best answer that was tried fits worst at %s; %s %s "
+                                          "the circuit from being passive"
+        : !r->is_certain ? "no combination of conducting and blocking that was tried fits %s; %s "
+                           "%s the circuit from being passive"
+        : !has_modes(r) ? "the equations contradict each other, most at %s; %s %s the circuit from "
+                          "being passive"
         : named.n == 1 && is_formula
             ? "%s fits no piece of its formula; %s %s the circuit from being passive"
         : named.n == 1 ? "%s fits neither conducting nor blocking; %s %s the circuit from being "
@@ -451,10 +455,12 @@ static const char *explain_derivative(const struct dalcs_refusal *r) {
     for (size_t k = 0; k < r->n_elements; k++) {
         put(&named, r->element[k]);
     }
-    return dalcs_arena_printf(&r->s->arena,
-                              "%s would have to jump by the derivative of an impulse, which no "
-                              "vanishing step approaches; start from values that need none",
-                              joined(&named, false));
+    return dalcs_arena_printf(
+        &r->s->arena,
+        !r->is_certain ? "%s would have to jump farther in each shorter step that was tried"
+                       : "%s would have to jump by the derivative of an impulse, which no "
+                         "vanishing step approaches; start from values that need none",
+        joined(&named, false));
 }
 
 /* ---- All together -------------------------------------------------------------------------- */
@@ -551,7 +557,10 @@ void dalcs_refusal_explain(struct dalcs_refusal *r) {
             r->shown[d->stimulus] = r->value[d->stimulus];
         }
     }
-    if (c->n_devices == 0) {
+    if (!r->is_certain && r->kind != DALCS_WITNESS_DERIVATIVE &&
+        (c->n_devices == 0 || r->kind != DALCS_WITNESS_MODE)) {
+        r->because = plain_list(r, "no values of these that were tried fulfil the equations");
+    } else if (c->n_devices == 0) {
         r->because = explain_system(r);
     } else if (r->kind == DALCS_WITNESS_LOOP) {
         say_loop(r);

@@ -11,12 +11,13 @@ struct dalcs_refusal {
     enum dalcs_witness_kind kind;
     size_t n_elements; /* of the witness; in a loop then in its order */
     const char **element;
-    bool *is_named;      /* [n_devices] those elements */
-    double time;         /* s, since when */
-    bool is_static;      /* no capacitor carries current, no coil has a voltage */
-    bool is_from;        /* the problem was just behind `time`; else at it */
-    double *value;       /* [n_stimuli] in the problem */
-    double *shown;       /* [n_stimuli] at `time` */
+    bool *is_named;  /* [n_devices] those elements */
+    double time;     /* s, since when */
+    bool is_certain; /* a contradiction has been confirmed; else no solution was found, no more */
+    bool is_static;  /* no capacitor carries current, no coil has a voltage */
+    bool is_from;    /* the problem was just behind `time`; else at it */
+    double *value;   /* [n_stimuli] in the problem */
+    double *shown;   /* [n_stimuli] at `time` */
     const char *because; /* the sentence */
 };
 

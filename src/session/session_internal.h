@@ -157,9 +157,10 @@ enum dalcs_status dalcs_loop_shorts_find(const struct dalcs_circuit *circuit, co
                                          bool *is_part) DALCS_MUST_CHECK;
 
 /* Puts a numerical failure of e into words, into the report and, if wanted, into a dump. Other
- * statuses explain themselves elsewhere. */
-void dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
-                           enum dalcs_status status);
+ * statuses explain themselves elsewhere. Returns the status; instead of DALCS_INFEASIBLE, DALCS_NOT_CONVERGED where
+ * no witness could be verified, or DALCS_E_NOMEM. */
+enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
+                                        enum dalcs_status status) DALCS_MUST_CHECK;
 
 /* ---- held_coils.c ---------------------------------------------------------------------------- */
 

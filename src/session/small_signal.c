@@ -351,7 +351,7 @@ static enum dalcs_status find_operating_point(struct dalcs_run *r, struct dalcs_
         status = dalcs_undetermined_several(&r->undetermined, e, 0.0);
         e->at_operating_point = false;
     }
-    dalcs_explain_failure(r, e, status);
+    status = dalcs_explain_failure(r, e, status);
     return status == DALCS_OK ? report_sides(r, e) : status;
 }
 

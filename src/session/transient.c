@@ -114,7 +114,7 @@ static enum dalcs_status start_from(struct dalcs_run *r, struct dalcs_euler *e,
     double **initial = dalcs_alloc((size_t)held.n_components, sizeof(*initial));
     enum dalcs_status status =
         initial == NULL ? DALCS_E_NOMEM : dalcs_euler_operating_point(&held, true);
-    dalcs_explain_failure(r, &held, status);
+    status = dalcs_explain_failure(r, &held, status);
     dalcs_run_add_work(r, &held);
     if (status == DALCS_OK) {
         for (int k = 0; k < held.n_components; k++) {
@@ -577,7 +577,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     const enum dalcs_status audited = dalcs_audit_run_report(&audit);
     status = status == DALCS_OK ? audited : status;
     if (!is_wrong) {
-        dalcs_explain_failure(r, &e, status);
+        status = dalcs_explain_failure(r, &e, status);
     }
     dalcs_run_add_work(r, &e);
     add_radau_work(r, &radau);

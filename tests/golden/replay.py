@@ -59,6 +59,15 @@ class Replay(unittest.TestCase):
             self.assertRegex(done.stdout, rf"{name}\.cir (at|from) ")
             self.assertEqual(self.files(), ["it.dalcs"])
 
+    def test_no_witness(self):
+        """What no witness confirms is not said to have no solution, here as there."""
+        netlist = pathlib.Path(__file__).parents[1] / "refusals" / "unfound_in_a_crowd.cir"
+        said = self.start(DALCS, "run", netlist, "-q", "--dump", "it.dalcs", expect=FAILED).stderr
+        text = self.replay("it.dalcs", FAILED).stdout
+        for words in (said, text):
+            self.assertIn("a solution may exist, but none was found: ", words)
+            self.assertNotIn("no solution exists", words)
+
     def test_names_and_residuals(self):
         self.refuse("hc28b", "--method", "euler", "--dump", "it.dalcs")
         text = self.replay("it.dalcs", FAILED).stdout
