@@ -1,0 +1,154 @@
+/* fuzz_run.c - libFuzzer target: any bytes to a valid netlist (random_netlist.h), which is read and run.
+ *
+ * It may have no answer, but says so: reading refuses impossible loops and nodes alone, no status is an
+ * internal error, a failed run has a message, messages are whole, times ascend and values are numbers.
+ * Little is done: a run ends after so many rows and calls. Without the ledger of energies: it asks what
+ * each source does alone, which has no answer where they close a loop, and then no message either. With
+ * DALCS_FUZZ_PRINT in the environment the netlist is printed. */
+#include "dalcs.h"
+#include "random_netlist.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+enum { MOST_ROWS = 2000, MOST_CALLS = 2 };
+
+struct rows {
+    size_t n_values;
+    bool ascends; /* the scale does: of .tran and .ac */
+    double last;
+    int n, n_calls;
+};
+
+#define require(condition) require_that(condition, #condition, __LINE__)
+
+static void require_that(bool condition, const char *text, int line) {
+    if (!condition) {
+        fprintf(stderr, "fuzz_run.c:%d: not so: %s\n", line, text);
+        abort();
+    }
+}
+
+static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
+    struct rows *r = user;
+    r->n_values = plot->n_signals * (plot->is_complex ? 2 : 1);
+    r->ascends = plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_AC;
+    r->last = 0.0;
+    return DALCS_OK;
+}
+
+static enum dalcs_status row(void *user, double time, const double *value) {
+    struct rows *r = user;
+    require(isfinite(time) && (!r->ascends || time >= r->last));
+    r->last = time;
+    for (size_t k = 0; k < r->n_values; k++) {
+        require(isfinite(value[k]));
+    }
+    return ++r->n > MOST_ROWS ? DALCS_E_CANCELLED : DALCS_OK;
+}
+
+static enum dalcs_status progress(void *user, double time, double stop) {
+    struct rows *r = user;
+    require(isfinite(time) && isfinite(stop));
+    return ++r->n_calls > MOST_CALLS ? DALCS_E_CANCELLED : DALCS_OK;
+}
+
+/* Whether all messages are whole, and how many are errors. */
+static size_t check_messages(const struct dalcs_session *s, bool print) {
+    size_t n_errors = 0;
+    for (size_t k = 0; k < dalcs_session_n_messages(s); k++) {
+        enum dalcs_level level;
+        const char *text = dalcs_session_message(s, k, &level);
+        require(text != NULL && strlen(text) > 8);
+        if (print) {
+            fprintf(stderr, "%s\n", text);
+        }
+        require(strstr(text, "(null)") == NULL && strstr(text, "internal error") == NULL);
+        n_errors += level == DALCS_LEVEL_ERROR;
+    }
+    return n_errors;
+}
+
+static void check_report(const struct dalcs_report *report) {
+    double last = 0.0;
+    for (size_t k = 0; k < report->n_events; k++) {
+        require(report->event[k].time >= last && report->event[k].element != NULL);
+        last = report->event[k].time;
+    }
+    require(isfinite(report->certificate.worst));
+}
+
+static void run(struct dalcs_session *s, bool print) {
+    struct rows rows = {0};
+    struct dalcs_run_options options = dalcs_run_options_default();
+    const struct dalcs_sink sink = {
+        .user = &rows, .begin = begin, .row = row, .progress = progress};
+    options.record = true;
+    options.max_events = 2000;
+    options.cache_bytes = (size_t)1 << 20;
+    const enum dalcs_status status = dalcs_session_run(s, &options, &sink);
+    const size_t n_errors = check_messages(s, print);
+    if (print) {
+        fprintf(stderr, "status %d\n", status);
+    }
+    switch (status) {
+    case DALCS_OK:
+        require(n_errors == 0);
+        break;
+    case DALCS_SINGULAR:
+    case DALCS_NOT_CONVERGED:
+    case DALCS_INFEASIBLE:
+    case DALCS_E_NETLIST:
+    case DALCS_E_LIMIT:
+    case DALCS_E_OPTION:
+        require(n_errors > 0);
+        break;
+    default:
+        require(status == DALCS_E_CANCELLED);
+        break;
+    }
+    if (dalcs_session_report(s) != NULL) {
+        check_report(dalcs_session_report(s));
+    }
+}
+
+/* What the graph alone makes impossible is told when the netlist is read, and nothing else may be wrong. */
+static void check_refusal(const struct dalcs_session *s, enum dalcs_status status) {
+    require(status == DALCS_E_NETLIST);
+    require(check_messages(s, false) > 0);
+    for (size_t k = 0; k < dalcs_session_n_messages(s); k++) {
+        enum dalcs_level level;
+        const char *text = dalcs_session_message(s, k, &level);
+        require(level != DALCS_LEVEL_ERROR || strstr(text, "nothing limits the current") != NULL ||
+                strstr(text, "nothing but") != NULL);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    static const char *print;
+    static bool asked;
+    char text[RANDOM_NETLIST_SIZE];
+    struct dalcs_session *s;
+    random_netlist(data, size, text);
+    if (!asked) {
+        print = getenv("DALCS_FUZZ_PRINT");
+        asked = true;
+    }
+    if (print != NULL) {
+        fputs(text, stderr);
+    }
+    require(dalcs_session_create(&s) == DALCS_OK);
+    const enum dalcs_status status = dalcs_session_read_text(s, "fuzz.cir", text, strlen(text));
+    if (status == DALCS_OK) {
+        run(s, print != NULL);
+    } else {
+        check_refusal(s, status);
+    }
+    dalcs_session_destroy(s);
+    return 0;
+}
