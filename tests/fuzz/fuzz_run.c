@@ -90,6 +90,8 @@ static void run(struct dalcs_session *s, bool print) {
         .user = &rows, .begin = begin, .row = row, .progress = progress};
     options.record = true;
     options.max_events = 2000;
+    options.max_outer = 5; /* in singular modes the least norm may take seconds to find */
+    options.max_pivots = 5;
     options.cache_bytes = (size_t)1 << 20;
     const enum dalcs_status status = dalcs_session_run(s, &options, &sink);
     const size_t n_errors = check_messages(s, print);
@@ -117,7 +119,7 @@ static void run(struct dalcs_session *s, bool print) {
     }
 }
 
-/* What the graph alone makes impossible is told when the netlist is read, and nothing else may be wrong. */
+/* What the graph alone makes impossible, an .ic across a short too, is told when the netlist is read, and nothing else may be wrong. */
 static void check_refusal(const struct dalcs_session *s, enum dalcs_status status) {
     require(status == DALCS_E_NETLIST);
     require(check_messages(s, false) > 0);
@@ -125,7 +127,7 @@ static void check_refusal(const struct dalcs_session *s, enum dalcs_status statu
         enum dalcs_level level;
         const char *text = dalcs_session_message(s, k, &level);
         require(level != DALCS_LEVEL_ERROR || strstr(text, "nothing limits the current") != NULL ||
-                strstr(text, "nothing but") != NULL);
+                strstr(text, "nothing but") != NULL || strstr(text, "short") != NULL);
     }
 }
 
