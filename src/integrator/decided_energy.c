@@ -1,8 +1,10 @@
 /* decided_energy.c - the energies that sources alone decide: integrals of products of their waves. */
 #include "decided_energy.h"
 
+#include "refute.h"
 #include "source_products.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,6 +14,8 @@ struct waves {
     const struct dalcs_stimulus **stimulus; /* [n] */
     int *of_input;                          /* [n_inputs] */
     double *gain;                           /* [n_columns][n] */
+    bool *is_bound;                         /* [n] a sum of others while the run lasts */
+    double *bond;                           /* [n][n] of which others: factors */
     double *first, *second;                 /* [n] work */
     double *power;                          /* [n_accounts][n][n] */
 };
@@ -22,30 +26,75 @@ static const struct dalcs_stimulus *stimulus_of(const struct dalcs_component *c,
     return input > 0 ? &c->circuit->stimulus[c->system->stimulus[input]] : &ONE;
 }
 
-/* The inputs of one wave alone. */
+/* The inputs of one wave alone, and of its part in those that are bound. */
 static void unit_inputs(const struct dalcs_component *c, const struct waves *w, int wave,
                         double *inputs) {
     for (int k = 0; k < c->system->n_inputs; k++) {
-        bool varies = w->of_input[k] > 0;
+        int of = w->of_input[k];
         double constant = k > 0 ? stimulus_of(c, k)->dc : 1.0;
-        inputs[k] = w->of_input[k] == wave ? (varies ? 1.0 : constant) : 0.0;
+        double part = of == wave ? 1.0 : w->is_bound[of] ? w->bond[of * w->n + wave] : 0.0;
+        inputs[k] = part * (of > 0 ? 1.0 : constant);
     }
 }
 
-/* Bystanders' gains are known; other columns are answers to each wave alone. */
+/* What a wave does along a ray is 0 below this part of what the others do: 1e4 roundings. */
+static const double rounding = 1e-12;
+
+/* Binds one wave to others: where one alone has no answer, sources close a loop or feed a part, and a sum of waves was 0
+ * all the time that there were answers. */
+static enum dalcs_status bind(struct dalcs_component *c, struct waves *w, int wave) {
+    const struct dalcs_system *s = c->system;
+    double *sum = w->first;
+    double *inputs = c->probe_u + s->n_x;
+    double most = 0.0;
+    bool is_certain;
+    DALCS_TRY(dalcs_osnsp_refute(&c->osnsp, 0.0, c->probe_u, &is_certain));
+    for (int k = 0; k < w->n; k++) {
+        unit_inputs(c, w, k, inputs);
+        sum[k] = w->is_bound[k] ? 0.0 : dalcs_osnsp_along_ray(&c->osnsp, inputs);
+        most = fmax(most, fabs(sum[k]));
+    }
+    if (!is_certain || !(fabs(sum[wave]) > 0.0)) {
+        return DALCS_INFEASIBLE;
+    }
+    for (int k = 0; k < w->n; k++) {
+        bool takes_part = k != wave && fabs(sum[k]) > rounding * most;
+        w->bond[wave * w->n + k] = takes_part ? -sum[k] / sum[wave] : 0.0;
+    }
+    w->is_bound[wave] = true;
+    for (int b = 0; b < w->n; b++) { /* those that were bound to it before */
+        double through = w->bond[b * w->n + wave];
+        w->bond[b * w->n + wave] = 0.0;
+        for (int k = 0; k < w->n; k++) {
+            w->bond[b * w->n + k] += through * w->bond[wave * w->n + k];
+        }
+    }
+    return DALCS_OK;
+}
+
+/* The answer to one wave. */
+static enum dalcs_status find_gain(struct dalcs_component *c, struct waves *w, int wave) {
+    const struct dalcs_system *s = c->system;
+    unit_inputs(c, w, wave, c->probe_u + s->n_x);
+    DALCS_TRY(dalcs_component_solve(c, 0.0, c->probe_u, c->scratch));
+    for (int i = 0; i < dalcs_system_n_columns(s); i++) {
+        w->gain[i * w->n + wave] = c->scratch[i];
+    }
+    return DALCS_OK;
+}
+
+/* Bystanders' gains are known; other columns are answers to each wave alone, but for those that are bound. */
 static enum dalcs_status find_gains(struct dalcs_component *c, const struct dalcs_bystanders *b,
                                     struct waves *w) {
     const struct dalcs_system *s = c->system;
     bool all = s->n_x == 0 && s->n_pairs == 0 && b->n < dalcs_system_n_equations(s);
     for (int k = 0; k < w->n; k++) {
+        if (all) {
+            enum dalcs_status status = find_gain(c, w, k);
+            DALCS_TRY(status == DALCS_INFEASIBLE ? bind(c, w, k) : status);
+        }
         double *inputs = c->probe_u + s->n_x;
         unit_inputs(c, w, k, inputs);
-        if (all) {
-            DALCS_TRY(dalcs_component_solve(c, 0.0, c->probe_u, c->scratch));
-            for (int i = 0; i < dalcs_system_n_columns(s); i++) {
-                w->gain[i * w->n + k] = c->scratch[i];
-            }
-        }
         for (int i = 0; i < b->n && !all; i++) {
             double sum = 0.0;
             for (int j = 0; j < s->n_inputs; j++) {
@@ -160,12 +209,14 @@ enum dalcs_status dalcs_energy_enter_decided(struct dalcs_energy *energy,
     w.stimulus = dalcs_alloc(n, sizeof(const struct dalcs_stimulus *));
     w.of_input = dalcs_alloc((size_t)s->n_inputs, sizeof(*w.of_input));
     w.gain = dalcs_alloc((size_t)dalcs_system_n_columns(s) * n, sizeof(*w.gain));
+    w.is_bound = dalcs_alloc(n, sizeof(*w.is_bound));
+    w.bond = dalcs_alloc(n * n, sizeof(*w.bond));
     w.first = dalcs_alloc(n, sizeof(*w.first));
     w.second = dalcs_alloc(n, sizeof(*w.second));
     w.power = dalcs_alloc(DALCS_N_POWER_ACCOUNTS * n * n, sizeof(*w.power));
     enum dalcs_status status = DALCS_E_NOMEM;
-    if (w.stimulus != NULL && w.of_input != NULL && w.gain != NULL && w.first != NULL &&
-        w.second != NULL && w.power != NULL) {
+    if (w.stimulus != NULL && w.of_input != NULL && w.gain != NULL && w.is_bound != NULL &&
+        w.bond != NULL && w.first != NULL && w.second != NULL && w.power != NULL) {
         w.stimulus[0] = &ONE;
         for (int i = 0; i < c->n_varying; i++) {
             w.stimulus[i + 1] = stimulus_of(c, c->varying[i]);
@@ -183,6 +234,8 @@ enum dalcs_status dalcs_energy_enter_decided(struct dalcs_energy *energy,
     free(w.stimulus);
     free(w.of_input);
     free(w.gain);
+    free(w.is_bound);
+    free(w.bond);
     free(w.first);
     free(w.second);
     free(w.power);

@@ -180,6 +180,10 @@ static inline void dalcs_osnsp_command(struct dalcs_osnsp *p, int pair, bool on)
 void dalcs_osnsp_blame_states(struct dalcs_osnsp *p, const double *x, const double *y1,
                               const double *y2);
 
+/* After DALCS_INFEASIBLE: what these inputs[n_inputs] alone do along the witness's ray, which is 0 for inputs that may
+ * have an answer; 0 where there is no ray. */
+double dalcs_osnsp_along_ray(const struct dalcs_osnsp *p, const double *inputs);
+
 void dalcs_osnsp_finish(struct dalcs_osnsp *p);
 
 #endif

@@ -185,6 +185,10 @@ void dalcs_witness_from_clash(struct dalcs_osnsp *p);
 /* Every pair of a system that no mode fits. */
 void dalcs_witness_from_modes(struct dalcs_osnsp *p);
 
+/* The weight of an equation in the witness's ray: of the column that it is paired with; where a row sums the KCL of a
+ * tree of capacitors, others of the tree are relative to its root. */
+double dalcs_witness_weight(const struct dalcs_witness *w, const struct dalcs_system *s, int row);
+
 /* Names something where the others found no name. */
 void dalcs_witness_complete(struct dalcs_osnsp *p);
 

@@ -34,6 +34,7 @@ struct refutation {
     struct dalcs_arena work;
     int n_rows, n_columns;
     double *v, *clean;                /* [n_rows] weights */
+    const double *proof;              /* those of the two that were tried last */
     double *sum;                      /* [3 n_columns] work of farkas.c */
     double *dense;                    /* [n_columns][n_rows] scaled */
     double *row_scale, *column_scale; /* [n_rows], [n_columns] */
@@ -52,9 +53,7 @@ static void weigh_by_ray(struct refutation *r, double sign) {
     int n_equations = dalcs_system_n_equations(s);
     memset(r->v, 0, (size_t)r->n_rows * sizeof(double));
     for (int row = 0; row < n_equations; row++) {
-        int c = s->dual[row];
-        int root = s->forest_root[c];
-        r->v[row] = sign * (root != c ? ray[c] - ray[root] : ray[c]);
+        r->v[row] = sign * dalcs_witness_weight(&r->p->witness, s, row);
     }
     for (int d = 0; d < s->n_pairs; d++) {
         r->v[n_equations + d] = sign * ray[n_equations + d];
@@ -196,8 +195,12 @@ static bool is_refuted(struct refutation *r) {
         r->clean[row] = is_zero ? 0.0 : r->v[row];
         largest = fmax(largest, fabs(r->clean[row]));
     }
-    if (dalcs_claim_is_refuted(&r->claim, r->v, r->sum) ||
-        dalcs_claim_is_refuted(&r->claim, r->clean, r->sum)) {
+    r->proof = r->v;
+    if (dalcs_claim_is_refuted(&r->claim, r->v, r->sum)) {
+        return true;
+    }
+    r->proof = r->clean;
+    if (dalcs_claim_is_refuted(&r->claim, r->clean, r->sum)) {
         return true;
     }
     for (int row = 0; row < r->n_rows && largest > 0.0; row++) {
@@ -364,6 +367,17 @@ static enum dalcs_status runs_away(struct dalcs_osnsp *p, double sigma, const do
     return status < DALCS_OK ? status : DALCS_OK;
 }
 
+/* Where there is but one case, and no state, its weights are a ray of the witness. */
+static void keep_weights(struct dalcs_osnsp *p, const double *v) {
+    const struct dalcs_system *s = p->system;
+    if (s->n_x == 0 && s->n_pairs == 0) {
+        for (int row = 0; row < s->n_z; row++) {
+            p->witness.ray[s->dual[row]] = v[row];
+        }
+        p->witness.has_ray = true;
+    }
+}
+
 enum dalcs_status dalcs_osnsp_refute(struct dalcs_osnsp *p, double sigma, const double *u,
                                      bool *is_certain) {
     *is_certain = false;
@@ -373,6 +387,9 @@ enum dalcs_status dalcs_osnsp_refute(struct dalcs_osnsp *p, double sigma, const 
     struct refutation r;
     enum dalcs_status status = setup(&r, p, sigma, u);
     status = status == DALCS_OK ? refute(&r, is_certain) : status;
+    if (*is_certain && !p->witness.has_ray) {
+        keep_weights(p, r.proof);
+    }
     dalcs_arena_finish(&r.work);
     return status;
 }

@@ -167,6 +167,25 @@ void dalcs_witness_from_clash(struct dalcs_osnsp *p) {
     }
 }
 
+double dalcs_witness_weight(const struct dalcs_witness *w, const struct dalcs_system *s, int row) {
+    int c = s->dual[row];
+    int root = s->forest_root[c];
+    return root != c ? w->ray[c] - w->ray[root] : w->ray[c];
+}
+
+double dalcs_osnsp_along_ray(const struct dalcs_osnsp *p, const double *inputs) {
+    const struct dalcs_system *s = p->system;
+    double sum = 0.0;
+    for (int row = 0; row < dalcs_system_n_equations(s) && p->witness.has_ray; row++) {
+        sum += dalcs_witness_weight(&p->witness, s, row) * dalcs_csr_row_dot(&s->E, row, inputs);
+    }
+    for (int d = 0; d < s->n_pairs && p->witness.has_ray; d++) {
+        sum -=
+            p->witness.ray[dalcs_system_n_equations(s) + d] * dalcs_csr_row_dot(&s->F, d, inputs);
+    }
+    return sum;
+}
+
 /* A witness names at least the equation that fits worst. */
 void dalcs_witness_complete(struct dalcs_osnsp *p) {
     int where = p->certificate.where;

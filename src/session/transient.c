@@ -497,7 +497,14 @@ static void add_radau_work(struct dalcs_run *r, const struct dalcs_radau *radau)
  * step went where it should not. */
 static enum dalcs_status close_ledger(struct dalcs_run *r, struct dalcs_energy *energy,
                                       struct dalcs_euler *e, struct dalcs_radau *radau) {
-    DALCS_TRY(dalcs_energy_close(energy, e, radau));
+    enum dalcs_status status = dalcs_energy_close(energy, e, radau);
+    if (status > DALCS_OK) {
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL, NULL,
+                       "the energies are not known: a part of the circuit without states has no "
+                       "answer to one of its sources alone");
+        return DALCS_OK;
+    }
+    DALCS_TRY(status);
     struct dalcs_report *report = &r->s->report;
     if (!isfinite(energy->turnover)) { /* an unstable circuit, beyond what doubles hold */
         return DALCS_OK;

@@ -2,9 +2,8 @@
  *
  * It may have no answer, but says so: reading refuses impossible loops and nodes alone, no status is an
  * internal error, a failed run has a message, messages are whole, times ascend and values are numbers.
- * Little is done: a run ends after so many rows and calls. Without the ledger of energies: it asks what
- * each source does alone, which has no answer where they close a loop, and then no message either. With
- * DALCS_FUZZ_PRINT in the environment the netlist is printed. */
+ * Little is done: a run ends after so many rows and calls. With DALCS_FUZZ_PRINT in the environment the netlist is
+ * printed. */
 #include "dalcs.h"
 #include "random_netlist.h"
 
@@ -89,6 +88,7 @@ static void run(struct dalcs_session *s, bool print) {
     const struct dalcs_sink sink = {
         .user = &rows, .begin = begin, .row = row, .progress = progress};
     options.record = true;
+    options.energy = true;
     options.max_events = 2000;
     options.max_outer = 5; /* in singular modes the least norm may take seconds to find */
     options.max_pivots = 5;
