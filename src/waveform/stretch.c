@@ -13,11 +13,13 @@ enum { N = DALCS_STRETCH_NODES };
 /* Last coefficients of this size over the formula's largest value are rounding. */
 static const double resolved = 4e-14;
 
-/* Halving that leaves this much of the last coefficients in both halves does not help: that is noise.
- * A kink is in one half only, and so is a jump. */
-static const double helps = 0.75;
+/* Halving that leaves this much of the last coefficients in both halves does not help: that is noise, nearly always, for
+ * there they are about the same in any span. A kink is in one half only, and so is a jump; where there are several, as
+ * many as a polynomial of degree 9 has zeros, they are apart after 4 halvings, and what oscillates is resolved after a
+ * few more. */
+static const double helps = 0.25;
 
-enum { MOST_HALVINGS = 50, MOST_IN_VAIN = 4, TAIL = 3 };
+enum { MOST_HALVINGS = 50, MOST_IN_VAIN = 6, TAIL = 3 };
 
 /* P_0 to P_(N-1) at x. */
 static void polynomials(double x, double *p) {

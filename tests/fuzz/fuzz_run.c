@@ -88,7 +88,6 @@ static void run(struct dalcs_session *s, bool print) {
     const struct dalcs_sink sink = {
         .user = &rows, .begin = begin, .row = row, .progress = progress};
     options.record = true;
-    options.energy = true;
     options.max_events = 2000;
     options.max_outer = 5; /* in singular modes the least norm may take seconds to find */
     options.max_pivots = 5;

@@ -500,11 +500,28 @@ Ve c 0 5
     checker.close(float(constant.group(1)), mean, 2e-9, "windows: constant of .four")
 
 
+def rounding(program, checker):
+    """What cancels in a formula leaves noise, which no halving resolves: each stretch has to be let go soon."""
+    r = Results(program, checker, """rounding
+V1 a 0 SIN(0 1 1k)
+R1 a b 1k
+C1 b 0 1p
+.tran 1u 20m
+.meas tran table AVG table(1e-9*v(a),-1,3,0,0,2,0)
+.meas tran offset RMS 1e3+1e-9*abs(v(a))-1e3
+.meas tran power AVG v(a)*v(a)*1e-9+1e3-1e3
+.end
+""")
+    r.close("table", 3e-9 / PI, tolerance=1e-6)
+    r.close("offset", 1e-9 * math.sqrt(0.5), tolerance=1e-4)
+    r.close("power", 0.5e-9, tolerance=1e-4)
+
+
 def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("measurements")
     for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier, decibels,
-                 windows):
+                 windows, rounding):
         test(program, checker)
     return checker.finish()
 
