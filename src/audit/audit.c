@@ -201,8 +201,23 @@ static enum dalcs_status set_up(struct dalcs_audit *audit) {
 
 /* What a start of the program costs, and how much an instant does for a device, in instructions: measured with
  * callgrind on the netlists of the repository (doc/testing.md). */
-static const double start_work = 8e5;
+static const double start_work = 5e5;
 static const double device_work = 300.0, node_work = 100.0;
+
+/* Of switches, whose controls are read, and sources, whose edges are looked for. */
+static const double moving_work = 2000.0;
+
+static double instant_work(const struct dalcs_circuit *c, const struct audit_part *part) {
+    double work = node_work * part->n_nodes;
+    for (int k = 0; k < part->n_devices; k++) {
+        const struct dalcs_device *d = &c->device[part->device[k]];
+        const bool moves =
+            d->kind == DALCS_SWITCH ||
+            (d->kind == DALCS_VSOURCE && c->stimulus[d->stimulus].kind != DALCS_STIMULUS_DC);
+        work += moves ? moving_work : device_work;
+    }
+    return work;
+}
 
 static const uint64_t first_seed = 0x9e3779b97f4a7c15u;
 
@@ -221,8 +236,7 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
                               .credit = options->share * start_work};
     enum dalcs_status status = options->n_parts > 0 ? set_up(a) : DALCS_OK;
     for (int k = 0; k < options->n_parts && status == DALCS_OK; k++) {
-        a->part[k].cost = device_work * a->part[k].n_devices + node_work * a->part[k].n_nodes +
-                          options->read_work[k];
+        a->part[k].cost = instant_work(circuit, &a->part[k]) + options->read_work[k];
     }
     if (status != DALCS_OK) {
         dalcs_audit_destroy(a);
@@ -374,6 +388,9 @@ void dalcs_audit_earn(struct dalcs_audit *audit, double work) {
 /* Instants in a stretch with --audit full, beside its ends, and pieces that integrals are taken over. */
 enum { FULL_INSTANTS = 3, FULL_PIECES = 2, INTERVAL_INSTANTS = 7 };
 
+/* Of the looks of a sample, those with an interval, which costs more than twice as much as all else. */
+static const double with_interval = 0.25;
+
 /* Times in a stretch are known to a rounding of t, over its length that is what a value in it may be off by where it
  * changes by its whole scale: it has to be less than the tolerance. */
 static bool can_look_inside(const struct dalcs_audit *audit,
@@ -402,9 +419,12 @@ static void integrate(struct dalcs_audit *audit, const struct dalcs_audit_stretc
         }
         return;
     }
+    if (!(audit_draw(audit) < with_interval || stretch->is_last)) {
+        return;
+    }
     const double from = stretch->from + 0.5 * audit_draw(audit) * length;
     const double to = stretch->to - 0.5 * audit_draw(audit) * length;
-    if ((audit->credit >= 0.0 || stretch->is_last) && from < to) {
+    if (from < to) {
         audit_check_interval(audit, part, from, to);
         audit->credit -= INTERVAL_INSTANTS * part->cost;
     }

@@ -157,13 +157,20 @@ static enum dalcs_status make_members(struct dalcs_audit_run *a) {
 
 /* ---- Start and end ------------------------------------------------------------------------------- */
 
-/* Instructions, about, as callgrind counts them (doc/testing.md): a value of a polynomial, of a source; a segment
- * beside its map, an element of a map; a value of a row. */
-static const double value_work = 15.0, source_work = 200.0;
-static const double segment_work = 2500.0, element_work = 0.6, row_work = 30.0;
+/* Instructions, at least, as callgrind counts them (doc/testing.md): a value of a polynomial, of a source; a value of a
+ * row; an element of a map. */
+static const double value_work = 15.0, source_work = 1000.0, row_work = 30.0, element_work = 0.6;
+
+/* Likewise of segments beside their maps: one that recurs and that nobody reads, one with rows; and what a search for
+ * its length and its events takes for each value of its polynomials. */
+static const double segment_work = 2500.0, read_segment_work = 10000.0, search_work = 100.0;
+
+/* What parts are held to in any case (choice.c). Whoever asks for less gets what rounding leaves, which the proof line
+ * tells: conductances may be so far apart that a value has no more digits. */
+static const double least_failure = 1e-9;
 
 /* What a sample may cost of a run. */
-static const double share = 0.05;
+static const double share = 0.045;
 
 static double read_work(const struct dalcs_audit_run *a, int part) {
     const struct dalcs_component *c = &a->euler->component[part];
@@ -191,7 +198,7 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
                                                     run->s->network.readout->device_system,
                                                 .n_parts = n,
                                                 .tolerance = tolerance,
-                                                .failure = run->tolerance,
+                                                .failure = fmax(run->tolerance, least_failure),
                                                 .read_work = work};
     const struct dalcs_audit_reader reader = {a, read_state, raise_scales};
     return dalcs_audit_create(&a->audit, &run->s->circuit, &options, &reader);
@@ -258,7 +265,9 @@ static void leave(struct dalcs_audit_run *a, int k, double to) {
         part->late != NULL; /* of which only what tells that it is one was computed */
     struct dalcs_audit_stretch stretch = stretch_of(a, k, to);
     stretch.is_last = to >= a->radau->options.stop;
-    stretch.work = segment_work + element_work * (is_brief ? 0.1 : 1.0) * elements;
+    stretch.work = (a->has_rows ? read_segment_work : segment_work) +
+                   (is_brief ? 0.1 * element_work * elements
+                             : element_work * elements + search_work * stages->layout.n_fixed);
     stretch.first_look = is_brief ? element_work * elements : 0.0;
     dalcs_audit_leave(a->audit, &stretch);
 }
@@ -276,6 +285,7 @@ void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
             leave(a, k, part->t_end < stop ? part->t_end : stop);
         }
     }
+    a->has_rows = false;
 }
 
 enum { TRIED_PERIODS = 3 };
@@ -332,6 +342,7 @@ void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side s
     }
     const double work = row_work * (double)n * a->run->s->network.n_outputs;
     dalcs_audit_earn(a->audit, work);
+    a->has_rows = true;
     for (int k = 0; k < a->radau->n_parts; k++) {
         if (a->radau->part[k].kind == DALCS_PART_ALGEBRAIC) {
             dalcs_audit_instant(a->audit, k, t, side, segment_work);
@@ -402,7 +413,7 @@ static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
 /* Where the run fell back to implicit Euler, nobody controls the error: it is told. */
 static void tell_coarse(const struct dalcs_audit_run *a) {
     const struct dalcs_audit_summary coarse = dalcs_audit_summarise_coarse(a->audit);
-    if (coarse.index < 0 || coarse.defect <= a->run->tolerance) {
+    if (coarse.index < 0 || coarse.defect <= fmax(a->run->tolerance, least_failure)) {
         return;
     }
     char name[NAME_SIZE];

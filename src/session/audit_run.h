@@ -15,6 +15,7 @@ struct dalcs_audit_run {
     struct audit_members *part; /* [n_systems] */
     double *tried;              /* states that a leap would lead to */
     double tried_time;          /* s, when; INFINITY: none is tried */
+    bool has_rows;              /* since the last segment ended */
     bool has_tried;             /* at least once */
     bool was_tried;             /* the next leap needs no trial */
     struct dalcs_arena arena;
