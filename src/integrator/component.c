@@ -12,7 +12,7 @@ enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
                                         const struct dalcs_circuit *circuit,
                                         const struct dalcs_system *system,
                                         const struct dalcs_osnsp_options *options) {
-    *c = (struct dalcs_component){.system = system, .circuit = circuit};
+    *c = (struct dalcs_component){.system = system, .circuit = circuit, .overgrown = -1};
     DALCS_TRY(dalcs_osnsp_setup(&c->osnsp, system, options));
     size_t n_u = (size_t)(system->n_x + system->n_inputs);
     size_t n_columns = (size_t)dalcs_system_n_columns(system);
@@ -169,4 +169,17 @@ enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma,
         }
     }
     return DALCS_OK;
+}
+
+/* V, A: products and squares of what is no larger are still numbers. */
+static const double largest_state = 1e150;
+
+bool dalcs_component_overgrows(struct dalcs_component *c, const double *x) {
+    for (int k = 0; k < c->system->n_x; k++) {
+        if (!(fabs(x[k]) <= largest_state)) {
+            c->overgrown = k;
+            return true;
+        }
+    }
+    return false;
 }

@@ -31,6 +31,7 @@ struct dalcs_component {
     int *switch_pair;
     double failed_sigma; /* the problem of the last failed solve, for the dump */
     const double *failed_u;
+    int overgrown;            /* the state that has become too large for numbers; -1 */
     bool is_static;           /* nothing depends on time or history */
     bool commanded;           /* the last solve changed a switch */
     bool was_open;            /* the last step's answer may be one of several */
@@ -62,5 +63,8 @@ void dalcs_component_sample_operating(const struct dalcs_component *c, bool tran
  * set first, the others follow their controlling voltage until they agree with the answer. */
 enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma, const double *u,
                                         double *y) DALCS_MUST_CHECK;
+
+/* Are the states x[n_x] too large to be reckoned with? Then c->overgrown is one that is. */
+bool dalcs_component_overgrows(struct dalcs_component *c, const double *x);
 
 #endif

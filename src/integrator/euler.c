@@ -511,6 +511,11 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
         dalcs_component_sample(c, e->t, DALCS_LEFT, c->u);
         DALCS_TRY(solve(e, k, n_x > 0 ? sigma : 0.0, c->u, c->y));
         note_scale(c);
+        if (dalcs_component_overgrows(c, c->y)) {
+            e->failed_system = k;
+            e->failed_time = e->t;
+            return DALCS_NOT_CONVERGED;
+        }
         if (e->energy != NULL) {
             dalcs_energy_scale(e->energy, k, &c->osnsp.certificate);
         }

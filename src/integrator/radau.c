@@ -362,6 +362,11 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     bool repeats = part->periodic != NULL && dalcs_periodic_repeats(r, part);
     if (!repeats || r->base->energy != NULL) {
         go_to_end(part);
+        if (dalcs_component_overgrows(part->component, part->x)) {
+            r->base->failed_system = part->index;
+            r->base->failed_time = part->t_end;
+            return DALCS_NOT_CONVERGED;
+        }
     }
     part->fresh = part->fresh || part->end != 1.0; /* the next step starts inside this one */
     if (r->base->energy != NULL) {

@@ -187,10 +187,26 @@ static const char *dump_problem(struct dalcs_run *r, const struct dalcs_euler *e
         &s->arena, "the one-step problem is in '%s'; tools/replay solves it again", path);
 }
 
+/* A state that has grown too large. */
+static void explain_growth(struct dalcs_session *s, const struct dalcs_component *c, double time) {
+    const char *element = c->system->column[c->overgrown].element;
+    dalcs_diag_add(
+        &s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, element),
+        "a negative resistance or a controlled source gives it energy all the time",
+        "at t = %.8g s the circuit is beyond numbers: it is unstable, and the %s of '%s' "
+        "has grown to more than 1e150 %s",
+        time, c->system->column_is_current[c->overgrown] ? "current" : "voltage", element,
+        c->system->column_is_current[c->overgrown] ? "A" : "V");
+}
+
 enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
                                         enum dalcs_status status) {
     struct dalcs_session *s = r->s;
     if (status <= DALCS_OK || e->failed_system < 0) {
+        return status;
+    }
+    if (e->component[e->failed_system].overgrown >= 0) {
+        explain_growth(s, &e->component[e->failed_system], e->failed_time);
         return status;
     }
     /* Radau sees what comes right behind a time; a step of Euler sees its end. */
