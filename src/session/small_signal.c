@@ -171,7 +171,10 @@ static enum dalcs_status part_setup(struct part *part, const struct dalcs_compon
         }
     }
     DALCS_TRY(compress(part));
-    return dalcs_lu_analyze(&part->symbolic, &part->common, part->n, part->p, part->i);
+    /* what is shorted has no unknowns, and KLU takes no matrix without rows */
+    return part->n == 0
+               ? DALCS_OK
+               : dalcs_lu_analyze(&part->symbolic, &part->common, part->n, part->p, part->i);
 }
 
 /* ---- One frequency ------------------------------------------------------------------------------ */
@@ -240,6 +243,9 @@ static enum dalcs_status solve_part(struct part *part, double frequency, double 
     static const double two_pi = 6.28318530717958647692;
     const double omega = two_pi * frequency;
     struct dalcs_lu lu;
+    if (part->n == 0) {
+        return DALCS_OK;
+    }
     balance(part, omega);
     DALCS_TRY(dalcs_lu_factor_analyzed(&lu, &part->common, part->symbolic, NULL, true, part->p,
                                        part->i, part->x, rcond_min));

@@ -230,6 +230,17 @@ C1 out 0 1u
 """
 
 
+SHORTED = """a filter, and a resistor across a short: a part without unknowns
+V1 in 0 AC 1
+R1 in out 1k
+C1 out 0 1u
+R2 b 0 1
+R3 b 0 0
+.ac lin 5 100 500
+.end
+"""
+
+
 def check_ac(case):
     case.run(RESONANCE)
     plot = case.plots()[0]
@@ -249,6 +260,12 @@ def check_ac(case):
         case.near(case.column(f"{part}(v(out))"), [of(z) for z in plot.column("v(out)")], 0.0,
                   f"{part} in the csv")
     case.loads(".ac", [("v(out)", 101), ("frequency", 101)])
+
+    case.run(SHORTED)
+    plot = case.plots()[0]
+    for f, found in zip([x.real for x in plot.column("frequency")], plot.column("v(out)")):
+        case.checker.close(found, 1 / (1 + 2j * math.pi * f * 1e-3), 1e-12, f"shorted, at {f}")
+    case.checker.check(not any(plot.column("v(b)")), "a voltage across a short")
 
     case.run(COUPLED)
     found = case.plots()[0]
