@@ -76,7 +76,7 @@ static const char *seconds(struct draft *d) {
 }
 
 static const char *positive_seconds(struct draft *d) {
-    return WORD(d, "100u", "1u", "10u", "33u", "0.2m", "1n", "7.1u");
+    return WORD(d, "33u", "1u", "10u", "21u", "45u", "1n", "7.1u");
 }
 
 /* PULSE with room for its edges and its width in each period. */
