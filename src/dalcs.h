@@ -684,7 +684,8 @@ struct dalcs_table_law {
     double defect, allowed; /* broken where the first is larger */
     double from, to;        /* s; the same where it is about one time */
     double since;           /* s, broken for the first time */
-    double sees; /* of coils and capacitors: an element that is off by more than this part of its value
+    double
+        sees; /* of coils and capacitors: an element that is off by more than this part of its value
                     would have been noticed; INFINITY: nothing moved. Of others 0 */
     size_t n_checked, n_broken;
 };

@@ -64,6 +64,25 @@ void file_check_diode(struct file_audit *a, const struct file_row *row, int devi
     }
 }
 
+/* What an E or G makes of its formula, or of the voltage that it reads. */
+static struct file_number output_of(struct file_audit *a, const struct file_row *row, int device) {
+    const struct dalcs_device *d = &a->circuit->device[device];
+    if (d->behaviour != NULL) {
+        return file_formula(a, row, device);
+    }
+    return file_add(file_exactly(0.0), d->value,
+                    file_add(row->v[d->node[2]], -1.0, row->v[d->node[3]]));
+}
+
+static void check_resistor(struct file_audit *a, const struct file_row *row, int device) {
+    const double r = a->circuit->device[device].value;
+    if (r == 0.0) {
+        check_voltage(a, row, device, file_exactly(0.0));
+    } else {
+        check_current(a, row, device, file_add(file_exactly(0.0), 1.0 / r, row->u[device]));
+    }
+}
+
 static void check_branch(struct file_audit *a, const struct file_row *row, int device) {
     const struct dalcs_device *d = &a->circuit->device[device];
     const struct file_number zero = file_exactly(0.0);
@@ -75,25 +94,13 @@ static void check_branch(struct file_audit *a, const struct file_row *row, int d
         check_current(a, row, device, file_stimulus(a, row, d->stimulus));
         break;
     case DALCS_RESISTOR:
-        if (d->value == 0.0) {
-            check_voltage(a, row, device, zero);
-        } else {
-            check_current(a, row, device, file_add(zero, 1.0 / d->value, row->u[device]));
-        }
+        check_resistor(a, row, device);
         break;
     case DALCS_VCVS:
-        check_voltage(
-            a, row, device,
-            d->behaviour != NULL
-                ? file_formula(a, row, device)
-                : file_add(zero, d->value, file_add(row->v[d->node[2]], -1.0, row->v[d->node[3]])));
+        check_voltage(a, row, device, output_of(a, row, device));
         break;
     case DALCS_VCCS:
-        check_current(
-            a, row, device,
-            d->behaviour != NULL
-                ? file_formula(a, row, device)
-                : file_add(zero, d->value, file_add(row->v[d->node[2]], -1.0, row->v[d->node[3]])));
+        check_current(a, row, device, output_of(a, row, device));
         break;
     case DALCS_CCVS:
         check_voltage(a, row, device, file_add(zero, d->value, row->i[d->control]));
@@ -107,12 +114,10 @@ static void check_branch(struct file_audit *a, const struct file_row *row, int d
     case DALCS_SWITCH:
         file_check_switch(a, row, device);
         break;
-    case DALCS_INDUCTOR:
-        if (a->is_at_rest) {
+    default: /* coils and capacitors: file_storage.c */
+        if (d->kind == DALCS_INDUCTOR && a->is_at_rest) {
             check_voltage(a, row, device, zero);
         }
-        break;
-    default: /* else coils and capacitors: file_storage.c */
         break;
     }
 }

@@ -195,8 +195,15 @@ void file_window_add(struct file_audit *a, struct file_window *w, const struct f
 
 /* ---- file_storage.c ---- */
 
+/* The charge or flux of an element at a row, and the law that windows of it are held to. */
+struct file_number file_stored(const struct file_audit *a, const struct file_row *row, int device);
+struct file_window_law file_law_of(const struct file_audit *a, int device);
+
 /* Charge and flux over an interval, from row[1] to row[2]; row[0] and row[3] may be NULL. */
 void file_check_interval(struct file_audit *a, struct file_row *const row[4]);
+
+/* ---- file_jumps.c ---- */
+
 void file_check_jump(struct file_audit *a, const struct file_row *left,
                      const struct file_row *right);
 

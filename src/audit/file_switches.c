@@ -70,7 +70,8 @@ unsigned char file_position(const struct file_audit *a, const struct file_row *r
     if (before == NULL && (row->t > 0.0 || !(is_start || row->is_left))) {
         position = FILE_OPEN | FILE_CLOSED; /* what the control did before is not in the file */
     }
-    double low = now.value, high = now.value;
+    double low = now.value;
+    double high = low;
     const struct file_number then = control_at(a, row, device, k - 1);
     if (before != NULL) {
         position = before->position[device];
