@@ -164,14 +164,14 @@ static void check_row(struct file_audit *a, size_t k) {
     struct file_row *const around[4] = {k >= 3 ? &a->row[(k - 3) % 4] : NULL,
                                         k >= 2 ? &a->row[(k - 2) % 4] : NULL,
                                         k >= 1 ? &a->row[(k - 1) % 4] : NULL, now};
-    if (k >= 2 && around[2]->t > around[1]->t) {
+    if (k >= 2 && !around[2]->is_behind) {
         file_check_interval(a, around);
     }
-    if (k >= 1 && now->t == around[2]->t) {
+    if (k >= 1 && now->is_behind) {
         file_check_jump(a, around[2], now);
     }
     struct file_row *const last[4] = {around[1], around[2], now, NULL};
-    if (k + 1 == n && k >= 1 && now->t > around[2]->t) {
+    if (k + 1 == n && k >= 1 && !now->is_behind) {
         file_check_interval(a, last);
     }
 }
@@ -192,7 +192,7 @@ static void pass(struct file_audit *a, bool checks) {
 static double ramp_of(const struct file_audit *a) {
     const struct dalcs_wave_table *t = a->table;
     for (size_t k = 1; k < t->n_rows; k++) {
-        if (t->value[k * t->n_columns] == t->value[(k - 1) * t->n_columns]) {
+        if (file_is_behind(t, k)) {
             return 0.0;
         }
     }

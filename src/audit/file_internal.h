@@ -34,6 +34,7 @@ enum { FILE_OPEN = 1, FILE_CLOSED = 2 }; /* positions that a switch may have */
 struct file_row {
     size_t index;
     double t, t_error;      /* s */
+    bool is_behind;         /* at the time of the row above */
     bool is_left, is_right; /* of two rows at one time */
     struct file_number *v;  /* [n_nodes] */
     struct file_number *u;  /* [n_devices] across each */
@@ -120,6 +121,15 @@ struct file_audit {
 enum dalcs_status file_find_columns(struct file_audit *a, struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
 /* ---- file_values.c ---- */
+
+/* Is row k at the time of the row above it? Closer than a time of an edge is known (stimulus.h) is the same. */
+static inline bool file_is_behind(const struct dalcs_wave_table *table, size_t k) {
+    if (k == 0 || k >= table->n_rows) {
+        return false;
+    }
+    const double now = table->value[k * table->n_columns];
+    return now - table->value[(k - 1) * table->n_columns] <= 4.0 * 0x1p-52 * now;
+}
 
 /* What the table tells of row k, after `before`, the row above; NULL: the first. */
 void file_evaluate(struct file_audit *a, size_t k, struct file_row *row,

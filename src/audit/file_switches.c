@@ -61,7 +61,8 @@ unsigned char file_position(const struct file_audit *a, const struct file_row *r
     const double half_width = fabs(a->circuit->switch_model[d->model].vh);
     const long k = (long)row->index;
     const struct file_number now = control_at(a, row, device, k);
-    if (!now.known) {
+    const bool is_between = row->is_behind && !row->is_right; /* others are on both sides of it */
+    if (!now.known || is_between) {
         return FILE_OPEN | FILE_CLOSED;
     }
     const double margin = now.error + control_tolerance(a, device);

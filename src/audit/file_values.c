@@ -155,8 +155,9 @@ void file_evaluate(struct file_audit *a, size_t k, struct file_row *row,
     row->index = k;
     row->t = *time;
     row->t_error = table->relative[0] * fabs(row->t) + table->absolute[0];
-    row->is_right = k > 0 && time[-(long)table->n_columns] == *time;
-    row->is_left = !row->is_right && k + 1 < table->n_rows && time[table->n_columns] == *time;
+    row->is_behind = file_is_behind(table, k);
+    row->is_right = row->is_behind && !file_is_behind(table, k + 1);
+    row->is_left = !row->is_behind && file_is_behind(table, k + 1);
     read_potentials(a, row);
     for (int d = 0; d < a->circuit->n_devices; d++) {
         const long column = a->current_column[d];

@@ -14,8 +14,8 @@ static double slope(const struct file_row *from, const struct file_row *to, doub
 struct file_number file_trapezoid(struct file_row *const row[4], const struct file_number x[4]) {
     const double h = row[2]->t - row[1]->t;
     const double middle = slope(row[1], row[2], x[1].value, x[2].value);
-    const bool has_left = row[0] != NULL && x[0].known && row[0]->t < row[1]->t;
-    const bool has_right = row[3] != NULL && x[3].known && row[3]->t > row[2]->t;
+    const bool has_left = row[0] != NULL && x[0].known && !row[1]->is_behind;
+    const bool has_right = row[3] != NULL && x[3].known && !row[3]->is_behind;
     double bend[2] = {0.0, 0.0};
     if (has_left) {
         bend[0] = fabs(middle - slope(row[0], row[1], x[0].value, x[1].value));
