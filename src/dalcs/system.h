@@ -50,6 +50,11 @@ struct dalcs_pair {
     double turn_on, turn_off; /* switches: control thresholds vt + vh and vt - vh, V or A */
 };
 
+/* A switch with hysteresis. */
+static inline bool dalcs_pair_remembers(const struct dalcs_pair *p) {
+    return p->turn_off < p->turn_on;
+}
+
 struct dalcs_system {
     int n_x, n_z, n_pairs, n_inputs;
     struct dalcs_csr P;       /* [n_x][n_x], nonsingular */

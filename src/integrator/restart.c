@@ -56,9 +56,10 @@ static double slack_of(const struct dalcs_radau_part *part, int guard) {
            dalcs_guard_most_rounding(part, guard, part->unit_scale);
 }
 
-/* Solves one step of length h to t + tau from state[n_x], following the voltages that move switches. */
+/* Solves one step of length h to t + tau from state[n_x], following the voltages that move switches. all: those with
+ * hysteresis, too; in micro-steps they stand as they are, see dalcs_search_change_mode(). */
 static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                               double tau, const double *state, double *y) {
+                               double tau, bool all, const double *state, double *y) {
     struct dalcs_component *c = part->component;
     const struct dalcs_system *s = c->system;
     double sigma = s->n_x > 0 ? 1.0 / h : 0.0;
@@ -75,7 +76,7 @@ static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *p
             double v = dalcs_csr_row_dot(&s->control, d, y);
             double slack = part->t > 0.0 ? slack_of(part, s->n_pairs + i) : 0.0;
             bool wants = is_on ? !(v < p->turn_off - slack) : v > p->turn_on + slack;
-            if (wants != is_on) {
+            if (wants != is_on && (all || !dalcs_pair_remembers(p))) {
                 dalcs_osnsp_command(&c->osnsp, d, wants);
                 moved = true;
             }
@@ -208,10 +209,10 @@ static enum dalcs_status pair_of_steps(struct dalcs_radau *r, struct dalcs_radau
                                        double h, double tau) {
     struct dalcs_component *c = part->component;
     r->restarts++;
-    DALCS_TRY(solve(r, part, h, tau, part->x, part->y1));
+    DALCS_TRY(solve(r, part, h, tau, false, part->x, part->y1));
     memcpy(part->w1, c->osnsp.w, (size_t)c->system->n_pairs * sizeof(double));
     long pivots = c->osnsp.counters.pivots;
-    DALCS_TRY(solve(r, part, h, 2.0 * tau, part->y1, part->y2));
+    DALCS_TRY(solve(r, part, h, 2.0 * tau, false, part->y1, part->y2));
     part->seen = c->osnsp.counters.pivots == pivots ? h : INFINITY;
     return DALCS_OK;
 }
@@ -453,7 +454,7 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     int n_equations = dalcs_system_n_equations(s);
-    DALCS_TRY(solve(r, part, h, h, part->x, part->y1));
+    DALCS_TRY(solve(r, part, h, h, true, part->x, part->y1));
     for (int k = 0; k < l->n_nodes; k++) {
         double *out = part->out + k * l->stride;
         memcpy(out, part->y1, (size_t)dalcs_system_n_columns(s) * sizeof(double));

@@ -2,6 +2,7 @@
 #include "search.h"
 
 #include "extremes.h"
+#include "guard_scale.h"
 #include "guards.h"
 #include "projection.h"
 #include "radau_internal.h"
@@ -31,6 +32,7 @@ enum {
     MOST_RESTARTS = 4,
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
     MOST_FLIPS = 12,
+    MOST_TURNS = 64,
     MOST_FLIPS_CLOSER = 2,
     MOST_REFINED = 4,
     FALL_BACK_LEAST = 5,
@@ -307,6 +309,33 @@ static enum dalcs_status ask_closer(struct dalcs_radau *r, struct dalcs_radau_pa
     return dalcs_radau_restart(r, part, search->restarts++, mode_only, NULL);
 }
 
+/* A switch that remembers stands as it was commanded until a voltage says otherwise, and at one instant that is the one
+ * behind the last jump: in an accurate step of the mode it has led to. Past the other threshold there, it turns back,
+ * and the circuit is asked what that does: a finite sequence of turns and jumps. One that comes round to the same state
+ * in the same mode would not end: the switches slide. */
+static enum dalcs_status turn_switches(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       struct dalcs_search *search) {
+    if (search->turns++ >= MOST_TURNS) {
+        part->slides = true;
+        part->component->delayed_commands++;
+        return DALCS_OK;
+    }
+    dalcs_guards_flip(part);
+    search->restarts = search->flips = 0;
+    return dalcs_search_ask(r, part, search, false);
+}
+
+/* All that has crossed. */
+static bool are_switches_that_remember(const struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    bool all = part->n_crossed > 0;
+    for (int k = 0; k < part->n_crossed && all; k++) {
+        int guard = part->crossed[k];
+        all = guard >= s->n_pairs && dalcs_pair_remembers(&s->pair[dalcs_guard_pair(part, guard)]);
+    }
+    return all;
+}
+
 enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                            struct dalcs_search *search, const double *unit,
                                            bool *done) {
@@ -319,6 +348,9 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
     }
     if (search->opened) {
         return dalcs_search_tie_crossed(part, search);
+    }
+    if (are_switches_that_remember(part)) {
+        return turn_switches(r, part, search);
     }
     double recovery = may_be_brief(r, part, search) ? dalcs_guards_recovery(part) : INFINITY;
     bool is_resolved = recovery * part->h >= 64.0 * r->resolution; /* else no micro-step sees it */

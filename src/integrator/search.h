@@ -15,6 +15,7 @@ struct dalcs_search {
     int asked_level; /* where a search begins anew after the circuit was asked: there, or `closer` */
     bool fixed;      /* the step is given: no error control */
     int restarts, flips;
+    int turns;     /* of switches with hysteresis, by what others or they themselves did */
     bool guessed;  /* the mode is one remembered from the last time, or that of a front */
     bool front;    /* the latter */
     int reopened;  /* times that diodes of a front were opened again */
