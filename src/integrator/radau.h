@@ -159,7 +159,7 @@ struct dalcs_radau_part {
 
     int fronts_refused;     /* guesses that a front goes on, which were wrong */
     uint64_t *modes_before; /* the one that held, the one after pairs changed sides */
-    uint64_t *mode_tied;
+    uint64_t *mode_tied, *mode_turned;
     long crowd; /* events since `crowd_since` */
     double crowd_since;
     long flurry; /* events, one close upon the other, up to the last one */

@@ -32,7 +32,7 @@ enum {
     MOST_RESTARTS = 4,
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
     MOST_FLIPS = 12,
-    MOST_TURNS = 64,
+    MOST_JUMPS = 64, /* at one instant, as switches turn */
     MOST_FLIPS_CLOSER = 2,
     MOST_REFINED = 4,
     FALL_BACK_LEAST = 5,
@@ -309,20 +309,43 @@ static enum dalcs_status ask_closer(struct dalcs_radau *r, struct dalcs_radau_pa
     return dalcs_radau_restart(r, part, search->restarts++, mode_only, NULL);
 }
 
+/* Have switches turned to where they stood, from the same state, so that they would for ever? Brent's way: modes are
+ * compared with one of them, which is a later one each time that their number has doubled. */
+static bool comes_round(const struct dalcs_radau_part *part, struct dalcs_search *search) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    if (search->turns > 0 && dalcs_mode_is(p->mode, part->mode_turned, p->n_words)) {
+        return true;
+    }
+    if ((search->turns & (search->turns - 1)) == 0) {
+        memcpy(part->mode_turned, p->mode, (size_t)p->n_words * sizeof(uint64_t));
+    }
+    return false;
+}
+
 /* A switch that remembers stands as it was commanded until a voltage says otherwise, and at one instant that is the one
  * behind the last jump: in an accurate step of the mode it has led to. Past the other threshold there, it turns back,
- * and the circuit is asked what that does: a finite sequence of turns and jumps. One that comes round to the same state
- * in the same mode would not end: the switches slide. */
+ * and the circuit is asked what that does: a finite sequence of turns and jumps. One that comes round to the same mode
+ * without a jump would not end, nor would one with a jump each time: the switches slide. */
 static enum dalcs_status turn_switches(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        struct dalcs_search *search) {
-    if (search->turns++ >= MOST_TURNS) {
+    if (comes_round(part, search) || search->jumps > MOST_JUMPS) {
         part->slides = true;
         part->component->delayed_commands++;
         return DALCS_OK;
     }
+    bool has_jumped = part->jumped;
+    search->turns++;
+    search->turned = true;
     dalcs_guards_flip(part);
     search->restarts = search->flips = 0;
-    return dalcs_search_ask(r, part, search, false);
+    part->jumped = false;
+    DALCS_TRY(dalcs_search_ask(r, part, search, false));
+    if (part->jumped) {
+        search->turns = 0;
+        search->jumps++;
+    }
+    part->jumped = part->jumped || has_jumped;
+    return DALCS_OK;
 }
 
 /* All that has crossed. */

@@ -15,7 +15,9 @@ struct dalcs_search {
     int asked_level; /* where a search begins anew after the circuit was asked: there, or `closer` */
     bool fixed;      /* the step is given: no error control */
     int restarts, flips;
-    int turns;     /* of switches with hysteresis, by what others or they themselves did */
+    int turns; /* of switches with hysteresis since the state has jumped, by what turns did */
+    int jumps; /* by such turns */
+    bool turned;
     bool guessed;  /* the mode is one remembered from the last time, or that of a front */
     bool front;    /* the latter */
     int reopened;  /* times that diodes of a front were opened again */

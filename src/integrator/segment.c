@@ -133,7 +133,7 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         r->wrong_sign = wrong_sign;
         r->wrong_time = part->t;
     }
-    if (part->fresh && part->flipped && search->turns == 0) {
+    if (part->fresh && part->flipped && !search->turned) {
         learn(part, search, theta, quality->ratio);
     }
     dalcs_segment_accept(r, part, theta, residual);

@@ -19,9 +19,11 @@ enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
         dalcs_arena_alloc(&part->arena, SLOTS * MODES * words, sizeof(uint64_t));
     part->modes_before = dalcs_arena_alloc(&part->arena, 2 * words, sizeof(uint64_t));
     part->mode_tied = dalcs_arena_alloc(&part->arena, words, sizeof(uint64_t));
+    part->mode_turned = dalcs_arena_alloc(&part->arena, words, sizeof(uint64_t));
     part->beginning[0] = part->beginning[1] = (struct dalcs_beginning){INT_MIN, 0, 1};
     bool complete = part->transition != NULL && part->transition_modes != NULL &&
-                    part->modes_before != NULL && part->mode_tied != NULL;
+                    part->modes_before != NULL && part->mode_tied != NULL &&
+                    part->mode_turned != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
