@@ -10,6 +10,12 @@
 
 #include "union_find.h"
 
+/* Does a switch remember its side? Then it may have been on the other one in between: it turns, a state jumps, and it
+ * turns back on what it finds behind the jump. */
+static bool may_have_turned(const struct dalcs_audit *audit, int model) {
+    return audit->circuit->switch_model[model].vh > 0.0;
+}
+
 /* May charge pass in no time? The impulse of a diode's current needs that it stands at its knee thereafter. */
 static bool passes_charge(const struct dalcs_audit *audit, const struct audit_part *part,
                           const struct dalcs_audit_state *before,
@@ -25,7 +31,8 @@ static bool passes_charge(const struct dalcs_audit *audit, const struct audit_pa
         return d->behaviour != NULL;
     case DALCS_SWITCH:
         return audit->circuit->switch_model[d->model].ron == 0.0 &&
-               (before->is_closed[device] || after->is_closed[device]);
+               (before->is_closed[device] || after->is_closed[device] ||
+                may_have_turned(audit, d->model));
     case DALCS_DIODE: {
         const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
         const double v = audit_voltage(after, d);
@@ -50,7 +57,8 @@ static bool bounds_voltage(const struct dalcs_audit *audit, const struct audit_p
         return true;
     case DALCS_SWITCH:
         return isfinite(audit->circuit->switch_model[d->model].roff) ||
-               (before->is_closed[device] && after->is_closed[device]);
+               (before->is_closed[device] && after->is_closed[device] &&
+                !may_have_turned(audit, d->model));
     case DALCS_DIODE: {
         const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
         return isfinite(m->roff) || isfinite(m->vrev) ||
