@@ -406,7 +406,8 @@ static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
         "the report lists the laws that are broken; please report this netlist",
         "the waveform seems wrong: the audit finds %s broken by %.2g of its scale at t = "
         "%s, and %.2g is allowed",
-        name, found->defect, dalcs_quantity_write(time, found->time, "s", 9), a->run->tolerance);
+        name, found->defect, dalcs_quantity_write(time, found->time, "s", 9),
+        fmax(a->run->tolerance, least_failure));
     return DALCS_NOT_CONVERGED;
 }
 
