@@ -171,8 +171,8 @@ enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma,
     return DALCS_OK;
 }
 
-/* V, A: products and squares of what is no larger are still numbers. */
-static const double largest_state = 1e150;
+/* V, A: what gains of up to 1e60 make of no more than this are still numbers. */
+static const double largest_state = 1e240;
 
 bool dalcs_component_overgrows(struct dalcs_component *c, const double *x) {
     for (int k = 0; k < c->system->n_x; k++) {

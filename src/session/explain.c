@@ -194,7 +194,7 @@ static void explain_growth(struct dalcs_session *s, const struct dalcs_component
         &s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, element),
         "a negative resistance or a controlled source gives it energy all the time",
         "at t = %.8g s the circuit is beyond numbers: it is unstable, and the %s of '%s' "
-        "has grown to more than 1e150 %s",
+        "has grown to more than 1e240 %s",
         time, c->system->column_is_current[c->overgrown] ? "current" : "voltage", element,
         c->system->column_is_current[c->overgrown] ? "A" : "V");
 }
