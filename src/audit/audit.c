@@ -181,13 +181,28 @@ static enum dalcs_status number_lambdas(struct dalcs_audit *audit) {
     return DALCS_OK;
 }
 
+static void find_fed(const struct dalcs_audit *audit) {
+    const struct dalcs_circuit *c = audit->circuit;
+    audit->is_fed[0] = true;
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        if (d->kind == DALCS_VSOURCE && (d->node[0] == 0 || d->node[1] == 0)) {
+            const struct dalcs_stimulus *s = &c->stimulus[d->stimulus];
+            audit->is_fed[d->node[d->node[0] == 0]] = dalcs_stimulus_value(s, 0.0, DALCS_LEFT) ==
+                                                      dalcs_stimulus_value(s, 0.0, DALCS_RIGHT);
+        }
+    }
+}
+
 static enum dalcs_status set_up(struct dalcs_audit *audit) {
     const size_t n_nodes = (size_t)audit->circuit->n_nodes;
     audit->node_of = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(int));
     audit->has_charge = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
-    if (audit->node_of == NULL || audit->has_charge == NULL) {
+    audit->is_fed = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
+    if (audit->node_of == NULL || audit->has_charge == NULL || audit->is_fed == NULL) {
         return DALCS_E_NOMEM;
     }
+    find_fed(audit);
     merge_shorts(audit);
     DALCS_TRY(number_lambdas(audit));
     DALCS_TRY(make_parts(audit));

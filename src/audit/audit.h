@@ -77,6 +77,7 @@ struct dalcs_audit_options {
 
     double share; /* of the work of the run that samples may cost */
     double vntol, abstol;
+    bool is_start;          /* the run begins as the netlist says, not where another one ended */
     double resolution;      /* s; times closer than this are one */
     const int *device_part; /* [n_devices] the part that a device is in, -1: none */
     int n_parts;

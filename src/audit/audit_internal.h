@@ -44,6 +44,7 @@ struct dalcs_audit {
     int n_lambdas;
     int *node_of;      /* [n_nodes] that stands for all that shorts join with it */
     bool *has_charge;  /* [n_nodes] a capacitor hangs on it */
+    bool *is_fed;      /* [n_nodes] ground, or a source without a jump at 0 holds it */
     int *first_lambda; /* [n_devices] */
     struct audit_part *part;
     double *v_scale, *i_scale, *lambda_scale;     /* largest so far */

@@ -190,6 +190,12 @@ static void check_switch(struct dalcs_audit *audit, const struct audit_part *par
     wrong -= wrong > 0.0 ? audit_control_slack(audit, part, s, device) : 0.0;
     audit_find(audit, part, DALCS_AUDIT_POSITION, device, wrong,
                audit_control_scale(audit, part, device), s->t);
+    /* within its hysteresis it starts where the netlist says, if nothing may have moved it there */
+    if (s->t == 0.0 && audit->options.is_start && d->control < 0 && fabs(control) < half_width &&
+        audit->is_fed[d->node[2]] && audit->is_fed[d->node[3]]) {
+        const double off = is_closed != d->initially_on ? half_width : 0.0;
+        audit_find(audit, part, DALCS_AUDIT_POSITION, device, off, half_width, s->t);
+    }
     audit->count.positions++;
 }
 

@@ -6,9 +6,12 @@
 
 #include <stdlib.h>
 
-/* Does an equation know its current by itself? That of others follows from voltages. */
-static bool has_own_current(const struct dalcs_device *d) {
+/* Does an equation know its current by itself? That of others follows from voltages; of a capacitor only formulas ask. */
+static bool has_own_current(const struct dalcs_layout *l, int device) {
+    const struct dalcs_device *d = &l->circuit->device[device];
     switch (d->kind) {
+    case DALCS_CAPACITOR:
+        return l->current_column[device] >= 0;
     case DALCS_VSOURCE:
     case DALCS_INDUCTOR:
     case DALCS_VCVS:
@@ -31,7 +34,7 @@ static enum dalcs_status add_current(const struct dalcs_layout *l,
                                      const struct dalcs_network *network, int device,
                                      struct terms *all) {
     const int system = l->topology.device_component[device];
-    if (system < 0 || !has_own_current(&l->circuit->device[device])) {
+    if (system < 0 || !has_own_current(l, device)) {
         return DALCS_OK;
     }
     struct dalcs_current current = {0};

@@ -66,8 +66,13 @@ enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r,
 enum dalcs_status dalcs_cycle_leap(struct dalcs_radau *r, double until, long most_steps,
                                    const struct dalcs_leap **leap) DALCS_MUST_CHECK;
 
-/* Segments of a period. */
+/* Segments of a period, and s. */
 int dalcs_cycle_n_segments(const struct dalcs_cycle *cycle);
+double dalcs_cycle_period(const struct dalcs_cycle *cycle);
+
+/* Takes states x[n_x] with which the present segment began n periods on, one by one and with nothing looked at; later[n_x]
+ * is work. Just after a leap. */
+void dalcs_cycle_pass(const struct dalcs_radau_part *part, long n, double *x, double *later);
 
 /* Where a leap of at most so many periods would lead to, which then are stepped all the same, so that the two can be
  * compared: the states x[n_x] with which the present segment begins at *t (s; INFINITY: no leap). */

@@ -165,9 +165,10 @@ static const double value_work = 15.0, source_work = 1000.0, row_work = 30.0, el
  * its length and its events takes for each value of its polynomials. */
 static const double segment_work = 2500.0, read_segment_work = 10000.0, search_work = 100.0;
 
-/* What parts are held to in any case (choice.c). Whoever asks for less gets what rounding leaves, which the proof line
- * tells: conductances may be so far apart that a value has no more digits. */
-static const double least_failure = 1e-9;
+/* Charges and fluxes are compared with currents and voltages, which are their derivatives: between the nodes of a step
+ * these have half the digits, the square root of a rounding, however small the tolerance. The proof line tells what is
+ * left. */
+static const double least_failure = 0x1p-26;
 
 /* What a sample may cost of a run. */
 static const double share = 0.045;
@@ -193,6 +194,7 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
                                                 .share = share,
                                                 .resolution = a->radau->resolution,
                                                 .vntol = run->vntol,
+                                                .is_start = run->s->network.held == NULL,
                                                 .abstol = run->abstol,
                                                 .device_part =
                                                     run->s->network.readout->device_system,
@@ -215,7 +217,7 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
     enum dalcs_status status = make_members(a);
     if (status == DALCS_OK && radau->cycling != NULL) {
         const int n_x = radau->cycling->component->system->n_x;
-        a->tried = dalcs_arena_alloc(&a->arena, (size_t)n_x, sizeof(double));
+        a->tried = dalcs_arena_alloc(&a->arena, 2 * (size_t)n_x, sizeof(double));
         status = a->tried != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
     status = status == DALCS_OK ? create(a) : status;
@@ -307,6 +309,37 @@ enum dalcs_status dalcs_audit_run_leap(struct dalcs_audit_run *a, double until, 
     return DALCS_OK;
 }
 
+/* How far the states of the cycling part are from x, over their scales. */
+static double distance(const struct dalcs_radau_part *part, const double *x) {
+    double worst = 0.0;
+    for (int k = 0; k < part->component->system->n_x; k++) {
+        const double off = fabs(x[k] - part->x[k]);
+        worst = off > worst * part->scale[k] ? off / part->scale[k] : worst;
+    }
+    return worst;
+}
+
+void dalcs_audit_run_start_leap(struct dalcs_audit_run *a) {
+    const struct dalcs_radau_part *part = a->radau->cycling;
+    if (a->audit != NULL) {
+        memcpy(a->tried, part->x, (size_t)part->component->system->n_x * sizeof(double));
+        a->leap_time = part->t;
+    }
+}
+
+void dalcs_audit_run_end_leap(struct dalcs_audit_run *a) {
+    const struct dalcs_radau_part *part = a->radau->cycling;
+    const int n_x = part->component->system->n_x;
+    const double periods = rint((part->t - a->leap_time) / dalcs_cycle_period(part->cycle));
+    const double work = 3.0 * n_x * (n_x + 1) * periods;
+    if (a->audit != NULL && (dalcs_audit_may(a->audit, work) || !a->has_passed)) {
+        a->has_passed = true;
+        dalcs_cycle_pass(part, (long)periods, a->tried, a->tried + n_x);
+        dalcs_audit_add(a->audit, DALCS_AUDIT_PERIOD, part->index, distance(part, a->tried),
+                        part->t);
+    }
+}
+
 /* The segment that a leap was tried to has begun, or another one has instead. */
 static void compare_tried(struct dalcs_audit_run *a) {
     const struct dalcs_radau_part *part = a->radau->cycling;
@@ -314,12 +347,8 @@ static void compare_tried(struct dalcs_audit_run *a) {
     if (part == NULL || part->t < a->tried_time - near) {
         return;
     }
-    double worst = part->t > a->tried_time + near ? 1.0 : 0.0;
-    for (int k = 0; k < part->component->system->n_x; k++) {
-        const double scale = part->scale[k];
-        const double off = fabs(a->tried[k] - part->x[k]);
-        worst = off > worst * scale ? off / scale : worst;
-    }
+    const bool is_other = part->t > a->tried_time + near;
+    const double worst = is_other ? 1.0 : distance(part, a->tried);
     dalcs_audit_add(a->audit, DALCS_AUDIT_PERIOD, part->index, worst, part->t);
     a->tried_time = INFINITY;
     a->was_tried = true;

@@ -13,9 +13,11 @@ struct dalcs_audit_run {
     struct dalcs_radau *radau;
     struct dalcs_audit *audit;  /* NULL: nothing is audited */
     struct audit_members *part; /* [n_systems] */
-    double *tried;              /* states that a leap would lead to */
+    double *tried;              /* states that a leap would lead to, and work */
+    double leap_time;           /* s, where one began */
     double tried_time;          /* s, when; INFINITY: none is tried */
     bool has_rows;              /* since the last segment ended */
+    bool has_passed;            /* a leap was compared, at least once */
     bool has_tried;             /* at least once */
     bool was_tried;             /* the next leap needs no trial */
     struct dalcs_arena arena;
@@ -37,6 +39,11 @@ void dalcs_audit_run_enter(struct dalcs_audit_run *a);
 /* May the cycling part leap now? Not while periods are stepped that a leap was tried over. */
 enum dalcs_status dalcs_audit_run_leap(struct dalcs_audit_run *a, double until,
                                        bool *may) DALCS_MUST_CHECK;
+
+/* Around a leap: the states behind it are those that the period's map leads to in the time that has passed, counted by
+ * periods and applied one by one. */
+void dalcs_audit_run_start_leap(struct dalcs_audit_run *a);
+void dalcs_audit_run_end_leap(struct dalcs_audit_run *a);
 
 /* Rows were made, the last of them at t. */
 void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side side, long n);

@@ -276,10 +276,12 @@ static enum dalcs_status leap(struct transient *c) {
     if (!may) {
         return DALCS_OK;
     }
+    dalcs_audit_run_start_leap(c->audit);
     DALCS_TRY(dalcs_cycle_leap(c->radau, until, c->to_go, &leap));
     if (leap == NULL) {
         return DALCS_OK;
     }
+    dalcs_audit_run_end_leap(c->audit);
     c->t = c->radau->cycling->t;
     dalcs_measures_skip(c->measures, c->t);
     DALCS_TRY(dalcs_recorder_leap(c->recorder, leap));

@@ -1,0 +1,257 @@
+#!/usr/bin/env python3
+"""An engine that is broken on purpose: the default audit has to find it.
+
+usage: mutations.py BUILD SOURCE [NAME...]
+
+Each mutation replaces some text in one source file, compiles that file as the build does and links the program
+with it, in a directory of its own. A netlist that uses what is broken is run with the default audit. It is found
+if the run ends with exit code 1 because of the audit, or if the proof line tells of a defect that is more than the
+component is held to. The same netlist must pass with the program as it is.
+"""
+
+import json
+import os
+import pathlib
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker  # noqa: E402
+
+SKIPPED = 77
+
+PWM = """sine against triangle
+vr r 0 SIN(0 0.8 50)
+vt t 0 PULSE(-1 1 0 0.25m 0.25m 0 0.5m)
+vin in 0 100
+s1 in x r t sw
+d1 0 x di
+l1 x out 10m
+r1 out 0 10
+.model sw SW(vt=0 ron=0.01)
+.model di D(ron=0.01)
+.tran 0.1m 40m
+"""
+
+BUCK = """a buck from rest, whose periods are leapt over
+vin in 0 12
+vg g 0 PULSE(0 1 0 0 0 4u 10u)
+s1 in x g 0 sw
+d1 0 x di
+l1 x out 47u
+c1 out 0 100u
+r1 out 0 2
+.model sw SW(vt=0.5 ron=0.01)
+.model di D(ron=0.01)
+.tran 5m 5m uic
+"""
+
+HYSTERESIS = """a buck that its own output switches
+vin in 0 12
+s1 in x ref out sw
+d1 0 x di
+l1 x out 47u
+c1 out 0 100u
+r1 out 0 2
+vr ref 0 5
+.model sw SW(vt=0 vh=0.1 ron=0.01)
+.model di D(ron=0.01)
+.tran 10u 20m uic
+"""
+
+HELD = """a switch whose control stays within its hysteresis
+vin in 0 12
+vc c 0 SIN(0.5 0.1 1k)
+s1 in x c 0 sw OFF
+r1 x 0 10
+c1 x 0 1u
+.model sw SW(vt=0.5 vh=0.3 ron=0.01)
+.tran 10u 5m
+"""
+
+BRIDGE = """a bridge with a smoothing capacitor
+v1 a b SIN(0 24 50)
+d1 a p di
+d2 b p di
+d3 n a di
+d4 n b di
+c1 p n 470u
+r1 p n 40
+rg n 0 1meg
+.model di D(ron=0.02 vfwd=0.7)
+.tran 0.1m 0.6
+"""
+
+FLYBACK = """two coupled coils
+vin in 0 24
+l1 in x 200u
+l2 0 y 50u
+k1 l1 l2 0.99
+vg g 0 PULSE(0 1 0 0 0 3u 10u)
+s1 x 0 g 0 sw
+rs x in 2k
+d1 y out di
+c1 out 0 47u
+r1 out 0 10
+.model sw SW(vt=0.5 ron=0.05)
+.model di D(ron=0.02)
+.tran 5u 1m uic
+"""
+
+SHARING = """charge that a switch shares between two capacitors, again and again
+vg g 0 PULSE(0 1 1m 0 0 1m 2m)
+c1 a 0 1u ic=5
+c2 b 0 2.2u
+s1 a b g 0 sw
+r1 a 0 10k
+r2 b 0 22k
+v1 s 0 5
+r3 s a 15k
+.model sw SW(vt=0.5 ron=0)
+.tran 0.1m 20m uic
+"""
+
+FILTER = """a sine into a damped tank, and a rectifier
+v1 a 0 SIN(0 10 1k)
+r1 a b 50
+l1 b c 10m
+c1 c 0 1u
+d1 c d di
+r2 d 0 1k
+c2 d 0 4.7u
+.model di D()
+.tran 20u 10m
+"""
+
+
+# name: (file, what to replace, by what, netlist)
+MUTATIONS = {
+    "a source is dropped from a control": (
+        "integrator/control_course.c", "k < a->p[pair + 1]; k++", "k + 1 < a->p[pair + 1]; k++", PWM),
+    "a command is lost": (
+        "integrator/commands.c", "            m->is_on = !m->is_on;\n",
+        "            m->is_on = m->n[0] % 7 == 5 ? m->is_on : !m->is_on;\n", BUCK),
+    "a command comes early": (
+        "integrator/commands.c", "    m->next = dalcs_command_time(m, way, m->n[way]);\n",
+        "    m->next = dalcs_command_time(m, way, m->n[way]) * (1.0 - 1e-4);\n", FLYBACK),
+    "an event of a diode is skipped": (
+        "integrator/guards.c", "if (!(bound[g] >= 0.0) && ", "if (!(bound[g] >= 0.0) && g != 0 && ",
+        BRIDGE),
+    "a map is stale": (
+        "integrator/stages.c", "return e->h == h && ", "return (e->h == h || e->h == 0.5 * h) && ",
+        FILTER),
+    "a leap one period too far": (
+        "integrator/cycle.c", "        put_off(r, part, n);\n", "        put_off(r, part, n + 1);\n", BUCK),
+    "a leap tells of fewer periods than it took": (
+        "integrator/cycle.c", "(size_t)n_x * sizeof(double));\n    return n;\n",
+        "(size_t)n_x * sizeof(double));\n    return n > 2 ? n - 1 : n;\n", BUCK),
+    "a state is nudged by 1e-7": (
+        "integrator/segment.c", "    part->in[s->n_x] = 1.0;\n",
+        "    part->in[s->n_x] = 1.0;\n    part->in[0] *= 1.0 + 1e-7;\n", FILTER),
+    "a sine is too slow by 1e-4": (
+        "integrator/excitation.c", ".omega = term != NULL ? term->omega : 0.0",
+        ".omega = term != NULL ? 0.9999 * term->omega : 0.0", FILTER),
+    "hysteresis is half as wide": (
+        "dalcs/stamp_device.c", ".turn_off = m->vt - m->vh}", ".turn_off = m->vt}", HYSTERESIS),
+    "charge is lost where a segment ends": (
+        "integrator/radau.c", "        memcpy(part->x, end, state_bytes);\n",
+        "        memcpy(part->x, end, state_bytes);\n        part->x[0] *= 0.9999;\n", SHARING),
+    "an event comes late": (
+        "integrator/segment.c", "    part->t_end = dalcs_smaller(t_end, search->limit);\n",
+        "    t_end += part->n_crossed > 0 ? 1e-3 * part->h : 0.0;\n"
+        "    part->t_end = dalcs_smaller(t_end, search->limit);\n", BRIDGE),
+    "a switch starts on the other side": (
+        "dalcs/stamp_device.c", ".initially_on = d->initially_on,", ".initially_on = !d->initially_on,",
+        HELD),
+    "a resistor is stamped too large": (
+        "dalcs/stamp_device.c", "1.0 / d->value", "1.0 / (1.00001 * d->value)", FILTER),
+}
+
+
+def compile_command(build, source_file):
+    for entry in json.loads((build / "compile_commands.json").read_text()):
+        path = pathlib.Path(entry["directory"], entry["file"]).resolve()
+        if path == source_file.resolve():
+            return shlex.split(entry["command"]), entry["directory"]
+    raise SystemExit(f"{source_file} is compiled nowhere")
+
+
+def link_command(build):
+    text = subprocess.run(["ninja", "-C", str(build), "-t", "commands", "dalcs"], capture_output=True,
+                          text=True, check=True).stdout
+    return shlex.split(text.strip().splitlines()[-1])
+
+
+def mutant(build, source, file, old, new, where):
+    """The program with one mutated file, in directory `where`."""
+    original = source / "src" / file
+    text = original.read_text()
+    if old not in text:
+        raise SystemExit(f"{file} has no text {old!r}: mend the mutation")
+    mutated = where / original.name
+    mutated.write_text(text.replace(old, new))
+    command, directory = compile_command(build, original)
+    entry = command.index("-c") + 1
+    command[entry] = str(mutated)
+    object_file = where / (original.name + ".o")
+    command[command.index("-o") + 1] = str(object_file)
+    for flag in ("-MF", "-MQ"):
+        command[command.index(flag) + 1] = str(where / "dependencies")
+    command.insert(1 if "ccache" not in command[0] else 2, f"-iquote{original.parent}")
+    command = [c for c in command if c != "-Werror"]
+    subprocess.run(command, cwd=directory, check=True)
+    program = where / "dalcs"
+    link = link_command(build)
+    link[link.index("-o") + 1] = str(program)
+    link.insert(link.index("-o") + 2, str(object_file))
+    subprocess.run(link, cwd=build, check=True)
+    return program
+
+
+AT = "4.9e-3\n"  # s, so that there are few rows
+
+
+def verdict(program, netlist, where):
+    """("passes" | "noticed" | "broken" | "fails otherwise", what the run said)."""
+    (where / "circuit.cir").write_text(netlist + ".end\n")
+    (where / "at").write_text(AT)
+    few_rows = ["--at", str(where / "at")] if "leapt" in netlist else []
+    try:
+        command = [str(program), "run", str(where / "circuit.cir"), "-o", str(where / "out.csv")]
+        ran = subprocess.run(command + few_rows, capture_output=True, text=True, timeout=60)
+    except subprocess.TimeoutExpired:
+        return "fails otherwise", "it takes more than 60 s"
+    said = ran.stdout + ran.stderr
+    if ran.returncode == 1 and "the audit finds" in said:
+        return "broken", said
+    if ran.returncode != 0:
+        return "fails otherwise", said
+    proof = next((line for line in ran.stdout.splitlines() if line.startswith("  proof")), "")
+    return ("noticed" if "more than" in proof else "passes"), said
+
+
+def main():
+    build, source = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
+    if shutil.which("ninja") is None:
+        return SKIPPED
+    checker = Checker("mutations")
+    for name, (file, old, new, netlist) in MUTATIONS.items():
+        if sys.argv[3:] and name not in sys.argv[3:]:
+            continue
+        with tempfile.TemporaryDirectory() as directory:
+            where = pathlib.Path(directory)
+            sound, said = verdict(build / "dalcs", netlist, where)
+            checker.check(sound == "passes", f"{name}: without it: {sound}: {said}")
+            broken = mutant(build, source, file, old, new, where)
+            found, said = verdict(broken, netlist, where)
+            line = next((x for x in said.splitlines() if "the audit finds" in x or x.startswith("  proof")), "")
+            print(f"{name}: {found}: {line.strip()}")
+            checker.check(found in ("broken", "noticed"), f"{name}: {found}: {said}")
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
