@@ -217,13 +217,19 @@ static enum dalcs_status set_up(struct dalcs_audit *audit) {
 /* What a start of the program costs, and how much an instant does for a device, in instructions: measured with
  * callgrind on the netlists of the repository (doc/testing.md). */
 static const double start_work = 5e5;
-static const double device_work = 300.0, node_work = 100.0;
+static const double device_work = 500.0, node_work = 200.0;
 
 /* Of switches, whose controls are read, and sources, whose edges are looked for. */
-static const double moving_work = 2000.0;
+static const double moving_work = 3000.0;
+
+/* Of a coupling, for all coils of which fluxes are added up. */
+static const double coupling_work = 2000.0;
+
+/* Instants of a look: one inside, and both sides of its end. */
+enum { LOOK_INSTANTS = 3 };
 
 static double instant_work(const struct dalcs_circuit *c, const struct audit_part *part) {
-    double work = node_work * part->n_nodes;
+    double work = node_work * part->n_nodes + coupling_work * part->n_couplings;
     for (int k = 0; k < part->n_devices; k++) {
         const struct dalcs_device *d = &c->device[part->device[k]];
         const bool moves =
@@ -252,6 +258,8 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
     enum dalcs_status status = options->n_parts > 0 ? set_up(a) : DALCS_OK;
     for (int k = 0; k < options->n_parts && status == DALCS_OK; k++) {
         a->part[k].cost = instant_work(circuit, &a->part[k]) + options->read_work[k];
+        a->credit -=
+            LOOK_INSTANTS * a->part[k].cost; /* of its end, which is looked at in any case */
     }
     if (status != DALCS_OK) {
         dalcs_audit_destroy(a);
@@ -454,18 +462,26 @@ static void take_up(struct audit_part *part, const struct dalcs_audit_stretch *s
     part->slope = stretch->step > 0.0 ? 2.0 * s * s / stretch->step : 0.0;
 }
 
+bool dalcs_audit_passes_over(struct dalcs_audit *audit, int index, double work) {
+    audit->count.stretches++;
+    audit->credit += audit->options.share * work;
+    const bool passes =
+        audit->options.mode == DALCS_AUDIT_SAMPLE && audit->credit < audit->threshold;
+    if (passes) {
+        audit->part[index].is_open = false;
+    }
+    return passes;
+}
+
+bool dalcs_audit_was_left(const struct dalcs_audit *audit, int index) {
+    return audit->part[index].is_open || !audit->part[index].has_entered;
+}
+
 void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
-    audit->count.stretches++;
-    audit->credit += audit->options.share * stretch->work;
     take_up(part, stretch);
-    const double instants = 3.0;
-    const double cost = instants * part->cost + stretch->first_look;
     part->past = stretch->to - stretch->from;
-    if (!is_drawn(audit, cost) && !stretch->is_last) {
-        part->is_open = false;
-        return;
-    }
+    audit->threshold = 2.0 * (LOOK_INSTANTS * part->cost + stretch->first_look) * audit_draw(audit);
     audit->count.audited++;
     audit->credit -= stretch->first_look;
     raise_scales(audit, stretch->part);
@@ -485,7 +501,7 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
 void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     const int index = stretch->part;
     struct audit_part *part = &audit->part[index];
-    if ((!part->is_open && part->has_entered) || stretch->rule == DALCS_AUDIT_COARSE) {
+    if (stretch->rule == DALCS_AUDIT_COARSE) {
         part->is_open = false;
         return;
     }

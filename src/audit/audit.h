@@ -44,9 +44,8 @@ struct dalcs_audit_stretch {
     double from, to;   /* s */
     double step;       /* s, of the method: rounding of stored charge is a current over it */
     int degree;        /* of its polynomials over such a step */
-    double work;       /* what it took to make, in instructions, about */
-    double first_look; /* likewise, what the first look at it takes besides */
-    bool is_last;      /* of the part: it is looked at for the scales that the run ends with */
+    double first_look; /* what the first look at it takes besides, in instructions, about */
+    bool is_last; /* of the part: an interval is looked at for the scales that the run ends with */
 
     enum dalcs_audit_rule {
         DALCS_AUDIT_SMOOTH, /* a polynomial, right at all times to the tolerance */
@@ -94,11 +93,17 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
 
 void dalcs_audit_destroy(struct dalcs_audit *audit);
 
-/* A stretch is complete and can be read, up to its end. */
+/* A stretch is complete, which took so much work, in instructions, about: need nobody look at it? Where somebody must, and
+ * at the last one in any case, dalcs_audit_leave() follows. */
+bool dalcs_audit_passes_over(struct dalcs_audit *audit, int part, double work);
+
+/* It can be read, up to its end. */
 void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
 
-/* The next one begins where the last one ended, or is the first one of all, and can be read there; `work` and `first_look`
- * are not used. */
+/* Was the last stretch of the part looked at, or is there none? Then dalcs_audit_enter() follows. */
+bool dalcs_audit_was_left(const struct dalcs_audit *audit, int part);
+
+/* The next one begins where that ended, or is the first one of all, and can be read there; `first_look` is not used. */
 void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
 
 /* A part without memory at time t. */
