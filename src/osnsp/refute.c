@@ -325,7 +325,7 @@ static enum dalcs_status refute(struct refutation *r, bool *is_certain) {
     if (*is_certain || r->n_rows + r->n_columns > MOST_SIZE) {
         return DALCS_OK;
     }
-    double size = r->n_rows + r->n_columns;
+    double size = 1.0 + r->n_rows + r->n_columns; /* a part may have no equation */
     r->most_cases = 1 + (long)(most_work / (size * size * size));
     DALCS_TRY(make_dense(r));
     int *split = dalcs_arena_alloc(&r->work, (size_t)r->n_rows, sizeof(int));
