@@ -401,6 +401,7 @@ bool dalcs_audit_may(struct dalcs_audit *audit, double work) {
 
 void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int index, double defect,
                      double time) {
+    audit->part[index].is_coarse = false; /* what the last look was at is no matter here */
     audit_find(audit, &audit->part[index], law, index, defect, 1.0, time);
 }
 

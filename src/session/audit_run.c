@@ -170,6 +170,11 @@ static const double segment_work = 2500.0, read_segment_work = 6000.0, search_wo
  * left. */
 static const double least_failure = 0x1p-26;
 
+/* The largest defect that ends no run. */
+static double most_allowed(const struct dalcs_audit_run *a) {
+    return fmax(a->run->tolerance, least_failure);
+}
+
 /* What a sample may cost of a run: with the counts above the netlists of the repository stay below 5 %. */
 static const double share = 0.03;
 
@@ -200,7 +205,7 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
                                                     run->s->network.readout->device_system,
                                                 .n_parts = n,
                                                 .tolerance = tolerance,
-                                                .failure = fmax(run->tolerance, least_failure),
+                                                .failure = most_allowed(a),
                                                 .read_work = work};
     const struct dalcs_audit_reader reader = {a, read_state, raise_scales};
     return dalcs_audit_create(&a->audit, &run->s->circuit, &options, &reader);
@@ -442,15 +447,14 @@ static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
         "the report lists the laws that are broken; please report this netlist",
         "the waveform seems wrong: the audit finds %s broken by %.2g of its scale at t = "
         "%s, and %.2g is allowed",
-        name, found->defect, dalcs_quantity_write(time, found->time, "s", 9),
-        fmax(a->run->tolerance, least_failure));
+        name, found->defect, dalcs_quantity_write(time, found->time, "s", 9), most_allowed(a));
     return DALCS_NOT_CONVERGED;
 }
 
 /* Where the run fell back to implicit Euler, nobody controls the error: it is told. */
 static void tell_coarse(const struct dalcs_audit_run *a) {
     const struct dalcs_audit_summary coarse = dalcs_audit_summarise_coarse(a->audit);
-    if (coarse.index < 0 || coarse.defect <= fmax(a->run->tolerance, least_failure)) {
+    if (coarse.index < 0 || coarse.defect <= most_allowed(a)) {
         return;
     }
     char name[NAME_SIZE];
