@@ -60,8 +60,11 @@ static enum dalcs_status stamp_current_controls(struct stamps *b, int n_devices,
     for (int i = 0; i < n_devices; i++) {
         const struct dalcs_device *d = &l->circuit->device[device[i]];
         if (d->kind == DALCS_CCCS) {
+            DALCS_TRY(dalcs_stamp_reads_current(b, d, l->current_column[d->control]));
             DALCS_TRY(dalcs_stamp_branch_current(b, d, l->current_column[d->control], d->value));
         } else if (d->kind == DALCS_CCVS) {
+            DALCS_TRY(
+                dalcs_stamp_reads(b, l->branch_row[device[i]], l->current_column[d->control]));
             DALCS_TRY(dalcs_stamp_add(&b->A, l->branch_row[device[i]],
                                       l->current_column[d->control], -d->value));
         } else if (d->kind == DALCS_SWITCH && d->control >= 0) {
@@ -286,6 +289,7 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_de
         {&system->storage, system->n_x, system->n_x, &b.storage},
         {&system->control, system->n_pairs, n_columns, &b.control},
         {&system->direct_control, system->n_pairs, system->n_inputs, &b.direct_control},
+        {&system->reads, n_equations + system->n_pairs, n_columns, &b.reads},
     };
 
     for (size_t k = 0; k < sizeof(part) / sizeof(part[0]) && status == DALCS_OK; k++) {
@@ -301,6 +305,7 @@ done:
     dalcs_triplets_finish(&b.storage);
     dalcs_triplets_finish(&b.control);
     dalcs_triplets_finish(&b.direct_control);
+    dalcs_triplets_finish(&b.reads);
     if (status != DALCS_OK) {
         free(b.initial);
         b.initial = NULL;

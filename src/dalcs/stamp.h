@@ -7,7 +7,7 @@
 struct stamps {
     struct dalcs_layout *layout;
     struct dalcs_system *s;
-    struct dalcs_triplets P, A, E, C, F, storage, control, direct_control;
+    struct dalcs_triplets P, A, E, C, F, storage, control, direct_control, reads;
     int n_tree;   /* capacitors in the forest: rows and columns 0..n_tree-1 of x */
     int next_x;   /* next x column (= row of I) after the forest's */
     int next_z;   /* next z column after the node voltages */
@@ -37,6 +37,14 @@ enum dalcs_status dalcs_stamp_add_voltage(struct stamps *b, struct dalcs_triplet
 /* The current gain * (v(c) - v(d)) leaving node a and entering node b. */
 enum dalcs_status dalcs_stamp_transconductance(struct stamps *b, int first, int second, int plus,
                                                int minus, double gain) DALCS_MUST_CHECK;
+
+/* Marks the entries of such a current, of one that is `column` times something, and of a row that reads a column, in
+ * the system's `reads`. */
+enum dalcs_status dalcs_stamp_reads_voltage(struct stamps *b, int first, int second, int plus,
+                                            int minus) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_stamp_reads_current(struct stamps *b, const struct dalcs_device *d,
+                                            int column) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_stamp_reads(struct stamps *b, int row, int column) DALCS_MUST_CHECK;
 
 enum dalcs_status dalcs_stamp_conductance(struct stamps *b, const struct dalcs_device *d,
                                           double g) DALCS_MUST_CHECK;

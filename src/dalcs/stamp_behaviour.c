@@ -52,8 +52,15 @@ enum dalcs_status dalcs_stamp_behaviour_branch(struct stamps *b, int device) {
 struct target {
     struct dalcs_triplets *columns, *inputs;
     int row;
+    int reader; /* the same row in the system's `reads` */
     double factor;
 };
+
+static enum dalcs_status stamp_column(struct stamps *b, const struct target *t, int column,
+                                      double coefficient) {
+    DALCS_TRY(dalcs_stamp_reads(b, t->reader, column));
+    return dalcs_stamp_add(t->columns, t->row, column, coefficient);
+}
 
 static enum dalcs_status stamp_current(struct stamps *b, const struct target *t, int device,
                                        double coefficient) {
@@ -61,8 +68,10 @@ static enum dalcs_status stamp_current(struct stamps *b, const struct target *t,
     struct dalcs_current current;
     enum dalcs_status status = dalcs_layout_current(b->layout, b->s, device, &arena, &current);
     for (int k = 0; status == DALCS_OK && k < current.n_terms + current.n_inputs; k++) {
-        status = dalcs_stamp_add(k < current.n_terms ? t->columns : t->inputs, t->row,
-                                 current.term[k].index, coefficient * current.term[k].coefficient);
+        const struct dalcs_probe_term *term = &current.term[k];
+        double value = coefficient * term->coefficient;
+        status = k < current.n_terms ? stamp_column(b, t, term->index, value)
+                                     : dalcs_stamp_add(t->inputs, t->row, term->index, value);
     }
     dalcs_arena_finish(&arena);
     return status;
@@ -81,15 +90,14 @@ static enum dalcs_status stamp_affine(struct stamps *b, int device, const struct
         int input;
         switch (term->kind) {
         case DALCS_QUANTITY_VOLTAGE:
-            DALCS_TRY(dalcs_stamp_add(t->columns, t->row, dalcs_stamp_node_column(l, term->index),
-                                      coefficient));
+            DALCS_TRY(stamp_column(b, t, dalcs_stamp_node_column(l, term->index), coefficient));
             break;
         case DALCS_QUANTITY_CURRENT:
             DALCS_TRY(stamp_current(b, t, term->index, coefficient));
             break;
         case DALCS_QUANTITY_PAIR:
-            DALCS_TRY(dalcs_stamp_add(
-                t->columns, t->row, s->n_x + s->n_z + l->pair[device] + term->index, coefficient));
+            DALCS_TRY(stamp_column(b, t, s->n_x + s->n_z + l->pair[device] + term->index,
+                                   coefficient));
             break;
         default:
             input = b->next_input++;
@@ -104,10 +112,12 @@ static enum dalcs_status stamp_affine(struct stamps *b, int device, const struct
 
 enum dalcs_status dalcs_stamp_behaviour(struct stamps *b, int device) {
     const struct dalcs_behaviour *behaviour = b->layout->circuit->device[device].behaviour;
-    struct target t = {&b->A, &b->E, b->layout->branch_row[device], -1.0};
+    int row = b->layout->branch_row[device];
+    struct target t = {&b->A, &b->E, row, row, -1.0};
     DALCS_TRY(stamp_affine(b, device, &t, &behaviour->output));
     for (int k = 0; k < behaviour->n_pairs; k++) {
-        t = (struct target){&b->C, &b->F, b->layout->pair[device] + k, 1.0};
+        int pair = b->layout->pair[device] + k;
+        t = (struct target){&b->C, &b->F, pair, dalcs_system_n_equations(b->s) + pair, 1.0};
         DALCS_TRY(stamp_affine(b, device, &t, &behaviour->w[k]));
     }
     return DALCS_OK;

@@ -165,6 +165,9 @@ static enum dalcs_status stamp_voltage_branch(struct stamps *b, int device) {
     case DALCS_VSOURCE:
         return dalcs_triplets_add(&b->E, row, dalcs_stamp_new_input(b, device), -1.0);
     case DALCS_VCVS:
+        for (int k = 2; k < 4; k++) {
+            DALCS_TRY(dalcs_stamp_reads(b, row, dalcs_stamp_node_column(l, d->node[k])));
+        }
         return dalcs_stamp_add_voltage(b, &b->A, row, d->node[2], d->node[3], -d->value);
     default:
         return DALCS_OK;
@@ -242,7 +245,11 @@ enum dalcs_status dalcs_stamp_device(struct stamps *b, int device, int *next_for
         if (d->value == 0.0) {
             return stamp_voltage_branch(b, device);
         }
-        b->s->monotone = b->s->monotone && d->value > 0.0;
+        if (d->value < 0.0) {
+            b->s->monotone = false;
+            DALCS_TRY(
+                dalcs_stamp_reads_voltage(b, d->node[0], d->node[1], d->node[0], d->node[1]));
+        }
         return dalcs_stamp_conductance(b, d, 1.0 / d->value);
     case DALCS_INDUCTOR:
         if (l->group_of[device] < 0) {
@@ -266,6 +273,7 @@ enum dalcs_status dalcs_stamp_device(struct stamps *b, int device, int *next_for
         return stamp_voltage_branch(b, device);
     case DALCS_VCCS:
         b->s->monotone = false;
+        DALCS_TRY(dalcs_stamp_reads_voltage(b, d->node[0], d->node[1], d->node[2], d->node[3]));
         return dalcs_stamp_transconductance(b, d->node[0], d->node[1], d->node[2], d->node[3],
                                             d->value);
     case DALCS_CCCS:

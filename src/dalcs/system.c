@@ -20,6 +20,7 @@ void dalcs_system_finish(struct dalcs_system *system) {
     dalcs_csr_finish(&system->storage);
     dalcs_csr_finish(&system->control);
     dalcs_csr_finish(&system->direct_control);
+    dalcs_csr_finish(&system->reads);
     free(system->dual);
     free(system->forest_root);
     free(system->column_is_current);

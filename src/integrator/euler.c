@@ -382,7 +382,7 @@ static enum dalcs_status look_after(struct dalcs_euler *e, int k, const double *
     if (c->commanded) {
         return DALCS_OK; /* a switch moved in between: the two tell nothing together */
     }
-    if (!s->monotone && runs_away(c, u, y, limit)) {
+    if (!dalcs_osnsp_is_monotone(&c->osnsp) && runs_away(c, u, y, limit)) {
         return refuse_derivative(e, k, u, y, c->scratch);
     }
     if (!extrapolate(e, k, u, y, limit)) {

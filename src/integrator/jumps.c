@@ -183,6 +183,20 @@ static enum dalcs_status add_parts(struct dalcs_jumps *j, enum dalcs_impulse_kin
     return status;
 }
 
+/* Sources that only read, and drive nothing that has a memory, take no part in a jump. */
+static enum dalcs_status find_whether_covered(const struct dalcs_network *network, int k,
+                                              bool *is_covered) {
+    if (network->jumps_are_covered != NULL) {
+        *is_covered = network->jumps_are_covered[k];
+        return DALCS_OK;
+    }
+    struct dalcs_partition p;
+    DALCS_TRY(dalcs_partition_find(&p, &network->system[k]));
+    *is_covered = p.all_monotone && p.jumps_as_usual;
+    dalcs_partition_finish(&p);
+    return DALCS_OK;
+}
+
 static enum dalcs_status find_parts(struct dalcs_jumps *j, const struct dalcs_circuit *circuit,
                                     const struct dalcs_network *network,
                                     const struct dalcs_osnsp_options *options) {
@@ -200,11 +214,12 @@ static enum dalcs_status find_parts(struct dalcs_jumps *j, const struct dalcs_ci
     }
     enum dalcs_status status = find_places(&places, network);
     if (status == DALCS_OK) {
-        for (int k = 0; k < j->n_systems; k++) {
+        for (int k = 0; k < j->n_systems && status == DALCS_OK; k++) {
             j->first_part[k] = -1;
-            j->is_covered[k] = network->jumps_are_covered != NULL ? network->jumps_are_covered[k]
-                                                                  : network->system[k].monotone;
+            status = find_whether_covered(network, k, &j->is_covered[k]);
         }
+    }
+    if (status == DALCS_OK) {
         status = leave_out_dependent_coils(j, circuit, &places);
     }
     for (int kind = 0; status == DALCS_OK && kind < DALCS_N_IMPULSES; kind++) {

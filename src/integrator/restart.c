@@ -360,7 +360,7 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
     bool noticeable = true;
     bool moves = true;
     double closer;
-    if (!s->monotone) {
+    if (!dalcs_osnsp_is_monotone(&part->component->osnsp)) {
         DALCS_TRY(check_limit(r, part, h));
     }
     while (moves && noticeable) {

@@ -1,6 +1,6 @@
 /* osnsp.c - finding the mode: the last one first, then block principal pivoting, then the proximal
  * method for singular modes, and for small systems every mode as a last resort. */
-#include "osnsp_internal.h"
+#include "in_order.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -140,6 +140,7 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
     size_t n_columns = (size_t)dalcs_system_n_columns(system);
     p->n_words = (system->n_pairs + 63) / 64;
     size_t words = (size_t)p->n_words;
+    DALCS_TRY(dalcs_partition_find(&p->partition, system));
     DALCS_TRY(dalcs_arena_reserve(&p->arena, room(system)));
     p->mode = dalcs_arena_alloc(&p->arena, words, sizeof(*p->mode));
     p->key = dalcs_arena_alloc(&p->arena, words + 1, sizeof(*p->key));
@@ -194,6 +195,8 @@ void dalcs_osnsp_finish(struct dalcs_osnsp *p) {
     if (p->form != NULL) {
         dalcs_modes_finish(p);
     }
+    dalcs_in_order_finish(p);
+    dalcs_partition_finish(&p->partition);
     dalcs_arena_finish(&p->arena);
     free(p->witness.element);
     *p = (struct dalcs_osnsp){0};
@@ -322,6 +325,38 @@ enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, doub
     return DALCS_NOT_CONVERGED;
 }
 
+/* In the mode that is there, else block by block: *is_done where that decides. */
+static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, const double *u,
+                                        double *y, bool *is_done) {
+    *is_done = false;
+    if (p->partition.n_blocks < 2) {
+        return DALCS_OK;
+    }
+    bool sources_clash;
+    enum dalcs_status status = dalcs_osnsp_try_mode(p, u, y, &sources_clash);
+    if (status < DALCS_OK) {
+        return status;
+    }
+    *is_done = status == DALCS_OK && dalcs_certificate_holds(p, sources_clash) && p->n_tied == 0;
+    if (*is_done) {
+        return DALCS_OK;
+    }
+    if (p->blocks == NULL) {
+        status = dalcs_in_order_build(p);
+        p->partition.n_blocks = status == DALCS_NOT_CONVERGED ? 1 : p->partition.n_blocks;
+        if (status != DALCS_OK) {
+            return status < DALCS_OK ? status : DALCS_OK;
+        }
+    }
+    memcpy(p->tied_mode, p->mode, (size_t)p->n_words * sizeof(*p->mode));
+    status = dalcs_in_order_solve(p, sigma, u, y);
+    *is_done = status <= DALCS_OK || (status == DALCS_INFEASIBLE && dalcs_osnsp_is_monotone(p));
+    if (!*is_done) {
+        memcpy(p->mode, p->tied_mode, (size_t)p->n_words * sizeof(*p->mode));
+    }
+    return *is_done ? status : DALCS_OK;
+}
+
 static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, double *y) {
     int limit = p->options.max_pivots + 2 * p->system->n_pairs;
     enum dalcs_status status = dalcs_osnsp_pivot(p, u, y, limit);
@@ -359,7 +394,12 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
     if (p->n_forms == 0 || p->form[0]->sigma != sigma) {
         DALCS_TRY(dalcs_forms_get(p, sigma));
     }
-    enum dalcs_status status = solve_somehow(p, u, y);
+    bool is_done;
+    enum dalcs_status status = solve_in_order(p, sigma, u, y, &is_done);
+    if (is_done || status < DALCS_OK) {
+        return status;
+    }
+    status = solve_somehow(p, u, y);
     if (is_undecided(status)) {
         p->looks_around = true;
         status = solve_somehow(p, u, y);

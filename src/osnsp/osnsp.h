@@ -14,6 +14,7 @@
 #define DALCS_OSNSP_H
 
 #include "lu.h"
+#include "partition.h"
 #include "step_form.h"
 
 #include <stdint.h>
@@ -60,10 +61,13 @@ struct dalcs_witness {
 };
 
 struct dalcs_mode_entry;
+struct dalcs_ordered_blocks;
 
 struct dalcs_osnsp {
     const struct dalcs_system *system;
     struct dalcs_osnsp_options options;
+    struct dalcs_partition partition;
+    struct dalcs_ordered_blocks *blocks; /* of this partition; NULL: not asked for yet, or there is one block */
     klu_common klu;
     int n_words;
     uint64_t *mode; /* [n_words] bit d: w_d = 0 */
@@ -155,6 +159,11 @@ void dalcs_osnsp_find_ties(struct dalcs_osnsp *p, const double *u, const double 
  * factored. p->mode stays; p->w and the certificate are those of the last mode tried. */
 enum dalcs_status dalcs_osnsp_list_answers(struct dalcs_osnsp *p, double sigma, const double *u,
                                            int most, double *answer, int *n) DALCS_MUST_CHECK;
+
+/* Is each part of the problem monotone that is not given by what acts on it? Then it is solvable iff feasible. */
+static inline bool dalcs_osnsp_is_monotone(const struct dalcs_osnsp *p) {
+    return p->partition.all_monotone;
+}
 
 /* Is it known of the circuit that no answer of it is one of several, whatever is tied? */
 static inline bool dalcs_osnsp_is_unique(const struct dalcs_osnsp *p) {

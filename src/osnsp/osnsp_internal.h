@@ -189,6 +189,9 @@ void dalcs_witness_from_modes(struct dalcs_osnsp *p);
  * tree of capacitors, others of the tree are relative to its root. */
 double dalcs_witness_weight(const struct dalcs_witness *w, const struct dalcs_system *s, int row);
 
+/* What it names becomes what p->witness names; the ray is not copied. */
+void dalcs_witness_copy(struct dalcs_osnsp *p, const struct dalcs_witness *from);
+
 /* Names something where the others found no name. */
 void dalcs_witness_complete(struct dalcs_osnsp *p);
 

@@ -219,3 +219,12 @@ void dalcs_witness_from_modes(struct dalcs_osnsp *p) {
         add_element(p, p->system->pair[d].element);
     }
 }
+
+void dalcs_witness_copy(struct dalcs_osnsp *p, const struct dalcs_witness *from) {
+    p->witness.kind = from->kind;
+    p->witness.has_ray = from->has_ray;
+    p->witness.n_elements = 0;
+    for (int k = 0; k < from->n_elements; k++) {
+        add_element(p, from->element[k]);
+    }
+}

@@ -1,0 +1,28 @@
+/* partition.h - which unknowns act on which: a system as blocks that can be solved one after the other.
+ *
+ * A column depends on those that its equation holds (of a pair: those that its w holds). What depends on each
+ * other, directly or through others, is a strongly connected part (Tarjan 1972), and the parts have an order
+ * in which each depends on earlier ones alone: the block triangular form (Pothen and Fan 1990). A source that
+ * only reads, and what it drives, comes behind what it reads. */
+#ifndef DALCS_PARTITION_H
+#define DALCS_PARTITION_H
+
+#include "system.h"
+
+struct dalcs_partition {
+    int n_blocks;
+    int *block_of;       /* [n_columns] in order of solution */
+    bool *is_monotone;   /* [n_blocks] its part of the OSNSP is monotone: solvable iff feasible */
+    bool all_monotone;   /* each of them */
+    bool jumps_as_usual; /* nothing that reads acts on a state, a diode or a switch */
+    struct dalcs_arena arena;
+};
+
+/* Of a system that tells what reads (system.h); of another one, or where nothing is gained, there is one block.
+ * Neighbours in the order are one block as long as nothing in it reads. On failure *p is zeroed. */
+enum dalcs_status dalcs_partition_find(struct dalcs_partition *p,
+                                       const struct dalcs_system *s) DALCS_MUST_CHECK;
+
+void dalcs_partition_finish(struct dalcs_partition *p);
+
+#endif
