@@ -13,6 +13,7 @@ struct audit_part {
     int n_nodes, *node;
     int n_couplings, *coupling;
     double tolerance;
+    double largest_volt; /* V: so far */
     double volt, ampere; /* scales that every voltage and current is at least held to */
     double formula[2];   /* V, A: the largest terms of its formulas */
     double least, most;  /* S, of its conductances; 0: it has none */

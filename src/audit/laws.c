@@ -309,7 +309,9 @@ static double rounding_of(const struct dalcs_audit *audit, const struct audit_pa
         return fabs(d->value) * (AUDIT_ROUNDING * controls + audit->sums.volts);
     }
     if (d->kind == DALCS_INDUCTOR) {
-        return AUDIT_ROUNDING * fabs(current) + STORED_ROUNDING * volts * part->step / d->value;
+        /* a voltage of 0 is that to the rounding of the largest one in the same equations (Wilkinson) */
+        return AUDIT_ROUNDING * fabs(current) +
+               STORED_ROUNDING * fmax(volts, part->largest_volt) * part->step / d->value;
     }
     const double g = d->kind == DALCS_RESISTOR && d->value != 0.0 ? fabs(1.0 / d->value) : 0.0;
     return AUDIT_ROUNDING * (g * volts + fabs(current)) + 2.0 * g * audit->sums.volts;
@@ -355,6 +357,7 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
             *scale = fmax(*scale, fabs(s->lambda[audit->first_lambda[device] + p]));
         }
     }
+    part->largest_volt = volt;
     /* doc/methods.md, "What the tolerance means": signals below 1e-5 of the largest of their unit are held to
      * that one's scale, and each unit vouches a millionth for the other through the conductances. */
     part->volt = fmax(1e-5 * volt, part->most > 0.0 ? 1e-6 / part->most * ampere : 0.0);

@@ -60,11 +60,12 @@ static enum dalcs_status stamp_current_controls(struct stamps *b, int n_devices,
     for (int i = 0; i < n_devices; i++) {
         const struct dalcs_device *d = &l->circuit->device[device[i]];
         if (d->kind == DALCS_CCCS) {
-            DALCS_TRY(dalcs_stamp_reads_current(b, d, l->current_column[d->control]));
+            DALCS_TRY(dalcs_stamp_reads_column(b, device[i], l->current_column[d->control]));
             DALCS_TRY(dalcs_stamp_branch_current(b, d, l->current_column[d->control], d->value));
         } else if (d->kind == DALCS_CCVS) {
             DALCS_TRY(
-                dalcs_stamp_reads(b, l->branch_row[device[i]], l->current_column[d->control]));
+                dalcs_stamp_reads(b, device[i], l->branch_row[device[i]],
+                                        l->current_column[d->control]));
             DALCS_TRY(dalcs_stamp_add(&b->A, l->branch_row[device[i]],
                                       l->current_column[d->control], -d->value));
         } else if (d->kind == DALCS_SWITCH && d->control >= 0) {
@@ -241,6 +242,24 @@ static void number_nodes(struct stamps *b, int n_nodes, const int *node) {
     b->next_x = b->n_tree;
 }
 
+/* Which element each entry of `reads` is of: one of them, where several read the same. */
+static enum dalcs_status name_readers(struct stamps *b) {
+    const struct dalcs_csr *reads = &b->s->reads;
+    b->s->reader = dalcs_alloc((size_t)reads->p[reads->n_rows], sizeof(*b->s->reader));
+    if (b->s->reader == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t i = 0; i < b->reads.n; i++) {
+        const struct dalcs_triplet *t = &b->reads.entry[i];
+        for (int k = reads->p[t->row]; k < reads->p[t->row + 1]; k++) {
+            if (reads->j[k] == t->column) {
+                b->s->reader[k] = b->layout->circuit->device[(int)t->value - 1].name;
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_devices,
                                            const int *device, int n_nodes, const int *node,
                                            struct dalcs_system *system, double **initial) {
@@ -295,6 +314,9 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_de
     for (size_t k = 0; k < sizeof(part) / sizeof(part[0]) && status == DALCS_OK; k++) {
         status =
             dalcs_csr_compress(part[k].matrix, part[k].n_rows, part[k].n_columns, part[k].entries);
+    }
+    if (status == DALCS_OK) {
+        status = name_readers(&b);
     }
 done:
     dalcs_triplets_finish(&b.P);

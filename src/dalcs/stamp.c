@@ -50,25 +50,21 @@ enum dalcs_status dalcs_stamp_transconductance(struct stamps *b, int first, int 
     return dalcs_stamp_leave(b, &b->A, second, d, gain);
 }
 
-enum dalcs_status dalcs_stamp_reads(struct stamps *b, int row, int column) {
-    return dalcs_stamp_add(&b->reads, row, column, 1.0);
+enum dalcs_status dalcs_stamp_reads(struct stamps *b, int device, int row, int column) {
+    return dalcs_stamp_add(&b->reads, row, column, device + 1.0);
 }
 
-enum dalcs_status dalcs_stamp_reads_voltage(struct stamps *b, int first, int second, int plus,
-                                            int minus) {
-    const int control[2] = {plus, minus};
-    for (int k = 0; k < 2; k++) {
-        int column = dalcs_stamp_node_column(b->layout, control[k]);
-        DALCS_TRY(dalcs_stamp_leave(b, &b->reads, first, column, -1.0));
-        DALCS_TRY(dalcs_stamp_leave(b, &b->reads, second, column, -1.0));
+enum dalcs_status dalcs_stamp_reads_column(struct stamps *b, int device, int column) {
+    const struct dalcs_device *d = &b->layout->circuit->device[device];
+    for (int e = 0; e < 2; e++) {
+        DALCS_TRY(dalcs_stamp_leave(b, &b->reads, d->node[e], column, -(device + 1.0)));
     }
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_stamp_reads_current(struct stamps *b, const struct dalcs_device *d,
-                                            int column) {
-    DALCS_TRY(dalcs_stamp_leave(b, &b->reads, d->node[0], column, -1.0));
-    return dalcs_stamp_leave(b, &b->reads, d->node[1], column, -1.0);
+enum dalcs_status dalcs_stamp_reads_voltage(struct stamps *b, int device, int plus, int minus) {
+    DALCS_TRY(dalcs_stamp_reads_column(b, device, dalcs_stamp_node_column(b->layout, plus)));
+    return dalcs_stamp_reads_column(b, device, dalcs_stamp_node_column(b->layout, minus));
 }
 
 enum dalcs_status dalcs_stamp_conductance(struct stamps *b, const struct dalcs_device *d,

@@ -38,13 +38,14 @@ enum dalcs_status dalcs_stamp_add_voltage(struct stamps *b, struct dalcs_triplet
 enum dalcs_status dalcs_stamp_transconductance(struct stamps *b, int first, int second, int plus,
                                                int minus, double gain) DALCS_MUST_CHECK;
 
-/* Marks the entries of such a current, of one that is `column` times something, and of a row that reads a column, in
- * the system's `reads`. */
-enum dalcs_status dalcs_stamp_reads_voltage(struct stamps *b, int first, int second, int plus,
+/* Marks, for the system's `reads`, that `device` makes a row read a column; or the KCL of its two nodes a column, or
+ * the voltage between two nodes. */
+enum dalcs_status dalcs_stamp_reads(struct stamps *b, int device, int row,
+                                    int column) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_stamp_reads_column(struct stamps *b, int device,
+                                           int column) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_stamp_reads_voltage(struct stamps *b, int device, int plus,
                                             int minus) DALCS_MUST_CHECK;
-enum dalcs_status dalcs_stamp_reads_current(struct stamps *b, const struct dalcs_device *d,
-                                            int column) DALCS_MUST_CHECK;
-enum dalcs_status dalcs_stamp_reads(struct stamps *b, int row, int column) DALCS_MUST_CHECK;
 
 enum dalcs_status dalcs_stamp_conductance(struct stamps *b, const struct dalcs_device *d,
                                           double g) DALCS_MUST_CHECK;

@@ -52,13 +52,13 @@ enum dalcs_status dalcs_stamp_behaviour_branch(struct stamps *b, int device) {
 struct target {
     struct dalcs_triplets *columns, *inputs;
     int row;
-    int reader; /* the same row in the system's `reads` */
+    int device, reader; /* whose it is, and the same row in the system's `reads` */
     double factor;
 };
 
 static enum dalcs_status stamp_column(struct stamps *b, const struct target *t, int column,
                                       double coefficient) {
-    DALCS_TRY(dalcs_stamp_reads(b, t->reader, column));
+    DALCS_TRY(dalcs_stamp_reads(b, t->device, t->reader, column));
     return dalcs_stamp_add(t->columns, t->row, column, coefficient);
 }
 
@@ -113,11 +113,12 @@ static enum dalcs_status stamp_affine(struct stamps *b, int device, const struct
 enum dalcs_status dalcs_stamp_behaviour(struct stamps *b, int device) {
     const struct dalcs_behaviour *behaviour = b->layout->circuit->device[device].behaviour;
     int row = b->layout->branch_row[device];
-    struct target t = {&b->A, &b->E, row, row, -1.0};
+    struct target t = {&b->A, &b->E, row, device, row, -1.0};
     DALCS_TRY(stamp_affine(b, device, &t, &behaviour->output));
     for (int k = 0; k < behaviour->n_pairs; k++) {
         int pair = b->layout->pair[device] + k;
-        t = (struct target){&b->C, &b->F, pair, dalcs_system_n_equations(b->s) + pair, 1.0};
+        t = (struct target){
+            &b->C, &b->F, pair, device, dalcs_system_n_equations(b->s) + pair, 1.0};
         DALCS_TRY(stamp_affine(b, device, &t, &behaviour->w[k]));
     }
     return DALCS_OK;

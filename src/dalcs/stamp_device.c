@@ -166,7 +166,7 @@ static enum dalcs_status stamp_voltage_branch(struct stamps *b, int device) {
         return dalcs_triplets_add(&b->E, row, dalcs_stamp_new_input(b, device), -1.0);
     case DALCS_VCVS:
         for (int k = 2; k < 4; k++) {
-            DALCS_TRY(dalcs_stamp_reads(b, row, dalcs_stamp_node_column(l, d->node[k])));
+            DALCS_TRY(dalcs_stamp_reads(b, device, row, dalcs_stamp_node_column(l, d->node[k])));
         }
         return dalcs_stamp_add_voltage(b, &b->A, row, d->node[2], d->node[3], -d->value);
     default:
@@ -247,8 +247,7 @@ enum dalcs_status dalcs_stamp_device(struct stamps *b, int device, int *next_for
         }
         if (d->value < 0.0) {
             b->s->monotone = false;
-            DALCS_TRY(
-                dalcs_stamp_reads_voltage(b, d->node[0], d->node[1], d->node[0], d->node[1]));
+            DALCS_TRY(dalcs_stamp_reads_voltage(b, device, d->node[0], d->node[1]));
         }
         return dalcs_stamp_conductance(b, d, 1.0 / d->value);
     case DALCS_INDUCTOR:
@@ -273,7 +272,7 @@ enum dalcs_status dalcs_stamp_device(struct stamps *b, int device, int *next_for
         return stamp_voltage_branch(b, device);
     case DALCS_VCCS:
         b->s->monotone = false;
-        DALCS_TRY(dalcs_stamp_reads_voltage(b, d->node[0], d->node[1], d->node[2], d->node[3]));
+        DALCS_TRY(dalcs_stamp_reads_voltage(b, device, d->node[2], d->node[3]));
         return dalcs_stamp_transconductance(b, d->node[0], d->node[1], d->node[2], d->node[3],
                                             d->value);
     case DALCS_CCCS:

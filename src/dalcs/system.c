@@ -30,5 +30,6 @@ void dalcs_system_finish(struct dalcs_system *system) {
     free(system->pair);
     free(system->stimulus);
     free(system->input_element);
+    free(system->reader);
     *system = (struct dalcs_system){0};
 }

@@ -125,31 +125,41 @@ static void copy_labels(struct extraction *e) {
     memcpy(to->input_element, s->input_element, (size_t)s->n_inputs * sizeof(*s->input_element));
 }
 
-/* The input by which the block reads a column of an earlier one. */
-static int input_of(struct extraction *e, int column) {
+/* Whose a column of an earlier block is to one that has it in this row: of what reads it, else its own. */
+static const char *name_of(const struct dalcs_system *s, int row, int column) {
+    for (int k = s->reads.p[row]; k < s->reads.p[row + 1]; k++) {
+        if (s->reads.j[k] == column) {
+            return s->reader[k];
+        }
+    }
+    int pair = column - dalcs_system_n_equations(s);
+    return pair >= 0 ? s->pair[pair].element : s->column[column].element;
+}
+
+/* The input by which row `row` of the whole, equations before pairs, reads a column of an earlier block. */
+static int input_of(struct extraction *e, int row, int column) {
     struct dalcs_system *to = &e->to->system;
     int *place = &e->place[column];
     if (*place < 0) {
-        bool is_pair = column >= dalcs_system_n_equations(e->from);
         *place = to->n_inputs++;
         to->stimulus[*place] = -1;
-        to->input_element[*place] =
-            is_pair ? e->from->pair[column - dalcs_system_n_equations(e->from)].element
-                    : e->from->column[column].element;
+        to->input_element[*place] = name_of(e->from, row, column);
         e->to->read[e->to->n_read++] = column;
     }
     return *place;
 }
 
-/* A row of (A, E) or (C, F): what is in the block to `columns`, the rest to `inputs`. */
-static enum dalcs_status split_row(struct extraction *e, const struct dalcs_csr *A,
-                                   const struct dalcs_csr *E, int from, int to,
+/* Row `row` of the whole, row `from` of (A, E) or (C, F): what is in the block to `columns`, the rest to `inputs`. */
+static enum dalcs_status split_row(struct extraction *e, int row, const struct dalcs_csr *A,
+                                   const struct dalcs_csr *E, int to,
                                    struct dalcs_triplets *columns, struct dalcs_triplets *inputs) {
+    int n_equations = dalcs_system_n_equations(e->from);
+    int from = row < n_equations ? row : row - n_equations;
     for (int k = A->p[from]; k < A->p[from + 1]; k++) {
         int c = A->j[k];
         bool is_in = e->block_of[c] == e->number;
         DALCS_TRY(dalcs_triplets_add(is_in ? columns : inputs, to,
-                                     is_in ? e->place[c] : input_of(e, c), A->x[k]));
+                                     is_in ? e->place[c] : input_of(e, row, c), A->x[k]));
     }
     for (int k = E->p[from]; k < E->p[from + 1]; k++) {
         DALCS_TRY(dalcs_triplets_add(inputs, to, E->j[k], E->x[k]));
@@ -162,11 +172,10 @@ static enum dalcs_status split(struct extraction *e, struct dalcs_triplets t[5])
     struct dalcs_system *to = &e->to->system;
     int n_equations = dalcs_system_n_equations(to);
     for (int r = 0; r < n_equations; r++) {
-        DALCS_TRY(split_row(e, &s->A, &s->E, e->to->row[r], r, &t[0], &t[1]));
+        DALCS_TRY(split_row(e, e->to->row[r], &s->A, &s->E, r, &t[0], &t[1]));
     }
     for (int d = 0; d < to->n_pairs; d++) {
-        int from = e->to->column[n_equations + d] - dalcs_system_n_equations(s);
-        DALCS_TRY(split_row(e, &s->C, &s->F, from, d, &t[2], &t[3]));
+        DALCS_TRY(split_row(e, e->to->column[n_equations + d], &s->C, &s->F, d, &t[2], &t[3]));
     }
     for (int r = 0; r < to->n_x; r++) {
         int from = e->to->row[r];

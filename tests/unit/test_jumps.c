@@ -181,9 +181,35 @@ START_TEST(test_transformer) {
 
 END_TEST
 
-/* What is not passive is said not to be known, and so are three coils that are two. */
+/* A source that only reads takes no part in a jump: charge goes from 10 V of 1 uF to 2 V of 3 uF until both have 4 V. */
+START_TEST(test_readers) {
+    static const char *const reader[] = {"E1 3 0 2 0 2\nR1 3 0 1\n", "G1 3 0 2 0 2\nR1 3 0 1\n",
+                                         "B1 3 0 V=abs(v(1))-v(2)\nR1 3 0 1\n",
+                                         "V0 1 a\nF1 3 0 V0 2\nR1 3 0 1\n"};
+    for (size_t k = 0; k < sizeof(reader) / sizeof(*reader); k++) {
+        char text[512];
+        snprintf(text, sizeof(text),
+                 "t\nC1 1 0 1u IC=10\nD1 %s 2 DI\nC2 2 0 3u IC=2\n%s.model DI D(Ron=0)\n"
+                 ".tran 1u 1m uic\n",
+                 k == 3 ? "a" : "1", reader[k]);
+        jump(text);
+        ck_assert(answer.is_known && answer.moves);
+        ck_assert_double_eq_tol(state("c1"), 4.0, 1e-14);
+        ck_assert_double_eq_tol(state("c2"), 4.0, 1e-14);
+        ck_assert_double_eq_tol(charge[pair("d1")], 6e-6, 1e-20);
+        finish();
+    }
+}
+
+END_TEST
+
+/* What acts on states and is not passive is said not to be known, and so are three coils that are two. */
 START_TEST(test_not_covered) {
-    jump("t\nC1 1 0 1u IC=10\nD1 1 2 DI\nC2 2 0 3u IC=2\nE1 3 0 2 0 2\nR1 3 0 1\n"
+    jump("t\nC1 1 0 1u IC=10\nD1 1 2 DI\nC2 2 0 3u IC=2\nE1 3 0 2 0 2\nR1 3 2 1\n"
+         ".model DI D(Ron=0)\n.tran 1u 1m uic\n");
+    ck_assert(!answer.is_known);
+    finish();
+    jump("t\nC1 1 0 1u IC=10\nD1 1 2 DI\nC2 2 0 3u IC=2\nE1 3 0 2 0 2\nR1 3 4 1\nC3 4 0 1u\n"
          ".model DI D(Ron=0)\n.tran 1u 1m uic\n");
     ck_assert(!answer.is_known);
     finish();
@@ -212,4 +238,4 @@ START_TEST(test_far_apart) {
 END_TEST
 
 RUN_TESTS("jumps", test_charge, test_resistance, test_source, test_breakdown, test_flux,
-          test_switch, test_coupling, test_transformer, test_not_covered, test_far_apart)
+          test_switch, test_coupling, test_transformer, test_readers, test_not_covered, test_far_apart)
