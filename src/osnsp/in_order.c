@@ -312,6 +312,7 @@ static void add_counters(struct dalcs_osnsp *p, const struct dalcs_osnsp_counter
 static void take_witness(struct dalcs_osnsp *p, const struct dalcs_block *b) {
     const struct dalcs_witness *from = &b->osnsp.witness;
     dalcs_witness_copy(p, from);
+    p->witness.has_ray = from->has_ray && b->n_read == 0; /* else what it reads does work along it, too */
     memset(p->witness.ray, 0, (size_t)dalcs_system_n_columns(p->system) * sizeof(double));
     for (int c = 0; c < dalcs_system_n_columns(&b->system); c++) {
         p->witness.ray[b->column[c]] = from->ray[c];
