@@ -183,7 +183,7 @@ static enum dalcs_status add_parts(struct dalcs_jumps *j, enum dalcs_impulse_kin
     return status;
 }
 
-/* Sources that only read, and drive nothing that has a memory, take no part in a jump. */
+/* Sources that only read, and act on no state, take no part in a jump. */
 static enum dalcs_status find_whether_covered(const struct dalcs_network *network, int k,
                                               bool *is_covered) {
     if (network->jumps_are_covered != NULL) {

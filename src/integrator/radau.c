@@ -151,6 +151,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, choice.stages,
                                  choice.map_limit, osnsp->rcond_min,
                                  osnsp->cache_bytes / (size_t)r->n_parts));
+    part->stages.block_of = c->osnsp.partition.block_of;
     part->stages.unseen = r->options.fixed_step > 0.0 ? 0.0 : unseen_part * part->inner_tolerance;
     DALCS_TRY(dalcs_arena_reserve(&part->arena, room_for_part(c->system)));
     DALCS_TRY(allocate(part));

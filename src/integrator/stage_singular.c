@@ -3,12 +3,14 @@
  * Equations that follow are found among those without derivatives, in all columns; what is open among
  * the columns without memory, in all rows (dalcs_null_space). Least norm means that of the currents
  * of closed and the voltages of open diodes: the limit of equal small on-resistances and equal small
- * leaks. What is open and no diode's has the least norm of all unknowns. */
+ * leaks. What is open and no diode's has the least norm of all unknowns. In both, those count that are open
+ * first: what later blocks read of them (partition.h) follows. */
 #include "stage_singular.h"
 
 #include "null_space.h"
 #include "stages_internal.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -139,6 +141,31 @@ static double product(const struct trace *trace, const double *of_pair) {
     return sum;
 }
 
+/* The block of a column that has no memory. */
+static int block_of(const struct search *s, int column) {
+    const int *block = s->plan->stages->block_of;
+    int n_z = s->system->n_z;
+    if (block == NULL) {
+        return 0;
+    }
+    int n_equations = dalcs_system_n_equations(s->system);
+    return block[column < n_z ? s->system->n_x + column : n_equations + s->entry->on[column - n_z]];
+}
+
+/* What readers make of a solution does not count where something of it is before them. */
+static void forget_readers(const struct search *s) {
+    const int *block = s->plan->stages->block_of;
+    const int *of = block != NULL ? block + dalcs_system_n_equations(s->system) : NULL;
+    int first = -1;
+    for (int d = 0; of != NULL && d < s->system->n_pairs; d++) {
+        bool is_first = s->of_pair[d] != 0.0 && (first < 0 || of[d] < first);
+        first = is_first ? of[d] : first;
+    }
+    for (int d = 0; of != NULL && d < s->system->n_pairs; d++) {
+        s->of_pair[d] = of[d] == first ? s->of_pair[d] : 0.0;
+    }
+}
+
 /* Makes the traces orthogonal (Gram and Schmidt, twice), and those that vanish empty. */
 static enum dalcs_status find_traces(struct search *s) {
     int n_pairs = s->system->n_pairs;
@@ -148,6 +175,7 @@ static enum dalcs_status find_traces(struct search *s) {
             bool is_diode = s->system->pair[d].kind == DALCS_PAIR_DIODE;
             s->of_pair[d] = is_diode ? other_side(s, d, vector) : 0.0;
         }
+        forget_readers(s);
         double before = norm_of(s->of_pair, n_pairs);
         for (int i = 0; i < 2 * k; i++) {
             const struct trace *other = &s->trace[i % k];
@@ -204,10 +232,15 @@ static enum dalcs_status choose_in_diodes(struct search *s, int k) {
 static enum dalcs_status choose_in_all(struct search *s, int k) {
     int n_z = s->system->n_z;
     int n_equations = dalcs_system_n_equations(s->system);
+    const double *vector = s->vector + k * s->n_columns;
+    int first = INT_MAX;
+    for (int c = 0; c < s->n_columns; c++) {
+        first = vector[c] != 0.0 && block_of(s, c) < first ? block_of(s, c) : first;
+    }
     for (int c = 0; c < s->n_columns; c++) {
         int column = c < n_z ? s->system->n_x + c : n_equations + s->entry->on[c - n_z];
-        double value = s->vector[k * s->n_columns + c];
-        if (value != 0.0) {
+        double value = vector[c];
+        if (value != 0.0 && block_of(s, c) == first) {
             DALCS_TRY(put(s, k, column, value));
         }
     }

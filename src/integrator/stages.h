@@ -33,6 +33,7 @@ struct dalcs_stage_layout {
 
 struct dalcs_stages {
     const struct dalcs_system *system;
+    const int *block_of; /* [n_columns] partition.h; NULL: all are one. To be set after the setup */
     const struct dalcs_excitation *excitation;
     const struct dalcs_collocation *method;
     struct dalcs_stage_layout layout;

@@ -23,7 +23,7 @@ static bool are_twins(const struct dalcs_osnsp *p, int d, int e) {
 enum dalcs_status dalcs_twins_setup(struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     int n_pairs = p->system->n_pairs;
-    if (!p->system->monotone || n_pairs > DALCS_MANY_PAIRS) {
+    if (!dalcs_osnsp_is_monotone(p) || n_pairs > DALCS_MANY_PAIRS) {
         return DALCS_OK;
     }
     part->twin = dalcs_arena_alloc(&part->arena, (size_t)n_pairs, sizeof(int));

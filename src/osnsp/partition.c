@@ -105,7 +105,7 @@ struct part {
     int last_read;     /* the last part that it reads, -1: none */
     bool reads_itself; /* something in it reads something in it */
     bool is_driven;    /* a row of it reads, or holds a column of such a part */
-    bool has_memory;   /* a state, a diode or a switch */
+    bool has_state;
     bool is_dominant;  /* of pairs alone: they dominate the symmetric part of D */
     int block;
 };
@@ -118,8 +118,7 @@ static void look_at_column(const struct search *t, int column, struct part *part
     int row = t->row_of[column];
     bool is_pair = column >= n_equations;
     of->n_equations += is_pair ? 0 : 1;
-    bool is_physical = is_pair && !s->pair[column - n_equations].is_formula;
-    of->has_memory = of->has_memory || column < s->n_x || is_physical;
+    of->has_state = of->has_state || column < s->n_x;
     for (int k = s->reads.p[row]; k < s->reads.p[row + 1]; k++) {
         int read = t->part_of[s->reads.j[k]];
         of->is_driven = true;
@@ -182,7 +181,7 @@ static void join_parts(struct dalcs_partition *p, int n_parts, struct part *part
         }
         part[k].block = p->n_blocks - 1;
         p->all_monotone = p->all_monotone && p->is_monotone[part[k].block];
-        p->jumps_as_usual = p->jumps_as_usual && !(part[k].is_driven && part[k].has_memory);
+        p->jumps_as_usual = p->jumps_as_usual && !(part[k].is_driven && part[k].has_state);
     }
 }
 

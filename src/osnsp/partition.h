@@ -14,7 +14,7 @@ struct dalcs_partition {
     int *block_of;       /* [n_columns] in order of solution */
     bool *is_monotone;   /* [n_blocks] its part of the OSNSP is monotone: solvable iff feasible */
     bool all_monotone;   /* each of them */
-    bool jumps_as_usual; /* nothing that reads acts on a state, a diode or a switch */
+    bool jumps_as_usual; /* nothing that reads acts on a state */
     struct dalcs_arena arena;
 };
 
