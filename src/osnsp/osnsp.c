@@ -325,36 +325,36 @@ enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, doub
     return DALCS_NOT_CONVERGED;
 }
 
-/* In the mode that is there, else block by block: *is_done where that decides. */
+/* By pivoting on the whole, as most problems are solved; where that finds no answer, or one of several, block by
+ * block: *is_done where that decides. The blocks begin with the sides that were there. */
 static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, const double *u,
                                         double *y, bool *is_done) {
+    size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
     *is_done = false;
     if (p->partition.n_blocks < 2) {
         return DALCS_OK;
     }
-    bool sources_clash;
-    enum dalcs_status status = dalcs_osnsp_try_mode(p, u, y, &sources_clash);
-    if (status < DALCS_OK) {
+    memcpy(p->tied_mode, p->mode, bytes);
+    enum dalcs_status status = dalcs_osnsp_pivot(p, u, y, p->system->n_pairs);
+    *is_done = status < DALCS_OK || (status == DALCS_OK && p->n_tied == 0);
+    if (*is_done) {
         return status;
     }
-    *is_done = status == DALCS_OK && dalcs_certificate_holds(p, sources_clash) && p->n_tied == 0;
-    if (*is_done) {
-        return DALCS_OK;
-    }
+    memcpy(p->mode, p->tied_mode, bytes);
     if (p->blocks == NULL) {
         status = dalcs_in_order_build(p);
         p->partition.n_blocks = status == DALCS_NOT_CONVERGED ? 1 : p->partition.n_blocks;
         if (status != DALCS_OK) {
-            return status < DALCS_OK ? status : DALCS_OK;
+            *is_done = status < DALCS_OK;
+            return status;
         }
     }
-    memcpy(p->tied_mode, p->mode, (size_t)p->n_words * sizeof(*p->mode));
     status = dalcs_in_order_solve(p, sigma, u, y);
     *is_done = status <= DALCS_OK || (status == DALCS_INFEASIBLE && dalcs_osnsp_is_monotone(p));
     if (!*is_done) {
-        memcpy(p->mode, p->tied_mode, (size_t)p->n_words * sizeof(*p->mode));
+        memcpy(p->mode, p->tied_mode, bytes);
     }
-    return *is_done ? status : DALCS_OK;
+    return status;
 }
 
 static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, double *y) {
@@ -396,7 +396,7 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
     }
     bool is_done;
     enum dalcs_status status = solve_in_order(p, sigma, u, y, &is_done);
-    if (is_done || status < DALCS_OK) {
+    if (is_done) {
         return status;
     }
     status = solve_somehow(p, u, y);
