@@ -263,6 +263,21 @@ void dalcs_in_order_finish(struct dalcs_osnsp *p) {
     p->blocks = NULL;
 }
 
+bool dalcs_osnsp_acts_on_what_it_reads(const struct dalcs_osnsp *p, const char *element) {
+    const struct dalcs_system *s = p->system;
+    const int *block_of = p->partition.block_of;
+    int n_equations = dalcs_system_n_equations(s);
+    bool acts = false;
+    for (int r = 0; block_of != NULL && r < s->reads.n_rows && !acts; r++) {
+        int block = block_of[r < n_equations ? s->dual[r] : r];
+        for (int k = s->reads.p[r]; k < s->reads.p[r + 1] && !acts; k++) {
+            acts = !p->partition.is_monotone[block] && block_of[s->reads.j[k]] == block &&
+                   strcmp(s->reader[k], element) == 0;
+        }
+    }
+    return acts;
+}
+
 /* ---- Solving ------------------------------------------------------------------------------- */
 
 /* The pair of the whole system that pair d of the block is. */

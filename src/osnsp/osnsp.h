@@ -165,6 +165,9 @@ static inline bool dalcs_osnsp_is_monotone(const struct dalcs_osnsp *p) {
     return p->partition.all_monotone;
 }
 
+/* Does this element read a quantity that depends on what it does? */
+bool dalcs_osnsp_acts_on_what_it_reads(const struct dalcs_osnsp *p, const char *element);
+
 /* Is it known of the circuit that no answer of it is one of several, whatever is tied? */
 static inline bool dalcs_osnsp_is_unique(const struct dalcs_osnsp *p) {
     return p->n_forms > 0 && p->form[0]->answers == DALCS_UNIQUE;

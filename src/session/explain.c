@@ -127,6 +127,7 @@ static enum dalcs_status explain_infeasible(struct dalcs_run *r, const struct da
     struct dalcs_refusal x = {
         .s = s,
         .circuit = &s->circuit,
+        .osnsp = &c->osnsp,
         .kind = w->kind,
         .time = e->failed_time,
         .is_static = c->failed_sigma == 0.0,

@@ -328,12 +328,6 @@ static const char *explain_part(const struct dalcs_refusal *r, const struct dalc
 
 /* ---- Circuits that are not passive --------------------------------------------------------- */
 
-static bool is_active(const struct dalcs_device *d) {
-    bool is_controlled = d->kind == DALCS_VCVS || d->kind == DALCS_VCCS || d->kind == DALCS_CCVS ||
-                         d->kind == DALCS_CCCS;
-    return is_controlled || (d->kind == DALCS_RESISTOR && d->value < 0.0);
-}
-
 /* Without diodes a circuit has one mode, and what is named is the equation that fits worst. */
 static bool has_modes(const struct dalcs_refusal *r) {
     bool has = false;
@@ -355,66 +349,13 @@ static int device_of(const struct dalcs_circuit *c, const char *name) {
     return device;
 }
 
-/* A union-find that a device is joined in. */
-struct joined {
-    int *part;
-    int n_nodes, device;
-};
-
-/* What a formula reads belongs to its source. */
-static void join_term(void *to, const struct dalcs_affine_term *term) {
-    const struct joined *j = to;
-    if (term->kind == DALCS_QUANTITY_VOLTAGE) {
-        dalcs_union_join(j->part, term->index, j->n_nodes + j->device);
-    } else if (term->kind == DALCS_QUANTITY_CURRENT) {
-        dalcs_union_join(j->part, j->n_nodes + term->index, j->n_nodes + j->device);
-    }
-}
-
-/* part[n_nodes + n_devices]: what hangs together through anything but ground, as a union-find. */
-static void find_parts(const struct dalcs_circuit *c, int *part) {
-    dalcs_union_reset(part, c->n_nodes + c->n_devices);
-    for (int i = 0; i < c->n_devices; i++) {
-        const struct dalcs_device *d = &c->device[i];
-        bool has_controls =
-            d->kind == DALCS_VCVS || d->kind == DALCS_VCCS || d->kind == DALCS_SWITCH;
-        for (int k = 0; k < (has_controls ? 4 : 2); k++) {
-            if (d->node[k] != 0) {
-                dalcs_union_join(part, d->node[k], c->n_nodes + i);
-            }
-        }
-        if (d->control >= 0) {
-            dalcs_union_join(part, c->n_nodes + i, c->n_nodes + d->control);
-        }
-        struct joined joined = {part, c->n_nodes, i};
-        dalcs_behaviour_visit(d->behaviour, join_term, &joined);
-    }
-    for (int k = 0; k < c->n_couplings; k++) {
-        const int *coil = c->coupling[k].inductor;
-        dalcs_union_join(part, c->n_nodes + coil[0], c->n_nodes + coil[1]);
-    }
-}
-
-/* What keeps the part of a named element, or node, from being passive. */
+/* What keeps the problem from being monotone: what reads a quantity on which it acts. */
 static void list_active(const struct dalcs_refusal *r, struct list *active) {
-    const struct dalcs_circuit *c = r->circuit;
-    int *part = dalcs_alloc((size_t)c->n_nodes + (size_t)c->n_devices, sizeof(*part));
-    if (part == NULL) {
-        return;
-    }
-    find_parts(c, part);
-    int named = r->n_elements > 0 ? device_of(c, r->element[0]) : -1;
-    int at = named >= 0 ? c->n_nodes + named : 0;
-    for (int k = 1; k < c->n_nodes && at == 0 && r->n_elements > 0; k++) {
-        at = strcmp(c->node_name[k], r->element[0]) == 0 ? k : 0;
-    }
-    for (int i = 0; i < c->n_devices; i++) {
-        bool is_there = dalcs_union_find(part, c->n_nodes + i) == dalcs_union_find(part, at);
-        if (is_there && is_active(&c->device[i])) {
-            put(active, c->device[i].name);
+    for (int i = 0; i < r->circuit->n_devices; i++) {
+        if (dalcs_osnsp_acts_on_what_it_reads(r->osnsp, r->circuit->device[i].name)) {
+            put(active, r->circuit->device[i].name);
         }
     }
-    free(part);
 }
 
 static const char *explain_modes(const struct dalcs_refusal *r) {
@@ -426,26 +367,21 @@ static const char *explain_modes(const struct dalcs_refusal *r) {
                         : dalcs_arena_printf(&r->s->arena, "node %s", r->element[k]));
     }
     list_active(r, &active);
-    if (active.n == 0) {
-        put(&active, "something"); /* without memory, or where .ic alone is named */
-    }
     int first = r->n_elements > 0 ? device_of(r->circuit, r->element[0]) : -1;
     bool is_formula = first >= 0 && r->circuit->device[first].behaviour != NULL;
     const char *format =
-        !r->is_certain && !has_modes(r) ? "the best answer that was tried fits worst at %s; %s %s "
-                                          "the circuit from being passive"
-        : !r->is_certain ? "no combination of conducting and blocking that was tried fits %s; %s "
-                           "%s the circuit from being passive"
-        : !has_modes(r) ? "the equations contradict each other, most at %s; %s %s the circuit from "
-                          "being passive"
-        : named.n == 1 && is_formula
-            ? "%s fits no piece of its formula; %s %s the circuit from being passive"
-        : named.n == 1 ? "%s fits neither conducting nor blocking; %s %s the circuit from being "
-                         "passive"
-                       : "no combination of conducting and blocking fits %s; %s %s the circuit "
-                         "from being passive";
-    return dalcs_arena_printf(&r->s->arena, format, joined(&named, false), joined(&active, false),
-                              plural(&active, "keeps", "keep"));
+        !r->is_certain && !has_modes(r) ? "the best answer that was tried fits worst at %s"
+        : !r->is_certain ? "no combination of conducting and blocking that was tried fits %s"
+        : !has_modes(r) ? "the equations contradict each other, most at %s"
+        : named.n == 1 && is_formula ? "%s fits no piece of its formula"
+        : named.n == 1               ? "%s fits neither conducting nor blocking"
+                                     : "no combination of conducting and blocking fits %s";
+    const char *what = dalcs_arena_printf(&r->s->arena, format, joined(&named, false));
+    if (active.n == 0 || what == NULL) {
+        return what;
+    }
+    return dalcs_arena_printf(&r->s->arena, "%s; %s %s the circuit from being passive", what,
+                              joined(&active, false), plural(&active, "keeps", "keep"));
 }
 
 /* ---- Jumps --------------------------------------------------------------------------------- */

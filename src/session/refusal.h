@@ -8,6 +8,7 @@
 struct dalcs_refusal {
     struct dalcs_session *s;
     const struct dalcs_circuit *circuit;
+    const struct dalcs_osnsp *osnsp; /* the problem */
     enum dalcs_witness_kind kind;
     size_t n_elements; /* of the witness; in a loop then in its order */
     const char **element;
