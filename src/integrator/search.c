@@ -257,6 +257,10 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
         return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
     }
     dalcs_length_shorten(part, quality->ratio, search->stuck);
+    if (part->t + dalcs_radau_ladder(part, part->level) <= part->t) { /* time would stand still */
+        *done = true;
+        return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
+    }
     return DALCS_OK;
 }
 
