@@ -425,4 +425,7 @@ void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card 
 /* Warnings about the whole network. */
 void dalcs_topology_check(struct dalcs_builder *builder);
 
+/* Makes resistors of the controlled sources that are resistors; after all checks. */
+void dalcs_own_resistance_replace(struct dalcs_builder *builder);
+
 #endif

@@ -318,6 +318,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
         dalcs_topology_check(builder);
         dalcs_initial_check(builder);
         dalcs_sweep_check(builder);
+        dalcs_own_resistance_replace(builder);
     }
     return builder->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
 }
