@@ -33,6 +33,8 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     const size_t n_devices = count[DALCS_CARD_ELEMENT] + table.n_inner;
     const size_t n_models = count[DALCS_CARD_MODEL];
     builder->n_device_cards = (int)n_devices;
+    builder->device_capacity = n_devices;
+    builder->switch_model_capacity = n_models;
     circuit->device = dalcs_arena_alloc(arena, n_devices, sizeof *circuit->device);
     circuit->stimulus = dalcs_arena_alloc(arena, table.n_stimuli, sizeof *circuit->stimulus);
     circuit->coupling = dalcs_arena_alloc(arena, table.n_pairs, sizeof *circuit->coupling);
@@ -164,41 +166,78 @@ static void check_presence(struct dalcs_builder *builder) {
     }
 }
 
-/* The first place among the shown signals of each node's voltage, then of each device's current, in
- * scratch; -1 where there is none. */
-static int *list_shown(struct dalcs_builder *builder) {
-    const struct dalcs_circuit *circuit = builder->circuit;
-    const int n = circuit->n_nodes + circuit->n_devices;
-    int *shown = dalcs_arena_alloc(&builder->scratch, (size_t)n, sizeof *shown);
-    for (int k = 0; k < n && shown != NULL; k++) {
-        shown[k] = -1;
-    }
-    for (int k = circuit->n_shown - 1; k >= 0 && shown != NULL; k--) {
-        const struct dalcs_signal *s = &circuit->signal[k];
-        if (s->kind == DALCS_SIGNAL_CURRENT) {
-            shown[circuit->n_nodes + s->device] = k;
-        } else if (s->node[1] == 0) {
-            shown[s->node[0]] = k;
-        }
-    }
-    return shown;
+/* Where signals are shown. */
+struct shown {
+    int *
+        place; /* [n_nodes + n_devices] of each node's voltage, of each device's current; -1: nowhere */
+
+    struct difference {
+        int node[2], place;
+    } * difference; /* [n] voltages between two nodes, in the order of these */
+
+    size_t n;
+};
+
+static int compare_differences(const void *left, const void *right) {
+    const struct difference *a = left;
+    const struct difference *b = right;
+    int first = a->node[0] != b->node[0] ? a->node[0] - b->node[0] : a->node[1] - b->node[1];
+    return first != 0 ? first : a->place - b->place;
 }
 
-/* Where a signal is shown, -1 when it is not. Voltages between two nodes, which someone wrote one by
- * one, are searched for. */
-static int place_of(const struct dalcs_circuit *circuit, const int *shown,
+/* In scratch; false: out of memory. */
+static bool list_shown(struct dalcs_builder *builder, struct shown *shown) {
+    const struct dalcs_circuit *circuit = builder->circuit;
+    const int n = circuit->n_nodes + circuit->n_devices;
+    shown->place = dalcs_arena_alloc(&builder->scratch, (size_t)n, sizeof *shown->place);
+    shown->difference =
+        dalcs_arena_alloc(&builder->scratch, (size_t)circuit->n_shown, sizeof *shown->difference);
+    if (shown->place == NULL || shown->difference == NULL) {
+        return false;
+    }
+    for (int k = 0; k < n; k++) {
+        shown->place[k] = -1;
+    }
+    for (int k = circuit->n_shown - 1; k >= 0; k--) {
+        const struct dalcs_signal *s = &circuit->signal[k];
+        if (s->kind == DALCS_SIGNAL_CURRENT) {
+            shown->place[circuit->n_nodes + s->device] = k;
+        } else if (s->node[1] == 0) {
+            shown->place[s->node[0]] = k;
+        }
+    }
+    shown->n = 0;
+    for (int k = 0; k < circuit->n_shown; k++) {
+        const struct dalcs_signal *s = &circuit->signal[k];
+        if (s->kind != DALCS_SIGNAL_CURRENT && s->node[1] != 0) {
+            shown->difference[shown->n++] = (struct difference){{s->node[0], s->node[1]}, k};
+        }
+    }
+    qsort(shown->difference, shown->n, sizeof *shown->difference, compare_differences);
+    return true;
+}
+
+/* The first place where a signal is shown, -1 when it is not. */
+static int place_of(const struct dalcs_circuit *circuit, const struct shown *shown,
                     const struct dalcs_signal *signal) {
     if (signal->kind == DALCS_SIGNAL_CURRENT) {
-        return shown[circuit->n_nodes + signal->device];
+        return shown->place[circuit->n_nodes + signal->device];
     }
     if (signal->node[1] == 0) {
-        return shown[signal->node[0]];
+        return shown->place[signal->node[0]];
     }
-    int place = 0;
-    while (place < circuit->n_shown && !dalcs_signal_is_same(&circuit->signal[place], signal)) {
-        place++;
+    size_t low = 0;
+    size_t high = shown->n;
+    const struct difference wanted = {{signal->node[0], signal->node[1]}, 0};
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        bool is_before = compare_differences(&shown->difference[middle], &wanted) < 0;
+        *(is_before ? &low : &high) = is_before ? middle + 1 : middle;
     }
-    return place < circuit->n_shown ? place : -1;
+    const struct difference *found = low < shown->n ? &shown->difference[low] : NULL;
+    bool is_same =
+        found != NULL && found->node[0] == wanted.node[0] && found->node[1] == wanted.node[1];
+    return is_same ? found->place : -1;
 }
 
 /* What formulas name: a signal that is recorded anyway, or one more behind those. */
@@ -213,12 +252,12 @@ static enum dalcs_status collect_measured(struct dalcs_builder *builder) {
     if (circuit->measured == NULL || circuit->measure == NULL || circuit->fourier == NULL) {
         return DALCS_E_NOMEM;
     }
-    const int *shown = n > 0 ? list_shown(builder) : NULL;
-    if (n > 0 && shown == NULL) {
+    struct shown shown;
+    if (n > 0 && !list_shown(builder, &shown)) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n; k++) {
-        int place = place_of(circuit, shown, &builder->measured[k]);
+        int place = place_of(circuit, &shown, &builder->measured[k]);
         if (place < 0) {
             place = circuit->n_signals++;
             circuit->signal[place] = builder->measured[k];
@@ -374,6 +413,7 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
     free(builder.fourier);
     free(builder.initial_condition);
     free(builder.formula);
+    dalcs_drivers_finish(&builder.drivers);
     dalcs_deck_finish(&deck);
     if (status != DALCS_OK) {
         dalcs_circuit_finish(circuit);
