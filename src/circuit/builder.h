@@ -428,6 +428,8 @@ bool dalcs_signal_formula_difference(struct dalcs_builder *builder,
                                      struct dalcs_signal_formula *difference);
 void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* What formulas name: a signal that is recorded anyway, or one more behind those. */
+enum dalcs_status dalcs_measured_collect(struct dalcs_builder *builder) DALCS_MUST_CHECK;
 /* Warnings about the whole network. */
 void dalcs_topology_check(struct dalcs_builder *builder);
 
