@@ -53,6 +53,19 @@ static void raise_lambdas(struct dalcs_audit *audit, int device, const struct da
     }
 }
 
+/* What rounding of charges and fluxes makes of the currents and voltages that an affine function reads. */
+static double rounding_read(const struct dalcs_audit *audit, const struct dalcs_affine *a) {
+    double rounding = 0.0;
+    for (int k = 0; k < a->n; k++) {
+        const struct dalcs_affine_term *term = &a->term[k];
+        rounding +=
+            term->kind == DALCS_QUANTITY_CURRENT   ? fabs(term->coefficient) * audit->sums.amperes
+            : term->kind == DALCS_QUANTITY_VOLTAGE ? fabs(term->coefficient) * audit->sums.volts
+                                                   : 0.0;
+    }
+    return rounding;
+}
+
 /* A formula's output, less what the device puts out; each of its pairs. */
 static void check_formula(struct dalcs_audit *audit, struct audit_part *part,
                           const struct dalcs_audit_state *s, int device) {
@@ -68,7 +81,8 @@ static void check_formula(struct dalcs_audit *audit, struct audit_part *part,
                                     : audit_amperes(audit, part, device);
     const double held = size + scale;
     const enum dalcs_audit_law law = is_voltage ? DALCS_AUDIT_BRANCH : DALCS_AUDIT_CURRENT;
-    audit_find(audit, part, law, device, fabs(is - f) - AUDIT_ROUNDING * size, held, s->t);
+    const double rounding = AUDIT_ROUNDING * size + rounding_read(audit, &d->behaviour->output);
+    audit_find(audit, part, law, device, fabs(is - f) - rounding, held, s->t);
     for (int k = 0; k < d->behaviour->n_pairs; k++) {
         const int pair = audit->first_lambda[device] + k;
         const double w = affine_value(audit, part, s, device, &d->behaviour->w[k], &size, &terms);
@@ -237,6 +251,7 @@ static void check_branch(struct dalcs_audit *audit, struct audit_part *part,
         return;
     }
     double wanted;
+    double rounding = 0.0; /* of what it reads */
     double scale = audit_volts(audit, part, d->node[0], d->node[1]);
     switch (d->kind) {
     case DALCS_VSOURCE:
@@ -245,10 +260,12 @@ static void check_branch(struct dalcs_audit *audit, struct audit_part *part,
     case DALCS_VCVS:
         wanted = d->value * (s->v[d->node[2]] - s->v[d->node[3]]);
         scale += fabs(d->value) * audit_volts(audit, part, d->node[2], d->node[3]);
+        rounding = fabs(d->value) * audit->sums.volts;
         break;
     case DALCS_CCVS:
         wanted = d->value * s->i[d->control];
         scale += fabs(d->value) * audit_amperes(audit, part, d->control);
+        rounding = fabs(d->value) * audit->sums.amperes;
         break;
     case DALCS_DIODE:
         check_diode(audit, part, s, device);
@@ -259,7 +276,7 @@ static void check_branch(struct dalcs_audit *audit, struct audit_part *part,
     default: /* R, C, L, I, F, G: their currents are in Kirchhoff's law */
         return;
     }
-    double off = fabs(audit_voltage(s, d) - wanted) - audit->options.vntol;
+    double off = fabs(audit_voltage(s, d) - wanted) - rounding - audit->options.vntol;
     if (d->kind == DALCS_VSOURCE && off > part->tolerance * scale) {
         off -= source_slack(audit, &audit->circuit->stimulus[d->stimulus], s);
     }
@@ -307,6 +324,9 @@ static double rounding_of(const struct dalcs_audit *audit, const struct audit_pa
     if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
         const double controls = fabs(s->v[d->node[2]]) + fabs(s->v[d->node[3]]);
         return fabs(d->value) * (AUDIT_ROUNDING * controls + audit->sums.volts);
+    }
+    if (d->kind == DALCS_CCCS) {
+        return AUDIT_ROUNDING * fabs(current) + fabs(d->value) * audit->sums.amperes;
     }
     if (d->kind == DALCS_INDUCTOR) {
         /* a voltage of 0 is that to the rounding of the largest one in the same equations (Wilkinson) */

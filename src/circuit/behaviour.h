@@ -143,8 +143,17 @@ const struct dalcs_gate *dalcs_gate_find(struct dalcs_compiler *c,
                                          const struct dalcs_device *device,
                                          const struct dalcs_form *form);
 
+/* What each node controls, once all devices are there. Heap; zero-initialise. */
+struct dalcs_gate_readers {
+    int *
+        first; /* [n_nodes] a control: of the kth, 2 device + which of its two nodes + 1; 0: none */
+    int (*next)[2]; /* [n_devices] of the same node, by which of the device's two it is */
+};
+
 /* Switches without hysteresis that this gate commands, and a Vt that is one of its values. */
-void dalcs_gate_settle(struct dalcs_builder *builder, const struct dalcs_gate *gate);
+void dalcs_gate_settle(struct dalcs_builder *builder, struct dalcs_gate_readers *readers,
+                       const struct dalcs_gate *gate);
+void dalcs_gate_readers_finish(struct dalcs_gate_readers *readers);
 
 /* ---- wave.c: functions of time --------------------------------------------------------------------- */
 

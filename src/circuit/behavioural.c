@@ -203,13 +203,17 @@ static const struct dalcs_form *input_of(struct dalcs_compiler *c,
 
 const struct dalcs_formula *dalcs_behavioural_formula_of(const struct dalcs_builder *builder,
                                                          int device) {
-    for (size_t k = 0; k < builder->n_formulas; k++) {
-        const struct dalcs_formula_source *source = &builder->formula[k];
-        if (source->device == device && source->token != NULL && !source->has_table) {
-            return source->token->formula;
-        }
+    size_t low = 0;
+    size_t high = builder->n_formulas;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        const bool is_before = builder->formula[middle].device < device;
+        *(is_before ? &low : &high) = is_before ? middle + 1 : middle;
     }
-    return NULL;
+    const struct dalcs_formula_source *source =
+        low < builder->n_formulas ? &builder->formula[low] : NULL;
+    const bool is_one = source != NULL && source->device == device && source->token != NULL;
+    return is_one && !source->has_table ? source->token->formula : NULL;
 }
 
 static void resolve(struct dalcs_compiler *c, struct dalcs_formula_source *source) {
@@ -254,11 +258,13 @@ void dalcs_behavioural_resolve(struct dalcs_builder *builder) {
     for (size_t k = 0; k < builder->n_formulas && !builder->out_of_memory; k++) {
         resolve(&c, &builder->formula[k]);
     }
+    struct dalcs_gate_readers readers = {0};
     for (size_t k = 0; k < builder->n_formulas && !builder->out_of_memory; k++) {
         if (builder->formula[k].gate != NULL) {
-            dalcs_gate_settle(builder, builder->formula[k].gate);
+            dalcs_gate_settle(builder, &readers, builder->formula[k].gate);
         }
     }
+    dalcs_gate_readers_finish(&readers);
     if (c.n_stimuli > 0 && !builder->out_of_memory) {
         take_stimuli(&c);
     }

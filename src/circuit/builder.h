@@ -5,6 +5,7 @@
 #define DALCS_BUILDER_H
 
 #include "circuit.h"
+#include "drivers.h"
 #include "expand.h"
 #include "names.h"
 #include "netlist.h"
@@ -76,7 +77,10 @@ struct dalcs_builder {
 
     struct dalcs_formula_source *formula; /* heap: the sources whose formula is compiled when all
                                              elements are known */
-    size_t n_formulas, formula_capacity;
+    size_t n_formulas, formula_capacity;  /* in the order of their devices */
+    struct dalcs_drivers drivers;
+    size_t device_capacity,
+        switch_model_capacity; /* of circuit->device and what goes by its index */
 
     struct dalcs_names models; /* name -> index of model */
     struct dalcs_model *model;
@@ -354,6 +358,8 @@ void dalcs_diode_model_map(const struct dalcs_diode_card *card, double current, 
                            struct dalcs_diode_model *model);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* type: sw, csw, vswitch or iswitch */
+/* Its number; -1 when out of memory. */
+int dalcs_switch_add_model(struct dalcs_builder *builder, const struct dalcs_switch_model *model);
 bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
                               struct dalcs_switch_model *model);
 void dalcs_model_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
@@ -422,7 +428,12 @@ bool dalcs_signal_formula_difference(struct dalcs_builder *builder,
                                      struct dalcs_signal_formula *difference);
 void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* What formulas name: a signal that is recorded anyway, or one more behind those. */
+enum dalcs_status dalcs_measured_collect(struct dalcs_builder *builder) DALCS_MUST_CHECK;
 /* Warnings about the whole network. */
 void dalcs_topology_check(struct dalcs_builder *builder);
+
+/* Makes resistors of the controlled sources that are resistors; after all checks. */
+void dalcs_own_resistance_replace(struct dalcs_builder *builder);
 
 #endif

@@ -33,6 +33,8 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     const size_t n_devices = count[DALCS_CARD_ELEMENT] + table.n_inner;
     const size_t n_models = count[DALCS_CARD_MODEL];
     builder->n_device_cards = (int)n_devices;
+    builder->device_capacity = n_devices;
+    builder->switch_model_capacity = n_models;
     circuit->device = dalcs_arena_alloc(arena, n_devices, sizeof *circuit->device);
     circuit->stimulus = dalcs_arena_alloc(arena, table.n_stimuli, sizeof *circuit->stimulus);
     circuit->coupling = dalcs_arena_alloc(arena, table.n_pairs, sizeof *circuit->coupling);
@@ -164,78 +166,6 @@ static void check_presence(struct dalcs_builder *builder) {
     }
 }
 
-/* The first place among the shown signals of each node's voltage, then of each device's current, in
- * scratch; -1 where there is none. */
-static int *list_shown(struct dalcs_builder *builder) {
-    const struct dalcs_circuit *circuit = builder->circuit;
-    const int n = circuit->n_nodes + circuit->n_devices;
-    int *shown = dalcs_arena_alloc(&builder->scratch, (size_t)n, sizeof *shown);
-    for (int k = 0; k < n && shown != NULL; k++) {
-        shown[k] = -1;
-    }
-    for (int k = circuit->n_shown - 1; k >= 0 && shown != NULL; k--) {
-        const struct dalcs_signal *s = &circuit->signal[k];
-        if (s->kind == DALCS_SIGNAL_CURRENT) {
-            shown[circuit->n_nodes + s->device] = k;
-        } else if (s->node[1] == 0) {
-            shown[s->node[0]] = k;
-        }
-    }
-    return shown;
-}
-
-/* Where a signal is shown, -1 when it is not. Voltages between two nodes, which someone wrote one by
- * one, are searched for. */
-static int place_of(const struct dalcs_circuit *circuit, const int *shown,
-                    const struct dalcs_signal *signal) {
-    if (signal->kind == DALCS_SIGNAL_CURRENT) {
-        return shown[circuit->n_nodes + signal->device];
-    }
-    if (signal->node[1] == 0) {
-        return shown[signal->node[0]];
-    }
-    int place = 0;
-    while (place < circuit->n_shown && !dalcs_signal_is_same(&circuit->signal[place], signal)) {
-        place++;
-    }
-    return place < circuit->n_shown ? place : -1;
-}
-
-/* What formulas name: a signal that is recorded anyway, or one more behind those. */
-static enum dalcs_status collect_measured(struct dalcs_builder *builder) {
-    struct dalcs_circuit *circuit = builder->circuit;
-    struct dalcs_arena *arena = &circuit->arena;
-    const size_t n = builder->n_measured;
-    circuit->n_measured = (int)n;
-    circuit->measured = dalcs_arena_alloc(arena, n, sizeof *circuit->measured);
-    circuit->measure = dalcs_arena_alloc(arena, builder->n_measures, sizeof *circuit->measure);
-    circuit->fourier = dalcs_arena_alloc(arena, builder->n_fouriers, sizeof *circuit->fourier);
-    if (circuit->measured == NULL || circuit->measure == NULL || circuit->fourier == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    const int *shown = n > 0 ? list_shown(builder) : NULL;
-    if (n > 0 && shown == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    for (size_t k = 0; k < n; k++) {
-        int place = place_of(circuit, shown, &builder->measured[k]);
-        if (place < 0) {
-            place = circuit->n_signals++;
-            circuit->signal[place] = builder->measured[k];
-        }
-        circuit->measured[k] = place;
-    }
-    circuit->n_measures = (int)builder->n_measures;
-    for (size_t k = 0; k < builder->n_measures; k++) {
-        circuit->measure[k] = builder->measure[k];
-    }
-    circuit->n_fouriers = (int)builder->n_fouriers;
-    for (size_t k = 0; k < builder->n_fouriers; k++) {
-        circuit->fourier[k] = builder->fourier[k];
-    }
-    return DALCS_OK;
-}
-
 static enum dalcs_status collect_prints(struct dalcs_builder *builder) {
     struct dalcs_circuit *circuit = builder->circuit;
     const size_t n = builder->n_prints;
@@ -288,7 +218,7 @@ static enum dalcs_status collect(struct dalcs_builder *builder) {
         circuit->initial_condition[k] = builder->initial_condition[k];
     }
     DALCS_TRY(collect_prints(builder));
-    return collect_measured(builder);
+    return dalcs_measured_collect(builder);
 }
 
 static enum dalcs_status build(struct dalcs_builder *builder) {
@@ -318,6 +248,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
         dalcs_topology_check(builder);
         dalcs_initial_check(builder);
         dalcs_sweep_check(builder);
+        dalcs_own_resistance_replace(builder);
     }
     return builder->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
 }
@@ -373,6 +304,7 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
     free(builder.fourier);
     free(builder.initial_condition);
     free(builder.formula);
+    dalcs_drivers_finish(&builder.drivers);
     dalcs_deck_finish(&deck);
     if (status != DALCS_OK) {
         dalcs_circuit_finish(circuit);

@@ -119,13 +119,6 @@ struct dalcs_signal {
     int node[2]; /* voltage: node[0] - node[1] */
 };
 
-static inline bool dalcs_signal_is_same(const struct dalcs_signal *a,
-                                        const struct dalcs_signal *b) {
-    return a->kind == b->kind && a->device == b->device &&
-           (a->kind == DALCS_SIGNAL_CURRENT ||
-            (a->node[0] == b->node[0] && a->node[1] == b->node[1]));
-}
-
 /* What .tran asks for; times in s. */
 struct dalcs_transient {
     bool present;

@@ -13,38 +13,38 @@
 
 enum { DEEPEST = 4, MOST_NODES = 64 };
 
+/* Room for more devices, in pieces that double: a netlist of many products has many parts. */
 static bool grow(struct dalcs_builder *builder, size_t n_more) {
     struct dalcs_circuit *circuit = builder->circuit;
     const size_t n = (size_t)circuit->n_devices;
-    const size_t n_models = (size_t)circuit->n_switch_models;
-    struct dalcs_device *device = dalcs_arena_alloc(&circuit->arena, n + n_more, sizeof *device);
-    struct dalcs_switch_model *model =
-        dalcs_arena_alloc(&circuit->arena, n_models + 1, sizeof *model);
+    if (n + n_more <= builder->device_capacity) {
+        return true;
+    }
+    const size_t most = 2 * (n + n_more);
+    struct dalcs_device *device = dalcs_arena_alloc(&circuit->arena, most, sizeof *device);
     const struct dalcs_token **token =
-        dalcs_arena_alloc(&builder->scratch, n + n_more, sizeof(const struct dalcs_token *));
-    int *current_of = dalcs_arena_alloc(&builder->scratch, n + n_more, sizeof *current_of);
-    if (device == NULL || model == NULL || token == NULL || current_of == NULL) {
+        dalcs_arena_alloc(&builder->scratch, most, sizeof(const struct dalcs_token *));
+    int *current_of = dalcs_arena_alloc(&builder->scratch, most, sizeof *current_of);
+    if (device == NULL || token == NULL || current_of == NULL) {
         builder->out_of_memory = true;
         return false;
     }
     memcpy(device, circuit->device, n * sizeof *device);
     memcpy(token, builder->device_token, n * sizeof(const struct dalcs_token *));
     memcpy(current_of, builder->current_of, n * sizeof *current_of);
-    if (n_models > 0) {
-        memcpy(model, circuit->switch_model, n_models * sizeof *model);
-    }
     circuit->device = device;
-    circuit->switch_model = model;
     builder->device_token = token;
     builder->current_of = current_of;
+    builder->device_capacity = most;
     return true;
 }
 
 /* One that is on below one half. */
-static int add_model(struct dalcs_circuit *circuit) {
-    circuit->switch_model[circuit->n_switch_models] = (struct dalcs_switch_model){
-        .name = "commutation", .roff = (double)INFINITY, .vt = -0.5, .is_inverted = true};
-    return circuit->n_switch_models++;
+static int add_model(struct dalcs_builder *builder) {
+    return dalcs_switch_add_model(builder, &(struct dalcs_switch_model){.name = "commutation",
+                                                                        .roff = (double)INFINITY,
+                                                                        .vt = -0.5,
+                                                                        .is_inverted = true});
 }
 
 /* ---- Formulas of the parts ---------------------------------------------------------------------- */
@@ -132,11 +132,9 @@ static const struct dalcs_form *source_steps(struct dalcs_compiler *c,
     const struct dalcs_circuit *circuit = c->builder->circuit;
     const struct dalcs_affine voltage = dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, node);
     const struct dalcs_form *v = dalcs_form_affine(c, &voltage);
-    for (int k = 0; k < circuit->n_devices && v != NULL; k++) {
+    for (int k = dalcs_drivers_first(c->builder, node); k >= 0 && v != NULL;
+         k = dalcs_drivers_next(c->builder, k)) {
         const struct dalcs_device *device = &circuit->device[k];
-        if (device->node[0] != node || device->node[1] != 0) {
-            continue;
-        }
         if (device->kind == DALCS_VSOURCE && device->stimulus >= 0) {
             const struct dalcs_stimulus *s = &circuit->stimulus[device->stimulus];
             const bool is_number = s->kind == DALCS_STIMULUS_DC && circuit->n_dc == 0 &&
@@ -187,7 +185,6 @@ static const struct dalcs_form *quantity_of(struct dalcs_compiler *c,
 /* The node that is at the quantity where step k is 1, at 0 where it is 0; -1 after an error. */
 static int add_node(struct dalcs_compiler *c, const struct dalcs_commutation *what, int k) {
     struct dalcs_builder *builder = c->builder;
-    struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_compiler control;
     struct dalcs_compiler source;
     const struct dalcs_behaviour *behaviour[2] = {NULL, NULL};
@@ -232,7 +229,7 @@ static int add_node(struct dalcs_compiler *c, const struct dalcs_commutation *wh
         device->node[0] = i == 0 ? node[0] : node[1];
         device->behaviour = i < 2 ? behaviour[i] : NULL;
         device->node[2] = i == 2 ? node[0] : 0;
-        device->model = i == 2 ? add_model(circuit) : -1;
+        device->model = i == 2 ? add_model(builder) : -1;
     }
     return node[1];
 }

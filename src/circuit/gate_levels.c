@@ -6,7 +6,7 @@
 #include "behaviour.h"
 
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
 
 enum { MOST_STEPS = 6, MOST_VALUES = 1 << MOST_STEPS, DEEPEST = 4 };
 
@@ -45,18 +45,10 @@ static double threshold(const struct dalcs_gate *gate, double sign, double vt) {
 }
 
 static void set_threshold(struct dalcs_builder *builder, struct dalcs_device *device, double vt) {
-    struct dalcs_circuit *circuit = builder->circuit;
-    const size_t n = (size_t)circuit->n_switch_models;
-    struct dalcs_switch_model *model = dalcs_arena_alloc(&circuit->arena, n + 1, sizeof *model);
-    if (model == NULL) {
-        builder->out_of_memory = true;
-        return;
-    }
-    memcpy(model, circuit->switch_model, n * sizeof *model);
-    model[n] = model[device->model];
-    model[n].vt = vt;
-    device->model = circuit->n_switch_models++;
-    circuit->switch_model = model;
+    struct dalcs_switch_model model = builder->circuit->switch_model[device->model];
+    model.vt = vt;
+    const int added = dalcs_switch_add_model(builder, &model);
+    device->model = added >= 0 ? added : device->model;
 }
 
 /* +1, -1: is this the gate, or turned around? 0: it is another voltage. */
@@ -66,10 +58,32 @@ static double sign_of(const struct dalcs_gate *gate, const int *node) {
     return is_same ? 1 : is_turned ? -1 : 0;
 }
 
-static void settle(struct dalcs_builder *builder, const struct dalcs_gate *gate, int depth) {
+static bool list_readers(struct dalcs_builder *builder, struct dalcs_gate_readers *r) {
+    const struct dalcs_circuit *circuit = builder->circuit;
+    r->first = dalcs_alloc((size_t)circuit->n_nodes, sizeof *r->first);
+    r->next = dalcs_alloc((size_t)circuit->n_devices, sizeof *r->next);
+    if (r->first == NULL || r->next == NULL) {
+        builder->out_of_memory = true;
+        return false;
+    }
+    for (int i = circuit->n_devices - 1; i >= 0; i--) {
+        const struct dalcs_device *device = &circuit->device[i];
+        const bool reads = device->kind == DALCS_SWITCH || device->kind == DALCS_VCVS;
+        for (int e = 0; e < 2 && reads; e++) {
+            r->next[i][e] = r->first[device->node[2 + e]];
+            r->first[device->node[2 + e]] = 2 * i + e + 1;
+        }
+    }
+    return true;
+}
+
+static void settle(struct dalcs_builder *builder, const struct dalcs_gate_readers *readers,
+                   const struct dalcs_gate *gate, int depth) {
     struct dalcs_circuit *circuit = builder->circuit;
-    for (int i = 0; i < circuit->n_devices && !builder->out_of_memory; i++) {
-        struct dalcs_device *device = &circuit->device[i];
+    const int node = gate->node[0] != 0 ? gate->node[0] : gate->node[1];
+    for (int at = readers->first[node]; at != 0 && !builder->out_of_memory;
+         at = readers->next[(at - 1) / 2][(at - 1) % 2]) {
+        struct dalcs_device *device = &circuit->device[(at - 1) / 2];
         const double sign = sign_of(gate, device->node + 2);
         if (device->kind == DALCS_SWITCH && device->model >= 0 && sign != 0) {
             const struct dalcs_switch_model *model = &circuit->switch_model[device->model];
@@ -83,7 +97,7 @@ static void settle(struct dalcs_builder *builder, const struct dalcs_gate *gate,
             for (int k = 0; k < gate->n; k++) {
                 driven.value[k] = device->value * sign * gate->value[k];
             }
-            settle(builder, &driven, depth + 1);
+            settle(builder, readers, &driven, depth + 1);
         }
     }
 }
@@ -105,6 +119,15 @@ const struct dalcs_gate *dalcs_gate_find(struct dalcs_compiler *c,
     return gate;
 }
 
-void dalcs_gate_settle(struct dalcs_builder *builder, const struct dalcs_gate *gate) {
-    settle(builder, gate, 0);
+void dalcs_gate_settle(struct dalcs_builder *builder, struct dalcs_gate_readers *readers,
+                       const struct dalcs_gate *gate) {
+    if (readers->first != NULL || list_readers(builder, readers)) {
+        settle(builder, readers, gate, 0);
+    }
+}
+
+void dalcs_gate_readers_finish(struct dalcs_gate_readers *readers) {
+    free(readers->first);
+    free(readers->next);
+    *readers = (struct dalcs_gate_readers){0};
 }

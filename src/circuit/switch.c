@@ -194,6 +194,26 @@ static bool check_resistances(struct dalcs_builder *builder, const struct dalcs_
     return true;
 }
 
+int dalcs_switch_add_model(struct dalcs_builder *builder, const struct dalcs_switch_model *model) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    const size_t n = (size_t)circuit->n_switch_models;
+    if (n == builder->switch_model_capacity) {
+        const size_t most = 2 * n + 4;
+        struct dalcs_switch_model *all = dalcs_arena_alloc(&circuit->arena, most, sizeof *all);
+        if (all == NULL) {
+            builder->out_of_memory = true;
+            return -1;
+        }
+        if (n > 0) {
+            memcpy(all, circuit->switch_model, n * sizeof *all);
+        }
+        circuit->switch_model = all;
+        builder->switch_model_capacity = most;
+    }
+    circuit->switch_model[n] = *model;
+    return circuit->n_switch_models++;
+}
+
 /* Vt and Vh of SW and CSW. LTspice's negative Vh asks for a smooth change between Vt - |Vh| and
  * Vt + |Vh|; ngspice's for something that no one knows. */
 static void set_threshold(struct dalcs_builder *builder, const struct form *form,

@@ -6,8 +6,6 @@
 
 #include <stdlib.h>
 
-enum { MOST_NOTES = 20 };
-
 static bool is_current_source(const struct dalcs_device *d) {
     return d->kind == DALCS_ISOURCE || d->kind == DALCS_CCCS || d->kind == DALCS_VCCS;
 }
@@ -42,15 +40,13 @@ static void note_parts(const struct dalcs_circuit *c, int *whole, struct border 
             b->capacitor = b->capacitor == 0 && d->kind == DALCS_CAPACITOR ? i + 1 : b->capacitor;
         }
     }
-    int n = 0;
-    for (int k = 1; k < c->n_nodes && n < MOST_NOTES; k++) {
+    for (int k = 1; k < c->n_nodes; k++) {
         if (whole[k] == k && border[k].capacitor > 0 && !border[k].is_fed) {
             dalcs_diag_add(diag, DALCS_NOTE, &c->device[border[k].capacitor - 1].where, NULL,
                            "only capacitors tie node '%s' and what hangs on it to the rest: the "
                            "operating point does not determine its voltage, and takes the one of "
                            "least norm",
                            c->node_name[k]);
-            n++;
         }
     }
 }

@@ -35,11 +35,21 @@ static void see_conductances(const struct dalcs_system *s, const struct dalcs_cs
     }
 }
 
+/* Of a row of KCL: its own voltage stands with the sum of all others. */
+static double joint_conductance(const struct dalcs_system *s, int row) {
+    double most = 0.0;
+    for (int k = s->A.p[row]; k < s->A.p[row + 1]; k++) {
+        most = s->column_is_current[s->A.j[k]] ? most : fmax(most, fabs(s->A.x[k]));
+    }
+    return most;
+}
+
 struct dalcs_conductances dalcs_conductances_find(const struct dalcs_system *s, double stop) {
     struct dalcs_conductances g = {.least = INFINITY};
     int n_equations = dalcs_system_n_equations(s);
     for (int r = 0; r < n_equations; r++) {
         see_conductances(s, &s->A, r, s->row_is_current[r], 1.0, &g);
+        g.joint = s->row_is_current[r] ? fmax(g.joint, joint_conductance(s, r)) : g.joint;
         if (r < s->n_x) {
             see_conductances(s, &s->P, r, s->row_is_current[r], stop, &g);
         }

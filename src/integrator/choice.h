@@ -7,6 +7,7 @@
 /* S: the least and the most that tie a voltage to a current in a system, storage over the whole run among them. */
 struct dalcs_conductances {
     double least, most; /* INFINITY and 0: none */
+    double joint; /* the largest at one node without storage, a sum that a double rounds; 0: none */
 };
 
 struct dalcs_choice {

@@ -28,14 +28,20 @@ static double rounding_by_map(const struct dalcs_radau_part *part, int place, do
                                                                   part->in, part->scale));
 }
 
-double dalcs_guard_rounding(const struct dalcs_radau_part *part, int guard, const double *unit) {
+double dalcs_guard_rounding_across(const struct dalcs_radau_part *part, int pair,
+                                   const double *unit) {
+    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, pair);
+    bool nothing_flows = unit[1] <= part->cross[1] * unit[0];
+    double leak = is_on && nothing_flows ? part->leak * unit[0] : 0.0;
+    return dalcs_larger(dalcs_step_crossed(part, is_on ? 1 : 0, unit), leak);
+}
+
+/* By what is held beside it. */
+static double rounding_of_pair(const struct dalcs_radau_part *part, int guard, const double *unit) {
     const struct dalcs_system *s = part->component->system;
     double most = dalcs_guard_most_rounding(part, guard, unit);
     if (!(most > 0.0)) {
         return 0.0;
-    }
-    if (guard >= s->n_pairs) {
-        return rounding_by_map(part, dalcs_system_n_columns(s) + guard - s->n_pairs, most);
     }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
     bool has_map = part->entry != NULL && dalcs_stage_has_map(part->entry);
@@ -45,4 +51,14 @@ double dalcs_guard_rounding(const struct dalcs_radau_part *part, int guard, cons
         most = dalcs_smaller(most, dalcs_pair_flux(part, guard) / part->h);
     }
     return rounding_by_map(part, dalcs_system_n_equations(s) + guard, dalcs_guard_rounded * most);
+}
+
+double dalcs_guard_rounding(const struct dalcs_radau_part *part, int guard, const double *unit) {
+    const struct dalcs_system *s = part->component->system;
+    if (guard < s->n_pairs) {
+        return rounding_of_pair(part, guard, unit) + dalcs_guard_rounding_across(part, guard, unit);
+    }
+    double most = dalcs_guard_most_rounding(part, guard, unit);
+    return most > 0.0 ? rounding_by_map(part, dalcs_system_n_columns(s) + guard - s->n_pairs, most)
+                      : 0.0;
 }

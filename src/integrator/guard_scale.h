@@ -63,6 +63,11 @@ static inline double dalcs_guard_most_rounding(const struct dalcs_radau_part *pa
            (is_on ? part->held_charge[guard] * unit[0] : part->held_flux[guard] * unit[1]);
 }
 
+/* What rounding makes of a pair that is 0 where its whole unit is, in V or A. Where nothing flows in an island that
+ * floats, the sum of two conductances, rounded, less each of them is a leak to ground of the last digit. */
+double dalcs_guard_rounding_across(const struct dalcs_radau_part *part, int pair,
+                                   const double *unit);
+
 /* The same of all that is known. */
 double dalcs_guard_rounding(const struct dalcs_radau_part *part, int guard, const double *unit);
 

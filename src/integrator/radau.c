@@ -11,6 +11,7 @@
 #include "step_length.h"
 #include "twins.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -142,6 +143,7 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->kind = steps ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
     struct dalcs_conductances g = dalcs_conductances_find(c->system, r->options.stop);
     find_cross_scales(&g, part->cross);
+    part->leak = 0.5 * DBL_EPSILON * g.joint;
     struct dalcs_choice choice = dalcs_choice_make(&r->options, c, &g, osnsp->dense_limit);
     part->tolerance = choice.tolerance;
     part->inner_tolerance = inner_tolerance_of(choice.tolerance);

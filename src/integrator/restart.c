@@ -144,7 +144,10 @@ static bool extrapolate(const struct dalcs_radau_part *part, double *after, bool
     const struct dalcs_system *s = part->component->system;
     double largest[2];
     find_largest(part, largest);
-    raise_largest(s, part->y1, dalcs_system_n_equations(s), largest);
+    raise_largest(s, part->y1, s->n_x, largest);
+    /* What the second one has of voltages and currents: the first one's hold the impulses of a jump over h, or what
+     * reads them. */
+    raise_largest(s, part->y2, dalcs_system_n_equations(s), largest);
     double smallest = fmax(1e3 * part->inner_tolerance, smallest_jump);
     double driven[2] = {largest[0], largest[1]};
     raise_to_drives(part, driven);

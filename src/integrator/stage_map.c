@@ -415,6 +415,10 @@ static void check_column(struct dalcs_stage_workshop *b, int column, int rhs_col
         b->residual[r] = -drive * (is_state ? 1.0 : share);
         largest = dalcs_larger(largest, fabs(drive)); /* a sine may be near 0 just there */
     }
+    /* likewise, what a source would drive a state to that the mode holds at 0 */
+    for (int x = 0; x < b->n_x && !is_state; x++) {
+        largest = dalcs_larger(largest, fabs(b->rhs[rhs_column * b->n + x]));
+    }
     for (int c = 0; c < b->n; c++) {
         double increment = b->lanes[c * DALCS_LANES + last] - (is_state && c == column ? 1.0 : 0.0);
         if (increment != 0.0) {

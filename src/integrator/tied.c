@@ -7,15 +7,10 @@
 
 #include <math.h>
 
-/* V or A that rounding makes of a pair that is 0 where its whole unit is. */
-static double rounding_across(const struct dalcs_radau_part *part, int pair, const double *unit) {
-    return dalcs_step_crossed(part, dalcs_osnsp_is_on(&part->component->osnsp, pair) ? 1 : 0, unit);
-}
-
 /* V or A that rounding makes of a pair that is 0. */
 static double nothing_of(const struct dalcs_radau_part *part, int pair, const double *unit) {
     double limit = dalcs_doubt_noise(part) * dalcs_guard_scale(part, pair, unit);
-    return limit + dalcs_guard_rounding(part, pair, unit) + rounding_across(part, pair, unit);
+    return limit + dalcs_guard_rounding(part, pair, unit);
 }
 
 /* Are all of these no more than that? */
@@ -93,7 +88,7 @@ static bool grows(const struct dalcs_radau_part *part, int pair, const double *u
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
     return value[(l->n_nodes - 1) * l->stride] >
-           dalcs_larger(fabs(value[0]), rounding_across(part, pair, unit));
+           dalcs_larger(fabs(value[0]), dalcs_guard_rounding_across(part, pair, unit));
 }
 
 /* Does a guard that starts from nothing go up from node to node, or with sign -1 down, if by no more than rounding

@@ -105,6 +105,20 @@ void dalcs_lexer_clean(struct dalcs_lexer *lexer, size_t begin) {
     }
 }
 
+/* From raw[begin] on; a long line has many places, whose columns are not to be counted one by one. */
+static int count_ascii(struct dalcs_lexer *lexer, size_t begin) {
+    if (begin < lexer->ascii_begin || begin >= lexer->ascii_end) {
+        size_t end = begin + dalcs_eight_skip_ascii(lexer->raw + begin, lexer->length - begin);
+        while (end < lexer->length && (unsigned char)lexer->raw[end] < 0x80) {
+            end++;
+        }
+        lexer->ascii_begin = begin;
+        lexer->ascii_end = end;
+    }
+    const size_t n = lexer->ascii_end - begin;
+    return n < INT_MAX ? (int)n : INT_MAX;
+}
+
 static enum dalcs_status need_line(struct dalcs_lexer *lexer, size_t begin) {
     if (lexer->line != NULL) {
         return DALCS_OK;
@@ -116,6 +130,7 @@ static enum dalcs_status need_line(struct dalcs_lexer *lexer, size_t begin) {
     line->source = lexer->source;
     line->text = lexer->raw + begin;
     line->number = lexer->line_number;
+    line->n_ascii = count_ascii(lexer, begin);
     lexer->line = line;
     return DALCS_OK;
 }

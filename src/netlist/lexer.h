@@ -27,6 +27,7 @@ struct dalcs_lexer {
     const struct dalcs_token *open; /* the .lib of the section being read, else NULL */
     struct dalcs_names *sections;   /* of the library; for messages */
 
+    size_t ascii_begin, ascii_end;        /* raw between them is ASCII */
     const struct dalcs_source_line *line; /* the present one, made when first needed */
     struct dalcs_token *token;            /* of the card being read */
     size_t n_tokens;

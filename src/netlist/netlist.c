@@ -298,13 +298,20 @@ static int count_characters(const char *text, int bytes) {
     return n;
 }
 
+/* The same up to an offset in a line. */
+static int count_before(const struct dalcs_source_line *line, int offset) {
+    const int n = offset < line->n_ascii ? offset : line->n_ascii;
+    return n + count_characters(line->text + n, offset - n);
+}
+
 static struct dalcs_location make_location(const struct dalcs_source_line *line, int offset,
                                            int length) {
+    const int before = count_before(line, offset);
     return (struct dalcs_location){.file = line->source->name,
                                    .source_line = line->text,
                                    .line = line->number,
-                                   .column = count_characters(line->text, offset) + 1,
-                                   .length = count_characters(line->text + offset, length),
+                                   .column = before + 1,
+                                   .length = count_before(line, offset + length) - before,
                                    .file_number = line->source->number,
                                    .instance = line->instance,
                                    .included = line->source->included};

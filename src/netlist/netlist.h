@@ -43,6 +43,7 @@ struct dalcs_source_line {
     const char *text;                    /* without its newline; bytes that are no text: '?' */
     const struct dalcs_origin *instance; /* in the copy that a subcircuit call makes, else NULL */
     int number;                          /* from 1 */
+    int n_ascii; /* so many bytes from the first on are characters each, at least */
 };
 
 struct dalcs_token {

@@ -126,6 +126,9 @@ S1 b h b 0 vs
 R6 h 0 1
 E1 k 0 POLY(2) b 0 g 0 1 2 3
 G1 k 0 POLY(2) b 0 g 0 1 2 3
+G2 k 0 k 0 1m
+H2 h i Vh 2
+Vh i 0 0
 .model limited D(Ron=1 Ilimit=1 RevIlimit=1 Vrev=5 Epsilon=0.1)
 .model exponential D(IS=1n RS=0.1 CJO=1p BV=50)
 .model block sidiode(Ron=1)
