@@ -15,7 +15,7 @@
 #include <string.h>
 
 /* A micro-step over the step of the ladder: 2^-MICRO. */
-enum { MICRO = 20, COMMAND_ROUNDS = 20, LONGER_TRIES = 4 };
+enum { MICRO = 20, LONGER_TRIES = 4 };
 
 /* States that move in the first micro-step by more than this many times the second have jumped. */
 static const double jump_ratio = 4.0;
@@ -56,8 +56,18 @@ static double slack_of(const struct dalcs_radau_part *part, int guard) {
            dalcs_guard_most_rounding(part, guard, part->unit_scale);
 }
 
-/* Solves one step of length h to t + tau from state[n_x], following the voltages that move switches. all: those with
- * hysteresis, too; in micro-steps they stand as they are, see dalcs_search_change_mode(). */
+/* Switches whose control reads the circuit. all: those with hysteresis move, too; in micro-steps they stand as they
+ * are, see dalcs_search_change_mode(). */
+static void prepare_positions(struct dalcs_radau_part *part, bool all) {
+    struct dalcs_positions *p = &part->component->positions;
+    int n_pairs = part->component->system->n_pairs;
+    p->keeps = !all;
+    for (int i = 0; i < p->n; i++) {
+        p->slack[i] = part->t > 0.0 ? slack_of(part, n_pairs + i) : 0.0;
+    }
+}
+
+/* Solves one step of length h to t + tau from state[n_x], following the voltages that move switches. */
 static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
                                double tau, bool all, const double *state, double *y) {
     struct dalcs_component *c = part->component;
@@ -65,32 +75,14 @@ static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *p
     double sigma = s->n_x > 0 ? 1.0 / h : 0.0;
     memmove(part->u, state, (size_t)s->n_x * sizeof(double));
     dalcs_excitation_inputs(&part->excitation, part->t, tau, part->u + s->n_x);
-    enum dalcs_status status = dalcs_osnsp_solve(&c->osnsp, sigma, part->u, y);
-    bool moved = true;
-    for (int round = 0; status == DALCS_OK && round < COMMAND_ROUNDS && moved; round++) {
-        moved = false;
-        for (int i = 0; i < part->stages.n_watched; i++) {
-            int d = part->stages.watched[i];
-            const struct dalcs_pair *p = &s->pair[d];
-            bool is_on = dalcs_osnsp_is_on(&c->osnsp, d);
-            double v = dalcs_csr_row_dot(&s->control, d, y);
-            double slack = part->t > 0.0 ? slack_of(part, s->n_pairs + i) : 0.0;
-            bool wants = is_on ? !(v < p->turn_off - slack) : v > p->turn_on + slack;
-            if (wants != is_on && (all || !dalcs_pair_remembers(p))) {
-                dalcs_osnsp_command(&c->osnsp, d, wants);
-                moved = true;
-            }
-        }
-        if (moved) {
-            status = dalcs_osnsp_solve(&c->osnsp, sigma, part->u, y);
-        }
-    }
-    if (status == DALCS_OK && moved) {
-        part->slides = true;
-        c->delayed_commands++; /* the present command stands */
-    }
+    prepare_positions(part, all);
+    enum dalcs_status status = dalcs_positions_solve(&c->positions, sigma, part->u, y);
     if (status != DALCS_OK) {
         return fail(r, part, sigma, part->u, status);
+    }
+    if (!c->positions.settled) {
+        part->slides = true;
+        c->delayed_commands++; /* the present command stands */
     }
     if (c->osnsp.certificate.worst > r->base->worst.worst) {
         r->base->worst = c->osnsp.certificate;
