@@ -52,6 +52,18 @@ void dalcs_energy_start(struct dalcs_energy *energy, int k, const double *x);
 void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, const double *y,
                        const double *inputs, double h);
 
+/* The answers on both sides of a switch that slides, and the part of the time for which each holds. */
+struct dalcs_energy_sides {
+    const double *y[2];
+    double weight[2];
+};
+
+/* Such a step from x to y, their mean. Powers are means of those on either side, no products of means. */
+void dalcs_energy_sliding_step(struct dalcs_energy *energy, int k, const double *x, const double *y,
+                               const struct dalcs_energy_sides *sides, const double *inputs,
+                               double h);
+
+
 /* The answer of a step of component k has these scales. */
 void dalcs_energy_scale(struct dalcs_energy *energy, int k,
                         const struct dalcs_certificate *certificate);

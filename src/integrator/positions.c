@@ -105,9 +105,10 @@ static bool differ_in_one(const struct dalcs_positions *p, const uint64_t *a, co
     return n == 1;
 }
 
+/* The present positions with their answer are the others from now on. */
 static void keep_other(struct dalcs_positions *p, const double *y) {
     const struct dalcs_system *s = p->osnsp->system;
-    keep(p, p->other);
+    memcpy(p->other, p->present, (size_t)p->osnsp->n_words * sizeof(uint64_t));
     memcpy(p->other_y, y, (size_t)dalcs_system_n_columns(s) * sizeof(double));
     memcpy(p->other_w, p->osnsp->w, (size_t)s->n_pairs * sizeof(double));
 }

@@ -20,6 +20,7 @@ struct dalcs_positions {
     bool alternates; /* if not: all that want to move go to and fro between two positions, each with an answer */
     double *other_y, *other_w; /* then: the answer in the other one, [n_columns] and [n_pairs] */
     uint64_t *other;           /* and its mode, [n_words] */
+    bool joined;               /* sliding.h */
     uint64_t *mask;            /* [n_words] bits of these switches */
     uint64_t *first, *present, *mark; /* [n_words] */
 

@@ -50,6 +50,10 @@ double dalcs_radau_micro_length(const struct dalcs_radau *r, const struct dalcs_
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double h) DALCS_MUST_CHECK;
 
+/* The same, but only if a switch that slid in the segment before still does. */
+enum dalcs_status dalcs_radau_slide_on(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       double h, bool *slides) DALCS_MUST_CHECK;
+
 /* Calls on_open for the segments that have just begun in a mode that leaves something open. */
 enum dalcs_status dalcs_radau_tell_open(struct dalcs_radau *r) DALCS_MUST_CHECK;
 

@@ -94,8 +94,14 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
     }
     part->tries++;
     part->fell_back = fmin(h, limit - part->t);
-    r->euler_steps++;
     return dalcs_radau_euler_step(r, part, part->fell_back);
+}
+
+enum dalcs_status dalcs_search_slide_on(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                        double limit, bool *slides) {
+    double fixed = r->options.fixed_step;
+    double h = fmax(ldexp(fixed > 0.0 ? fixed : part->longest, -SLIDING), 64.0 * r->resolution);
+    return dalcs_radau_slide_on(r, part, fmin(h, limit - part->t), slides);
 }
 
 static void keep_mode(struct dalcs_radau_part *part) {

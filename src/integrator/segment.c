@@ -14,6 +14,7 @@
 #include "radau_internal.h"
 #include "recurrence.h"
 #include "search.h"
+#include "sliding.h"
 #include "step_length.h"
 #include "tied.h"
 #include "twins.h"
@@ -394,6 +395,13 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
 
 enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     double limit = dalcs_radau_limit(r, part);
+    bool slides = false;
+    if (dalcs_sliding_leave(&part->component->positions)) {
+        DALCS_TRY(dalcs_search_slide_on(r, part, limit, &slides));
+    }
+    if (slides) {
+        return DALCS_OK;
+    }
     if (part->crowd > CROWD + 4 * part->component->system->n_pairs || part->flurry > FLURRY) {
         part->fresh = true;
         return dalcs_search_fall_back(r, part, limit, part->level, INFINITY);
