@@ -277,7 +277,8 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     if (search->opened && dalcs_tied_turn_back(part, *next, q->unit)) {
         return dalcs_search_tie_crossed(part, search);
     }
-    if (part->fresh && dalcs_twins_close(part, q->unit)) {
+    if (part->fresh && (dalcs_twins_close(part, q->unit) ||
+                        (part->flipped && dalcs_guards_open_resting(part, q->unit)))) {
         return DALCS_OK;
     }
     if (part->fresh && search->restarts == 0 && dalcs_guards_stay_negative(part, *next, q->unit)) {
