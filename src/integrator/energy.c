@@ -172,19 +172,29 @@ void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, cons
     enter_loss(energy, part, loss);
 }
 
-void dalcs_energy_sliding_step(struct dalcs_energy *energy, int k, const double *x, const double *y,
-                               const struct dalcs_energy_sides *sides, const double *inputs,
-                               double h) {
+double dalcs_energy_sliding_step(struct dalcs_energy *energy, int k, const double *x,
+                                 const double *y, const struct dalcs_energy_sides *sides,
+                                 const double *inputs, double times_h) {
     struct dalcs_energy_part *part = &energy->part[k];
-    double loss = 0.0;
+    double taken = dalcs_euler_stored_energy(part->system, y) -
+                   dalcs_euler_stored_energy(part->system, x);
     for (int side = 0; side < 2; side++) {
         const double *at = sides->y[side];
-        enter_powers(energy, part, at, inputs, sides->weight[side] * h);
-        loss += sides->weight[side] * (dalcs_euler_jump_energy(part->system, x, at) +
-                                       dalcs_euler_jump_energy(part->system, y, at));
+        enter_powers(energy, part, at, inputs, sides->weight[side] * times_h);
+        taken += sides->weight[side] * (dalcs_euler_jump_energy(part->system, x, at) +
+                                        dalcs_euler_jump_energy(part->system, y, at));
     }
+    return taken;
+}
+
+void dalcs_energy_slide(struct dalcs_energy *energy, int k, const double *x, const double *y,
+                        double taken) {
+    struct dalcs_energy_part *part = &energy->part[k];
+    double stored = dalcs_euler_stored_energy(part->system, y) -
+                    dalcs_euler_stored_energy(part->system, x);
     enter_swing(energy, part, x, y, y);
-    enter_loss(energy, part, loss);
+    energy->method += taken - stored;
+    energy->turnover += fabs(taken - stored);
 }
 
 void dalcs_energy_scale(struct dalcs_energy *energy, int k,

@@ -9,7 +9,7 @@
 #include "guard_scale.h"
 #include "radau_internal.h"
 #include "recurrence.h"
-#include "sliding.h"
+#include "slide.h"
 #include "step_error.h"
 
 #include <math.h>
@@ -68,19 +68,8 @@ static void prepare_positions(struct dalcs_radau_part *part, bool all) {
     }
 }
 
-/* At a threshold that a switch slides along the state is as exact as digits are. */
-static void prepare_sliding(struct dalcs_radau_part *part) {
-    struct dalcs_positions *p = &part->component->positions;
-    int n_pairs = part->component->system->n_pairs;
-    p->keeps = false;
-    for (int i = 0; i < p->n; i++) {
-        p->slack[i] = dalcs_guard_most_rounding(part, n_pairs + i, part->unit_scale);
-    }
-}
-
-/* Solves one step of length h to t + tau from state[n_x], following the voltages that move switches. */
-static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                               double tau, const double *state, double *y) {
+enum dalcs_status dalcs_radau_implicit_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                            double h, double tau, const double *state, double *y) {
     struct dalcs_component *c = part->component;
     const struct dalcs_system *s = c->system;
     double sigma = s->n_x > 0 ? 1.0 / h : 0.0;
@@ -209,10 +198,10 @@ static enum dalcs_status pair_of_steps(struct dalcs_radau *r, struct dalcs_radau
     struct dalcs_component *c = part->component;
     r->restarts++;
     prepare_positions(part, false);
-    DALCS_TRY(solve(r, part, h, tau, part->x, part->y1));
+    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, tau, part->x, part->y1));
     memcpy(part->w1, c->osnsp.w, (size_t)c->system->n_pairs * sizeof(double));
     long pivots = c->osnsp.counters.pivots;
-    DALCS_TRY(solve(r, part, h, 2.0 * tau, part->y1, part->y2));
+    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, 2.0 * tau, part->y1, part->y2));
     part->seen = c->osnsp.counters.pivots == pivots ? h : INFINITY;
     return DALCS_OK;
 }
@@ -449,11 +438,9 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     return DALCS_OK;
 }
 
-/* part->y1 at the end of a step of implicit Euler as the present segment, along which states go straight. What both
- * sides of a switch that slides differ in has a current and a voltage. */
+/* part->y1 at the end of a step of implicit Euler as the present segment, along which states go straight. */
 static void fill_out(struct dalcs_radau_part *part) {
-    const struct dalcs_component *c = part->component;
-    const struct dalcs_system *s = c->system;
+    const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     int n_equations = dalcs_system_n_equations(s);
     for (int k = 0; k < l->n_nodes; k++) {
@@ -463,7 +450,7 @@ static void fill_out(struct dalcs_radau_part *part) {
             out[x] = part->x[x] + part->stages.method->node[k] * (part->y1[x] - part->x[x]);
         }
         for (int d = 0; d < s->n_pairs; d++) {
-            out[n_equations + d] += dalcs_osnsp_is_on(&c->osnsp, d) ? 0.0 : c->osnsp.w[d];
+            out[n_equations + d] += part->component->osnsp.w[d];
         }
         for (int i = 0; i < part->stages.n_watched; i++) {
             out[dalcs_system_n_columns(s) + i] = 0.0;
@@ -471,27 +458,9 @@ static void fill_out(struct dalcs_radau_part *part) {
     }
 }
 
-static void enter_energies(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                           double weight, double h) {
-    const struct dalcs_component *c = part->component;
-    const double *inputs = part->u + c->system->n_x;
-    if (r->base->energy == NULL) {
-        return;
-    }
-    dalcs_energy_scale(r->base->energy, part->index, &c->osnsp.certificate);
-    if (weight > 0.0) {
-        const struct dalcs_energy_sides sides = {.y = {part->y2, c->positions.other_y},
-                                                 .weight = {1.0 - weight, weight}};
-        dalcs_energy_sliding_step(r->base->energy, part->index, part->x, part->y1, &sides, inputs,
-                                  h);
-    } else {
-        dalcs_energy_step(r->base->energy, part->index, part->x, part->y1, inputs, h);
-    }
-}
-
-static void accept_euler(struct dalcs_radau *r, struct dalcs_radau_part *part, double h) {
-    part->by_euler = true;
+void dalcs_radau_accept_euler(struct dalcs_radau *r, struct dalcs_radau_part *part, double h) {
     double limit = dalcs_radau_limit(r, part);
+    part->by_euler = true;
     part->h = h;
     part->end = 1.0;
     part->t_end = fmin(part->t + h, limit);
@@ -501,54 +470,27 @@ static void accept_euler(struct dalcs_radau *r, struct dalcs_radau_part *part, d
     r->euler_steps++;
 }
 
-/* One step of length h, into part->y1; where a switch slides in it the mean of both sides, with part->y2 on one of
- * them. *weight: of the other one, 0: it does not. */
-static enum dalcs_status euler_or_mean(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                       double h, double *weight) {
-    struct dalcs_positions *p = &part->component->positions;
-    *weight = 0.0;
-    DALCS_TRY(solve(r, part, h, h, part->x, part->y1));
-    if (p->alternates) {
-        size_t bytes = (size_t)dalcs_system_n_columns(part->component->system) * sizeof(double);
-        memcpy(part->y2, part->y1, bytes);
-        *weight = dalcs_sliding_mean(p, part->y1);
-    }
-    return DALCS_OK;
-}
-
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double h) {
     struct dalcs_component *c = part->component;
-    double weight;
     prepare_positions(part, true);
-    DALCS_TRY(euler_or_mean(r, part, h, &weight));
-    if (weight > 0.0) {
-        part->slides = false; /* it is known how to go on */
-        c->slid_steps++;
-        dalcs_sliding_join(&c->positions);
-    } else if (!c->positions.settled) {
-        c->delayed_commands++; /* the present command stands */
+    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->y1));
+    if (c->positions.alternates) {
+        bool slides;
+        DALCS_TRY(dalcs_slide_step(r, part, h, &slides));
+        if (slides) {
+            return DALCS_OK;
+        }
+        prepare_positions(part, true);
+        DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->y1));
     }
+    c->delayed_commands += c->positions.settled ? 0 : 1; /* the present command stands */
     fill_out(part);
-    enter_energies(r, part, weight, h);
-    accept_euler(r, part, h);
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_radau_slide_on(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                       double h, bool *slides) {
-    struct dalcs_component *c = part->component;
-    double weight;
-    prepare_sliding(part);
-    enum dalcs_status status = euler_or_mean(r, part, h, &weight);
-    part->slides = false;
-    *slides = status == DALCS_OK && weight > 0.0;
-    if (*slides) {
-        c->slid_steps++;
-        dalcs_sliding_join(&c->positions);
-        fill_out(part);
-        enter_energies(r, part, weight, h);
-        accept_euler(r, part, h);
+    if (r->base->energy != NULL) {
+        dalcs_energy_scale(r->base->energy, part->index, &c->osnsp.certificate);
+        dalcs_energy_step(r->base->energy, part->index, part->x, part->y1,
+                          part->u + c->system->n_x, h);
     }
-    return status < DALCS_OK ? status : DALCS_OK;
+    dalcs_radau_accept_euler(r, part, h);
+    return DALCS_OK;
 }

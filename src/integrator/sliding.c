@@ -52,12 +52,16 @@ double dalcs_sliding_mean(struct dalcs_positions *p, double *y) {
     return weight;
 }
 
-void dalcs_sliding_join(struct dalcs_positions *p) {
+bool dalcs_sliding_join(struct dalcs_positions *p) {
+    bool is_same = true;
     for (int k = 0; k < p->osnsp->n_words; k++) {
         p->mark[k] = p->osnsp->mode[k];
         p->osnsp->mode[k] |= p->other[k];
+        is_same = is_same && p->joint[k] == p->osnsp->mode[k];
+        p->joint[k] = p->osnsp->mode[k];
     }
     p->joined = true;
+    return is_same;
 }
 
 bool dalcs_sliding_leave(struct dalcs_positions *p) {

@@ -13,8 +13,8 @@
  * returned. 0: there is no such mean, and nothing is changed. */
 double dalcs_sliding_mean(struct dalcs_positions *p, double *y);
 
-/* While it lasts, what differs between both sides is on. */
-void dalcs_sliding_join(struct dalcs_positions *p);
+/* While it lasts, what differs between both sides is on. Returns whether that makes the mode that it made the last time. */
+bool dalcs_sliding_join(struct dalcs_positions *p);
 
 /* Where it has been joined it is on one side again. Returns whether it was. */
 bool dalcs_sliding_leave(struct dalcs_positions *p);
