@@ -176,8 +176,8 @@ double dalcs_energy_sliding_step(struct dalcs_energy *energy, int k, const doubl
                                  const double *y, const struct dalcs_energy_sides *sides,
                                  const double *inputs, double times_h) {
     struct dalcs_energy_part *part = &energy->part[k];
-    double taken = dalcs_euler_stored_energy(part->system, y) -
-                   dalcs_euler_stored_energy(part->system, x);
+    double taken =
+        dalcs_euler_stored_energy(part->system, y) - dalcs_euler_stored_energy(part->system, x);
     for (int side = 0; side < 2; side++) {
         const double *at = sides->y[side];
         enter_powers(energy, part, at, inputs, sides->weight[side] * times_h);
@@ -190,8 +190,8 @@ double dalcs_energy_sliding_step(struct dalcs_energy *energy, int k, const doubl
 void dalcs_energy_slide(struct dalcs_energy *energy, int k, const double *x, const double *y,
                         double taken) {
     struct dalcs_energy_part *part = &energy->part[k];
-    double stored = dalcs_euler_stored_energy(part->system, y) -
-                    dalcs_euler_stored_energy(part->system, x);
+    double stored =
+        dalcs_euler_stored_energy(part->system, y) - dalcs_euler_stored_energy(part->system, x);
     enter_swing(energy, part, x, y, y);
     energy->method += taken - stored;
     energy->turnover += fabs(taken - stored);

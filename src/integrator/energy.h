@@ -68,8 +68,6 @@ double dalcs_energy_sliding_step(struct dalcs_energy *energy, int k, const doubl
 void dalcs_energy_slide(struct dalcs_energy *energy, int k, const double *x, const double *y,
                         double taken);
 
-
-
 /* The answer of a step of component k has these scales. */
 void dalcs_energy_scale(struct dalcs_energy *energy, int k,
                         const struct dalcs_certificate *certificate);

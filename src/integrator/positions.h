@@ -17,7 +17,8 @@ struct dalcs_positions {
     bool keeps;    /* switches with hysteresis stand as they are */
     bool moved;    /* the last call has moved one, if only for a while */
     bool settled;  /* and all agree with the answer */
-    bool alternates; /* if not: all that want to move go to and fro between two positions, each with an answer */
+    bool
+        alternates; /* if not: all that want to move go to and fro between two positions, each with an answer */
     double *other_y, *other_w; /* then: the answer in the other one, [n_columns] and [n_pairs] */
     uint64_t *other;           /* and its mode, [n_words] */
     bool joined;               /* sliding.h */

@@ -458,7 +458,8 @@ static void fill_out(struct dalcs_radau_part *part) {
     }
 }
 
-void dalcs_radau_accept_euler(struct dalcs_radau *r, struct dalcs_radau_part *part, double h) {
+void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                              double h) {
     double limit = dalcs_radau_limit(r, part);
     part->by_euler = true;
     part->h = h;
@@ -467,7 +468,6 @@ void dalcs_radau_accept_euler(struct dalcs_radau *r, struct dalcs_radau_part *pa
     part->why = part->t_end >= limit ? DALCS_END_AT_EDGE : DALCS_END_OF_STEP;
     part->n_crossed = 0;
     part->fresh = true;
-    r->euler_steps++;
 }
 
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -488,9 +488,10 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
     fill_out(part);
     if (r->base->energy != NULL) {
         dalcs_energy_scale(r->base->energy, part->index, &c->osnsp.certificate);
-        dalcs_energy_step(r->base->energy, part->index, part->x, part->y1,
-                          part->u + c->system->n_x, h);
+        dalcs_energy_step(r->base->energy, part->index, part->x, part->y1, part->u + c->system->n_x,
+                          h);
     }
     dalcs_radau_accept_euler(r, part, h);
+    r->euler_steps++;
     return DALCS_OK;
 }

@@ -123,5 +123,6 @@ enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_par
         dalcs_energy_slide(energy, part->index, part->x, part->y1, taken);
     }
     dalcs_radau_accept_euler(r, part, h);
+    r->steps++;
     return DALCS_OK;
 }

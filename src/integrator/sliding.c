@@ -18,7 +18,8 @@ static double weight_of(const struct dalcs_positions *p, int i, const double *y)
 }
 
 /* Is a mean with this weight no farther from the threshold of the i-th switch than moves it, or than digits tell? */
-static bool is_at_threshold(const struct dalcs_positions *p, int i, double weight, const double *y) {
+static bool is_at_threshold(const struct dalcs_positions *p, int i, double weight,
+                            const double *y) {
     const struct dalcs_system *s = p->osnsp->system;
     double here = dalcs_csr_row_dot(&s->control, p->pair[i], y);
     double there = dalcs_csr_row_dot(&s->control, p->pair[i], p->other_y);

@@ -19,4 +19,9 @@ bool dalcs_sliding_join(struct dalcs_positions *p);
 /* Where it has been joined it is on one side again. Returns whether it was. */
 bool dalcs_sliding_leave(struct dalcs_positions *p);
 
+/* Does a pair stand on both sides in turn at present? */
+static inline bool dalcs_sliding_turns(const struct dalcs_positions *p, int pair) {
+    return p->joined && dalcs_mode_has(p->mark, pair) != dalcs_mode_has(p->other, pair);
+}
+
 #endif
