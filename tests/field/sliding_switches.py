@@ -78,11 +78,9 @@ def thermostat(c, name, volts, seconds):
     first = 0.5 * seconds * math.log(2.0)  # to volts/4, of volts/2
     # y' = (b - y)/seconds behind that
     at = first + seconds
-    early = volts / 2 - volts * math.exp(-first / (seconds / 2)) * (-0.5) * 0  # see rise()
 
     def rise(t):  # y while b = volts/2 (1 - exp(-2t/seconds))
         return volts / 2 * (1 - 2 * math.exp(-t / seconds) + math.exp(-2 * t / seconds))
-    del early
     wanted = volts / 4 + (rise(first) - volts / 4) * math.exp(-(at - first) / seconds)
     c.measured(f"thermostat, {name}", cards, f"{seconds / 100!r} {3 * seconds!r} uic", {
         "MAX v(b)": (volts / 4, 1e-5 * volts), f"FIND v(y) AT={at!r}": (wanted, 1e-4 * volts),
@@ -119,7 +117,6 @@ def leaves(c, name, volts, seconds):
     tau = seconds / 1e5 * 1e3 / 2  # closed for good: follows half the source by tau
     slope = -volts / (2 * seconds)
     at = 2.5 * seconds  # the source is at volts/4: b = a/2 - slope/2 tau behind the transient
-
     source = volts + slope * (at - seconds)
     c.measured(f"leaves, {name}", cards, f"{seconds / 100!r} {3 * seconds!r} uic", {
         f"FIND v(b) AT={1.9 * seconds!r}": (volts / 4, 1e-4 * volts),
