@@ -196,13 +196,12 @@ static enum dalcs_status try_positions(struct dalcs_positions *p, int k, bool fi
     return k == 0 && first_fails ? DALCS_INFEASIBLE : dalcs_osnsp_solve(p->osnsp, sigma, u, y);
 }
 
-/* Breadth first: positions that agree with their answer, as few moves of one switch away as may be. *best: the first
- * ones that have an answer, -1: none has one. */
+/* Breadth first: positions that agree with their answer, as few moves of one switch away as may be. *failing: the first
+ * of those tried that have no answer, -1: all have one. */
 static enum dalcs_status move_one(struct dalcs_positions *p, bool first_fails, double sigma,
-                                  const double *u, double *y, int *best) {
+                                  const double *u, double *y, int *failing) {
     struct dalcs_tried_positions *t = &p->tried;
-    bool some_fail = false;
-    *best = -1;
+    *failing = -1;
     t->n = 1;
     memcpy(t->mode, p->first, (size_t)p->osnsp->n_words * sizeof(uint64_t));
     for (int k = 0; k < t->n; k++) {
@@ -211,8 +210,7 @@ static enum dalcs_status move_one(struct dalcs_positions *p, bool first_fails, d
             return status;
         }
         bool fails = status != DALCS_OK;
-        some_fail = some_fail || fails;
-        *best = *best < 0 && !fails ? k : *best;
+        *failing = *failing < 0 && fails ? k : *failing;
         keep(p, p->present);
         p->settled = !fails && !move(p, y);
         if (p->settled) {
@@ -220,29 +218,31 @@ static enum dalcs_status move_one(struct dalcs_positions *p, bool first_fails, d
         }
         go_back(p, p->present);
         queue_next(p, fails, y);
-        if (k + 1 == t->n && some_fail) {
+        if (k + 1 == t->n && *failing >= 0) {
             queue_neighbours(p);
         }
     }
     return DALCS_OK;
 }
 
-/* One at a time, from where they stood first. Where that finds none the sides between which all of them go to and fro
- * stay, else the first ones with an answer. */
+/* One at a time, from where they stood first. Where that finds none, and moves come to positions without an answer, that
+ * is how the problem ends. If all have one, it is the one on a side of those that all of them go to and fro between,
+ * else where they stood first. */
 static enum dalcs_status search(struct dalcs_positions *p, bool first_fails, double sigma,
                                 const double *u, double *y) {
-    int best;
+    int failing;
     DALCS_TRY(allocate_tried(p));
     keep(p, p->mark);
-    DALCS_TRY(move_one(p, first_fails, sigma, u, y, &best));
+    DALCS_TRY(move_one(p, first_fails, sigma, u, y, &failing));
     if (p->settled) {
         p->moved = p->moved || !are_same(p, p->osnsp->mode, p->first);
         p->alternates = false;
         return DALCS_OK;
     }
-    go_back(p, p->alternates ? p->mark
-               : best < 0    ? p->first
-                             : p->tried.mode + (size_t)best * (size_t)p->osnsp->n_words);
+    p->alternates = p->alternates && failing < 0;
+    go_back(p, failing >= 0    ? p->tried.mode + (size_t)failing * (size_t)p->osnsp->n_words
+               : p->alternates ? p->mark
+                               : p->first);
     return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
 }
 
