@@ -225,11 +225,11 @@ static enum dalcs_status move_one(struct dalcs_positions *p, bool first_fails, d
     return DALCS_OK;
 }
 
-/* One at a time, from where they stood first. Where that finds none, and moves come to positions without an answer, that
- * is how the problem ends. If all have one, it is the one on a side of those that all of them go to and fro between,
- * else where they stood first. */
-static enum dalcs_status search(struct dalcs_positions *p, bool first_fails, double sigma,
-                                const double *u, double *y) {
+/* One at a time, from where they stood first. Where that finds none, and all that want to move have come to positions
+ * without an answer (is_stuck), that is how the problem ends. If not, it is the one on a side of those that they go to
+ * and fro between, else where they stood first. */
+static enum dalcs_status search(struct dalcs_positions *p, bool first_fails, bool is_stuck,
+                                double sigma, const double *u, double *y) {
     int failing;
     DALCS_TRY(allocate_tried(p));
     keep(p, p->mark);
@@ -239,8 +239,8 @@ static enum dalcs_status search(struct dalcs_positions *p, bool first_fails, dou
         p->alternates = false;
         return DALCS_OK;
     }
-    p->alternates = p->alternates && failing < 0;
-    go_back(p, failing >= 0    ? p->tried.mode + (size_t)failing * (size_t)p->osnsp->n_words
+    go_back(p, is_stuck && failing >= 0
+                   ? p->tried.mode + (size_t)failing * (size_t)p->osnsp->n_words
                : p->alternates ? p->mark
                                : p->first);
     return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
@@ -260,5 +260,5 @@ enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma,
     if (status < DALCS_OK || (status == DALCS_OK && p->settled) || has_all) {
         return status;
     }
-    return search(p, first != DALCS_OK, sigma, u, y);
+    return search(p, first != DALCS_OK, status != DALCS_OK, sigma, u, y);
 }
