@@ -131,7 +131,9 @@ static enum dalcs_status make_state(struct dalcs_audit *audit, struct dalcs_audi
     s->i = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(double));
     s->lambda = dalcs_arena_alloc(&audit->arena, (size_t)audit->n_lambdas, sizeof(double));
     s->is_closed = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(bool));
-    bool complete = s->v != NULL && s->i != NULL && s->lambda != NULL && s->is_closed != NULL;
+    s->is_mean = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(bool));
+    bool complete = s->v != NULL && s->i != NULL && s->lambda != NULL && s->is_closed != NULL &&
+                    s->is_mean != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 

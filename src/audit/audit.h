@@ -27,6 +27,8 @@ struct dalcs_audit_state {
     double *i;       /* [n_devices] A, of V, L, D, S and of E, H and B; of others not used */
     double *lambda;  /* [n_lambdas] of formulas, in their own units */
     bool *is_closed; /* [n_devices] of switches */
+    bool *
+        is_mean; /* [n_devices] what a switch that slides takes along, and that: values are means of two positions */
 };
 
 /* How a waveform is read. */

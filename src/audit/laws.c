@@ -180,6 +180,30 @@ double audit_control_scale(const struct dalcs_audit *audit, const struct audit_p
     return fmax(signal, fabs(m->vt) + fabs(m->vh));
 }
 
+/* A switch that slides stands at its threshold; for a mean of two positions signs hold, and no law of either. */
+static void check_mean(struct dalcs_audit *audit, const struct audit_part *part,
+                       const struct dalcs_audit_state *s, int device) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    if (d->kind == DALCS_SWITCH) {
+        double half_width;
+        const double off = fabs(audit_control(audit, s, device, &half_width)) - half_width;
+        audit_find(audit, part, DALCS_AUDIT_POSITION, device,
+                   off - (off > 0.0 ? audit_control_slack(audit, part, s, device) : 0.0),
+                   audit_control_scale(audit, part, device), s->t);
+        audit->count.positions++;
+    } else if (d->kind == DALCS_DIODE && d->behaviour == NULL) {
+        const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
+        const double v = audit_voltage(s, d);
+        const double own = s->i[device] - (isfinite(m->roff) ? v / m->roff : 0.0);
+        const double amperes = fmax(audit_amperes(audit, part, device), 1e3 * part->ampere);
+        audit_find(audit, part, DALCS_AUDIT_BRANCH, device,
+                   v - m->vfwd - m->ron * own - audit->options.vntol,
+                   audit_volts(audit, part, d->node[0], d->node[1]) + m->ron * amperes, s->t);
+        audit_find(audit, part, DALCS_AUDIT_CURRENT, device,
+                   isfinite(m->vrev) ? 0.0 : -own - audit->options.abstol, amperes, s->t);
+    }
+}
+
 static void check_switch(struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *s, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
@@ -246,6 +270,10 @@ static double source_slack(const struct dalcs_audit *audit, const struct dalcs_s
 static void check_branch(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
+    if (s->is_mean[device]) {
+        check_mean(audit, part, s, device);
+        return;
+    }
     if (d->behaviour != NULL) {
         check_formula(audit, part, s, device);
         return;

@@ -5,9 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rounds in which switches may follow voltages that depend on them. */
-enum { MAX_COMMAND_ROUNDS = 20 };
-
 enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
                                         const struct dalcs_circuit *circuit,
                                         const struct dalcs_system *system,
@@ -47,6 +44,7 @@ enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
             dalcs_osnsp_command(&c->osnsp, d, system->pair[d].initially_on);
         }
     }
+    DALCS_TRY(dalcs_positions_setup(&c->positions, &c->osnsp, &c->arena));
     c->is_static = system->n_x == 0 && c->n_varying == 0;
     dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->u);
     dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->probe_u);
@@ -56,6 +54,7 @@ enum dalcs_status dalcs_component_setup(struct dalcs_component *c,
 void dalcs_component_finish(struct dalcs_component *c) {
     if (c->system != NULL) {
         dalcs_osnsp_finish(&c->osnsp);
+        dalcs_positions_finish(&c->positions);
     }
     dalcs_arena_finish(&c->arena);
     *c = (struct dalcs_component){0};
@@ -124,50 +123,33 @@ void dalcs_component_sample_operating(const struct dalcs_component *c, bool tran
     }
 }
 
-/* Compares a control with the switch's thresholds; true when the switch has to move. */
-static bool obey(struct dalcs_component *c, int pair, double control) {
-    const struct dalcs_pair *s = &c->system->pair[pair];
-    bool is_on = dalcs_osnsp_is_on(&c->osnsp, pair);
-    bool stays = is_on && s->turn_off < s->turn_on; /* without hysteresis it is on above Vt alone */
-    bool want = stays ? !(control < s->turn_off) : control > s->turn_on;
-    if (want != is_on) {
-        dalcs_osnsp_command(&c->osnsp, pair, want);
-        c->commanded = true;
+/* Moves the switches that sources alone control. Without hysteresis they are on above Vt alone. */
+static void obey_sources(struct dalcs_component *c, const double *inputs) {
+    const struct dalcs_system *s = c->system;
+    for (int i = 0; i < c->n_switches; i++) {
+        int d = c->switch_pair[i];
+        const struct dalcs_pair *pair = &s->pair[d];
+        if (!pair->is_direct) {
+            continue;
+        }
+        double control = dalcs_csr_row_dot(&s->direct_control, d, inputs);
+        bool is_on = dalcs_osnsp_is_on(&c->osnsp, d);
+        bool stays = is_on && dalcs_pair_remembers(pair);
+        bool wants = stays ? !(control < pair->turn_off) : control > pair->turn_on;
+        if (wants != is_on) {
+            dalcs_osnsp_command(&c->osnsp, d, wants);
+            c->commanded = true;
+        }
     }
-    return want != is_on;
 }
 
 enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma, const double *u,
                                         double *y) {
-    const struct dalcs_system *s = c->system;
     c->commanded = false;
-    int n_indirect = 0;
-    for (int i = 0; i < c->n_switches; i++) {
-        int d = c->switch_pair[i];
-        if (s->pair[d].is_direct) {
-            obey(c, d, dalcs_csr_row_dot(&s->direct_control, d, u + s->n_x));
-        } else {
-            n_indirect++;
-        }
-    }
-    DALCS_TRY(dalcs_osnsp_solve(&c->osnsp, sigma, u, y));
-    for (int round = 0; n_indirect > 0; round++) {
-        bool moved = false;
-        for (int i = 0; i < c->n_switches; i++) {
-            int d = c->switch_pair[i];
-            if (!s->pair[d].is_direct && obey(c, d, dalcs_csr_row_dot(&s->control, d, y))) {
-                moved = true;
-            }
-        }
-        if (!moved) {
-            break;
-        }
-        DALCS_TRY(dalcs_osnsp_solve(&c->osnsp, sigma, u, y));
-        if (round == MAX_COMMAND_ROUNDS) {
-            c->delayed_commands++; /* the present command stands until the next step */
-            break;
-        }
-    }
+    obey_sources(c, u + c->system->n_x);
+    DALCS_TRY(dalcs_positions_solve(&c->positions, sigma, u, y));
+    c->commanded = c->commanded || c->positions.moved;
+    c->delayed_commands += c->positions.settled ? 0 : 1;
     return DALCS_OK;
 }
 

@@ -3,12 +3,13 @@
 #define DALCS_COMPONENT_H
 
 #include "network.h"
-#include "osnsp.h"
+#include "positions.h"
 
 struct dalcs_component {
     const struct dalcs_system *system;
     const struct dalcs_circuit *circuit;
     struct dalcs_osnsp osnsp;
+    struct dalcs_positions positions; /* of switches whose control reads the circuit */
     double *u;        /* [n_x + n_inputs] x_k and the inputs of the step being made */
     double *y;        /* [n_columns] the present answer */
     double *y_before; /* [n_columns] the answer at the beginning of the last step */
@@ -36,6 +37,7 @@ struct dalcs_component {
     bool commanded;           /* the last solve changed a switch */
     bool was_open;            /* the last step's answer may be one of several */
     long delayed_commands;    /* switches whose control did not settle within a step */
+    long slid_steps;          /* in which one slides (sliding.h) */
     struct dalcs_arena arena; /* what has the same size during the run */
 };
 
@@ -60,7 +62,7 @@ void dalcs_component_sample_operating(const struct dalcs_component *c, bool tran
                                       double *u);
 
 /* Commands the switches and solves at sigma; y gets the answer. Switches that sources control are
- * set first, the others follow their controlling voltage until they agree with the answer. */
+ * set first, the others agree with the answer (positions.h). */
 enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma, const double *u,
                                         double *y) DALCS_MUST_CHECK;
 

@@ -146,21 +146,55 @@ static double power_of(const struct dalcs_power_term *term, const double *y, con
     return 0.0;
 }
 
-void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, const double *y,
-                       const double *inputs, double h) {
-    struct dalcs_energy_part *part = &energy->part[k];
+static void enter_powers(struct dalcs_energy *energy, const struct dalcs_energy_part *part,
+                         const double *y, const double *inputs, double h) {
     for (int i = 0; i < part->n_stepped; i++) {
         dalcs_energy_enter(energy, part->term[i].account, h * power_of(&part->term[i], y, inputs));
     }
-    double loss = enter_swing(energy, part, x, y, y);
-    if (part->is_coupled) {
-        loss = dalcs_euler_jump_energy(part->system, x, y);
-    }
+}
+
+static void enter_loss(struct dalcs_energy *energy, struct dalcs_energy_part *part, double loss) {
     double jumps = fmin(part->lost, loss);
     part->lost = 0.0;
     energy->jumps += jumps;
     energy->method += loss - jumps;
     energy->turnover += loss;
+}
+
+void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, const double *y,
+                       const double *inputs, double h) {
+    struct dalcs_energy_part *part = &energy->part[k];
+    enter_powers(energy, part, y, inputs, h);
+    double loss = enter_swing(energy, part, x, y, y);
+    if (part->is_coupled) {
+        loss = dalcs_euler_jump_energy(part->system, x, y);
+    }
+    enter_loss(energy, part, loss);
+}
+
+double dalcs_energy_sliding_step(struct dalcs_energy *energy, int k, const double *x,
+                                 const double *y, const struct dalcs_energy_sides *sides,
+                                 const double *inputs, double times_h) {
+    struct dalcs_energy_part *part = &energy->part[k];
+    double taken =
+        dalcs_euler_stored_energy(part->system, y) - dalcs_euler_stored_energy(part->system, x);
+    for (int side = 0; side < 2; side++) {
+        const double *at = sides->y[side];
+        enter_powers(energy, part, at, inputs, sides->weight[side] * times_h);
+        taken += sides->weight[side] * (dalcs_euler_jump_energy(part->system, x, at) +
+                                        dalcs_euler_jump_energy(part->system, y, at));
+    }
+    return taken;
+}
+
+void dalcs_energy_slide(struct dalcs_energy *energy, int k, const double *x, const double *y,
+                        double taken) {
+    struct dalcs_energy_part *part = &energy->part[k];
+    double stored =
+        dalcs_euler_stored_energy(part->system, y) - dalcs_euler_stored_energy(part->system, x);
+    enter_swing(energy, part, x, y, y);
+    energy->method += taken - stored;
+    energy->turnover += fabs(taken - stored);
 }
 
 void dalcs_energy_scale(struct dalcs_energy *energy, int k,

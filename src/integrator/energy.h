@@ -52,6 +52,22 @@ void dalcs_energy_start(struct dalcs_energy *energy, int k, const double *x);
 void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, const double *y,
                        const double *inputs, double h);
 
+/* The answers on both sides of a switch that slides, and the part of the time for which each holds. */
+struct dalcs_energy_sides {
+    const double *y[2];
+    double weight[2];
+};
+
+/* times_h / h times such a step of length h from x to y, their mean: its powers, which are means of those on either
+ * side, no products of means. Returns what one of them stores, and loses by implicit Euler. */
+double dalcs_energy_sliding_step(struct dalcs_energy *energy, int k, const double *x,
+                                 const double *y, const struct dalcs_energy_sides *sides,
+                                 const double *inputs, double times_h);
+
+/* A segment from x to y that is a sum of such steps, which take so much. */
+void dalcs_energy_slide(struct dalcs_energy *energy, int k, const double *x, const double *y,
+                        double taken);
+
 /* The answer of a step of component k has these scales. */
 void dalcs_energy_scale(struct dalcs_energy *energy, int k,
                         const struct dalcs_certificate *certificate);

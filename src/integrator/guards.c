@@ -479,3 +479,28 @@ void dalcs_guards_flip(struct dalcs_radau_part *part) {
         dalcs_osnsp_command(p, d, !dalcs_osnsp_is_on(p, d));
     }
 }
+
+/* Is it 0 at all nodes, as far as digits tell? */
+static bool rests(const struct dalcs_radau_part *part, int guard, const double *unit) {
+    double nothing = dalcs_guard_rounding(part, guard, unit);
+    bool is = true;
+    for (int k = 0; k < part->stages.layout.n_nodes && is; k++) {
+        is = fabs(dalcs_guard_control_at(part, guard, k)) <= nothing;
+    }
+    return is;
+}
+
+bool dalcs_guards_open_resting(struct dalcs_radau_part *part, const double *unit) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    bool any = false;
+    for (int g = p->system->n_pairs; g < dalcs_guards_number(part); g++) {
+        int d = dalcs_guard_pair(part, g);
+        bool has_closed = dalcs_osnsp_is_on(p, d) && dalcs_guard_has_flipped(part, d) &&
+                          !dalcs_pair_remembers(&p->system->pair[d]);
+        if (has_closed && rests(part, g, unit)) {
+            dalcs_osnsp_command(p, d, false);
+            any = true;
+        }
+    }
+    return any;
+}

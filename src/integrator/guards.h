@@ -51,4 +51,8 @@ double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_r
 /* What crossed changes sides. */
 void dalcs_guards_flip(struct dalcs_radau_part *part);
 
+/* A switch without hysteresis is on above its threshold alone. One that has just closed because its control came up to
+ * it, and whose control stays there, is open again. Returns whether any is. */
+bool dalcs_guards_open_resting(struct dalcs_radau_part *part, const double *unit);
+
 #endif

@@ -50,6 +50,15 @@ double dalcs_radau_micro_length(const struct dalcs_radau *r, const struct dalcs_
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double h) DALCS_MUST_CHECK;
 
+/* One problem of such a step, of length h to part->t + tau, from state[n_x] into y[n_columns], with the switches where
+ * they then stand; part->slides is set where nothing fits. */
+enum dalcs_status dalcs_radau_implicit_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                            double h, double tau, const double *state,
+                                            double *y) DALCS_MUST_CHECK;
+
+/* part->out is the present segment, of length h, by steps of implicit Euler. */
+void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_part *part, double h);
+
 /* Calls on_open for the segments that have just begun in a mode that leaves something open. */
 enum dalcs_status dalcs_radau_tell_open(struct dalcs_radau *r) DALCS_MUST_CHECK;
 

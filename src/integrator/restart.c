@@ -9,13 +9,14 @@
 #include "guard_scale.h"
 #include "radau_internal.h"
 #include "recurrence.h"
+#include "slide.h"
 #include "step_error.h"
 
 #include <math.h>
 #include <string.h>
 
 /* A micro-step over the step of the ladder: 2^-MICRO. */
-enum { MICRO = 20, COMMAND_ROUNDS = 20, LONGER_TRIES = 4 };
+enum { MICRO = 20, LONGER_TRIES = 4 };
 
 /* States that move in the first micro-step by more than this many times the second have jumped. */
 static const double jump_ratio = 4.0;
@@ -56,42 +57,29 @@ static double slack_of(const struct dalcs_radau_part *part, int guard) {
            dalcs_guard_most_rounding(part, guard, part->unit_scale);
 }
 
-/* Solves one step of length h to t + tau from state[n_x], following the voltages that move switches. all: those with
- * hysteresis, too; in micro-steps they stand as they are, see dalcs_search_change_mode(). */
-static enum dalcs_status solve(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
-                               double tau, bool all, const double *state, double *y) {
+/* Switches whose control reads the circuit. all: those with hysteresis move, too; in micro-steps they stand as they
+ * are, see dalcs_search_change_mode(). */
+static void prepare_positions(struct dalcs_radau_part *part, bool all) {
+    struct dalcs_positions *p = &part->component->positions;
+    int n_pairs = part->component->system->n_pairs;
+    p->keeps = !all;
+    for (int i = 0; i < p->n; i++) {
+        p->slack[i] = part->t > 0.0 ? slack_of(part, n_pairs + i) : 0.0;
+    }
+}
+
+enum dalcs_status dalcs_radau_implicit_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                            double h, double tau, const double *state, double *y) {
     struct dalcs_component *c = part->component;
     const struct dalcs_system *s = c->system;
     double sigma = s->n_x > 0 ? 1.0 / h : 0.0;
     memmove(part->u, state, (size_t)s->n_x * sizeof(double));
     dalcs_excitation_inputs(&part->excitation, part->t, tau, part->u + s->n_x);
-    enum dalcs_status status = dalcs_osnsp_solve(&c->osnsp, sigma, part->u, y);
-    bool moved = true;
-    for (int round = 0; status == DALCS_OK && round < COMMAND_ROUNDS && moved; round++) {
-        moved = false;
-        for (int i = 0; i < part->stages.n_watched; i++) {
-            int d = part->stages.watched[i];
-            const struct dalcs_pair *p = &s->pair[d];
-            bool is_on = dalcs_osnsp_is_on(&c->osnsp, d);
-            double v = dalcs_csr_row_dot(&s->control, d, y);
-            double slack = part->t > 0.0 ? slack_of(part, s->n_pairs + i) : 0.0;
-            bool wants = is_on ? !(v < p->turn_off - slack) : v > p->turn_on + slack;
-            if (wants != is_on && (all || !dalcs_pair_remembers(p))) {
-                dalcs_osnsp_command(&c->osnsp, d, wants);
-                moved = true;
-            }
-        }
-        if (moved) {
-            status = dalcs_osnsp_solve(&c->osnsp, sigma, part->u, y);
-        }
-    }
-    if (status == DALCS_OK && moved) {
-        part->slides = true;
-        c->delayed_commands++; /* the present command stands */
-    }
+    enum dalcs_status status = dalcs_positions_solve(&c->positions, sigma, part->u, y);
     if (status != DALCS_OK) {
         return fail(r, part, sigma, part->u, status);
     }
+    part->slides = part->slides || !c->positions.settled;
     if (c->osnsp.certificate.worst > r->base->worst.worst) {
         r->base->worst = c->osnsp.certificate;
         r->base->worst_time = part->t;
@@ -212,10 +200,11 @@ static enum dalcs_status pair_of_steps(struct dalcs_radau *r, struct dalcs_radau
                                        double h, double tau) {
     struct dalcs_component *c = part->component;
     r->restarts++;
-    DALCS_TRY(solve(r, part, h, tau, false, part->x, part->y1));
+    prepare_positions(part, false);
+    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, tau, part->x, part->y1));
     memcpy(part->w1, c->osnsp.w, (size_t)c->system->n_pairs * sizeof(double));
     long pivots = c->osnsp.counters.pivots;
-    DALCS_TRY(solve(r, part, h, 2.0 * tau, false, part->y1, part->y2));
+    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, 2.0 * tau, part->y1, part->y2));
     part->seen = c->osnsp.counters.pivots == pivots ? h : INFINITY;
     return DALCS_OK;
 }
@@ -452,12 +441,11 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                         double h) {
+/* part->y1 at the end of a step of implicit Euler as the present segment, along which states go straight. */
+static void fill_out(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     int n_equations = dalcs_system_n_equations(s);
-    DALCS_TRY(solve(r, part, h, h, true, part->x, part->y1));
     for (int k = 0; k < l->n_nodes; k++) {
         double *out = part->out + k * l->stride;
         memcpy(out, part->y1, (size_t)dalcs_system_n_columns(s) * sizeof(double));
@@ -471,17 +459,42 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
             out[dalcs_system_n_columns(s) + i] = 0.0;
         }
     }
-    if (r->base->energy != NULL) {
-        dalcs_energy_scale(r->base->energy, part->index, &part->component->osnsp.certificate);
-        dalcs_energy_step(r->base->energy, part->index, part->x, part->y1, part->u + s->n_x, h);
-    }
-    part->by_euler = true;
+}
+
+void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                              double h) {
     double limit = dalcs_radau_limit(r, part);
+    part->by_euler = true;
     part->h = h;
     part->end = 1.0;
     part->t_end = fmin(part->t + h, limit);
     part->why = part->t_end >= limit ? DALCS_END_AT_EDGE : DALCS_END_OF_STEP;
     part->n_crossed = 0;
     part->fresh = true;
+}
+
+enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                         double h) {
+    struct dalcs_component *c = part->component;
+    prepare_positions(part, true);
+    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->y1));
+    if (c->positions.alternates) {
+        bool slides;
+        DALCS_TRY(dalcs_slide_step(r, part, h, &slides));
+        if (slides) {
+            return DALCS_OK;
+        }
+        prepare_positions(part, true);
+        DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->y1));
+    }
+    c->delayed_commands += c->positions.settled ? 0 : 1; /* the present command stands */
+    fill_out(part);
+    if (r->base->energy != NULL) {
+        dalcs_energy_scale(r->base->energy, part->index, &c->osnsp.certificate);
+        dalcs_energy_step(r->base->energy, part->index, part->x, part->y1, part->u + c->system->n_x,
+                          h);
+    }
+    dalcs_radau_accept_euler(r, part, h);
+    r->euler_steps++;
     return DALCS_OK;
 }

@@ -6,6 +6,7 @@
 #include "guards.h"
 #include "projection.h"
 #include "radau_internal.h"
+#include "slide.h"
 #include "step_length.h"
 #include "tied.h"
 
@@ -88,14 +89,20 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
     if (part->tries > 0 && fixed == 0.0) { /* however short the ladder's step has become */
         h = fmax(h, fmin(2.0 * part->fell_back, ldexp(part->longest, -FALL_BACK)));
     }
-    if (part->slides) { /* between two sides of a switch, with ripple in proportion */
+    if (part->slides) { /* between two sides of a switch */
         h = fmin(h, ldexp(fixed > 0.0 ? fixed : part->longest, -SLIDING));
         part->slides = false;
     }
     part->tries++;
     part->fell_back = fmin(h, limit - part->t);
-    r->euler_steps++;
     return dalcs_radau_euler_step(r, part, part->fell_back);
+}
+
+enum dalcs_status dalcs_search_slide_on(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                        double limit, bool *slides) {
+    double fixed = r->options.fixed_step;
+    double h = fmax(ldexp(fixed > 0.0 ? fixed : part->longest, -SLIDING), 64.0 * r->resolution);
+    return dalcs_slide_step(r, part, fmin(h, limit - part->t), slides);
 }
 
 static void keep_mode(struct dalcs_radau_part *part) {

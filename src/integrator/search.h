@@ -104,4 +104,8 @@ enum dalcs_status dalcs_search_look_at_start(struct dalcs_radau *r, struct dalcs
 enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double limit, int level, double most) DALCS_MUST_CHECK;
 
+/* A switch slid in the segment before. *slides: so it does in this one. */
+enum dalcs_status dalcs_search_slide_on(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                        double limit, bool *slides) DALCS_MUST_CHECK;
+
 #endif

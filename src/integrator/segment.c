@@ -14,6 +14,7 @@
 #include "radau_internal.h"
 #include "recurrence.h"
 #include "search.h"
+#include "sliding.h"
 #include "step_length.h"
 #include "tied.h"
 #include "twins.h"
@@ -276,7 +277,8 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     if (search->opened && dalcs_tied_turn_back(part, *next, q->unit)) {
         return dalcs_search_tie_crossed(part, search);
     }
-    if (part->fresh && dalcs_twins_close(part, q->unit)) {
+    if (part->fresh && (dalcs_twins_close(part, q->unit) ||
+                        (part->flipped && dalcs_guards_open_resting(part, q->unit)))) {
         return DALCS_OK;
     }
     if (part->fresh && search->restarts == 0 && dalcs_guards_stay_negative(part, *next, q->unit)) {
@@ -394,6 +396,13 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
 
 enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     double limit = dalcs_radau_limit(r, part);
+    bool slides = false;
+    if (dalcs_sliding_leave(&part->component->positions)) {
+        DALCS_TRY(dalcs_search_slide_on(r, part, limit, &slides));
+    }
+    if (slides) {
+        return DALCS_OK;
+    }
     if (part->crowd > CROWD + 4 * part->component->system->n_pairs || part->flurry > FLURRY) {
         part->fresh = true;
         return dalcs_search_fall_back(r, part, limit, part->level, INFINITY);

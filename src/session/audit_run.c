@@ -3,6 +3,7 @@
 
 #include "cycle.h"
 #include "quantity.h"
+#include "sliding.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,6 +18,24 @@ struct audit_members {
 };
 
 /* ---- Reading ------------------------------------------------------------------------------------- */
+
+/* Do pairs of a device stand on both sides in turn? */
+static bool is_mean(const struct dalcs_audit_run *a, const struct dalcs_component *c, int device) {
+    const struct dalcs_circuit *circuit = &a->run->s->circuit;
+    const struct dalcs_device *d = &circuit->device[device];
+    const int first = a->run->s->network.readout->first_pair[device];
+    if (!c->positions.joined || first < 0) {
+        return false;
+    }
+    const int n = d->behaviour != NULL ? d->behaviour->n_pairs
+                  : d->kind == DALCS_DIODE && isfinite(circuit->diode_model[d->model].vrev) ? 2
+                                                                                            : 1;
+    bool is = false;
+    for (int k = 0; k < n && !is; k++) {
+        is = dalcs_sliding_turns(&c->positions, first + k);
+    }
+    return is;
+}
 
 static void copy_answer(const struct dalcs_audit_run *a, int index, const double *y,
                         struct dalcs_audit_state *s) {
@@ -33,6 +52,7 @@ static void copy_answer(const struct dalcs_audit_run *a, int index, const double
             current += readout->term[j].coefficient * y[readout->term[j].column];
         }
         s->i[d] = current;
+        s->is_mean[d] = is_mean(a, c, d);
         if (a->run->s->circuit.device[d].kind == DALCS_SWITCH) {
             s->is_closed[d] = dalcs_osnsp_is_on(&c->osnsp, readout->first_pair[d]);
         }

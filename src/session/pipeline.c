@@ -66,6 +66,13 @@ enum dalcs_status dalcs_run_announce(struct dalcs_run *r, const struct dalcs_plo
 
 /* Switches that no command agreed with what followed from it. */
 static void warn_of_switches(struct dalcs_run *r, const struct dalcs_component *c, long steps) {
+    if (c->slid_steps > 0) {
+        dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL,
+                       "a hysteresis, Vh=, keeps it from switching without end",
+                       "in %ld step%s a switch opens what closes it and closes what opens it: it "
+                       "slides along its threshold, and values are means of both positions",
+                       c->slid_steps, c->slid_steps == 1 ? "" : "s");
+    }
     if (c->delayed_commands == 0) {
         return;
     }

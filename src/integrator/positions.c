@@ -1,0 +1,264 @@
+/* positions.c - where switches stand whose control reads the circuit, at one instant. */
+#include "positions.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Positions that are tried one switch at a time: all of eight switches. */
+enum { MOST_TRIED = 256 };
+
+enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_osnsp *osnsp,
+                                        struct dalcs_arena *arena) {
+    const struct dalcs_system *s = osnsp->system;
+    size_t n_words = (size_t)osnsp->n_words;
+    *p = (struct dalcs_positions){.osnsp = osnsp, .settled = true};
+    for (int d = 0; d < s->n_pairs; d++) {
+        p->n += s->pair[d].kind == DALCS_PAIR_SWITCH && !s->pair[d].is_direct ? 1 : 0;
+    }
+    if (p->n == 0) {
+        return DALCS_OK;
+    }
+    p->pair = dalcs_arena_alloc(arena, (size_t)p->n, sizeof(int));
+    p->slack = dalcs_arena_alloc(arena, (size_t)p->n, sizeof(double));
+    p->mask = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
+    p->first = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
+    p->present = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
+    p->mark = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
+    p->other = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
+    p->joint = dalcs_arena_alloc(arena, n_words, sizeof(uint64_t));
+    p->other_y = dalcs_arena_alloc(arena, (size_t)dalcs_system_n_columns(s), sizeof(double));
+    p->other_w = dalcs_arena_alloc(arena, (size_t)s->n_pairs, sizeof(double));
+    if (p->pair == NULL || p->slack == NULL || p->mask == NULL || p->first == NULL ||
+        p->present == NULL || p->mark == NULL || p->other == NULL || p->joint == NULL ||
+        p->other_y == NULL || p->other_w == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int d = 0, i = 0; d < s->n_pairs; d++) {
+        if (s->pair[d].kind == DALCS_PAIR_SWITCH && !s->pair[d].is_direct) {
+            p->pair[i++] = d;
+            p->mask[d / 64] |= (uint64_t)1 << (d % 64);
+        }
+    }
+    return DALCS_OK;
+}
+
+void dalcs_positions_finish(struct dalcs_positions *p) {
+    free(p->tried.mode);
+    *p = (struct dalcs_positions){0};
+}
+
+/* Does the answer y move the i-th switch? One without hysteresis is on above its threshold alone, one with hysteresis
+ * stands as it is between both. */
+static bool wants_to_move(const struct dalcs_positions *p, int i, const double *y) {
+    const struct dalcs_system *s = p->osnsp->system;
+    const struct dalcs_pair *pair = &s->pair[p->pair[i]];
+    bool remembers = dalcs_pair_remembers(pair);
+    if (remembers && p->keeps) {
+        return false;
+    }
+    double control = dalcs_csr_row_dot(&s->control, p->pair[i], y);
+    if (!dalcs_osnsp_is_on(p->osnsp, p->pair[i])) {
+        return control > pair->turn_on + p->slack[i];
+    }
+    return remembers ? control < pair->turn_off - p->slack[i]
+                     : !(control > pair->turn_off - p->slack[i]);
+}
+
+static void flip(struct dalcs_positions *p, int i) {
+    dalcs_osnsp_command(p->osnsp, p->pair[i], !dalcs_osnsp_is_on(p->osnsp, p->pair[i]));
+}
+
+/* All that want to; none does: they agree with the answer. */
+static bool move(struct dalcs_positions *p, const double *y) {
+    bool any = false;
+    for (int i = 0; i < p->n; i++) {
+        if (wants_to_move(p, i, y)) {
+            flip(p, i);
+            any = true;
+        }
+    }
+    p->moved = p->moved || any;
+    return any;
+}
+
+static void keep(const struct dalcs_positions *p, uint64_t *mode) {
+    memcpy(mode, p->osnsp->mode, (size_t)p->osnsp->n_words * sizeof(uint64_t));
+}
+
+static void go_back(const struct dalcs_positions *p, const uint64_t *mode) {
+    memcpy(p->osnsp->mode, mode, (size_t)p->osnsp->n_words * sizeof(uint64_t));
+}
+
+/* Whatever the diodes do. */
+static bool are_same(const struct dalcs_positions *p, const uint64_t *a, const uint64_t *b) {
+    uint64_t different = 0;
+    for (int k = 0; k < p->osnsp->n_words; k++) {
+        different |= (a[k] ^ b[k]) & p->mask[k];
+    }
+    return different == 0;
+}
+
+/* Do positions a and b differ in one switch? Then there are no others between them. */
+static bool differ_in_one(const struct dalcs_positions *p, const uint64_t *a, const uint64_t *b) {
+    int n = 0;
+    for (int k = 0; k < p->osnsp->n_words; k++) {
+        n += __builtin_popcountll((a[k] ^ b[k]) & p->mask[k]);
+    }
+    return n == 1;
+}
+
+/* The present positions with their answer are the others from now on. */
+static void keep_other(struct dalcs_positions *p, const double *y) {
+    const struct dalcs_system *s = p->osnsp->system;
+    memcpy(p->other, p->present, (size_t)p->osnsp->n_words * sizeof(uint64_t));
+    memcpy(p->other_y, y, (size_t)dalcs_system_n_columns(s) * sizeof(double));
+    memcpy(p->other_w, p->osnsp->w, (size_t)s->n_pairs * sizeof(double));
+}
+
+/* y is the answer where the switches stand. All that want to move do, again and again: a chain in which each moves the
+ * next takes as many rounds as it has links. Brent's way finds what comes round: positions are compared with one of
+ * them, which is a later one each time that their number has doubled. */
+static enum dalcs_status move_all(struct dalcs_positions *p, double sigma, const double *u,
+                                  double *y) {
+    keep(p, p->mark);
+    for (int round = 1; round <= 2 * (p->n + 1); round++) {
+        keep(p, p->present);
+        p->settled = !move(p, y);
+        if (p->settled) {
+            return DALCS_OK;
+        }
+        p->alternates = round > 1 && are_same(p, p->osnsp->mode, p->other);
+        if (p->alternates || (round > 1 && are_same(p, p->osnsp->mode, p->mark))) {
+            go_back(p, p->present);
+            return DALCS_OK;
+        }
+        if ((round & (round - 1)) == 0) {
+            keep(p, p->mark);
+        }
+        keep_other(p, y);
+        DALCS_TRY(dalcs_osnsp_solve(p->osnsp, sigma, u, y));
+    }
+    return DALCS_OK;
+}
+
+/* Puts the present positions, but for the i-th switch, behind those to be tried. */
+static void queue_flipped(struct dalcs_positions *p, int i) {
+    struct dalcs_tried_positions *t = &p->tried;
+    size_t n_words = (size_t)p->osnsp->n_words;
+    uint64_t *next = t->mode + (size_t)t->n * n_words;
+    flip(p, i);
+    bool is_new = t->n < MOST_TRIED;
+    for (int k = 0; k < t->n && is_new; k++) {
+        is_new = !are_same(p, p->osnsp->mode, t->mode + (size_t)k * n_words);
+    }
+    if (is_new) {
+        keep(p, next);
+        t->n++;
+    }
+    flip(p, i);
+}
+
+/* Positions without an answer have no controls: any switch may be the one to move, but one that remembers. */
+static void queue_next(struct dalcs_positions *p, bool fails, const double *y) {
+    for (int i = 0; i < p->n; i++) {
+        bool remembers = dalcs_pair_remembers(&p->osnsp->system->pair[p->pair[i]]);
+        if (fails ? !remembers : wants_to_move(p, i, y)) {
+            queue_flipped(p, i);
+        }
+    }
+}
+
+/* All around what has been tried: where some positions have no answer, moves alone may not come to those that agree. */
+static void queue_neighbours(struct dalcs_positions *p) {
+    int n = p->tried.n;
+    for (int k = 0; k < n; k++) {
+        go_back(p, p->tried.mode + (size_t)k * (size_t)p->osnsp->n_words);
+        for (int i = 0; i < p->n; i++) {
+            if (!(p->keeps && dalcs_pair_remembers(&p->osnsp->system->pair[p->pair[i]]))) {
+                queue_flipped(p, i);
+            }
+        }
+    }
+}
+
+static enum dalcs_status allocate_tried(struct dalcs_positions *p) {
+    struct dalcs_tried_positions *t = &p->tried;
+    if (t->mode == NULL) {
+        t->mode = dalcs_alloc((size_t)MOST_TRIED * (size_t)p->osnsp->n_words, sizeof(uint64_t));
+    }
+    return t->mode != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* The answer in the k-th positions of those tried, of which the first are known to have none if first_fails. */
+static enum dalcs_status try_positions(struct dalcs_positions *p, int k, bool first_fails,
+                                       double sigma, const double *u, double *y) {
+    go_back(p, p->tried.mode + (size_t)k * (size_t)p->osnsp->n_words);
+    return k == 0 && first_fails ? DALCS_INFEASIBLE : dalcs_osnsp_solve(p->osnsp, sigma, u, y);
+}
+
+/* Breadth first: positions that agree with their answer, as few moves of one switch away as may be. *failing: the first
+ * of those tried that have no answer, -1: all have one. */
+static enum dalcs_status move_one(struct dalcs_positions *p, bool first_fails, double sigma,
+                                  const double *u, double *y, int *failing) {
+    struct dalcs_tried_positions *t = &p->tried;
+    *failing = -1;
+    t->n = 1;
+    memcpy(t->mode, p->first, (size_t)p->osnsp->n_words * sizeof(uint64_t));
+    for (int k = 0; k < t->n; k++) {
+        enum dalcs_status status = try_positions(p, k, first_fails, sigma, u, y);
+        if (status < DALCS_OK) {
+            return status;
+        }
+        bool fails = status != DALCS_OK;
+        *failing = *failing < 0 && fails ? k : *failing;
+        keep(p, p->present);
+        p->settled = !fails && !move(p, y);
+        if (p->settled) {
+            return DALCS_OK;
+        }
+        go_back(p, p->present);
+        queue_next(p, fails, y);
+        if (k + 1 == t->n && *failing >= 0) {
+            queue_neighbours(p);
+        }
+    }
+    return DALCS_OK;
+}
+
+/* One at a time, from where they stood first. Where that finds none, and all that want to move have come to positions
+ * without an answer (is_stuck), that is how the problem ends. If not, it is the one on a side of those that they go to
+ * and fro between, else where they stood first. */
+static enum dalcs_status search(struct dalcs_positions *p, bool first_fails, bool is_stuck,
+                                double sigma, const double *u, double *y) {
+    int failing;
+    DALCS_TRY(allocate_tried(p));
+    keep(p, p->mark);
+    DALCS_TRY(move_one(p, first_fails, sigma, u, y, &failing));
+    if (p->settled) {
+        p->moved = p->moved || !are_same(p, p->osnsp->mode, p->first);
+        p->alternates = false;
+        return DALCS_OK;
+    }
+    go_back(p, is_stuck && failing >= 0
+                   ? p->tried.mode + (size_t)failing * (size_t)p->osnsp->n_words
+               : p->alternates ? p->mark
+                               : p->first);
+    return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
+}
+
+enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
+                                        double *y) {
+    p->moved = p->alternates = false;
+    p->settled = true;
+    if (p->n == 0) {
+        return dalcs_osnsp_solve(p->osnsp, sigma, u, y);
+    }
+    keep(p, p->first);
+    enum dalcs_status first = dalcs_osnsp_solve(p->osnsp, sigma, u, y);
+    enum dalcs_status status = first == DALCS_OK ? move_all(p, sigma, u, y) : first;
+    bool has_all = p->alternates && differ_in_one(p, p->osnsp->mode, p->other);
+    if (status < DALCS_OK || (status == DALCS_OK && p->settled) || has_all) {
+        return status;
+    }
+    return search(p, first != DALCS_OK, status != DALCS_OK, sigma, u, y);
+}

@@ -1,0 +1,47 @@
+/* positions.h - where switches stand whose control reads the circuit, at one instant.
+ *
+ * Given where they stand, the one-step problem tells the mode of the diodes and the answer; given the answer, their
+ * controls tell where they stand. Positions that agree with their own answer are looked for: all that want to move do,
+ * until nothing changes. Where that comes to positions that have no answer, or round to where it was, they move one at
+ * a time. What still has no agreement lies between the sides of a switch (sliding.h). */
+#ifndef DALCS_POSITIONS_H
+#define DALCS_POSITIONS_H
+
+#include "osnsp.h"
+
+struct dalcs_positions {
+    struct dalcs_osnsp *osnsp;
+    int n;
+    int *pair;     /* [n] switches whose control reads the circuit */
+    double *slack; /* [n] V or A: a control that is no farther beyond its threshold moves nothing */
+    bool keeps;    /* switches with hysteresis stand as they are */
+    bool moved;    /* the last call has moved one, if only for a while */
+    bool settled;  /* and all agree with the answer */
+    bool
+        alternates; /* if not: all that want to move go to and fro between two positions, each with an answer */
+    double *other_y, *other_w; /* then: the answer in the other one, [n_columns] and [n_pairs] */
+    uint64_t *other;           /* and its mode, [n_words] */
+    bool joined;               /* sliding.h */
+    uint64_t *joint;           /* [n_words] the mode then */
+    uint64_t *mask;            /* [n_words] bits of these switches */
+    uint64_t *first, *present, *mark; /* [n_words] */
+
+    struct dalcs_tried_positions { /* one at a time */
+        int n;
+        uint64_t *mode; /* [][n_words], NULL: never needed so far */
+    } tried;
+};
+
+/* Those of a system; memory of `arena`, but for what is rarely needed. */
+enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_osnsp *osnsp,
+                                        struct dalcs_arena *arena) DALCS_MUST_CHECK;
+
+void dalcs_positions_finish(struct dalcs_positions *p);
+
+/* As dalcs_osnsp_solve(), with positions in p->osnsp->mode that agree with the answer, from those that are there. Where
+ * none that were tried do (!p->settled) it is the answer in some of them. Not DALCS_OK: all that want to move come to
+ * positions without an answer; p->osnsp->mode and its witness are such ones. */
+enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
+                                        double *y) DALCS_MUST_CHECK;
+
+#endif

@@ -1,0 +1,128 @@
+/* slide.c - a segment along the threshold of a switch that opens what closes it and closes what opens it.
+ *
+ * Filippov's mean of both sides (sliding.h), by steps of implicit Euler that are extrapolated: twice the answer of two
+ * steps, less that of one twice as long, is off by the square of the step. */
+#include "slide.h"
+
+#include "energy.h"
+#include "guard_scale.h"
+#include "radau_internal.h"
+#include "sliding.h"
+
+#include <string.h>
+
+/* At a threshold that a switch slides along the state is as exact as digits are. */
+static void prepare_positions(struct dalcs_radau_part *part) {
+    struct dalcs_positions *p = &part->component->positions;
+    int n_pairs = part->component->system->n_pairs;
+    p->keeps = false;
+    for (int i = 0; i < p->n; i++) {
+        p->slack[i] = dalcs_guard_most_rounding(part, n_pairs + i, part->unit_scale);
+    }
+}
+
+/* `times` of one step of length h from state[n_x] to part->t + tau into y, in the energies *taken. */
+static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                                   double tau, double times, const double *state, double *y,
+                                   double *taken, bool *slides) {
+    struct dalcs_component *c = part->component;
+    struct dalcs_energy *energy = r->base->energy;
+    *slides = false;
+    enum dalcs_status status = dalcs_radau_implicit_step(r, part, h, tau, state, y);
+    if (status != DALCS_OK || !c->positions.alternates) {
+        return status < DALCS_OK ? status : DALCS_OK; /* without an answer it does not slide */
+    }
+    memcpy(c->scratch, y, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
+    double weight = dalcs_sliding_mean(&c->positions, y);
+    *slides = weight > 0.0;
+    if (*slides && energy != NULL) {
+        const struct dalcs_energy_sides sides = {.y = {c->scratch, c->positions.other_y},
+                                                 .weight = {1.0 - weight, weight}};
+        dalcs_energy_scale(energy, part->index, &c->osnsp.certificate);
+        *taken += times * dalcs_energy_sliding_step(energy, part->index, state, y, &sides,
+                                                    part->u + c->system->n_x, times * h);
+    }
+    return DALCS_OK;
+}
+
+static void extrapolate(double *fine, const double *coarse, int n) {
+    for (int k = 0; k < n; k++) {
+        fine[k] += fine[k] - coarse[k];
+    }
+}
+
+/* One step, and two of half its length: part->y1 and the other side's values are extrapolated from them. */
+static enum dalcs_status three_steps(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                                     double *taken, bool *slides) {
+    struct dalcs_component *c = part->component;
+    const struct dalcs_system *s = c->system;
+    DALCS_TRY(mean_step(r, part, h, h, -1.0, part->x, c->probe_y, taken, slides));
+    memcpy(part->w1, c->osnsp.w, (size_t)s->n_pairs * sizeof(double));
+    if (*slides) {
+        DALCS_TRY(mean_step(r, part, 0.5 * h, 0.5 * h, 2.0, part->x, part->y2, taken, slides));
+    }
+    if (*slides) {
+        DALCS_TRY(mean_step(r, part, 0.5 * h, h, 2.0, part->y2, part->y1, taken, slides));
+    }
+    if (*slides) {
+        extrapolate(part->y1, c->probe_y, dalcs_system_n_columns(s));
+        extrapolate(c->osnsp.w, part->w1, s->n_pairs);
+    }
+    return DALCS_OK;
+}
+
+/* All columns go straight from where they were, if the segment before was one along the same threshold; if not, states
+ * do. What both sides differ in has a current. */
+static void fill_out(struct dalcs_radau_part *part, bool goes_on) {
+    const struct dalcs_component *c = part->component;
+    const struct dalcs_system *s = c->system;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    int n_columns = dalcs_system_n_columns(s);
+    int n_equations = dalcs_system_n_equations(s);
+    double *end = part->out + (l->n_nodes - 1) * l->stride;
+    const double *before = part->out_before + (l->n_nodes - 1) * l->stride;
+    memcpy(end, part->y1, (size_t)n_columns * sizeof(double));
+    for (int d = 0; d < s->n_pairs; d++) {
+        end[n_equations + d] += dalcs_osnsp_is_on(&c->osnsp, d) ? 0.0 : c->osnsp.w[d];
+    }
+    for (int k = 0; k < l->n_nodes; k++) {
+        double *out = part->out + k * l->stride;
+        double at = part->stages.method->node[k];
+        for (int col = 0; col < n_columns; col++) {
+            double start = col < s->n_x ? part->x[col] : goes_on ? before[col] : end[col];
+            out[col] = k + 1 < l->n_nodes ? start + at * (end[col] - start) : end[col];
+        }
+        for (int i = 0; i < part->stages.n_watched; i++) {
+            out[n_columns + i] = 0.0;
+        }
+    }
+}
+
+enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                                   bool *slides) {
+    struct dalcs_component *c = part->component;
+    struct dalcs_energy *energy = r->base->energy;
+    double taken = 0.0;
+    struct dalcs_energy before = {0};
+    if (energy != NULL) {
+        before = *energy;
+    }
+    prepare_positions(part);
+    enum dalcs_status status = three_steps(r, part, h, &taken, slides);
+    part->slides = false;
+    if (!*slides) {
+        if (energy != NULL) {
+            *energy = before;
+        }
+        return status;
+    }
+    c->slid_steps++;
+    bool is_same = dalcs_sliding_join(&c->positions);
+    fill_out(part, is_same && part->by_euler && part->why == DALCS_END_OF_STEP);
+    if (energy != NULL) {
+        dalcs_energy_slide(energy, part->index, part->x, part->y1, taken);
+    }
+    dalcs_radau_accept_euler(r, part, h);
+    r->steps++;
+    return DALCS_OK;
+}
