@@ -44,9 +44,8 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double
             return DALCS_OK;
         }
         if (status == DALCS_SINGULAR && !s->monotone) {
-            status = dalcs_proximal_in_mode(p, u, y);
+            status = dalcs_exact_pivot(p, u, y, 0);
             if (status == DALCS_OK) {
-                p->least_norm = true;
                 return DALCS_OK;
             }
         }

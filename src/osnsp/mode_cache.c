@@ -27,6 +27,10 @@ static void link_newest(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
 static void entry_destroy(struct dalcs_mode_entry *e) {
     dalcs_lu_finish(&e->lu);
     free(e->scale_of);
+    if (e->whole != NULL) {
+        dalcs_whole_finish(e->whole);
+        free(e->whole);
+    }
     free(e->map);
     free(e);
 }

@@ -267,9 +267,9 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     double tolerance = p->options.certificate_tolerance;
     p->least_norm = e->singular;
     bool by_factors = p->refines && !e->singular;
-    if (e->map == NULL && !e->singular && !by_factors && e->n_uses++ > 2 &&
-        dalcs_step_map_pays(p)) {
-        DALCS_TRY(dalcs_step_map_build(p, e, DALCS_PLAIN));
+    bool may_recur = e->singular ? e->whole != NULL : !by_factors;
+    if (e->map == NULL && may_recur && e->n_uses++ > 2 && dalcs_step_map_pays(p)) {
+        DALCS_TRY(dalcs_step_map_build(p, e));
     }
     if (e->map != NULL && !by_factors) {
         dalcs_step_map_apply(p, e, u, y);
@@ -279,7 +279,11 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
         }
     }
     if (e->singular) {
-        return DALCS_SINGULAR;
+        if (e->whole == NULL) {
+            return DALCS_SINGULAR;
+        }
+        dalcs_exact_evaluate(p, e->whole, u, y, sources_clash);
+        return DALCS_OK;
     }
     solve_to_answer(p, e, u, y);
     dalcs_certificate_evaluate(p, u, y, sources_clash);
@@ -329,7 +333,7 @@ static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, d
         return dalcs_ties_settle(p, u, y);
     }
     if (status > DALCS_OK && status != DALCS_INFEASIBLE) {
-        status = dalcs_least_norm_solve(p, u, y);
+        status = dalcs_proximal_solve(p, u, y);
     }
     if (status > DALCS_OK) {
         enum dalcs_status otherwise = dalcs_enumerate(p, u, y);
@@ -347,12 +351,6 @@ static bool is_undecided(enum dalcs_status status) {
     return status == DALCS_NOT_CONVERGED || status == DALCS_SINGULAR;
 }
 
-/* By elimination, from the mode of a proximal problem. */
-static enum dalcs_status solve_exactly(struct dalcs_osnsp *p, const double *u, double *y) {
-    enum dalcs_status status = dalcs_singular_solve(p, u, y);
-    return is_undecided(status) ? dalcs_whole_solve(p, u, y) : status;
-}
-
 enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
                                     double *y) {
     p->counters.solved++;
@@ -364,13 +362,13 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
         p->looks_around = true;
         status = solve_somehow(p, u, y);
         if (is_undecided(status) && p->system->monotone) {
-            status = solve_exactly(p, u, y);
+            status = dalcs_proximal_solve_somehow(p, u, y);
         }
         p->looks_around = false;
     }
     if (status == DALCS_INFEASIBLE && p->system->monotone && sigma > 0.0) {
         /* a ray may be no more than C/h beside a stray: an answer that is certified refutes it */
-        enum dalcs_status otherwise = solve_exactly(p, u, y);
+        enum dalcs_status otherwise = dalcs_proximal_solve_somehow(p, u, y);
         status = otherwise <= DALCS_OK ? otherwise : status;
     }
     if (status == DALCS_INFEASIBLE) {

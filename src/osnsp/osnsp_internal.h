@@ -3,6 +3,7 @@
 #define DALCS_OSNSP_INTERNAL_H
 
 #include "osnsp.h"
+#include "whole.h"
 
 #define HASH_NONFATAL_OOM 1
 #include <uthash.h>
@@ -23,7 +24,8 @@ struct dalcs_mode_entry {
     struct dalcs_lu lu;
     int *row_of, *column_of; /* [lu.n] plain factors: row of R, column of y, in pivot order */
     double *scale_of;        /* [lu.n]; behind it the two */
-    double *map;             /* see step_map.h; NULL until the mode has recurred */
+    struct dalcs_whole *whole; /* of a singular mode that was answered: its factors with choices; else NULL */
+    double *map;               /* see step_map.h; NULL until the mode has recurred */
     uint64_t tie;            /* which ties of this mode were looked at last; 0: none yet */
     bool tie_has_choice;     /* they leave a choice */
     int n_uses;
@@ -91,10 +93,12 @@ bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, 
 enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u,
                                        double *y) DALCS_MUST_CHECK;
 
-/* The centre of diodes without current and without voltage, which are as far from their knees as these from 0. */
-void dalcs_proximal_rest(struct dalcs_osnsp *p);
+/* Any answer, for monotone systems, where that ends without one. */
+enum dalcs_status dalcs_proximal_solve_somehow(struct dalcs_osnsp *p, const double *u,
+                                               double *y) DALCS_MUST_CHECK;
 
-/* p->right = R u, and the centre is that of diodes at rest. */
+/* p->right = R u, and the centre is that of diodes without current and without voltage, which are as far from their
+ * knees as these from 0. */
 void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u);
 
 /* Factors the regularised matrix of p->mode; the columns are all n + n_pairs. */
@@ -120,10 +124,6 @@ double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair);
 /* The least push of a centre, in balanced units, that a sign tells beside the largest unknown of p->scaled. */
 double dalcs_proximal_least_push(const struct dalcs_osnsp *p, int rung);
 
-/* The proximal iteration in p->mode alone. DALCS_NOT_CONVERGED: no certified answer in this mode. */
-enum dalcs_status dalcs_proximal_in_mode(struct dalcs_osnsp *p, const double *u,
-                                         double *y) DALCS_MUST_CHECK;
-
 /* ---- interior.c ---------------------------------------------------------------------------- */
 
 /* p->mode becomes that of the regularised problem around (centre, centre_w), or one near it: all
@@ -138,24 +138,21 @@ enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p, int rung) DALCS_MUS
 enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u,
                                   double *y) DALCS_MUST_CHECK;
 
-/* ---- singular.c ---------------------------------------------------------------------------- */
+/* ---- exact.c ------------------------------------------------------------------------------- */
 
-/* Where all else ends in DALCS_NOT_CONVERGED, for monotone systems: singular modes answered exactly. What they
- * leave open has the least norm of all unknowns, balanced, in its mode, which need not be that of diodes. */
-enum dalcs_status dalcs_singular_solve(struct dalcs_osnsp *p, const double *u,
-                                       double *y) DALCS_MUST_CHECK;
+/* Solves and evaluates in the mode of `whole`. */
+void dalcs_exact_evaluate(struct dalcs_osnsp *p, const struct dalcs_whole *whole, const double *u,
+                          double *y, bool *sources_clash);
 
-/* The proximal method, and in micro-steps dalcs_singular_solve() where that does not get to a certificate: what comes
- * later takes any answer, not the one of least norm. */
-enum dalcs_status dalcs_least_norm_solve(struct dalcs_osnsp *p, const double *u,
-                                         double *y) DALCS_MUST_CHECK;
+/* From p->mode on by block principal pivoting, at most `limit` changes, each mode answered with all the
+ * digits that it has and, where it is singular, with the least norm. DALCS_OK: certified. */
+enum dalcs_status dalcs_exact_pivot(struct dalcs_osnsp *p, const double *u, double *y,
+                                    int limit) DALCS_MUST_CHECK;
 
-/* ---- whole.c ------------------------------------------------------------------------------- */
+/* ---- choices.c ----------------------------------------------------------------------------- */
 
-/* And after that, where condensing the states cost the digits that the certificate asks for: modes solved
- * without. */
-enum dalcs_status dalcs_whole_solve(struct dalcs_osnsp *p, const double *u,
-                                    double *y) DALCS_MUST_CHECK;
+/* Vectors that are open, in `choice`, become the equations that choose among them. */
+enum dalcs_status dalcs_choices_make(struct dalcs_whole *whole) DALCS_MUST_CHECK;
 
 /* ---- ties.c -------------------------------------------------------------------------------- */
 
@@ -167,8 +164,8 @@ enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u,
 
 bool dalcs_step_map_pays(const struct dalcs_osnsp *p);
 
-enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
-                                       int kind) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p,
+                                       struct dalcs_mode_entry *entry) DALCS_MUST_CHECK;
 
 /* y's z and lambda from u. */
 void dalcs_step_map_apply(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
@@ -194,7 +191,7 @@ void dalcs_witness_complete(struct dalcs_osnsp *p);
 
 /* ---- osnsp.c ------------------------------------------------------------------------------- */
 
-/* Solves and evaluates in p->mode. DALCS_SINGULAR: no plain factors and no map for this mode. */
+/* Solves and evaluates in p->mode. DALCS_SINGULAR: the mode is so and has not been answered yet. */
 enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, double *y,
                                        bool *sources_clash) DALCS_MUST_CHECK;
 

@@ -32,13 +32,8 @@ static const double ray_part = 1e-2;
 /* Rounds without fewer wrong signs before block pivoting has stalled. */
 enum { PATIENCE = 10 };
 
-/* Rounds that free the unknowns from their own weights: each gains three digits. */
-enum { UNKNOWN_ROUNDS = 3 };
-
-static const double unknown_tolerance = 1e-9;
-
-/* Mode changes allowed from a regularised answer to a regular mode's. */
-enum { REGULAR_ATTEMPTS = 8 };
+/* Mode changes allowed from a regularised answer to a regular mode's, and from one of no certificate. */
+enum { REGULAR_ATTEMPTS = 8, LAST_ATTEMPTS = 60 };
 
 /* Equal diodes on the first rungs, so that the answer is the least-norm one in amperes and volts; with
  * very different conductances around them, weights that suit each one's surroundings solve more. */
@@ -243,38 +238,16 @@ static double move_centre(struct dalcs_osnsp *p, double *change, double *way) {
     return size;
 }
 
-/* Where the regularised problem ends in a regular mode, or next to one, that mode's own answer is
- * unique and better: with conductances 1e13 apart the iteration may be too slow to tell a solution
- * far away from none. Tried once for every mode that the iteration comes to. */
-static enum dalcs_status try_regular_mode(struct dalcs_osnsp *p, const double *u, double *y) {
+/* The mode where a regularised problem ends answered without weights: in a singular one the answer of least
+ * norm, which is what the iterates converge to; in a regular one, or one next to it, the only one. */
+static enum dalcs_status try_exactly(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
     size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
     memcpy(p->regularised_mode, p->mode, bytes);
-    enum dalcs_status status = dalcs_osnsp_pivot(p, u, y, REGULAR_ATTEMPTS);
+    enum dalcs_status status = dalcs_exact_pivot(p, u, y, limit);
     if (status != DALCS_OK) {
         memcpy(p->mode, p->regularised_mode, bytes);
     }
     return status;
-}
-
-/* The weights of unknowns pull a node between two blocking diodes towards 0: their centre alone is
- * moved until it no longer matters, so that only the diodes decide. */
-static enum dalcs_status free_unknowns(struct dalcs_osnsp *p, int rung) {
-    const struct dalcs_step_form *f = p->form[0];
-    for (int k = 0; k <= UNKNOWN_ROUNDS; k++) {
-        double size = 0.0;
-        double moved = 0.0;
-        for (int i = 0; i < f->n; i++) {
-            size = fmax(size, fabs(p->scaled[i]));
-            moved = fmax(moved, fabs(p->scaled[i] - p->centre[i]));
-            p->centre[i] = p->scaled[i];
-        }
-        if (moved <= unknown_tolerance * size || k == UNKNOWN_ROUNDS) {
-            break;
-        }
-        bool mode_changed;
-        DALCS_TRY(dalcs_proximal_pivot(p, rung, &mode_changed));
-    }
-    return DALCS_OK;
 }
 
 /* Evaluates p->scaled as the answer y. */
@@ -288,17 +261,12 @@ static bool is_certified(struct dalcs_osnsp *p, const double *u, double *y, bool
     return dalcs_certificate_holds(p, *sources_clash);
 }
 
-void dalcs_proximal_rest(struct dalcs_osnsp *p) {
+static void restart(struct dalcs_osnsp *p) {
     const struct dalcs_step_form *f = p->form[0];
     memset(p->centre, 0, (size_t)(f->n + f->n_pairs) * sizeof(double));
     for (int d = 0; d < f->n_pairs; d++) {
         p->centre_w[d] = f->row_scale[f->n + d] * dalcs_system_knee(p->system, d);
     }
-}
-
-static void restart(struct dalcs_osnsp *p) {
-    const struct dalcs_step_form *f = p->form[0];
-    dalcs_proximal_rest(p);
     memset(p->step_now, 0, (size_t)(f->n + 2 * f->n_pairs) * sizeof(double));
 }
 
@@ -308,14 +276,15 @@ void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u) {
 }
 
 static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const double *u, double *y) {
-    restart(p);
+    dalcs_proximal_begin(p, u);
     for (int outer = 0; outer < p->options.max_outer; outer++) {
         bool mode_changed;
         DALCS_TRY(dalcs_proximal_pivot(p, rung, &mode_changed));
-        struct dalcs_mode_entry *plain;
-        DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
-        if ((outer == 0 || mode_changed) && !plain->singular) {
-            enum dalcs_status status = try_regular_mode(p, u, y);
+        if (outer == 0 || mode_changed) {
+            struct dalcs_mode_entry *plain;
+            DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
+            enum dalcs_status status =
+                try_exactly(p, u, y, plain->singular ? 0 : REGULAR_ATTEMPTS);
             if (status <= DALCS_OK) {
                 return status;
             }
@@ -323,9 +292,6 @@ static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const doubl
             struct dalcs_mode_entry *e;
             DALCS_TRY(dalcs_modes_get(p, 1 + rung, &e));
             dalcs_proximal_step(p, e, rung);
-        }
-        if (outer == 0) {
-            DALCS_TRY(free_unknowns(p, rung));
         }
         bool sources_clash;
         if (is_certified(p, u, y, &sources_clash)) {
@@ -346,38 +312,26 @@ static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const doubl
     return DALCS_NOT_CONVERGED;
 }
 
-enum dalcs_status dalcs_proximal_in_mode(struct dalcs_osnsp *p, const double *u, double *y) {
-    dalcs_proximal_begin(p, u);
-    struct dalcs_mode_entry *e;
-    DALCS_TRY(dalcs_modes_get(p, 1 + DALCS_N_WEIGHTS, &e));
-    for (int outer = 0; outer < p->options.max_outer && !e->singular; outer++) {
-        dalcs_proximal_step(p, e, DALCS_N_WEIGHTS);
-        bool sources_clash;
-        if (is_certified(p, u, y, &sources_clash)) {
-            return DALCS_OK;
-        }
-        double change;
-        double way;
-        (void)move_centre(p, &change, &way);
-    }
-    return DALCS_NOT_CONVERGED;
-}
-
 enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, double *y) {
-    dalcs_csr_multiply(&p->form[0]->R, u, p->right);
     enum dalcs_status status = DALCS_NOT_CONVERGED;
     for (int rung = 0; rung < DALCS_N_RUNGS && status == DALCS_NOT_CONVERGED; rung++) {
         status = climb_rung(p, rung, u, y);
-        if (status != DALCS_OK) {
-            continue;
+    }
+    return status;
+}
+
+enum dalcs_status dalcs_proximal_solve_somehow(struct dalcs_osnsp *p, const double *u, double *y) {
+    enum dalcs_status status = DALCS_NOT_CONVERGED;
+    for (int rung = 0; rung < DALCS_N_WEIGHTS && status > DALCS_OK; rung++) {
+        bool mode_changed;
+        for (int d = 0; d < p->system->n_pairs; d++) {
+            if (p->is_diode[d]) { /* whatever was tried before */
+                dalcs_osnsp_command(p, d, false);
+            }
         }
-        struct dalcs_mode_entry *plain;
-        DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
-        p->least_norm = plain->singular;
-        if (plain->singular && plain->map == NULL && plain->n_uses++ > 2 &&
-            dalcs_step_map_pays(p)) {
-            status = dalcs_step_map_build(p, plain, 1 + rung);
-        }
+        dalcs_proximal_begin(p, u);
+        status = dalcs_proximal_pivot(p, rung, &mode_changed);
+        status = status == DALCS_OK ? dalcs_exact_pivot(p, u, y, LAST_ATTEMPTS) : status;
     }
     return status;
 }

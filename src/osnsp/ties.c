@@ -145,7 +145,7 @@ enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, doub
         e->tie_has_choice = has_choice;
     }
     if (status == DALCS_OK && has_choice) {
-        status = dalcs_least_norm_solve(p, u, y);
+        status = dalcs_proximal_solve(p, u, y);
     }
     if (status < DALCS_OK || (status == DALCS_OK && has_choice)) {
         p->least_norm = status == DALCS_OK;
