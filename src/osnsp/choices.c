@@ -49,8 +49,7 @@ static void find_voltages(const struct choices *c, int k) {
         }
         bool is_closed = c->whole->place[c->n_columns - c->n_pairs + (size_t)d] >= 0;
         voltages_of(c, k)[d] = is_closed ? 0.0 : dalcs_csr_row_dot(&c->s->C, d, vector);
-        size += is_closed ? lambda[d] * lambda[d] / c->conductance
-                          : c->conductance * terms * terms;
+        size += is_closed ? lambda[d] * lambda[d] / c->conductance : c->conductance * terms * terms;
     }
     c->size[k] = sqrt(size);
 }

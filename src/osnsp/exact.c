@@ -8,21 +8,27 @@
 /* Changes of the mode that are of all pairs with a wrong sign at once, before they are of one. */
 enum { ROUNDS_AT_ONCE = 10 };
 
-void dalcs_exact_evaluate(struct dalcs_osnsp *p, const struct dalcs_whole *whole,
-                                       const double *u, double *y, bool *sources_clash) {
+void dalcs_exact_evaluate(struct dalcs_osnsp *p, const struct dalcs_whole *whole, const double *u,
+                          double *y, bool *sources_clash) {
     dalcs_whole_solve(whole, u, NULL, y);
     p->keeps_states = true;
     dalcs_certificate_evaluate(p, u, y, sources_clash);
     p->keeps_states = false;
+    if (!dalcs_certificate_holds(p, *sources_clash)) {
+        dalcs_certificate_evaluate(p, u, y, sources_clash);
+    }
 }
 
 /* In p->mode. What a singular mode leaves open is found once, if it is certified. */
 static enum dalcs_status try_whole(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
                                    const double *u, double *y, bool *sources_clash) {
+    if (entry->is_too_open) {
+        return DALCS_SINGULAR;
+    }
     struct dalcs_whole *whole = malloc(sizeof(*whole));
-    enum dalcs_status status =
-        whole == NULL ? DALCS_E_NOMEM : dalcs_whole_factor(whole, p, NULL);
+    enum dalcs_status status = whole == NULL ? DALCS_E_NOMEM : dalcs_whole_factor(whole, p, NULL);
     if (status != DALCS_OK) {
+        entry->is_too_open = status == DALCS_SINGULAR;
         free(whole);
         return status;
     }

@@ -241,15 +241,12 @@ bool dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu, 
            dalcs_lu_factor_small(lu, n, start, row, value, apart) == DALCS_OK;
 }
 
-/* Pivots of a mode that is not clearly regular. */
-static const double far_apart = 1e-6;
-
 static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *e,
                                 struct dalcs_columns *a) {
     if (a->n >= LARGE_MODE) {
         return factor_large(p, e, a);
     }
-    return dalcs_modes_factor_small(p, &e->lu, a->n, a->p, a->i, a->x, far_apart)
+    return dalcs_modes_factor_small(p, &e->lu, a->n, a->p, a->i, a->x, dalcs_far_apart)
                ? DALCS_OK
                : dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, NULL,
                                  p->options.rcond_min);

@@ -1,11 +1,12 @@
-/* proximal.c - singular modes by the proximal-point iteration (Rockafellar 1976) on the monotone
+/* proximal.c - the mode of the least-norm answer by proximal points (Rockafellar 1976) of the monotone
  * mixed LCP: each problem adds small weights around the last answer,
  *     closed pair:  w + (eps/G) (lambda - lambda') = 0      (a series resistance with memory)
  *     open pair:    lambda + (eps G) (w - w') = 0           (a leak with memory)
  *     unknown z_i:  + mu eps (z_i - z_i')                   on the balanced diagonal,
  * has exactly one solution with a nonsingular matrix, and the iterates converge to a solution of the
  * problem itself: the weights vanish with the differences. From diodes without current and without
- * voltage that is, as eps -> 0, the least-norm one, the limit of equal small r_on and g_off. If there is no solution, the differences
+ * voltage that is, as eps -> 0, the least-norm one, the limit of equal small r_on and g_off: the mode that the
+ * weights lead to is answered without them (exact.c). If there is no solution, the differences
  * converge to a ray that says why (Pazy 1971): see witness.c. */
 #include "osnsp_internal.h"
 
@@ -32,8 +33,13 @@ static const double ray_part = 1e-2;
 /* Rounds without fewer wrong signs before block pivoting has stalled. */
 enum { PATIENCE = 10 };
 
-/* Mode changes allowed from a regularised answer to a regular mode's, and from one of no certificate. */
-enum { REGULAR_ATTEMPTS = 8, LAST_ATTEMPTS = 60 };
+/* Rounds that free the unknowns from their own weights: each gains three digits. */
+enum { UNKNOWN_ROUNDS = 3 };
+
+static const double unknown_tolerance = 1e-9;
+
+/* Mode changes allowed from a regularised answer to a regular mode's. */
+enum { REGULAR_ATTEMPTS = 8 };
 
 /* Equal diodes on the first rungs, so that the answer is the least-norm one in amperes and volts; with
  * very different conductances around them, weights that suit each one's surroundings solve more. */
@@ -57,14 +63,9 @@ static double off_weight(const struct dalcs_osnsp *p, int pair, int rung) {
     return eps_of(p, rung) / ratio_of(p, pair, rung);
 }
 
-void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, int rung, double *on,
-                            double *off) {
-    *on = on_weight(p, pair, rung);
-    *off = off_weight(p, pair, rung);
-}
-
-double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p, int rung) {
-    return node_weight * eps_of(p, rung);
+double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair, int rung) {
+    const struct dalcs_step_form *f = p->form[0];
+    return ratio_of(p, pair, rung) / (f->scale[f->n + pair] * f->row_scale[f->n + pair]);
 }
 
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair) {
@@ -203,15 +204,16 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, int rung, bool singly, boo
 
 /* One regularised problem around the centre, from p->mode. Its matrix is a P-matrix when the system is
  * monotone: it has one solution, and the least-index fallback ends it. Before that, where block
- * pivoting stalls, an interior-point method finds its mode. */
-enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, int rung, bool *mode_changed) {
+ * pivoting stalls, Lemke's method finds its mode. */
+enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u, int rung,
+                                       bool *mode_changed) {
     bool stalled;
     *mode_changed = false;
     DALCS_TRY(pivot(p, rung, !p->system->monotone, mode_changed, &stalled));
     if (!stalled) {
         return DALCS_OK;
     }
-    enum dalcs_status status = dalcs_interior_mode(p, rung);
+    enum dalcs_status status = dalcs_scattering_mode(p, u, rung, eps_of(p, rung));
     return status < DALCS_OK ? status : pivot(p, rung, true, mode_changed, &stalled);
 }
 
@@ -250,7 +252,29 @@ static enum dalcs_status try_exactly(struct dalcs_osnsp *p, const double *u, dou
     return status;
 }
 
-/* Evaluates p->scaled as the answer y. */
+/* The weights of unknowns pull a node between two blocking diodes towards 0: their centre alone is
+ * moved until it no longer matters, so that only the diodes decide. */
+static enum dalcs_status free_unknowns(struct dalcs_osnsp *p, const double *u, int rung) {
+    const struct dalcs_step_form *f = p->form[0];
+    for (int k = 0; k <= UNKNOWN_ROUNDS; k++) {
+        double size = 0.0;
+        double moved = 0.0;
+        for (int i = 0; i < f->n; i++) {
+            size = fmax(size, fabs(p->scaled[i]));
+            moved = fmax(moved, fabs(p->scaled[i] - p->centre[i]));
+            p->centre[i] = p->scaled[i];
+        }
+        if (moved <= unknown_tolerance * size || k == UNKNOWN_ROUNDS) {
+            break;
+        }
+        bool mode_changed;
+        DALCS_TRY(dalcs_proximal_pivot(p, u, rung, &mode_changed));
+    }
+    return DALCS_OK;
+}
+
+/* Evaluates p->scaled as the answer y; true: it is certified. *sources_clash: the reference of a floating island would
+ * have to carry current. */
 static bool is_certified(struct dalcs_osnsp *p, const double *u, double *y, bool *sources_clash) {
     double *lambda = y + dalcs_system_n_equations(p->system);
     dalcs_osnsp_unscale(p, y);
@@ -275,31 +299,38 @@ void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u) {
     restart(p);
 }
 
+/* A mode that leaves more open than exact.c chooses among is answered by the iterates, as is one whose digits do not
+ * do for a certificate; not by those that are still running. */
 static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const double *u, double *y) {
+    bool is_open = false;
     dalcs_proximal_begin(p, u);
     for (int outer = 0; outer < p->options.max_outer; outer++) {
         bool mode_changed;
-        DALCS_TRY(dalcs_proximal_pivot(p, rung, &mode_changed));
+        DALCS_TRY(dalcs_proximal_pivot(p, u, rung, &mode_changed));
         if (outer == 0 || mode_changed) {
             struct dalcs_mode_entry *plain;
             DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
-            enum dalcs_status status =
-                try_exactly(p, u, y, plain->singular ? 0 : REGULAR_ATTEMPTS);
+            enum dalcs_status status = try_exactly(p, u, y, plain->singular ? 0 : REGULAR_ATTEMPTS);
             if (status <= DALCS_OK) {
                 return status;
             }
+            is_open = status == DALCS_SINGULAR;
             dalcs_csr_multiply(&p->form[0]->R, u, p->right);
             struct dalcs_mode_entry *e;
             DALCS_TRY(dalcs_modes_get(p, 1 + rung, &e));
             dalcs_proximal_step(p, e, rung);
         }
-        bool sources_clash;
-        if (is_certified(p, u, y, &sources_clash)) {
-            return DALCS_OK;
+        if (outer == 0 && is_open) {
+            DALCS_TRY(free_unknowns(p, u, rung));
         }
+        bool sources_clash;
         double change;
         double way;
         double size = move_centre(p, &change, &way);
+        p->least_norm = true;
+        if (is_certified(p, u, y, &sources_clash) && (is_open || size <= ray_part * way)) {
+            return DALCS_OK;
+        }
         if (outer >= 2 && !mode_changed && size > ray_part * way &&
             change <= ray_tolerance * size && dalcs_witness_from_ray(p)) {
             return DALCS_INFEASIBLE;
@@ -316,22 +347,6 @@ enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, d
     enum dalcs_status status = DALCS_NOT_CONVERGED;
     for (int rung = 0; rung < DALCS_N_RUNGS && status == DALCS_NOT_CONVERGED; rung++) {
         status = climb_rung(p, rung, u, y);
-    }
-    return status;
-}
-
-enum dalcs_status dalcs_proximal_solve_somehow(struct dalcs_osnsp *p, const double *u, double *y) {
-    enum dalcs_status status = DALCS_NOT_CONVERGED;
-    for (int rung = 0; rung < DALCS_N_WEIGHTS && status > DALCS_OK; rung++) {
-        bool mode_changed;
-        for (int d = 0; d < p->system->n_pairs; d++) {
-            if (p->is_diode[d]) { /* whatever was tried before */
-                dalcs_osnsp_command(p, d, false);
-            }
-        }
-        dalcs_proximal_begin(p, u);
-        status = dalcs_proximal_pivot(p, rung, &mode_changed);
-        status = status == DALCS_OK ? dalcs_exact_pivot(p, u, y, LAST_ATTEMPTS) : status;
     }
     return status;
 }

@@ -25,8 +25,8 @@ bool dalcs_step_map_pays(const struct dalcs_osnsp *p) {
 }
 
 /* y = the answer to the unit input u_j, without its states. */
-static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, double *unit,
-                       int j, double *y) {
+static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, double *unit, int j,
+                       double *y) {
     const struct dalcs_step_form *f = p->form[0];
     unit[j] = 1.0;
     if (e->whole != NULL) {

@@ -70,7 +70,8 @@ static enum dalcs_status put_columns(const struct dalcs_whole *whole,
         for (int c = 0; c < n_columns && status == DALCS_OK; c++) {
             double value = whole->choice[(size_t)k * (size_t)n_columns + (size_t)c];
             if (value != 0.0 && whole->place[c] >= 0) {
-                status = dalcs_triplets_add(&transposed, whole->place[c], whole->redundant[k], value);
+                status =
+                    dalcs_triplets_add(&transposed, whole->place[c], whole->redundant[k], value);
             }
         }
     }
@@ -91,11 +92,15 @@ static enum dalcs_status put_columns(const struct dalcs_whole *whole,
 static enum dalcs_status factor(struct dalcs_whole *whole, const struct dalcs_triplets *t) {
     struct dalcs_csr columns = {0};
     DALCS_TRY(put_columns(whole, t, &columns));
-    klu_common common;
-    dalcs_lu_common_init(&common);
-    dalcs_lu_pivot_carefully(&common);
-    enum dalcs_status status = dalcs_lu_factor(&whole->lu, &common, whole->n, columns.p, columns.j,
-                                               columns.x, NULL, 0.0);
+    enum dalcs_status status = DALCS_OK;
+    if (!dalcs_modes_factor_small(whole->p, &whole->lu, whole->n, columns.p, columns.j, columns.x,
+                                  dalcs_far_apart)) {
+        klu_common common;
+        dalcs_lu_common_init(&common);
+        dalcs_lu_pivot_carefully(&common);
+        status = dalcs_lu_factor(&whole->lu, &common, whole->n, columns.p, columns.j, columns.x,
+                                 NULL, 0.0);
+    }
     dalcs_csr_finish(&columns);
     return status;
 }
@@ -105,6 +110,9 @@ static enum dalcs_status choose(struct dalcs_whole *whole, const struct dalcs_nu
     const struct dalcs_system *s = whole->p->system;
     size_t n_choices = (size_t)space->n_free;
     size_t n_columns = (size_t)dalcs_system_n_columns(s);
+    if (space->n_free > whole->p->options.max_outer) {
+        return DALCS_SINGULAR;
+    }
     whole->redundant = dalcs_arena_alloc(&whole->arena, n_choices, sizeof(int));
     whole->choice = dalcs_arena_alloc(&whole->arena, n_choices * n_columns, sizeof(double));
     whole->choice_w =
@@ -126,8 +134,7 @@ static enum dalcs_status choose(struct dalcs_whole *whole, const struct dalcs_nu
 
 enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dalcs_osnsp *p,
                                      const double *resistance) {
-    *whole = (struct dalcs_whole){
-        .p = p, .sigma = p->form[0]->sigma, .resistance = resistance};
+    *whole = (struct dalcs_whole){.p = p, .sigma = p->form[0]->sigma, .resistance = resistance};
     size_t n_columns = (size_t)dalcs_system_n_columns(p->system);
     struct dalcs_triplets t = {0};
     struct dalcs_null_space space;

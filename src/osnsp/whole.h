@@ -28,8 +28,9 @@ struct dalcs_whole {
     struct dalcs_arena arena;
 };
 
-/* Of p->mode at the present sigma, or of lines with these resistances. Valid as long as p is. On failure there
- * is nothing to finish. */
+/* Of p->mode at the present sigma, or of lines with these resistances. Valid as long as p is. DALCS_SINGULAR: more is
+ * open than there may be iterations of the proximal method, each of which costs as much as a choice, a full row. On
+ * failure there is nothing to finish. */
 enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dalcs_osnsp *p,
                                      const double *resistance) DALCS_MUST_CHECK;
 
