@@ -1,8 +1,7 @@
-/* enumerate.c - every mode of a small system, where pivoting finds none.
+/* enumerate.c - every mode of a small system that is not passive, where pivoting finds none.
  *
- * A system that is not passive may have a solution that neither pivoting nor the proximal method
- * comes to, several, or none; and no ray proves the last. A passive one has been answered before in
- * its singular modes; its regular ones are tried against widely spread values. */
+ * It may have a solution that neither pivoting nor the proximal method comes to, several, or none; and no ray
+ * proves the last. */
 #include "osnsp_internal.h"
 
 #include <math.h>
@@ -26,7 +25,6 @@ static bool list_diodes(const struct dalcs_osnsp *p, int *diode, int *n) {
 }
 
 enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double *y) {
-    const struct dalcs_system *s = p->system;
     int diode[ENUMERATION_LIMIT];
     int n;
     if (!list_diodes(p, diode, &n)) {
@@ -43,10 +41,9 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double
         if (status == DALCS_OK && dalcs_certificate_holds(p, sources_clash)) {
             return DALCS_OK;
         }
-        if (status == DALCS_SINGULAR && !s->monotone) {
-            status = dalcs_proximal_in_mode(p, u, y);
+        if (status == DALCS_SINGULAR) {
+            status = dalcs_exact_pivot(p, u, y, 0);
             if (status == DALCS_OK) {
-                p->least_norm = true;
                 return DALCS_OK;
             }
         }
@@ -55,7 +52,7 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double
         }
         p->counters.pivots++;
     }
-    return s->monotone ? DALCS_NOT_CONVERGED : DALCS_INFEASIBLE;
+    return DALCS_INFEASIBLE;
 }
 
 /* Answers nearer to each other than this part of the largest voltage or current are one. */

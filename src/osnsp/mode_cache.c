@@ -27,6 +27,10 @@ static void link_newest(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
 static void entry_destroy(struct dalcs_mode_entry *e) {
     dalcs_lu_finish(&e->lu);
     free(e->scale_of);
+    if (e->whole != NULL) {
+        dalcs_whole_finish(e->whole);
+        free(e->whole);
+    }
     free(e->map);
     free(e);
 }
@@ -237,15 +241,12 @@ bool dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu, 
            dalcs_lu_factor_small(lu, n, start, row, value, apart) == DALCS_OK;
 }
 
-/* Pivots of a mode that is not clearly regular. */
-static const double far_apart = 1e-6;
-
 static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *e,
                                 struct dalcs_columns *a) {
     if (a->n >= LARGE_MODE) {
         return factor_large(p, e, a);
     }
-    return dalcs_modes_factor_small(p, &e->lu, a->n, a->p, a->i, a->x, far_apart)
+    return dalcs_modes_factor_small(p, &e->lu, a->n, a->p, a->i, a->x, dalcs_far_apart)
                ? DALCS_OK
                : dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, NULL,
                                  p->options.rcond_min);

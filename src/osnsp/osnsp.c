@@ -1,5 +1,5 @@
-/* osnsp.c - finding the mode: the last one first, then block principal pivoting, then the proximal
- * method for singular modes, and for small systems every mode as a last resort. */
+/* osnsp.c - finding the mode: the last one first, then block principal pivoting, then that of a problem with small
+ * weights, by Lemke's method where pivots get nowhere; and for small systems that are not passive every mode. */
 #include "in_order.h"
 
 #include <math.h>
@@ -268,11 +268,11 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     struct dalcs_mode_entry *e;
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
     double tolerance = p->options.certificate_tolerance;
-    p->least_norm = e->singular;
+    p->least_norm = e->singular && (e->whole == NULL || e->whole->n_choices > 0);
     bool by_factors = p->refines && !e->singular;
-    if (e->map == NULL && !e->singular && !by_factors && e->n_uses++ > 2 &&
-        dalcs_step_map_pays(p)) {
-        DALCS_TRY(dalcs_step_map_build(p, e, DALCS_PLAIN));
+    bool may_recur = e->singular ? e->whole != NULL : !by_factors;
+    if (e->map == NULL && may_recur && e->n_uses++ > 2 && dalcs_step_map_pays(p)) {
+        DALCS_TRY(dalcs_step_map_build(p, e));
     }
     if (e->map != NULL && !by_factors) {
         dalcs_step_map_apply(p, e, u, y);
@@ -282,7 +282,11 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
         }
     }
     if (e->singular) {
-        return DALCS_SINGULAR;
+        if (e->whole == NULL) {
+            return DALCS_SINGULAR;
+        }
+        dalcs_exact_evaluate(p, e->whole, u, y, sources_clash);
+        return DALCS_OK;
     }
     solve_to_answer(p, e, u, y);
     dalcs_certificate_evaluate(p, u, y, sources_clash);
@@ -364,16 +368,7 @@ static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, d
         return dalcs_ties_settle(p, u, y);
     }
     if (status > DALCS_OK && status != DALCS_INFEASIBLE) {
-        status = dalcs_least_norm_solve(p, u, y);
-    }
-    if (status > DALCS_OK) {
-        enum dalcs_status otherwise = dalcs_enumerate(p, u, y);
-        if (otherwise == DALCS_INFEASIBLE) {
-            dalcs_witness_from_modes(p);
-        }
-        /* a ray proves nothing where the circuit is not passive */
-        bool decided = otherwise != DALCS_NOT_CONVERGED || !p->system->monotone;
-        status = decided ? otherwise : status;
+        status = dalcs_proximal_solve(p, u, y);
     }
     return status;
 }
@@ -382,10 +377,9 @@ static bool is_undecided(enum dalcs_status status) {
     return status == DALCS_NOT_CONVERGED || status == DALCS_SINGULAR;
 }
 
-/* By elimination, from the mode of a proximal problem. */
-static enum dalcs_status solve_exactly(struct dalcs_osnsp *p, const double *u, double *y) {
-    enum dalcs_status status = dalcs_singular_solve(p, u, y);
-    return is_undecided(status) ? dalcs_whole_solve(p, u, y) : status;
+/* A ray may be no more than C/h beside a stray, and proves nothing where the circuit is not passive. */
+static bool is_proof(const struct dalcs_osnsp *p) {
+    return p->system->monotone && p->form[0]->sigma == 0.0;
 }
 
 enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
@@ -403,15 +397,17 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
     if (is_undecided(status)) {
         p->looks_around = true;
         status = solve_somehow(p, u, y);
-        if (is_undecided(status) && p->system->monotone) {
-            status = solve_exactly(p, u, y);
-        }
-        p->looks_around = false;
     }
-    if (status == DALCS_INFEASIBLE && p->system->monotone && sigma > 0.0) {
-        /* a ray may be no more than C/h beside a stray: an answer that is certified refutes it */
-        enum dalcs_status otherwise = solve_exactly(p, u, y);
+    if (is_undecided(status) || (status == DALCS_INFEASIBLE && !is_proof(p))) {
+        enum dalcs_status otherwise = dalcs_scattering_solve(p, u, y);
         status = otherwise <= DALCS_OK ? otherwise : status;
+    }
+    p->looks_around = false;
+    if (status > DALCS_OK && !p->system->monotone) {
+        status = dalcs_enumerate(p, u, y);
+        if (status == DALCS_INFEASIBLE) {
+            dalcs_witness_from_modes(p);
+        }
     }
     if (status == DALCS_INFEASIBLE) {
         dalcs_witness_complete(p);

@@ -7,9 +7,9 @@
  * In a mode (the set of pairs with w = 0, the others have lambda = 0) this is one linear system. It
  * is solved in the last mode; where signs are wrong, block principal pivoting (Judice and Pires
  * 1994) with a least-index fallback (Murty 1974) changes the mode. Each (mode, sigma) keeps its
- * factors in a bounded cache. A mode whose matrix is singular is solved by proximal iteration, which
- * also gives the least-norm choice where the answer is not unique. Whatever the way, an answer is
- * accepted only with a certificate recomputed from the system's own matrices. */
+ * factors in a bounded cache. A singular mode is found with small weights, which make the problem one of
+ * exactly one solution, and answered without them: what it leaves open has the least norm. Whatever the
+ * way, an answer is accepted only with a certificate recomputed from the system's own matrices. */
 #ifndef DALCS_OSNSP_H
 #define DALCS_OSNSP_H
 

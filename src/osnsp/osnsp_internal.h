@@ -3,6 +3,7 @@
 #define DALCS_OSNSP_INTERNAL_H
 
 #include "osnsp.h"
+#include "whole.h"
 
 #define HASH_NONFATAL_OOM 1
 #include <uthash.h>
@@ -23,9 +24,12 @@ struct dalcs_mode_entry {
     struct dalcs_lu lu;
     int *row_of, *column_of; /* [lu.n] plain factors: row of R, column of y, in pivot order */
     double *scale_of;        /* [lu.n]; behind it the two */
-    double *map;             /* see step_map.h; NULL until the mode has recurred */
-    uint64_t tie;            /* which ties of this mode were looked at last; 0: none yet */
-    bool tie_has_choice;     /* they leave a choice */
+    struct dalcs_whole
+        *whole; /* of a singular mode that was answered: its factors with choices; else NULL */
+    bool is_too_open;    /* or it leaves more open than is chosen among */
+    double *map;         /* see step_map.h; NULL until the mode has recurred */
+    uint64_t tie;        /* which ties of this mode were looked at last; 0: none yet */
+    bool tie_has_choice; /* they leave a choice */
     int n_uses;
     size_t bytes;
 };
@@ -44,6 +48,9 @@ enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
  * it than plain elimination tells. */
 bool dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu, int n,
                               const int *start, const int *row, const double *value, double apart);
+
+/* Pivots of a mode that is not clearly regular. */
+static const double dalcs_far_apart = 1e-6;
 
 /* A square matrix by columns. All is in the block that starts at x. */
 struct dalcs_columns {
@@ -91,10 +98,8 @@ bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, 
 enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u,
                                        double *y) DALCS_MUST_CHECK;
 
-/* The centre of diodes without current and without voltage, which are as far from their knees as these from 0. */
-void dalcs_proximal_rest(struct dalcs_osnsp *p);
-
-/* p->right = R u, and the centre is that of diodes at rest. */
+/* p->right = R u, and the centre is that of diodes without current and without voltage, which are as far from their
+ * knees as these from 0. */
 void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u);
 
 /* Factors the regularised matrix of p->mode; the columns are all n + n_pairs. */
@@ -105,14 +110,11 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
 void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry, int rung);
 
 /* The same from p->mode on by block pivoting over regularised modes. */
-enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, int rung,
+enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u, int rung,
                                        bool *mode_changed) DALCS_MUST_CHECK;
 
-/* The weights of a rung: eps/G of a closed pair and eps G of an open one, and of an unknown, in
- * balanced units. */
-void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, int rung, double *on,
-                            double *off);
-double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p, int rung);
+/* 1/G of a pair on a rung, ohm: what eps is times of where it is closed. */
+double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair, int rung);
 
 /* w of a pair in balanced units, from p->scaled and p->right. */
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair);
@@ -120,42 +122,41 @@ double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair);
 /* The least push of a centre, in balanced units, that a sign tells beside the largest unknown of p->scaled. */
 double dalcs_proximal_least_push(const struct dalcs_osnsp *p, int rung);
 
-/* The proximal iteration in p->mode alone. DALCS_NOT_CONVERGED: no certified answer in this mode. */
-enum dalcs_status dalcs_proximal_in_mode(struct dalcs_osnsp *p, const double *u,
+/* ---- scattering.c -------------------------------------------------------------------------- */
+
+/* p->mode becomes that of the regularised problem around (centre, centre_w) with pairs weighted as in `rung` times
+ * eps: all diodes are decided at once, from no mode in particular. DALCS_NOT_CONVERGED: one where the search ended;
+ * DALCS_SINGULAR: there was none, and the mode is as it was. */
+enum dalcs_status dalcs_scattering_mode(struct dalcs_osnsp *p, const double *u, int rung,
+                                        double eps) DALCS_MUST_CHECK;
+
+/* Any answer, not the one of least norm, where pivoting ends without one: from the mode that Lemke's method finds with
+ * weights that are no more than rounding. */
+enum dalcs_status dalcs_scattering_solve(struct dalcs_osnsp *p, const double *u,
                                          double *y) DALCS_MUST_CHECK;
-
-/* ---- interior.c ---------------------------------------------------------------------------- */
-
-/* p->mode becomes that of the regularised problem around (centre, centre_w), or one near it: all
- * diodes are decided at once, from no mode in particular. For monotone systems. DALCS_SINGULAR: a
- * factorisation failed, the mode is as it was. */
-enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p, int rung) DALCS_MUST_CHECK;
 
 /* ---- enumerate.c --------------------------------------------------------------------------- */
 
-/* Every mode of a small system's diodes. DALCS_INFEASIBLE: the system is not passive and none fits;
- * DALCS_NOT_CONVERGED: there are too many, or the system is passive and no regular one fits. */
+/* Every mode of a small system's diodes. DALCS_INFEASIBLE: none fits; DALCS_NOT_CONVERGED: there are too many. */
 enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u,
                                   double *y) DALCS_MUST_CHECK;
 
-/* ---- singular.c ---------------------------------------------------------------------------- */
+/* ---- exact.c ------------------------------------------------------------------------------- */
 
-/* Where all else ends in DALCS_NOT_CONVERGED, for monotone systems: singular modes answered exactly. What they
- * leave open has the least norm of all unknowns, balanced, in its mode, which need not be that of diodes. */
-enum dalcs_status dalcs_singular_solve(struct dalcs_osnsp *p, const double *u,
-                                       double *y) DALCS_MUST_CHECK;
+/* Solves and evaluates in the mode of `whole`. */
+void dalcs_exact_evaluate(struct dalcs_osnsp *p, const struct dalcs_whole *whole, const double *u,
+                          double *y, bool *sources_clash);
 
-/* The proximal method, and in micro-steps dalcs_singular_solve() where that does not get to a certificate: what comes
- * later takes any answer, not the one of least norm. */
-enum dalcs_status dalcs_least_norm_solve(struct dalcs_osnsp *p, const double *u,
-                                         double *y) DALCS_MUST_CHECK;
+/* From p->mode on by block principal pivoting, at most `limit` changes, each mode answered with all the
+ * digits that it has and, where it is singular, with the least norm. DALCS_OK: certified; DALCS_SINGULAR: a mode leaves
+ * too much open. */
+enum dalcs_status dalcs_exact_pivot(struct dalcs_osnsp *p, const double *u, double *y,
+                                    int limit) DALCS_MUST_CHECK;
 
-/* ---- whole.c ------------------------------------------------------------------------------- */
+/* ---- choices.c ----------------------------------------------------------------------------- */
 
-/* And after that, where condensing the states cost the digits that the certificate asks for: modes solved
- * without. */
-enum dalcs_status dalcs_whole_solve(struct dalcs_osnsp *p, const double *u,
-                                    double *y) DALCS_MUST_CHECK;
+/* Vectors that are open, in `choice`, become the equations that choose among them. */
+enum dalcs_status dalcs_choices_make(struct dalcs_whole *whole) DALCS_MUST_CHECK;
 
 /* ---- ties.c -------------------------------------------------------------------------------- */
 
@@ -167,8 +168,8 @@ enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u,
 
 bool dalcs_step_map_pays(const struct dalcs_osnsp *p);
 
-enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
-                                       int kind) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p,
+                                       struct dalcs_mode_entry *entry) DALCS_MUST_CHECK;
 
 /* y's z and lambda from u. */
 void dalcs_step_map_apply(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
@@ -197,7 +198,7 @@ void dalcs_witness_complete(struct dalcs_osnsp *p);
 
 /* ---- osnsp.c ------------------------------------------------------------------------------- */
 
-/* Solves and evaluates in p->mode. DALCS_SINGULAR: no plain factors and no map for this mode. */
+/* Solves and evaluates in p->mode. DALCS_SINGULAR: the mode is so and has not been answered yet. */
 enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, double *y,
                                        bool *sources_clash) DALCS_MUST_CHECK;
 

@@ -1,11 +1,12 @@
-/* proximal.c - singular modes by the proximal-point iteration (Rockafellar 1976) on the monotone
+/* proximal.c - the mode of the least-norm answer by proximal points (Rockafellar 1976) of the monotone
  * mixed LCP: each problem adds small weights around the last answer,
  *     closed pair:  w + (eps/G) (lambda - lambda') = 0      (a series resistance with memory)
  *     open pair:    lambda + (eps G) (w - w') = 0           (a leak with memory)
  *     unknown z_i:  + mu eps (z_i - z_i')                   on the balanced diagonal,
  * has exactly one solution with a nonsingular matrix, and the iterates converge to a solution of the
  * problem itself: the weights vanish with the differences. From diodes without current and without
- * voltage that is, as eps -> 0, the least-norm one, the limit of equal small r_on and g_off. If there is no solution, the differences
+ * voltage that is, as eps -> 0, the least-norm one, the limit of equal small r_on and g_off: the mode that the
+ * weights lead to is answered without them (exact.c). If there is no solution, the differences
  * converge to a ray that says why (Pazy 1971): see witness.c. */
 #include "osnsp_internal.h"
 
@@ -62,14 +63,9 @@ static double off_weight(const struct dalcs_osnsp *p, int pair, int rung) {
     return eps_of(p, rung) / ratio_of(p, pair, rung);
 }
 
-void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, int rung, double *on,
-                            double *off) {
-    *on = on_weight(p, pair, rung);
-    *off = off_weight(p, pair, rung);
-}
-
-double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p, int rung) {
-    return node_weight * eps_of(p, rung);
+double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair, int rung) {
+    const struct dalcs_step_form *f = p->form[0];
+    return ratio_of(p, pair, rung) / (f->scale[f->n + pair] * f->row_scale[f->n + pair]);
 }
 
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair) {
@@ -208,15 +204,16 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, int rung, bool singly, boo
 
 /* One regularised problem around the centre, from p->mode. Its matrix is a P-matrix when the system is
  * monotone: it has one solution, and the least-index fallback ends it. Before that, where block
- * pivoting stalls, an interior-point method finds its mode. */
-enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, int rung, bool *mode_changed) {
+ * pivoting stalls, Lemke's method finds its mode. */
+enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u, int rung,
+                                       bool *mode_changed) {
     bool stalled;
     *mode_changed = false;
     DALCS_TRY(pivot(p, rung, !p->system->monotone, mode_changed, &stalled));
     if (!stalled) {
         return DALCS_OK;
     }
-    enum dalcs_status status = dalcs_interior_mode(p, rung);
+    enum dalcs_status status = dalcs_scattering_mode(p, u, rung, eps_of(p, rung));
     return status < DALCS_OK ? status : pivot(p, rung, true, mode_changed, &stalled);
 }
 
@@ -243,13 +240,12 @@ static double move_centre(struct dalcs_osnsp *p, double *change, double *way) {
     return size;
 }
 
-/* Where the regularised problem ends in a regular mode, or next to one, that mode's own answer is
- * unique and better: with conductances 1e13 apart the iteration may be too slow to tell a solution
- * far away from none. Tried once for every mode that the iteration comes to. */
-static enum dalcs_status try_regular_mode(struct dalcs_osnsp *p, const double *u, double *y) {
+/* The mode where a regularised problem ends answered without weights: in a singular one the answer of least
+ * norm, which is what the iterates converge to; in a regular one, or one next to it, the only one. */
+static enum dalcs_status try_exactly(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
     size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
     memcpy(p->regularised_mode, p->mode, bytes);
-    enum dalcs_status status = dalcs_osnsp_pivot(p, u, y, REGULAR_ATTEMPTS);
+    enum dalcs_status status = dalcs_exact_pivot(p, u, y, limit);
     if (status != DALCS_OK) {
         memcpy(p->mode, p->regularised_mode, bytes);
     }
@@ -258,7 +254,7 @@ static enum dalcs_status try_regular_mode(struct dalcs_osnsp *p, const double *u
 
 /* The weights of unknowns pull a node between two blocking diodes towards 0: their centre alone is
  * moved until it no longer matters, so that only the diodes decide. */
-static enum dalcs_status free_unknowns(struct dalcs_osnsp *p, int rung) {
+static enum dalcs_status free_unknowns(struct dalcs_osnsp *p, const double *u, int rung) {
     const struct dalcs_step_form *f = p->form[0];
     for (int k = 0; k <= UNKNOWN_ROUNDS; k++) {
         double size = 0.0;
@@ -272,12 +268,13 @@ static enum dalcs_status free_unknowns(struct dalcs_osnsp *p, int rung) {
             break;
         }
         bool mode_changed;
-        DALCS_TRY(dalcs_proximal_pivot(p, rung, &mode_changed));
+        DALCS_TRY(dalcs_proximal_pivot(p, u, rung, &mode_changed));
     }
     return DALCS_OK;
 }
 
-/* Evaluates p->scaled as the answer y. */
+/* Evaluates p->scaled as the answer y; true: it is certified. *sources_clash: the reference of a floating island would
+ * have to carry current. */
 static bool is_certified(struct dalcs_osnsp *p, const double *u, double *y, bool *sources_clash) {
     double *lambda = y + dalcs_system_n_equations(p->system);
     dalcs_osnsp_unscale(p, y);
@@ -288,17 +285,12 @@ static bool is_certified(struct dalcs_osnsp *p, const double *u, double *y, bool
     return dalcs_certificate_holds(p, *sources_clash);
 }
 
-void dalcs_proximal_rest(struct dalcs_osnsp *p) {
+static void restart(struct dalcs_osnsp *p) {
     const struct dalcs_step_form *f = p->form[0];
     memset(p->centre, 0, (size_t)(f->n + f->n_pairs) * sizeof(double));
     for (int d = 0; d < f->n_pairs; d++) {
         p->centre_w[d] = f->row_scale[f->n + d] * dalcs_system_knee(p->system, d);
     }
-}
-
-static void restart(struct dalcs_osnsp *p) {
-    const struct dalcs_step_form *f = p->form[0];
-    dalcs_proximal_rest(p);
     memset(p->step_now, 0, (size_t)(f->n + 2 * f->n_pairs) * sizeof(double));
 }
 
@@ -307,33 +299,38 @@ void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u) {
     restart(p);
 }
 
+/* A mode that leaves more open than exact.c chooses among is answered by the iterates, as is one whose digits do not
+ * do for a certificate; not by those that are still running. */
 static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const double *u, double *y) {
-    restart(p);
+    bool is_open = false;
+    dalcs_proximal_begin(p, u);
     for (int outer = 0; outer < p->options.max_outer; outer++) {
         bool mode_changed;
-        DALCS_TRY(dalcs_proximal_pivot(p, rung, &mode_changed));
-        struct dalcs_mode_entry *plain;
-        DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
-        if ((outer == 0 || mode_changed) && !plain->singular) {
-            enum dalcs_status status = try_regular_mode(p, u, y);
+        DALCS_TRY(dalcs_proximal_pivot(p, u, rung, &mode_changed));
+        if (outer == 0 || mode_changed) {
+            struct dalcs_mode_entry *plain;
+            DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
+            enum dalcs_status status = try_exactly(p, u, y, plain->singular ? 0 : REGULAR_ATTEMPTS);
             if (status <= DALCS_OK) {
                 return status;
             }
+            is_open = status == DALCS_SINGULAR;
             dalcs_csr_multiply(&p->form[0]->R, u, p->right);
             struct dalcs_mode_entry *e;
             DALCS_TRY(dalcs_modes_get(p, 1 + rung, &e));
             dalcs_proximal_step(p, e, rung);
         }
-        if (outer == 0) {
-            DALCS_TRY(free_unknowns(p, rung));
+        if (outer == 0 && is_open) {
+            DALCS_TRY(free_unknowns(p, u, rung));
         }
         bool sources_clash;
-        if (is_certified(p, u, y, &sources_clash)) {
-            return DALCS_OK;
-        }
         double change;
         double way;
         double size = move_centre(p, &change, &way);
+        p->least_norm = true;
+        if (is_certified(p, u, y, &sources_clash) && (is_open || size <= ray_part * way)) {
+            return DALCS_OK;
+        }
         if (outer >= 2 && !mode_changed && size > ray_part * way &&
             change <= ray_tolerance * size && dalcs_witness_from_ray(p)) {
             return DALCS_INFEASIBLE;
@@ -346,38 +343,10 @@ static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const doubl
     return DALCS_NOT_CONVERGED;
 }
 
-enum dalcs_status dalcs_proximal_in_mode(struct dalcs_osnsp *p, const double *u, double *y) {
-    dalcs_proximal_begin(p, u);
-    struct dalcs_mode_entry *e;
-    DALCS_TRY(dalcs_modes_get(p, 1 + DALCS_N_WEIGHTS, &e));
-    for (int outer = 0; outer < p->options.max_outer && !e->singular; outer++) {
-        dalcs_proximal_step(p, e, DALCS_N_WEIGHTS);
-        bool sources_clash;
-        if (is_certified(p, u, y, &sources_clash)) {
-            return DALCS_OK;
-        }
-        double change;
-        double way;
-        (void)move_centre(p, &change, &way);
-    }
-    return DALCS_NOT_CONVERGED;
-}
-
 enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, double *y) {
-    dalcs_csr_multiply(&p->form[0]->R, u, p->right);
     enum dalcs_status status = DALCS_NOT_CONVERGED;
     for (int rung = 0; rung < DALCS_N_RUNGS && status == DALCS_NOT_CONVERGED; rung++) {
         status = climb_rung(p, rung, u, y);
-        if (status != DALCS_OK) {
-            continue;
-        }
-        struct dalcs_mode_entry *plain;
-        DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
-        p->least_norm = plain->singular;
-        if (plain->singular && plain->map == NULL && plain->n_uses++ > 2 &&
-            dalcs_step_map_pays(p)) {
-            status = dalcs_step_map_build(p, plain, 1 + rung);
-        }
     }
     return status;
 }

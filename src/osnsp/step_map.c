@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* Inputs up to which the dense product is worth its memory traffic. */
-enum { MAX_MAP_COLUMNS = 48, UNKNOWN_ROUNDS = 3, PROXIMAL_ROUNDS = UNKNOWN_ROUNDS + 4 };
+enum { MAX_MAP_COLUMNS = 48 };
 
 static int padded_rows(const struct dalcs_osnsp *p) {
     return dalcs_dense_map_rows(p->form[0]->n + p->form[0]->n_pairs);
@@ -24,74 +24,55 @@ bool dalcs_step_map_pays(const struct dalcs_osnsp *p) {
     return f->n + f->n_pairs <= p->options.dense_limit && f->n_u <= MAX_MAP_COLUMNS;
 }
 
-/* p->scaled = the answer to the unit input u_j. */
-static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, int kind, int j) {
+/* y = the answer to the unit input u_j, without its states. */
+static void solve_unit(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e, double *unit, int j,
+                       double *y) {
     const struct dalcs_step_form *f = p->form[0];
-    size_t n = (size_t)(f->n + f->n_pairs);
-    memset(p->scaled, 0, n * sizeof(double));
-    if (kind == DALCS_PLAIN) {
+    unit[j] = 1.0;
+    if (e->whole != NULL) {
+        dalcs_whole_solve(e->whole, unit, NULL, y);
+    } else {
+        dalcs_csr_multiply(&f->R, unit, p->right);
         memcpy(p->rhs, p->right, (size_t)f->n * sizeof(double));
         for (int k = 0; k < e->n_on; k++) {
             p->rhs[f->n + k] = p->right[f->n + e->on[k]];
         }
         dalcs_lu_solve(&e->lu, p->rhs);
+        memset(p->scaled + f->n, 0, (size_t)f->n_pairs * sizeof(double));
         memcpy(p->scaled, p->rhs, (size_t)f->n * sizeof(double));
         for (int k = 0; k < e->n_on; k++) {
             p->scaled[f->n + e->on[k]] = p->rhs[f->n + k];
         }
-        return;
+        dalcs_osnsp_unscale(p, y);
     }
-    dalcs_proximal_rest(p);
-    if (j != p->system->n_x) { /* knees are multiples of the constant input */
-        memset(p->centre_w, 0, (size_t)f->n_pairs * sizeof(double));
-    }
-    for (int round = 0; round < PROXIMAL_ROUNDS; round++) {
-        dalcs_proximal_step(p, e, kind - 1);
-        bool unknowns_only = round < UNKNOWN_ROUNDS;
-        memcpy(p->centre, p->scaled, (unknowns_only ? (size_t)f->n : n) * sizeof(double));
-        for (int d = 0; d < f->n_pairs && !unknowns_only; d++) {
-            p->centre_w[d] = dalcs_proximal_scaled_w(p, d);
-        }
-    }
+    unit[j] = 0.0;
 }
 
-enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
-                                       int kind) {
+enum dalcs_status dalcs_step_map_build(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry) {
     const struct dalcs_step_form *f = p->form[0];
-    struct dalcs_mode_entry *factors = entry;
-    if (kind != DALCS_PLAIN) {
-        DALCS_TRY(dalcs_modes_get(p, kind, &factors));
-        if (factors->singular) {
-            return DALCS_OK;
-        }
-        DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &entry)); /* most recent: not evicted below */
-    }
     size_t rows = (size_t)padded_rows(p);
-    size_t size = rows * (size_t)f->n_u;
+    size_t n_columns = (size_t)dalcs_system_n_columns(p->system);
+    double *unit = dalcs_alloc((size_t)f->n_u + n_columns, sizeof(double));
     double *map = dalcs_dense_map_alloc(padded_rows(p), f->n_u);
-    if (map == NULL) {
+    if (unit == NULL || map == NULL) {
+        free(unit);
+        free(map);
         return DALCS_E_NOMEM;
     }
-    int n = f->n + f->n_pairs;
+    double *y = unit + f->n_u;
+    const double *lambda = y + dalcs_system_n_equations(p->system);
     for (int j = 0; j < f->n_u; j++) {
-        for (int i = 0; i < n; i++) {
-            p->right[i] = 0.0;
-            for (int k = f->R.p[i]; k < f->R.p[i + 1]; k++) {
-                p->right[i] = f->R.j[k] == j ? f->R.x[k] : p->right[i];
-            }
-        }
-        solve_unit(p, factors, kind, j);
+        solve_unit(p, entry, unit, j, y);
         double *column = map + rows * (size_t)j;
         memset(column, 0, rows * sizeof(double));
-        for (int i = 0; i < n; i++) {
-            column[i] = f->scale[i] * p->scaled[i];
+        for (int i = 0; i < f->n; i++) {
+            column[i] = y[f->column_of[i]];
         }
-        for (int d = 0; d < f->n_pairs; d++) {
-            column[f->n + d] = dalcs_osnsp_is_on(p, d) ? column[f->n + d] : 0.0;
-        }
+        memcpy(column + f->n, lambda, (size_t)f->n_pairs * sizeof(double));
     }
+    free(unit);
     entry->map = map;
-    dalcs_modes_grew(p, entry, size * sizeof(double));
+    dalcs_modes_grew(p, entry, rows * (size_t)f->n_u * sizeof(double));
     return DALCS_OK;
 }
 

@@ -93,7 +93,7 @@ static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u,
         p->centre_w[d] += p->tied[d] ? push_w : 0.0;
     }
     bool mode_changed;
-    enum dalcs_status status = dalcs_proximal_pivot(p, DALCS_N_WEIGHTS, &mode_changed);
+    enum dalcs_status status = dalcs_proximal_pivot(p, u, DALCS_N_WEIGHTS, &mode_changed);
     *has_choice = false;
     for (int d = 0; status == DALCS_OK && d < f->n_pairs && !*has_choice; d++) {
         bool moves = (push > 0.0 && p->scaled[f->n + d] > moved_part * push) ||
@@ -145,7 +145,7 @@ enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, doub
         e->tie_has_choice = has_choice;
     }
     if (status == DALCS_OK && has_choice) {
-        status = dalcs_least_norm_solve(p, u, y);
+        status = dalcs_proximal_solve(p, u, y);
     }
     if (status < DALCS_OK || (status == DALCS_OK && has_choice)) {
         p->least_norm = status == DALCS_OK;

@@ -1,27 +1,27 @@
-/* whole.c - a mode solved on the equations as they stand, where condensing costs too many digits.
- *
- * With the states eliminated, the currents of strongly coupled coils are differences of voltages over
- * (1 - k) L / h: of a flyback that has run empty, 1e-5 A of amperes. With the states kept, KCL adds up
- * currents, and iterative refinement with residuals in extended precision does the rest. Equations that
- * follow from others give their place to a choice, orthogonal to what is open (singular.c). */
+/* whole.c - the matrix of a mode with the states kept, its factors and its refinement. */
+#include "whole.h"
+
 #include "null_space.h"
 #include "osnsp_internal.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Changes of the mode, how many of them all at once, and refinements. */
-enum { MOST_ROUNDS = 60, ROUNDS_AT_ONCE = 10, REFINEMENTS = 4 };
+/* Each gains the digits that the factors have; two more than a condition of 1e12 asks for. */
+enum { REFINEMENTS = 4 };
 
-/* Places of the columns among the unknowns: x, z, then lambda of the closed pairs; -1 of open ones. */
-static int place_columns(const struct dalcs_osnsp *p, int *place) {
+/* Places of the columns among the unknowns: x, z, then lambda of the pairs that may have current. */
+static int place_columns(struct dalcs_whole *whole) {
+    const struct dalcs_osnsp *p = whole->p;
     int n = dalcs_system_n_equations(p->system);
     for (int c = 0; c < n; c++) {
-        place[c] = c;
+        whole->place[c] = c;
     }
-    int *of_pair = place + n;
+    int *of_pair = whole->place + n;
     for (int d = 0; d < p->system->n_pairs; d++) {
-        of_pair[d] = dalcs_osnsp_is_on(p, d) ? n++ : -1;
+        of_pair[d] = whole->resistance != NULL || dalcs_osnsp_is_on(p, d) ? n++ : -1;
     }
     return n;
 }
@@ -36,96 +36,42 @@ static enum dalcs_status add_row(struct dalcs_triplets *t, const int *place,
     return DALCS_OK;
 }
 
-/* (sigma P - A; C) of p->mode. */
-static enum dalcs_status fill(const struct dalcs_osnsp *p, const int *place,
-                              struct dalcs_triplets *t) {
-    const struct dalcs_system *s = p->system;
+/* (sigma P - A; C), and R of the lines. */
+static enum dalcs_status fill(const struct dalcs_whole *whole, struct dalcs_triplets *t) {
+    const struct dalcs_system *s = whole->p->system;
     int n_equations = dalcs_system_n_equations(s);
-    double sigma = p->form[0]->sigma;
     for (int r = 0; r < n_equations; r++) {
-        if (r < s->n_x && sigma != 0.0) {
-            DALCS_TRY(add_row(t, place, &s->P, r, r, sigma));
+        if (r < s->n_x && whole->sigma != 0.0) {
+            DALCS_TRY(add_row(t, whole->place, &s->P, r, r, whole->sigma));
         }
-        DALCS_TRY(add_row(t, place, &s->A, r, r, -1.0));
+        DALCS_TRY(add_row(t, whole->place, &s->A, r, r, -1.0));
     }
     for (int d = 0; d < s->n_pairs; d++) {
-        if (place[n_equations + d] >= 0) {
-            DALCS_TRY(add_row(t, place, &s->C, d, place[n_equations + d], 1.0));
+        int row = whole->place[n_equations + d];
+        if (row >= 0) {
+            DALCS_TRY(add_row(t, whole->place, &s->C, d, row, 1.0));
+        }
+        if (whole->resistance != NULL) {
+            DALCS_TRY(dalcs_triplets_add(t, row, row, whole->resistance[d]));
         }
     }
     return DALCS_OK;
 }
 
-static long double row_times(const struct dalcs_csr *a, int row, const double *v) {
-    long double sum = 0.0L;
-    for (int k = a->p[row]; k < a->p[row + 1]; k++) {
-        sum += (long double)a->x[k] * v[a->j[k]];
-    }
-    return sum;
-}
-
-/* What is missing at y: sigma P (x_k - x) + A y + E s, and -(C y + F s) of closed pairs. */
-static void find_residual(const struct dalcs_osnsp *p, const int *place, const double *u,
-                          const double *y, double *residual) {
-    const struct dalcs_system *s = p->system;
-    int n_equations = dalcs_system_n_equations(s);
-    for (int r = 0; r < n_equations; r++) {
-        long double sum = row_times(&s->A, r, y) + row_times(&s->E, r, u + s->n_x);
-        for (int k = r < s->n_x ? s->P.p[r] : 0; r < s->n_x && k < s->P.p[r + 1]; k++) {
-            int x = s->P.j[k];
-            sum += p->form[0]->sigma * (long double)s->P.x[k] * ((long double)u[x] - y[x]);
-        }
-        residual[r] = (double)sum;
-    }
-    for (int d = 0; d < s->n_pairs; d++) {
-        int row = place[n_equations + d];
-        if (row >= 0) {
-            residual[row] = (double)-(row_times(&s->C, d, y) + row_times(&s->F, d, u + s->n_x));
-        }
-    }
-}
-
-/* What a mode leaves open: row redundant[k] of its equations is replaced by vector[k][n]. */
-struct choices {
-    int n;
-    const int *redundant;
-    const double *vector;
-};
-
-/* The answer of p->mode to y, by factors. */
-static void refine(struct dalcs_osnsp *p, const struct dalcs_lu *lu, const struct choices *choices,
-                   const int *place, const double *u, double *y, double *residual) {
-    int n_columns = dalcs_system_n_columns(p->system);
-    memset(y, 0, (size_t)n_columns * sizeof(*y));
-    for (int round = 0; round <= REFINEMENTS; round++) {
-        find_residual(p, place, u, y, residual);
-        for (int k = 0; k < choices->n; k++) {
-            const double *vector = choices->vector + (size_t)k * (size_t)lu->n;
-            long double sum = 0.0L;
-            for (int c = 0; c < n_columns; c++) {
-                sum += place[c] >= 0 ? (long double)vector[place[c]] * y[c] : 0.0L;
-            }
-            residual[choices->redundant[k]] = (double)-sum;
-        }
-        dalcs_lu_solve(lu, residual);
-        for (int c = 0; c < n_columns; c++) {
-            y[c] += place[c] >= 0 ? residual[place[c]] : 0.0;
-        }
-    }
-}
-
 /* The matrix by columns, with choices in the place of redundant rows. */
-static enum dalcs_status put_columns(const struct dalcs_triplets *t, int n,
-                                     const struct choices *choices, struct dalcs_csr *columns) {
+static enum dalcs_status put_columns(const struct dalcs_whole *whole,
+                                     const struct dalcs_triplets *t, struct dalcs_csr *columns) {
     struct dalcs_triplets transposed = {0};
-    bool *is_redundant = dalcs_alloc((size_t)n, sizeof(bool));
+    int n_columns = dalcs_system_n_columns(whole->p->system);
+    bool *is_redundant = dalcs_alloc((size_t)whole->n, sizeof(bool));
     enum dalcs_status status = is_redundant == NULL ? DALCS_E_NOMEM : DALCS_OK;
-    for (int k = 0; k < choices->n && status == DALCS_OK; k++) {
-        is_redundant[choices->redundant[k]] = true;
-        for (int c = 0; c < n && status == DALCS_OK; c++) {
-            double value = choices->vector[(size_t)k * (size_t)n + (size_t)c];
-            if (value != 0.0) {
-                status = dalcs_triplets_add(&transposed, c, choices->redundant[k], value);
+    for (int k = 0; k < whole->n_choices && status == DALCS_OK; k++) {
+        is_redundant[whole->redundant[k]] = true;
+        for (int c = 0; c < n_columns && status == DALCS_OK; c++) {
+            double value = whole->choice[(size_t)k * (size_t)n_columns + (size_t)c];
+            if (value != 0.0 && whole->place[c] >= 0) {
+                status =
+                    dalcs_triplets_add(&transposed, whole->place[c], whole->redundant[k], value);
             }
         }
     }
@@ -136,122 +82,165 @@ static enum dalcs_status put_columns(const struct dalcs_triplets *t, int n,
         }
     }
     if (status == DALCS_OK) {
-        status = dalcs_csr_compress(columns, n, n, &transposed);
+        status = dalcs_csr_compress(columns, whole->n, whole->n, &transposed);
     }
     dalcs_triplets_finish(&transposed);
     free(is_redundant);
     return status;
 }
 
-static enum dalcs_status factor_and_refine(struct dalcs_osnsp *p, const struct dalcs_triplets *t,
-                                           int n, const struct choices *choices, const int *place,
-                                           const double *u, double *y, double *residual) {
+static enum dalcs_status factor(struct dalcs_whole *whole, const struct dalcs_triplets *t) {
     struct dalcs_csr columns = {0};
-    klu_common common;
-    struct dalcs_lu lu;
-    enum dalcs_status status = put_columns(t, n, choices, &columns);
-    if (status == DALCS_OK) {
+    DALCS_TRY(put_columns(whole, t, &columns));
+    enum dalcs_status status = DALCS_OK;
+    if (!dalcs_modes_factor_small(whole->p, &whole->lu, whole->n, columns.p, columns.j, columns.x,
+                                  dalcs_far_apart)) {
+        klu_common common;
         dalcs_lu_common_init(&common);
         dalcs_lu_pivot_carefully(&common);
-        status = dalcs_lu_factor(&lu, &common, n, columns.p, columns.j, columns.x, NULL, 0.0);
-    }
-    if (status == DALCS_OK) {
-        refine(p, &lu, choices, place, u, y, residual);
-        dalcs_lu_finish(&lu);
+        status = dalcs_lu_factor(&whole->lu, &common, whole->n, columns.p, columns.j, columns.x,
+                                 NULL, 0.0);
     }
     dalcs_csr_finish(&columns);
     return status;
 }
 
-/* The same where what is open has been found. */
-static enum dalcs_status choose(struct dalcs_osnsp *p, const struct dalcs_triplets *t, int n,
-                                const struct dalcs_null_space *space, const int *place,
-                                const double *u, double *y, double *residual) {
-    double *vector = dalcs_alloc((size_t)space->n_free * (size_t)n, sizeof(*vector));
-    if (vector == NULL) {
+/* What is open, from the vectors that the mode maps to 0. */
+static enum dalcs_status choose(struct dalcs_whole *whole, const struct dalcs_null_space *space) {
+    const struct dalcs_system *s = whole->p->system;
+    size_t n_choices = (size_t)space->n_free;
+    size_t n_columns = (size_t)dalcs_system_n_columns(s);
+    if (space->n_free > whole->p->options.max_outer) {
+        return DALCS_SINGULAR;
+    }
+    whole->redundant = dalcs_arena_alloc(&whole->arena, n_choices, sizeof(int));
+    whole->choice = dalcs_arena_alloc(&whole->arena, n_choices * n_columns, sizeof(double));
+    whole->choice_w =
+        dalcs_arena_alloc(&whole->arena, n_choices * (size_t)s->n_pairs, sizeof(double));
+    if (whole->redundant == NULL || whole->choice == NULL || whole->choice_w == NULL) {
         return DALCS_E_NOMEM;
     }
+    whole->n_choices = space->n_free;
+    memcpy(whole->redundant, space->redundant, n_choices * sizeof(int));
     for (int k = 0; k < space->n_free; k++) {
-        dalcs_null_space_vector(space, k, vector + (size_t)k * (size_t)n);
+        dalcs_null_space_vector(space, k, whole->residual);
+        double *vector = whole->choice + (size_t)k * n_columns;
+        for (size_t c = 0; c < n_columns; c++) {
+            vector[c] = whole->place[c] >= 0 ? whole->residual[whole->place[c]] : 0.0;
+        }
     }
-    const struct choices choices = {space->n_free, space->redundant, vector};
-    p->least_norm = space->n_free > 0;
-    enum dalcs_status status = factor_and_refine(p, t, n, &choices, place, u, y, residual);
-    free(vector);
-    return status;
+    return dalcs_choices_make(whole);
 }
 
-/* chooses: the mode is singular. Else it is tried as a regular one. */
-static enum dalcs_status answer(struct dalcs_osnsp *p, int *place, bool chooses, const double *u,
-                                double *y) {
-    int n = place_columns(p, place);
+enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dalcs_osnsp *p,
+                                     const double *resistance) {
+    *whole = (struct dalcs_whole){.p = p, .sigma = p->form[0]->sigma, .resistance = resistance};
+    size_t n_columns = (size_t)dalcs_system_n_columns(p->system);
     struct dalcs_triplets t = {0};
     struct dalcs_null_space space;
-    double *residual = dalcs_alloc((size_t)n, sizeof(*residual));
-    enum dalcs_status status = residual == NULL ? DALCS_E_NOMEM : fill(p, place, &t);
-    if (status == DALCS_OK && !chooses) {
-        const struct choices none = {0};
-        p->least_norm = false;
-        status = factor_and_refine(p, &t, n, &none, place, u, y, residual);
-    } else if (status == DALCS_OK) {
-        status = dalcs_null_space_find(&space, n, n, &t);
-        if (status == DALCS_OK) {
-            status = choose(p, &t, n, &space, place, u, y, residual);
-            dalcs_null_space_finish(&space);
-        }
+    whole->place = dalcs_arena_alloc(&whole->arena, n_columns, sizeof(int));
+    whole->residual = dalcs_arena_alloc(&whole->arena, n_columns, sizeof(double));
+    enum dalcs_status status =
+        whole->place == NULL || whole->residual == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    if (status == DALCS_OK) {
+        whole->n = place_columns(whole);
+        status = fill(whole, &t);
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_null_space_find(&space, whole->n, whole->n, &t);
+    }
+    if (status == DALCS_OK) {
+        status = choose(whole, &space);
+        dalcs_null_space_finish(&space);
+    }
+    if (status == DALCS_OK) {
+        status = factor(whole, &t);
     }
     dalcs_triplets_finish(&t);
-    free(residual);
+    if (status != DALCS_OK) {
+        dalcs_whole_finish(whole);
+    }
     return status;
 }
 
-/* Evaluates the answer of p->mode. DALCS_OK: it is certified. */
-static enum dalcs_status try_mode(struct dalcs_osnsp *p, int *place, bool chooses, const double *u,
-                                  double *y) {
-    bool sources_clash;
-    DALCS_TRY(answer(p, place, chooses, u, y));
-    dalcs_certificate_evaluate(p, u, y, &sources_clash);
-    return dalcs_certificate_holds(p, sources_clash) ? DALCS_OK : DALCS_NOT_CONVERGED;
+static long double row_times(const struct dalcs_csr *a, int row, const double *v) {
+    long double sum = 0.0L;
+    for (int k = a->p[row]; k < a->p[row + 1]; k++) {
+        sum += (long double)a->x[k] * v[a->j[k]];
+    }
+    return sum;
 }
 
-/* From p->mode on. */
-static enum dalcs_status pivot(struct dalcs_osnsp *p, int *place, const double *u, double *y) {
-    for (int round = 0; round < MOST_ROUNDS; round++) {
-        enum dalcs_status status = try_mode(p, place, false, u, y);
-        if (status == DALCS_SINGULAR || (status == DALCS_NOT_CONVERGED && p->n_violating == 0)) {
-            status = try_mode(p, place, true, u, y);
+/* What is missing at y: sigma P (x_k - x) + A y + E s, and t - (C y + F s) - R lambda of the pairs. */
+static void find_residual(const struct dalcs_whole *whole, const double *u, const double *line,
+                          const double *y) {
+    const struct dalcs_system *s = whole->p->system;
+    int n_equations = dalcs_system_n_equations(s);
+    for (int r = 0; r < n_equations; r++) {
+        long double sum = row_times(&s->A, r, y) + row_times(&s->E, r, u + s->n_x);
+        for (int k = r < s->n_x ? s->P.p[r] : 0; r < s->n_x && k < s->P.p[r + 1]; k++) {
+            int x = s->P.j[k];
+            sum += whole->sigma * (long double)s->P.x[k] * ((long double)u[x] - y[x]);
         }
-        if (status != DALCS_NOT_CONVERGED) {
-            return status == DALCS_SINGULAR ? DALCS_NOT_CONVERGED : status;
-        }
-        if (p->n_violating == 0) {
-            break;
-        }
-        dalcs_osnsp_flip_violating(p, round < ROUNDS_AT_ONCE);
-        p->counters.pivots++;
+        whole->residual[r] = (double)sum;
     }
-    return DALCS_NOT_CONVERGED;
+    for (int d = 0; d < s->n_pairs; d++) {
+        int row = whole->place[n_equations + d];
+        if (row >= 0) {
+            long double sum = row_times(&s->C, d, y) + row_times(&s->F, d, u + s->n_x);
+            if (whole->resistance != NULL) {
+                sum += (long double)whole->resistance[d] * y[n_equations + d] - line[d];
+            }
+            whole->residual[row] = (double)-sum;
+        }
+    }
 }
 
-enum dalcs_status dalcs_whole_solve(struct dalcs_osnsp *p, const double *u, double *y) {
-    int *place = dalcs_alloc((size_t)dalcs_system_n_columns(p->system), sizeof(*place));
-    if (place == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    enum dalcs_status status = DALCS_NOT_CONVERGED;
-    for (int rung = 0; rung < DALCS_N_WEIGHTS && status > DALCS_OK; rung++) {
-        bool mode_changed;
-        for (int d = 0; d < p->system->n_pairs; d++) {
-            if (p->is_diode[d]) { /* whatever was tried before */
-                dalcs_osnsp_command(p, d, false);
+/* The same of the choices, in the rows that they stand in for. */
+static void find_residual_of_choices(const struct dalcs_whole *whole, const double *u,
+                                     const double *y) {
+    const struct dalcs_system *s = whole->p->system;
+    int n_columns = dalcs_system_n_columns(s);
+    for (int k = 0; k < whole->n_choices; k++) {
+        const double *choice = whole->choice + (size_t)k * (size_t)n_columns;
+        const double *of_w = whole->choice_w + (size_t)k * (size_t)s->n_pairs;
+        long double sum = 0.0L;
+        for (int c = 0; c < n_columns; c++) {
+            sum += (long double)choice[c] * y[c];
+        }
+        for (int d = 0; d < s->n_pairs; d++) {
+            if (of_w[d] != 0.0) {
+                long double knee = (long double)dalcs_system_knee(s, d) * u[s->n_x];
+                sum += of_w[d] * (row_times(&s->F, d, u + s->n_x) - knee);
             }
         }
-        dalcs_proximal_begin(p, u);
-        status = dalcs_proximal_pivot(p, rung, &mode_changed);
-        p->keeps_states = true;
-        status = status == DALCS_OK ? pivot(p, place, u, y) : status;
-        p->keeps_states = false;
+        whole->residual[whole->redundant[k]] = (double)-sum;
     }
-    free(place);
-    return status;
+}
+
+void dalcs_whole_solve(const struct dalcs_whole *whole, const double *u, const double *line,
+                       double *y) {
+    int n_columns = dalcs_system_n_columns(whole->p->system);
+    memset(y, 0, (size_t)n_columns * sizeof(*y));
+    for (int round = 0; round <= REFINEMENTS; round++) {
+        find_residual(whole, u, line, y);
+        find_residual_of_choices(whole, u, y);
+        dalcs_lu_solve(&whole->lu, whole->residual);
+        for (int c = 0; c < n_columns; c++) {
+            y[c] += whole->place[c] >= 0 ? whole->residual[whole->place[c]] : 0.0;
+        }
+    }
+}
+
+size_t dalcs_whole_bytes(const struct dalcs_whole *whole) {
+    size_t n_columns = (size_t)dalcs_system_n_columns(whole->p->system);
+    size_t n_choices = (size_t)whole->n_choices;
+    return sizeof(*whole) + dalcs_lu_bytes(&whole->lu) +
+           n_columns * (sizeof(int) + (1 + 2 * n_choices) * sizeof(double));
+}
+
+void dalcs_whole_finish(struct dalcs_whole *whole) {
+    dalcs_lu_finish(&whole->lu);
+    dalcs_arena_finish(&whole->arena);
+    *whole = (struct dalcs_whole){0};
 }

@@ -1,0 +1,74 @@
+/* exact.c - the answer of one mode, singular or not, to all digits that it has. */
+#include "osnsp_internal.h"
+#include "whole.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Changes of the mode that are of all pairs with a wrong sign at once, before they are of one. */
+enum { ROUNDS_AT_ONCE = 10 };
+
+void dalcs_exact_evaluate(struct dalcs_osnsp *p, const struct dalcs_whole *whole, const double *u,
+                          double *y, bool *sources_clash) {
+    dalcs_whole_solve(whole, u, NULL, y);
+    p->keeps_states = true;
+    dalcs_certificate_evaluate(p, u, y, sources_clash);
+    p->keeps_states = false;
+    if (!dalcs_certificate_holds(p, *sources_clash)) {
+        dalcs_certificate_evaluate(p, u, y, sources_clash);
+    }
+}
+
+/* In p->mode. What a singular mode leaves open is found once, if it is certified. */
+static enum dalcs_status try_whole(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
+                                   const double *u, double *y, bool *sources_clash) {
+    if (entry->is_too_open) {
+        return DALCS_SINGULAR;
+    }
+    struct dalcs_whole *whole = malloc(sizeof(*whole));
+    enum dalcs_status status = whole == NULL ? DALCS_E_NOMEM : dalcs_whole_factor(whole, p, NULL);
+    if (status != DALCS_OK) {
+        entry->is_too_open = status == DALCS_SINGULAR;
+        free(whole);
+        return status;
+    }
+    dalcs_exact_evaluate(p, whole, u, y, sources_clash);
+    p->least_norm = whole->n_choices > 0;
+    if (entry->singular && dalcs_certificate_holds(p, *sources_clash)) {
+        entry->whole = whole;
+        dalcs_modes_grew(p, entry, dalcs_whole_bytes(whole));
+        return DALCS_OK;
+    }
+    dalcs_whole_finish(whole);
+    free(whole);
+    return DALCS_OK;
+}
+
+static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double *y,
+                                  bool *sources_clash) {
+    struct dalcs_mode_entry *entry;
+    DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &entry));
+    enum dalcs_status status = dalcs_osnsp_try_mode(p, u, y, sources_clash);
+    bool is_settled = status == DALCS_OK && (dalcs_certificate_holds(p, *sources_clash) ||
+                                             (p->n_violating > 0 && !entry->singular));
+    if (status < DALCS_OK || is_settled || entry->whole != NULL) {
+        return status;
+    }
+    return try_whole(p, entry, u, y, sources_clash);
+}
+
+enum dalcs_status dalcs_exact_pivot(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
+    for (int round = 0; round <= limit; round++) {
+        bool sources_clash;
+        DALCS_TRY(try_mode(p, u, y, &sources_clash));
+        if (dalcs_certificate_holds(p, sources_clash)) {
+            return DALCS_OK;
+        }
+        if (p->n_violating == 0) {
+            break;
+        }
+        dalcs_osnsp_flip_violating(p, round < ROUNDS_AT_ONCE);
+        p->counters.pivots++;
+    }
+    return DALCS_NOT_CONVERGED;
+}
