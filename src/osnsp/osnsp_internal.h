@@ -113,6 +113,12 @@ void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *e
 enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u, int rung,
                                        bool *mode_changed) DALCS_MUST_CHECK;
 
+/* The weights of a rung: eps/G of a closed pair and eps G of an open one, and of an unknown, in
+ * balanced units. */
+void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, int rung, double *on,
+                            double *off);
+double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p, int rung);
+
 /* 1/G of a pair on a rung, ohm: what eps is times of where it is closed. */
 double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair, int rung);
 
@@ -122,11 +128,18 @@ double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair);
 /* The least push of a centre, in balanced units, that a sign tells beside the largest unknown of p->scaled. */
 double dalcs_proximal_least_push(const struct dalcs_osnsp *p, int rung);
 
+/* ---- interior.c ---------------------------------------------------------------------------- */
+
+/* The same as dalcs_scattering_mode of monotone systems, in sparse factors and for any number of pairs, but near the
+ * mode rather than it. DALCS_SINGULAR: a factorisation failed, the mode is as it was. */
+enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p, int rung) DALCS_MUST_CHECK;
+
 /* ---- scattering.c -------------------------------------------------------------------------- */
 
 /* p->mode becomes that of the regularised problem around (centre, centre_w) with pairs weighted as in `rung` times
  * eps: all diodes are decided at once, from no mode in particular. DALCS_NOT_CONVERGED: one where the search ended;
- * DALCS_SINGULAR: there was none, and the mode is as it was. */
+ * DALCS_SINGULAR: there was none, or there are too many
+ * pairs, and the mode is as it was. */
 enum dalcs_status dalcs_scattering_mode(struct dalcs_osnsp *p, const double *u, int rung,
                                         double eps) DALCS_MUST_CHECK;
 

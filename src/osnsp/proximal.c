@@ -63,6 +63,16 @@ static double off_weight(const struct dalcs_osnsp *p, int pair, int rung) {
     return eps_of(p, rung) / ratio_of(p, pair, rung);
 }
 
+void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, int rung, double *on,
+                            double *off) {
+    *on = on_weight(p, pair, rung);
+    *off = off_weight(p, pair, rung);
+}
+
+double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p, int rung) {
+    return node_weight * eps_of(p, rung);
+}
+
 double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair, int rung) {
     const struct dalcs_step_form *f = p->form[0];
     return ratio_of(p, pair, rung) / (f->scale[f->n + pair] * f->row_scale[f->n + pair]);
@@ -204,7 +214,7 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, int rung, bool singly, boo
 
 /* One regularised problem around the centre, from p->mode. Its matrix is a P-matrix when the system is
  * monotone: it has one solution, and the least-index fallback ends it. Before that, where block
- * pivoting stalls, Lemke's method finds its mode. */
+ * pivoting stalls, Lemke's method finds its mode, of many pairs an interior-point method. */
 enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u, int rung,
                                        bool *mode_changed) {
     bool stalled;
@@ -214,6 +224,9 @@ enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u, i
         return DALCS_OK;
     }
     enum dalcs_status status = dalcs_scattering_mode(p, u, rung, eps_of(p, rung));
+    if (status == DALCS_SINGULAR) {
+        status = dalcs_interior_mode(p, rung);
+    }
     return status < DALCS_OK ? status : pivot(p, rung, true, mode_changed, &stalled);
 }
 

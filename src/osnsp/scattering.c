@@ -17,8 +17,9 @@
 /* Changes of the mode from one that is right but for rounding. */
 enum { MOST_CHANGES = 60 };
 
-/* Pairs up to which the tableau takes no more than 32 MiB. */
-enum { MOST_PAIRS = 1024 };
+/* Pairs up to which 2 n^3 operations of the tableau are no more than the some 40 sparse factorisations of the interior
+ * method, each of some 1000 operations a pair. */
+enum { MOST_PAIRS = 128 };
 
 struct scattering {
     struct dalcs_osnsp *p;

@@ -1,0 +1,338 @@
+/* interior.c - the mode of a regularised problem where pivoting gets nowhere: a primal-dual
+ * interior-point method (Wright, Primal-Dual Interior-Point Methods, 1997; predictor and corrector of
+ * Mehrotra, SIAM J. Optim. 2, 1992).
+ *
+ * With s1 = w + (eps/G) (lambda - lambda') and s2 = lambda + eps G (w - w') a pair is closed where
+ * s1 = 0 < s2 and open where s1 > 0 = s2. Newton's method follows the path s1 s2 = mu to mu = 0, on
+ * which all pairs decide together: a few tens of factorisations, however many pairs there are, where
+ * pivots one by one may be as many as modes. In a Newton step each diode is a resistor. */
+#include "osnsp_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Steps at most, and in a row with hardly a smaller mu: where s1 and s2 are both 0, rounding ends it. */
+enum { MOST_STEPS = 100, STUCK = 3 };
+
+static const double hardly_smaller = 0.9;
+
+/* A pair has decided when one of s1 and s2 is this much smaller than the other. */
+static const double decided = 1e-8;
+
+/* What is left of the equations by then, over their terms. */
+static const double equation_tolerance = 1e-8;
+
+/* Part of the way to the boundary that a step goes. */
+static const double boundary_part = 0.995;
+
+struct interior {
+    struct dalcs_osnsp *p;
+    int rung;
+    int n, n_pairs;
+    klu_symbolic *symbolic;
+    klu_numeric *kept;
+    int *start, *row;
+    double *value;
+    struct dalcs_lu lu;
+    double *on, *off;      /* [n_pairs] weights */
+    double *s1, *s2;       /* [n_pairs] */
+    double *d1, *d2;       /* [n_pairs] their steps */
+    double *rest1, *rest2; /* [n_pairs] what their definitions are off by */
+    double *a, *b;         /* [n_pairs] row of a pair: a w + b lambda */
+    double *y, *dy;        /* [n + n_pairs] balanced */
+    double *rest;          /* [n] of the equations */
+};
+
+static void finish(struct interior *m) {
+    dalcs_lu_finish(&m->lu);
+    dalcs_lu_drop(&m->kept, false, &m->p->klu);
+    if (m->symbolic != NULL) {
+        klu_free_symbolic(&m->symbolic, &m->p->klu);
+    }
+    free(m->start);
+    free(m->row);
+    free(m->value);
+    free(m->on);
+    free(m->y);
+}
+
+/* The pattern of K and its diagonal. */
+static void fill_pattern(struct interior *m) {
+    const struct dalcs_csr *K = &m->p->form[0]->K;
+    int out = 0;
+    for (int c = 0; c < m->n + m->n_pairs; c++) {
+        bool seen = false;
+        for (int k = K->p[c]; k < K->p[c + 1]; k++) {
+            seen = seen || K->j[k] == c;
+            m->row[out++] = K->j[k];
+        }
+        if (!seen) {
+            m->row[out++] = c;
+        }
+        m->start[c + 1] = out;
+    }
+}
+
+static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p, int rung) {
+    const struct dalcs_step_form *f = p->form[0];
+    *m = (struct interior){.p = p, .rung = rung, .n = f->n, .n_pairs = f->n_pairs};
+    size_t n_pairs = (size_t)f->n_pairs;
+    size_t order = (size_t)(f->n + f->n_pairs);
+    size_t capacity = (size_t)f->K.p[order] + order;
+    m->start = dalcs_alloc(order + 1, sizeof(*m->start));
+    m->row = dalcs_alloc(capacity, sizeof(*m->row));
+    m->value = dalcs_alloc(capacity, sizeof(*m->value));
+    m->on = dalcs_alloc(10 * n_pairs, sizeof(double));
+    m->y = dalcs_alloc(2 * order + (size_t)f->n, sizeof(double));
+    if (m->start == NULL || m->row == NULL || m->value == NULL || m->on == NULL || m->y == NULL) {
+        finish(m);
+        return DALCS_E_NOMEM;
+    }
+    double **part[] = {&m->off, &m->s1, &m->s2, &m->d1, &m->d2, &m->rest1, &m->rest2, &m->a, &m->b};
+    for (size_t k = 0; k < sizeof(part) / sizeof(*part); k++) {
+        *part[k] = m->on + (k + 1) * n_pairs;
+    }
+    m->dy = m->y + order;
+    m->rest = m->dy + order;
+    for (int d = 0; d < f->n_pairs; d++) {
+        dalcs_proximal_weights(p, d, rung, &m->on[d], &m->off[d]);
+    }
+    fill_pattern(m);
+    dalcs_lu_keep_diagonal(&p->klu, true);
+    enum dalcs_status status =
+        dalcs_lu_analyze(&m->symbolic, &p->klu, (int)order, m->start, m->row);
+    dalcs_lu_keep_diagonal(&p->klu, false);
+    if (status != DALCS_OK) {
+        finish(m);
+    }
+    return status;
+}
+
+static bool is_diode(const struct interior *m, int d) {
+    return m->p->is_diode[d];
+}
+
+/* Factors the equations with the rows a w + b lambda of the pairs. */
+static enum dalcs_status factor(struct interior *m) {
+    const struct dalcs_csr *K = &m->p->form[0]->K;
+    double unknown_weight = dalcs_proximal_unknown_weight(m->p, m->rung);
+    for (int c = 0; c < m->n + m->n_pairs; c++) {
+        double diagonal = c < m->n ? unknown_weight : m->b[c - m->n];
+        int out = m->start[c];
+        bool seen = false;
+        for (int k = K->p[c]; k < K->p[c + 1]; k++) {
+            int r = K->j[k];
+            double x = K->x[k] * (r < m->n ? 1.0 : m->a[r - m->n]);
+            seen = seen || r == c;
+            m->value[out++] = r == c ? x + diagonal : x;
+        }
+        if (!seen) {
+            m->value[out] = diagonal;
+        }
+    }
+    dalcs_lu_finish(&m->lu);
+    m->p->counters.factorizations++;
+    return dalcs_lu_factor_analyzed(&m->lu, &m->p->klu, m->symbolic, &m->kept, false, m->start,
+                                    m->row, m->value, 0.0);
+}
+
+static double voltage_of(const struct interior *m, int d, const double *y) {
+    const struct dalcs_csr *W = &m->p->form[0]->W;
+    double w = 0.0;
+    for (int k = W->p[d]; k < W->p[d + 1]; k++) {
+        w += W->x[k] * y[W->j[k]];
+    }
+    return w;
+}
+
+/* What the equations and the definitions of s1 and s2 are off by; the largest over its terms. */
+static double find_rests(struct interior *m) {
+    const struct dalcs_osnsp *p = m->p;
+    const struct dalcs_csr *K = &p->form[0]->K;
+    double unknown_weight = dalcs_proximal_unknown_weight(p, m->rung);
+    double size = 0.0;
+    double worst = 0.0;
+    for (int i = 0; i < m->n; i++) {
+        m->rest[i] = p->right[i] + unknown_weight * (p->centre[i] - m->y[i]);
+        size = fmax(size, fabs(p->right[i]));
+    }
+    for (int c = 0; c < m->n + m->n_pairs; c++) {
+        for (int k = K->p[c]; k < K->p[c + 1]; k++) {
+            if (K->j[k] < m->n) {
+                m->rest[K->j[k]] -= K->x[k] * m->y[c];
+                size = fmax(size, fabs(K->x[k] * m->y[c]));
+            }
+        }
+    }
+    for (int i = 0; i < m->n; i++) {
+        worst = fmax(worst, fabs(m->rest[i]));
+    }
+    for (int d = 0; d < m->n_pairs; d++) {
+        double w = voltage_of(m, d, m->y) - p->right[m->n + d];
+        double lambda = m->y[m->n + d];
+        m->rest1[d] = w + m->on[d] * (lambda - p->centre[m->n + d]) - m->s1[d];
+        m->rest2[d] = lambda + m->off[d] * (w - p->centre_w[d]) - m->s2[d];
+        if (is_diode(m, d)) {
+            worst = fmax(worst, fmax(fabs(m->rest1[d]), fabs(m->rest2[d])));
+            size = fmax(size, fmax(m->s1[d], m->s2[d]));
+        }
+    }
+    return size > 0.0 ? worst / size : 0.0;
+}
+
+/* The step that takes each product s1 s2 to mu less the product of the steps at hand, if those
+ * count, into dy, d1 and d2. */
+static void find_step(struct interior *m, double mu, bool corrects) {
+    memcpy(m->dy, m->rest, (size_t)m->n * sizeof(double));
+    for (int d = 0; d < m->n_pairs; d++) {
+        double *right = &m->dy[m->n + d];
+        if (!is_diode(m, d)) {
+            *right = dalcs_osnsp_is_on(m->p, d) ? -m->rest1[d] : -m->rest2[d];
+            continue;
+        }
+        double s1 = m->s1[d];
+        double s2 = m->s2[d];
+        double product = mu - s1 * s2 - (corrects ? m->d1[d] * m->d2[d] : 0.0);
+        *right = (product - s2 * m->rest1[d] - s1 * m->rest2[d]) / (s1 + s2);
+    }
+    dalcs_lu_solve(&m->lu, m->dy);
+    for (int d = 0; d < m->n_pairs; d++) {
+        double dw = voltage_of(m, d, m->dy);
+        double dlambda = m->dy[m->n + d];
+        m->d1[d] = dw + m->on[d] * dlambda + m->rest1[d];
+        m->d2[d] = dlambda + m->off[d] * dw + m->rest2[d];
+    }
+}
+
+static void set_rows(struct interior *m) {
+    for (int d = 0; d < m->n_pairs; d++) {
+        if (is_diode(m, d)) {
+            double sum = m->s1[d] + m->s2[d];
+            m->a[d] = (m->s2[d] + m->s1[d] * m->off[d]) / sum;
+            m->b[d] = (m->s1[d] + m->s2[d] * m->on[d]) / sum;
+        } else {
+            bool is_on = dalcs_osnsp_is_on(m->p, d);
+            m->a[d] = is_on ? 1.0 : m->off[d];
+            m->b[d] = is_on ? m->on[d] : 1.0;
+        }
+    }
+}
+
+/* The longest step, up to 1, that leaves all s1 and s2 positive. */
+static double longest_step(const struct interior *m) {
+    double longest = INFINITY;
+    for (int d = 0; d < m->n_pairs; d++) {
+        if (is_diode(m, d)) {
+            longest = m->d1[d] < 0.0 ? fmin(longest, -m->s1[d] / m->d1[d]) : longest;
+            longest = m->d2[d] < 0.0 ? fmin(longest, -m->s2[d] / m->d2[d]) : longest;
+        }
+    }
+    return fmin(1.0, boundary_part * longest);
+}
+
+/* The mean of s1 s2 after a part of the step at hand. */
+static double mean_product(const struct interior *m, double part) {
+    double sum = 0.0;
+    int n = 0;
+    for (int d = 0; d < m->n_pairs; d++) {
+        if (is_diode(m, d)) {
+            sum += (m->s1[d] + part * m->d1[d]) * (m->s2[d] + part * m->d2[d]);
+            n++;
+        }
+    }
+    return n > 0 ? sum / n : 0.0;
+}
+
+/* Every diode a resistor first; from there s1 and s2 are shifted well inside (Mehrotra). */
+static enum dalcs_status find_start(struct interior *m) {
+    for (int d = 0; d < m->n_pairs; d++) {
+        m->s1[d] = 1.0;
+        m->s2[d] = 1.0;
+    }
+    (void)find_rests(m);
+    for (int d = 0; d < m->n_pairs; d++) {
+        m->rest1[d] += is_diode(m, d) ? 1.0 : 0.0;
+        m->rest2[d] += is_diode(m, d) ? 1.0 : 0.0;
+        m->s1[d] = is_diode(m, d) ? 0.5 : 0.0;
+        m->s2[d] = is_diode(m, d) ? 0.5 : 0.0;
+    }
+    set_rows(m);
+    DALCS_TRY(factor(m));
+    find_step(m, 0.25, false);
+    double least1 = 0.0, least2 = 0.0, sum1 = 0.0, sum2 = 0.0, product = 0.0;
+    for (int i = 0; i < m->n + m->n_pairs; i++) {
+        m->y[i] += m->dy[i];
+    }
+    for (int d = 0; d < m->n_pairs; d++) {
+        least1 = fmin(least1, m->d1[d]);
+        least2 = fmin(least2, m->d2[d]);
+    }
+    for (int d = 0; d < m->n_pairs; d++) {
+        m->s1[d] = m->d1[d] - 1.5 * least1;
+        m->s2[d] = m->d2[d] - 1.5 * least2;
+        sum1 += m->s1[d];
+        sum2 += m->s2[d];
+        product += m->s1[d] * m->s2[d];
+    }
+    double shift1 = sum2 > 0.0 ? 0.5 * product / sum2 : 0.0;
+    double shift2 = sum1 > 0.0 ? 0.5 * product / sum1 : 0.0;
+    for (int d = 0; d < m->n_pairs; d++) {
+        m->s1[d] += shift1 > 0.0 ? shift1 : 1.0;
+        m->s2[d] += shift2 > 0.0 ? shift2 : 1.0;
+    }
+    return DALCS_OK;
+}
+
+static bool all_decided(const struct interior *m) {
+    bool all = true;
+    for (int d = 0; d < m->n_pairs && all; d++) {
+        all = !is_diode(m, d) || fmin(m->s1[d], m->s2[d]) < decided * fmax(m->s1[d], m->s2[d]);
+    }
+    return all;
+}
+
+static enum dalcs_status follow_path(struct interior *m) {
+    DALCS_TRY(find_start(m));
+    memset(m->d1, 0, (size_t)m->n_pairs * sizeof(double));
+    memset(m->d2, 0, (size_t)m->n_pairs * sizeof(double));
+    double mu = mean_product(m, 0.0);
+    int stuck = 0;
+    for (int step = 0; step < MOST_STEPS && mu > 0.0 && stuck < STUCK; step++) {
+        if (find_rests(m) <= equation_tolerance && all_decided(m)) {
+            break;
+        }
+        set_rows(m);
+        DALCS_TRY(factor(m));
+        find_step(m, 0.0, false);
+        double after = mean_product(m, longest_step(m));
+        find_step(m, mu * pow(fmax(after, 0.0) / mu, 3.0), true);
+        double part = longest_step(m);
+        for (int i = 0; i < m->n + m->n_pairs; i++) {
+            m->y[i] += part * m->dy[i];
+        }
+        for (int d = 0; d < m->n_pairs; d++) {
+            m->s1[d] += part * m->d1[d];
+            m->s2[d] += part * m->d2[d];
+            m->d1[d] = 0.0;
+            m->d2[d] = 0.0;
+        }
+        double before = mu;
+        mu = mean_product(m, 0.0);
+        stuck = mu > hardly_smaller * before ? stuck + 1 : 0;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p, int rung) {
+    struct interior m;
+    DALCS_TRY(setup(&m, p, rung));
+    enum dalcs_status status = follow_path(&m);
+    for (int d = 0; d < m.n_pairs && status == DALCS_OK; d++) {
+        if (is_diode(&m, d)) {
+            dalcs_osnsp_command(p, d, m.s2[d] > m.s1[d]);
+        }
+    }
+    finish(&m);
+    return status;
+}
