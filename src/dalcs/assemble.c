@@ -63,8 +63,7 @@ static enum dalcs_status stamp_current_controls(struct stamps *b, int n_devices,
             DALCS_TRY(dalcs_stamp_reads_column(b, device[i], l->current_column[d->control]));
             DALCS_TRY(dalcs_stamp_branch_current(b, d, l->current_column[d->control], d->value));
         } else if (d->kind == DALCS_CCVS) {
-            DALCS_TRY(
-                dalcs_stamp_reads(b, device[i], l->branch_row[device[i]],
+            DALCS_TRY(dalcs_stamp_reads(b, device[i], l->branch_row[device[i]],
                                         l->current_column[d->control]));
             DALCS_TRY(dalcs_stamp_add(&b->A, l->branch_row[device[i]],
                                       l->current_column[d->control], -d->value));

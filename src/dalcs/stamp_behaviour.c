@@ -96,8 +96,8 @@ static enum dalcs_status stamp_affine(struct stamps *b, int device, const struct
             DALCS_TRY(stamp_current(b, t, term->index, coefficient));
             break;
         case DALCS_QUANTITY_PAIR:
-            DALCS_TRY(stamp_column(b, t, s->n_x + s->n_z + l->pair[device] + term->index,
-                                   coefficient));
+            DALCS_TRY(
+                stamp_column(b, t, s->n_x + s->n_z + l->pair[device] + term->index, coefficient));
             break;
         default:
             input = b->next_input++;
@@ -117,8 +117,7 @@ enum dalcs_status dalcs_stamp_behaviour(struct stamps *b, int device) {
     DALCS_TRY(stamp_affine(b, device, &t, &behaviour->output));
     for (int k = 0; k < behaviour->n_pairs; k++) {
         int pair = b->layout->pair[device] + k;
-        t = (struct target){
-            &b->C, &b->F, pair, device, dalcs_system_n_equations(b->s) + pair, 1.0};
+        t = (struct target){&b->C, &b->F, pair, device, dalcs_system_n_equations(b->s) + pair, 1.0};
         DALCS_TRY(stamp_affine(b, device, &t, &behaviour->w[k]));
     }
     return DALCS_OK;

@@ -69,11 +69,12 @@ struct dalcs_system {
     struct dalcs_csr direct_control; /* [n_pairs][n_inputs] the same as a sum of sources, where V
                                         sources alone fix it */
 
-    struct dalcs_csr reads; /* [n_equations + n_pairs][n_columns] entries of A and C that are not 0 by which a
+    struct dalcs_csr
+        reads; /* [n_equations + n_pairs][n_columns] entries of A and C that are not 0 by which a
                                controlled source, a formula or a negative resistor reads a column;
                                what is left of the rows is of a passive circuit. Empty (p is NULL)
                                where that is not known, as of a system file. The values have no meaning */
-    const char **reader;    /* [entries of reads] the element */
+    const char **reader; /* [entries of reads] the element */
 
     /* dual[row] is the column that a row is paired with, so that with rows in this order the matrix
      * of (sigma P - A, C) has a positive semidefinite symmetric part when the circuit is passive:

@@ -6,7 +6,8 @@
 
 /* One block: columns, rows and pairs ascend as they do in the whole system. */
 struct dalcs_block {
-    struct dalcs_system system; /* its inputs are those of the whole, then the columns that it reads */
+    struct dalcs_system
+        system; /* its inputs are those of the whole, then the columns that it reads */
     struct dalcs_osnsp osnsp;
     int *column; /* [n_columns] of the whole system */
     int *row;    /* [n_equations] */
@@ -26,7 +27,8 @@ struct extraction {
     const int *block_of; /* [n_columns] */
     int number;
     struct dalcs_block *to;
-    int *place; /* [n_columns] column of the block; of others the input by which they are read, -1: none yet */
+    int *
+        place; /* [n_columns] column of the block; of others the input by which they are read, -1: none yet */
 };
 
 static int row_block(const struct extraction *e, int row) {
@@ -329,7 +331,8 @@ static void add_counters(struct dalcs_osnsp *p, const struct dalcs_osnsp_counter
 static void take_witness(struct dalcs_osnsp *p, const struct dalcs_block *b) {
     const struct dalcs_witness *from = &b->osnsp.witness;
     dalcs_witness_copy(p, from);
-    p->witness.has_ray = from->has_ray && b->n_read == 0; /* else what it reads does work along it, too */
+    p->witness.has_ray =
+        from->has_ray && b->n_read == 0; /* else what it reads does work along it, too */
     memset(p->witness.ray, 0, (size_t)dalcs_system_n_columns(p->system) * sizeof(double));
     for (int c = 0; c < dalcs_system_n_columns(&b->system); c++) {
         p->witness.ray[b->column[c]] = from->ray[c];
@@ -358,7 +361,7 @@ static enum dalcs_status solve_all(struct dalcs_osnsp *p, double sigma, const do
 }
 
 enum dalcs_status dalcs_in_order_solve(struct dalcs_osnsp *p, double sigma, const double *u,
-                                     double *y) {
+                                       double *y) {
     bool sources_clash;
     DALCS_TRY(solve_all(p, sigma, u, y));
     p->keeps_states = true; /* blocks may have solved for them, which condensing would undo */

@@ -16,7 +16,7 @@ enum dalcs_status dalcs_in_order_build(struct dalcs_osnsp *p) DALCS_MUST_CHECK;
 /* As dalcs_osnsp_solve(), from the sides in p->mode. DALCS_INFEASIBLE: the first block without an answer has
  * left its witness in p->witness. */
 enum dalcs_status dalcs_in_order_solve(struct dalcs_osnsp *p, double sigma, const double *u,
-                                     double *y) DALCS_MUST_CHECK;
+                                       double *y) DALCS_MUST_CHECK;
 
 void dalcs_in_order_finish(struct dalcs_osnsp *p);
 

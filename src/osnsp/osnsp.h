@@ -67,7 +67,8 @@ struct dalcs_osnsp {
     const struct dalcs_system *system;
     struct dalcs_osnsp_options options;
     struct dalcs_partition partition;
-    struct dalcs_ordered_blocks *blocks; /* of this partition; NULL: not asked for yet, or there is one block */
+    struct dalcs_ordered_blocks
+        *blocks; /* of this partition; NULL: not asked for yet, or there is one block */
     klu_common klu;
     int n_words;
     uint64_t *mode; /* [n_words] bit d: w_d = 0 */

@@ -6,11 +6,12 @@
 /* Tarjan's search without recursion: a line of a thousand sections is a path as deep. */
 struct search {
     const struct dalcs_system *s;
-    int *row_of;             /* [n_columns] the row that a column is paired with; equations, then pairs */
-    int n_seen;              /* columns numbered so far */
-    int *number, *low;       /* [n_columns] 0: not seen; the lowest number that can be reached */
-    int *stack, n_stack;     /* [n_columns] columns whose part is not known yet */
-    int *path, *next, depth; /* [n_columns] the way to where the search stands, and its next entries */
+    int *row_of;       /* [n_columns] the row that a column is paired with; equations, then pairs */
+    int n_seen;        /* columns numbered so far */
+    int *number, *low; /* [n_columns] 0: not seen; the lowest number that can be reached */
+    int *stack, n_stack; /* [n_columns] columns whose part is not known yet */
+    int *path, *next,
+        depth; /* [n_columns] the way to where the search stands, and its next entries */
     int n_parts;
     int *part_of; /* [n_columns] -1: not known yet */
     int *order;   /* [n_columns] part by part */
@@ -77,7 +78,8 @@ static enum dalcs_status find_parts(struct search *t, struct dalcs_arena *work) 
     const struct dalcs_system *s = t->s;
     size_t n = (size_t)dalcs_system_n_columns(s);
     int n_equations = dalcs_system_n_equations(s);
-    int **list[] = {&t->row_of, &t->number, &t->low, &t->stack, &t->path, &t->next, &t->part_of, &t->order};
+    int **list[] = {&t->row_of, &t->number, &t->low,     &t->stack,
+                    &t->path,   &t->next,   &t->part_of, &t->order};
     for (size_t k = 0; k < sizeof(list) / sizeof(*list); k++) {
         *list[k] = dalcs_arena_alloc(work, n, sizeof(int));
         if (*list[k] == NULL) {
@@ -106,7 +108,7 @@ struct part {
     bool reads_itself; /* something in it reads something in it */
     bool is_driven;    /* a row of it reads, or holds a column of such a part */
     bool has_state;
-    bool is_dominant;  /* of pairs alone: they dominate the symmetric part of D */
+    bool is_dominant; /* of pairs alone: they dominate the symmetric part of D */
     int block;
 };
 
@@ -150,7 +152,8 @@ static void find_dominant(const struct search *t, double *margin, struct part *p
             int other = s->C.j[k] - n_equations;
             if (other == d) {
                 margin[d] += s->C.x[k];
-            } else if (other >= 0 && t->part_of[n_equations + other] == t->part_of[n_equations + d]) {
+            } else if (other >= 0 &&
+                       t->part_of[n_equations + other] == t->part_of[n_equations + d]) {
                 double back = coefficient_of(&s->C, other, n_equations + d);
                 double half = 0.5 * fabs(s->C.x[k] + back);
                 margin[d] -= half;

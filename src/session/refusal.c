@@ -372,7 +372,7 @@ static const char *explain_modes(const struct dalcs_refusal *r) {
     const char *format =
         !r->is_certain && !has_modes(r) ? "the best answer that was tried fits worst at %s"
         : !r->is_certain ? "no combination of conducting and blocking that was tried fits %s"
-        : !has_modes(r) ? "the equations contradict each other, most at %s"
+        : !has_modes(r)  ? "the equations contradict each other, most at %s"
         : named.n == 1 && is_formula ? "%s fits no piece of its formula"
         : named.n == 1               ? "%s fits neither conducting nor blocking"
                                      : "no combination of conducting and blocking fits %s";

@@ -238,4 +238,5 @@ START_TEST(test_far_apart) {
 END_TEST
 
 RUN_TESTS("jumps", test_charge, test_resistance, test_source, test_breakdown, test_flux,
-          test_switch, test_coupling, test_transformer, test_readers, test_not_covered, test_far_apart)
+          test_switch, test_coupling, test_transformer, test_readers, test_not_covered,
+          test_far_apart)
