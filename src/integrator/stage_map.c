@@ -2,6 +2,7 @@
  * of the few solutions that the workshop has for unit states and unit inputs. */
 #include "dense_map.h"
 #include "extremes.h"
+#include "partition.h"
 #include "stage_workshop.h"
 #include "wide_vectors.h"
 
@@ -61,20 +62,6 @@ DALCS_TWICE(void, find_guards,
     }
 }
 
-/* What readers make of a null vector does not count where a diode before them has something of it (partition.h). */
-static void forget_readers(const struct dalcs_stage_workshop *b, double *guards) {
-    const int *block = b->stages->block_of;
-    const int *of = block != NULL ? block + dalcs_system_n_equations(b->system) : NULL;
-    int first = -1;
-    for (int d = 0; of != NULL && d < b->system->n_pairs; d++) {
-        bool is_first = guards[d] != 0.0 && (first < 0 || of[d] < first);
-        first = is_first ? of[d] : first;
-    }
-    for (int d = 0; of != NULL && d < b->system->n_pairs; d++) {
-        guards[d] = of[d] == first ? guards[d] : 0.0;
-    }
-}
-
 /* The guards of the null vectors, each over its largest entry, which become unscaled. */
 static void find_null_guards(struct dalcs_stage_workshop *b, double *guards) {
     int n_pairs = b->system->n_pairs;
@@ -97,7 +84,7 @@ static void find_null_guards(struct dalcs_stage_workshop *b, double *guards) {
             double guard = b->guard[d * DALCS_LANES];
             guards[k * n_pairs + d] = fabs(guard) > null_rounding ? guard : 0.0;
         }
-        forget_readers(b, guards + k * n_pairs);
+        dalcs_partition_keep_first(b->stages->block_of, b->system, guards + k * n_pairs);
     }
 }
 

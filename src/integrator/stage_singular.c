@@ -8,6 +8,7 @@
 #include "stage_singular.h"
 
 #include "null_space.h"
+#include "partition.h"
 #include "stages_internal.h"
 
 #include <limits.h>
@@ -152,20 +153,6 @@ static int block_of(const struct search *s, int column) {
     return block[column < n_z ? s->system->n_x + column : n_equations + s->entry->on[column - n_z]];
 }
 
-/* What readers make of a solution does not count where something of it is before them. */
-static void forget_readers(const struct search *s) {
-    const int *block = s->plan->stages->block_of;
-    const int *of = block != NULL ? block + dalcs_system_n_equations(s->system) : NULL;
-    int first = -1;
-    for (int d = 0; of != NULL && d < s->system->n_pairs; d++) {
-        bool is_first = s->of_pair[d] != 0.0 && (first < 0 || of[d] < first);
-        first = is_first ? of[d] : first;
-    }
-    for (int d = 0; of != NULL && d < s->system->n_pairs; d++) {
-        s->of_pair[d] = of[d] == first ? s->of_pair[d] : 0.0;
-    }
-}
-
 /* Makes the traces orthogonal (Gram and Schmidt, twice), and those that vanish empty. */
 static enum dalcs_status find_traces(struct search *s) {
     int n_pairs = s->system->n_pairs;
@@ -175,7 +162,7 @@ static enum dalcs_status find_traces(struct search *s) {
             bool is_diode = s->system->pair[d].kind == DALCS_PAIR_DIODE;
             s->of_pair[d] = is_diode ? other_side(s, d, vector) : 0.0;
         }
-        forget_readers(s);
+        dalcs_partition_keep_first(s->plan->stages->block_of, s->system, s->of_pair);
         double before = norm_of(s->of_pair, n_pairs);
         for (int i = 0; i < 2 * k; i++) {
             const struct trace *other = &s->trace[i % k];

@@ -23,6 +23,10 @@ struct dalcs_partition {
 enum dalcs_status dalcs_partition_find(struct dalcs_partition *p,
                                        const struct dalcs_system *s) DALCS_MUST_CHECK;
 
+/* Of an open quantity, value[n_pairs] is what it is in pairs: what readers make of it, in later blocks than the first in
+ * which it is anything, becomes 0. block_of[n_columns]; NULL: there is one block. */
+void dalcs_partition_keep_first(const int *block_of, const struct dalcs_system *s, double *value);
+
 void dalcs_partition_finish(struct dalcs_partition *p);
 
 #endif
