@@ -55,6 +55,17 @@ static inline bool dalcs_pair_remembers(const struct dalcs_pair *p) {
     return p->turn_off < p->turn_on;
 }
 
+/* Is a switch that stood there closed at this control? Without hysteresis it is above its threshold alone, with it
+ * between both as it was. slack: what the control may be off by. */
+static inline bool dalcs_pair_closes(const struct dalcs_pair *p, bool is_on, double control,
+                                     double slack) {
+    if (!is_on) {
+        return control > p->turn_on + slack;
+    }
+    return dalcs_pair_remembers(p) ? !(control < p->turn_off - slack)
+                                   : control > p->turn_off - slack;
+}
+
 struct dalcs_system {
     int n_x, n_z, n_pairs, n_inputs;
     struct dalcs_csr P;       /* [n_x][n_x], nonsingular */

@@ -123,7 +123,7 @@ void dalcs_component_sample_operating(const struct dalcs_component *c, bool tran
     }
 }
 
-/* Moves the switches that sources alone control. Without hysteresis they are on above Vt alone. */
+/* Moves the switches that sources alone control. */
 static void obey_sources(struct dalcs_component *c, const double *inputs) {
     const struct dalcs_system *s = c->system;
     for (int i = 0; i < c->n_switches; i++) {
@@ -134,8 +134,7 @@ static void obey_sources(struct dalcs_component *c, const double *inputs) {
         }
         double control = dalcs_csr_row_dot(&s->direct_control, d, inputs);
         bool is_on = dalcs_osnsp_is_on(&c->osnsp, d);
-        bool stays = is_on && dalcs_pair_remembers(pair);
-        bool wants = stays ? !(control < pair->turn_off) : control > pair->turn_on;
+        bool wants = dalcs_pair_closes(pair, is_on, control, 0.0);
         if (wants != is_on) {
             dalcs_osnsp_command(&c->osnsp, d, wants);
             c->commanded = true;

@@ -47,21 +47,16 @@ void dalcs_positions_finish(struct dalcs_positions *p) {
     *p = (struct dalcs_positions){0};
 }
 
-/* Does the answer y move the i-th switch? One without hysteresis is on above its threshold alone, one with hysteresis
- * stands as it is between both. */
+/* Does the answer y move the i-th switch? */
 static bool wants_to_move(const struct dalcs_positions *p, int i, const double *y) {
     const struct dalcs_system *s = p->osnsp->system;
     const struct dalcs_pair *pair = &s->pair[p->pair[i]];
-    bool remembers = dalcs_pair_remembers(pair);
-    if (remembers && p->keeps) {
+    if (dalcs_pair_remembers(pair) && p->keeps) {
         return false;
     }
     double control = dalcs_csr_row_dot(&s->control, p->pair[i], y);
-    if (!dalcs_osnsp_is_on(p->osnsp, p->pair[i])) {
-        return control > pair->turn_on + p->slack[i];
-    }
-    return remembers ? control < pair->turn_off - p->slack[i]
-                     : !(control > pair->turn_off - p->slack[i]);
+    bool is_on = dalcs_osnsp_is_on(p->osnsp, p->pair[i]);
+    return dalcs_pair_closes(pair, is_on, control, p->slack[i]) != is_on;
 }
 
 static void flip(struct dalcs_positions *p, int i) {

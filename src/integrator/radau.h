@@ -107,8 +107,8 @@ struct dalcs_radau_part {
 
     double unit_scale[2]; /* V, A: the largest of each */
     double cross[2]; /* V per A, A per V: how far the scale of one unit vouches for the other */
-    double
-        leak; /* A per V, what rounding of conductances that meet makes of nothing between them and ground */
+    /* A per V, what rounding of conductances that meet makes of nothing between them and ground. */
+    double leak;
     bool *armed;   /* [n_pairs + n_watched] was clear of 0, so that a fall is an event */
     double *bound; /* [n_pairs + n_watched] in whole quads: none is below it in the present step */
     bool

@@ -56,8 +56,10 @@ enum dalcs_status dalcs_radau_implicit_step(struct dalcs_radau *r, struct dalcs_
                                             double h, double tau, const double *state,
                                             double *y) DALCS_MUST_CHECK;
 
-/* part->out is the present segment, of length h, by steps of implicit Euler. */
-void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_part *part, double h);
+/* part->y1 at the end of a step of implicit Euler of length h becomes the present segment, along which states go
+ * straight; all columns do, from before[n_columns], if that is not NULL. */
+void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                              const double *before);
 
 /* Calls on_open for the segments that have just begun in a mode that leaves something open. */
 enum dalcs_status dalcs_radau_tell_open(struct dalcs_radau *r) DALCS_MUST_CHECK;

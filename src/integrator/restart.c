@@ -441,29 +441,33 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     return DALCS_OK;
 }
 
-/* part->y1 at the end of a step of implicit Euler as the present segment, along which states go straight. */
-static void fill_out(struct dalcs_radau_part *part) {
-    const struct dalcs_system *s = part->component->system;
+static void fill_out(struct dalcs_radau_part *part, const double *before) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    int n_equations = dalcs_system_n_equations(s);
+    int n_columns = dalcs_system_n_columns(p->system);
+    int n_equations = dalcs_system_n_equations(p->system);
+    double *end = part->out + (l->n_nodes - 1) * l->stride;
+    memcpy(end, part->y1, (size_t)n_columns * sizeof(double));
+    for (int d = 0; d < p->system->n_pairs; d++) {
+        end[n_equations + d] += dalcs_osnsp_is_on(p, d) ? 0.0 : p->w[d];
+    }
     for (int k = 0; k < l->n_nodes; k++) {
         double *out = part->out + k * l->stride;
-        memcpy(out, part->y1, (size_t)dalcs_system_n_columns(s) * sizeof(double));
-        for (int x = 0; x < s->n_x; x++) {
-            out[x] = part->x[x] + part->stages.method->node[k] * (part->y1[x] - part->x[x]);
-        }
-        for (int d = 0; d < s->n_pairs; d++) {
-            out[n_equations + d] += part->component->osnsp.w[d];
+        double at = part->stages.method->node[k];
+        for (int c = 0; c < n_columns; c++) {
+            double start = c < p->system->n_x ? part->x[c] : before != NULL ? before[c] : end[c];
+            out[c] = k + 1 < l->n_nodes ? start + at * (end[c] - start) : end[c];
         }
         for (int i = 0; i < part->stages.n_watched; i++) {
-            out[dalcs_system_n_columns(s) + i] = 0.0;
+            out[n_columns + i] = 0.0;
         }
     }
 }
 
-void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_part *part,
-                              double h) {
+void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                              const double *before) {
     double limit = dalcs_radau_limit(r, part);
+    fill_out(part, before);
     part->by_euler = true;
     part->h = h;
     part->end = 1.0;
@@ -488,13 +492,12 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
         DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->y1));
     }
     c->delayed_commands += c->positions.settled ? 0 : 1; /* the present command stands */
-    fill_out(part);
     if (r->base->energy != NULL) {
         dalcs_energy_scale(r->base->energy, part->index, &c->osnsp.certificate);
         dalcs_energy_step(r->base->energy, part->index, part->x, part->y1, part->u + c->system->n_x,
                           h);
     }
-    dalcs_radau_accept_euler(r, part, h);
+    dalcs_radau_accept_euler(r, part, h, NULL);
     r->euler_steps++;
     return DALCS_OK;
 }

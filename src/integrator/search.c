@@ -78,6 +78,12 @@ enum dalcs_status dalcs_search_ask(struct dalcs_radau *r, struct dalcs_radau_par
     return go_on_from_answer(r, part, search, is_off);
 }
 
+/* s: a step along a threshold, or between two sides of a switch with ripple in proportion. */
+static double slide_length(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    double fixed = r->options.fixed_step;
+    return ldexp(fixed > 0.0 ? fixed : part->longest, -SLIDING);
+}
+
 enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double limit, int level, double most) {
     double fixed = r->options.fixed_step;
@@ -90,7 +96,7 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
         h = fmax(h, fmin(2.0 * part->fell_back, ldexp(part->longest, -FALL_BACK)));
     }
     if (part->slides) { /* between two sides of a switch */
-        h = fmin(h, ldexp(fixed > 0.0 ? fixed : part->longest, -SLIDING));
+        h = fmin(h, slide_length(r, part));
         part->slides = false;
     }
     part->tries++;
@@ -100,8 +106,7 @@ enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_rad
 
 enum dalcs_status dalcs_search_slide_on(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                         double limit, bool *slides) {
-    double fixed = r->options.fixed_step;
-    double h = fmax(ldexp(fixed > 0.0 ? fixed : part->longest, -SLIDING), 64.0 * r->resolution);
+    double h = fmax(slide_length(r, part), 64.0 * r->resolution);
     return dalcs_slide_step(r, part, fmin(h, limit - part->t), slides);
 }
 

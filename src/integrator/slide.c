@@ -71,33 +71,6 @@ static enum dalcs_status three_steps(struct dalcs_radau *r, struct dalcs_radau_p
     return DALCS_OK;
 }
 
-/* All columns go straight from where they were, if the segment before was one along the same threshold; if not, states
- * do. What both sides differ in has a current. */
-static void fill_out(struct dalcs_radau_part *part, bool goes_on) {
-    const struct dalcs_component *c = part->component;
-    const struct dalcs_system *s = c->system;
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    int n_columns = dalcs_system_n_columns(s);
-    int n_equations = dalcs_system_n_equations(s);
-    double *end = part->out + (l->n_nodes - 1) * l->stride;
-    const double *before = part->out_before + (l->n_nodes - 1) * l->stride;
-    memcpy(end, part->y1, (size_t)n_columns * sizeof(double));
-    for (int d = 0; d < s->n_pairs; d++) {
-        end[n_equations + d] += dalcs_osnsp_is_on(&c->osnsp, d) ? 0.0 : c->osnsp.w[d];
-    }
-    for (int k = 0; k < l->n_nodes; k++) {
-        double *out = part->out + k * l->stride;
-        double at = part->stages.method->node[k];
-        for (int col = 0; col < n_columns; col++) {
-            double start = col < s->n_x ? part->x[col] : goes_on ? before[col] : end[col];
-            out[col] = k + 1 < l->n_nodes ? start + at * (end[col] - start) : end[col];
-        }
-        for (int i = 0; i < part->stages.n_watched; i++) {
-            out[n_columns + i] = 0.0;
-        }
-    }
-}
-
 enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
                                    bool *slides) {
     struct dalcs_component *c = part->component;
@@ -118,11 +91,13 @@ enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_par
     }
     c->slid_steps++;
     bool is_same = dalcs_sliding_join(&c->positions);
-    fill_out(part, is_same && part->by_euler && part->why == DALCS_END_OF_STEP);
+    bool goes_on = is_same && part->by_euler && part->why == DALCS_END_OF_STEP;
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const double *last = part->out_before + (l->n_nodes - 1) * l->stride;
     if (energy != NULL) {
         dalcs_energy_slide(energy, part->index, part->x, part->y1, taken);
     }
-    dalcs_radau_accept_euler(r, part, h);
+    dalcs_radau_accept_euler(r, part, h, goes_on ? last : NULL);
     r->steps++;
     return DALCS_OK;
 }

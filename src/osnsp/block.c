@@ -4,14 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What extracting a block needs to know of the whole. */
+/* What extracting a block needs to know of the whole. place: of a column of the block its number there, of another one
+ * the input by which it is read, -1: none yet. */
 struct extraction {
     const struct dalcs_system *from;
     const int *block_of; /* [n_columns] */
     int number;
     struct dalcs_block *to;
-    int *
-        place; /* [n_columns] column of the block; of others the input by which they are read, -1: none yet */
+    int *place; /* [n_columns] */
 };
 
 static int row_block(const struct extraction *e, int row) {
@@ -176,26 +176,22 @@ static enum dalcs_status split(struct extraction *e, struct dalcs_triplets t[5])
     return dalcs_csr_compress(&to->P, to->n_x, to->n_x, &t[4]);
 }
 
-static enum dalcs_status extract(struct extraction *e) {
-    count(e);
-    if (!has_rates_of_its_own(e)) {
-        return DALCS_NOT_CONVERGED;
-    }
-    DALCS_TRY(allocate(e));
-    copy_labels(e);
-    struct dalcs_triplets t[5] = {0};
-    enum dalcs_status status = split(e, t);
-    for (int k = 0; k < 5; k++) {
-        dalcs_triplets_finish(&t[k]);
-    }
-    return status;
-}
-
 enum dalcs_status dalcs_block_extract(struct dalcs_block *block, const struct dalcs_system *from,
                                       const int *block_of, int number, int *place) {
     struct extraction e = {
         .from = from, .block_of = block_of, .number = number, .to = block, .place = place};
-    return extract(&e);
+    count(&e);
+    if (!has_rates_of_its_own(&e)) {
+        return DALCS_NOT_CONVERGED;
+    }
+    DALCS_TRY(allocate(&e));
+    copy_labels(&e);
+    struct dalcs_triplets t[5] = {0};
+    enum dalcs_status status = split(&e, t);
+    for (int k = 0; k < 5; k++) {
+        dalcs_triplets_finish(&t[k]);
+    }
+    return status;
 }
 
 void dalcs_block_finish(struct dalcs_block *b) {

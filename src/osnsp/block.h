@@ -4,10 +4,10 @@
 
 #include "osnsp.h"
 
-/* One block: columns, rows and pairs ascend as they do in the whole system. */
+/* One block: columns, rows and pairs ascend as they do in the whole system. The inputs of its system are those of the
+ * whole, then the columns that it reads. */
 struct dalcs_block {
-    struct dalcs_system
-        system; /* its inputs are those of the whole, then the columns that it reads */
+    struct dalcs_system system;
     struct dalcs_osnsp osnsp;
     int *column; /* [n_columns] of the whole system */
     int *row;    /* [n_equations] */

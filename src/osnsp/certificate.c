@@ -349,6 +349,13 @@ void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *
     check_references(p, y, scale, drive, sources_clash);
 }
 
+void dalcs_certificate_evaluate_with_states(struct dalcs_osnsp *p, const double *u, double *y,
+                                            bool *sources_clash) {
+    p->keeps_states = true;
+    dalcs_certificate_evaluate(p, u, y, sources_clash);
+    p->keeps_states = false;
+}
+
 void dalcs_osnsp_find_ties(struct dalcs_osnsp *p, const double *u, const double *y,
                            double scale[2]) {
     const double *lambda = y + dalcs_system_n_equations(p->system);

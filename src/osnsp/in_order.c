@@ -150,8 +150,6 @@ enum dalcs_status dalcs_in_order_solve(struct dalcs_osnsp *p, double sigma, cons
                                        double *y) {
     bool sources_clash;
     DALCS_TRY(solve_all(p, sigma, u, y));
-    p->keeps_states = true; /* blocks may have solved for them, which condensing would undo */
-    dalcs_certificate_evaluate(p, u, y, &sources_clash);
-    p->keeps_states = false;
+    dalcs_certificate_evaluate_with_states(p, u, y, &sources_clash); /* blocks may have them */
     return dalcs_certificate_holds(p, sources_clash) ? DALCS_OK : DALCS_NOT_CONVERGED;
 }

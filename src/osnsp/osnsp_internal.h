@@ -83,6 +83,10 @@ void dalcs_modes_finish(struct dalcs_osnsp *p);
 void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *y,
                                 bool *sources_clash);
 
+/* The same of an answer that was solved for its states as well, which recovering them would undo. */
+void dalcs_certificate_evaluate_with_states(struct dalcs_osnsp *p, const double *u, double *y,
+                                            bool *sources_clash);
+
 /* Was the answer evaluated last one? */
 static inline bool dalcs_certificate_holds(const struct dalcs_osnsp *p, bool sources_clash) {
     return p->n_violating == 0 && !sources_clash &&
