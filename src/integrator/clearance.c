@@ -34,12 +34,12 @@ static double threshold(const struct dalcs_radau_part *part, int guard, double *
 
 /* What a guard has to be above so that it is beyond doubt, but for rounding. */
 static double doubtless(const struct dalcs_radau_part *part, int guard) {
-    return clear * dalcs_doubt_band(part) * dalcs_guard_scale(part, guard, part->unit_scale);
+    return clear * dalcs_doubt_band(part) * dalcs_guard_scale(part, guard, part->scales.unit);
 }
 
 static bool is_beyond_rounding(const struct dalcs_radau_part *part, int guard, double value) {
-    return value > clear * dalcs_guard_most_rounding(part, guard, part->unit_scale) ||
-           value > clear * dalcs_guard_rounding(part, guard, part->unit_scale);
+    return value > clear * dalcs_guard_most_rounding(part, guard, part->scales.unit) ||
+           value > clear * dalcs_guard_rounding(part, guard, part->scales.unit);
 }
 
 /* Of one guard. */
@@ -53,7 +53,7 @@ static bool is_clear(const struct dalcs_radau_part *part, int guard, const doubl
 bool dalcs_guards_clearance(const struct dalcs_radau_part *part, int guard, double *sign,
                             double *bound) {
     *bound = threshold(part, guard, sign) + doubtless(part, guard) +
-             clear * dalcs_guard_most_rounding(part, guard, part->unit_scale);
+             clear * dalcs_guard_most_rounding(part, guard, part->scales.unit);
     return dalcs_guard_is_one(part, guard);
 }
 
@@ -81,10 +81,10 @@ static bool is_plain(struct dalcs_radau_part *part, int guard, const double *coe
         return true;
     }
     double fall = dalcs_crossing_only(part->stages.method, above, end, 2.0 * bound);
-    if (!(fall < INFINITY) || part->n_crossed > 0) {
+    if (!(fall < INFINITY) || part->guards.n_crossed > 0) {
         return false;
     }
-    part->crossed[part->n_crossed++] = guard;
+    part->guards.crossed[part->guards.n_crossed++] = guard;
     *theta = fall;
     return true;
 }
@@ -93,11 +93,11 @@ static bool is_plain(struct dalcs_radau_part *part, int guard, const double *coe
 static inline bool look_at_all(struct dalcs_radau_part *part, const double *coefficient, double end,
                                double *theta) {
     bool all = true;
-    part->n_crossed = 0;
-    part->n_doubtful = 0;
+    part->guards.n_crossed = 0;
+    part->guards.n_doubtful = 0;
     for (int g = 0; g < dalcs_guards_number(part) && all; g++) {
-        part->armed[g] = dalcs_guard_is_one(part, g);
-        if (part->armed[g]) {
+        part->guards.armed[g] = dalcs_guard_is_one(part, g);
+        if (part->guards.armed[g]) {
             all = theta != NULL ? is_plain(part, g, coefficient, end, theta)
                                 : is_clear(part, g, coefficient);
             coefficient += part->stages.layout.n_nodes;

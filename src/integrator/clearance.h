@@ -15,7 +15,7 @@ bool dalcs_guards_clear(struct dalcs_radau_part *part, const double *coefficient
 bool dalcs_guards_plain(struct dalcs_radau_part *part, const double *coefficient, double end,
                         double *theta);
 
-/* Of a step of length part->h in the present mode: sign times each coefficient of this guard is above *bound, in V
+/* Of a step of length part->segment.h in the present mode: sign times each coefficient of this guard is above *bound, in V
  * or A, where it is as clear as that. false: a switch by itself, which has none. */
 bool dalcs_guards_clearance(const struct dalcs_radau_part *part, int guard, double *sign,
                             double *bound);

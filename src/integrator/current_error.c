@@ -82,7 +82,7 @@ static double spread_of_states(const struct dalcs_radau_part *part,
     double largest = 0.0;
     for (int x = 0; x < s->n_x; x++) {
         double spread = dalcs_stage_spread(&part->stages, entry, part->stages.layout.drift + x,
-                                           part->in, part->scale);
+                                           part->segment.in, part->scales.column);
         double allowed = part->inner_tolerance * dalcs_step_scale(part, x, unit) +
                          besides[s->column_is_current[x]];
         largest = dalcs_larger(largest, spread / allowed);
@@ -98,7 +98,8 @@ static bool has_lever(const struct dalcs_radau_part *part, const struct dalcs_st
     const bool *is_current = part->component->system->column_is_current;
     double of_states = -1.0;
     for (int k = 0; k < stages->n_levered; k++) {
-        double spread = dalcs_stage_spread_of_current(stages, entry, k, part->in, part->scale);
+        double spread =
+            dalcs_stage_spread_of_current(stages, entry, k, part->segment.in, part->scales.column);
         double least = pessimism * allowed_of(part, k, unit, besides);
         if (growth * spread > noticed * least && !is_current[stages->levered[k]]) {
             of_states = of_states < 0.0 ? spread_of_states(part, entry, unit, besides) : of_states;
@@ -118,7 +119,8 @@ static bool has_lever_on_pair(const struct dalcs_radau *r, const struct dalcs_ra
     int n = dalcs_stage_closed_pairs(entry, &on);
     bool has = false;
     for (int k = 0; k < n && !has; k++) {
-        double spread = dalcs_stage_spread_of_pair(&part->stages, entry, k, part->in, part->scale);
+        double spread = dalcs_stage_spread_of_pair(&part->stages, entry, k, part->segment.in,
+                                                   part->scales.column);
         double least = pessimism * allowed_of_pair(r, part, on[k], unit);
         has = growth * spread > least;
     }
@@ -131,9 +133,9 @@ static void raise_parts_of_pairs(struct dalcs_radau_part *part,
     const int *on;
     int n = dalcs_stage_closed_pairs(entry, &on);
     for (int k = 0; k < n; k++) {
-        double spread =
-            dalcs_stage_spread(&part->stages, entry, column_of(part, on[k]), part->in, part->scale);
-        part->pair_parts[on[k]] = dalcs_larger(part->pair_parts[on[k]], spread);
+        double spread = dalcs_stage_spread(&part->stages, entry, column_of(part, on[k]),
+                                           part->segment.in, part->scales.column);
+        part->scales.pair_parts[on[k]] = dalcs_larger(part->scales.pair_parts[on[k]], spread);
     }
 }
 
@@ -141,9 +143,9 @@ static void raise_parts_of_pairs(struct dalcs_radau_part *part,
 static void raise_parts(struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry) {
     const struct dalcs_stages *stages = &part->stages;
     for (int k = 0; k < stages->n_levered; k++) {
-        double spread =
-            dalcs_stage_spread(stages, entry, stages->levered[k], part->in, part->scale);
-        part->current_parts[k] = dalcs_larger(part->current_parts[k], spread);
+        double spread = dalcs_stage_spread(stages, entry, stages->levered[k], part->segment.in,
+                                           part->scales.column);
+        part->scales.current_parts[k] = dalcs_larger(part->scales.current_parts[k], spread);
     }
 }
 
@@ -191,7 +193,7 @@ static bool may_matter_to_pairs(const struct dalcs_radau *r, struct dalcs_radau_
  * drift. The note of the entry counts the steps until they are made again. */
 static void know_rounding(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry) {
     struct dalcs_stages *stages = &part->stages;
-    struct dalcs_lever_probe *p = &part->probe;
+    struct dalcs_lever_probe *p = &part->scales.probe;
     int *note = dalcs_stage_note(entry);
     if (dalcs_stage_has_map(entry) || (*note < 0 && p->entry == entry)) {
         return;
@@ -200,13 +202,13 @@ static void know_rounding(struct dalcs_radau_part *part, struct dalcs_stage_entr
     p->entry = entry;
     memset(p->rounding, 0, (size_t)stages->n_levered * sizeof(double));
     for (int k = 0; k < PROBES; k++) {
-        dalcs_stages_draw(stages, k, part->in, part->scale, p->in);
-        if (dalcs_stages_try(stages, entry, p->in, part->out_tried, p->drift) != DALCS_OK) {
+        dalcs_stages_draw(stages, k, part->segment.in, part->scales.column, p->in);
+        if (dalcs_stages_try(stages, entry, p->in, part->work.out_tried, p->drift) != DALCS_OK) {
             continue;
         }
         for (int i = stages->n_currents; i < stages->n_levered; i++) {
-            double rounding = roundings * part->rounding * fabs(p->drift[i]) +
-                              roundings_of_coils * fabs(part->out_tried[stages->levered[i]]);
+            double rounding = roundings * part->segment.rounding * fabs(p->drift[i]) +
+                              roundings_of_coils * fabs(part->work.out_tried[stages->levered[i]]);
             p->rounding[i] = dalcs_larger(p->rounding[i], rounding);
         }
     }
@@ -218,13 +220,14 @@ static double rounding_of(const struct dalcs_radau_part *part,
     const struct dalcs_stages *stages = &part->stages;
     if (dalcs_stage_has_map(entry)) {
         bool is_current = part->component->system->column_is_current[stages->levered[k]];
-        return roundings * dalcs_stage_spread_of_current(stages, entry, k, part->in, part->scale) +
-               (is_current ? roundings_apart : roundings_of_coils) * part->current_parts[k];
+        return roundings * dalcs_stage_spread_of_current(stages, entry, k, part->segment.in,
+                                                         part->scales.column) +
+               (is_current ? roundings_apart : roundings_of_coils) * part->scales.current_parts[k];
     }
     double of_balanced = on_factors * dalcs_step_rounding(part, entry) *
                          dalcs_stage_natural_units(entry)[stages->levered[k]];
     return k < stages->n_currents ? of_balanced
-                                  : dalcs_larger(of_balanced, part->probe.rounding[k]);
+                                  : dalcs_larger(of_balanced, part->scales.probe.rounding[k]);
 }
 
 void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry,
@@ -234,11 +237,11 @@ void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry
     *e = (struct dalcs_lever_error){0};
     int n = may_matter(part, entry, unit, besides) ? stages->n_levered : 0;
     if (n > 0) {
-        dalcs_stages_drift_of_currents(stages, entry, part->in, part->current_drift);
+        dalcs_stages_drift_of_currents(stages, entry, part->segment.in, part->scales.current_drift);
     }
     for (int k = 0; k < n; k++) {
         double *worst = k < stages->n_currents ? &e->of_currents : &e->of_voltages;
-        double error = fabs(part->current_drift[k]) / pessimism;
+        double error = fabs(part->scales.current_drift[k]) / pessimism;
         double allowed = allowed_of(part, k, unit, besides);
         double least = dalcs_larger(noticed, dalcs_smaller(*worst, 1.0));
         if (!(error > least * allowed)) {
@@ -267,16 +270,16 @@ double dalcs_current_error_of_pairs(const struct dalcs_radau *r, struct dalcs_ra
     if (n == 0 || !may_matter_to_pairs(r, part, entry, unit)) {
         return worst;
     }
-    dalcs_stages_drift_of_pairs(stages, entry, part->in, part->current_drift);
+    dalcs_stages_drift_of_pairs(stages, entry, part->segment.in, part->scales.current_drift);
     for (int k = 0; k < n; k++) {
-        double error = fabs(part->current_drift[k]) / pessimism;
+        double error = fabs(part->scales.current_drift[k]) / pessimism;
         double allowed = allowed_of_pair(r, part, on[k], unit);
         if (!(error > allowed)) {
             continue;
         }
-        double rounding =
-            roundings * dalcs_stage_spread_of_pair(stages, entry, k, part->in, part->scale) +
-            roundings_apart * part->pair_parts[on[k]];
+        double rounding = roundings * dalcs_stage_spread_of_pair(stages, entry, k, part->segment.in,
+                                                                 part->scales.column) +
+                          roundings_apart * part->scales.pair_parts[on[k]];
         if (error * pessimism > rounding) {
             worst = dalcs_larger(worst, error / allowed);
         }

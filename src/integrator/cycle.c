@@ -82,7 +82,7 @@ enum dalcs_status dalcs_cycle_setup(struct dalcs_radau *r) {
     struct dalcs_arena *arena = &part->arena;
     const size_t n_x = (size_t)part->component->system->n_x;
     const size_t n_modes = MOST_SEGMENTS * (size_t)part->component->osnsp.n_words;
-    struct dalcs_cycle *cycle = part->cycle = dalcs_arena_alloc(arena, 1, sizeof(*cycle));
+    struct dalcs_cycle *cycle = part->memory.cycle = dalcs_arena_alloc(arena, 1, sizeof(*cycle));
     if (cycle == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -100,7 +100,7 @@ enum dalcs_status dalcs_cycle_setup(struct dalcs_radau *r) {
 }
 
 static void forget(struct dalcs_radau_part *part) {
-    struct dalcs_cycle *cycle = part->cycle;
+    struct dalcs_cycle *cycle = part->memory.cycle;
     for (int k = 0; k < cycle->n; k++) {
         struct cycle_segment *segment = &cycle->segment[k];
         free(segment->last.row);
@@ -112,19 +112,19 @@ static void forget(struct dalcs_radau_part *part) {
     }
     cycle->n = 0;
     cycle->n_taken = 0;
-    part->cycles = cycle->is_closed = false;
+    part->memory.cycles = cycle->is_closed = false;
 }
 
 void dalcs_cycle_finish(struct dalcs_radau_part *part) {
-    if (part->cycle != NULL) {
+    if (part->memory.cycle != NULL) {
         forget(part);
-        part->cycle = NULL;
+        part->memory.cycle = NULL;
     }
 }
 
 /* ---- The segments of a period ------------------------------------------------------------------ */
 
-/* The commands that moved at part->t; false: something else began the segment, or too many. */
+/* The commands that moved at part->segment.t; false: something else began the segment, or too many. */
 static bool find_moves(const struct dalcs_radau_part *part, struct dalcs_leap_moment *moment) {
     bool is_exact = false;
     moment->n_moves = 0;
@@ -132,7 +132,7 @@ static bool find_moves(const struct dalcs_radau_part *part, struct dalcs_leap_mo
         const struct dalcs_command *m = &part->commands.command[k];
         int way = m->is_on ? 0 : 1;
         double time = m->n[way] > 0 ? dalcs_command_time(m, way, m->n[way] - 1) : -1.0;
-        if (!(fabs(time - part->t) <= 4.0 * DBL_EPSILON * part->t)) {
+        if (!(fabs(time - part->segment.t) <= 4.0 * DBL_EPSILON * part->segment.t)) {
             continue;
         }
         if (moment->n_moves == DALCS_MOST_MOVES) {
@@ -140,7 +140,7 @@ static bool find_moves(const struct dalcs_radau_part *part, struct dalcs_leap_mo
         }
         moment->move[moment->n_moves].command = m;
         moment->move[moment->n_moves++].way = way;
-        is_exact = is_exact || time == part->t;
+        is_exact = is_exact || time == part->segment.t;
     }
     return is_exact;
 }
@@ -148,9 +148,9 @@ static bool find_moves(const struct dalcs_radau_part *part, struct dalcs_leap_mo
 /* Inputs beside the states are the same in all steps: no source is on a ramp. */
 static bool is_tail(const struct dalcs_radau_part *part, bool is_first) {
     const struct dalcs_excitation *e = &part->excitation;
-    double *tail = part->cycle->tail;
+    double *tail = part->memory.cycle->tail;
     int n_x = part->component->system->n_x;
-    const double *in = part->in + n_x;
+    const double *in = part->segment.in + n_x;
     size_t bytes = (size_t)(part->stages.n_in - n_x) * sizeof(double);
     for (int f = 0; f < e->n_functions; f++) {
         if (e->function[f].shape != DALCS_EXCITATION_LEVEL && in[1 + f] != 0.0) {
@@ -167,7 +167,7 @@ static bool is_tail(const struct dalcs_radau_part *part, bool is_first) {
 static double *put_row(const struct dalcs_radau_part *part, const struct dalcs_stage_brief *brief,
                        int which, double sign, double bound, double *row) {
     int n_x = part->component->system->n_x;
-    double constant = dalcs_stage_brief_row(&part->stages, brief, which, part->in, row);
+    double constant = dalcs_stage_brief_row(&part->stages, brief, which, part->segment.in, row);
     for (int k = 0; k < n_x; k++) {
         row[k] *= sign;
     }
@@ -223,7 +223,7 @@ static enum dalcs_status take_conditions(const struct dalcs_radau_part *part,
 
 /* The present segment is the next one of a period. */
 static void append(struct dalcs_radau_part *part, const struct dalcs_leap_moment *began) {
-    struct dalcs_cycle *cycle = part->cycle;
+    struct dalcs_cycle *cycle = part->memory.cycle;
     size_t n_words = (size_t)part->component->osnsp.n_words;
     memcpy(cycle->mode + (size_t)cycle->n * n_words, part->component->osnsp.mode,
            n_words * sizeof(uint64_t));
@@ -233,7 +233,7 @@ static void append(struct dalcs_radau_part *part, const struct dalcs_leap_moment
 
 static bool is_segment(const struct dalcs_radau_part *part, int k,
                        const struct dalcs_leap_moment *began) {
-    const struct cycle_segment *segment = &part->cycle->segment[k];
+    const struct cycle_segment *segment = &part->memory.cycle->segment[k];
     bool is = segment->brief == dalcs_transition_known(part)->span.brief &&
               segment->began.n_moves == began->n_moves;
     for (int i = 0; i < began->n_moves && is; i++) {
@@ -244,20 +244,20 @@ static bool is_segment(const struct dalcs_radau_part *part, int k,
 }
 
 static enum dalcs_status take_rows(struct dalcs_radau_part *part) {
-    struct dalcs_cycle *cycle = part->cycle;
+    struct dalcs_cycle *cycle = part->memory.cycle;
     struct cycle_segment *segment = &cycle->segment[cycle->at];
     DALCS_TRY(take_last(part, segment));
     DALCS_TRY(take_conditions(part, segment));
     cycle->n_taken++;
-    part->cycles = cycle->n_taken == cycle->n;
+    part->memory.cycles = cycle->n_taken == cycle->n;
     return DALCS_OK;
 }
 
 enum dalcs_status dalcs_cycle_note(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    struct dalcs_cycle *cycle = part->cycle;
+    struct dalcs_cycle *cycle = part->memory.cycle;
     /* A ledger of energies needs every segment. */
-    bool recurred = r->base->energy == NULL && part->brief != NULL &&
-                    part->brief == dalcs_transition_known(part)->span.brief;
+    bool recurred = r->base->energy == NULL && part->segment.brief != NULL &&
+                    part->segment.brief == dalcs_transition_known(part)->span.brief;
     cycle->in_a_row = recurred ? cycle->in_a_row + 1 : 0;
     if (cycle->in_a_row < FEWEST_IN_A_ROW) {
         if (cycle->n > 0) {
@@ -308,7 +308,7 @@ static void add_conditions(const struct dalcs_radau_part *part, const struct cyc
     dalcs_affine_compose(n_x, &of->condition, inner, work);
     for (int i = 0; i < of->condition.n; i++) {
         const long double *row = work + i * (n_x + 1);
-        if (normalise(n_x, part->scale, work + i * (n_x + 1))) {
+        if (normalise(n_x, part->scales.column, work + i * (n_x + 1))) {
             dalcs_affine_quads_put(n_x, row, all);
         }
     }
@@ -316,8 +316,8 @@ static void add_conditions(const struct dalcs_radau_part *part, const struct cyc
 
 static void compose_maps(const struct dalcs_radau_part *part, int first, long double *inner,
                          long double *work) {
-    const struct dalcs_cycle *cycle = part->cycle;
-    struct cycle_segment *segment = &part->cycle->segment[first];
+    const struct dalcs_cycle *cycle = part->memory.cycle;
+    struct cycle_segment *segment = &part->memory.cycle->segment[first];
     int n_x = part->component->system->n_x;
     size_t bytes = (size_t)n_x * (size_t)(n_x + 1) * sizeof(*inner);
     for (int k = 0; k < n_x * (n_x + 1); k++) {
@@ -335,7 +335,7 @@ static void compose_maps(const struct dalcs_radau_part *part, int first, long do
 
 /* What changes sides where the k-th segment ends and the next begins. */
 static void list_changes(const struct dalcs_radau_part *part, int k, struct cycle_segment *of) {
-    const struct dalcs_cycle *cycle = part->cycle;
+    const struct dalcs_cycle *cycle = part->memory.cycle;
     int n_words = part->component->osnsp.n_words;
     int next = (k + 1) % cycle->n;
     const uint64_t *from = cycle->mode + k * n_words;
@@ -351,7 +351,7 @@ static void list_changes(const struct dalcs_radau_part *part, int k, struct cycl
 
 /* What is known of the period that begins with the present segment. false: it is too large. */
 static enum dalcs_status compose_period(const struct dalcs_radau_part *part, bool *done) {
-    struct dalcs_cycle *cycle = part->cycle;
+    struct dalcs_cycle *cycle = part->memory.cycle;
     struct cycle_segment *segment = &cycle->segment[cycle->at];
     const struct dalcs_system *s = part->component->system;
     size_t width = (size_t)s->n_x + 1;
@@ -389,12 +389,12 @@ static enum dalcs_status compose_period(const struct dalcs_radau_part *part, boo
 
 /* How far states may move from x, cycle->most; false: not at all. */
 static bool look_around(const struct dalcs_radau_part *part, const double *x) {
-    struct dalcs_cycle *cycle = part->cycle;
+    struct dalcs_cycle *cycle = part->memory.cycle;
     int n_x = part->component->system->n_x;
     double room = dalcs_affine_quads_least(n_x, &cycle->segment[cycle->at].period_condition, x);
     for (int k = 0; k < n_x; k++) {
         cycle->near[k] = x[k];
-        cycle->most[k] = room * part->scale[k];
+        cycle->most[k] = room * part->scales.column[k];
     }
     return room > 0.0;
 }
@@ -402,7 +402,7 @@ static bool look_around(const struct dalcs_radau_part *part, const double *x) {
 /* Takes the states of the present segment to those that it has periods later, as many as may be, and from
  * which a period holds, too. */
 static long go_on(const struct dalcs_radau_part *part, long most) {
-    struct dalcs_cycle *cycle = part->cycle;
+    struct dalcs_cycle *cycle = part->memory.cycle;
     const double *map = cycle->segment[cycle->at].period_last.row;
     int n_x = part->component->system->n_x;
     double *states[2] = {cycle->x, cycle->later};
@@ -424,8 +424,8 @@ static long go_on(const struct dalcs_radau_part *part, long most) {
 /* Currents need no closer look: no state has a lever on them, as far as is known (current_error.c). */
 static bool has_no_lever(const struct dalcs_radau_part *part) {
     bool none = true;
-    for (int k = 0; k < part->cycle->n && part->stages.n_levered > 0 && none; k++) {
-        none = *dalcs_stage_note(part->cycle->segment[k].brief->entry) > 0;
+    for (int k = 0; k < part->memory.cycle->n && part->stages.n_levered > 0 && none; k++) {
+        none = *dalcs_stage_note(part->memory.cycle->segment[k].brief->entry) > 0;
     }
     return none;
 }
@@ -436,8 +436,8 @@ static double periods_until(const struct dalcs_radau *r, const struct dalcs_rada
                             double until) {
     double near = 4.0 * r->resolution;
     double edge = dalcs_smaller(part->excitation.next_edge, r->options.stop);
-    double room = dalcs_smaller(until - near - part->t, edge - near - part->t_end);
-    return floor(room / part->cycle->period);
+    double room = dalcs_smaller(until - near - part->segment.t, edge - near - part->segment.t_end);
+    return floor(room / part->memory.cycle->period);
 }
 
 /* s; when the present segment begins n periods later. */
@@ -450,7 +450,7 @@ static double start_later(struct cycle_segment *segment, long n) {
 
 /* The present segment, with part->x as its state, n periods later. */
 static void put_off(struct dalcs_radau *r, struct dalcs_radau_part *part, long n) {
-    struct dalcs_cycle *cycle = part->cycle;
+    struct dalcs_cycle *cycle = part->memory.cycle;
     struct cycle_segment *segment = &cycle->segment[cycle->at];
     cycle->leap.n_periods = n;
     cycle->leap.n_steps = n * cycle->n;
@@ -462,10 +462,10 @@ static void put_off(struct dalcs_radau *r, struct dalcs_radau_part *part, long n
             began->move[i].n = began->move[i].command->n[began->move[i].way];
         }
     }
-    part->t = start_later(segment, n);
+    part->segment.t = start_later(segment, n);
     dalcs_commands_leap(&part->commands, n);
-    part->t_end = dalcs_radau_limit(r, part);
-    memcpy(part->in, part->x, (size_t)part->component->system->n_x * sizeof(double));
+    part->segment.t_end = dalcs_radau_limit(r, part);
+    memcpy(part->segment.in, part->x, (size_t)part->component->system->n_x * sizeof(double));
     dalcs_recurrence_begin(part);
     r->steps += cycle->leap.n_steps;
     r->leapt_steps += cycle->leap.n_steps;
@@ -475,7 +475,7 @@ static void put_off(struct dalcs_radau *r, struct dalcs_radau_part *part, long n
 static enum dalcs_status pass_periods(const struct dalcs_radau *r, double until, double most,
                                       long *n) {
     struct dalcs_radau_part *part = r->cycling;
-    struct dalcs_cycle *cycle = part->cycle;
+    struct dalcs_cycle *cycle = part->memory.cycle;
     *n = 0;
     if (cycle->waits > 0) {
         cycle->waits--;
@@ -502,7 +502,7 @@ static enum dalcs_status pass_periods(const struct dalcs_radau *r, double until,
 enum dalcs_status dalcs_cycle_leap(struct dalcs_radau *r, double until, long most_steps,
                                    const struct dalcs_leap **leap) {
     struct dalcs_radau_part *part = r->cycling;
-    struct dalcs_cycle *cycle = part->cycle;
+    struct dalcs_cycle *cycle = part->memory.cycle;
     long n;
     *leap = NULL;
     DALCS_TRY(pass_periods(r, until, 1.0 + (double)most_steps / cycle->n, &n));
@@ -525,7 +525,7 @@ enum dalcs_status dalcs_cycle_try(const struct dalcs_radau *r, double until, lon
         x[k] = part->x[k];
         part->x[k] = before;
     }
-    *t = n > 0 ? start_later(&part->cycle->segment[part->cycle->at], n) : INFINITY;
+    *t = n > 0 ? start_later(&part->memory.cycle->segment[part->memory.cycle->at], n) : INFINITY;
     return status;
 }
 
@@ -539,7 +539,7 @@ double dalcs_cycle_period(const struct dalcs_cycle *cycle) {
 
 void dalcs_cycle_pass(const struct dalcs_radau_part *part, long n, double *x, double *later) {
     const int n_x = part->component->system->n_x;
-    const double *map = part->cycle->segment[part->cycle->at].period_last.row;
+    const double *map = part->memory.cycle->segment[part->memory.cycle->at].period_last.row;
     for (long k = 0; k < n; k++) {
         for (int i = 0; i < n_x; i++) {
             const double *row = map + i * (n_x + 1);

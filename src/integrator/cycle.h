@@ -51,7 +51,7 @@ struct dalcs_leap {
     const struct dalcs_leap_event *event; /* [n_events] of a period, in order; owned by the cycle */
 };
 
-/* r->cycling, the part that may have a cycle, and its part->cycle; NULL where there is none: then the
+/* r->cycling, the part that may have a cycle, and its part->memory.cycle; NULL where there is none: then the
  * functions below are not called. */
 enum dalcs_status dalcs_cycle_setup(struct dalcs_radau *r) DALCS_MUST_CHECK;
 

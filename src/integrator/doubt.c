@@ -11,16 +11,16 @@ static const double last_digits = 256.0 * DBL_EPSILON;
 enum dalcs_status dalcs_doubt_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     size_t n = (size_t)dalcs_system_n_equations(s);
-    part->charging_row = dalcs_arena_alloc(&part->arena, n, sizeof(int));
-    if (part->charging_row == NULL) {
+    part->laws.charging_row = dalcs_arena_alloc(&part->arena, n, sizeof(int));
+    if (part->laws.charging_row == NULL) {
         return DALCS_E_NOMEM;
     }
-    memset(part->charging_row, -1, n * sizeof(int));
+    memset(part->laws.charging_row, -1, n * sizeof(int));
     for (int r = 0; r < s->n_x; r++) {
         int first = s->A.p[r];
         int c = s->A.p[r + 1] == first + 1 ? s->A.j[first] : -1;
         if (s->row_is_current[r] && c >= s->n_x && s->column_is_current[c]) {
-            part->charging_row[c] = r;
+            part->laws.charging_row[c] = r;
         }
     }
     return DALCS_OK;
@@ -31,7 +31,7 @@ enum dalcs_status dalcs_doubt_setup(struct dalcs_radau_part *part) {
 static double size_of(const struct dalcs_radau_part *part, int column, const double *unit) {
     const struct dalcs_system *s = part->component->system;
     double scale = dalcs_step_scale(part, column, unit);
-    int row = column < dalcs_system_n_equations(s) ? part->charging_row[column] : -1;
+    int row = column < dalcs_system_n_equations(s) ? part->laws.charging_row[column] : -1;
     if (row < 0) {
         return scale;
     }
@@ -39,7 +39,7 @@ static double size_of(const struct dalcs_radau_part *part, int column, const dou
     for (int k = s->P.p[row]; k < s->P.p[row + 1]; k++) {
         charge += fabs(s->P.x[k]) * dalcs_step_scale(part, s->P.j[k], unit);
     }
-    return dalcs_smaller(scale, part->magnitude[column] + charge / part->h);
+    return dalcs_smaller(scale, part->scales.magnitude[column] + charge / part->segment.h);
 }
 
 /* What the columns of a row other than `but` make of errors that are the same part of each. */
@@ -58,13 +58,13 @@ static double spread_of_current(const struct dalcs_radau_part *part, int pair, c
     const struct dalcs_system *s = part->component->system;
     double least = INFINITY;
     for (int e = 0; e < 2; e++) {
-        int row = part->pair_row[2 * pair + e];
+        int row = part->laws.pair_row[2 * pair + e];
         if (row < 0) {
             continue; /* ground */
         }
         double spread = spread_of(part, &s->A, row, dalcs_system_n_equations(s) + pair, unit);
         if (row < s->n_x) {
-            spread += spread_of(part, &s->P, row, -1, unit) / part->h;
+            spread += spread_of(part, &s->P, row, -1, unit) / part->segment.h;
         }
         least = dalcs_smaller(least, spread);
     }
@@ -83,7 +83,7 @@ static double largest_of(const struct dalcs_radau_part *part, int row) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     double size = 0.0;
     for (int k = 0; k < l->n_nodes; k++) {
-        size = dalcs_larger(size, fabs(part->out[k * l->stride + row]));
+        size = dalcs_larger(size, fabs(part->segment.out[k * l->stride + row]));
     }
     return size;
 }
@@ -91,7 +91,7 @@ static double largest_of(const struct dalcs_radau_part *part, int row) {
 double dalcs_doubt_noise_about(const struct dalcs_radau_part *part, int guard, double scale,
                                const double *unit) {
     double noise = dalcs_doubt_noise(part) * scale;
-    if (!(part->rounding > 1.0) || guard >= part->component->system->n_pairs) {
+    if (!(part->segment.rounding > 1.0) || guard >= part->component->system->n_pairs) {
         return noise;
     }
     double local = dalcs_doubt_noise(part) * spread_about(part, guard, unit);
@@ -111,17 +111,18 @@ static double within_band(const struct dalcs_radau_part *part, double size, doub
 }
 
 static double spread_at_start(const struct dalcs_radau_part *part, int place) {
-    return dalcs_stage_spread(&part->stages, part->entry, place, part->in, part->scale);
+    return dalcs_stage_spread(&part->stages, part->segment.entry, place, part->segment.in,
+                              part->scales.column);
 }
 
 double dalcs_doubt_about(const struct dalcs_radau_part *part, int guard, double scale,
                          const double *unit) {
     const struct dalcs_system *s = part->component->system;
-    if (guard >= s->n_pairs || part->entry == NULL) {
+    if (guard >= s->n_pairs || part->segment.entry == NULL) {
         return dalcs_doubt_band(part) * scale;
     }
     int place = dalcs_system_n_equations(s) + guard;
-    bool has_map = dalcs_stage_has_map(part->entry);
+    bool has_map = dalcs_stage_has_map(part->segment.entry);
     double spread = has_map ? spread_at_start(part, place) : spread_about(part, guard, unit);
     double size = largest_of(part, place) + spread;
     bool is_local = !has_map && dalcs_osnsp_is_on(&part->component->osnsp, guard);
@@ -130,7 +131,7 @@ double dalcs_doubt_about(const struct dalcs_radau_part *part, int guard, double 
 
 double dalcs_doubt_of_closed(const struct dalcs_radau_part *part, int pair, double scale) {
     double band = dalcs_doubt_band(part) * scale;
-    if (part->entry == NULL || !dalcs_stage_has_map(part->entry)) {
+    if (part->segment.entry == NULL || !dalcs_stage_has_map(part->segment.entry)) {
         return band;
     }
     int place = dalcs_system_n_equations(part->component->system) + pair;
@@ -142,7 +143,7 @@ static bool is_below(const struct dalcs_radau_part *part, int row, double least)
     const struct dalcs_stage_layout *l = &part->stages.layout;
     bool below = true;
     for (int k = 1; k < l->n_nodes && below; k++) {
-        below = part->out[k * l->stride + row] < -least;
+        below = part->segment.out[k * l->stride + row] < -least;
     }
     return below;
 }
@@ -153,12 +154,13 @@ double dalcs_doubt_of_fall(const struct dalcs_radau_part *part, int guard, doubl
     const struct dalcs_system *s = part->component->system;
     double doubt = dalcs_doubt_about(part, guard, scale, unit);
     int place = dalcs_system_n_equations(s) + guard;
-    bool has_map = part->entry != NULL && dalcs_stage_has_map(part->entry);
+    bool has_map = part->segment.entry != NULL && dalcs_stage_has_map(part->segment.entry);
     if (guard >= s->n_pairs || !has_map || !is_below(part, place, 0.0)) {
         return doubt;
     }
-    double spread = dalcs_stage_spread(&part->stages, part->entry,
-                                       (l->n_nodes - 1) * l->stride + place, part->in, part->scale);
+    double spread =
+        dalcs_stage_spread(&part->stages, part->segment.entry, (l->n_nodes - 1) * l->stride + place,
+                           part->segment.in, part->scales.column);
     double at_end = within_band(part, largest_of(part, place) + spread, scale, scale);
     return is_below(part, place, at_end) ? dalcs_smaller(doubt, at_end) : doubt;
 }

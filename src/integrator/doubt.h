@@ -18,7 +18,7 @@ static const double dalcs_beyond_noise = 4.0;
 
 /* What rounding leaves of a zero, over its unit's scale: of one on dense maps 2e-13. */
 static inline double dalcs_doubt_noise(const struct dalcs_radau_part *part) {
-    return 2e-13 * part->rounding;
+    return 2e-13 * part->segment.rounding;
 }
 
 /* Finds the capacitors of a part that may step on factors: part->charging_row. */
@@ -35,7 +35,7 @@ static inline double dalcs_doubt_band(const struct dalcs_radau_part *part) {
                         dalcs_beyond_noise * dalcs_doubt_noise(part));
 }
 
-/* V or A that a guard may be off by in the present step, of part->entry; scale: of its unit. */
+/* V or A that a guard may be off by in the present step, of part->segment.entry; scale: of its unit. */
 double dalcs_doubt_about(const struct dalcs_radau_part *part, int guard, double scale,
                          const double *unit);
 

@@ -239,7 +239,7 @@ void dalcs_energy_jump(struct dalcs_energy *energy, const struct dalcs_euler_jum
 static void fetch(const struct dalcs_radau_part *part, const int *column, double *value) {
     int s = part->stages.method->s;
     int stride = part->stages.layout.stride;
-    const double *y = part->out + stride;
+    const double *y = part->segment.out + stride;
     if (column[0] >= 0 && column[1] >= 0) {
         for (int i = 0; i < s; i++) {
             value[i] = y[i * stride + column[0]] - y[i * stride + column[1]];
@@ -269,13 +269,13 @@ static bool varies(const struct dalcs_excitation *e, int input) {
 /* value[s] of an input, from the coefficients that the step was made with. */
 static void fetch_input(const struct dalcs_radau_part *part, int input, double *value) {
     const struct dalcs_excitation *e = &part->excitation;
-    const double *coefficient = part->in + part->component->system->n_x + 1;
+    const double *coefficient = part->segment.in + part->component->system->n_x + 1;
     for (int i = 0; i < part->stages.method->s; i++) {
         value[i] = e->constant[input];
         for (int f = 0; f < e->n_functions; f++) {
             if (e->function[f].input == input) {
                 value[i] +=
-                    coefficient[f] * dalcs_excitation_function_at(&e->function[f], part->h,
+                    coefficient[f] * dalcs_excitation_function_at(&e->function[f], part->segment.h,
                                                                   part->stages.method->node[i + 1]);
             }
         }
@@ -328,7 +328,7 @@ static double loss_of(const struct dalcs_energy_part *ledger, const struct dalcs
     double square = 0.0;
     double along_start = 0.0;
     double along[DALCS_MAX_STAGES] = {0.0};
-    const double *y = part->out + stride;
+    const double *y = part->segment.out + stride;
     for (int x = 0; x < s->n_x; x++) {
         double start = 0.0;
         const double *at = y + x;
@@ -355,15 +355,15 @@ void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_
                           const double *start) {
     struct dalcs_energy_part *ledger = &energy->part[part->index];
     struct dalcs_stage_rule rule;
-    if (part->by_euler) {
+    if (part->segment.by_euler) {
         return; /* entered when it was made */
     }
-    dalcs_stage_rule_set(&rule, part->stages.method, part->end);
+    dalcs_stage_rule_set(&rule, part->stages.method, part->segment.end);
     for (int i = 0; i < ledger->n_stepped; i++) {
         const struct dalcs_power_term *term = &ledger->term[i];
         if (term->pair < 0 || dalcs_osnsp_is_on(&part->component->osnsp, term->pair)) {
             dalcs_energy_enter(energy, term->account,
-                               part->h * integral_of(ledger, part, &rule, term));
+                               part->segment.h * integral_of(ledger, part, &rule, term));
         }
     }
     double loss = loss_of(ledger, part, &rule, start);
@@ -371,7 +371,7 @@ void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_
     energy->missed += fabs(loss);
     energy->turnover += fabs(loss);
     enter_swing(energy, ledger, start, part->x,
-                part->out + part->stages.method->s * part->stages.layout.stride);
+                part->segment.out + part->stages.method->s * part->stages.layout.stride);
 }
 
 /* ---- The end ------------------------------------------------------------------------------- */
@@ -408,13 +408,13 @@ static enum dalcs_status close_radau(struct dalcs_energy *energy, struct dalcs_r
                                      double stop, double *largest) {
     struct dalcs_energy_part *part = &energy->part[radau->index];
     if (radau->kind == DALCS_PART_STEPPED) {
-        memcpy(radau->after, radau->x, (size_t)part->system->n_x * sizeof(double));
-        dalcs_step_states(radau, radau->end, radau->x);
-        dalcs_energy_segment(energy, radau, radau->after);
+        memcpy(radau->work.after, radau->x, (size_t)part->system->n_x * sizeof(double));
+        dalcs_step_states(radau, radau->segment.end, radau->x);
+        dalcs_energy_segment(energy, radau, radau->work.after);
         energy->stored_change +=
             dalcs_euler_stored_energy(part->system, radau->x) - part->stored_at_start;
-        largest[0] = dalcs_larger(radau->unit_scale[0], part->largest[0]);
-        largest[1] = dalcs_larger(radau->unit_scale[1], part->largest[1]);
+        largest[0] = dalcs_larger(radau->scales.unit[0], part->largest[0]);
+        largest[1] = dalcs_larger(radau->scales.unit[1], part->largest[1]);
     }
     return dalcs_energy_enter_decided(energy, part, radau->component, &radau->excitation.bystanders,
                                       stop);

@@ -90,8 +90,8 @@ enum dalcs_status dalcs_front_close(struct dalcs_radau_part *part, bool *found) 
     struct front f = {.part = part,
                       .s = s,
                       .M = &part->stages.plan->base,
-                      .end = part->out_before + (l->n_nodes - 1) * l->stride,
-                      .nothing = dalcs_doubt_noise(part) * part->unit_scale[0],
+                      .end = part->segment.out_before + (l->n_nodes - 1) * l->stride,
+                      .nothing = dalcs_doubt_noise(part) * part->scales.unit[0],
                       .direction = dalcs_alloc(n, sizeof(int)),
                       .queue = dalcs_alloc(n, sizeof(int))};
     if (f.direction == NULL || f.queue == NULL) {
@@ -99,7 +99,7 @@ enum dalcs_status dalcs_front_close(struct dalcs_radau_part *part, bool *found) 
         free(f.queue);
         return DALCS_E_NOMEM;
     }
-    const uint64_t *held = part->modes_before;
+    const uint64_t *held = part->memory.modes_before;
     for (int d = 0; d < s->n_pairs; d++) {
         bool was_open = !dalcs_mode_has(held, d);
         if (was_open && dalcs_osnsp_is_on(&part->component->osnsp, d)) {
@@ -131,8 +131,8 @@ static bool reopen(struct dalcs_osnsp *p, const uint64_t *before, const double *
 bool dalcs_front_reopen(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    const uint64_t *before = part->modes_before + p->n_words;
+    const uint64_t *before = part->memory.modes_before + p->n_words;
     const double *lambda =
-        part->out + (l->n_nodes - 1) * l->stride + dalcs_system_n_equations(p->system);
+        part->segment.out + (l->n_nodes - 1) * l->stride + dalcs_system_n_equations(p->system);
     return reopen(p, before, lambda, true) || reopen(p, before, lambda, false);
 }

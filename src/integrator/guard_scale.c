@@ -20,19 +20,19 @@ double dalcs_guard_control_scale(const struct dalcs_radau_part *part, int guard,
 
 /* Of a guard by the map of the step; `most` where there is none. */
 static double rounding_by_map(const struct dalcs_radau_part *part, int place, double most) {
-    if (part->entry == NULL || !dalcs_stage_has_map(part->entry)) {
+    if (part->segment.entry == NULL || !dalcs_stage_has_map(part->segment.entry)) {
         return most;
     }
-    return dalcs_smaller(most,
-                         dalcs_guard_rounded * dalcs_stage_spread(&part->stages, part->entry, place,
-                                                                  part->in, part->scale));
+    return dalcs_smaller(most, dalcs_guard_rounded *
+                                   dalcs_stage_spread(&part->stages, part->segment.entry, place,
+                                                      part->segment.in, part->scales.column));
 }
 
 double dalcs_guard_rounding_across(const struct dalcs_radau_part *part, int pair,
                                    const double *unit) {
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, pair);
-    bool nothing_flows = unit[1] <= part->cross[1] * unit[0];
-    double leak = is_on && nothing_flows ? part->leak * unit[0] : 0.0;
+    bool nothing_flows = unit[1] <= part->scales.cross[1] * unit[0];
+    double leak = is_on && nothing_flows ? part->scales.leak * unit[0] : 0.0;
     return dalcs_larger(dalcs_step_crossed(part, is_on ? 1 : 0, unit), leak);
 }
 
@@ -44,11 +44,11 @@ static double rounding_of_pair(const struct dalcs_radau_part *part, int guard, c
         return 0.0;
     }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
-    bool has_map = part->entry != NULL && dalcs_stage_has_map(part->entry);
+    bool has_map = part->segment.entry != NULL && dalcs_stage_has_map(part->segment.entry);
     most = is_on ? dalcs_pair_charge_rate(part, guard) * unit[0]
-                 : part->held_flux[guard] / part->h * unit[1];
+                 : part->laws.held_flux[guard] / part->segment.h * unit[1];
     if (!has_map && !is_on) {
-        most = dalcs_smaller(most, dalcs_pair_flux(part, guard) / part->h);
+        most = dalcs_smaller(most, dalcs_pair_flux(part, guard) / part->segment.h);
     }
     return rounding_by_map(part, dalcs_system_n_equations(s) + guard, dalcs_guard_rounded * most);
 }

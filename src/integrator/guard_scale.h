@@ -33,7 +33,7 @@ static inline bool dalcs_guard_is_one(const struct dalcs_radau_part *part, int g
 
 /* Is a pair on another side than in the mode that held last? */
 static inline bool dalcs_guard_has_flipped(const struct dalcs_radau_part *part, int pair) {
-    return dalcs_mode_has(part->modes_before, pair) !=
+    return dalcs_mode_has(part->memory.modes_before, pair) !=
            dalcs_osnsp_is_on(&part->component->osnsp, pair);
 }
 
@@ -59,8 +59,9 @@ static inline double dalcs_guard_most_rounding(const struct dalcs_radau_part *pa
                unit[dalcs_system_control_is_current(s, dalcs_guard_pair(part, guard))];
     }
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, guard);
-    return dalcs_guard_rounded / part->h *
-           (is_on ? part->held_charge[guard] * unit[0] : part->held_flux[guard] * unit[1]);
+    return dalcs_guard_rounded / part->segment.h *
+           (is_on ? part->laws.held_charge[guard] * unit[0]
+                  : part->laws.held_flux[guard] * unit[1]);
 }
 
 /* What rounding makes of a pair that is 0 where its whole unit is, in V or A. Where nothing flows in an island that

@@ -19,17 +19,19 @@ double dalcs_guard_value_at(const struct dalcs_radau_part *part, const double *v
 
 const double *dalcs_guard_values_before(const struct dalcs_radau_part *part, int pair) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    if (part->by_euler || dalcs_guard_has_flipped(part, pair)) {
+    if (part->segment.by_euler || dalcs_guard_has_flipped(part, pair)) {
         return NULL;
     }
-    return part->out_before + dalcs_system_n_equations(p->system) + pair;
+    return part->segment.out_before + dalcs_system_n_equations(p->system) + pair;
 }
 
 bool dalcs_guard_has_crossed(const struct dalcs_radau_part *part, int pair, const double *value,
                              int stride, const double *unit) {
     int last = part->stages.layout.n_nodes - 1;
-    double least = dalcs_doubt_noise(part) / part->rounding * dalcs_guard_scale(part, pair, unit);
-    bool rises = part->flipped && value[last * stride] > dalcs_larger(least, fabs(value[0])) &&
+    double least =
+        dalcs_doubt_noise(part) / part->segment.rounding * dalcs_guard_scale(part, pair, unit);
+    bool rises = part->guards.flipped &&
+                 value[last * stride] > dalcs_larger(least, fabs(value[0])) &&
                  dalcs_guard_has_flipped(part, pair);
     for (int k = 1; k <= last && rises; k++) {
         rises = value[k * stride] > value[(k - 1) * stride];

@@ -13,8 +13,8 @@ static inline double dalcs_guard_control_at(const struct dalcs_radau_part *part,
                                             int node) {
     const struct dalcs_system *s = part->component->system;
     int d = dalcs_guard_pair(part, guard);
-    double v = part->out[node * part->stages.layout.stride + dalcs_system_n_columns(s) + guard -
-                         s->n_pairs];
+    double v = part->segment.out[node * part->stages.layout.stride + dalcs_system_n_columns(s) +
+                                 guard - s->n_pairs];
     bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, d);
     return is_on ? v - s->pair[d].turn_off : s->pair[d].turn_on - v;
 }
@@ -25,7 +25,7 @@ static inline const double *dalcs_guard_values(const struct dalcs_radau_part *pa
     const struct dalcs_system *s = part->component->system;
     *stride = part->stages.layout.stride;
     if (guard < s->n_pairs) {
-        return part->out + dalcs_system_n_equations(s) + guard;
+        return part->segment.out + dalcs_system_n_equations(s) + guard;
     }
     for (int k = 0; k < part->stages.layout.n_nodes; k++) {
         work[k] = dalcs_guard_control_at(part, guard, k);

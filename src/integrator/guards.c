@@ -52,23 +52,24 @@ static const double soon_after = 1e-6, from_rest = 1.0 / 64.0;
 enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     size_t n_equations = (size_t)dalcs_system_n_equations(s);
-    part->held_charge = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
-    part->held_flux = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
-    part->pair_row = dalcs_arena_alloc(&part->arena, 2 * (size_t)s->n_pairs, sizeof(int));
-    part->pair_law = dalcs_arena_alloc(&part->arena, DALCS_PAIR_LAWS * (size_t)s->n_pairs,
-                                       sizeof(*part->pair_law));
-    part->pair_rate =
+    part->laws.held_charge = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
+    part->laws.held_flux = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
+    part->laws.pair_row = dalcs_arena_alloc(&part->arena, 2 * (size_t)s->n_pairs, sizeof(int));
+    part->laws.law = dalcs_arena_alloc(&part->arena, DALCS_PAIR_LAWS * (size_t)s->n_pairs,
+                                       sizeof(*part->laws.law));
+    part->laws.rate =
         dalcs_pair_rate_create(&part->arena, s->n_pairs, part->component->osnsp.n_words);
-    part->cluster = dalcs_arena_alloc(&part->arena, n_equations, sizeof(int));
-    part->cluster_charge = dalcs_arena_alloc(&part->arena, n_equations, sizeof(double));
-    part->bound = dalcs_arena_alloc(&part->arena,
-                                    (size_t)dalcs_quads_of(dalcs_guards_number(part)) + DALCS_QUAD,
-                                    sizeof(double));
-    part->doubtful =
+    part->laws.cluster = dalcs_arena_alloc(&part->arena, n_equations, sizeof(int));
+    part->laws.cluster_charge = dalcs_arena_alloc(&part->arena, n_equations, sizeof(double));
+    part->guards.bound = dalcs_arena_alloc(
+        &part->arena, (size_t)dalcs_quads_of(dalcs_guards_number(part)) + DALCS_QUAD,
+        sizeof(double));
+    part->guards.doubtful =
         dalcs_arena_alloc(&part->arena, (size_t)dalcs_guards_number(part), sizeof(int));
-    if (part->bound == NULL || part->doubtful == NULL || part->held_charge == NULL ||
-        part->held_flux == NULL || part->pair_row == NULL || part->pair_law == NULL ||
-        part->pair_rate == NULL || part->cluster == NULL || part->cluster_charge == NULL) {
+    if (part->guards.bound == NULL || part->guards.doubtful == NULL ||
+        part->laws.held_charge == NULL || part->laws.held_flux == NULL ||
+        part->laws.pair_row == NULL || part->laws.law == NULL || part->laws.rate == NULL ||
+        part->laws.cluster == NULL || part->laws.cluster_charge == NULL) {
         return DALCS_E_NOMEM;
     }
     dalcs_pair_laws_find(part);
@@ -79,9 +80,9 @@ static void arm_controls(struct dalcs_radau_part *part, bool at_end, double band
                          const double *unit) {
     int node = at_end ? part->stages.layout.n_nodes - 1 : 0;
     for (int g = part->component->system->n_pairs; g < dalcs_guards_number(part); g++) {
-        if (!(at_end && part->armed[g])) {
-            part->armed[g] = dalcs_guard_control_at(part, g, node) >
-                             band * dalcs_guard_control_scale(part, g, unit);
+        if (!(at_end && part->guards.armed[g])) {
+            part->guards.armed[g] = dalcs_guard_control_at(part, g, node) >
+                                    band * dalcs_guard_control_scale(part, g, unit);
         }
     }
 }
@@ -92,7 +93,8 @@ static bool goes_on(const struct dalcs_radau_part *part, int pair, double value)
     if (before == NULL) {
         return false;
     }
-    double last = dalcs_guard_value_at(part, before, part->stages.layout.stride, part->end_before);
+    double last =
+        dalcs_guard_value_at(part, before, part->stages.layout.stride, part->segment.end_before);
     return fabs(value - last) <= dalcs_guard_agreeing * value;
 }
 
@@ -105,9 +107,9 @@ void dalcs_guards_arm(struct dalcs_radau_part *part, bool at_end, const double *
     if (!at_end && n_pairs > DALCS_MANY_PAIRS) {
         dalcs_pair_laws_gather(part);
     }
-    const double *value = part->out + (at_end ? (l->n_nodes - 1) * l->stride : 0) +
+    const double *value = part->segment.out + (at_end ? (l->n_nodes - 1) * l->stride : 0) +
                           dalcs_system_n_equations(p->system);
-    bool *armed = part->armed;
+    bool *armed = part->guards.armed;
     for (int d = 0; d < n_pairs; d++) {
         if (p->is_diode[d] && !(at_end && armed[d])) {
             double scale = unit[dalcs_osnsp_is_on(p, d)];
@@ -127,14 +129,15 @@ static void bound_controls(const struct dalcs_radau_part *part) {
         double work[DALCS_MAX_NODES + DALCS_QUAD] = {0.0};
         int stride;
         const double *value = dalcs_guard_values(part, g, work, &stride);
-        dalcs_crossing_bounds(part->stages.method, 1, value, stride, part->bound + g);
+        dalcs_crossing_bounds(part->stages.method, 1, value, stride, part->guards.bound + g);
     }
 }
 
 static void bound_all(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
-    dalcs_crossing_bounds(part->stages.method, s->n_pairs, part->out + dalcs_system_n_equations(s),
-                          part->stages.layout.stride, part->bound);
+    dalcs_crossing_bounds(part->stages.method, s->n_pairs,
+                          part->segment.out + dalcs_system_n_equations(s),
+                          part->stages.layout.stride, part->guards.bound);
     if (part->stages.n_watched > 0) {
         bound_controls(part);
     }
@@ -143,21 +146,21 @@ static void bound_all(struct dalcs_radau_part *part) {
 /* The guards that bounds do not clear. */
 static void find_doubtful(struct dalcs_radau_part *part) {
     bound_all(part);
-    const double *bound = part->bound;
+    const double *bound = part->guards.bound;
     int n = dalcs_guards_number(part);
     int n_doubtful = 0;
     for (int g = 0; g < n; g++) {
         if (!(bound[g] >= 0.0) && dalcs_guard_is_one(part, g)) {
-            part->doubtful[n_doubtful++] = g;
+            part->guards.doubtful[n_doubtful++] = g;
         }
     }
-    part->n_doubtful = n_doubtful;
+    part->guards.n_doubtful = n_doubtful;
 }
 
 /* Is a guard above 0 before times can be told apart? */
 static bool is_over_at_once(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                             const double *value, int stride) {
-    double instant = dalcs_smaller(1.0, 64.0 * r->resolution / part->h);
+    double instant = dalcs_smaller(1.0, 64.0 * r->resolution / part->segment.h);
     return dalcs_guard_value_at(part, value, stride, instant) > 0.0;
 }
 
@@ -174,8 +177,9 @@ static bool is_over_soon(const struct dalcs_radau *r, const struct dalcs_radau_p
 /* What crosses at the stop time, up to the error, is left to a longer run: where in the step that begins. */
 static double end_of_events(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                             double end, double band) {
-    bool stops = end <= 1.0 && part->t + end * part->h >= r->options.stop - r->resolution;
-    return stops ? end - band * r->options.stop / part->h : INFINITY;
+    bool stops =
+        end <= 1.0 && part->segment.t + end * part->segment.h >= r->options.stop - r->resolution;
+    return stops ? end - band * r->options.stop / part->segment.h : INFINITY;
 }
 
 /* How far a guard may fall in the first step of a mode and is no event, at most `doubt`: what it is off by at its
@@ -185,9 +189,9 @@ static double doubt_at_first(struct dalcs_radau_part *part, const double *value,
                              double end, double doubt) {
     const struct dalcs_collocation *m = part->stages.method;
     double least = dalcs_larger(began * fabs(value[0]), falling_part * doubt);
-    double depth = dalcs_smaller(doubt, dalcs_larger(least, part->ratio * doubt));
-    for (int k = 1; k <= m->s && m->node[k] <= end && !part->may_dip; k++) {
-        part->may_dip = value[k * stride] < -least && value[k * stride] >= -depth;
+    double depth = dalcs_smaller(doubt, dalcs_larger(least, part->segment.ratio * doubt));
+    for (int k = 1; k <= m->s && m->node[k] <= end && !part->guards.may_dip; k++) {
+        part->guards.may_dip = value[k * stride] < -least && value[k * stride] >= -depth;
     }
     return depth;
 }
@@ -198,7 +202,7 @@ static double doubt_of(struct dalcs_radau_part *part, int guard, const double *v
                        double end, double noise, const double *unit) {
     int last = part->stages.layout.n_nodes - 1;
     double scale = dalcs_guard_scale(part, guard, unit);
-    bool is_armed = part->armed[guard];
+    bool is_armed = part->guards.armed[guard];
     if (is_armed && (end < 1.0 ? dalcs_guard_value_at(part, value, stride, end)
                                : value[last * stride]) <= noise) {
         return noise; /* it does not come back */
@@ -207,13 +211,13 @@ static double doubt_of(struct dalcs_radau_part *part, int guard, const double *v
     if (is_armed) {
         return dalcs_larger(noise, touching * doubt);
     }
-    if (part->fresh && guard < part->component->system->n_pairs &&
+    if (part->guards.fresh && guard < part->component->system->n_pairs &&
         dalcs_guard_has_crossed(part, guard, value, stride, unit)) {
         return dalcs_osnsp_is_on(&part->component->osnsp, guard)
                    ? dalcs_doubt_of_closed(part, guard, scale)
                    : dalcs_larger(dalcs_doubt_band(part), blocking) * scale;
     }
-    if (part->fresh) {
+    if (part->guards.fresh) {
         return doubt_at_first(part, value, stride, end, doubt);
     }
     return value[last * stride] < (1.0 - dalcs_guard_agreeing) * value[0] ? falling_part * doubt
@@ -224,7 +228,7 @@ static double doubt_of(struct dalcs_radau_part *part, int guard, const double *v
  * in series open together, whichever has a rounding more: leaks alone would take that down, late. */
 static bool falls_with(const struct dalcs_radau_part *part, int guard, double event, double theta,
                        const double *unit) {
-    if (!part->armed[guard] || theta - event > same_by_value) {
+    if (!part->guards.armed[guard] || theta - event > same_by_value) {
         return false;
     }
     double work[DALCS_MAX_NODES];
@@ -238,9 +242,9 @@ static bool falls_with(const struct dalcs_radau_part *part, int guard, double ev
 /* All that have crossed at `theta`. */
 static bool all_fall_with(const struct dalcs_radau_part *part, double event, double theta,
                           const double *unit) {
-    bool all = part->n_crossed > 0;
-    for (int k = 0; k < part->n_crossed && all; k++) {
-        all = falls_with(part, part->crossed[k], event, theta, unit);
+    bool all = part->guards.n_crossed > 0;
+    for (int k = 0; k < part->guards.n_crossed && all; k++) {
+        all = falls_with(part, part->guards.crossed[k], event, theta, unit);
     }
     return all;
 }
@@ -249,40 +253,42 @@ static bool all_fall_with(const struct dalcs_radau_part *part, double event, dou
 static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *part, double end,
                          const double *unit, bool *at_once) {
     double first = INFINITY;
-    double same = part->rounding > 1.0 ? same_on_factors : same_on_maps;
-    double together = dalcs_larger(same, 2.0 * r->resolution / part->h);
+    double same = part->segment.rounding > 1.0 ? same_on_factors : same_on_maps;
+    double together = dalcs_larger(same, 2.0 * r->resolution / part->segment.h);
     double band = dalcs_doubt_band(part);
     double too_late = end_of_events(r, part, end, band);
     int last = part->stages.layout.n_nodes - 1;
     int n_pairs = part->component->system->n_pairs;
-    for (int k = 0; k < part->n_doubtful; k++) {
-        int g = part->doubtful[k];
+    for (int k = 0; k < part->guards.n_doubtful; k++) {
+        int g = part->guards.doubtful[k];
         double work[DALCS_MAX_NODES];
         int stride;
         const double *value = dalcs_guard_values(part, g, work, &stride);
         double scale = dalcs_guard_scale(part, g, unit);
         double rounding = dalcs_guard_rounding(part, g, unit);
         double zero = dalcs_doubt_noise_about(part, g, scale, unit);
-        if (!part->fresh && value[0] <= falling_part * band * scale &&
+        if (!part->guards.fresh && value[0] <= falling_part * band * scale &&
             fabs(value[last * stride]) <= zero + rounding) {
-            part->armed[g] = false; /* what has died away has no sign any more */
+            part->guards.armed[g] = false; /* what has died away has no sign any more */
         }
-        if (part->bound[g] >= -zero - rounding) {
+        if (part->guards.bound[g] >= -zero - rounding) {
             continue;
         }
-        if (!part->armed[g] && !part->fresh && value[0] > zero + rounding) {
-            part->armed[g] = g < n_pairs && goes_on(part, g, value[0]);
+        if (!part->guards.armed[g] && !part->guards.fresh && value[0] > zero + rounding) {
+            part->guards.armed[g] = g < n_pairs && goes_on(part, g, value[0]);
         }
         double depth = doubt_of(part, g, value, stride, end, zero, unit);
         depth += rounding;
-        if (part->bound[g] >= -depth) {
+        if (part->guards.bound[g] >= -depth) {
             continue;
         }
-        if (part->fresh && value[0] < -depth && is_over_soon(r, part, value, stride, scale)) {
+        if (part->guards.fresh && value[0] < -depth &&
+            is_over_soon(r, part, value, stride, scale)) {
             depth = -2.0 * value[0];
         }
-        struct dalcs_crossing c = dalcs_crossing_find(part->stages.method, value, stride, end,
-                                                      depth, part->n_crossed > 0 ? first : 0.0);
+        struct dalcs_crossing c =
+            dalcs_crossing_find(part->stages.method, value, stride, end, depth,
+                                part->guards.n_crossed > 0 ? first : 0.0);
         bool is_late =
             c.theta >= too_late && dalcs_guard_value_at(part, value, stride, end) >= -band * scale;
         if (!c.falls || is_late ||
@@ -290,40 +296,41 @@ static double find_first(const struct dalcs_radau *r, struct dalcs_radau_part *p
             continue;
         }
         if (c.theta < first - together && !all_fall_with(part, c.theta, first, unit)) {
-            part->n_crossed = 0;
+            part->guards.n_crossed = 0;
             *at_once = false;
-            part->slips = false;
+            part->guards.slips = false;
         }
         first = dalcs_smaller(first, c.theta);
-        bool slips = part->fresh && c.theta <= from_rest && c.peak <= depth;
-        part->slips = part->slips || slips;
+        bool slips = part->guards.fresh && c.theta <= from_rest && c.peak <= depth;
+        part->guards.slips = part->guards.slips || slips;
         bool soon = c.at_once ||
-                    (slips && (!part->flipped || dalcs_tied_was_at_rest(part, g, unit))) ||
+                    (slips && (!part->guards.flipped || dalcs_tied_was_at_rest(part, g, unit))) ||
                     (c.theta <= soon_after && c.peak <= band * scale);
-        *at_once = *at_once || (!part->armed[g] && soon);
-        part->crossed[part->n_crossed++] = g;
+        *at_once = *at_once || (!part->guards.armed[g] && soon);
+        part->guards.crossed[part->guards.n_crossed++] = g;
     }
     return first;
 }
 
 double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                                double end, const double *unit, bool *at_once) {
-    part->n_crossed = 0;
-    part->may_dip = false;
-    part->slips = false;
+    part->guards.n_crossed = 0;
+    part->guards.may_dip = false;
+    part->guards.slips = false;
     *at_once = false;
     find_doubtful(part);
-    return part->n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;
+    return part->guards.n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;
 }
 
 bool dalcs_guards_recover(const struct dalcs_radau_part *part, const double *unit) {
     int last = part->stages.layout.n_nodes - 1;
     bool all = true;
-    for (int k = 0; k < part->n_crossed && all; k++) {
+    for (int k = 0; k < part->guards.n_crossed && all; k++) {
         double work[DALCS_MAX_NODES];
         int stride;
-        const double *value = dalcs_guard_values(part, part->crossed[k], work, &stride);
-        double band = dalcs_doubt_band(part) * dalcs_guard_scale(part, part->crossed[k], unit);
+        const double *value = dalcs_guard_values(part, part->guards.crossed[k], work, &stride);
+        double band =
+            dalcs_doubt_band(part) * dalcs_guard_scale(part, part->guards.crossed[k], unit);
         all = value[0] >= -shallow * band && value[last * stride] > 0.0;
     }
     return all;
@@ -342,10 +349,10 @@ static double rise_of(const struct dalcs_radau_part *part, const double *value, 
 
 double dalcs_guards_recovery(const struct dalcs_radau_part *part) {
     double latest = 0.0;
-    for (int k = 0; k < part->n_crossed; k++) {
+    for (int k = 0; k < part->guards.n_crossed; k++) {
         double work[DALCS_MAX_NODES];
         int stride;
-        const double *value = dalcs_guard_values(part, part->crossed[k], work, &stride);
+        const double *value = dalcs_guard_values(part, part->guards.crossed[k], work, &stride);
         latest = dalcs_larger(latest, rise_of(part, value, stride));
     }
     return latest;
@@ -356,8 +363,8 @@ double dalcs_guards_rise(const struct dalcs_radau_part *part, double least, doub
     int n_pairs = part->component->system->n_pairs;
     double earliest = INFINITY;
     *is_sure = false;
-    for (int k = 0; k < part->n_doubtful && n_pairs <= DALCS_MANY_PAIRS; k++) {
-        int d = part->doubtful[k];
+    for (int k = 0; k < part->guards.n_doubtful && n_pairs <= DALCS_MANY_PAIRS; k++) {
+        int d = part->guards.doubtful[k];
         if (d >= n_pairs) {
             break;
         }
@@ -381,12 +388,12 @@ double dalcs_guards_rise(const struct dalcs_radau_part *part, double least, doub
 
 bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
     int last = part->stages.layout.n_nodes - 1;
-    bool all = part->n_crossed > 0;
-    double part_left = part->fresh ? swing : late_swing;
-    for (int k = 0; k < part->n_crossed && all; k++) {
+    bool all = part->guards.n_crossed > 0;
+    double part_left = part->guards.fresh ? swing : late_swing;
+    for (int k = 0; k < part->guards.n_crossed && all; k++) {
         double work[DALCS_MAX_NODES];
         int stride;
-        const double *value = dalcs_guard_values(part, part->crossed[k], work, &stride);
+        const double *value = dalcs_guard_values(part, part->guards.crossed[k], work, &stride);
         double least = 0.0;
         for (int i = 1; i < last; i++) {
             least = dalcs_smaller(least, value[i * stride]);
@@ -401,7 +408,8 @@ bool dalcs_guards_swing(const struct dalcs_radau_part *part) {
 static bool stays_below(const struct dalcs_radau_part *part, int pair, double end, double least,
                         double nothing) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
+    const double *value =
+        part->segment.out + dalcs_system_n_equations(part->component->system) + pair;
     bool stays = value[0] < -nothing;
     bool same = true;
     for (int k = 1; k < l->n_nodes && part->stages.method->node[k] <= end && stays; k++) {
@@ -417,8 +425,8 @@ bool dalcs_guards_stay_negative(const struct dalcs_radau_part *part, double end,
     double noise = dalcs_beyond_noise * dalcs_doubt_noise(part);
     double least = fmax(falling_part * dalcs_doubt_band(part), noise);
     bool negative = false;
-    for (int k = 0; k < part->n_doubtful && !negative && n_pairs <= DALCS_MANY_PAIRS; k++) {
-        int d = part->doubtful[k];
+    for (int k = 0; k < part->guards.n_doubtful && !negative && n_pairs <= DALCS_MANY_PAIRS; k++) {
+        int d = part->guards.doubtful[k];
         if (d < n_pairs) {
             double scale = dalcs_guard_scale(part, d, unit);
             double rounding = dalcs_guard_rounding(part, d, unit);
@@ -435,7 +443,7 @@ static int count_excused(const struct dalcs_radau *r, const struct dalcs_radau_p
                          const double *value, const double *unit) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     int n = 0;
-    if (!part->fresh || value[0] >= 0.0) {
+    if (!part->guards.fresh || value[0] >= 0.0) {
         return 0;
     }
     if (is_over_soon(r, part, value, l->stride, dalcs_guard_scale(part, pair, unit))) {
@@ -456,9 +464,9 @@ double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_r
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     double worst = 0.0;
-    for (int i = 0; i < part->n_doubtful && part->doubtful[i] < s->n_pairs; i++) {
-        int d = part->doubtful[i];
-        const double *value = part->out + dalcs_system_n_equations(s) + d;
+    for (int i = 0; i < part->guards.n_doubtful && part->guards.doubtful[i] < s->n_pairs; i++) {
+        int d = part->guards.doubtful[i];
+        const double *value = part->segment.out + dalcs_system_n_equations(s) + d;
         double scale = dalcs_guard_scale(part, d, unit);
         double least = 0.0;
         int k = count_excused(r, part, d, value, unit);
@@ -474,8 +482,8 @@ double dalcs_guards_wrong_sign(const struct dalcs_radau *r, const struct dalcs_r
 
 void dalcs_guards_flip(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
-    for (int k = 0; k < part->n_crossed; k++) {
-        int d = dalcs_guard_pair(part, part->crossed[k]);
+    for (int k = 0; k < part->guards.n_crossed; k++) {
+        int d = dalcs_guard_pair(part, part->guards.crossed[k]);
         dalcs_osnsp_command(p, d, !dalcs_osnsp_is_on(p, d));
     }
 }

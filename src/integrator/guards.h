@@ -14,7 +14,7 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) DALCS_MUST_C
  * they leave it downwards (doubt.h). */
 void dalcs_guards_arm(struct dalcs_radau_part *part, bool at_end, const double *unit);
 
-/* The first to fall up to `end`, listed in part->crossed; INFINITY when none does. *at_once: one that
+/* The first to fall up to `end`, listed in part->guards.crossed; INFINITY when none does. *at_once: one that
  * is not armed was never positive, so the mode is wrong from the start. */
 double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                                double end, const double *unit, bool *at_once);

@@ -10,9 +10,9 @@ static enum dalcs_status tell_open_at(struct dalcs_radau *r, struct dalcs_radau_
     const struct dalcs_osnsp *p = &part->component->osnsp;
     DALCS_TRY(dalcs_radau_evaluate(r, t, side));
     for (int d = 0; d < s->n_pairs; d++) {
-        double other = part->y1[dalcs_system_n_equations(s) + d];
-        part->w1[d] = dalcs_osnsp_is_on(p, d) ? 0.0 : other;
-        part->tied[d] = dalcs_tied_is(part, d, part->unit_scale);
+        double other = part->work.y1[dalcs_system_n_equations(s) + d];
+        part->work.w1[d] = dalcs_osnsp_is_on(p, d) ? 0.0 : other;
+        part->guards.tied[d] = dalcs_tied_is(part, d, part->scales.unit);
     }
     return e->on_open(
         e->open_user,
@@ -20,9 +20,9 @@ static enum dalcs_status tell_open_at(struct dalcs_radau *r, struct dalcs_radau_
                                      .engine = e,
                                      .system = part->index,
                                      .mode = p->mode,
-                                     .w = part->w1,
-                                     .tied = part->tied,
-                                     .scale = {part->unit_scale[0], part->unit_scale[1]}},
+                                     .w = part->work.w1,
+                                     .tied = part->guards.tied,
+                                     .scale = {part->scales.unit[0], part->scales.unit[1]}},
         vanishes);
 }
 
@@ -32,17 +32,17 @@ enum dalcs_status dalcs_radau_tell_open(struct dalcs_radau *r) {
     for (int k = 0; k < r->n_parts; k++) {
         struct dalcs_radau_part *part = &r->part[k];
         bool vanishes = false;
-        if (part->open && r->base->on_open != NULL) {
-            DALCS_TRY(tell_open_at(r, part, part->t, DALCS_RIGHT, &vanishes));
+        if (part->segment.open && r->base->on_open != NULL) {
+            DALCS_TRY(tell_open_at(r, part, part->segment.t, DALCS_RIGHT, &vanishes));
         }
         if (vanishes) {
-            DALCS_TRY(tell_open_at(r, part, part->t_end, DALCS_LEFT, &vanishes));
+            DALCS_TRY(tell_open_at(r, part, part->segment.t_end, DALCS_LEFT, &vanishes));
         }
         if (vanishes) {
-            double middle = part->t + 0.5 * (part->t_end - part->t);
+            double middle = part->segment.t + 0.5 * (part->segment.t_end - part->segment.t);
             DALCS_TRY(tell_open_at(r, part, middle, DALCS_RIGHT, &vanishes));
         }
-        part->open = false;
+        part->segment.open = false;
     }
     return DALCS_OK;
 }

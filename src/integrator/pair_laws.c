@@ -36,15 +36,15 @@ static void find_charges(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     int n_equations = dalcs_system_n_equations(s);
     for (int d = 0; d < s->n_pairs; d++) {
-        part->pair_row[2 * d] = part->pair_row[2 * d + 1] = -1;
+        part->laws.pair_row[2 * d] = part->laws.pair_row[2 * d + 1] = -1;
     }
     for (int r = 0; r < n_equations; r++) {
         for (int k = s->A.p[r]; s->row_is_current[r] && k < s->A.p[r + 1]; k++) {
             int d = s->A.j[k] - n_equations;
             if (d >= 0) {
-                int *row = &part->pair_row[2 * d];
+                int *row = &part->laws.pair_row[2 * d];
                 row[row[0] < 0 ? 0 : 1] = r;
-                part->held_charge[d] = fmax(part->held_charge[d], storage_of(s, r));
+                part->laws.held_charge[d] = fmax(part->laws.held_charge[d], storage_of(s, r));
             }
         }
     }
@@ -65,7 +65,8 @@ static void find_fluxes(struct dalcs_radau_part *part, double *at_node /* [n_equ
     for (int d = 0; d < s->n_pairs; d++) {
         for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
             int c = s->C.j[k];
-            part->held_flux[d] = fmax(part->held_flux[d], c < n_equations ? at_node[c] : 0.0);
+            part->laws.held_flux[d] =
+                fmax(part->laws.held_flux[d], c < n_equations ? at_node[c] : 0.0);
         }
     }
 }
@@ -99,13 +100,15 @@ static struct dalcs_pair_law law_of_resistance(const struct dalcs_system *s, int
 void dalcs_pair_laws_find(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     find_charges(part);
-    double *inductance = part->cluster_charge; /* [n_equations] at nodes; a work space of later */
+    double *inductance =
+        part->laws.cluster_charge; /* [n_equations] at nodes; a work space of later */
     find_fluxes(part, inductance);
     for (int d = 0; d < s->n_pairs; d++) {
-        part->pair_law[DALCS_PAIR_LAWS * d] = law_of_node(s, part->pair_row[2 * d], inductance);
-        part->pair_law[DALCS_PAIR_LAWS * d + 1] =
-            law_of_node(s, part->pair_row[2 * d + 1], inductance);
-        part->pair_law[DALCS_PAIR_LAWS * d + 2] = law_of_resistance(s, d);
+        part->laws.law[DALCS_PAIR_LAWS * d] =
+            law_of_node(s, part->laws.pair_row[2 * d], inductance);
+        part->laws.law[DALCS_PAIR_LAWS * d + 1] =
+            law_of_node(s, part->laws.pair_row[2 * d + 1], inductance);
+        part->laws.law[DALCS_PAIR_LAWS * d + 2] = law_of_resistance(s, d);
     }
 }
 
@@ -113,42 +116,42 @@ void dalcs_pair_laws_gather(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     const struct dalcs_osnsp *p = &part->component->osnsp;
     int n_equations = dalcs_system_n_equations(s);
-    dalcs_union_reset(part->cluster, n_equations);
+    dalcs_union_reset(part->laws.cluster, n_equations);
     for (int d = 0; d < s->n_pairs; d++) {
-        const int *row = &part->pair_row[2 * d];
+        const int *row = &part->laws.pair_row[2 * d];
         if (dalcs_osnsp_is_on(p, d) && row[0] >= 0 && row[1] >= 0) {
-            dalcs_union_join(part->cluster, row[0], row[1]);
+            dalcs_union_join(part->laws.cluster, row[0], row[1]);
         }
     }
-    memset(part->cluster_charge, 0, (size_t)n_equations * sizeof(double));
+    memset(part->laws.cluster_charge, 0, (size_t)n_equations * sizeof(double));
     for (int r = 0; r < s->n_x; r++) {
-        part->cluster_charge[dalcs_union_find(part->cluster, r)] += storage_of(s, r);
+        part->laws.cluster_charge[dalcs_union_find(part->laws.cluster, r)] += storage_of(s, r);
     }
     for (int d = 0; d < s->n_pairs; d++) {
-        const int *row = &part->pair_row[2 * d];
-        part->held_charge[d] = 0.0;
+        const int *row = &part->laws.pair_row[2 * d];
+        part->laws.held_charge[d] = 0.0;
         for (int e = 0; e < 2 && row[e] >= 0; e++) {
-            double charge = part->cluster_charge[dalcs_union_find(part->cluster, row[e])];
-            part->held_charge[d] = fmax(part->held_charge[d], charge);
+            double charge = part->laws.cluster_charge[dalcs_union_find(part->laws.cluster, row[e])];
+            part->laws.held_charge[d] = fmax(part->laws.held_charge[d], charge);
         }
     }
-    part->pair_rate->h = 0.0;
+    part->laws.rate->h = 0.0;
 }
 
 /* By one of its laws; what other closed pairs carry away from its node is as well known as it is so far. */
 static double rate_by_law(const struct dalcs_radau_part *part, int pair, int which) {
     const struct dalcs_system *s = part->component->system;
-    const struct dalcs_pair_law *law = &part->pair_law[DALCS_PAIR_LAWS * pair + which];
+    const struct dalcs_pair_law *law = &part->laws.law[DALCS_PAIR_LAWS * pair + which];
     if (!law->holds) {
         return INFINITY;
     }
-    double rate = law->capacitance / part->h + law->conductance;
-    int row = which < 2 ? part->pair_row[2 * pair + which] : -1;
+    double rate = law->capacitance / part->segment.h + law->conductance;
+    int row = which < 2 ? part->laws.pair_row[2 * pair + which] : -1;
     int n_equations = dalcs_system_n_equations(s);
     for (int k = row >= 0 ? s->A.p[row] : 0; row >= 0 && k < s->A.p[row + 1]; k++) {
         int other = s->A.j[k] - n_equations;
         if (other >= 0 && other != pair && dalcs_osnsp_is_on(&part->component->osnsp, other)) {
-            rate += part->pair_rate->of[other];
+            rate += part->laws.rate->of[other];
         }
     }
     return rate;
@@ -159,9 +162,10 @@ static double rate_by_law(const struct dalcs_radau_part *part, int pair, int whi
 static void find_rates(const struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     int n_pairs = p->system->n_pairs;
-    struct dalcs_pair_rate *rate = part->pair_rate;
+    struct dalcs_pair_rate *rate = part->laws.rate;
     for (int d = 0; d < n_pairs; d++) {
-        rate->of[d] = part->held_charge[d] > 0.0 ? part->held_charge[d] / part->h : INFINITY;
+        rate->of[d] = part->laws.held_charge[d] > 0.0 ? part->laws.held_charge[d] / part->segment.h
+                                                      : INFINITY;
     }
     bool changes = true;
     for (int round = 0; round < n_pairs && changes; round++) {
@@ -175,20 +179,20 @@ static void find_rates(const struct dalcs_radau_part *part) {
         }
     }
     memcpy(rate->mode, p->mode, (size_t)p->n_words * sizeof(uint64_t));
-    rate->h = part->h;
+    rate->h = part->segment.h;
 }
 
 double dalcs_pair_charge_rate(const struct dalcs_radau_part *part, int pair) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    const struct dalcs_pair_rate *rate = part->pair_rate;
-    double held = part->held_charge[pair] / part->h;
+    const struct dalcs_pair_rate *rate = part->laws.rate;
+    double held = part->laws.held_charge[pair] / part->segment.h;
     if (p->system->n_pairs > DALCS_MANY_PAIRS) {
         return held;
     }
-    if (rate->h != part->h || !dalcs_mode_is(rate->mode, p->mode, p->n_words)) {
+    if (rate->h != part->segment.h || !dalcs_mode_is(rate->mode, p->mode, p->n_words)) {
         find_rates(part);
     }
-    return dalcs_smaller(held, part->rounding * rate->of[pair]);
+    return dalcs_smaller(held, part->segment.rounding * rate->of[pair]);
 }
 
 /* The largest current at the nodes of the step, in A, of what a KCL row holds. */
@@ -203,7 +207,7 @@ static double largest_current(const struct dalcs_radau_part *part, int row) {
                               ? s->column_is_current[c]
                               : dalcs_osnsp_is_on(&part->component->osnsp, c - n_equations);
         for (int k = 0; k < l->n_nodes && is_current; k++) {
-            largest = dalcs_larger(largest, fabs(part->out[k * l->stride + c]));
+            largest = dalcs_larger(largest, fabs(part->segment.out[k * l->stride + c]));
         }
     }
     return largest;
@@ -212,9 +216,9 @@ static double largest_current(const struct dalcs_radau_part *part, int row) {
 double dalcs_pair_flux(const struct dalcs_radau_part *part, int pair) {
     double flux = 0.0;
     for (int e = 0; e < 2; e++) {
-        double inductance = part->pair_law[DALCS_PAIR_LAWS * pair + e].inductance;
+        double inductance = part->laws.law[DALCS_PAIR_LAWS * pair + e].inductance;
         if (inductance > 0.0) {
-            double largest = largest_current(part, part->pair_row[2 * pair + e]);
+            double largest = largest_current(part, part->laws.pair_row[2 * pair + e]);
             flux = dalcs_larger(flux, inductance * largest);
         }
     }

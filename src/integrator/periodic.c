@@ -67,7 +67,7 @@ struct dalcs_periodic {
     double start;  /* s: it came back then */
     double n_done; /* periods since */
     size_t next;
-    double *own_out; /* while part->out is one of those kept */
+    double *own_out; /* while part->segment.out is one of those kept */
 };
 
 /* omega[*n], in 1/s, of all that oscillates: sources as the part sees them, and those that command its switches.
@@ -147,7 +147,7 @@ enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r, struct dalcs
         return DALCS_OK;
     }
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    struct dalcs_periodic *periodic = part->periodic =
+    struct dalcs_periodic *periodic = part->memory.periodic =
         dalcs_arena_alloc(&part->arena, 1, sizeof(*periodic));
     if (periodic == NULL) {
         return DALCS_E_NOMEM;
@@ -165,7 +165,7 @@ enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r, struct dalcs
 }
 
 void dalcs_periodic_finish(struct dalcs_radau_part *part) {
-    struct dalcs_periodic *periodic = part->periodic;
+    struct dalcs_periodic *periodic = part->memory.periodic;
     if (periodic == NULL) {
         return;
     }
@@ -173,28 +173,28 @@ void dalcs_periodic_finish(struct dalcs_radau_part *part) {
     free(periodic->values);
     free(periodic->modes);
     free(periodic->crossed);
-    part->periodic = NULL;
+    part->memory.periodic = NULL;
 }
 
 /* How far the circuit is from where it was at the event a period ago, over what it may be; INFINITY:
  * it is something else that happened. */
 static double distance(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
-    const struct dalcs_periodic *periodic = part->periodic;
+    const struct dalcs_periodic *periodic = part->memory.periodic;
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    double to_come = (r->options.stop - part->t) / periodic->period;
+    double to_come = (r->options.stop - part->segment.t) / periodic->period;
     /* In all periods to come together states may miss what a step may. */
     double share = dalcs_larger(part->inner_tolerance / to_come, rounded);
-    double late = fabs(part->t - periodic->since - periodic->period);
+    double late = fabs(part->segment.t - periodic->since - periodic->period);
     if (late > same_event * periodic->period ||
         !dalcs_mode_is(periodic->mode, p->mode, p->n_words)) {
         return INFINITY;
     }
-    double farthest =
-        late / dalcs_larger(rounded * part->t, share / 6.283185307179586 * periodic->period);
+    double farthest = late / dalcs_larger(rounded * part->segment.t,
+                                          share / 6.283185307179586 * periodic->period);
     for (int x = 0; x < p->system->n_x; x++) {
         double off = fabs(part->x[x] - periodic->x[x]);
-        if (off > farthest * share * part->scale[x]) {
-            farthest = off / (share * part->scale[x]);
+        if (off > farthest * share * part->scales.column[x]) {
+            farthest = off / (share * part->scales.column[x]);
         }
     }
     return farthest;
@@ -204,21 +204,22 @@ static double distance(const struct dalcs_radau *r, const struct dalcs_radau_par
 static bool has_edges_to_come(const struct dalcs_radau_part *part) {
     const struct dalcs_commands *c = &part->commands;
     bool has = isfinite(part->excitation.next_edge);
-    for (int k = 0; k < c->n && !has && !part->periodic->by_commands; k++) {
-        has = isfinite(dalcs_control_next_edge(&c->control, c->command[k].pair, part->t));
+    for (int k = 0; k < c->n && !has && !part->memory.periodic->by_commands; k++) {
+        has = isfinite(dalcs_control_next_edge(&c->control, c->command[k].pair, part->segment.t));
     }
     return has;
 }
 
 void dalcs_periodic_look_ahead(struct dalcs_radau_part *part) {
-    if (!part->periodic->by_commands) {
-        dalcs_commands_look(&part->commands, part->t + (1.0 + same_event) * part->periodic->period);
+    if (!part->memory.periodic->by_commands) {
+        dalcs_commands_look(&part->commands,
+                            part->segment.t + (1.0 + same_event) * part->memory.periodic->period);
     }
 }
 
 void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    struct dalcs_periodic *periodic = part->periodic;
-    bool is_command = part->n_crossed == 0;
+    struct dalcs_periodic *periodic = part->memory.periodic;
+    bool is_command = part->guards.n_crossed == 0;
     if (has_edges_to_come(part) || (is_command && periodic->by_commands)) {
         return; /* the times of PULSEs are counted, not taken from an event that is one of them */
     }
@@ -227,7 +228,7 @@ void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *
         periodic->period = periodic->period > 0.0 ? periodic->period : INFINITY;
     }
     bool is_first = !periodic->has_event;
-    if (!is_first && part->t < periodic->since + periodic->period * (1.0 - same_event)) {
+    if (!is_first && part->segment.t < periodic->since + periodic->period * (1.0 - same_event)) {
         return;
     }
     double off = is_first ? INFINITY : distance(r, part);
@@ -235,11 +236,11 @@ void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *
     /* The period of a converter is short, and what happens in it moves about for many: that is not worth a copy. */
     periodic->keeps = off < far || (isinf(off) && !periodic->by_commands);
     if (periodic->repeats) {
-        periodic->start = part->t;
+        periodic->start = part->segment.t;
         return;
     }
     periodic->has_event = true;
-    periodic->since = part->t;
+    periodic->since = part->segment.t;
     memcpy(periodic->x, part->x, periodic->n_x * sizeof(double));
     memcpy(periodic->mode, part->component->osnsp.mode, periodic->n_words * sizeof(uint64_t));
     periodic->n = 0;
@@ -262,37 +263,37 @@ static enum dalcs_status make_room(struct dalcs_periodic *periodic, size_t n_cro
 }
 
 enum dalcs_status dalcs_periodic_note(struct dalcs_radau_part *part) {
-    struct dalcs_periodic *periodic = part->periodic;
+    struct dalcs_periodic *periodic = part->memory.periodic;
     if (!periodic->keeps) {
         return DALCS_OK;
     }
-    bool is_over = part->t > periodic->since + periodic->period * (1.0 + same_event);
-    periodic->keeps = !part->by_euler && !part->jumped && !is_over &&
+    bool is_over = part->segment.t > periodic->since + periodic->period * (1.0 + same_event);
+    periodic->keeps = !part->segment.by_euler && !part->segment.jumped && !is_over &&
                       (periodic->n + 1) * periodic->n_values <= most_kept;
     if (!periodic->keeps) {
         return DALCS_OK;
     }
     dalcs_recurrence_complete(part);
-    size_t n_crossed = (size_t)part->n_crossed;
+    size_t n_crossed = (size_t)part->guards.n_crossed;
     DALCS_TRY(make_room(periodic, n_crossed));
     double *value = periodic->values + periodic->n * periodic->n_values;
-    memcpy(value, part->out, periodic->n_out * sizeof(double));
+    memcpy(value, part->segment.out, periodic->n_out * sizeof(double));
     value += periodic->n_out;
-    memcpy(value, part->in, periodic->n_in * sizeof(double));
+    memcpy(value, part->segment.in, periodic->n_in * sizeof(double));
     value += periodic->n_in;
     memcpy(value, part->x, periodic->n_x * sizeof(double));
     memcpy(periodic->modes + periodic->n * periodic->n_words, part->component->osnsp.mode,
            periodic->n_words * sizeof(uint64_t));
     for (size_t k = 0; k < n_crossed; k++) {
-        periodic->crossed[periodic->n_crossed + k] = part->crossed[k];
+        periodic->crossed[periodic->n_crossed + k] = part->guards.crossed[k];
     }
     periodic->segment[periodic->n++] =
-        (struct periodic_segment){.h = part->h,
-                                  .end = part->end,
-                                  .t_end = part->t_end - periodic->since,
-                                  .why = part->why,
-                                  .level = part->level,
-                                  .n_crossed = part->n_crossed,
+        (struct periodic_segment){.h = part->segment.h,
+                                  .end = part->segment.end,
+                                  .t_end = part->segment.t_end - periodic->since,
+                                  .why = part->segment.why,
+                                  .level = part->length.level,
+                                  .n_crossed = part->guards.n_crossed,
                                   .first_crossed = periodic->n_crossed};
     periodic->n_crossed += n_crossed;
     return DALCS_OK;
@@ -310,20 +311,20 @@ static double next_end(const struct dalcs_periodic *periodic) {
 
 /* What comes next is looked for as always, from where the present segment ends. */
 static void stop_repeating(struct dalcs_radau_part *part) {
-    struct dalcs_periodic *periodic = part->periodic;
+    struct dalcs_periodic *periodic = part->memory.periodic;
     periodic->repeats = false;
     periodic->keeps = false;
     if (periodic->own_out != NULL) {
-        memcpy(periodic->own_out, part->out, periodic->n_out * sizeof(double));
-        part->out = periodic->own_out;
+        memcpy(periodic->own_out, part->segment.out, periodic->n_out * sizeof(double));
+        part->segment.out = periodic->own_out;
         periodic->own_out = NULL;
-        part->fresh = true;
+        part->guards.fresh = true;
         dalcs_transition_hold(part);
     }
 }
 
 bool dalcs_periodic_repeats(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    const struct dalcs_periodic *periodic = part->periodic;
+    const struct dalcs_periodic *periodic = part->memory.periodic;
     if (!periodic->repeats) {
         return false;
     }
@@ -336,31 +337,31 @@ bool dalcs_periodic_repeats(const struct dalcs_radau *r, struct dalcs_radau_part
 }
 
 void dalcs_periodic_take(struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    struct dalcs_periodic *periodic = part->periodic;
+    struct dalcs_periodic *periodic = part->memory.periodic;
     const struct periodic_segment *segment = &periodic->segment[periodic->next];
     double *value = periodic->values + periodic->next * periodic->n_values;
     if (periodic->own_out == NULL) {
-        periodic->own_out = part->out;
+        periodic->own_out = part->segment.out;
     }
-    part->out = value;
+    part->segment.out = value;
     if (r->base->energy != NULL) {
-        memcpy(part->in, value + periodic->n_out, periodic->n_in * sizeof(double));
-        memcpy(part->after, value + periodic->n_out + periodic->n_in,
+        memcpy(part->segment.in, value + periodic->n_out, periodic->n_in * sizeof(double));
+        memcpy(part->work.after, value + periodic->n_out + periodic->n_in,
                periodic->n_x * sizeof(double));
         dalcs_radau_go_after(r, part);
     }
     bool is_commanded = segment->why == DALCS_END_AT_EDGE;
-    part->t_end = is_commanded ? part->commands.next : next_end(periodic);
-    part->brief = NULL;
-    part->h = segment->h;
-    part->end = segment->end;
-    part->why = segment->why;
-    part->level = segment->level;
-    part->fresh = false;
-    part->flipped = false;
-    part->n_crossed = segment->n_crossed;
+    part->segment.t_end = is_commanded ? part->commands.next : next_end(periodic);
+    part->segment.brief = NULL;
+    part->segment.h = segment->h;
+    part->segment.end = segment->end;
+    part->segment.why = segment->why;
+    part->length.level = segment->level;
+    part->guards.fresh = false;
+    part->guards.flipped = false;
+    part->guards.n_crossed = segment->n_crossed;
     for (int k = 0; k < segment->n_crossed; k++) {
-        part->crossed[k] = periodic->crossed[segment->first_crossed + (size_t)k];
+        part->guards.crossed[k] = periodic->crossed[segment->first_crossed + (size_t)k];
     }
     for (size_t k = 0; k < periodic->n_words; k++) {
         part->component->osnsp.mode[k] = periodic->modes[periodic->next * periodic->n_words + k];

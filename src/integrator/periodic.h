@@ -14,26 +14,26 @@
 
 #include "radau.h"
 
-/* part->periodic; NULL where nothing can come back: then the functions below are not called. */
+/* part->memory.periodic; NULL where nothing can come back: then the functions below are not called. */
 enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r,
                                        struct dalcs_radau_part *part) DALCS_MUST_CHECK;
 
 void dalcs_periodic_finish(struct dalcs_radau_part *part);
 
-/* No search for a command ends within a period from part->t on, unless it finds one: each period has the same ends. */
+/* No search for a command ends within a period from part->segment.t on, unless it finds one: each period has the same ends. */
 void dalcs_periodic_look_ahead(struct dalcs_radau_part *part);
 
-/* At part->t pairs have changed sides, or been commanded to. */
+/* At part->segment.t pairs have changed sides, or been commanded to. */
 void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *part);
 
 /* The present segment has been looked for, and found. */
 enum dalcs_status dalcs_periodic_note(struct dalcs_radau_part *part) DALCS_MUST_CHECK;
 
 /* Is the segment known that follows the present one? If it was until now, and what ends the run is in it,
- * part->out is the part's own again. */
+ * part->segment.out is the part's own again. */
 bool dalcs_periodic_repeats(const struct dalcs_radau *r, struct dalcs_radau_part *part);
 
-/* Then at part->t, where that one ended, it is the present one. part->x is its state only where the
+/* Then at part->segment.t, where that one ended, it is the present one. part->x is its state only where the
  * energies are asked for. */
 void dalcs_periodic_take(struct dalcs_radau *r, struct dalcs_radau_part *part);
 

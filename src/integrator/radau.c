@@ -72,7 +72,7 @@ static size_t room_for_part(const struct dalcs_system *s) {
 }
 
 static bool allocate_probe(struct dalcs_radau_part *part) {
-    struct dalcs_lever_probe *p = &part->probe;
+    struct dalcs_lever_probe *p = &part->scales.probe;
     size_t n_levered = (size_t)part->stages.n_levered;
     p->rounding = dalcs_arena_alloc(&part->arena, n_levered, sizeof(double));
     p->drift = dalcs_arena_alloc(&part->arena, n_levered, sizeof(double));
@@ -87,32 +87,37 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     size_t n_guards = (size_t)(s->n_pairs + part->stages.n_watched);
     size_t n_out = (size_t)l->n_fixed + (size_t)part->stages.method->s * n_columns + 8;
     part->x = dalcs_arena_alloc(&part->arena, (size_t)dalcs_quads_of(s->n_x), sizeof(double));
-    part->in = dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_in, sizeof(double));
-    part->out = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
-    part->in_before = dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_in, sizeof(double));
-    part->out_before = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
-    part->out_tried = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
-    part->armed = dalcs_arena_alloc(&part->arena, n_guards, sizeof(bool));
-    part->crossed = dalcs_arena_alloc(&part->arena, n_guards, sizeof(int));
-    part->tied = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(bool));
-    part->u = dalcs_arena_alloc(&part->arena, (size_t)(s->n_x + s->n_inputs), sizeof(double));
-    part->y1 = dalcs_arena_alloc(&part->arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
-    part->y2 = dalcs_arena_alloc(&part->arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
-    part->w1 = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
-    part->after = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
+    part->segment.in = dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_in, sizeof(double));
+    part->segment.out = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
+    part->segment.in_before =
+        dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_in, sizeof(double));
+    part->segment.out_before = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
+    part->work.out_tried = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
+    part->guards.armed = dalcs_arena_alloc(&part->arena, n_guards, sizeof(bool));
+    part->guards.crossed = dalcs_arena_alloc(&part->arena, n_guards, sizeof(int));
+    part->guards.tied = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(bool));
+    part->work.u = dalcs_arena_alloc(&part->arena, (size_t)(s->n_x + s->n_inputs), sizeof(double));
+    part->work.y1 =
+        dalcs_arena_alloc(&part->arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
+    part->work.y2 =
+        dalcs_arena_alloc(&part->arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
+    part->work.w1 = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
+    part->work.after = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
     part->used_input = dalcs_arena_alloc(&part->arena, (size_t)s->n_inputs, sizeof(int));
     int most_levered = part->stages.n_levered > s->n_pairs ? part->stages.n_levered : s->n_pairs;
-    part->current_drift =
+    part->scales.current_drift =
         dalcs_arena_alloc(&part->arena, (size_t)dalcs_dense_map_rows(most_levered), sizeof(double));
-    part->pair_parts = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
-    part->current_parts =
+    part->scales.pair_parts = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
+    part->scales.current_parts =
         dalcs_arena_alloc(&part->arena, (size_t)part->stages.n_levered, sizeof(double));
-    bool complete =
-        part->x != NULL && part->in != NULL && part->out != NULL && part->in_before != NULL &&
-        part->out_before != NULL && part->out_tried != NULL && part->armed != NULL &&
-        part->crossed != NULL && part->tied != NULL && part->u != NULL && part->y1 != NULL &&
-        part->y2 != NULL && part->w1 != NULL && part->after != NULL && part->used_input != NULL &&
-        part->current_drift != NULL && part->current_parts != NULL && part->pair_parts != NULL;
+    bool complete = part->x != NULL && part->segment.in != NULL && part->segment.out != NULL &&
+                    part->segment.in_before != NULL && part->segment.out_before != NULL &&
+                    part->work.out_tried != NULL && part->guards.armed != NULL &&
+                    part->guards.crossed != NULL && part->guards.tied != NULL &&
+                    part->work.u != NULL && part->work.y1 != NULL && part->work.y2 != NULL &&
+                    part->work.w1 != NULL && part->work.after != NULL && part->used_input != NULL &&
+                    part->scales.current_drift != NULL && part->scales.current_parts != NULL &&
+                    part->scales.pair_parts != NULL;
     return complete && (dalcs_stages_have_maps(&part->stages) || allocate_probe(part))
                ? DALCS_OK
                : DALCS_E_NOMEM;
@@ -142,8 +147,8 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     bool steps = has_memory_or_sides(c->system);
     part->kind = steps ? DALCS_PART_STEPPED : DALCS_PART_ALGEBRAIC;
     struct dalcs_conductances g = dalcs_conductances_find(c->system, r->options.stop);
-    find_cross_scales(&g, part->cross);
-    part->leak = 0.5 * DBL_EPSILON * g.joint;
+    find_cross_scales(&g, part->scales.cross);
+    part->scales.leak = 0.5 * DBL_EPSILON * g.joint;
     struct dalcs_choice choice = dalcs_choice_make(&r->options, c, &g, osnsp->dense_limit);
     part->tolerance = choice.tolerance;
     part->inner_tolerance = inner_tolerance_of(choice.tolerance);
@@ -166,16 +171,17 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
         return DALCS_E_NOMEM;
     }
     list_used_inputs(part, r->base->network, used);
-    part->longest = dalcs_length_longest(r, part);
-    part->longest_needed = below_twice * dalcs_length_of_spans(part);
-    double first = fmin(part->longest_needed, fmin(part->longest, r->options.stop / FIRST_STEPS));
+    part->length.longest = dalcs_length_longest(r, part);
+    part->length.longest_needed = below_twice * dalcs_length_of_spans(part);
+    double first = fmin(part->length.longest_needed,
+                        fmin(part->length.longest, r->options.stop / FIRST_STEPS));
     double promising = dalcs_length_promising(part);
-    part->rung = fit_rung(promising);
-    part->level = -ilogb(fmin(first, promising) / part->rung);
-    part->patience = 32;
+    part->length.rung = fit_rung(promising);
+    part->length.level = -ilogb(fmin(first, promising) / part->length.rung);
+    part->length.patience = 32;
     DALCS_TRY(dalcs_periodic_setup(r, part));
     if (dalcs_stages_have_maps(&part->stages)) {
-        part->rounding = 1.0; /* before there is a step, too */
+        part->segment.rounding = 1.0; /* before there is a step, too */
     }
     return DALCS_OK;
 }
@@ -250,14 +256,14 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
             dalcs_energy_start(r->base->energy, k, x);
         }
         if (part->kind == DALCS_PART_ALGEBRAIC) {
-            part->t_end = INFINITY;
+            part->segment.t_end = INFINITY;
             continue;
         }
         remember_switches(part);
         dalcs_commands_start(&part->commands);
         obey_commands(part);
-        part->fresh = true;
-        part->seen = INFINITY;
+        part->guards.fresh = true;
+        part->guards.seen = INFINITY;
         if (initial != NULL || dalcs_component_jumps_at_start(c)) {
             bool is_off; /* for the first segment to find */
             DALCS_TRY(dalcs_radau_restart(r, part, 0, false, &is_off));
@@ -272,11 +278,11 @@ double dalcs_radau_next_stop(const struct dalcs_radau *r, bool *happens) {
     *happens = false;
     for (int k = 0; k < r->n_parts; k++) {
         const struct dalcs_radau_part *part = &r->part[k];
-        bool event = part->why != DALCS_END_OF_STEP;
-        if (part->t_end < next) {
-            next = part->t_end;
+        bool event = part->segment.why != DALCS_END_OF_STEP;
+        if (part->segment.t_end < next) {
+            next = part->segment.t_end;
             *happens = event;
-        } else if (part->t_end == next) {
+        } else if (part->segment.t_end == next) {
             *happens = *happens || event;
         }
     }
@@ -290,38 +296,40 @@ static const double close = 0x1p-30;
  * end: rounding of what is 0 goes to and fro. Steps of implicit Euler leave either behind, with no event at
  * their ends. */
 static void count_crowd(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    if (part->t - part->crowd_since > 1e4 * r->resolution) {
-        part->crowd_since = part->t;
-        part->crowd = 0;
+    if (part->segment.t - part->memory.crowd_since > 1e4 * r->resolution) {
+        part->memory.crowd_since = part->segment.t;
+        part->memory.crowd = 0;
     }
-    part->flurry = part->t - part->last_event > close * r->options.stop ? 0 : part->flurry;
-    if (part->n_crossed > 0) {
-        part->crowd++;
-        part->flurry++;
-        part->last_event = part->t;
+    part->memory.flurry = part->segment.t - part->memory.last_event > close * r->options.stop
+                              ? 0
+                              : part->memory.flurry;
+    if (part->guards.n_crossed > 0) {
+        part->memory.crowd++;
+        part->memory.flurry++;
+        part->memory.last_event = part->segment.t;
     }
 }
 
 /* [n_columns] where the segment ends; inside the step by way of part->y1. */
 static const double *end_of_segment(struct dalcs_radau_part *part) {
     dalcs_recurrence_complete(part);
-    if (part->end == 1.0) {
-        return part->out + part->stages.method->s * part->stages.layout.stride;
+    if (part->segment.end == 1.0) {
+        return part->segment.out + part->stages.method->s * part->stages.layout.stride;
     }
-    dalcs_step_values(part, part->end, part->y1);
-    return part->y1;
+    dalcs_step_values(part, part->segment.end, part->work.y1);
+    return part->work.y1;
 }
 
 /* The last segment is kept while the next one is looked for: there may be none. */
 static void set_aside(struct dalcs_radau_part *part) {
-    double *in = part->in;
-    part->in = part->in_before;
-    part->in_before = in;
-    dalcs_radau_swap_out(part, &part->out_before);
-    part->end_before = part->end;
-    part->late_before = part->late;
-    part->late = NULL;
-    part->brief = NULL;
+    double *in = part->segment.in;
+    part->segment.in = part->segment.in_before;
+    part->segment.in_before = in;
+    dalcs_radau_swap_out(part, &part->segment.out_before);
+    part->segment.end_before = part->segment.end;
+    part->segment.late_before = part->segment.late;
+    part->segment.late = NULL;
+    part->segment.brief = NULL;
 }
 
 /* part->x is the state where the segment ends. */
@@ -330,12 +338,12 @@ static void go_to_end(struct dalcs_radau_part *part) {
     const double *known = part->stages.plan == NULL ? dalcs_recurrence_end(part) : NULL;
     if (known != NULL) {
         memcpy(part->x, known, state_bytes);
-    } else if (part->end == 1.0 || part->stages.plan != NULL) {
+    } else if (part->segment.end == 1.0 || part->stages.plan != NULL) {
         const double *end = end_of_segment(part);
         memcpy(part->x, end, state_bytes);
         dalcs_stages_stay_near(&part->stages, part->component->osnsp.mode, end);
     } else {
-        dalcs_step_states(part, part->end, part->x);
+        dalcs_step_states(part, part->segment.end, part->x);
     }
 }
 
@@ -343,7 +351,7 @@ static void go_to_end(struct dalcs_radau_part *part) {
 static enum dalcs_status repeat_or_begin(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          bool commanded, bool repeats) {
     dalcs_periodic_look_ahead(part);
-    if (!repeats && (part->n_crossed > 0 || commanded)) {
+    if (!repeats && (part->guards.n_crossed > 0 || commanded)) {
         dalcs_periodic_event(r, part);
         repeats = dalcs_periodic_repeats(r, part);
     }
@@ -358,61 +366,62 @@ static enum dalcs_status repeat_or_begin(struct dalcs_radau *r, struct dalcs_rad
 
 static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
-    part->jumped = false;
+    part->segment.jumped = false;
     if (r->base->energy != NULL) {
-        memcpy(part->after, part->x, state_bytes);
+        memcpy(part->work.after, part->x, state_bytes);
     }
-    bool repeats = part->periodic != NULL && dalcs_periodic_repeats(r, part);
+    bool repeats = part->memory.periodic != NULL && dalcs_periodic_repeats(r, part);
     if (!repeats || r->base->energy != NULL) {
         go_to_end(part);
         if (dalcs_component_overgrows(part->component, part->x)) {
             r->base->failed_system = part->index;
-            r->base->failed_time = part->t_end;
+            r->base->failed_time = part->segment.t_end;
             return DALCS_NOT_CONVERGED;
         }
     }
-    part->fresh = part->fresh || part->end != 1.0; /* the next step starts inside this one */
+    part->guards.fresh =
+        part->guards.fresh || part->segment.end != 1.0; /* the next step starts inside this one */
     if (r->base->energy != NULL) {
-        dalcs_energy_segment(r->base->energy, part, part->after);
+        dalcs_energy_segment(r->base->energy, part, part->work.after);
     }
-    part->t = part->t_end;
-    if (part->n_crossed > 0) {
+    part->segment.t = part->segment.t_end;
+    if (part->guards.n_crossed > 0) {
         dalcs_twins_flip(part);
-        part->fresh = true;
-        part->flipped = true;
+        part->guards.fresh = true;
+        part->guards.flipped = true;
     }
-    if (part->n_crossed > 0 || part->by_euler) {
+    if (part->guards.n_crossed > 0 || part->segment.by_euler) {
         count_crowd(r, part);
     }
-    if (part->excitation.next_edge <= part->t + r->resolution) {
-        dalcs_excitation_enter(&part->excitation, part->t);
-        part->fresh = true;
+    if (part->excitation.next_edge <= part->segment.t + r->resolution) {
+        dalcs_excitation_enter(&part->excitation, part->segment.t);
+        part->guards.fresh = true;
     }
-    bool commanded = part->commands.next <= part->t + r->resolution &&
-                     dalcs_commands_obey(&part->commands, part->t);
+    bool commanded = part->commands.next <= part->segment.t + r->resolution &&
+                     dalcs_commands_obey(&part->commands, part->segment.t);
     if (commanded) {
         obey_commands(part);
-        part->fresh = true;
-        part->flipped = true;
+        part->guards.fresh = true;
+        part->guards.flipped = true;
     }
-    if (part->t >= r->options.stop) {
+    if (part->segment.t >= r->options.stop) {
         return DALCS_OK;
     }
-    if (part->periodic != NULL) {
+    if (part->memory.periodic != NULL) {
         DALCS_TRY(repeat_or_begin(r, part, commanded, repeats));
     } else {
         set_aside(part);
         DALCS_TRY(dalcs_segment_begin(r, part));
     }
-    return part->cycle != NULL ? dalcs_cycle_note(r, part) : DALCS_OK;
+    return part->memory.cycle != NULL ? dalcs_cycle_note(r, part) : DALCS_OK;
 }
 
 enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) {
     bool opens = false;
     for (int k = 0; k < r->n_parts; k++) {
-        if (r->part[k].t_end <= t && r->part[k].t < r->options.stop) {
+        if (r->part[k].segment.t_end <= t && r->part[k].segment.t < r->options.stop) {
             DALCS_TRY(pass(r, &r->part[k]));
-            opens = opens || r->part[k].open;
+            opens = opens || r->part[k].segment.open;
         }
     }
     return opens ? dalcs_radau_tell_open(r) : DALCS_OK;
@@ -461,8 +470,8 @@ static void evaluate_stepped(struct dalcs_radau_part *part, double t, enum dalcs
     const struct dalcs_bystanders *b = &part->excitation.bystanders;
     int n_equations = dalcs_system_n_equations(s);
     dalcs_recurrence_complete(part);
-    dalcs_step_values(part, dalcs_radau_theta(part, t), part->y1);
-    memcpy(c->y, part->y1, (size_t)dalcs_system_n_columns(s) * sizeof(double));
+    dalcs_step_values(part, dalcs_radau_theta(part, t), part->work.y1);
+    memcpy(c->y, part->work.y1, (size_t)dalcs_system_n_columns(s) * sizeof(double));
     for (int d = 0; d < s->n_pairs; d++) {
         c->y[n_equations + d] *= dalcs_osnsp_is_on(&c->osnsp, d) ? 1.0 : 0.0;
     }
@@ -524,9 +533,9 @@ enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t, enum dal
 static void evaluate_end_of_last(struct dalcs_radau_part *part) {
     struct dalcs_component *c = part->component;
     dalcs_recurrence_complete_before(part);
-    dalcs_radau_swap_out(part, &part->out_before);
-    dalcs_step_values(part, part->end_before, part->y1);
-    memcpy(c->y, part->y1, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
+    dalcs_radau_swap_out(part, &part->segment.out_before);
+    dalcs_step_values(part, part->segment.end_before, part->work.y1);
+    memcpy(c->y, part->work.y1, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
 }
 
 /* A component that found no next segment is where its last one ended. */
@@ -536,9 +545,9 @@ void dalcs_radau_break_off(struct dalcs_radau *r, double t) {
         if (part->kind != DALCS_PART_STEPPED) {
             continue;
         }
-        if (part->t_end > part->t) {
+        if (part->segment.t_end > part->segment.t) {
             evaluate_stepped(part, t, DALCS_LEFT);
-        } else if (part->t > 0.0) {
+        } else if (part->segment.t > 0.0) {
             evaluate_end_of_last(part);
         }
     }

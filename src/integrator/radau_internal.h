@@ -8,15 +8,15 @@
 #include <math.h>
 #include <string.h>
 
-/* segment.c: from part->t, part->x and the mode to a segment that holds until part->t_end. */
+/* segment.c: from part->segment.t, part->x and the mode to a segment that holds until part->t_end. */
 enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r,
                                       struct dalcs_radau_part *part) DALCS_MUST_CHECK;
 
-/* The present step up to theta is a segment; part->t_end and part->why are known. */
+/* The present step up to theta is a segment; part->segment.t_end and part->segment.why are known. */
 void dalcs_segment_accept(struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
                           double residual);
 
-/* part->in for a step of length part->h from part->t. */
+/* part->segment.in for a step of length part->segment.h from part->t. */
 void dalcs_segment_inputs(struct dalcs_radau_part *part);
 
 /* Such a step in the present mode, into part->out. */
@@ -31,7 +31,7 @@ static const double dalcs_worth_projecting = 1e-2;
  * a mode is singular and the states contradict it, which takes a circuit that is not passive. */
 static const double dalcs_largest_residual = 1e-6;
 
-/* restart.c: two micro-steps from part->t decide mode and state; a jump is reported. `longer` makes
+/* restart.c: two micro-steps from part->segment.t decide mode and state; a jump is reported. `longer` makes
  * them 2^(5 longer) times as long; mode_only leaves the state as it is. *is_off: it jumps by no
  * more than the error that the state of an event has, or so it seems, and was left where it is, for a
  * projecting step to decide; in large parts on factors, whose rounding such a step would not survive, and
@@ -50,13 +50,13 @@ double dalcs_radau_micro_length(const struct dalcs_radau *r, const struct dalcs_
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double h) DALCS_MUST_CHECK;
 
-/* One problem of such a step, of length h to part->t + tau, from state[n_x] into y[n_columns], with the switches where
- * they then stand; part->slides is set where nothing fits. */
+/* One problem of such a step, of length h to part->segment.t + tau, from state[n_x] into y[n_columns], with the switches where
+ * they then stand; part->guards.slides is set where nothing fits. */
 enum dalcs_status dalcs_radau_implicit_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                             double h, double tau, const double *state,
                                             double *y) DALCS_MUST_CHECK;
 
-/* part->y1 at the end of a step of implicit Euler of length h becomes the present segment, along which states go
+/* part->work.y1 at the end of a step of implicit Euler of length h becomes the present segment, along which states go
  * straight; all columns do, from before[n_columns], if that is not NULL. */
 void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
                               const double *before);
@@ -77,26 +77,26 @@ double dalcs_radau_bystander(const struct dalcs_radau_part *part, int bystander,
 
 /* Where t is in the present segment, which may end a rounding earlier. */
 static inline double dalcs_radau_theta(const struct dalcs_radau_part *part, double t) {
-    double theta = (t - part->t) / part->h;
-    return theta < part->end ? theta : part->end;
+    double theta = (t - part->segment.t) / part->segment.h;
+    return theta < part->segment.end ? theta : part->segment.end;
 }
 
 static inline double dalcs_radau_ladder(const struct dalcs_radau_part *part, int level) {
     enum { FAR = 900 }; /* beyond, the power of 2 might not be a normal number */
 
     if (level < -FAR || level > FAR) {
-        return ldexp(part->rung, -level);
+        return ldexp(part->length.rung, -level);
     }
     uint64_t bits = (uint64_t)(1023 - level) << 52;
     double power;
     memcpy(&power, &bits, sizeof(power));
-    return part->rung * power;
+    return part->length.rung * power;
 }
 
-/* part->out is put aside, and what was aside is part->out. */
+/* part->segment.out is put aside, and what was aside is part->out. */
 static inline void dalcs_radau_swap_out(struct dalcs_radau_part *part, double **aside) {
-    double *out = part->out;
-    part->out = *aside;
+    double *out = part->segment.out;
+    part->segment.out = *aside;
     *aside = out;
 }
 

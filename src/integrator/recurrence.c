@@ -41,13 +41,14 @@ static bool is_due(const struct dalcs_recurring *recurring) {
 
 /* As the first such span had it: its map may be there. */
 static double first_span(const struct dalcs_radau_part *part, double span) {
-    double known = dalcs_length_known_span(part, part->t, part->t + span);
+    double known = dalcs_length_known_span(part, part->segment.t, part->segment.t + span);
     if (known > 0.0) {
         return known;
     }
     for (int k = 0; k < DALCS_TRANSITIONS; k++) {
-        const struct dalcs_recurring *other = &part->transition[k].span;
-        if (other->brief != NULL && dalcs_length_is_same(other->length, part->t, part->t + span)) {
+        const struct dalcs_recurring *other = &part->memory.transition[k].span;
+        if (other->brief != NULL &&
+            dalcs_length_is_same(other->length, part->segment.t, part->segment.t + span)) {
             return other->length;
         }
     }
@@ -75,9 +76,9 @@ void dalcs_recurrence_limits(const struct dalcs_radau_part *part,
                              double *most_drift) {
     bool states_free = dalcs_stage_frees_states(step->entry);
     double allowed = (states_free ? 1.0 : dalcs_worth_projecting) * part->inner_tolerance;
-    double of_unit = part->unit_scale[part->component->system->column_is_current[x] ? 1 : 0];
-    *most_last = dalcs_larger(most_growth * part->scale[x], of_unit);
-    *most_drift = allowed * part->scale[x];
+    double of_unit = part->scales.unit[part->component->system->column_is_current[x] ? 1 : 0];
+    *most_last = dalcs_larger(most_growth * part->scales.column[x], of_unit);
+    *most_drift = allowed * part->scales.column[x];
 }
 
 static bool is_accurate(const struct dalcs_radau *r, struct dalcs_radau_part *part,
@@ -94,30 +95,30 @@ static bool is_accurate(const struct dalcs_radau *r, struct dalcs_radau_part *pa
     }
     struct dalcs_lever_error e = {0};
     if (accurate) {
-        dalcs_current_error(part, step->entry, part->unit_scale, r->besides, &e);
+        dalcs_current_error(part, step->entry, part->scales.unit, r->besides, &e);
     }
     return accurate && e.of_currents <= 1.0 && e.of_voltages <= 1.0;
 }
 
-/* A step of length h from part->t, by its brief map. */
+/* A step of length h from part->segment.t, by its brief map. */
 static void apply(struct dalcs_radau_part *part, struct dalcs_stage_brief *step, double h) {
-    part->h = h;
-    part->rounding = 1.0; /* a map's */
-    part->entry = NULL;   /* which may be that of another mode */
+    part->segment.h = h;
+    part->segment.rounding = 1.0; /* a map's */
+    part->segment.entry = NULL;   /* which may be that of another mode */
     dalcs_segment_inputs(part);
-    dalcs_stage_brief_apply(&part->stages, step, part->in);
+    dalcs_stage_brief_apply(&part->stages, step, part->segment.in);
 }
 
 /* It is the present segment up to theta, in steps. */
 static void take(struct dalcs_radau *r, struct dalcs_radau_part *part,
                  struct dalcs_stage_brief *step, double theta) {
-    part->late = step->entry;
-    part->brief = step;
+    part->segment.late = step->entry;
+    part->segment.brief = step;
     if (r->base->energy != NULL) {
         dalcs_recurrence_complete(part);
     }
     part->stages.cache_hits++;
-    part->open = false;
+    part->segment.open = false;
     dalcs_segment_accept(r, part, theta, dalcs_stage_residual(step->entry));
 }
 
@@ -141,8 +142,8 @@ static enum dalcs_status try_span(struct dalcs_radau *r, struct dalcs_radau_part
     bool may_hold = is_accurate(r, part, step, &outgrows) && dalcs_guards_clear(part, step->guard);
     *holds = may_hold && !outgrows;
     if (*holds) {
-        part->t_end = limit;
-        part->why = DALCS_END_AT_EDGE;
+        part->segment.t_end = limit;
+        part->segment.why = DALCS_END_AT_EDGE;
         take(r, part, step, 1.0);
     } else if (!may_hold) {
         let_go(part, span);
@@ -151,10 +152,10 @@ static enum dalcs_status try_span(struct dalcs_radau *r, struct dalcs_radau_part
 }
 
 static void note_span(struct dalcs_radau_part *part, struct dalcs_recurring *span) {
-    if (dalcs_length_is_same(span->length, part->t, part->t_end)) {
+    if (dalcs_length_is_same(span->length, part->segment.t, part->segment.t_end)) {
         span->times++;
     } else {
-        dalcs_transition_count(part, span, part->t_end - part->t);
+        dalcs_transition_count(part, span, part->segment.t_end - part->segment.t);
         span->patience = OFTEN;
     }
 }
@@ -162,7 +163,7 @@ static void note_span(struct dalcs_radau_part *part, struct dalcs_recurring *spa
 /* By the step that was enough the last times, up to an event or the limit. */
 static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                   struct dalcs_transition *known, double limit, bool *holds) {
-    if (known->step_level != part->level) {
+    if (known->step_level != part->length.level) {
         return DALCS_OK;
     }
     if (is_due(&known->step)) {
@@ -174,13 +175,13 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         return DALCS_OK;
     }
     apply(part, step, known->step.length);
-    double end = dalcs_smaller(1.0, (limit - part->t) / part->h);
+    double end = dalcs_smaller(1.0, (limit - part->segment.t) / part->segment.h);
     double theta = end;
     bool outgrows;
     bool may_hold =
         is_accurate(r, part, step, &outgrows) && dalcs_guards_plain(part, step->guard, end, &theta);
-    double t_end = part->t + theta * part->h;
-    bool happens = part->n_crossed > 0;
+    double t_end = part->segment.t + theta * part->segment.h;
+    bool happens = part->guards.n_crossed > 0;
     if (!happens && may_hold) {
         may_hold = t_end >= limit - r->resolution;
         t_end = limit;
@@ -188,8 +189,8 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     /* What crosses near the stop time may be left to a longer run (guards.c). */
     *holds = may_hold && !outgrows && !(happens && limit >= r->options.stop);
     if (*holds) {
-        part->t_end = dalcs_smaller(t_end, limit);
-        part->why = happens ? DALCS_END_AT_EVENT : DALCS_END_AT_EDGE;
+        part->segment.t_end = dalcs_smaller(t_end, limit);
+        part->segment.why = happens ? DALCS_END_AT_EVENT : DALCS_END_AT_EDGE;
         if (!happens) {
             note_span(part, &known->span); /* which is stepped at once when it recurs */
         }
@@ -204,38 +205,38 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
 enum dalcs_status dalcs_recurrence_try(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        double limit, bool *holds) {
     struct dalcs_transition *known = dalcs_transition_known(part);
-    int n_crossed = part->n_crossed; /* which began the segment */
+    int n_crossed = part->guards.n_crossed; /* which began the segment */
     *holds = false;
-    if (dalcs_length_is_same(known->span.length, part->t, limit)) {
+    if (dalcs_length_is_same(known->span.length, part->segment.t, limit)) {
         DALCS_TRY(try_span(r, part, &known->span, limit, holds));
     }
     if (!*holds) {
         DALCS_TRY(try_step(r, part, known, limit, holds));
     }
     if (!*holds) {
-        part->n_crossed = n_crossed;
+        part->guards.n_crossed = n_crossed;
     }
     return DALCS_OK;
 }
 
 static void note_step(struct dalcs_radau_part *part, struct dalcs_transition *known) {
-    bool is_enough = part->why != DALCS_END_OF_STEP && part->n_crossed <= 1;
-    if (is_enough && known->step.length == part->h) {
+    bool is_enough = part->segment.why != DALCS_END_OF_STEP && part->guards.n_crossed <= 1;
+    if (is_enough && known->step.length == part->segment.h) {
         known->step.times++;
     } else {
-        dalcs_transition_count(part, &known->step, is_enough ? part->h : 0.0);
-        known->step_level = part->level;
+        dalcs_transition_count(part, &known->step, is_enough ? part->segment.h : 0.0);
+        known->step_level = part->length.level;
         known->step.patience = OFTEN;
     }
 }
 
 void dalcs_recurrence_note(struct dalcs_radau_part *part) {
     struct dalcs_transition *known = dalcs_transition_known(part);
-    bool on_map = part->rounding == 1.0;
+    bool on_map = part->segment.rounding == 1.0;
     if (!on_map || part->excitation.is_curved) {
         return; /* factors for one span are too dear; what sources do between the nodes is not looked at */
     }
-    if (part->why == DALCS_END_AT_EDGE) {
+    if (part->segment.why == DALCS_END_AT_EDGE) {
         note_span(part, &known->span);
     }
     note_step(part, known);
@@ -243,13 +244,13 @@ void dalcs_recurrence_note(struct dalcs_radau_part *part) {
 
 void dalcs_recurrence_begin(struct dalcs_radau_part *part) {
     struct dalcs_stage_brief *step = dalcs_transition_known(part)->span.brief;
-    dalcs_stage_brief_apply(&part->stages, step, part->in);
-    part->late = step->entry;
-    part->brief = step;
+    dalcs_stage_brief_apply(&part->stages, step, part->segment.in);
+    part->segment.late = step->entry;
+    part->segment.brief = step;
 }
 
 const double *dalcs_recurrence_end(const struct dalcs_radau_part *part) {
-    return part->brief != NULL ? part->brief->last : NULL;
+    return part->segment.brief != NULL ? part->segment.brief->last : NULL;
 }
 
 static void complete(const struct dalcs_radau_part *part, struct dalcs_stage_entry **late,
@@ -261,9 +262,9 @@ static void complete(const struct dalcs_radau_part *part, struct dalcs_stage_ent
 }
 
 void dalcs_recurrence_complete(struct dalcs_radau_part *part) {
-    complete(part, &part->late, part->in, part->out);
+    complete(part, &part->segment.late, part->segment.in, part->segment.out);
 }
 
 void dalcs_recurrence_complete_before(struct dalcs_radau_part *part) {
-    complete(part, &part->late_before, part->in_before, part->out_before);
+    complete(part, &part->segment.late_before, part->segment.in_before, part->segment.out_before);
 }

@@ -45,7 +45,7 @@ static enum dalcs_status fail(struct dalcs_radau *r, struct dalcs_radau_part *pa
     part->component->failed_sigma = sigma;
     part->component->failed_u = u;
     e->failed_system = part->index;
-    e->failed_time = part->t;
+    e->failed_time = part->segment.t;
     e->failed_h = 1.0 / sigma;
     return status;
 }
@@ -53,8 +53,8 @@ static enum dalcs_status fail(struct dalcs_radau *r, struct dalcs_radau_part *pa
 /* What the control of a watched switch may be off by: its guard, but for what only a step tells. */
 static double slack_of(const struct dalcs_radau_part *part, int guard) {
     return dalcs_doubts_over_tolerance * part->inner_tolerance *
-               dalcs_guard_control_scale(part, guard, part->unit_scale) +
-           dalcs_guard_most_rounding(part, guard, part->unit_scale);
+               dalcs_guard_control_scale(part, guard, part->scales.unit) +
+           dalcs_guard_most_rounding(part, guard, part->scales.unit);
 }
 
 /* Switches whose control reads the circuit. all: those with hysteresis move, too; in micro-steps they stand as they
@@ -64,7 +64,7 @@ static void prepare_positions(struct dalcs_radau_part *part, bool all) {
     int n_pairs = part->component->system->n_pairs;
     p->keeps = !all;
     for (int i = 0; i < p->n; i++) {
-        p->slack[i] = part->t > 0.0 ? slack_of(part, n_pairs + i) : 0.0;
+        p->slack[i] = part->segment.t > 0.0 ? slack_of(part, n_pairs + i) : 0.0;
     }
 }
 
@@ -73,16 +73,16 @@ enum dalcs_status dalcs_radau_implicit_step(struct dalcs_radau *r, struct dalcs_
     struct dalcs_component *c = part->component;
     const struct dalcs_system *s = c->system;
     double sigma = s->n_x > 0 ? 1.0 / h : 0.0;
-    memmove(part->u, state, (size_t)s->n_x * sizeof(double));
-    dalcs_excitation_inputs(&part->excitation, part->t, tau, part->u + s->n_x);
-    enum dalcs_status status = dalcs_positions_solve(&c->positions, sigma, part->u, y);
+    memmove(part->work.u, state, (size_t)s->n_x * sizeof(double));
+    dalcs_excitation_inputs(&part->excitation, part->segment.t, tau, part->work.u + s->n_x);
+    enum dalcs_status status = dalcs_positions_solve(&c->positions, sigma, part->work.u, y);
     if (status != DALCS_OK) {
-        return fail(r, part, sigma, part->u, status);
+        return fail(r, part, sigma, part->work.u, status);
     }
-    part->slides = part->slides || !c->positions.settled;
+    part->guards.slides = part->guards.slides || !c->positions.settled;
     if (c->osnsp.certificate.worst > r->base->worst.worst) {
         r->base->worst = c->osnsp.certificate;
-        r->base->worst_time = part->t;
+        r->base->worst_time = part->segment.t;
         r->base->worst_system = part->index;
     }
     return DALCS_OK;
@@ -91,8 +91,8 @@ enum dalcs_status dalcs_radau_implicit_step(struct dalcs_radau *r, struct dalcs_
 /* V, A: the largest so far, and of the states. */
 static void find_largest(const struct dalcs_radau_part *part, double *largest) {
     const struct dalcs_system *s = part->component->system;
-    largest[0] = part->unit_scale[0];
-    largest[1] = part->unit_scale[1];
+    largest[0] = part->scales.unit[0];
+    largest[1] = part->scales.unit[1];
     for (int x = 0; x < s->n_x; x++) {
         int of = s->column_is_current[x];
         largest[of] = fmax(largest[of], fabs(part->x[x]));
@@ -105,7 +105,7 @@ static void raise_to_drives(const struct dalcs_radau_part *part, double *largest
     for (int k = 0; k < p->n_drives; k++) {
         const struct dalcs_drive *d = &p->drive[k];
         double *of = &largest[d->is_current];
-        *of = fmax(*of, d->coefficient * fabs(part->u[d->input]));
+        *of = fmax(*of, d->coefficient * fabs(part->work.u[d->input]));
     }
 }
 
@@ -123,7 +123,7 @@ static void raise_largest(const struct dalcs_system *s, const double *y, int n, 
     }
 }
 
-/* The states just after part->t from the micro-steps y1 and y2. Does any jump, and by more than the
+/* The states just after part->segment.t from the micro-steps y1 and y2. Does any jump, and by more than the
  * error that the state of an event has? A fast transient moves in both micro-steps and is left to be
  * stepped through. It may hide a jump, or the mode that it is in: *closer is how short micro-steps that
  * show it are, over these. */
@@ -132,10 +132,10 @@ static bool extrapolate(const struct dalcs_radau_part *part, double *after, bool
     const struct dalcs_system *s = part->component->system;
     double largest[2];
     find_largest(part, largest);
-    raise_largest(s, part->y1, s->n_x, largest);
+    raise_largest(s, part->work.y1, s->n_x, largest);
     /* What the second one has of voltages and currents: the first one's hold the impulses of a jump over h, or what
      * reads them. */
-    raise_largest(s, part->y2, dalcs_system_n_equations(s), largest);
+    raise_largest(s, part->work.y2, dalcs_system_n_equations(s), largest);
     double smallest = fmax(1e3 * part->inner_tolerance, smallest_jump);
     double driven[2] = {largest[0], largest[1]};
     raise_to_drives(part, driven);
@@ -144,8 +144,8 @@ static bool extrapolate(const struct dalcs_radau_part *part, double *after, bool
     *noticeable = false;
     *closer = 1.0;
     for (int x = 0; x < s->n_x; x++) {
-        double first = fabs(part->y1[x] - part->x[x]);
-        double second = fabs(part->y2[x] - part->y1[x]);
+        double first = fabs(part->work.y1[x] - part->x[x]);
+        double second = fabs(part->work.y2[x] - part->work.y1[x]);
         double scale = largest[s->column_is_current[x]];
         bool moved = first > jump_ratio * second && first > nothing[s->column_is_current[x]];
         jumps = jumps || moved;
@@ -156,7 +156,7 @@ static bool extrapolate(const struct dalcs_radau_part *part, double *after, bool
         } else if (dies_away && first > beyond_error * part->inner_tolerance * scale) {
             *closer = fmin(*closer, a_little_shorter);
         }
-        after[x] = 2.0 * part->y1[x] - part->y2[x];
+        after[x] = 2.0 * part->work.y1[x] - part->work.y2[x];
     }
     return jumps;
 }
@@ -173,21 +173,22 @@ static void extrapolate_impulses(struct dalcs_radau *r, const struct dalcs_radau
     const struct dalcs_system *s = part->component->system;
     int n_equations = dalcs_system_n_equations(s);
     for (int d = 0; d < s->n_pairs; d++) {
-        double charge = h * (part->y1[n_equations + d] - part->y2[n_equations + d]);
-        double flux = h * (part->w1[d] - part->component->osnsp.w[d]);
-        e->charge[d] = goes(charge, h * part->y1[n_equations + d]) ? charge : 0.0;
-        e->flux[d] = goes(flux, h * part->w1[d]) ? flux : 0.0;
+        double charge = h * (part->work.y1[n_equations + d] - part->work.y2[n_equations + d]);
+        double flux = h * (part->work.w1[d] - part->component->osnsp.w[d]);
+        e->charge[d] = goes(charge, h * part->work.y1[n_equations + d]) ? charge : 0.0;
+        e->flux[d] = goes(flux, h * part->work.w1[d]) ? flux : 0.0;
     }
-    memcpy(e->after, part->after, (size_t)s->n_x * sizeof(double));
+    memcpy(e->after, part->work.after, (size_t)s->n_x * sizeof(double));
 }
 
 double dalcs_radau_micro_length(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                                 int longer) {
-    double h = r->options.fixed_step > 0.0 ? ldexp(r->options.fixed_step, -MICRO)
-                                           : dalcs_radau_ladder(part, (part->level & ~3) + MICRO);
+    double h = r->options.fixed_step > 0.0
+                   ? ldexp(r->options.fixed_step, -MICRO)
+                   : dalcs_radau_ladder(part, (part->length.level & ~3) + MICRO);
     h = ldexp(h, 5 * longer);
     /* clear of the next edge: on the flank of a fast source more may happen than at t */
-    double room = dalcs_radau_limit(r, part) - part->t;
+    double room = dalcs_radau_limit(r, part) - part->segment.t;
     double most = fmin(0.25, ldexp(shorter, 5 * longer)) * room;
     for (int k = 0; k < 8 && h > most; k++) {
         h *= 0.0625;
@@ -201,11 +202,11 @@ static enum dalcs_status pair_of_steps(struct dalcs_radau *r, struct dalcs_radau
     struct dalcs_component *c = part->component;
     r->restarts++;
     prepare_positions(part, false);
-    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, tau, part->x, part->y1));
-    memcpy(part->w1, c->osnsp.w, (size_t)c->system->n_pairs * sizeof(double));
+    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, tau, part->x, part->work.y1));
+    memcpy(part->work.w1, c->osnsp.w, (size_t)c->system->n_pairs * sizeof(double));
     long pivots = c->osnsp.counters.pivots;
-    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, 2.0 * tau, part->y1, part->y2));
-    part->seen = c->osnsp.counters.pivots == pivots ? h : INFINITY;
+    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, 2.0 * tau, part->work.y1, part->work.y2));
+    part->guards.seen = c->osnsp.counters.pivots == pivots ? h : INFINITY;
     return DALCS_OK;
 }
 
@@ -223,23 +224,23 @@ static enum dalcs_status check_limit(struct dalcs_radau *r, struct dalcs_radau_p
     double largest[2];
     bool jumps = false;
     bool runs_away = false;
-    memcpy(longer, part->y1, (size_t)s->n_x * sizeof(double));
+    memcpy(longer, part->work.y1, (size_t)s->n_x * sizeof(double));
     DALCS_TRY(micro_steps(r, part, shorter * h));
     find_largest(part, largest);
     raise_largest(s, longer, s->n_x, largest);
     for (int x = 0; x < s->n_x; x++) {
         double before = fabs(longer[x] - part->x[x]);
-        double now = fabs(part->y1[x] - part->x[x]);
-        bool stays = fabs(part->y1[x] - longer[x]) < 0.5 * now;
+        double now = fabs(part->work.y1[x] - part->x[x]);
+        bool stays = fabs(part->work.y1[x] - longer[x]) < 0.5 * now;
         bool moves = now > smallest_jump * largest[s->column_is_current[x]];
         jumps = jumps || (moves && stays);
         runs_away = runs_away || (moves && now > runaway * before);
     }
     if (jumps && runs_away) {
-        dalcs_osnsp_blame_states(&part->component->osnsp, part->x, longer, part->y1);
-        memcpy(part->u, part->x, (size_t)s->n_x * sizeof(double));
-        dalcs_excitation_inputs(&part->excitation, part->t, 0.0, part->u + s->n_x);
-        return fail(r, part, 1.0 / h, part->u, DALCS_INFEASIBLE);
+        dalcs_osnsp_blame_states(&part->component->osnsp, part->x, longer, part->work.y1);
+        memcpy(part->work.u, part->x, (size_t)s->n_x * sizeof(double));
+        dalcs_excitation_inputs(&part->excitation, part->segment.t, 0.0, part->work.u + s->n_x);
+        return fail(r, part, 1.0 / h, part->work.u, DALCS_INFEASIBLE);
     }
     return micro_steps(r, part, h);
 }
@@ -251,8 +252,8 @@ static bool is_noticeable(const struct dalcs_radau *r, const struct dalcs_radau_
     double smallest = fmax(1e3 * part->inner_tolerance, smallest_jump);
     bool noticeable = false;
     for (int x = 0; x < s->n_x && !noticeable; x++) {
-        double scale =
-            fmax(part->unit_scale[s->column_is_current[x]], fmax(fabs(part->x[x]), fabs(after[x])));
+        double scale = fmax(part->scales.unit[s->column_is_current[x]],
+                            fmax(fabs(part->x[x]), fabs(after[x])));
         noticeable = fabs(after[x] - part->x[x]) > smallest * scale;
     }
     return noticeable;
@@ -261,9 +262,9 @@ static bool is_noticeable(const struct dalcs_radau *r, const struct dalcs_radau_
 static enum dalcs_status find_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h) {
     const struct dalcs_system *s = part->component->system;
     extrapolate_impulses(r, part, h);
-    memcpy(part->u, part->x, (size_t)s->n_x * sizeof(double));
-    dalcs_excitation_inputs(&part->excitation, part->t, 0.0, part->u + s->n_x);
-    return dalcs_euler_find_jump(r->base, part->index, part->u);
+    memcpy(part->work.u, part->x, (size_t)s->n_x * sizeof(double));
+    dalcs_excitation_inputs(&part->excitation, part->segment.t, 0.0, part->work.u + s->n_x);
+    return dalcs_euler_find_jump(r->base, part->index, part->work.u);
 }
 
 /* What is left of a state that falls to 0, or of one that stays there, is as small as a certificate
@@ -288,34 +289,34 @@ static void find_noise(const struct dalcs_radau_part *part, const double *after,
     find_largest(part, largest);
     raise_to_drives(part, largest);
     for (int x = 0; x < s->n_x; x++) {
-        double own = fmax(dalcs_step_scale(part, x, part->unit_scale),
+        double own = fmax(dalcs_step_scale(part, x, part->scales.unit),
                           fmax(fabs(part->x[x]), fabs(after[x])));
         noise[x] =
             fmax(remainder_of_jump * own, rounding_of(part, s->column_is_current[x], largest));
     }
 }
 
-/* All columns at the end of the segment that ended at part->t, into part->y2; NULL at the start. */
+/* All columns at the end of the segment that ended at part->segment.t, into part->work.y2; NULL at the start. */
 static const double *columns_before(struct dalcs_radau_part *part) {
-    if (!(part->t > 0.0)) {
+    if (!(part->segment.t > 0.0)) {
         return NULL;
     }
     dalcs_recurrence_complete_before(part);
-    dalcs_radau_swap_out(part, &part->out_before);
-    dalcs_step_values(part, part->end_before, part->y2);
-    dalcs_radau_swap_out(part, &part->out_before);
-    return part->y2;
+    dalcs_radau_swap_out(part, &part->segment.out_before);
+    dalcs_step_values(part, part->segment.end_before, part->work.y2);
+    dalcs_radau_swap_out(part, &part->segment.out_before);
+    return part->work.y2;
 }
 
 static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     struct dalcs_euler *e = r->base;
-    e->t = part->t;
+    e->t = part->segment.t;
     drop_remainders(part, e->jump.after);
     find_noise(part, e->jump.after, e->noise);
-    DALCS_TRY(
-        dalcs_euler_report_jump(e, part->index, part->t, part->x, columns_before(part), part->y1));
+    DALCS_TRY(dalcs_euler_report_jump(e, part->index, part->segment.t, part->x,
+                                      columns_before(part), part->work.y1));
     memcpy(part->x, e->jump.after, (size_t)part->component->system->n_x * sizeof(double));
-    part->jumped = true;
+    part->segment.jumped = true;
     return DALCS_OK;
 }
 
@@ -326,7 +327,7 @@ static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_rada
     bool noticeable;
     double closer;
     enum dalcs_status status = pair_of_steps(r, part, h, 0.0);
-    if (status == DALCS_OK && extrapolate(part, part->after, &noticeable, &closer)) {
+    if (status == DALCS_OK && extrapolate(part, part->work.after, &noticeable, &closer)) {
         DALCS_TRY(find_jump(r, part, h));
     }
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
@@ -336,9 +337,9 @@ static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_rada
 
 void dalcs_radau_go_after(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
     if (r->base->energy != NULL) {
-        dalcs_energy_move(r->base->energy, part, part->after);
+        dalcs_energy_move(r->base->energy, part, part->work.after);
     }
-    memcpy(part->x, part->after, (size_t)part->component->system->n_x * sizeof(double));
+    memcpy(part->x, part->work.after, (size_t)part->component->system->n_x * sizeof(double));
 }
 
 /* The micro-steps of length h have seen the state move: part->x becomes the state after the jump,
@@ -361,9 +362,9 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
             return take_seen_jump(r, part, h);
         }
         bool is_last = shorter * h < 64.0 * r->resolution;
-        bool is_whole = e->jump.is_known
-                            ? dalcs_jumps_agree(s, part->x, part->after, part->y1, e->jump.after)
-                            : is_last;
+        bool is_whole = e->jump.is_known ? dalcs_jumps_agree(s, part->x, part->work.after,
+                                                             part->work.y1, e->jump.after)
+                                         : is_last;
         if (is_whole || (e->jump.is_known && is_noticeable(r, part))) {
             DALCS_TRY(take_jump(r, part));
         }
@@ -376,12 +377,12 @@ static enum dalcs_status settle_jump(struct dalcs_radau *r, struct dalcs_radau_p
         enum dalcs_status status = micro_steps(r, part, shorter * h);
         if (status > DALCS_OK) { /* too short for a certificate: the last ones have to do */
             DALCS_TRY(micro_steps(r, part, h));
-            moves = extrapolate(part, part->after, &noticeable, &closer);
+            moves = extrapolate(part, part->work.after, &noticeable, &closer);
             break;
         }
         DALCS_TRY(status);
         h *= shorter;
-        moves = extrapolate(part, part->after, &noticeable, &closer);
+        moves = extrapolate(part, part->work.after, &noticeable, &closer);
     }
     bool is_over = moves && noticeable && !e->jump.is_known;
     *moves_little = moves && !is_over;
@@ -402,7 +403,7 @@ static enum dalcs_status look_closer(struct dalcs_radau *r, struct dalcs_radau_p
         status = micro_steps(r, part, *h);
     }
     DALCS_TRY(status);
-    *jumps = extrapolate(part, part->after, noticeable, &closer);
+    *jumps = extrapolate(part, part->work.after, noticeable, &closer);
     return DALCS_OK;
 }
 
@@ -414,18 +415,18 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
         *is_off = false;
     }
     double h = 0.0;
-    part->slides = false;
+    part->guards.slides = false;
     for (int k = 0; k < LONGER_TRIES && status > DALCS_OK; k++) {
         h = dalcs_radau_micro_length(r, part, longer + k);
         status = micro_steps(r, part, h);
     }
     DALCS_TRY(status);
-    if (s->n_x == 0 || mode_only || part->slides) {
+    if (s->n_x == 0 || mode_only || part->guards.slides) {
         return DALCS_OK; /* between two sides of a switch nothing that moves is a jump */
     }
     bool noticeable;
     double closer;
-    bool jumps = extrapolate(part, part->after, &noticeable, &closer);
+    bool jumps = extrapolate(part, part->work.after, &noticeable, &closer);
     if (closer < 1.0 && !noticeable && closer * h >= 64.0 * r->resolution) {
         DALCS_TRY(look_closer(r, part, closer, &h, &jumps, &noticeable));
     }
@@ -433,7 +434,7 @@ enum dalcs_status dalcs_radau_restart(struct dalcs_radau *r, struct dalcs_radau_
     if (noticeable) {
         DALCS_TRY(settle_jump(r, part, h, &moves_little));
     }
-    if (is_off != NULL && (part->rounding == 1.0 || s->n_pairs <= DALCS_MANY_PAIRS)) {
+    if (is_off != NULL && (part->segment.rounding == 1.0 || s->n_pairs <= DALCS_MANY_PAIRS)) {
         *is_off = moves_little;
     } else if (moves_little) {
         dalcs_radau_go_after(r, part);
@@ -446,13 +447,13 @@ static void fill_out(struct dalcs_radau_part *part, const double *before) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     int n_columns = dalcs_system_n_columns(p->system);
     int n_equations = dalcs_system_n_equations(p->system);
-    double *end = part->out + (l->n_nodes - 1) * l->stride;
-    memcpy(end, part->y1, (size_t)n_columns * sizeof(double));
+    double *end = part->segment.out + (l->n_nodes - 1) * l->stride;
+    memcpy(end, part->work.y1, (size_t)n_columns * sizeof(double));
     for (int d = 0; d < p->system->n_pairs; d++) {
         end[n_equations + d] += dalcs_osnsp_is_on(p, d) ? 0.0 : p->w[d];
     }
     for (int k = 0; k < l->n_nodes; k++) {
-        double *out = part->out + k * l->stride;
+        double *out = part->segment.out + k * l->stride;
         double at = part->stages.method->node[k];
         for (int c = 0; c < n_columns; c++) {
             double start = c < p->system->n_x ? part->x[c] : before != NULL ? before[c] : end[c];
@@ -468,20 +469,20 @@ void dalcs_radau_accept_euler(const struct dalcs_radau *r, struct dalcs_radau_pa
                               const double *before) {
     double limit = dalcs_radau_limit(r, part);
     fill_out(part, before);
-    part->by_euler = true;
-    part->h = h;
-    part->end = 1.0;
-    part->t_end = fmin(part->t + h, limit);
-    part->why = part->t_end >= limit ? DALCS_END_AT_EDGE : DALCS_END_OF_STEP;
-    part->n_crossed = 0;
-    part->fresh = true;
+    part->segment.by_euler = true;
+    part->segment.h = h;
+    part->segment.end = 1.0;
+    part->segment.t_end = fmin(part->segment.t + h, limit);
+    part->segment.why = part->segment.t_end >= limit ? DALCS_END_AT_EDGE : DALCS_END_OF_STEP;
+    part->guards.n_crossed = 0;
+    part->guards.fresh = true;
 }
 
 enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double h) {
     struct dalcs_component *c = part->component;
     prepare_positions(part, true);
-    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->y1));
+    DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->work.y1));
     if (c->positions.alternates) {
         bool slides;
         DALCS_TRY(dalcs_slide_step(r, part, h, &slides));
@@ -489,13 +490,13 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
             return DALCS_OK;
         }
         prepare_positions(part, true);
-        DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->y1));
+        DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->work.y1));
     }
     c->delayed_commands += c->positions.settled ? 0 : 1; /* the present command stands */
     if (r->base->energy != NULL) {
         dalcs_energy_scale(r->base->energy, part->index, &c->osnsp.certificate);
-        dalcs_energy_step(r->base->energy, part->index, part->x, part->y1, part->u + c->system->n_x,
-                          h);
+        dalcs_energy_step(r->base->energy, part->index, part->x, part->work.y1,
+                          part->work.u + c->system->n_x, h);
     }
     dalcs_radau_accept_euler(r, part, h, NULL);
     r->euler_steps++;

@@ -75,7 +75,7 @@ static void find_crosses(struct dalcs_row_gaps *gaps, const struct dalcs_radau_p
         int output = p->signal[i].output;
         if (output < gaps->n_outputs) {
             double *cross = &gaps->cross[output];
-            *cross = dalcs_larger(*cross, part->cross[is_current(gaps, output) ? 1 : 0]);
+            *cross = dalcs_larger(*cross, part->scales.cross[is_current(gaps, output) ? 1 : 0]);
         }
     }
 }
@@ -249,16 +249,16 @@ static enum dalcs_status look_at_stepped(struct dalcs_row_gaps *gaps,
                                          struct dalcs_radau_part *part) {
     const struct dalcs_rows_part *p = &gaps->rows->part[part->index];
     struct dalcs_row_gaps_part *g = &gaps->part[part->index];
-    if (p->n_read > 0 && (g->since != part->t || g->length != part->h)) {
+    if (p->n_read > 0 && (g->since != part->segment.t || g->length != part->segment.h)) {
         DALCS_TRY(dalcs_rows_find_polynomials(gaps->rows, part));
-        find_bends(g->basis, part->stages.method, part->h, part->end, p->coefficient, p->n_read,
-                   g->bend);
-        g->since = part->t;
-        g->length = part->h;
+        find_bends(g->basis, part->stages.method, part->segment.h, part->segment.end,
+                   p->coefficient, p->n_read, g->bend);
+        g->since = part->segment.t;
+        g->length = part->segment.h;
     }
-    if (part->by_euler || part->stages.method->s < ENOUGH_STAGES) {
-        gaps->line = dalcs_smaller(gaps->line, part->h);
-        gaps->cubic = dalcs_smaller(gaps->cubic, part->h);
+    if (part->segment.by_euler || part->stages.method->s < ENOUGH_STAGES) {
+        gaps->line = dalcs_smaller(gaps->line, part->segment.h);
+        gaps->cubic = dalcs_smaller(gaps->cubic, part->segment.h);
     }
     const struct dalcs_bend *bend = g->bend;
     for (int i = 0; i < p->n_signals; bend++) {

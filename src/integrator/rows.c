@@ -170,8 +170,9 @@ DALCS_TWICE(void, find_thetas,
              union dalcs_row_values *theta),
             (part, time, n_groups, theta)) {
     for (int g = 0; g < n_groups; g++) {
-        const dalcs_quad raw = (time->group[g] - part->t) / part->h;
-        dalcs_quad until = {part->end, part->end, part->end, part->end};
+        const dalcs_quad raw = (time->group[g] - part->segment.t) / part->segment.h;
+        dalcs_quad until = {part->segment.end, part->segment.end, part->segment.end,
+                            part->segment.end};
         dalcs_quad_lower(&until, &raw);
         theta->group[g] = until;
     }
@@ -319,7 +320,7 @@ static inline void ask_sources(struct dalcs_rows_part *p, const struct dalcs_rad
 /* The polynomials of outputs as functions of the inputs of a step: a column of its map is an answer, too. */
 static enum dalcs_status make_map(const struct dalcs_rows_part *p,
                                   const struct dalcs_radau_part *part, struct dalcs_row_map *to) {
-    const struct dalcs_stage_entry *entry = part->brief->entry;
+    const struct dalcs_stage_entry *entry = part->segment.brief->entry;
     int n_columns = dalcs_stage_brief_columns(&part->stages);
     to->map = dalcs_dense_map_alloc(map_rows(p), n_columns);
     if (to->map == NULL) {
@@ -345,11 +346,11 @@ static enum dalcs_status make_map(const struct dalcs_rows_part *p,
 /* *map: of the present segment, which recurred; NULL: it has had no rows before. */
 static enum dalcs_status find_map(struct dalcs_rows_part *p, const struct dalcs_radau_part *part,
                                   const double **map) {
-    struct dalcs_row_map *its = &p->map[part->brief->number % DALCS_ROW_MAPS];
-    bool is_known = its->number == part->brief->number;
+    struct dalcs_row_map *its = &p->map[part->segment.brief->number % DALCS_ROW_MAPS];
+    bool is_known = its->number == part->segment.brief->number;
     if (!is_known) {
         free(its->map);
-        *its = (struct dalcs_row_map){.number = part->brief->number};
+        *its = (struct dalcs_row_map){.number = part->segment.brief->number};
     } else if (its->map == NULL) {
         DALCS_TRY(make_map(p, part, its));
     }
@@ -368,7 +369,7 @@ static void collect_polynomials(const struct dalcs_rows_part *p,
         bool steps = false;
         for (; i < p->n_signals && p->signal[i].output == output; i++) {
             const struct dalcs_row_signal *signal = &p->signal[i];
-            steps = collect(p, part, part->out, signal->probe, signal->sign, node) || steps;
+            steps = collect(p, part, part->segment.out, signal->probe, signal->sign, node) || steps;
         }
         if (steps) {
             find_coefficients(part->stages.method, node, coefficient);
@@ -382,12 +383,13 @@ enum dalcs_status dalcs_rows_find_polynomials(struct dalcs_rows *rows,
                                               struct dalcs_radau_part *part) {
     struct dalcs_rows_part *p = &rows->part[part->index];
     const double *map = NULL;
-    if (part->brief != NULL) {
+    if (part->segment.brief != NULL) {
         DALCS_TRY(find_map(p, part, &map));
     }
     if (map != NULL) {
         dalcs_dense_map_apply(map_rows(p), dalcs_stage_brief_columns(&part->stages), map,
-                              dalcs_stage_brief_input(&part->stages, part->in), p->coefficient);
+                              dalcs_stage_brief_input(&part->stages, part->segment.in),
+                              p->coefficient);
     } else {
         dalcs_recurrence_complete(part);
         collect_polynomials(p, part);
@@ -475,7 +477,7 @@ static double size_of(const struct dalcs_rows *rows, const struct dalcs_radau_pa
         return size;
     }
     const struct dalcs_probe_term *term = signal->probe->term;
-    double of_column = dalcs_step_scale(part, term->index, part->unit_scale);
+    double of_column = dalcs_step_scale(part, term->index, part->scales.unit);
     return dalcs_larger(size, fabs(term->coefficient) * of_column);
 }
 

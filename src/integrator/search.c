@@ -50,7 +50,7 @@ enum dalcs_status dalcs_search_project(struct dalcs_radau *r, struct dalcs_radau
 /* What was seen of errors in another mode, or from another state, does not count. */
 static void start_over(struct dalcs_radau_part *part, struct dalcs_search *search, int level) {
     if (!search->fixed) {
-        part->level = level;
+        part->length.level = level;
     }
     search->stuck = 0;
     search->spared = false;
@@ -81,48 +81,48 @@ enum dalcs_status dalcs_search_ask(struct dalcs_radau *r, struct dalcs_radau_par
 /* s: a step along a threshold, or between two sides of a switch with ripple in proportion. */
 static double slide_length(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
     double fixed = r->options.fixed_step;
-    return ldexp(fixed > 0.0 ? fixed : part->longest, -SLIDING);
+    return ldexp(fixed > 0.0 ? fixed : part->length.longest, -SLIDING);
 }
 
 enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                          double limit, int level, double most) {
     double fixed = r->options.fixed_step;
     double whole = fixed > 0.0 ? fixed : dalcs_radau_ladder(part, level);
-    part->level = level;
-    double h = ldexp(whole, part->tries - FALL_BACK);
+    part->length.level = level;
+    double h = ldexp(whole, part->length.tries - FALL_BACK);
     h = fmin(h, fmin(most, ldexp(whole, -FALL_BACK_LEAST)));
     h = fmax(h, 64.0 * r->resolution);
-    if (part->tries > 0 && fixed == 0.0) { /* however short the ladder's step has become */
-        h = fmax(h, fmin(2.0 * part->fell_back, ldexp(part->longest, -FALL_BACK)));
+    if (part->length.tries > 0 && fixed == 0.0) { /* however short the ladder's step has become */
+        h = fmax(h, fmin(2.0 * part->length.fell_back, ldexp(part->length.longest, -FALL_BACK)));
     }
-    if (part->slides) { /* between two sides of a switch */
+    if (part->guards.slides) { /* between two sides of a switch */
         h = fmin(h, slide_length(r, part));
-        part->slides = false;
+        part->guards.slides = false;
     }
-    part->tries++;
-    part->fell_back = fmin(h, limit - part->t);
-    return dalcs_radau_euler_step(r, part, part->fell_back);
+    part->length.tries++;
+    part->length.fell_back = fmin(h, limit - part->segment.t);
+    return dalcs_radau_euler_step(r, part, part->length.fell_back);
 }
 
 enum dalcs_status dalcs_search_slide_on(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                         double limit, bool *slides) {
     double h = fmax(slide_length(r, part), 64.0 * r->resolution);
-    return dalcs_slide_step(r, part, fmin(h, limit - part->t), slides);
+    return dalcs_slide_step(r, part, fmin(h, limit - part->segment.t), slides);
 }
 
 static void keep_mode(struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    memcpy(part->mode_tied, p->mode, (size_t)p->n_words * sizeof(uint64_t));
+    memcpy(part->work.mode_tied, p->mode, (size_t)p->n_words * sizeof(uint64_t));
 }
 
 static void put_mode_back(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
-    memcpy(p->mode, part->mode_tied, (size_t)p->n_words * sizeof(uint64_t));
+    memcpy(p->mode, part->work.mode_tied, (size_t)p->n_words * sizeof(uint64_t));
 }
 
 static bool is_mode_kept(const struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    return dalcs_mode_is(p->mode, part->mode_tied, p->n_words);
+    return dalcs_mode_is(p->mode, part->work.mode_tied, p->n_words);
 }
 
 enum dalcs_status dalcs_search_tie_again(struct dalcs_radau_part *part,
@@ -142,9 +142,9 @@ enum dalcs_status dalcs_search_tie_crossed(struct dalcs_radau_part *part,
                                            struct dalcs_search *search) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     bool found = false;
-    for (int k = 0; k < part->n_crossed; k++) {
-        int d = part->crossed[k];
-        bool was_on = d < p->system->n_pairs && dalcs_mode_has(part->mode_tied, d);
+    for (int k = 0; k < part->guards.n_crossed; k++) {
+        int d = part->guards.crossed[k];
+        bool was_on = d < p->system->n_pairs && dalcs_mode_has(part->work.mode_tied, d);
         if (d < p->system->n_pairs && was_on != dalcs_osnsp_is_on(p, d)) {
             dalcs_osnsp_command(p, d, was_on);
             found = true;
@@ -158,12 +158,12 @@ enum dalcs_status dalcs_search_tie_crossed(struct dalcs_radau_part *part,
 
 enum dalcs_status dalcs_search_refuse(struct dalcs_radau_part *part, struct dalcs_search *search) {
     bool stands = dalcs_transition_refuse(part);
-    search->first_level = search->asked_level = part->level;
+    search->first_level = search->asked_level = part->length.level;
     if (stands) {
         return DALCS_OK;
     }
     search->guessed = false;
-    part->fronts_refused += search->front ? 1 : 0;
+    part->memory.fronts_refused += search->front ? 1 : 0;
     search->front = false;
     return DALCS_OK;
 }
@@ -185,28 +185,30 @@ static bool settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
 static bool is_worth_asking(const struct dalcs_radau_part *part, const struct dalcs_search *search,
                             double ratio) {
     bool has_free_states =
-        part->rounding == 1.0 && search->states_free && part->component->system->n_x > 0;
+        part->segment.rounding == 1.0 && search->states_free && part->component->system->n_x > 0;
     bool may_jump = has_free_states ? isinf(ratio) : !(ratio < most_projected);
     return search->fixed || search->stuck > 0 || may_jump;
 }
 
 /* So short that a shorter one is not tried, unless that has just held. */
 static bool is_shortest(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
-    bool has_grown = !part->fresh && part->held_level > part->level;
-    return dalcs_radau_ladder(part, part->level) < 64.0 * r->resolution && !has_grown;
+    bool has_grown = !part->guards.fresh && part->length.held_level > part->length.level;
+    return dalcs_radau_ladder(part, part->length.level) < 64.0 * r->resolution && !has_grown;
 }
 
 /* Will steps do that are not much shorter, though it is that short? They are no less exact for it: the last digit of the
  * time at which one begins moves only sources. */
 static bool is_nearly_right(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                             const struct dalcs_step_quality *quality) {
-    return quality->own < nearly && dalcs_radau_ladder(part, part->level) >= 8.0 * r->resolution;
+    return quality->own < nearly &&
+           dalcs_radau_ladder(part, part->length.level) >= 8.0 * r->resolution;
 }
 
 /* No shorter step mends the error, and it is small or over in no time: is it let pass from now on? */
 static bool lets_pass(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
                       struct dalcs_search *search, const struct dalcs_step_quality *quality) {
-    bool is_rounding = search->stuck >= STUCK && quality->of_unit < most_tolerated * part->rounding;
+    bool is_rounding =
+        search->stuck >= STUCK && quality->of_unit < most_tolerated * part->segment.rounding;
     bool is_very_stuck =
         search->stuck >= VERY_STUCK || (search->stuck >= STUCK && is_shortest(r, part));
     bool is_small = is_very_stuck && quality->of_unit < part->inner_tolerance;
@@ -216,7 +218,8 @@ static bool lets_pass(const struct dalcs_radau *r, const struct dalcs_radau_part
     }
     /* What allowed errors of states are levered up to, and shorter steps see as well, is that of a coil that is cut
      * off. Maps know where that is. */
-    bool is_levered = part->rounding > 1.0 && search->stuck >= LEVERED_STUCK && quality->own <= 1.0;
+    bool is_levered =
+        part->segment.rounding > 1.0 && search->stuck >= LEVERED_STUCK && quality->own <= 1.0;
     search->spared = search->spared || is_levered;
     return is_levered;
 }
@@ -233,10 +236,11 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
     if (search->opened) {
         return dalcs_search_tie_again(part, search);
     }
-    if (part->fresh && search->restarts == 0 && is_worth_asking(part, search, quality->own)) {
+    if (part->guards.fresh && search->restarts == 0 &&
+        is_worth_asking(part, search, quality->own)) {
         return dalcs_search_ask(r, part, search, false);
     }
-    bool asked = search->restarts > 0 || !part->fresh;
+    bool asked = search->restarts > 0 || !part->guards.fresh;
     bool may_project = !search->fixed && !search->projected && !search->states_free && asked;
     if (quality->own < most_projected && may_project && dalcs_projection_sees(part, false)) {
         bool moved;
@@ -251,10 +255,10 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
     search->stuck = quality->ratio > 0.3 * search->ratio_before ? search->stuck + 1 : 0;
     search->ratio_before = quality->ratio;
     if (search->stuck == 0) {
-        search->level_before_stuck = part->level;
+        search->level_before_stuck = part->length.level;
     }
     if (lets_pass(r, part, search, quality)) {
-        part->level = search->level_before_stuck;
+        part->length.level = search->level_before_stuck;
         return DALCS_OK;
     }
     bool may_be_off =
@@ -269,7 +273,8 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
         return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
     }
     dalcs_length_shorten(part, quality->ratio, search->stuck);
-    if (part->t + dalcs_radau_ladder(part, part->level) <= part->t) { /* time would stand still */
+    if (part->segment.t + dalcs_radau_ladder(part, part->length.level) <=
+        part->segment.t) { /* time would stand still */
         *done = true;
         return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
     }
@@ -297,13 +302,13 @@ enum dalcs_status dalcs_search_refine(struct dalcs_radau *r, struct dalcs_radau_
                                       struct dalcs_search *search) {
     search->refined++;
     r->rejected++;
-    part->level++;
+    part->length.level++;
     return DALCS_OK;
 }
 
 /* Not if it has jumped and only micro-steps know how far. */
 static bool is_state_known(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
-    return !part->jumped || r->base->jump.is_known;
+    return !part->segment.jumped || r->base->jump.is_known;
 }
 
 /* May what is wrong from the start be over so soon that micro-steps saw what comes after it? Where a
@@ -320,7 +325,7 @@ static enum dalcs_status ask_closer(struct dalcs_radau *r, struct dalcs_radau_pa
                                     struct dalcs_search *search, double recovery, bool mode_only) {
     search->closer = true;
     search->projected = false;
-    search->asked_level = part->level - 2 - ilogb(recovery);
+    search->asked_level = part->length.level - 2 - ilogb(recovery);
     start_over(part, search, search->asked_level);
     return dalcs_radau_restart(r, part, search->restarts++, mode_only, NULL);
 }
@@ -329,11 +334,11 @@ static enum dalcs_status ask_closer(struct dalcs_radau *r, struct dalcs_radau_pa
  * compared with one of them, which is a later one each time that their number has doubled. */
 static bool comes_round(const struct dalcs_radau_part *part, struct dalcs_search *search) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    if (search->turns > 0 && dalcs_mode_is(p->mode, part->mode_turned, p->n_words)) {
+    if (search->turns > 0 && dalcs_mode_is(p->mode, part->work.mode_turned, p->n_words)) {
         return true;
     }
     if ((search->turns & (search->turns - 1)) == 0) {
-        memcpy(part->mode_turned, p->mode, (size_t)p->n_words * sizeof(uint64_t));
+        memcpy(part->work.mode_turned, p->mode, (size_t)p->n_words * sizeof(uint64_t));
     }
     return false;
 }
@@ -345,31 +350,31 @@ static bool comes_round(const struct dalcs_radau_part *part, struct dalcs_search
 static enum dalcs_status turn_switches(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        struct dalcs_search *search) {
     if (comes_round(part, search) || search->jumps > MOST_JUMPS) {
-        part->slides = true;
+        part->guards.slides = true;
         part->component->delayed_commands++;
         return DALCS_OK;
     }
-    bool has_jumped = part->jumped;
+    bool has_jumped = part->segment.jumped;
     search->turns++;
     search->turned = true;
     dalcs_guards_flip(part);
     search->restarts = search->flips = 0;
-    part->jumped = false;
+    part->segment.jumped = false;
     DALCS_TRY(dalcs_search_ask(r, part, search, false));
-    if (part->jumped) {
+    if (part->segment.jumped) {
         search->turns = 0;
         search->jumps++;
     }
-    part->jumped = part->jumped || has_jumped;
+    part->segment.jumped = part->segment.jumped || has_jumped;
     return DALCS_OK;
 }
 
 /* All that has crossed. */
 static bool are_switches_that_remember(const struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
-    bool all = part->n_crossed > 0;
-    for (int k = 0; k < part->n_crossed && all; k++) {
-        int guard = part->crossed[k];
+    bool all = part->guards.n_crossed > 0;
+    for (int k = 0; k < part->guards.n_crossed && all; k++) {
+        int guard = part->guards.crossed[k];
         all = guard >= s->n_pairs && dalcs_pair_remembers(&s->pair[dalcs_guard_pair(part, guard)]);
     }
     return all;
@@ -392,7 +397,8 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
         return turn_switches(r, part, search);
     }
     double recovery = may_be_brief(r, part, search) ? dalcs_guards_recovery(part) : INFINITY;
-    bool is_resolved = recovery * part->h >= 64.0 * r->resolution; /* else no micro-step sees it */
+    bool is_resolved =
+        recovery * part->segment.h >= 64.0 * r->resolution; /* else no micro-step sees it */
     if (recovery > 0.0 && recovery < briefly && is_resolved) {
         return ask_closer(r, part, search, recovery, false);
     }
@@ -408,7 +414,7 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
         return DALCS_OK;
     }
     *done = true;
-    return dalcs_search_fall_back(r, part, search->limit, search->first_level, part->h);
+    return dalcs_search_fall_back(r, part, search->limit, search->first_level, part->segment.h);
 }
 
 /* The present mode holds but for ties, of which micro-steps tell more than this; of a diode that crossed just
@@ -419,14 +425,14 @@ static enum dalcs_status ask_of_tied(struct dalcs_radau *r, struct dalcs_radau_p
     struct dalcs_osnsp *p = &part->component->osnsp;
     keep_mode(part);
     for (int d = 0; d < p->system->n_pairs; d++) {
-        part->tied[d] = dalcs_tied_is(part, d, unit);
+        part->guards.tied[d] = dalcs_tied_is(part, d, unit);
     }
     bool mode_only = search->restarts > 0;
     bool is_off;
     DALCS_TRY(dalcs_radau_restart(r, part, search->restarts++, mode_only, &is_off));
     for (int d = 0; d < p->system->n_pairs; d++) {
-        if (!part->tied[d] && p->is_diode[d]) {
-            dalcs_osnsp_command(p, d, dalcs_mode_has(part->mode_tied, d));
+        if (!part->guards.tied[d] && p->is_diode[d]) {
+            dalcs_osnsp_command(p, d, dalcs_mode_has(part->work.mode_tied, d));
         }
     }
     return go_on_from_answer(r, part, search, is_off);
@@ -436,7 +442,7 @@ enum dalcs_status dalcs_search_untie(struct dalcs_radau *r, struct dalcs_radau_p
                                      struct dalcs_search *search, double next,
                                      const struct dalcs_step_quality *quality) {
     double micro = dalcs_radau_micro_length(r, part, search->restarts);
-    if (search->restarts < TIED_RESTARTS && 4.0 * micro < next * part->h) {
+    if (search->restarts < TIED_RESTARTS && 4.0 * micro < next * part->segment.h) {
         return ask_of_tied(r, part, search, quality->unit);
     }
     search->untied = true;
@@ -453,13 +459,13 @@ enum dalcs_status dalcs_search_look_at_start(struct dalcs_radau *r, struct dalcs
         return DALCS_OK;
     }
     bool is_sure;
-    double least = 64.0 * r->resolution / part->h;
-    double most = dalcs_smaller(briefly, part->seen / part->h);
+    double least = 64.0 * r->resolution / part->segment.h;
+    double most = dalcs_smaller(briefly, part->guards.seen / part->segment.h);
     double rise = dalcs_guards_rise(part, least, most, unit, &is_sure);
     if (!(rise < most)) {
         return DALCS_OK;
     }
-    int level = part->level;
+    int level = part->length.level;
     keep_mode(part);
     enum dalcs_status status = ask_closer(r, part, search, rise, true);
     if (status < DALCS_OK) {
@@ -471,6 +477,6 @@ enum dalcs_status dalcs_search_look_at_start(struct dalcs_radau *r, struct dalcs
     }
     *holds = !differs && !is_sure;
     search->opened = search->opened && *holds;
-    part->level = *holds ? level : part->level;
+    part->length.level = *holds ? level : part->length.level;
     return DALCS_OK;
 }

@@ -47,64 +47,65 @@ double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_p
 
 void dalcs_segment_inputs(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
-    memcpy(part->in, part->x, (size_t)s->n_x * sizeof(double));
-    part->in[s->n_x] = 1.0;
-    dalcs_excitation_coefficients(&part->excitation, part->t, part->h, part->in + s->n_x + 1);
+    memcpy(part->segment.in, part->x, (size_t)s->n_x * sizeof(double));
+    part->segment.in[s->n_x] = 1.0;
+    dalcs_excitation_coefficients(&part->excitation, part->segment.t, part->segment.h,
+                                  part->segment.in + s->n_x + 1);
 }
 
 enum dalcs_status dalcs_segment_solve(struct dalcs_radau_part *part,
                                       struct dalcs_stage_entry **entry) {
     dalcs_segment_inputs(part);
-    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->h, part->in,
-                                part->out, entry));
-    part->rounding = dalcs_stage_rounding(*entry);
+    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->segment.h,
+                                part->segment.in, part->segment.out, entry));
+    part->segment.rounding = dalcs_stage_rounding(*entry);
     return DALCS_OK;
 }
 
 void dalcs_segment_accept(struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
                           double residual) {
-    part->end = theta;
-    part->by_euler = false;
-    if (theta * part->h > 4.0 * part->fell_back) {
-        part->tries = 0;
+    part->segment.end = theta;
+    part->segment.by_euler = false;
+    if (theta * part->segment.h > 4.0 * part->length.fell_back) {
+        part->length.tries = 0;
     }
     r->steps++;
     if (residual > r->worst_residual) {
         r->worst_residual = residual;
-        r->worst_time = part->t;
+        r->worst_time = part->segment.t;
     }
-    if (part->fresh) {
+    if (part->guards.fresh) {
         dalcs_transition_hold(part);
-        part->fresh = false;
-        part->flipped = false;
+        part->guards.fresh = false;
+        part->guards.flipped = false;
     }
 }
 
 /* All of a step of the ladder: a longer one may be as good. */
 static bool is_whole(const struct dalcs_radau_part *part, double theta) {
-    return theta == 1.0 && part->h == dalcs_radau_ladder(part, part->level);
+    return theta == 1.0 && part->segment.h == dalcs_radau_ladder(part, part->length.level);
 }
 
 /* What began after pairs changed sides. */
 static void learn(struct dalcs_radau_part *part, const struct dalcs_search *search, double theta,
                   double error) {
     double ratio = error * fmax(1.0, part->inner_tolerance / fine);
-    bool longer = !search->fixed && is_whole(part, theta) && part->n_crossed == 0 &&
+    bool longer = !search->fixed && is_whole(part, theta) && part->guards.n_crossed == 0 &&
                   dalcs_length_rungs_promised(part, ratio) > 1.0 &&
-                  dalcs_radau_ladder(part, part->level - 1) <=
-                      dalcs_smaller(part->longest, part->longest_needed);
+                  dalcs_radau_ladder(part, part->length.level - 1) <=
+                      dalcs_smaller(part->length.longest, part->length.longest_needed);
     int spare = longer ? 1 : 0; /* rungs that the first step may have more the next time */
     if (!search->guessed) {
         double promised =
             dalcs_smaller(dalcs_length_rungs_promised(part, error), DALCS_LENGTH_MOST_RUNGS);
-        int by_analogy = search->first_level - part->level_before;
+        int by_analogy = search->first_level - part->length.level_before;
         dalcs_transition_began(part, search->first_level, (int)promised);
         spare = (int)dalcs_larger(spare, dalcs_smaller(promised, by_analogy));
-        dalcs_transition_learn(part, part->level - spare, by_analogy - spare);
+        dalcs_transition_learn(part, part->length.level - spare, by_analogy - spare);
     } else if (!search->front) {
         dalcs_transition_pass(part, spare);
     } else if (spare > 0) {
-        dalcs_transition_learn(part, part->level - spare, 0);
+        dalcs_transition_learn(part, part->length.level - spare, 0);
     }
     if (!search->fixed) {
         dalcs_recurrence_note(part);
@@ -114,17 +115,18 @@ static void learn(struct dalcs_radau_part *part, const struct dalcs_search *sear
 static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
                    const struct dalcs_search *search, double theta,
                    const struct dalcs_step_quality *quality, double residual) {
-    double t_end = part->t + theta * part->h;
-    part->why = part->n_crossed > 0 ? DALCS_END_AT_EVENT : DALCS_END_OF_STEP;
-    if (part->n_crossed == 0 && t_end >= search->limit - r->resolution) {
+    double t_end = part->segment.t + theta * part->segment.h;
+    part->segment.why = part->guards.n_crossed > 0 ? DALCS_END_AT_EVENT : DALCS_END_OF_STEP;
+    if (part->guards.n_crossed == 0 && t_end >= search->limit - r->resolution) {
         t_end = search->limit;
-        part->why = DALCS_END_AT_EDGE;
+        part->segment.why = DALCS_END_AT_EDGE;
     }
-    if (search->fixed && part->why == DALCS_END_OF_STEP) {
-        double whole = rint(t_end / part->h) * part->h; /* counted, not accumulated */
+    if (search->fixed && part->segment.why == DALCS_END_OF_STEP) {
+        double whole =
+            rint(t_end / part->segment.h) * part->segment.h; /* counted, not accumulated */
         t_end = fabs(t_end - whole) <= 4.0 * r->resolution ? whole : t_end;
     }
-    part->t_end = dalcs_smaller(t_end, search->limit);
+    part->segment.t_end = dalcs_smaller(t_end, search->limit);
     dalcs_step_remember(part, theta, quality->unit);
     if (theta == 1.0) {
         dalcs_guards_arm(part, true, quality->unit);
@@ -132,13 +134,13 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
     double wrong_sign = dalcs_guards_wrong_sign(r, part, theta, quality->unit);
     if (wrong_sign > r->wrong_sign) {
         r->wrong_sign = wrong_sign;
-        r->wrong_time = part->t;
+        r->wrong_time = part->segment.t;
     }
-    if (part->fresh && part->flipped && !search->turned) {
+    if (part->guards.fresh && part->guards.flipped && !search->turned) {
         learn(part, search, theta, quality->ratio);
     }
     dalcs_segment_accept(r, part, theta, residual);
-    part->held_level = part->level;
+    part->length.held_level = part->length.level;
     if (!search->fixed && is_whole(part, theta)) {
         dalcs_length_lengthen(part, quality->ratio);
     }
@@ -150,7 +152,7 @@ static bool is_outsized(const struct dalcs_radau_part *part,
                         const struct dalcs_step_quality *quality) {
     bool is = false;
     for (int unit = 0; unit < 2; unit++) {
-        double before = part->unit_scale[unit];
+        double before = part->scales.unit[unit];
         is = is || (before > 0.0 && quality->here[unit] > outsized * before);
     }
     return is;
@@ -158,29 +160,30 @@ static bool is_outsized(const struct dalcs_radau_part *part,
 
 /* Something happened that is no crossing, a command or the start of the run, in a part on dense maps. */
 static bool is_at_command(const struct dalcs_radau_part *part) {
-    return part->fresh && part->n_crossed == 0 && part->rounding == 1.0;
+    return part->guards.fresh && part->guards.n_crossed == 0 && part->segment.rounding == 1.0;
 }
 
 /* A command has moved a switch: what it carried goes elsewhere, through pairs that have not crossed anything. On
  * dense maps to ask the circuit of them costs less than a step in a mode that is wrong. */
 static bool is_commutation(const struct dalcs_radau_part *part) {
-    return part->flipped && is_at_command(part);
+    return part->guards.flipped && is_at_command(part);
 }
 
 static double step_to_try(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                           double limit) {
-    return is_at_command(part) && limit < r->options.stop ? dalcs_length_fitted(part, limit)
-                                                          : dalcs_radau_ladder(part, part->level);
+    return is_at_command(part) && limit < r->options.stop
+               ? dalcs_length_fitted(part, limit)
+               : dalcs_radau_ladder(part, part->length.level);
 }
 
 /* Where the step's polynomials end to count, in steps. */
 static double end_of(const struct dalcs_radau_part *part, const struct dalcs_search *search) {
-    return dalcs_smaller(1.0, (search->limit - part->t) / part->h);
+    return dalcs_smaller(1.0, (search->limit - part->segment.t) / part->segment.h);
 }
 
 /* Has a mode not begun with a step of this length before? What held then is not looked at as closely again. */
 static bool is_new_step(const struct dalcs_radau_part *part, const struct dalcs_search *search) {
-    return part->fresh && !search->fixed && (!search->guessed || part->tries_longer);
+    return part->guards.fresh && !search->fixed && (!search->guessed || part->length.tries_longer);
 }
 
 /* So many times what is allowed are currents of pairs wrong in such a step by errors of states that are small enough;
@@ -200,13 +203,13 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
                                           struct dalcs_stage_entry **entry,
                                           struct dalcs_step_quality *q, bool *holds, bool *done) {
     *holds = false;
-    part->h = search->fixed ? r->options.fixed_step : step_to_try(r, part, search->limit);
+    part->segment.h = search->fixed ? r->options.fixed_step : step_to_try(r, part, search->limit);
     enum dalcs_status status = dalcs_segment_solve(part, entry);
     if (status < DALCS_OK) {
         return status;
     }
     search->states_free = status == DALCS_OK && dalcs_stage_frees_states(*entry);
-    bool is_first = part->fresh && search->restarts == 0;
+    bool is_first = part->guards.fresh && search->restarts == 0;
     if (status == DALCS_OK && !(dalcs_stage_residual(*entry) <= dalcs_largest_residual)) {
         if (is_first) {
             return dalcs_search_ask(r, part, search, false);
@@ -242,7 +245,7 @@ static enum dalcs_status solve_accurately(struct dalcs_radau *r, struct dalcs_ra
 static bool is_worth_projecting(const struct dalcs_radau_part *part,
                                 const struct dalcs_search *search,
                                 const struct dalcs_step_quality *q) {
-    return part->fresh && !search->projected && !search->states_free &&
+    return part->guards.fresh && !search->projected && !search->states_free &&
            q->drift > (search->fixed ? 0.0 : dalcs_worth_projecting) &&
            dalcs_projection_sees(part, search->fixed);
 }
@@ -255,7 +258,7 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
                                               bool *holds, bool *done) {
     *holds = false;
     double end = end_of(part, search);
-    if (part->fresh) {
+    if (part->guards.fresh) {
         dalcs_guards_arm(part, false, q->unit);
     }
     bool at_once;
@@ -265,36 +268,39 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
         theta = dalcs_guards_first_fall(r, part, end, q->unit, &at_once);
     }
     *next = dalcs_smaller(theta, end);
-    if (part->slips && search->guessed && !search->front) {
+    if (part->guards.slips && search->guessed && !search->front) {
         return dalcs_search_refuse(part, search);
     }
-    if (at_once && part->fresh) {
+    if (at_once && part->guards.fresh) {
         return dalcs_search_change_mode(r, part, search, q->unit, done);
     }
-    if (search->opened && dalcs_tied_open_idle(part, part->mode_tied, *next, q->unit)) {
+    if (search->opened && dalcs_tied_open_idle(part, part->work.mode_tied, *next, q->unit)) {
         return dalcs_search_go_on_trying(part, search);
     }
     if (search->opened && dalcs_tied_turn_back(part, *next, q->unit)) {
         return dalcs_search_tie_crossed(part, search);
     }
-    if (part->fresh && (dalcs_twins_close(part, q->unit) ||
-                        (part->flipped && dalcs_guards_open_resting(part, q->unit)))) {
+    if (part->guards.fresh &&
+        (dalcs_twins_close(part, q->unit) ||
+         (part->guards.flipped && dalcs_guards_open_resting(part, q->unit)))) {
         return DALCS_OK;
     }
-    if (part->fresh && search->restarts == 0 && dalcs_guards_stay_negative(part, *next, q->unit)) {
+    if (part->guards.fresh && search->restarts == 0 &&
+        dalcs_guards_stay_negative(part, *next, q->unit)) {
         return search->guessed ? dalcs_search_refuse(part, search)
                                : dalcs_search_ask(r, part, search, true);
     }
-    if (part->fresh && !search->guessed && !search->untied &&
-        dalcs_tied_stay(part, dalcs_stage_n_clashes(part->entry) == 0, q->unit)) {
+    if (part->guards.fresh && !search->guessed && !search->untied &&
+        dalcs_tied_stay(part, dalcs_stage_n_clashes(part->segment.entry) == 0, q->unit)) {
         return dalcs_search_untie(r, part, search, *next, q);
     }
-    bool may_dip = part->fresh && part->may_dip;
+    bool may_dip = part->guards.fresh && part->guards.may_dip;
     if (dalcs_search_may_refine(search) && (may_dip || dalcs_guards_swing(part))) {
         return dalcs_search_refine(r, part, search);
     }
     *holds = true;
-    return part->t == 0.0 ? dalcs_search_look_at_start(r, part, search, q->unit, holds) : DALCS_OK;
+    return part->segment.t == 0.0 ? dalcs_search_look_at_start(r, part, search, q->unit, holds)
+                                  : DALCS_OK;
 }
 
 /* One try. *done: there is a segment. */
@@ -302,7 +308,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
                                   struct dalcs_search *search, bool *done) {
     struct dalcs_stage_entry *entry = NULL;
     struct dalcs_step_quality quality = {.ratio = NAN, .own = INFINITY};
-    if (part->slides) {
+    if (part->guards.slides) {
         *done = true;
         return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
     }
@@ -322,14 +328,16 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
         if (moved) {
             return DALCS_OK;
         }
-        DALCS_TRY(dalcs_stages_get(&part->stages, part->component->osnsp.mode, part->h, &entry));
+        DALCS_TRY(
+            dalcs_stages_get(&part->stages, part->component->osnsp.mode, part->segment.h, &entry));
     }
-    part->entry = entry;
-    part->ratio = dalcs_smaller(1.0, quality.ratio);
+    part->segment.entry = entry;
+    part->segment.ratio = dalcs_smaller(1.0, quality.ratio);
     double next;
     DALCS_TRY(look_at_signs(r, part, search, &quality, &next, &holds, done));
     if (holds) {
-        part->open = part->fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);
+        part->segment.open =
+            part->guards.fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);
         accept(r, part, search, next, &quality, dalcs_stage_residual(entry));
         *done = true;
     }
@@ -343,7 +351,7 @@ static bool is_let_go(const struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     bool only_sines = part->stages.method->s == DALCS_MAX_STAGES &&
                       part->excitation.shortest_period < INFINITY &&
-                      part->longest_needed == INFINITY && part->commands.n == 0;
+                      part->length.longest_needed == INFINITY && part->commands.n == 0;
     bool conducts = false;
     for (int d = 0; d < p->system->n_pairs && only_sines && !conducts; d++) {
         conducts = dalcs_osnsp_is_on(p, d);
@@ -354,16 +362,16 @@ static bool is_let_go(const struct dalcs_radau_part *part) {
 /* A mode that has been before, though not after this one, may have the map of a longer step that suited it then,
  * or the factors of a shorter one: it costs less to begin with that. Else with a step as long as those before. */
 static int cheapest_level(struct dalcs_radau_part *part) {
-    bool has_maps = part->rounding == 1.0;
-    int level = has_maps ? dalcs_transition_longest_level(part) : part->level;
+    bool has_maps = part->segment.rounding == 1.0;
+    int level = has_maps ? dalcs_transition_longest_level(part) : part->length.level;
     for (int k = 0; k <= MOST_PREFERRED; k++) {
         double h = dalcs_radau_ladder(part, level + k);
         if (dalcs_stages_have(&part->stages, part->component->osnsp.mode, h)) {
             return level + k;
         }
     }
-    bool may_be_longer =
-        has_maps && level == part->level && dalcs_radau_ladder(part, level - 1) <= part->longest;
+    bool may_be_longer = has_maps && level == part->length.level &&
+                         dalcs_radau_ladder(part, level - 1) <= part->length.longest;
     return may_be_longer && is_let_go(part) ? level - 1 : level;
 }
 
@@ -371,18 +379,19 @@ static int cheapest_level(struct dalcs_radau_part *part) {
 static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                           double limit, bool guessed) {
     struct dalcs_search search = {.limit = limit,
-                                  .first_level = part->level,
-                                  .asked_level = part->level,
+                                  .first_level = part->length.level,
+                                  .asked_level = part->length.level,
                                   .fixed = r->options.fixed_step > 0.0,
                                   .guessed = guessed,
                                   .ratio_before = INFINITY,
                                   .tolerated = 1.0};
-    if (part->fresh && part->flipped && !guessed && part->fronts_refused < MOST_FRONTS_REFUSED) {
+    if (part->guards.fresh && part->guards.flipped && !guessed &&
+        part->memory.fronts_refused < MOST_FRONTS_REFUSED) {
         DALCS_TRY(dalcs_front_close(part, &search.front));
         search.guessed = search.front;
     }
-    if (part->fresh && part->flipped && !guessed && !search.fixed) {
-        part->level = search.first_level = search.asked_level = cheapest_level(part);
+    if (part->guards.fresh && part->guards.flipped && !guessed && !search.fixed) {
+        part->length.level = search.first_level = search.asked_level = cheapest_level(part);
     }
     if (is_commutation(part) && !guessed && !search.fixed) {
         DALCS_TRY(dalcs_search_ask(r, part, &search, false));
@@ -403,11 +412,12 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
     if (slides) {
         return DALCS_OK;
     }
-    if (part->crowd > CROWD + 4 * part->component->system->n_pairs || part->flurry > FLURRY) {
-        part->fresh = true;
-        return dalcs_search_fall_back(r, part, limit, part->level, INFINITY);
+    if (part->memory.crowd > CROWD + 4 * part->component->system->n_pairs ||
+        part->memory.flurry > FLURRY) {
+        part->guards.fresh = true;
+        return dalcs_search_fall_back(r, part, limit, part->length.level, INFINITY);
     }
-    bool guessed = part->fresh && part->flipped && dalcs_transition_guess(part);
+    bool guessed = part->guards.fresh && part->guards.flipped && dalcs_transition_guess(part);
     bool holds = false;
     if (guessed && r->options.fixed_step == 0.0) {
         DALCS_TRY(dalcs_recurrence_try(r, part, limit, &holds));

@@ -17,11 +17,11 @@ static void prepare_positions(struct dalcs_radau_part *part) {
     int n_pairs = part->component->system->n_pairs;
     p->keeps = false;
     for (int i = 0; i < p->n; i++) {
-        p->slack[i] = dalcs_guard_most_rounding(part, n_pairs + i, part->unit_scale);
+        p->slack[i] = dalcs_guard_most_rounding(part, n_pairs + i, part->scales.unit);
     }
 }
 
-/* `times` of one step of length h from state[n_x] to part->t + tau into y, in the energies *taken. */
+/* `times` of one step of length h from state[n_x] to part->segment.t + tau into y, in the energies *taken. */
 static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
                                    double tau, double times, const double *state, double *y,
                                    double *taken, bool *slides) {
@@ -40,7 +40,7 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
                                                  .weight = {1.0 - weight, weight}};
         dalcs_energy_scale(energy, part->index, &c->osnsp.certificate);
         *taken += times * dalcs_energy_sliding_step(energy, part->index, state, y, &sides,
-                                                    part->u + c->system->n_x, times * h);
+                                                    part->work.u + c->system->n_x, times * h);
     }
     return DALCS_OK;
 }
@@ -51,22 +51,22 @@ static void extrapolate(double *fine, const double *coarse, int n) {
     }
 }
 
-/* One step, and two of half its length: part->y1 and the other side's values are extrapolated from them. */
+/* One step, and two of half its length: part->work.y1 and the other side's values are extrapolated from them. */
 static enum dalcs_status three_steps(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
                                      double *taken, bool *slides) {
     struct dalcs_component *c = part->component;
     const struct dalcs_system *s = c->system;
     DALCS_TRY(mean_step(r, part, h, h, -1.0, part->x, c->probe_y, taken, slides));
-    memcpy(part->w1, c->osnsp.w, (size_t)s->n_pairs * sizeof(double));
+    memcpy(part->work.w1, c->osnsp.w, (size_t)s->n_pairs * sizeof(double));
     if (*slides) {
-        DALCS_TRY(mean_step(r, part, 0.5 * h, 0.5 * h, 2.0, part->x, part->y2, taken, slides));
+        DALCS_TRY(mean_step(r, part, 0.5 * h, 0.5 * h, 2.0, part->x, part->work.y2, taken, slides));
     }
     if (*slides) {
-        DALCS_TRY(mean_step(r, part, 0.5 * h, h, 2.0, part->y2, part->y1, taken, slides));
+        DALCS_TRY(mean_step(r, part, 0.5 * h, h, 2.0, part->work.y2, part->work.y1, taken, slides));
     }
     if (*slides) {
-        extrapolate(part->y1, c->probe_y, dalcs_system_n_columns(s));
-        extrapolate(c->osnsp.w, part->w1, s->n_pairs);
+        extrapolate(part->work.y1, c->probe_y, dalcs_system_n_columns(s));
+        extrapolate(c->osnsp.w, part->work.w1, s->n_pairs);
     }
     return DALCS_OK;
 }
@@ -82,7 +82,7 @@ enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_par
     }
     prepare_positions(part);
     enum dalcs_status status = three_steps(r, part, h, &taken, slides);
-    part->slides = false;
+    part->guards.slides = false;
     if (!*slides) {
         if (energy != NULL) {
             *energy = before;
@@ -91,11 +91,11 @@ enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_par
     }
     c->slid_steps++;
     bool is_same = dalcs_sliding_join(&c->positions);
-    bool goes_on = is_same && part->by_euler && part->why == DALCS_END_OF_STEP;
+    bool goes_on = is_same && part->segment.by_euler && part->segment.why == DALCS_END_OF_STEP;
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    const double *last = part->out_before + (l->n_nodes - 1) * l->stride;
+    const double *last = part->segment.out_before + (l->n_nodes - 1) * l->stride;
     if (energy != NULL) {
-        dalcs_energy_slide(energy, part->index, part->x, part->y1, taken);
+        dalcs_energy_slide(energy, part->index, part->x, part->work.y1, taken);
     }
     dalcs_radau_accept_euler(r, part, h, goes_on ? last : NULL);
     r->steps++;

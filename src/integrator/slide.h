@@ -5,7 +5,7 @@
 #include "radau.h"
 
 /* One segment of length h along a threshold, as the present one. *slides: there is one; if not, nothing is changed but
- * part->y1 and part->y2. */
+ * part->work.y1 and part->y2. */
 enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
                                    bool *slides) DALCS_MUST_CHECK;
 

@@ -46,8 +46,9 @@ static void find_controls(struct dalcs_radau_part *part) {
         for (int k = s->control.p[d]; k < s->control.p[d + 1]; k++) {
             int c = s->control.j[k];
             if (c < dalcs_system_n_equations(s)) {
-                part->kinds->leans[c] = 0.0;
-                part->scale[c] = dalcs_larger(part->scale[c], threshold / fabs(s->control.x[k]));
+                part->scales.kinds->leans[c] = 0.0;
+                part->scales.column[c] =
+                    dalcs_larger(part->scales.column[c], threshold / fabs(s->control.x[k]));
             }
         }
     }
@@ -56,13 +57,14 @@ static void find_controls(struct dalcs_radau_part *part) {
 enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     size_t n = (size_t)dalcs_quads_of(dalcs_system_n_columns(s));
-    part->scale = dalcs_arena_alloc(&part->arena, n, sizeof(double));
-    part->magnitude = dalcs_arena_alloc(&part->arena, n, sizeof(double));
-    part->kinds = dalcs_arena_alloc(&part->arena, 1, sizeof(*part->kinds));
-    if (part->scale == NULL || part->magnitude == NULL || part->kinds == NULL) {
+    part->scales.column = dalcs_arena_alloc(&part->arena, n, sizeof(double));
+    part->scales.magnitude = dalcs_arena_alloc(&part->arena, n, sizeof(double));
+    part->scales.kinds = dalcs_arena_alloc(&part->arena, 1, sizeof(*part->scales.kinds));
+    if (part->scales.column == NULL || part->scales.magnitude == NULL ||
+        part->scales.kinds == NULL) {
         return DALCS_E_NOMEM;
     }
-    struct dalcs_column_kinds *kinds = part->kinds;
+    struct dalcs_column_kinds *kinds = part->scales.kinds;
     kinds->mode = dalcs_arena_alloc(&part->arena, (size_t)part->component->osnsp.n_words,
                                     sizeof(*kinds->mode));
     kinds->is_volt = dalcs_arena_alloc(&part->arena, n, sizeof(double));
@@ -88,7 +90,7 @@ enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
 /* Brings what pairs are up to the present mode. */
 static void find_kinds(const struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    const struct dalcs_column_kinds *kinds = part->kinds;
+    const struct dalcs_column_kinds *kinds = part->scales.kinds;
     int n_pairs = p->system->n_pairs;
     int c = dalcs_system_n_equations(p->system);
     for (int first = 0; first < n_pairs; first += 64) {
@@ -139,8 +141,8 @@ static void raise_units(const struct dalcs_radau_part *part, const double *y, do
 /* Each unit vouches a little for the other. */
 static void cross_units(const struct dalcs_radau_part *part, double *unit) {
     double volt = unit[0];
-    unit[0] = dalcs_larger(unit[0], part->cross[0] * unit[1]);
-    unit[1] = dalcs_larger(unit[1], part->cross[1] * volt);
+    unit[0] = dalcs_larger(unit[0], part->scales.cross[0] * unit[1]);
+    unit[1] = dalcs_larger(unit[1], part->scales.cross[1] * volt);
 }
 
 /* The last node that belongs to the segment. */
@@ -172,19 +174,19 @@ DALCS_TWICE(void, weigh,
 void dalcs_step_states(const struct dalcs_radau_part *part, double theta, double *x) {
     double weight[DALCS_MAX_NODES];
     dalcs_collocation_weights(part->stages.method, theta, weight);
-    weigh(&part->stages.layout, weight, part->out, part->component->system->n_x, x);
+    weigh(&part->stages.layout, weight, part->segment.out, part->component->system->n_x, x);
 }
 
 void dalcs_step_values(const struct dalcs_radau_part *part, double theta, double *value) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
     if (theta == 0.0 || theta == 1.0) {
         int node = theta == 0.0 ? 0 : l->n_nodes - 1;
-        memcpy(value, part->out + node * l->stride, (size_t)l->stride * sizeof(*value));
+        memcpy(value, part->segment.out + node * l->stride, (size_t)l->stride * sizeof(*value));
         return;
     }
     double weight[DALCS_MAX_NODES];
     dalcs_collocation_weights(part->stages.method, theta, weight);
-    weigh(l, weight, part->out, l->stride, value);
+    weigh(l, weight, part->segment.out, l->stride, value);
 }
 
 /* magnitude: the larger of |first| and |last|; raises unit[2] to the largest of them. */
@@ -219,23 +221,23 @@ DALCS_TWICE(void, compare_ends,
 /* The larger of what a column is at the first and at the last known node of a segment; raises the
  * units to the largest of them. */
 static void find_magnitudes(struct dalcs_radau_part *part, double end, double *unit) {
-    const double *known = part->out + last_node(part, end) * part->stages.layout.stride;
+    const double *known = part->segment.out + last_node(part, end) * part->stages.layout.stride;
     find_kinds(part);
-    compare_ends(part->kinds, dalcs_system_n_columns(part->component->system), part->out, known,
-                 part->magnitude, unit);
-    part->magnitude_end = end;
+    compare_ends(part->scales.kinds, dalcs_system_n_columns(part->component->system),
+                 part->segment.out, known, part->scales.magnitude, unit);
+    part->scales.magnitude_end = end;
 }
 
 double dalcs_step_rounding(const struct dalcs_radau_part *part,
                            const struct dalcs_stage_entry *entry) {
     int n_equations = dalcs_system_n_equations(part->component->system);
-    const double *final = part->out + part->stages.method->s * part->stages.layout.stride;
+    const double *final = part->segment.out + part->stages.method->s * part->stages.layout.stride;
     const double *inverse = dalcs_stage_natural_units(entry) + n_equations;
     double balanced = 0.0;
     for (int c = 0; c < n_equations; c++) {
         balanced = dalcs_larger(balanced, fabs(final[c]) * inverse[c]);
     }
-    return rounding_part * part->rounding * balanced;
+    return rounding_part * part->segment.rounding * balanced;
 }
 
 /* One more error, over what is allowed for it. Divisions are dear, and few columns are worse than all
@@ -263,7 +265,7 @@ static void find_allowance(const struct dalcs_radau *r, const struct dalcs_radau
     a->least[2] = smallest_pair * q->unit[1];
     a->besides[0] = r->besides[0] + dalcs_step_crossed(part, 0, q->here);
     a->besides[1] = r->besides[1] + dalcs_step_crossed(part, 1, q->here);
-    a->besides[2] = rounding_part * part->rounding * q->unit[1] + a->besides[1];
+    a->besides[2] = rounding_part * part->segment.rounding * q->unit[1] + a->besides[1];
 }
 
 double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const double *unit) {
@@ -273,17 +275,18 @@ double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const d
         return 0.0;
     }
     double least = pair >= 0 ? smallest_pair * unit[1]
-                             : part->kinds->leans[column] * smallest_scale *
+                             : part->scales.kinds->leans[column] * smallest_scale *
                                    unit[s->column_is_current[column] ? 1 : 0];
-    return dalcs_larger(least, dalcs_larger(part->scale[column], part->magnitude[column]));
+    return dalcs_larger(least,
+                        dalcs_larger(part->scales.column[column], part->scales.magnitude[column]));
 }
 
 /* The errors over what is allowed, with `rounding` besides. */
 static void compare(const struct dalcs_radau_part *part, const struct allowance *a,
                     const double *natural, double rounding, struct dalcs_step_quality *q) {
     const struct dalcs_system *s = part->component->system;
-    const double *drift = part->out + part->stages.layout.drift;
-    const double *ripple = part->out + part->stages.layout.ripple;
+    const double *drift = part->segment.out + part->stages.layout.drift;
+    const double *ripple = part->segment.out + part->stages.layout.ripple;
     bool curved = part->excitation.is_curved;
     q->ratio = 0.0;
     q->drift = 0.0;
@@ -313,7 +316,7 @@ DALCS_TWICE(void, compare_all,
             (const struct dalcs_radau_part *part, const struct allowance *a, int n, int n_x,
              const double *drift, const double *ripple, struct dalcs_step_quality *q),
             (part, a, n, n_x, drift, ripple, q)) {
-    const struct dalcs_column_kinds *kinds = part->kinds;
+    const struct dalcs_column_kinds *kinds = part->scales.kinds;
     dalcs_quad worst = {0.0};
     dalcs_quad worst_drift = {0.0};
     dalcs_quad sum = {0.0}; /* shows NaN, which comparisons hide */
@@ -328,8 +331,8 @@ DALCS_TWICE(void, compare_all,
         dalcs_quad_load(&is_ampere, kinds->is_ampere + c);
         dalcs_quad_load(&is_closed, kinds->is_closed + c);
         dalcs_quad_load(&leans, kinds->leans + c);
-        dalcs_quad_load(&scale, part->scale + c);
-        dalcs_quad_load(&magnitude, part->magnitude + c);
+        dalcs_quad_load(&scale, part->scales.column + c);
+        dalcs_quad_load(&magnitude, part->scales.magnitude + c);
         dalcs_quad_raise(&scale, &magnitude);
         magnitude =
             leans * (a->least[0] * is_volt + a->least[1] * is_ampere) + a->least[2] * is_closed;
@@ -364,13 +367,13 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
                       struct dalcs_stage_entry *entry, double end, struct dalcs_step_quality *q) {
     const struct dalcs_system *s = part->component->system;
     bool curved = part->excitation.is_curved;
-    const double *drift = part->out + part->stages.layout.drift;
-    const double *ripple = curved ? part->out + part->stages.layout.ripple : NULL;
+    const double *drift = part->segment.out + part->stages.layout.drift;
+    const double *ripple = curved ? part->segment.out + part->stages.layout.ripple : NULL;
     struct allowance a;
     *q = (struct dalcs_step_quality){0};
     find_magnitudes(part, end, q->here);
-    q->unit[0] = dalcs_larger(q->here[0], part->unit_scale[0]);
-    q->unit[1] = dalcs_larger(q->here[1], part->unit_scale[1]);
+    q->unit[0] = dalcs_larger(q->here[0], part->scales.unit[0]);
+    q->unit[1] = dalcs_larger(q->here[1], part->scales.unit[1]);
     cross_units(part, q->unit);
     find_allowance(r, part, q, &a);
     compare_all(part, &a, curved ? dalcs_system_n_columns(s) : s->n_x, s->n_x, drift, ripple, q);
@@ -388,8 +391,8 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
 }
 
 void dalcs_step_reach(struct dalcs_radau_part *part, double end, double *unit) {
-    dalcs_step_values(part, end, part->y2);
-    raise_units(part, part->y2, unit);
+    dalcs_step_values(part, end, part->work.y2);
+    raise_units(part, part->work.y2, unit);
     cross_units(part, unit);
 }
 
@@ -409,20 +412,20 @@ DALCS_TWICE(void, raise_scales,
 }
 
 void dalcs_step_remember(struct dalcs_radau_part *part, double end, const double *unit) {
-    if (end != part->magnitude_end) {
+    if (end != part->scales.magnitude_end) {
         double here[2] = {0.0, 0.0};
         find_magnitudes(part, end, here);
     }
-    raise_scales(dalcs_system_n_columns(part->component->system), part->magnitude,
-                 part->kinds->counts, part->scale);
-    part->unit_scale[0] = unit[0];
-    part->unit_scale[1] = unit[1];
+    raise_scales(dalcs_system_n_columns(part->component->system), part->scales.magnitude,
+                 part->scales.kinds->counts, part->scales.column);
+    part->scales.unit[0] = unit[0];
+    part->scales.unit[1] = unit[1];
 }
 
 bool dalcs_step_clashes(const struct dalcs_radau_part *part, const struct dalcs_stage_entry *entry,
                         double end, const double *unit) {
     const struct dalcs_collocation *m = part->stages.method;
-    const double *clash = part->out + part->stages.layout.n_fixed;
+    const double *clash = part->segment.out + part->stages.layout.n_fixed;
     const double *last = clash + dalcs_stage_n_clashes(entry);
     double limit = clash_part * dalcs_larger(unit[0], unit[1]);
     for (; clash < last; clash += m->s) { /* those of one null vector, at the stages */

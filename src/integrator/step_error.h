@@ -19,7 +19,7 @@ struct dalcs_step_quality {
  * 2e-14 of them, over what find_cross_scales counts as nothing. V or A; of: 0 of a voltage, 1 of a current. */
 static inline double dalcs_step_crossed(const struct dalcs_radau_part *part, int of,
                                         const double unit[2]) {
-    return 2e-8 * part->cross[of] * unit[1 - of];
+    return 2e-8 * part->scales.cross[of] * unit[1 - of];
 }
 
 /* Of a part that is otherwise set up. */

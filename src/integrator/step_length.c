@@ -67,9 +67,9 @@ double dalcs_length_of_spans(const struct dalcs_radau_part *part) {
 /* The first of equal spans is the one: it comes earliest, when times have most digits, and later ones, rounded up and
  * down, are that one exactly. */
 double dalcs_length_known_span(const struct dalcs_radau_part *part, double from, double to) {
-    for (int k = 0; k < part->n_spans; k++) {
-        if (dalcs_length_is_same(part->span[k], from, to)) {
-            return part->span[k];
+    for (int k = 0; k < part->length.n_spans; k++) {
+        if (dalcs_length_is_same(part->length.span[k], from, to)) {
+            return part->length.span[k];
         }
     }
     return 0.0;
@@ -78,15 +78,15 @@ double dalcs_length_known_span(const struct dalcs_radau_part *part, double from,
 /* Of a single switch; where several are commanded, events cut most spans, and maps of their length serve nothing
  * else. */
 double dalcs_length_fitted(struct dalcs_radau_part *part, double limit) {
-    double h = dalcs_radau_ladder(part, part->level);
-    double span = limit - part->t;
-    if (!(part->commands.n == 1 && part->longest_needed < INFINITY && span <= h &&
+    double h = dalcs_radau_ladder(part, part->length.level);
+    double span = limit - part->segment.t;
+    if (!(part->commands.n == 1 && part->length.longest_needed < INFINITY && span <= h &&
           2.0 * span > h)) {
         return h;
     }
-    double known = dalcs_length_known_span(part, part->t, limit);
-    if (known == 0.0 && part->n_spans < DALCS_SPANS) {
-        known = part->span[part->n_spans++] = span;
+    double known = dalcs_length_known_span(part, part->segment.t, limit);
+    if (known == 0.0 && part->length.n_spans < DALCS_SPANS) {
+        known = part->length.span[part->length.n_spans++] = span;
     }
     return known > 0.0 ? known : h;
 }
@@ -115,15 +115,15 @@ static int shared_rung(int level, int n) {
 void dalcs_length_shorten(struct dalcs_radau_part *part, double ratio, int stuck) {
     double rungs = log2(ratio) / (double)(part->stages.method->s + 1);
     int down = rungs < DALCS_LENGTH_MOST_RUNGS ? (int)ceil(rungs) : DALCS_LENGTH_MOST_RUNGS;
-    part->level += down > 1 ? down : 1;
+    part->length.level += down > 1 ? down : 1;
     if (stuck > 0) { /* something much faster than the step has to die away */
         int far = stuck == 1 ? 2 : 5;
-        part->level = shared_rung(part->level + (far > down ? far - down : 0), 3);
+        part->length.level = shared_rung(part->length.level + (far > down ? far - down : 0), 3);
     }
-    int patience = part->grew ? 2 * part->patience : part->patience;
-    part->patience = patience < MOST_PATIENCE ? patience : MOST_PATIENCE;
-    part->waited = 0;
-    part->grew = false;
+    int patience = part->length.grew ? 2 * part->length.patience : part->length.patience;
+    part->length.patience = patience < MOST_PATIENCE ? patience : MOST_PATIENCE;
+    part->length.waited = 0;
+    part->length.grew = false;
 }
 
 double dalcs_length_rungs_promised(const struct dalcs_radau_part *part, double ratio) {
@@ -135,25 +135,28 @@ void dalcs_length_lengthen(struct dalcs_radau_part *part, double ratio) {
     double rungs = dalcs_length_rungs_promised(part, ratio);
     bool promising = rungs > 1.0;
     int up = rungs > DALCS_LENGTH_MOST_RUNGS ? DALCS_LENGTH_MOST_RUNGS : promising ? (int)rungs : 1;
-    while (up > 0 && dalcs_radau_ladder(part, part->level - up) > part->longest) {
+    while (up > 0 && dalcs_radau_ladder(part, part->length.level - up) > part->length.longest) {
         up--;
     }
     bool is_held_back = up == 0 && promising;
-    while (up > 0 && dalcs_radau_ladder(part, part->level - up) > part->longest_needed) {
+    while (up > 0 &&
+           dalcs_radau_ladder(part, part->length.level - up) > part->length.longest_needed) {
         up--;
     }
-    part->waited++;
-    part->grew = false;
+    part->length.waited++;
+    part->length.grew = false;
     if (up == 0) {
-        part->held_back += is_held_back ? 1 : 0;
+        part->length.held_back += is_held_back ? 1 : 0;
         return;
     }
-    int level = up < 2 ? part->level - 1 : shared_rung(part->level - up, up < 3 ? 2 : 3);
-    bool is_far = level < part->level - 1;
-    if (!is_far && !(promising ? part->waited > 1 : part->waited > part->patience)) {
+    int level =
+        up < 2 ? part->length.level - 1 : shared_rung(part->length.level - up, up < 3 ? 2 : 3);
+    bool is_far = level < part->length.level - 1;
+    if (!is_far &&
+        !(promising ? part->length.waited > 1 : part->length.waited > part->length.patience)) {
         return;
     }
-    part->level = is_far ? level : part->level - 1;
-    part->waited = 0;
-    part->grew = !promising;
+    part->length.level = is_far ? level : part->length.level - 1;
+    part->length.waited = 0;
+    part->length.grew = !promising;
 }

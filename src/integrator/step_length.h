@@ -36,11 +36,11 @@ double dalcs_length_promising(const struct dalcs_radau_part *part);
  * allowed. */
 double dalcs_length_rungs_promised(const struct dalcs_radau_part *part, double ratio);
 
-/* Moves part->level down after a step that is not accurate; stuck: so many in a row, before this one,
+/* Moves part->length.level down after a step that is not accurate; stuck: so many in a row, before this one,
  * that were no better for being shorter. */
 void dalcs_length_shorten(struct dalcs_radau_part *part, double ratio, int stuck);
 
-/* Moves part->level up after a step that is, if the error promises it, or, as errors near rounding
+/* Moves part->length.level up after a step that is, if the error promises it, or, as errors near rounding
  * promise nothing, now and then to see. */
 void dalcs_length_lengthen(struct dalcs_radau_part *part, double ratio);
 

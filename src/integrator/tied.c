@@ -41,18 +41,18 @@ bool dalcs_tied_is(const struct dalcs_radau_part *part, int pair, const double *
 /* A closed pair that had no current in the whole segment before either? An open one without voltage may
  * have got another in parallel. */
 static bool was_tied(const struct dalcs_radau_part *part, int pair, const double *unit) {
-    bool is_closed = part->flipped && dalcs_osnsp_is_on(&part->component->osnsp, pair);
+    bool is_closed = part->guards.flipped && dalcs_osnsp_is_on(&part->component->osnsp, pair);
     return is_closed && dalcs_tied_was_at_rest(part, pair, unit);
 }
 
 /* Does it share a node with a pair that has just changed sides? Then something did happen to it. */
 static bool is_beside_flipped(const struct dalcs_radau_part *part, int pair) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
-    const int *mine = part->pair_row + 2 * pair;
+    const int *mine = part->laws.pair_row + 2 * pair;
     bool found = false;
     for (int d = 0; d < p->system->n_pairs && !found; d++) {
         if (dalcs_guard_has_flipped(part, d)) {
-            const int *its = part->pair_row + 2 * d;
+            const int *its = part->laws.pair_row + 2 * d;
             for (int e = 0; e < 2; e++) {
                 found = found || (mine[e] >= 0 && (mine[e] == its[0] || mine[e] == its[1]));
             }
@@ -65,7 +65,7 @@ static bool is_beside_flipped(const struct dalcs_radau_part *part, int pair) {
 static bool is_settled(const struct dalcs_radau_part *part, int pair) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    const double *value = part->out + dalcs_system_n_equations(p->system) + pair;
+    const double *value = part->segment.out + dalcs_system_n_equations(p->system) + pair;
     bool settled = dalcs_osnsp_is_unique(p) && !dalcs_osnsp_is_on(p, pair);
     for (int k = 0; k < l->n_nodes && settled; k++) {
         settled = value[k * l->stride] == 0.0;
@@ -76,7 +76,8 @@ static bool is_settled(const struct dalcs_radau_part *part, int pair) {
 bool dalcs_tied_stay(const struct dalcs_radau_part *part, bool is_determined, const double *unit) {
     int n_pairs = part->component->system->n_pairs;
     bool tied = false;
-    for (int d = 0; d < n_pairs && !tied && !(n_pairs > DALCS_MANY_PAIRS && part->flipped); d++) {
+    for (int d = 0; d < n_pairs && !tied && !(n_pairs > DALCS_MANY_PAIRS && part->guards.flipped);
+         d++) {
         tied = dalcs_tied_is(part, d, unit) && !is_settled(part, d) &&
                !(is_determined && was_tied(part, d, unit) && !is_beside_flipped(part, d));
     }
@@ -86,7 +87,8 @@ bool dalcs_tied_stay(const struct dalcs_radau_part *part, bool is_determined, co
 /* Is its value at the end of the step above 0 by more than at the start, however little that is beyond rounding? */
 static bool grows(const struct dalcs_radau_part *part, int pair, const double *unit) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
+    const double *value =
+        part->segment.out + dalcs_system_n_equations(part->component->system) + pair;
     return value[(l->n_nodes - 1) * l->stride] >
            dalcs_larger(fabs(value[0]), dalcs_guard_rounding_across(part, pair, unit));
 }
@@ -95,9 +97,10 @@ static bool grows(const struct dalcs_radau_part *part, int pair, const double *u
  * makes of it beside others? Its own digits tell, for they are those of a power of time. */
 static bool leaves(const struct dalcs_radau_part *part, int pair, double sign) {
     const struct dalcs_stage_layout *l = &part->stages.layout;
-    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
+    const double *value =
+        part->segment.out + dalcs_system_n_equations(part->component->system) + pair;
     double last = sign * value[(l->n_nodes - 1) * l->stride];
-    bool does = part->rounding == 1.0 && last > 0.0 &&
+    bool does = part->segment.rounding == 1.0 && last > 0.0 &&
                 fabs(value[0]) <= dalcs_guard_agreeing * dalcs_guard_agreeing * last;
     for (int k = 1; k < l->n_nodes && does; k++) {
         does = sign * value[k * l->stride] > sign * value[(k - 1) * l->stride];
@@ -108,7 +111,8 @@ static bool leaves(const struct dalcs_radau_part *part, int pair, double sign) {
 /* Is a pair above 0, by more than rounding, halfway to `end`? */
 static bool is_above(const struct dalcs_radau_part *part, int pair, double end,
                      const double *unit) {
-    const double *value = part->out + dalcs_system_n_equations(part->component->system) + pair;
+    const double *value =
+        part->segment.out + dalcs_system_n_equations(part->component->system) + pair;
     return dalcs_guard_value_at(part, value, part->stages.layout.stride, 0.5 * end) >
            nothing_of(part, pair, unit);
 }
@@ -159,9 +163,9 @@ bool dalcs_tied_turn(struct dalcs_radau_part *part, const double *unit) {
 
 bool dalcs_tied_turn_back(const struct dalcs_radau_part *part, double end, const double *unit) {
     bool turns = false;
-    for (int k = 0; k < part->n_crossed && !turns; k++) {
-        int g = part->crossed[k];
-        turns = !part->armed[g] &&
+    for (int k = 0; k < part->guards.n_crossed && !turns; k++) {
+        int g = part->guards.crossed[k];
+        turns = !part->guards.armed[g] &&
                 !(g < part->component->system->n_pairs && is_above(part, g, end, unit));
     }
     return turns;

@@ -9,7 +9,25 @@
 
 #include "radau.h"
 
-/* part->transition[DALCS_TRANSITIONS]. */
+/* A length that may come back, and is then stepped at once; see recurrence.h. */
+struct dalcs_recurring {
+    double length;                   /* s, the last time; 0: none */
+    int times;                       /* in a row that it was the same */
+    int patience;                    /* until it is tried at once; 0: not looked at yet */
+    struct dalcs_stage_brief *brief; /* a step as long; NULL: none yet */
+};
+
+struct dalcs_transition {
+    bool is_known;
+    int level;
+    int untried; /* rungs up to a length that was not tried when this one was found by analogy */
+    int held;    /* times that `level` did */
+    struct dalcs_recurring span; /* from it to the next edge */
+    struct dalcs_recurring step; /* that was enough up to what came then */
+    int step_level;              /* of the ladder, on which `step` was found */
+};
+
+/* part->memory.transition[DALCS_TRANSITIONS]. */
 enum { DALCS_TRANSITIONS = 64 };
 
 enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) DALCS_MUST_CHECK;

@@ -26,16 +26,16 @@ enum dalcs_status dalcs_twins_setup(struct dalcs_radau_part *part) {
     if (!dalcs_osnsp_is_monotone(p) || n_pairs > DALCS_MANY_PAIRS) {
         return DALCS_OK;
     }
-    part->twin = dalcs_arena_alloc(&part->arena, (size_t)n_pairs, sizeof(int));
-    if (part->twin == NULL) {
+    part->guards.twin = dalcs_arena_alloc(&part->arena, (size_t)n_pairs, sizeof(int));
+    if (part->guards.twin == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int d = 0; d < n_pairs; d++) {
-        part->twin[d] = 0;
-        while (part->twin[d] < d && !are_twins(p, part->twin[d], d)) {
-            part->twin[d]++;
+        part->guards.twin[d] = 0;
+        while (part->guards.twin[d] < d && !are_twins(p, part->guards.twin[d], d)) {
+            part->guards.twin[d]++;
         }
-        part->n_twins += part->twin[d] < d ? 1 : 0;
+        part->guards.n_twins += part->guards.twin[d] < d ? 1 : 0;
     }
     return DALCS_OK;
 }
@@ -43,8 +43,8 @@ enum dalcs_status dalcs_twins_setup(struct dalcs_radau_part *part) {
 /* All twins of one, and itself. */
 static void command(struct dalcs_radau_part *part, int pair, bool on) {
     struct dalcs_osnsp *p = &part->component->osnsp;
-    for (int d = part->twin[pair]; d < p->system->n_pairs; d++) {
-        if (part->twin[d] == part->twin[pair]) {
+    for (int d = part->guards.twin[pair]; d < p->system->n_pairs; d++) {
+        if (part->guards.twin[d] == part->guards.twin[pair]) {
             dalcs_osnsp_command(p, d, on);
         }
     }
@@ -53,8 +53,8 @@ static void command(struct dalcs_radau_part *part, int pair, bool on) {
 void dalcs_twins_flip(struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     dalcs_guards_flip(part);
-    for (int k = 0; part->n_twins > 0 && k < part->n_crossed; k++) {
-        int d = part->crossed[k];
+    for (int k = 0; part->guards.n_twins > 0 && k < part->guards.n_crossed; k++) {
+        int d = part->guards.crossed[k];
         if (d < p->system->n_pairs) {
             command(part, d, dalcs_osnsp_is_on(p, d));
         }
@@ -64,8 +64,8 @@ void dalcs_twins_flip(struct dalcs_radau_part *part) {
 static bool has_open_twin(const struct dalcs_radau_part *part, int pair) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     bool found = false;
-    for (int d = part->twin[pair]; d < p->system->n_pairs && !found; d++) {
-        found = part->twin[d] == part->twin[pair] && !dalcs_osnsp_is_on(p, d);
+    for (int d = part->guards.twin[pair]; d < p->system->n_pairs && !found; d++) {
+        found = part->guards.twin[d] == part->guards.twin[pair] && !dalcs_osnsp_is_on(p, d);
     }
     return found;
 }
@@ -73,7 +73,7 @@ static bool has_open_twin(const struct dalcs_radau_part *part, int pair) {
 bool dalcs_twins_close(struct dalcs_radau_part *part, const double *unit) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     bool found = false;
-    for (int d = 0; part->n_twins > 0 && d < p->system->n_pairs; d++) {
+    for (int d = 0; part->guards.n_twins > 0 && d < p->system->n_pairs; d++) {
         if (p->is_diode[d] && dalcs_osnsp_is_on(p, d) && has_open_twin(part, d) &&
             !dalcs_tied_is(part, d, unit)) {
             command(part, d, true);

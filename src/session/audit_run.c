@@ -84,7 +84,7 @@ static void raise_scales(void *user, int part, double *v, double *i, double *lam
     }
     const struct audit_members *m = &a->part[part];
     const struct dalcs_readout *readout = a->run->s->network.readout;
-    const double *scale = a->radau->part[part].scale;
+    const double *scale = a->radau->part[part].scales.column;
     for (int k = 0; k < m->n_nodes; k++) {
         raise(&v[m->node[k]], scale[m->node_column[k]]);
     }
@@ -263,19 +263,19 @@ void dalcs_audit_run_finish(struct dalcs_audit_run *a) {
 static struct dalcs_audit_stretch stretch_of(const struct dalcs_audit_run *a, int k, double to) {
     const struct dalcs_radau_part *part = &a->radau->part[k];
     return (struct dalcs_audit_stretch){.part = k,
-                                        .from = part->t,
+                                        .from = part->segment.t,
                                         .to = to,
-                                        .step = part->h,
+                                        .step = part->segment.h,
                                         .degree = part->stages.method->s,
-                                        .rule = part->by_euler ? DALCS_AUDIT_COARSE
-                                                               : DALCS_AUDIT_SMOOTH};
+                                        .rule = part->segment.by_euler ? DALCS_AUDIT_COARSE
+                                                                       : DALCS_AUDIT_SMOOTH};
 }
 
 static void enter(struct dalcs_audit_run *a, int k) {
     if (!dalcs_audit_was_left(a->audit, k)) {
         return;
     }
-    const struct dalcs_audit_stretch stretch = stretch_of(a, k, a->radau->part[k].t_end);
+    const struct dalcs_audit_stretch stretch = stretch_of(a, k, a->radau->part[k].segment.t_end);
     dalcs_audit_enter(a->audit, &stretch);
 }
 
@@ -292,7 +292,7 @@ static void leave(struct dalcs_audit_run *a, int k, double to) {
     const struct dalcs_stages *stages = &part->stages;
     const double elements = element_work * stages->n_in * stages->layout.n_fixed;
     const bool is_brief =
-        part->late != NULL; /* of which only what tells that it is one was computed */
+        part->segment.late != NULL; /* of which only what tells that it is one was computed */
     const bool is_last = to >= a->radau->options.stop;
     const double work =
         (a->has_rows ? read_segment_work : segment_work) +
@@ -313,10 +313,10 @@ void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
     const double stop = a->radau->options.stop;
     for (int k = 0; k < a->radau->n_parts; k++) {
         const struct dalcs_radau_part *part = &a->radau->part[k];
-        const bool ends = part->t_end <= t || t >= stop;
-        a->part[k].was_left = part->kind == DALCS_PART_STEPPED && ends && part->t < stop;
+        const bool ends = part->segment.t_end <= t || t >= stop;
+        a->part[k].was_left = part->kind == DALCS_PART_STEPPED && ends && part->segment.t < stop;
         if (a->part[k].was_left) {
-            leave(a, k, part->t_end < stop ? part->t_end : stop);
+            leave(a, k, part->segment.t_end < stop ? part->segment.t_end : stop);
         }
     }
     a->has_rows = false;
@@ -331,7 +331,7 @@ enum dalcs_status dalcs_audit_run_leap(struct dalcs_audit_run *a, double until, 
         a->was_tried = false;
         return DALCS_OK;
     }
-    const double work = TRIED_PERIODS * dalcs_cycle_n_segments(part->cycle) * segment_work;
+    const double work = TRIED_PERIODS * dalcs_cycle_n_segments(part->memory.cycle) * segment_work;
     if (!dalcs_audit_may(a->audit, work) && a->has_tried) {
         return DALCS_OK;
     }
@@ -346,7 +346,7 @@ static double distance(const struct dalcs_radau_part *part, const double *x) {
     double worst = 0.0;
     for (int k = 0; k < part->component->system->n_x; k++) {
         const double off = fabs(x[k] - part->x[k]);
-        worst = off > worst * part->scale[k] ? off / part->scale[k] : worst;
+        worst = off > worst * part->scales.column[k] ? off / part->scales.column[k] : worst;
     }
     return worst;
 }
@@ -355,20 +355,21 @@ void dalcs_audit_run_start_leap(struct dalcs_audit_run *a) {
     const struct dalcs_radau_part *part = a->radau->cycling;
     if (a->audit != NULL) {
         memcpy(a->tried, part->x, (size_t)part->component->system->n_x * sizeof(double));
-        a->leap_time = part->t;
+        a->leap_time = part->segment.t;
     }
 }
 
 void dalcs_audit_run_end_leap(struct dalcs_audit_run *a) {
     const struct dalcs_radau_part *part = a->radau->cycling;
     const int n_x = part->component->system->n_x;
-    const double periods = rint((part->t - a->leap_time) / dalcs_cycle_period(part->cycle));
+    const double periods =
+        rint((part->segment.t - a->leap_time) / dalcs_cycle_period(part->memory.cycle));
     const double work = 3.0 * n_x * (n_x + 1) * periods;
     if (a->audit != NULL && (dalcs_audit_may(a->audit, work) || !a->has_passed)) {
         a->has_passed = true;
         dalcs_cycle_pass(part, (long)periods, a->tried, a->tried + n_x);
         dalcs_audit_add(a->audit, DALCS_AUDIT_PERIOD, part->index, distance(part, a->tried),
-                        part->t);
+                        part->segment.t);
     }
 }
 
@@ -376,12 +377,12 @@ void dalcs_audit_run_end_leap(struct dalcs_audit_run *a) {
 static void compare_tried(struct dalcs_audit_run *a) {
     const struct dalcs_radau_part *part = a->radau->cycling;
     const double near = 4.0 * a->radau->resolution;
-    if (part == NULL || part->t < a->tried_time - near) {
+    if (part == NULL || part->segment.t < a->tried_time - near) {
         return;
     }
-    const bool is_other = part->t > a->tried_time + near;
+    const bool is_other = part->segment.t > a->tried_time + near;
     const double worst = is_other ? 1.0 : distance(part, a->tried);
-    dalcs_audit_add(a->audit, DALCS_AUDIT_PERIOD, part->index, worst, part->t);
+    dalcs_audit_add(a->audit, DALCS_AUDIT_PERIOD, part->index, worst, part->segment.t);
     a->tried_time = INFINITY;
     a->was_tried = true;
 }
@@ -391,7 +392,7 @@ void dalcs_audit_run_enter(struct dalcs_audit_run *a) {
         compare_tried(a);
     }
     for (int k = 0; a->audit != NULL && k < a->radau->n_parts; k++) {
-        if (a->part[k].was_left && a->radau->part[k].t < a->radau->options.stop) {
+        if (a->part[k].was_left && a->radau->part[k].segment.t < a->radau->options.stop) {
             enter(a, k);
         }
     }

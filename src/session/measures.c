@@ -167,7 +167,7 @@ static bool ends_at(const struct dalcs_measures *measures, const struct dalcs_ra
                     double t, double near) {
     bool ends = measures->next_edge <= t + near || t >= radau->options.stop - near;
     for (int k = 0; k < radau->n_parts && !ends; k++) {
-        ends = measures->reads[k] && radau->part[k].t_end <= t;
+        ends = measures->reads[k] && radau->part[k].segment.t_end <= t;
     }
     return ends;
 }

@@ -263,7 +263,7 @@ static enum dalcs_status rows(struct transient *c, double until, bool ends) {
 /* May the next row be in this segment, periods later? */
 static bool cycles(const struct transient *c) {
     const struct dalcs_radau *radau = c->radau;
-    return radau->cycling != NULL && radau->cycling->cycles &&
+    return radau->cycling != NULL && radau->cycling->memory.cycles &&
            !dalcs_filling_is_on(&c->filling, c->t);
 }
 
@@ -282,7 +282,7 @@ static enum dalcs_status leap(struct transient *c) {
         return DALCS_OK;
     }
     dalcs_audit_run_end_leap(c->audit);
-    c->t = c->radau->cycling->t;
+    c->t = c->radau->cycling->segment.t;
     dalcs_measures_skip(c->measures, c->t);
     DALCS_TRY(dalcs_recorder_leap(c->recorder, leap));
     return tell_progress(c, leap->n_steps);
@@ -441,7 +441,7 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct
 static void note_held_back(struct dalcs_run *r, const struct dalcs_radau *radau) {
     long held_back = 0;
     for (int k = 0; k < radau->n_parts; k++) {
-        held_back += radau->part[k].held_back;
+        held_back += radau->part[k].length.held_back;
     }
     if (r->max_step > 0.0 && r->fixed_step == 0.0 && held_back > MANY_STEPS &&
         2 * held_back > radau->steps) {

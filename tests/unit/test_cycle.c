@@ -43,11 +43,11 @@ static void note_leap(int run, const struct dalcs_leap *leap) {
 /* To the segment that holds `until`; over periods where `leaps`. */
 static void walk(int run, double until, bool leaps) {
     for (bool happens;;) {
-        if (leaps && r.part->cycles) {
+        if (leaps && r.part->memory.cycles) {
             const struct dalcs_leap *leap;
             ck_assert_int_eq(dalcs_cycle_leap(&r, until, 1000, &leap), DALCS_OK);
             if (leap != NULL) {
-                ck_assert(r.part->t < until && r.part->t < r.part->t_end);
+                ck_assert(r.part->segment.t < until && r.part->segment.t < r.part->segment.t_end);
                 note_leap(run, leap);
             }
         }
@@ -228,17 +228,17 @@ START_TEST(test_long_run) {
     start("chopper\nV1 in 0 24\nVg g 0 PULSE(0 1 0 0 0 40u 100u)\nS1 in a g 0 sm\nD1 0 a\n"
           "L1 a b 2m\nR1 b c 1\nVe c 0 5\n.model sm SW(Vt=0.5)\n.tran 1u 100 uic\n",
           100.0);
-    for (bool happens; r.part->t < last - 0.5 * period;) {
+    for (bool happens; r.part->segment.t < last - 0.5 * period;) {
         const struct dalcs_leap *leap = NULL;
-        if (r.part->cycles) {
+        if (r.part->memory.cycles) {
             ck_assert_int_eq(dalcs_cycle_leap(&r, last + 1e-9, 1L << 40, &leap), DALCS_OK);
         }
-        if (r.part->t < last - 0.5 * period) {
+        if (r.part->segment.t < last - 0.5 * period) {
             double to = dalcs_radau_next_stop(&r, &happens);
             ck_assert_int_eq(dalcs_radau_pass(&r, to), DALCS_OK);
         }
     }
-    ck_assert_double_eq(r.part->t, last);
+    ck_assert_double_eq(r.part->segment.t, last);
     ck_assert_msg(fabs(r.part->x[0] - exact) < 1e-11, "%.17g instead of %.17g", r.part->x[0],
                   exact);
     ck_assert_int_gt(r.leapt_steps, 1999900);

@@ -41,13 +41,13 @@ static void start_with(const char *netlist) {
     r = (struct dalcs_radau){.options = {.stop = 100.0}, .resolution = 1e-13};
     part = (struct dalcs_radau_part){.component = &component,
                                      .inner_tolerance = 3e-8,
-                                     .h = 1.0,
-                                     .rounding = 1.0,
-                                     .out = out,
-                                     .out_before = out_before,
-                                     .modes_before = modes_before,
-                                     .armed = armed,
-                                     .crossed = crossed};
+                                     .segment.h = 1.0,
+                                     .segment.rounding = 1.0,
+                                     .segment.out = out,
+                                     .segment.out_before = out_before,
+                                     .memory.modes_before = modes_before,
+                                     .guards.armed = armed,
+                                     .guards.crossed = crossed};
     ck_assert_int_eq(dalcs_excitation_setup(&x, &t.circuit, s), DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&part.stages, s, &x, 5, 64, 1e-14, 1 << 20), DALCS_OK);
     ck_assert_int_eq(part.stages.n_watched, 1);
@@ -116,12 +116,12 @@ START_TEST(test_pairs) {
     draw(NULL, 0.5, 0.5);
     arm();
     ck_assert_double_eq_tol(first_fall(1.0), 0.3, 1e-14);
-    ck_assert_int_eq(part.n_crossed, 1);
+    ck_assert_int_eq(part.guards.n_crossed, 1);
     ck_assert_int_eq(crossed[0], find_pair(component.system, "d1"));
-    ck_assert(isinf(first_fall(0.25)) && part.n_crossed == 0);
+    ck_assert(isinf(first_fall(0.25)) && part.guards.n_crossed == 0);
     draw("d2", 0.3, -0.7); /* at the same time */
     ck_assert_double_eq_tol(first_fall(1.0), 0.3, 1e-14);
-    ck_assert_int_eq(part.n_crossed, 2);
+    ck_assert_int_eq(part.guards.n_crossed, 2);
     draw("d1", 0.3, 0.1);
     draw("d2", 0.1, 0.2);
     ck_assert(isinf(first_fall(1.0)));
@@ -142,7 +142,7 @@ START_TEST(test_watched) {
     arm();
     ck_assert(!dalcs_osnsp_is_on(&component.osnsp, s1));
     ck_assert_double_eq_tol(first_fall(1.0), 0.5, 1e-14);
-    ck_assert_int_eq(part.n_crossed, 1);
+    ck_assert_int_eq(part.guards.n_crossed, 1);
     dalcs_guards_flip(&part);
     ck_assert(dalcs_osnsp_is_on(&component.osnsp, s1));
     ck_assert_uint_eq(component.osnsp.mode[0] ^ before, UINT64_C(1) << s1);
@@ -175,9 +175,9 @@ START_TEST(test_arming) {
     draw("d1", 1e-9, -1e-9); /* an armed one falls */
     ck_assert_double_eq_tol(first_fall(1.0), 0.5, 1e-14);
     armed[find_pair(component.system, "d1")] = false;
-    part.fresh = true;
+    part.guards.fresh = true;
     ck_assert(isinf(first_fall(1.0))); /* within the error */
-    part.fresh = false;
+    part.guards.fresh = false;
     draw("d1", -1e-9, -1e-10); /* later steps let it come back from there, but not go on */
     ck_assert(isinf(first_fall(1.0)));
     draw("d1", -1e-10, -1e-9);
@@ -242,7 +242,7 @@ START_TEST(test_goes_on) {
     const int d1 = find_pair(component.system, "d1");
     draw("d1", 2e-9, -2e-9); /* the segment before, up to its middle */
     memcpy(out_before, out, sizeof(out));
-    part.end_before = 0.25;
+    part.segment.end_before = 0.25;
     draw("d1", 1.001e-9, -0.5);
     arm();
     ck_assert(armed[d1]);
@@ -255,10 +255,10 @@ START_TEST(test_goes_on) {
     arm();
     ck_assert(!armed[d1]);
     modes_before[0] ^= UINT64_C(1) << d1;
-    part.by_euler = true; /* after a step of low order */
+    part.segment.by_euler = true; /* after a step of low order */
     arm();
     ck_assert(!armed[d1]);
-    part.by_euler = false;
+    part.segment.by_euler = false;
     draw("d1", 2e-14, -2e-14); /* rounding */
     memcpy(out_before, out, sizeof(out));
     draw("d1", 1e-14, -0.5);
@@ -302,7 +302,7 @@ START_TEST(test_stays) {
     draw("d1", 0.0, 1e-14);
     draw("d2", 1.0, 1.0);
     memset(out_before, 0, sizeof(out_before));
-    part.flipped = true;
+    part.guards.flipped = true;
     ck_assert(dalcs_tied_stay(&part, true, unit));
     dalcs_osnsp_command(&component.osnsp, d1, true);
     ck_assert(dalcs_tied_stay(&part, true, unit)); /* it was open */
@@ -314,7 +314,7 @@ START_TEST(test_stays) {
     draw("d1", 0.0, 1e-14);
     ck_assert(dalcs_tied_stay(&part, true, unit));
     memset(out_before, 0, sizeof(out_before));
-    part.flipped = false; /* at an edge */
+    part.guards.flipped = false; /* at an edge */
     ck_assert(dalcs_tied_stay(&part, true, unit));
     finish();
 }
@@ -326,12 +326,12 @@ END_TEST
 START_TEST(test_over_soon) {
     start();
     arm_beside(-5e-7, 1.0);
-    part.fresh = true;
+    part.guards.fresh = true;
     ck_assert(isinf(first_fall(1.0)));
     ck_assert_double_eq(dalcs_guards_wrong_sign(&r, &part, 1.0, unit), 0.0);
     draw("d1", -2e-6, 1.0); /* above it after 2e-6 steps */
     ck_assert(falls_at_once());
-    part.h = 1e-6; /* of which 6.4e-6 is no time */
+    part.segment.h = 1e-6; /* of which 6.4e-6 is no time */
     ck_assert(isinf(first_fall(1.0)));
     draw("d1", -2e-5, 10.0);
     ck_assert(falls_at_once());
@@ -352,15 +352,15 @@ START_TEST(test_swing) {
         d1[k * l->stride] = k % 2 == 0 ? -4e-5 : 4e-5;
     }
     d1[(l->n_nodes - 1) * l->stride] = 3e-5;
-    part.fresh = true;
+    part.guards.fresh = true;
     ck_assert(first_fall(1.0) < 1.0 && dalcs_guards_swing(&part));
-    part.fresh = false;
+    part.guards.fresh = false;
     ck_assert(first_fall(1.0) < 1.0 && !dalcs_guards_swing(&part));
     for (int k = 1; k < l->n_nodes; k++) {
         d1[k * l->stride] *= 0.1;
     }
     ck_assert(first_fall(1.0) < 1.0 && dalcs_guards_swing(&part));
-    part.fresh = true;
+    part.guards.fresh = true;
     d1[2 * l->stride] = -4e-4;
     ck_assert(first_fall(1.0) < 1.0 && !dalcs_guards_swing(&part));
     d1[2 * l->stride] = -4e-5;
@@ -378,7 +378,7 @@ START_TEST(test_rounding) {
     dalcs_osnsp_command(&component.osnsp, find_pair(component.system, "d1"), true);
     arm_beside(1.0, -1e-9);
     ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-8);
-    part.h = 1e-6; /* 16 roundings of 1 V on 1 F in 1 us: 3.6 nA */
+    part.segment.h = 1e-6; /* 16 roundings of 1 V on 1 F in 1 us: 3.6 nA */
     ck_assert(isinf(first_fall(1.0)));
     draw("d1", 1.0, -1e-8);
     ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-7);
@@ -392,7 +392,7 @@ START_TEST(test_law) {
     start();
     dalcs_osnsp_command(&component.osnsp, find_pair(component.system, "d1"), true);
     arm_beside(1.0, -1e-9);
-    part.h = 1e-6;
+    part.segment.h = 1e-6;
     ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-8);
     dalcs_osnsp_command(&component.osnsp, find_pair(component.system, "d2"), true);
     ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-8);
@@ -408,12 +408,13 @@ START_TEST(test_own_doubt) {
     double scale[8] = {0.0};
     start();
     ck_assert_int_le(part.stages.n_in, 8);
-    part.fresh = true;
+    part.guards.fresh = true;
     arm_beside(5e-8, -5e-8);
     ck_assert(isinf(first_fall(1.0)));
-    part.in = in;
-    part.scale = scale;
-    ck_assert_int_eq(dalcs_stages_get(&part.stages, osnsp.mode, part.h, &part.entry), DALCS_OK);
+    part.segment.in = in;
+    part.scales.column = scale;
+    ck_assert_int_eq(
+        dalcs_stages_get(&part.stages, osnsp.mode, part.segment.h, &part.segment.entry), DALCS_OK);
     arm();
     ck_assert_double_eq_tol(first_fall(1.0), 0.5, 1e-4);
     scale[0] = 1.0; /* the voltage of c1 was that: so is its error */
@@ -427,14 +428,14 @@ END_TEST
 /* What is within the error at the stop time, and crossed just there, is left to a longer run. */
 START_TEST(test_stop) {
     start();
-    part.t = 99.0;
+    part.segment.t = 99.0;
     arm_beside(1.0, -1e-7);
     ck_assert(isinf(first_fall(1.0)));
     draw("d1", 1e-4, -1e-7); /* crossed before */
     ck_assert_double_eq_tol(first_fall(1.0), 0.999, 1e-5);
     draw("d1", 1.0, -1e-6); /* and is farther off */
     ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-5);
-    part.t = 98.0;
+    part.segment.t = 98.0;
     draw("d1", 1.0, -1e-7);
     ck_assert_double_eq_tol(first_fall(1.0), 1.0, 1e-5);
     finish();

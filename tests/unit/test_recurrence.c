@@ -8,13 +8,14 @@
 
 static bool is_whole_span(void) {
     const struct dalcs_transition *known = dalcs_transition_known(r.part);
-    return known->span.brief != NULL && r.part->h == known->span.length && r.part->end == 1.0;
+    return known->span.brief != NULL && r.part->segment.h == known->span.length &&
+           r.part->segment.end == 1.0;
 }
 
 /* A step that was enough for another segment is for this, up to whatever ends it. */
 static bool is_known_step(void) {
     const struct dalcs_transition *known = dalcs_transition_known(r.part);
-    return r.part->brief != NULL && r.part->brief == known->step.brief;
+    return r.part->segment.brief != NULL && r.part->segment.brief == known->step.brief;
 }
 
 /* A chopper feeds a motor, whose voltage rises for a while: a little, so that its current only moves to
@@ -66,12 +67,12 @@ static int walk_motor(double low, double high, int n_spans[3]) {
         int which = to <= rises ? 0 : to <= falls ? 1 : 2;
         n_spans[which] += is_whole_span() ? 1 : 0;
         n_steps += is_known_step() ? 1 : 0;
-        n_events += r.part->why == DALCS_END_AT_EVENT ? 1 : 0;
+        n_events += r.part->segment.why == DALCS_END_AT_EVENT ? 1 : 0;
         ck_assert_int_eq(dalcs_radau_pass(&r, to), DALCS_OK);
         int n_ended;
-        double exact = motor_current(r.part->t, low, high, &n_ended);
+        double exact = motor_current(r.part->segment.t, low, high, &n_ended);
         ck_assert_msg(fabs(r.part->x[0] - exact) < 2e-9, "%.17g instead of %.17g at %g",
-                      r.part->x[0], exact, r.part->t);
+                      r.part->x[0], exact, r.part->segment.t);
     }
     int n_ended;
     (void)motor_current(motor_stop, low, high, &n_ended);
@@ -116,7 +117,7 @@ START_TEST(test_long_run) {
         ((1.0 - e_on) * (supply - 5.0) * e_off - (1.0 - e_off) * 5.0) / (1.0 - e_on * e_off);
     start(CHOPPER("5 6"), 10.0);
     walk_to(last + 1e-9);
-    ck_assert_double_eq_tol(r.part->t, last, 1e-12);
+    ck_assert_double_eq_tol(r.part->segment.t, last, 1e-12);
     ck_assert_msg(fabs(r.part->x[0] - exact) < 1e-11, "%.17g instead of %.17g", r.part->x[0],
                   exact);
     finish();
@@ -137,18 +138,18 @@ START_TEST(test_jumps) {
           stop);
     bool happens;
     for (double to; (to = dalcs_radau_next_stop(&r, &happens)) < stop;) {
-        bool was_apart = fmod(r.part->t + 1e-9, 100e-6) < 50e-6;
+        bool was_apart = fmod(r.part->segment.t + 1e-9, 100e-6) < 50e-6;
         double tau = was_apart ? 300e-6 : 400e-6;
         v1 = was_apart ? 10.0 : v1;
-        v2 *= exp(-(to - r.part->t) / tau);
+        v2 *= exp(-(to - r.part->segment.t) / tau);
         v1 = was_apart ? v1 : v2;
-        bool is_move = r.part->why == DALCS_END_AT_EDGE;
+        bool is_move = r.part->segment.why == DALCS_END_AT_EDGE;
         ck_assert_int_eq(dalcs_radau_pass(&r, to), DALCS_OK);
         if (is_move && was_apart) {
             v1 = v2 = (v1 + 3.0 * v2) / 4.0;
         }
         ck_assert_msg(fabs(r.part->x[1] - v2) < 1e-8, "%.17g instead of %.17g at %g", r.part->x[1],
-                      v2, r.part->t);
+                      v2, r.part->segment.t);
     }
     finish();
 }
@@ -161,7 +162,7 @@ START_TEST(test_inside) {
     int n_asked = 0;
     start(CHOPPER("5 6"), motor_stop);
     for (double to; (to = dalcs_radau_next_stop(&r, &happens)) < rises;) {
-        double inside = 0.7 * r.part->t + 0.3 * to;
+        double inside = 0.7 * r.part->segment.t + 0.3 * to;
         int n_ended;
         if (is_whole_span() && ++n_asked % 3 == 0) {
             ck_assert_int_eq(dalcs_radau_evaluate(&r, inside, DALCS_LEFT), DALCS_OK);
@@ -193,7 +194,7 @@ START_TEST(test_watched) {
     double event = 0.0;
     for (double to; event == 0.0 && (to = dalcs_radau_next_stop(&r, &happens)) < 200e-3;) {
         n_spans += is_whole_span() ? 1 : 0;
-        event = r.part->why == DALCS_END_AT_EVENT ? to : 0.0;
+        event = r.part->segment.why == DALCS_END_AT_EVENT ? to : 0.0;
         ck_assert_int_eq(dalcs_radau_pass(&r, to), DALCS_OK);
     }
     ck_assert_double_eq_tol(event, exact, 1e-12);

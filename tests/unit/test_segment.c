@@ -60,7 +60,7 @@ START_TEST(test_brief_behind_a_jump) {
                "c6 n1 n3 10u ic=1\nc7 n2 n3 1u ic=0\nr8 n2 0 10\nr9 n3 n1 1\n.tran 0.4m 80m uic\n",
                0.08, 1e-6, 64);
     ck_assert_uint_eq(r.part->component->osnsp.mode[0], 8); /* d4 alone */
-    ck_assert_double_lt(r.part->t_end, 20e-9);
+    ck_assert_double_lt(r.part->segment.t_end, 20e-9);
     walk_to(1e-5);
     ck_assert_int_eq(r.euler_steps, 0);
     finish();
@@ -75,7 +75,7 @@ START_TEST(test_falls_back_in_longer_steps) {
                1e-3, 1e-6, 0);
     r.part->stages.most_bytes = 0;
     r.part->stages.rcond_min = 10.0;
-    r.part->level += 20;
+    r.part->length.level += 20;
     walk_to(2e-5);
     ck_assert_int_gt(r.euler_steps, 0);
     ck_assert_int_lt(r.euler_steps, 1000);
@@ -108,7 +108,7 @@ START_TEST(test_commutation) {
           "l1 sw out 50u\nc1 out 0 20u\nr1 out 0 2\n.model sm sw(vt=0.5)\n.tran 1u 10m uic\n",
           10e-3);
     for (double to; (to = dalcs_radau_next_stop(&r, &happens)) < 25e-6;) {
-        ck_assert(r.part->h < 12e-6);
+        ck_assert(r.part->segment.h < 12e-6);
         ck_assert_int_eq(dalcs_radau_pass(&r, to), DALCS_OK);
     }
     ck_assert_int_eq(r.restarts, 3);                    /* at 0, 4 and 10 us */

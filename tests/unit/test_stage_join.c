@@ -13,8 +13,8 @@ static double largest_difference(const char *text, int coil, double stop) {
     const int diode = dalcs_system_n_equations(r.part->component->system);
     bool happens;
     for (double to; (to = dalcs_radau_next_stop(&r, &happens)) < stop;) {
-        const double *last = r.part->out + (l->n_nodes - 1) * l->stride;
-        if (dalcs_osnsp_is_on(&r.part->component->osnsp, 0) && r.part->end == 1.0) {
+        const double *last = r.part->segment.out + (l->n_nodes - 1) * l->stride;
+        if (dalcs_osnsp_is_on(&r.part->component->osnsp, 0) && r.part->segment.end == 1.0) {
             worst = fmax(worst, fabs(last[coil] - last[diode]));
             largest = fmax(largest, fabs(last[coil]));
         }

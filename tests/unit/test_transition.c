@@ -11,7 +11,8 @@ static struct dalcs_radau_part part;
 
 static void start(void) {
     component = (struct dalcs_component){.osnsp = {.n_words = N_WORDS, .mode = mode}};
-    part = (struct dalcs_radau_part){.component = &component, .level = 10, .rounding = 10.0};
+    part = (struct dalcs_radau_part){
+        .component = &component, .length.level = 10, .segment.rounding = 10.0};
     mode[0] = 0;
     mode[1] = 0;
     ck_assert_int_eq(dalcs_transition_setup(&part), DALCS_OK);
@@ -32,20 +33,20 @@ static void learn(uint64_t first, uint64_t second, int level) {
 START_TEST(test_learns) {
     start();
     ck_assert(!guess(1, 2));
-    ck_assert(mode[0] == 1 && mode[1] == 2 && part.level == 10);
+    ck_assert(mode[0] == 1 && mode[1] == 2 && part.length.level == 10);
     learn(5, 6, 17);
-    part.level = 3;
+    part.length.level = 3;
     ck_assert(guess(1, 2));
-    ck_assert(mode[0] == 5 && mode[1] == 6 && part.level == 17);
+    ck_assert(mode[0] == 5 && mode[1] == 6 && part.length.level == 17);
     ck_assert(!dalcs_transition_refuse(&part));
-    ck_assert(mode[0] == 1 && mode[1] == 2 && part.level == 3);
+    ck_assert(mode[0] == 1 && mode[1] == 2 && part.length.level == 3);
     dalcs_transition_known(&part)->span.length = 1.0;
     learn(5, 6, 16); /* the same */
     ck_assert_double_eq(dalcs_transition_known(&part)->span.length, 1.0);
     learn(7, 8, 4); /* something else this time */
     ck_assert_double_eq(dalcs_transition_known(&part)->span.length, 0.0);
     ck_assert(guess(1, 2));
-    ck_assert(mode[0] == 7 && mode[1] == 8 && part.level == 4);
+    ck_assert(mode[0] == 7 && mode[1] == 8 && part.length.level == 4);
     ck_assert(!guess(1, 3));
     ck_assert(!guess(0, 2));
     dalcs_transition_finish(&part);
@@ -71,10 +72,10 @@ START_TEST(test_held) {
     learn(7, 8, 4);
     hold(9, 0);
     ck_assert(guess(1, 2));
-    ck_assert(mode[0] == 5 && mode[1] == 6 && part.level == 17);
+    ck_assert(mode[0] == 5 && mode[1] == 6 && part.length.level == 17);
     hold(0, 9);
     ck_assert(guess(1, 2));
-    ck_assert(mode[0] == 7 && mode[1] == 8 && part.level == 4);
+    ck_assert(mode[0] == 7 && mode[1] == 8 && part.length.level == 4);
     dalcs_transition_finish(&part);
     dalcs_arena_finish(&part.arena);
 }
@@ -94,7 +95,7 @@ START_TEST(test_many) {
     }
     for (uint64_t k = 0; k < MANY; k++) {
         if (guess(k, k % 7)) {
-            ck_assert(mode[0] == 3 * k && mode[1] == k && part.level == (int)k);
+            ck_assert(mode[0] == 3 * k && mode[1] == k && part.length.level == (int)k);
             n_known++;
         }
     }
@@ -109,28 +110,28 @@ END_TEST
 START_TEST(test_beginning) {
     start();
     hold(0, 0);
-    ck_assert(!guess(1, 0) && part.level == 10);
-    part.level = 14; /* it had to be shorter */
+    ck_assert(!guess(1, 0) && part.length.level == 10);
+    part.length.level = 14; /* it had to be shorter */
     dalcs_transition_began(&part, 10, 0);
     hold(1, 0);
-    part.level = 10;
-    ck_assert(!guess(3, 0) && part.level == 14);
+    part.length.level = 10;
+    ck_assert(!guess(3, 0) && part.length.level == 14);
     ck_assert(!dalcs_transition_refuse(&part));
-    ck_assert_int_eq(part.level, 10);
+    ck_assert_int_eq(part.length.level, 10);
     hold(3, 0);
-    ck_assert(!guess(2, 0) && part.level == 10); /* one opens: something else */
-    part.level = 16;
+    ck_assert(!guess(2, 0) && part.length.level == 10); /* one opens: something else */
+    part.length.level = 16;
     hold(2, 0);
-    ck_assert(!guess(2, 1) && part.level == 16); /* shorter anyhow */
+    ck_assert(!guess(2, 1) && part.length.level == 16); /* shorter anyhow */
     dalcs_transition_began(&part, 16, 5);
-    part.level = 10;
-    ck_assert(!guess(2, 3) && part.level == 14);
+    part.length.level = 10;
+    ck_assert(!guess(2, 3) && part.length.level == 14);
     dalcs_transition_began(&part, 14, 2); /* its error promises more */
-    part.level = 10;
-    ck_assert(!guess(2, 5) && part.level == 12);
-    part.level = 10;
-    part.rounding = 1.0; /* on dense maps the circuit is asked */
-    ck_assert(!guess(2, 7) && part.level == 10);
+    part.length.level = 10;
+    ck_assert(!guess(2, 5) && part.length.level == 12);
+    part.length.level = 10;
+    part.segment.rounding = 1.0; /* on dense maps the circuit is asked */
+    ck_assert(!guess(2, 7) && part.length.level == 10);
     dalcs_transition_finish(&part);
     dalcs_arena_finish(&part.arena);
 }
@@ -142,27 +143,27 @@ START_TEST(test_patience) {
     start();
     hold(0, 0);
     ck_assert(!guess(1, 0));
-    part.level = 14;
+    part.length.level = 14;
     dalcs_transition_began(&part, 10, 0);
     for (int patience = 1; patience <= 8; patience *= 2) {
         for (int k = 0; k < patience; k++) {
-            part.level = 10;
-            ck_assert(!guess(1, 0) && part.level == 14);
+            part.length.level = 10;
+            ck_assert(!guess(1, 0) && part.length.level == 14);
             dalcs_transition_began(&part, 14, 0);
         }
-        part.level = 10;
-        ck_assert(!guess(1, 0) && part.level == 13);
-        part.level = 14;
+        part.length.level = 10;
+        ck_assert(!guess(1, 0) && part.length.level == 13);
+        part.length.level = 14;
         dalcs_transition_began(&part, 13, 0);
     }
     for (int k = 0; k < 16; k++) {
-        part.level = 10;
-        ck_assert(!guess(1, 0) && part.level == 14);
+        part.length.level = 10;
+        ck_assert(!guess(1, 0) && part.length.level == 14);
         dalcs_transition_began(&part, 14, 0);
     }
     for (int level = 13; level > 10; level--) { /* those that hold go on */
-        part.level = 10;
-        ck_assert(!guess(1, 0) && part.level == level);
+        part.length.level = 10;
+        ck_assert(!guess(1, 0) && part.length.level == level);
         dalcs_transition_began(&part, level, 0);
     }
     dalcs_transition_finish(&part);
@@ -178,20 +179,20 @@ START_TEST(test_untried) {
     ck_assert(!guess(1, 2));
     dalcs_transition_learn(&part, 17, 3);
     for (int k = 0; k < 16; k++) {
-        ck_assert(guess(1, 2) && part.level == 17);
+        ck_assert(guess(1, 2) && part.length.level == 17);
         dalcs_transition_pass(&part, 0);
     }
-    ck_assert(guess(1, 2) && part.level == 16);
+    ck_assert(guess(1, 2) && part.length.level == 16);
     dalcs_transition_pass(&part, 0);
-    ck_assert(guess(1, 2) && part.level == 15);
-    ck_assert(dalcs_transition_refuse(&part) && part.level == 16); /* the guess stands */
+    ck_assert(guess(1, 2) && part.length.level == 15);
+    ck_assert(dalcs_transition_refuse(&part) && part.length.level == 16); /* the guess stands */
     dalcs_transition_pass(&part, 0);
-    ck_assert(guess(1, 2) && part.level == 16);
-    part.level_before = 3;
-    ck_assert(!dalcs_transition_refuse(&part) && part.level == 3);
+    ck_assert(guess(1, 2) && part.length.level == 16);
+    part.length.level_before = 3;
+    ck_assert(!dalcs_transition_refuse(&part) && part.length.level == 3);
     ck_assert(guess(1, 2));
     dalcs_transition_pass(&part, 2); /* its error promises more */
-    ck_assert(guess(1, 2) && part.level == 14);
+    ck_assert(guess(1, 2) && part.length.level == 14);
     dalcs_transition_finish(&part);
     dalcs_arena_finish(&part.arena);
 }
