@@ -1,5 +1,5 @@
 /* decided_energy.c - the energies that sources alone decide: integrals of products of their waves. */
-#include "decided_energy.h"
+#include "energy_entries.h"
 
 #include "refute.h"
 #include "source_products.h"

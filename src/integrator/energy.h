@@ -27,61 +27,28 @@ struct dalcs_energy_part {
     double *defect;    /* [n_x] work: how far states are off */
 };
 
+struct dalcs_energy_sums { /* J */
+    double account[DALCS_N_POWER_ACCOUNTS];
+    double jumps, stored_change, method;
+    double missed;   /* of radau's polynomials and moves: the magnitudes that are in method */
+    double turnover; /* the sum of all that was moved, whatever its sign */
+    double rounding; /* what certificates leave open: a balance of this size means nothing */
+};
+
 struct dalcs_energy {
-    double account[DALCS_N_POWER_ACCOUNTS]; /* J */
-    double jumps, stored_change, method;    /* J */
-    double missed;   /* J, of radau's polynomials and moves: the magnitudes that are in method */
-    double turnover; /* J, the sum of all that was moved, whatever its sign */
-    double rounding; /* J, what certificates leave open: a balance of this size means nothing */
+    struct dalcs_energy_sums sum, held; /* held: to take back what is entered from there on */
+    struct dalcs_observer observer;     /* the engine's way to enter things */
     bool is_euler;
     int n_parts;
     struct dalcs_energy_part *part;
 };
 
-/* For the components of `e`, which go with radau or, where that is NULL, with implicit Euler. */
-enum dalcs_status dalcs_energy_setup(struct dalcs_energy *energy, const struct dalcs_euler *e,
+/* For the components of `e`, which go with radau or, where that is NULL, with implicit Euler. It is an observer of
+ * `e` from then on; it must not move before it is finished. */
+enum dalcs_status dalcs_energy_setup(struct dalcs_energy *energy, struct dalcs_euler *e,
                                      const struct dalcs_radau *radau) DALCS_MUST_CHECK;
 
 void dalcs_energy_finish(struct dalcs_energy *energy);
-
-/* Component k starts from x[n_x], before any jump at t = 0. */
-void dalcs_energy_start(struct dalcs_energy *energy, int k, const double *x);
-
-/* Component k made a step of implicit Euler of length h from x[n_x] to y[n_columns], with the inputs
- * at its end. */
-void dalcs_energy_step(struct dalcs_energy *energy, int k, const double *x, const double *y,
-                       const double *inputs, double h);
-
-/* The answers on both sides of a switch that slides, and the part of the time for which each holds. */
-struct dalcs_energy_sides {
-    const double *y[2];
-    double weight[2];
-};
-
-/* times_h / h times such a step of length h from x to y, their mean: its powers, which are means of those on either
- * side, no products of means. Returns what one of them stores, and loses by implicit Euler. */
-double dalcs_energy_sliding_step(struct dalcs_energy *energy, int k, const double *x,
-                                 const double *y, const struct dalcs_energy_sides *sides,
-                                 const double *inputs, double times_h);
-
-/* A segment from x to y that is a sum of such steps, which take so much. */
-void dalcs_energy_slide(struct dalcs_energy *energy, int k, const double *x, const double *y,
-                        double taken);
-
-/* The answer of a step of component k has these scales. */
-void dalcs_energy_scale(struct dalcs_energy *energy, int k,
-                        const struct dalcs_certificate *certificate);
-
-/* A part's present segment has been passed through from the state start[n_x] to part->x. */
-void dalcs_energy_segment(struct dalcs_energy *energy, const struct dalcs_radau_part *part,
-                          const double *start);
-
-/* States of a part change from part->x to after[n_x] without a jump. */
-void dalcs_energy_move(struct dalcs_energy *energy, const struct dalcs_radau_part *part,
-                       const double *after);
-
-/* A jump that is reported. What the sources gave in it is taken to be what it cost. */
-void dalcs_energy_jump(struct dalcs_energy *energy, const struct dalcs_euler_jump *jump);
 
 /* At the end of the run: the last segments, what needed no steps, the stored energy. */
 enum dalcs_status dalcs_energy_close(struct dalcs_energy *energy, struct dalcs_euler *e,

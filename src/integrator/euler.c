@@ -1,6 +1,6 @@
 /* euler.c - the time loop of implicit Euler over all components, and the micro-steps that tell what
  * happens at a discontinuity. */
-#include "energy.h"
+#include "euler.h"
 
 #include <math.h>
 #include <string.h>
@@ -257,8 +257,8 @@ enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double t
         .energy_lost = dalcs_euler_jump_energy(s, before, e->jump.after),
         .source_work = e->jump.source_work,
     };
-    if (e->energy != NULL) {
-        dalcs_energy_jump(e->energy, &jump);
+    if (e->observer != NULL) {
+        e->observer->jump(e->observer->user, &jump);
     }
     if (e->on_jump == NULL || !tell_states(e, s, before)) {
         return DALCS_OK;
@@ -452,8 +452,8 @@ enum dalcs_status dalcs_euler_start(struct dalcs_euler *e, double *const *initia
         } else {
             memcpy(c->y_before, c->y, n_columns * sizeof(double));
         }
-        if (e->energy != NULL) {
-            dalcs_energy_start(e->energy, k, c->u);
+        if (e->observer != NULL) {
+            e->observer->start(e->observer->user, k, c->u);
         }
         if (initial != NULL || dalcs_component_jumps_at_start(c)) {
             DALCS_TRY(settle_after(e, k, c->y_before, c->u, c->y));
@@ -516,8 +516,8 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
             e->failed_time = e->t;
             return DALCS_NOT_CONVERGED;
         }
-        if (e->energy != NULL) {
-            dalcs_energy_scale(e->energy, k, &c->osnsp.certificate);
+        if (e->observer != NULL) {
+            e->observer->scale(e->observer->user, k, &c->osnsp.certificate);
         }
         if (e->detect_jumps && c->commanded && n_x > 0) {
             size_t mode_bytes = (size_t)c->osnsp.n_words * sizeof(uint64_t);
@@ -529,8 +529,8 @@ enum dalcs_status dalcs_euler_step(struct dalcs_euler *e) {
             }
             memcpy(c->osnsp.mode, c->saved_mode, mode_bytes);
         }
-        if (e->energy != NULL) {
-            dalcs_energy_step(e->energy, k, c->u, c->y, c->u + n_x, h);
+        if (e->observer != NULL) {
+            e->observer->step(e->observer->user, k, c->u, c->y, c->u + n_x, h);
         }
         memcpy(c->u, c->y, n_x * sizeof(double));
     }

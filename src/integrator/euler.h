@@ -10,6 +10,7 @@
 #include "component.h"
 #include "grid.h"
 #include "jumps.h"
+#include "observer.h"
 
 /* Called when a component's state jumps: x before and after, impulses of lambda (C) and w (Wb). */
 struct dalcs_euler_jump {
@@ -37,8 +38,6 @@ struct dalcs_open_instant {
     const bool *tied; /* [n_pairs] diodes with neither current nor voltage */
     double scale[2];  /* V, A: the largest so far, or 0; smaller than their rounding is nothing */
 };
-
-struct dalcs_energy;
 
 struct dalcs_euler {
     const struct dalcs_circuit *circuit;
@@ -68,10 +67,10 @@ struct dalcs_euler {
     /* An operating point was found, before anything is said of it; may be NULL. */
     enum dalcs_status (*on_operating_point)(const struct dalcs_circuit *circuit,
                                             struct dalcs_euler *e);
-    struct dalcs_energy *energy;   /* the ledger, borrowed; NULL: none is kept */
-    double *after, *charge, *flux; /* what micro-steps see, the largest component */
-    double *noise;                 /* [n_x] of a jump, which the caller fills: what is rounding */
-    double *told_from, *told;      /* work: the columns that a jump is told with */
+    const struct dalcs_observer *observer; /* borrowed; NULL: none */
+    double *after, *charge, *flux;         /* what micro-steps see, the largest component */
+    double *noise;            /* [n_x] of a jump, which the caller fills: what is rounding */
+    double *told_from, *told; /* work: the columns that a jump is told with */
     struct dalcs_jumps jumps;
     struct dalcs_jump_answer jump; /* the last one */
     struct dalcs_arena arena;      /* what has the same size during the run */

@@ -1,7 +1,6 @@
 /* periodic.c - one period of segments, from an event to the same event. */
 #include "periodic.h"
 
-#include "energy.h"
 #include "extremes.h"
 #include "radau_internal.h"
 #include "recurrence.h"
@@ -344,7 +343,7 @@ void dalcs_periodic_take(struct dalcs_radau *r, struct dalcs_radau_part *part) {
         periodic->own_out = part->segment.out;
     }
     part->segment.out = value;
-    if (r->base->energy != NULL) {
+    if (r->base->observer != NULL) {
         memcpy(part->segment.in, value + periodic->n_out, periodic->n_in * sizeof(double));
         memcpy(part->work.after, value + periodic->n_out + periodic->n_in,
                periodic->n_x * sizeof(double));

@@ -2,7 +2,6 @@
 #include "choice.h"
 #include "cycle.h"
 #include "dense_map.h"
-#include "energy.h"
 #include "guards.h"
 #include "periodic.h"
 #include "quads.h"
@@ -252,8 +251,8 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
         const double *x = initial != NULL ? initial[k] : c->y;
         memcpy(part->x, x, (size_t)c->system->n_x * sizeof(double));
         dalcs_component_sample(c, 0.0, DALCS_RIGHT, c->u);
-        if (r->base->energy != NULL) {
-            dalcs_energy_start(r->base->energy, k, x);
+        if (r->base->observer != NULL) {
+            r->base->observer->start(r->base->observer->user, k, x);
         }
         if (part->kind == DALCS_PART_ALGEBRAIC) {
             part->segment.t_end = INFINITY;
@@ -367,11 +366,11 @@ static enum dalcs_status repeat_or_begin(struct dalcs_radau *r, struct dalcs_rad
 static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *part) {
     size_t state_bytes = (size_t)part->component->system->n_x * sizeof(double);
     part->segment.jumped = false;
-    if (r->base->energy != NULL) {
+    if (r->base->observer != NULL) {
         memcpy(part->work.after, part->x, state_bytes);
     }
     bool repeats = part->memory.periodic != NULL && dalcs_periodic_repeats(r, part);
-    if (!repeats || r->base->energy != NULL) {
+    if (!repeats || r->base->observer != NULL) {
         go_to_end(part);
         if (dalcs_component_overgrows(part->component, part->x)) {
             r->base->failed_system = part->index;
@@ -381,8 +380,8 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     }
     part->guards.fresh =
         part->guards.fresh || part->segment.end != 1.0; /* the next step starts inside this one */
-    if (r->base->energy != NULL) {
-        dalcs_energy_segment(r->base->energy, part, part->work.after);
+    if (r->base->observer != NULL) {
+        r->base->observer->segment(r->base->observer->user, part, part->work.after);
     }
     part->segment.t = part->segment.t_end;
     if (part->guards.n_crossed > 0) {

@@ -5,7 +5,6 @@
  * the limit of vanishing steps, which for passive circuits is the projection in the energy norm
  * (Heemels, Schumacher and Weiland 1999; Brogliato 2022, sec. 4). */
 #include "doubt.h"
-#include "energy.h"
 #include "guard_scale.h"
 #include "radau_internal.h"
 #include "recurrence.h"
@@ -336,8 +335,9 @@ static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_rada
 }
 
 void dalcs_radau_go_after(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
-    if (r->base->energy != NULL) {
-        dalcs_energy_move(r->base->energy, part, part->work.after);
+    const struct dalcs_observer *observer = r->base->observer;
+    if (observer != NULL) {
+        observer->move(observer->user, part->index, part->x, part->work.after);
     }
     memcpy(part->x, part->work.after, (size_t)part->component->system->n_x * sizeof(double));
 }
@@ -493,10 +493,11 @@ enum dalcs_status dalcs_radau_euler_step(struct dalcs_radau *r, struct dalcs_rad
         DALCS_TRY(dalcs_radau_implicit_step(r, part, h, h, part->x, part->work.y1));
     }
     c->delayed_commands += c->positions.settled ? 0 : 1; /* the present command stands */
-    if (r->base->energy != NULL) {
-        dalcs_energy_scale(r->base->energy, part->index, &c->osnsp.certificate);
-        dalcs_energy_step(r->base->energy, part->index, part->x, part->work.y1,
-                          part->work.u + c->system->n_x, h);
+    const struct dalcs_observer *observer = r->base->observer;
+    if (observer != NULL) {
+        observer->scale(observer->user, part->index, &c->osnsp.certificate);
+        observer->step(observer->user, part->index, part->x, part->work.y1,
+                       part->work.u + c->system->n_x, h);
     }
     dalcs_radau_accept_euler(r, part, h, NULL);
     r->euler_steps++;

@@ -4,7 +4,6 @@
  * steps, less that of one twice as long, is off by the square of the step. */
 #include "slide.h"
 
-#include "energy.h"
 #include "guard_scale.h"
 #include "radau_internal.h"
 #include "sliding.h"
@@ -26,7 +25,7 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
                                    double tau, double times, const double *state, double *y,
                                    double *taken, bool *slides) {
     struct dalcs_component *c = part->component;
-    struct dalcs_energy *energy = r->base->energy;
+    const struct dalcs_observer *observer = r->base->observer;
     *slides = false;
     enum dalcs_status status = dalcs_radau_implicit_step(r, part, h, tau, state, y);
     if (status != DALCS_OK || !c->positions.alternates) {
@@ -35,12 +34,12 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
     memcpy(c->scratch, y, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
     double weight = dalcs_sliding_mean(&c->positions, y);
     *slides = weight > 0.0;
-    if (*slides && energy != NULL) {
-        const struct dalcs_energy_sides sides = {.y = {c->scratch, c->positions.other_y},
-                                                 .weight = {1.0 - weight, weight}};
-        dalcs_energy_scale(energy, part->index, &c->osnsp.certificate);
-        *taken += times * dalcs_energy_sliding_step(energy, part->index, state, y, &sides,
-                                                    part->work.u + c->system->n_x, times * h);
+    if (*slides && observer != NULL) {
+        const struct dalcs_observed_sides sides = {.y = {c->scratch, c->positions.other_y},
+                                                   .weight = {1.0 - weight, weight}};
+        observer->scale(observer->user, part->index, &c->osnsp.certificate);
+        *taken += times * observer->sliding_step(observer->user, part->index, state, y, &sides,
+                                                 part->work.u + c->system->n_x, times * h);
     }
     return DALCS_OK;
 }
@@ -74,18 +73,17 @@ static enum dalcs_status three_steps(struct dalcs_radau *r, struct dalcs_radau_p
 enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
                                    bool *slides) {
     struct dalcs_component *c = part->component;
-    struct dalcs_energy *energy = r->base->energy;
+    const struct dalcs_observer *observer = r->base->observer;
     double taken = 0.0;
-    struct dalcs_energy before = {0};
-    if (energy != NULL) {
-        before = *energy;
+    if (observer != NULL) {
+        observer->hold(observer->user);
     }
     prepare_positions(part);
     enum dalcs_status status = three_steps(r, part, h, &taken, slides);
     part->guards.slides = false;
     if (!*slides) {
-        if (energy != NULL) {
-            *energy = before;
+        if (observer != NULL) {
+            observer->take_back(observer->user);
         }
         return status;
     }
@@ -94,8 +92,8 @@ enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_par
     bool goes_on = is_same && part->segment.by_euler && part->segment.why == DALCS_END_OF_STEP;
     const struct dalcs_stage_layout *l = &part->stages.layout;
     const double *last = part->segment.out_before + (l->n_nodes - 1) * l->stride;
-    if (energy != NULL) {
-        dalcs_energy_slide(energy, part->index, part->x, part->work.y1, taken);
+    if (observer != NULL) {
+        observer->slide(observer->user, part->index, part->x, part->work.y1, taken);
     }
     dalcs_radau_accept_euler(r, part, h, goes_on ? last : NULL);
     r->steps++;

@@ -508,16 +508,16 @@ static enum dalcs_status close_ledger(struct dalcs_run *r, struct dalcs_energy *
     }
     DALCS_TRY(status);
     struct dalcs_report *report = &r->s->report;
-    if (!isfinite(energy->turnover)) { /* an unstable circuit, beyond what doubles hold */
+    if (!isfinite(energy->sum.turnover)) { /* an unstable circuit, beyond what doubles hold */
         return DALCS_OK;
     }
     report->energy.present = true;
-    report->energy.sources = energy->account[DALCS_POWER_SOURCES];
-    report->energy.resistors = energy->account[DALCS_POWER_RESISTORS];
-    report->energy.diodes = energy->account[DALCS_POWER_DIODES];
-    report->energy.jumps = energy->jumps;
-    report->energy.stored_change = energy->stored_change;
-    report->energy.method = energy->method;
+    report->energy.sources = energy->sum.account[DALCS_POWER_SOURCES];
+    report->energy.resistors = energy->sum.account[DALCS_POWER_RESISTORS];
+    report->energy.diodes = energy->sum.account[DALCS_POWER_DIODES];
+    report->energy.jumps = energy->sum.jumps;
+    report->energy.stored_change = energy->sum.stored_change;
+    report->energy.method = energy->sum.method;
     report->energy.balance = dalcs_energy_balance(energy);
     double unexplained = dalcs_energy_unexplained(energy, radau);
     if (unexplained == 0.0) {
@@ -526,7 +526,7 @@ static enum dalcs_status close_ledger(struct dalcs_run *r, struct dalcs_energy *
     dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, NULL,
                    "internal error: the energy balance is off by %.3g J of %.3g J; please report "
                    "this netlist",
-                   unexplained, energy->turnover);
+                   unexplained, energy->sum.turnover);
     return DALCS_E_INTERNAL;
 }
 
@@ -566,7 +566,6 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     }
     if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {
         status = dalcs_energy_setup(&energy, &e, is_euler ? NULL : &radau);
-        e.energy = &energy;
     }
     if (status == DALCS_OK) {
         status = is_euler ? DALCS_OK : dalcs_audit_run_start(&audit, r, &e, &radau);

@@ -1,0 +1,38 @@
+/* energy_entries.h - what is entered in the ledger of energies. Private to energy.c, energy_segment.c, decided_energy.c. */
+#ifndef DALCS_ENERGY_ENTRIES_H
+#define DALCS_ENERGY_ENTRIES_H
+
+#include "energy.h"
+
+/* What is off by a part of this may be rounding: residuals that answers may have, over the scales of the certificate. */
+static const double dalcs_energy_residual_part = 1e-12;
+
+/* Adds joules to an account and to the turnover. */
+void dalcs_energy_enter(struct dalcs_energy *energy, enum dalcs_power_account account,
+                        double joule);
+
+/* What goes back and forth in capacitors and coils, and how much rounding it may leave: a segment that
+ * is cut is a small part of a step, whose other end may be far away. Returns 1/2 |after - x|^2 by the
+ * diagonal of the storage. */
+double dalcs_energy_enter_swing(struct dalcs_energy *energy, const struct dalcs_energy_part *part,
+                                const double *x, const double *after, const double *far);
+
+/* One step of implicit Euler: see observer.h. */
+void dalcs_energy_step(void *energy, int k, const double *x, const double *y, const double *inputs,
+                       double h);
+
+/* The present segment of a part of radau, likewise. */
+void dalcs_energy_segment(void *energy, const struct dalcs_radau_part *part, const double *start);
+
+/* Enters, from 0 to stop, the powers of the part whose columns the sources decide: the terms from
+ * n_stepped on. */
+enum dalcs_status dalcs_energy_enter_decided(struct dalcs_energy *energy,
+                                             const struct dalcs_energy_part *part,
+                                             struct dalcs_component *c,
+                                             const struct dalcs_bystanders *b,
+                                             double stop) DALCS_MUST_CHECK;
+
+/* Sets every call of the observer but `user`. */
+void dalcs_energy_observe(struct dalcs_observer *observer);
+
+#endif

@@ -1,0 +1,54 @@
+/* observer.h - what a run tells to whoever keeps a record of its steps, such as the ledger of energies. The engine
+ * knows nothing else of them. */
+#ifndef DALCS_OBSERVER_H
+#define DALCS_OBSERVER_H
+
+#include "osnsp.h"
+
+struct dalcs_euler_jump;
+struct dalcs_radau_part;
+
+/* The answers on both sides of a switch that slides, and the part of the time for which each holds. */
+struct dalcs_observed_sides {
+    const double *y[2];
+    double weight[2];
+};
+
+/* All of them are set; k is the number of a component, states are [n_x], y is [n_columns]. */
+struct dalcs_observer {
+    void *user;
+
+    /* The component starts from x, before any jump at t = 0. */
+    void (*start)(void *user, int k, const double *x);
+
+    /* The answer of a step has these scales. */
+    void (*scale)(void *user, int k, const struct dalcs_certificate *certificate);
+
+    /* A step of implicit Euler of length h (s) from x to y, with the inputs at its end. */
+    void (*step)(void *user, int k, const double *x, const double *y, const double *inputs,
+                 double h);
+
+    /* A jump that is reported. */
+    void (*jump)(void *user, const struct dalcs_euler_jump *jump);
+
+    /* The state changes from x to after without a jump. */
+    void (*move)(void *user, int k, const double *x, const double *after);
+
+    /* A part's present segment has been passed through from the state start to part->x. */
+    void (*segment)(void *user, const struct dalcs_radau_part *part, const double *start);
+
+    /* times_h / h times a step of length h from x to y, their mean: its powers are means of those on either side, no
+     * products of means. Returns J: what one of them stores, and loses by implicit Euler. */
+    double (*sliding_step)(void *user, int k, const double *x, const double *y,
+                           const struct dalcs_observed_sides *sides, const double *inputs,
+                           double times_h);
+
+    /* A segment from x to y that is a sum of such steps, which take so much (J). */
+    void (*slide)(void *user, int k, const double *x, const double *y, double taken);
+
+    /* What is told from here on may be taken back; all of that is. */
+    void (*hold)(void *user);
+    void (*take_back)(void *user);
+};
+
+#endif
