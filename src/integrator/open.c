@@ -1,5 +1,6 @@
 /* open.c - segments in a mode that leaves something open: whom that concerns is told, once for each. */
-#include "radau_internal.h"
+#include "radau.h"
+#include "segment.h"
 #include "tied.h"
 
 /* Calls on_open for the instant t of the part's segment. */

@@ -1,13 +1,17 @@
 /* radau.c - the parts of a run: set up, started, passed from segment to segment, evaluated. */
+#include "radau.h"
 #include "choice.h"
 #include "cycle.h"
 #include "dense_map.h"
 #include "guards.h"
 #include "periodic.h"
+#include "present.h"
 #include "quads.h"
-#include "radau_internal.h"
 #include "recurrence.h"
+#include "restart.h"
+#include "segment.h"
 #include "step_length.h"
+#include "transition.h"
 #include "twins.h"
 
 #include <float.h>

@@ -11,36 +11,7 @@
 #ifndef DALCS_RADAU_H
 #define DALCS_RADAU_H
 
-#include "euler.h"
-#include "radau_part.h"
-
-struct dalcs_radau_options {
-    double tolerance;     /* largest error over each waveform's scale */
-    double abstol, vntol; /* A, V: error allowed besides */
-    int stages;           /* 0: chosen */
-    double fixed_step;    /* s; 0: the error is controlled */
-    double max_step;      /* s; 0: none */
-    double stop;          /* s */
-};
-
-struct dalcs_radau {
-    struct dalcs_euler *base; /* components, start, what failed; borrowed */
-    struct dalcs_radau_options options;
-    int n_parts;
-    struct dalcs_radau_part *part;
-    struct dalcs_radau_part *cycling; /* the one that may leap; NULL: none */
-    double resolution;                /* s: times nearer than this are the same */
-    double
-        inner_tolerance; /* what a step may be off by where a part does no better than asked for */
-    double besides[2];   /* V, A: error allowed besides, of a step */
-    long steps, rejected, restarts, euler_steps;
-    long periodic_steps;   /* of them; periodic.h */
-    long leapt_steps;      /* likewise; cycle.h */
-    double worst_residual; /* of the stage equations, over their terms */
-    double worst_time;     /* s */
-    double wrong_sign; /* largest negative lambda or w of an accepted step, over its unit's scale */
-    double wrong_time; /* s, where that step begins */
-};
+#include "radau_state.h"
 
 enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *base,
                                     const struct dalcs_radau_options *options,
@@ -65,6 +36,14 @@ enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t,
 
 /* y and u of one component that steps, likewise. */
 void dalcs_radau_read(struct dalcs_radau *r, int part, double t, enum dalcs_side side);
+
+/* A part without memory at t: y and u. */
+enum dalcs_status dalcs_radau_solve(struct dalcs_radau *r, struct dalcs_radau_part *part, double t,
+                                    enum dalcs_side side) DALCS_MUST_CHECK;
+
+/* A column of a part that sources alone decide, by its number. */
+double dalcs_radau_bystander(const struct dalcs_radau_part *part, int bystander, double t,
+                             enum dalcs_side side);
 
 /* After a failure at t: y as far as each component came. */
 void dalcs_radau_break_off(struct dalcs_radau *r, double t);

@@ -6,17 +6,19 @@
  * and whether the state jumps, by a projection whether the state is only off by what interpolation left
  * of it, by shorter steps whether the error was the step's. Where all fail, as where events accumulate
  * in finite time, implicit Euler goes on by itself for a while, certified and a little at a time. */
+#include "segment.h"
 #include "current_error.h"
 #include "extremes.h"
 #include "front.h"
 #include "guards.h"
+#include "present.h"
 #include "projection.h"
-#include "radau_internal.h"
 #include "recurrence.h"
 #include "search.h"
 #include "sliding.h"
 #include "step_length.h"
 #include "tied.h"
+#include "transition.h"
 #include "twins.h"
 
 #include <math.h>
@@ -39,47 +41,6 @@ enum {
     MOST_FRONTS_REFUSED = 16,
     MOST_REOPENED = 8
 };
-
-double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
-    return dalcs_smaller(dalcs_smaller(part->excitation.next_edge, part->commands.next),
-                         r->options.stop);
-}
-
-void dalcs_segment_inputs(struct dalcs_radau_part *part) {
-    const struct dalcs_system *s = part->component->system;
-    memcpy(part->segment.in, part->x, (size_t)s->n_x * sizeof(double));
-    part->segment.in[s->n_x] = 1.0;
-    dalcs_excitation_coefficients(&part->excitation, part->segment.t, part->segment.h,
-                                  part->segment.in + s->n_x + 1);
-}
-
-enum dalcs_status dalcs_segment_solve(struct dalcs_radau_part *part,
-                                      struct dalcs_stage_entry **entry) {
-    dalcs_segment_inputs(part);
-    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->segment.h,
-                                part->segment.in, part->segment.out, entry));
-    part->segment.rounding = dalcs_stage_rounding(*entry);
-    return DALCS_OK;
-}
-
-void dalcs_segment_accept(struct dalcs_radau *r, struct dalcs_radau_part *part, double theta,
-                          double residual) {
-    part->segment.end = theta;
-    part->segment.by_euler = false;
-    if (theta * part->segment.h > 4.0 * part->length.fell_back) {
-        part->length.tries = 0;
-    }
-    r->steps++;
-    if (residual > r->worst_residual) {
-        r->worst_residual = residual;
-        r->worst_time = part->segment.t;
-    }
-    if (part->guards.fresh) {
-        dalcs_transition_hold(part);
-        part->guards.fresh = false;
-        part->guards.flipped = false;
-    }
-}
 
 /* All of a step of the ladder: a longer one may be as good. */
 static bool is_whole(const struct dalcs_radau_part *part, double theta) {

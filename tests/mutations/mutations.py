@@ -117,36 +117,36 @@ c2 d 0 4.7u
 # name: (file, what to replace, by what, netlist)
 MUTATIONS = {
     "a source is dropped from a control": (
-        "integrator/control_course.c", "k < a->p[pair + 1]; k++", "k + 1 < a->p[pair + 1]; k++", PWM),
+        "excitation/control_course.c", "k < a->p[pair + 1]; k++", "k + 1 < a->p[pair + 1]; k++", PWM),
     "a command is lost": (
-        "integrator/commands.c", "            m->is_on = !m->is_on;\n",
+        "excitation/commands.c", "            m->is_on = !m->is_on;\n",
         "            m->is_on = m->n[0] % 7 == 5 ? m->is_on : !m->is_on;\n", BUCK),
     "a command comes early": (
-        "integrator/commands.c", "    m->next = dalcs_command_time(m, way, m->n[way]);\n",
+        "excitation/commands.c", "    m->next = dalcs_command_time(m, way, m->n[way]);\n",
         "    m->next = dalcs_command_time(m, way, m->n[way]) * (1.0 - 1e-4);\n", FLYBACK),
     "an event of a diode is skipped": (
-        "integrator/guards.c", "if (!(bound[g] >= 0.0) && ", "if (!(bound[g] >= 0.0) && g != 0 && ",
+        "locate/guards.c", "if (!(bound[g] >= 0.0) && ", "if (!(bound[g] >= 0.0) && g != 0 && ",
         BRIDGE),
     "a map is stale": (
-        "integrator/stages.c", "return e->h == h && ", "return (e->h == h || e->h == 0.5 * h) && ",
+        "stages/stages.c", "return e->h == h && ", "return (e->h == h || e->h == 0.5 * h) && ",
         FILTER),
     "a leap one period too far": (
-        "integrator/cycle.c", "        put_off(r, part, n);\n", "        put_off(r, part, n + 1);\n", BUCK),
+        "memory/cycle.c", "        put_off(r, part, n);\n", "        put_off(r, part, n + 1);\n", BUCK),
     "a leap tells of fewer periods than it took": (
-        "integrator/cycle.c", "(size_t)n_x * sizeof(double));\n    return n;\n",
+        "memory/cycle.c", "(size_t)n_x * sizeof(double));\n    return n;\n",
         "(size_t)n_x * sizeof(double));\n    return n > 2 ? n - 1 : n;\n", BUCK),
     "a state is nudged by 1e-7": (
-        "integrator/segment.c", "    part->in[s->n_x] = 1.0;\n",
-        "    part->in[s->n_x] = 1.0;\n    part->in[0] *= 1.0 + 1e-7;\n", FILTER),
+        "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
+        "    part->segment.in[s->n_x] = 1.0;\n    part->segment.in[0] *= 1.0 + 1e-7;\n", FILTER),
     "a sine is too slow by 1e-4": (
-        "integrator/excitation.c", ".omega = term != NULL ? term->omega : 0.0",
+        "excitation/excitation.c", ".omega = term != NULL ? term->omega : 0.0",
         ".omega = term != NULL ? 0.9999 * term->omega : 0.0", FILTER),
     "hysteresis is half as wide": (
         "dalcs/stamp_device.c", ".turn_off = m->vt - m->vh}", ".turn_off = m->vt}", HYSTERESIS),
     "an event comes late": (
-        "integrator/segment.c", "    part->t_end = dalcs_smaller(t_end, search->limit);\n",
-        "    t_end += part->n_crossed > 0 ? 1e-3 * part->h : 0.0;\n"
-        "    part->t_end = dalcs_smaller(t_end, search->limit);\n", BRIDGE),
+        "integrator/segment.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
+        "    t_end += part->guards.n_crossed > 0 ? 1e-3 * part->segment.h : 0.0;\n"
+        "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n", BRIDGE),
     "a switch starts on the other side": (
         "dalcs/stamp_device.c", ".initially_on = d->initially_on,", ".initially_on = !d->initially_on,",
         HELD),

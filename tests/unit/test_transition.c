@@ -1,4 +1,5 @@
 /* test_transition.c - what is remembered, what is not, and that other modes are never mistaken. */
+#include "present.h"
 #include "transition.h"
 
 #include "run_tests.h"
@@ -58,7 +59,7 @@ END_TEST
 static void hold(uint64_t first, uint64_t second) {
     mode[0] = first;
     mode[1] = second;
-    dalcs_transition_hold(&part);
+    dalcs_present_hold(&part);
 }
 
 /* Two modes held before the same pairs have the same sides: what follows is not the same. */

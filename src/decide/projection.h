@@ -1,0 +1,26 @@
+/* projection.h - a state that is a little off is put on what its mode allows.
+ *
+ * That is where the stages of a step in the mode are, here so short a step that only such a defect moves the
+ * state, and where their polynomial starts. */
+#ifndef DALCS_PROJECTION_H
+#define DALCS_PROJECTION_H
+
+#include "radau_state.h"
+
+/* For a state that is off as interpolation leaves it at an event. If there is nothing to move, the step that was
+ * tried before is there again. limit: s, up to which a step may go; fixed: the step is given. */
+enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       double limit, bool fixed, bool *moved) DALCS_MUST_CHECK;
+
+/* May it find anything to move? Not where all states move in a projecting step by much more than their drift
+ * in the step that was tried. It saves the map. */
+bool dalcs_projection_sees(const struct dalcs_radau_part *part, bool fixed);
+
+/* For one that is off by so little that it moves farther in the shortest of steps, and dalcs_projection_try
+ * cannot tell: rounding of voltages across milliohms, on factors, may be more current than is allowed. It goes
+ * to where the polynomial of the step starts that was tried last. False: that is farther away than an error
+ * may be, over unit[2], V and A; then the state is right, and something much faster than the step goes on. */
+bool dalcs_projection_settle(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                             const double *unit);
+
+#endif

@@ -1,0 +1,111 @@
+/* search.h - what to do about a step that does not hold: the search for a segment from one point.
+ *
+ * segment.c tries a step. What is said here changes the mode, the state or the length of the next one, or, where all
+ * of that fails, takes a step of implicit Euler instead (*done). */
+#ifndef DALCS_SEARCH_H
+#define DALCS_SEARCH_H
+
+#include "radau_state.h"
+#include "step_error.h"
+
+/* The search for a segment from one point. */
+struct dalcs_search {
+    double limit;    /* s: edge, command or stop */
+    int first_level; /* where the ladder stood */
+    int asked_level; /* where a search begins anew after the circuit was asked: there, or `closer` */
+    bool fixed;      /* the step is given: no error control */
+    int restarts, flips;
+    int turns; /* of switches with hysteresis since the state has jumped, by what turns did */
+    int jumps; /* by such turns */
+    bool turned;
+    bool guessed;  /* the mode is one remembered from the last time, or that of a front */
+    bool front;    /* the latter */
+    int reopened;  /* times that diodes of a front were opened again */
+    int refined;   /* times that a step was shortened for the signs at its start */
+    int shortened; /* times that one was for currents of pairs */
+    bool closer;   /* micro-steps have looked for a mode that lasts for a small part of the step */
+    int flips_closer;
+    bool untied; /* tied diodes have been looked at */
+    bool opened; /* and are on their other sides now, to try */
+    bool projected;
+    bool settled;     /* the state has been moved by what no shorter step mended */
+    bool states_free; /* in the mode of the last step, which has nothing to project on */
+    int stuck;
+    double ratio_before;
+    int level_before_stuck;
+    double tolerated; /* the ratio that is let pass */
+    bool spared;      /* errors of states alone count */
+};
+
+/* The error is too large for this step. */
+enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       struct dalcs_search *search,
+                                       const struct dalcs_step_quality *quality,
+                                       bool *done) DALCS_MUST_CHECK;
+
+/* The mode is wrong from the start: asks the circuit, then tries the other sides. Unless it may be the
+ * polynomial that is wrong there, as a shorter step will tell. unit[2]: V, A. */
+enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                           struct dalcs_search *search, const double *unit,
+                                           bool *done) DALCS_MUST_CHECK;
+
+/* By micro-steps: the mode, and where that is not all, the state (restart.c). */
+enum dalcs_status dalcs_search_ask(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                   struct dalcs_search *search, bool mode_only) DALCS_MUST_CHECK;
+
+/* See projection.h. */
+enum dalcs_status dalcs_search_project(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       struct dalcs_search *search, bool *moved) DALCS_MUST_CHECK;
+
+/* A guess that was wrong: the search begins without it. */
+enum dalcs_status dalcs_search_refuse(struct dalcs_radau_part *part,
+                                      struct dalcs_search *search) DALCS_MUST_CHECK;
+
+/* A shorter step, for signs that may be those of the polynomial alone. */
+bool dalcs_search_may_refine(const struct dalcs_search *search);
+enum dalcs_status dalcs_search_refine(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                      struct dalcs_search *search) DALCS_MUST_CHECK;
+
+/* A shorter step, for currents of pairs that are wrong by `ratio` times what is allowed, though no state is. */
+bool dalcs_search_may_shorten(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
+                              const struct dalcs_search *search);
+enum dalcs_status dalcs_search_shorten(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                       struct dalcs_search *search, double ratio) DALCS_MUST_CHECK;
+
+/* A diode without current and voltage: the circuit is asked which of its sides is of least norm, and
+ * where it does not know yet, as at the event itself, whether it can turn. Not beyond the next event, in
+ * steps. */
+enum dalcs_status dalcs_search_untie(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                     struct dalcs_search *search, double next,
+                                     const struct dalcs_step_quality *quality) DALCS_MUST_CHECK;
+
+/* A tied diode that was opened to try, or closed, cannot. */
+enum dalcs_status dalcs_search_tie_again(struct dalcs_radau_part *part,
+                                         struct dalcs_search *search) DALCS_MUST_CHECK;
+
+/* With the others, if any is on the other side still. */
+enum dalcs_status dalcs_search_go_on_trying(struct dalcs_radau_part *part,
+                                            struct dalcs_search *search) DALCS_MUST_CHECK;
+
+/* Those that have crossed cannot: they go back to the side they were on, and the others are tried without them. */
+enum dalcs_status dalcs_search_tie_crossed(struct dalcs_radau_part *part,
+                                           struct dalcs_search *search) DALCS_MUST_CHECK;
+
+/* At the start of a run the state is exact. A diode that is on the wrong side of 0 there, if only for picoseconds, is
+ * on the other one until then, and its change is an event. *holds: none is; micro-steps that end before say so where
+ * it may be the polynomial, which is least exact at its start. */
+enum dalcs_status dalcs_search_look_at_start(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                             struct dalcs_search *search, const double *unit,
+                                             bool *holds) DALCS_MUST_CHECK;
+
+/* Implicit Euler instead, for `most` at first: where a step has been accurate, it is as short. It is certified and
+ * takes every event and jump that the step covers. In a row its steps double, up to a part of the ladder's: sliding
+ * and accumulating events pass in few. */
+enum dalcs_status dalcs_search_fall_back(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                         double limit, int level, double most) DALCS_MUST_CHECK;
+
+/* A switch slid in the segment before. *slides: so it does in this one. */
+enum dalcs_status dalcs_search_slide_on(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                        double limit, bool *slides) DALCS_MUST_CHECK;
+
+#endif

@@ -1,0 +1,36 @@
+/* tied.h - diodes with neither current nor voltage, which may change sides without anything else.
+ *
+ * Numbers of pairs; unit[2]: V, A, the largest of each. */
+#ifndef DALCS_TIED_H
+#define DALCS_TIED_H
+
+#include "radau_state.h"
+
+/* Is there a diode with neither current nor voltage during the whole step? It may change sides without
+ * anything else, and where that leaves a choice (sources in parallel, floating nodes) only the OSNSP
+ * knows which is of least norm. A closed one that had no current before the event either is none of them
+ * where the mode determines all, unless a neighbour changed sides: nothing happened to it. Nor is an open
+ * one whose voltage is 0 to the last bit, as before anything has been charged, once the circuit is known to
+ * leave no choice. Large components, where that is dear, are asked only at their start and at edges, not
+ * after every event. */
+bool dalcs_tied_stay(const struct dalcs_radau_part *part, bool is_determined, const double *unit);
+
+/* Is this pair such a diode? */
+bool dalcs_tied_is(const struct dalcs_radau_part *part, int pair, const double *unit);
+
+/* Opens the closed diodes among them but those in which a current begins, and closes the open ones whose voltage
+ * begins to rise. Where there are none, and many answers, closes all that are open. False: nothing changes. */
+bool dalcs_tied_turn(struct dalcs_radau_part *part, const double *unit);
+
+/* Opens those that are closed now and were not `before`, and have no current halfway to `end`, in steps, nor begin to.
+ * False: there is none. */
+bool dalcs_tied_open_idle(struct dalcs_radau_part *part, const uint64_t *before, double end,
+                          const double *unit);
+
+/* Is there one in the first fall, at `end` in steps, that was not clear of 0 before? */
+bool dalcs_tied_turn_back(const struct dalcs_radau_part *part, double end, const double *unit);
+
+/* Has a pair been 0 for all of the segment before, on the side where it is? */
+bool dalcs_tied_was_at_rest(const struct dalcs_radau_part *part, int pair, const double *unit);
+
+#endif

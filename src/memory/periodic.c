@@ -1,0 +1,375 @@
+/* periodic.c - one period of segments, from an event to the same event. */
+#include "periodic.h"
+
+#include "extremes.h"
+#include "present.h"
+#include "recurrence.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Periods of the slowest source that may be one of all sources. */
+enum { MOST_PERIODS = 64 };
+
+/* Shorter runs have nothing to repeat. */
+static const double fewest_periods = 3.0;
+
+/* As good as rounding lets them. */
+static const double rounded = 4.0 * DBL_EPSILON;
+
+/* Over what they may miss: farther off they will hardly have come back a period later, and its segments
+ * are not kept. */
+static const double far = 1e6;
+
+/* An event that comes a period after another, but for this part of the period, may be the same. */
+static const double same_event = 1e-3;
+
+/* What crosses so shortly before the stop time, in inner tolerances of it, may be left to a longer run
+ * (guards.c). */
+static const double near_stop = 64.0;
+
+/* Doubles that are kept at most. */
+static const size_t most_kept = (size_t)1 << 18;
+
+struct periodic_segment {
+    double h, end; /* s, and steps */
+    double t_end;  /* s, since the event */
+    enum dalcs_radau_end why;
+    int level; /* of the step to come */
+    int n_crossed;
+    size_t first_crossed;
+};
+
+struct dalcs_periodic {
+    double
+        period; /* s, of all sources; 0: that of the commands, which is not known before the start */
+    bool by_commands; /* it is that of PULSEs */
+
+    /* The event: mode and states there. */
+    bool has_event;
+    double since; /* s */
+    double *x;
+    uint64_t *mode;
+
+    bool keeps; /* all segments since then */
+    size_t n;
+    struct periodic_segment *segment; /* [n] */
+    double *values;                   /* [n][n_values]: out, in and x */
+    uint64_t *modes;                  /* [n][n_words] */
+    int *crossed;
+    size_t n_out, n_in, n_x, n_values, n_words, n_crossed;
+    size_t segment_room, values_room, modes_room, crossed_room;
+
+    bool repeats;
+    double start;  /* s: it came back then */
+    double n_done; /* periods since */
+    size_t next;
+    double *own_out; /* while part->segment.out is one of those kept */
+};
+
+/* omega[*n], in 1/s, of all that oscillates: sources as the part sees them, and those that command its switches.
+ * false: there is something else, which has no such period. */
+static bool list_oscillations(const struct dalcs_radau_part *part, double *omega, int *n) {
+    const struct dalcs_excitation *e = &part->excitation;
+    const struct dalcs_control *control = &part->commands.control;
+    const struct dalcs_csr *a = &part->component->system->direct_control;
+    bool all = true;
+    *n = 0;
+    for (int k = 0; k < e->n_functions && all; k++) {
+        omega[*n] = fabs(e->function[k].omega);
+        *n += omega[*n] != 0.0 ? 1 : 0;
+        all = e->function[k].decay == 0.0;
+    }
+    for (int k = 0; k < a->p[a->n_rows] && all; k++) {
+        const struct dalcs_stimulus *s = dalcs_control_stimulus(control, a->j[k]);
+        if (s == NULL || s->kind == DALCS_STIMULUS_DC) {
+            continue;
+        }
+        struct dalcs_stimulus_piece piece = {.term = control->term};
+        dalcs_stimulus_piece_at(s, 0.0, &piece);
+        all = piece.n_terms > 0;
+        for (int i = 0; i < piece.n_terms && all; i++) {
+            omega[*n] = fabs(piece.term[i].omega);
+            *n += omega[*n] != 0.0 ? 1 : 0;
+            all = piece.term[i].decay == 0.0;
+        }
+    }
+    return all;
+}
+
+/* Of oscillations; 0: they have none. */
+static double common_period(const double *omega, int n_omegas) {
+    double slowest = INFINITY;
+    for (int k = 0; k < n_omegas; k++) {
+        slowest = fmin(slowest, omega[k]);
+    }
+    for (int n = 1; n <= MOST_PERIODS && isfinite(slowest); n++) {
+        bool is_common = true;
+        for (int k = 0; k < n_omegas && is_common; k++) {
+            double periods = n * omega[k] / slowest;
+            is_common = fabs(periods - rint(periods)) <= rounded * periods;
+        }
+        if (is_common) {
+            return n * 6.283185307179586 / slowest;
+        }
+    }
+    return 0.0;
+}
+
+/* Of all sources, if each is a constant or oscillates; 0: it is not so. */
+static enum dalcs_status find_period(const struct dalcs_radau_part *part, double *period) {
+    const struct dalcs_csr *a = &part->component->system->direct_control;
+    size_t most =
+        (size_t)part->excitation.n_functions +
+        (size_t)a->p[a->n_rows] * (size_t)dalcs_control_most_terms(&part->commands.control);
+    double *omega = dalcs_alloc(most + 1, sizeof(*omega));
+    if (omega == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    int n;
+    *period = list_oscillations(part, omega, &n) ? common_period(omega, n) : 0.0;
+    free(omega);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    double period;
+    DALCS_TRY(find_period(part, &period));
+    bool is_commanded = part->commands.n > 0 && !part->excitation.is_curved;
+    bool is_sinusoidal = period > 0.0 && fewest_periods * period < r->options.stop;
+    bool may_come_back = (is_sinusoidal || is_commanded) && part->component->system->monotone &&
+                         r->options.fixed_step == 0.0;
+    if (!may_come_back) {
+        return DALCS_OK;
+    }
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    struct dalcs_periodic *periodic = part->memory.periodic =
+        dalcs_arena_alloc(&part->arena, 1, sizeof(*periodic));
+    if (periodic == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    periodic->period = period;
+    periodic->by_commands = period == 0.0;
+    periodic->n_out = (size_t)l->n_nodes * (size_t)l->stride;
+    periodic->n_in = (size_t)part->stages.n_in;
+    periodic->n_x = (size_t)p->system->n_x;
+    periodic->n_values = periodic->n_out + periodic->n_in + periodic->n_x;
+    periodic->n_words = (size_t)p->n_words;
+    periodic->x = dalcs_arena_alloc(&part->arena, (size_t)p->system->n_x, sizeof(double));
+    periodic->mode = dalcs_arena_alloc(&part->arena, (size_t)p->n_words, sizeof(uint64_t));
+    return periodic->x != NULL && periodic->mode != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+void dalcs_periodic_finish(struct dalcs_radau_part *part) {
+    struct dalcs_periodic *periodic = part->memory.periodic;
+    if (periodic == NULL) {
+        return;
+    }
+    free(periodic->segment);
+    free(periodic->values);
+    free(periodic->modes);
+    free(periodic->crossed);
+    part->memory.periodic = NULL;
+}
+
+/* How far the circuit is from where it was at the event a period ago, over what it may be; INFINITY:
+ * it is something else that happened. */
+static double distance(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    const struct dalcs_periodic *periodic = part->memory.periodic;
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    double to_come = (r->options.stop - part->segment.t) / periodic->period;
+    /* In all periods to come together states may miss what a step may. */
+    double share = dalcs_larger(part->inner_tolerance / to_come, rounded);
+    double late = fabs(part->segment.t - periodic->since - periodic->period);
+    if (late > same_event * periodic->period ||
+        !dalcs_mode_is(periodic->mode, p->mode, p->n_words)) {
+        return INFINITY;
+    }
+    double farthest = late / dalcs_larger(rounded * part->segment.t,
+                                          share / 6.283185307179586 * periodic->period);
+    for (int x = 0; x < p->system->n_x; x++) {
+        double off = fabs(part->x[x] - periodic->x[x]);
+        if (off > farthest * share * part->scales.column[x]) {
+            farthest = off / (share * part->scales.column[x]);
+        }
+    }
+    return farthest;
+}
+
+/* Of sources that act on the part, or on what commands its switches; those of PULSEs are periodic themselves. */
+static bool has_edges_to_come(const struct dalcs_radau_part *part) {
+    const struct dalcs_commands *c = &part->commands;
+    bool has = isfinite(part->excitation.next_edge);
+    for (int k = 0; k < c->n && !has && !part->memory.periodic->by_commands; k++) {
+        has = isfinite(dalcs_control_next_edge(&c->control, c->command[k].pair, part->segment.t));
+    }
+    return has;
+}
+
+void dalcs_periodic_look_ahead(struct dalcs_radau_part *part) {
+    if (!part->memory.periodic->by_commands) {
+        dalcs_commands_look(&part->commands,
+                            part->segment.t + (1.0 + same_event) * part->memory.periodic->period);
+    }
+}
+
+void dalcs_periodic_event(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    struct dalcs_periodic *periodic = part->memory.periodic;
+    bool is_command = part->guards.n_crossed == 0;
+    if (has_edges_to_come(part) || (is_command && periodic->by_commands)) {
+        return; /* the times of PULSEs are counted, not taken from an event that is one of them */
+    }
+    if (periodic->period == 0.0) {
+        periodic->period = dalcs_commands_period(&part->commands);
+        periodic->period = periodic->period > 0.0 ? periodic->period : INFINITY;
+    }
+    bool is_first = !periodic->has_event;
+    if (!is_first && part->segment.t < periodic->since + periodic->period * (1.0 - same_event)) {
+        return;
+    }
+    double off = is_first ? INFINITY : distance(r, part);
+    periodic->repeats = periodic->keeps && off <= 1.0;
+    /* The period of a converter is short, and what happens in it moves about for many: that is not worth a copy. */
+    periodic->keeps = off < far || (isinf(off) && !periodic->by_commands);
+    if (periodic->repeats) {
+        periodic->start = part->segment.t;
+        return;
+    }
+    periodic->has_event = true;
+    periodic->since = part->segment.t;
+    memcpy(periodic->x, part->x, periodic->n_x * sizeof(double));
+    memcpy(periodic->mode, part->component->osnsp.mode, periodic->n_words * sizeof(uint64_t));
+    periodic->n = 0;
+    periodic->n_crossed = 0;
+}
+
+/* ---- Segments that are kept -------------------------------------------------------------------- */
+
+/* For one more. */
+static enum dalcs_status make_room(struct dalcs_periodic *periodic, size_t n_crossed) {
+    size_t n = periodic->n + 1;
+    DALCS_TRY(
+        dalcs_grow(&periodic->segment, &periodic->segment_room, n, sizeof(*periodic->segment)));
+    DALCS_TRY(dalcs_grow(&periodic->values, &periodic->values_room, n * periodic->n_values,
+                         sizeof(double)));
+    DALCS_TRY(dalcs_grow(&periodic->modes, &periodic->modes_room, n * periodic->n_words,
+                         sizeof(uint64_t)));
+    return dalcs_grow(&periodic->crossed, &periodic->crossed_room, periodic->n_crossed + n_crossed,
+                      sizeof(int));
+}
+
+enum dalcs_status dalcs_periodic_note(struct dalcs_radau_part *part) {
+    struct dalcs_periodic *periodic = part->memory.periodic;
+    if (!periodic->keeps) {
+        return DALCS_OK;
+    }
+    bool is_over = part->segment.t > periodic->since + periodic->period * (1.0 + same_event);
+    periodic->keeps = !part->segment.by_euler && !part->segment.jumped && !is_over &&
+                      (periodic->n + 1) * periodic->n_values <= most_kept;
+    if (!periodic->keeps) {
+        return DALCS_OK;
+    }
+    dalcs_recurrence_complete(part);
+    size_t n_crossed = (size_t)part->guards.n_crossed;
+    DALCS_TRY(make_room(periodic, n_crossed));
+    double *value = periodic->values + periodic->n * periodic->n_values;
+    memcpy(value, part->segment.out, periodic->n_out * sizeof(double));
+    value += periodic->n_out;
+    memcpy(value, part->segment.in, periodic->n_in * sizeof(double));
+    value += periodic->n_in;
+    memcpy(value, part->x, periodic->n_x * sizeof(double));
+    memcpy(periodic->modes + periodic->n * periodic->n_words, part->component->osnsp.mode,
+           periodic->n_words * sizeof(uint64_t));
+    for (size_t k = 0; k < n_crossed; k++) {
+        periodic->crossed[periodic->n_crossed + k] = part->guards.crossed[k];
+    }
+    periodic->segment[periodic->n++] =
+        (struct periodic_segment){.h = part->segment.h,
+                                  .end = part->segment.end,
+                                  .t_end = part->segment.t_end - periodic->since,
+                                  .why = part->segment.why,
+                                  .level = part->length.level,
+                                  .n_crossed = part->guards.n_crossed,
+                                  .first_crossed = periodic->n_crossed};
+    periodic->n_crossed += n_crossed;
+    return DALCS_OK;
+}
+
+/* ---- And taken again --------------------------------------------------------------------------- */
+
+/* When the next segment ends. Periods are counted, never accumulated. */
+static double next_end(const struct dalcs_periodic *periodic) {
+    bool is_last = periodic->next + 1 == periodic->n;
+    double begin = periodic->start + periodic->n_done * periodic->period;
+    return is_last ? periodic->start + (periodic->n_done + 1.0) * periodic->period
+                   : begin + periodic->segment[periodic->next].t_end;
+}
+
+/* What comes next is looked for as always, from where the present segment ends. */
+static void stop_repeating(struct dalcs_radau_part *part) {
+    struct dalcs_periodic *periodic = part->memory.periodic;
+    periodic->repeats = false;
+    periodic->keeps = false;
+    if (periodic->own_out != NULL) {
+        memcpy(periodic->own_out, part->segment.out, periodic->n_out * sizeof(double));
+        part->segment.out = periodic->own_out;
+        periodic->own_out = NULL;
+        part->guards.fresh = true;
+        dalcs_present_hold(part);
+    }
+}
+
+bool dalcs_periodic_repeats(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    const struct dalcs_periodic *periodic = part->memory.periodic;
+    if (!periodic->repeats) {
+        return false;
+    }
+    double last = r->options.stop * (1.0 - near_stop * part->inner_tolerance) - r->resolution;
+    bool goes_on = next_end(periodic) < last;
+    if (!goes_on) {
+        stop_repeating(part);
+    }
+    return goes_on;
+}
+
+void dalcs_periodic_take(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    struct dalcs_periodic *periodic = part->memory.periodic;
+    const struct periodic_segment *segment = &periodic->segment[periodic->next];
+    double *value = periodic->values + periodic->next * periodic->n_values;
+    if (periodic->own_out == NULL) {
+        periodic->own_out = part->segment.out;
+    }
+    part->segment.out = value;
+    if (r->base->observer != NULL) {
+        memcpy(part->segment.in, value + periodic->n_out, periodic->n_in * sizeof(double));
+        memcpy(part->work.after, value + periodic->n_out + periodic->n_in,
+               periodic->n_x * sizeof(double));
+        dalcs_radau_go_after(r, part);
+    }
+    bool is_commanded = segment->why == DALCS_END_AT_EDGE;
+    part->segment.t_end = is_commanded ? part->commands.next : next_end(periodic);
+    part->segment.brief = NULL;
+    part->segment.h = segment->h;
+    part->segment.end = segment->end;
+    part->segment.why = segment->why;
+    part->length.level = segment->level;
+    part->guards.fresh = false;
+    part->guards.flipped = false;
+    part->guards.n_crossed = segment->n_crossed;
+    for (int k = 0; k < segment->n_crossed; k++) {
+        part->guards.crossed[k] = periodic->crossed[segment->first_crossed + (size_t)k];
+    }
+    for (size_t k = 0; k < periodic->n_words; k++) {
+        part->component->osnsp.mode[k] = periodic->modes[periodic->next * periodic->n_words + k];
+    }
+    periodic->next++;
+    if (periodic->next == periodic->n) {
+        periodic->next = 0;
+        periodic->n_done += 1.0;
+    }
+    r->steps++;
+    r->periodic_steps++;
+}

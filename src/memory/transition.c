@@ -1,0 +1,170 @@
+/* transition.c - a small table, the place of an entry being the hash of the modes before. */
+#include "transition.h"
+
+#include <limits.h>
+
+/* An entry has three modes: the one that held, the one after pairs changed sides, what followed. */
+enum { SLOTS = DALCS_TRANSITIONS, MODES = 3 };
+
+/* Transitions that come back so often are worth a try of a longer step. */
+enum { OFTEN = 16 };
+
+/* A length that held is begun with so many times at most before a longer one is tried. */
+enum { MOST_PATIENCE = 64 };
+
+enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
+    size_t words = (size_t)part->component->osnsp.n_words;
+    part->memory.transition =
+        dalcs_arena_alloc(&part->arena, SLOTS, sizeof(*part->memory.transition));
+    part->memory.transition_modes =
+        dalcs_arena_alloc(&part->arena, SLOTS * MODES * words, sizeof(uint64_t));
+    part->memory.modes_before = dalcs_arena_alloc(&part->arena, 2 * words, sizeof(uint64_t));
+    part->work.mode_tied = dalcs_arena_alloc(&part->arena, words, sizeof(uint64_t));
+    part->work.mode_turned = dalcs_arena_alloc(&part->arena, words, sizeof(uint64_t));
+    part->memory.beginning[0] = part->memory.beginning[1] = (struct dalcs_beginning){INT_MIN, 0, 1};
+    bool complete = part->memory.transition != NULL && part->memory.transition_modes != NULL &&
+                    part->memory.modes_before != NULL && part->work.mode_tied != NULL &&
+                    part->work.mode_turned != NULL;
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+void dalcs_transition_finish(struct dalcs_radau_part *part) {
+    for (int k = 0; k < SLOTS && part->memory.transition != NULL; k++) {
+        if (part->memory.transition[k].is_known) {
+            dalcs_transition_count(part, &part->memory.transition[k].span, 0.0);
+            dalcs_transition_count(part, &part->memory.transition[k].step, 0.0);
+        }
+    }
+}
+
+struct dalcs_transition *dalcs_transition_known(const struct dalcs_radau_part *part) {
+    return &part->memory.transition[part->memory.present_transition];
+}
+
+void dalcs_transition_count(struct dalcs_radau_part *part, struct dalcs_recurring *recurring,
+                            double length) {
+    dalcs_stage_brief_destroy(&part->stages, recurring->brief);
+    recurring->brief = NULL;
+    recurring->length = length;
+    recurring->times = 0;
+}
+
+/* Of part->modes_before. */
+static size_t find_slot(const struct dalcs_radau_part *part) {
+    uint64_t hash = 14695981039346656037u;
+    for (int k = 0; k < 2 * part->component->osnsp.n_words; k++) {
+        hash = (hash ^ part->memory.modes_before[k]) * 1099511628211u;
+        hash ^= hash >> 29;
+    }
+    return (size_t)(hash % SLOTS);
+}
+
+/* Modes are a word or two, which calls would cost more than. */
+static void copy_mode(uint64_t *to, const uint64_t *from, size_t words) {
+    for (size_t k = 0; k < words; k++) {
+        to[k] = from[k];
+    }
+}
+
+/* What a pair joins has to become equal, often fast; one that opens only lets go. */
+static struct dalcs_beginning *find_beginning(struct dalcs_radau_part *part) {
+    int n_words = part->component->osnsp.n_words;
+    uint64_t closed = 0;
+    for (int k = 0; k < n_words; k++) {
+        closed |= part->memory.modes_before[n_words + k] & ~part->memory.modes_before[k];
+    }
+    return &part->memory.beginning[closed != 0];
+}
+
+bool dalcs_transition_guess(struct dalcs_radau_part *part) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    size_t words = (size_t)p->n_words;
+    copy_mode(part->memory.modes_before + words, p->mode, words);
+    size_t slot = find_slot(part);
+    part->memory.present_transition = (int)slot;
+    const uint64_t *known = part->memory.transition_modes + slot * MODES * words;
+    part->length.level_before = part->length.level;
+    part->length.tries_longer = false;
+    if (!part->memory.transition[slot].is_known ||
+        !dalcs_mode_is(known, part->memory.modes_before, 2 * p->n_words)) {
+        /* On dense maps to ask the circuit costs little, and tells more than a step that is short. */
+        int level = find_beginning(part)->level;
+        if (part->segment.rounding > 1.0 && level > part->length.level) {
+            part->length.level = level;
+        }
+        return false;
+    }
+    copy_mode(p->mode, known + 2 * words, words);
+    const struct dalcs_transition *t = dalcs_transition_known(part);
+    part->length.tries_longer = t->untried > 0 && t->held >= OFTEN;
+    part->length.level = t->level - (part->length.tries_longer ? 1 : 0);
+    return true;
+}
+
+int dalcs_transition_longest_level(const struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const uint64_t *followed = part->memory.transition_modes + 2 * p->n_words;
+    int level = part->length.level;
+    for (int k = 0; k < SLOTS; k++, followed += MODES * p->n_words) {
+        const struct dalcs_transition *t = &part->memory.transition[k];
+        if (t->is_known && t->level < level && dalcs_mode_is(followed, p->mode, p->n_words)) {
+            level = t->level;
+        }
+    }
+    return level;
+}
+
+void dalcs_transition_pass(struct dalcs_radau_part *part, int spare) {
+    struct dalcs_transition *known = dalcs_transition_known(part);
+    known->held += known->held < OFTEN ? 1 : 0;
+    known->untried -= part->length.tries_longer ? 1 : 0;
+    known->level = part->length.level - spare;
+    part->length.tries_longer = false;
+}
+
+bool dalcs_transition_refuse(struct dalcs_radau_part *part) {
+    struct dalcs_osnsp *p = &part->component->osnsp;
+    if (part->length.tries_longer) {
+        struct dalcs_transition *known = dalcs_transition_known(part);
+        part->length.tries_longer = false;
+        part->length.level = known->level;
+        known->untried = 0;
+        return true;
+    }
+    copy_mode(p->mode, part->memory.modes_before + p->n_words, (size_t)p->n_words);
+    part->length.level = part->length.level_before;
+    return false;
+}
+
+void dalcs_transition_began(struct dalcs_radau_part *part, int tried, int promised) {
+    struct dalcs_beginning *b = find_beginning(part);
+    if (part->length.level > tried) {
+        bool in_vain = b->level == tried && b->patience < MOST_PATIENCE;
+        *b = (struct dalcs_beginning){part->length.level, 0,
+                                      in_vain ? 2 * b->patience : b->patience};
+    } else if (b->level == tried) {
+        b->waited += b->waited < b->patience ? 1 : 0;
+        b->level -= promised > 0 ? promised : b->waited == b->patience ? 1 : 0;
+    }
+}
+
+void dalcs_transition_learn(struct dalcs_radau_part *part, int level, int untried) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    size_t words = (size_t)p->n_words;
+    uint64_t *modes =
+        part->memory.transition_modes + (size_t)part->memory.present_transition * MODES * words;
+    struct dalcs_transition *known = dalcs_transition_known(part);
+    bool is_same = known->is_known &&
+                   dalcs_mode_is(modes, part->memory.modes_before, 2 * p->n_words) &&
+                   dalcs_mode_is(modes + 2 * words, p->mode, p->n_words);
+    known->level = level;
+    known->untried = untried;
+    known->held = 0;
+    if (!is_same) {
+        known->is_known = true;
+        copy_mode(modes, part->memory.modes_before, 2 * words);
+        copy_mode(modes + 2 * words, p->mode, words);
+        dalcs_transition_count(part, &known->span, 0.0);
+        dalcs_transition_count(part, &known->step, 0.0);
+    }
+}

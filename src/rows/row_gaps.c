@@ -1,0 +1,354 @@
+/* row_gaps.c - derivatives of what outputs read, part by part, and the gaps that they allow. */
+#include "row_gaps.h"
+
+#include "extremes.h"
+#include "radau_state.h"
+#include "wide_vectors.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Where in a step derivatives are looked at: its start, its end and between. Second derivatives of nine stages
+ * have degree 7, fourth ones 5. */
+enum { N_PLACES = 8 };
+
+/* Of the bound, what a curve may take: the largest derivative may lie between the places. */
+static const double share = 0.5;
+
+/* An output smaller than this beside the largest of its unit counts as that large. */
+static const double least_size = 1e-6;
+
+/* Polynomials of fewer stages have no fourth derivative: they bend where they meet. */
+enum { ENOUGH_STAGES = 5 };
+
+/* Derivatives of the k-th function of Newton's basis. */
+struct dalcs_row_basis {
+    double second[DALCS_MAX_NODES][N_PLACES], fourth[DALCS_MAX_NODES][N_PLACES];
+};
+
+/* ---- Setup ------------------------------------------------------------------------------------- */
+
+static void make_basis(struct dalcs_row_basis *basis, const struct dalcs_collocation *c) {
+    enum { FOURTH = 4 };
+
+    for (int place = 0; place < N_PLACES; place++) {
+        double theta = (double)place / (N_PLACES - 1);
+        double derivative[FOURTH + 1] = {1.0};
+        for (int k = 0; k <= c->s; k++) {
+            basis->second[k][place] = derivative[2];
+            basis->fourth[k][place] = derivative[FOURTH];
+            for (int order = FOURTH; order >= 0; order--) {
+                double below = order > 0 ? order * derivative[order - 1] : 0.0;
+                derivative[order] = (theta - c->newton_node[k]) * derivative[order] + below;
+            }
+        }
+    }
+}
+
+static bool is_current(const struct dalcs_row_gaps *gaps, int output) {
+    return gaps->rows->radau->base->network->output[output].is_current;
+}
+
+/* Of the parts before, one with the same stages lends its own. */
+static bool give_basis(struct dalcs_row_gaps *gaps, int k) {
+    const struct dalcs_radau_part *part = gaps->rows->radau->part;
+    struct dalcs_row_gaps_part *to = &gaps->part[k];
+    for (int other = 0; other < k && to->basis == NULL; other++) {
+        bool is_same = part[other].stages.method == part[k].stages.method;
+        to->basis = is_same ? gaps->part[other].basis : NULL;
+    }
+    if (to->basis == NULL) {
+        struct dalcs_row_basis *made = dalcs_arena_alloc(&gaps->arena, 1, sizeof(*made));
+        if (made == NULL) {
+            return false;
+        }
+        make_basis(made, part[k].stages.method);
+        to->basis = made;
+    }
+    return true;
+}
+
+/* Where all of a unit is rounding of the other one nothing bends. */
+static void find_crosses(struct dalcs_row_gaps *gaps, const struct dalcs_radau_part *part) {
+    const struct dalcs_rows_part *p = &gaps->rows->part[part->index];
+    for (int i = 0; i < p->n_signals; i++) {
+        int output = p->signal[i].output;
+        if (output < gaps->n_outputs) {
+            double *cross = &gaps->cross[output];
+            *cross = dalcs_larger(*cross, part->scales.cross[is_current(gaps, output) ? 1 : 0]);
+        }
+    }
+}
+
+static bool set_up_parts(struct dalcs_row_gaps *gaps) {
+    const struct dalcs_rows *rows = gaps->rows;
+    bool complete = true;
+    for (int k = 0; complete && k < rows->radau->n_parts; k++) {
+        struct dalcs_row_gaps_part *part = &gaps->part[k];
+        if (rows->part[k].n_read == 0) { /* none is read, or it does not step */
+            continue;
+        }
+        find_crosses(gaps, &rows->radau->part[k]);
+        part->since = NAN;
+        part->bend =
+            dalcs_arena_alloc(&gaps->arena, (size_t)rows->part[k].n_read, sizeof(*part->bend));
+        complete = part->bend != NULL && give_basis(gaps, k);
+    }
+    return complete;
+}
+
+static bool set_up_stimuli(struct dalcs_row_gaps *gaps, const struct dalcs_circuit *circuit) {
+    size_t n = (size_t)circuit->n_stimuli;
+    gaps->curved = dalcs_arena_alloc(&gaps->arena, n, sizeof(*gaps->curved));
+    gaps->stimulus = dalcs_arena_alloc(&gaps->arena, n, sizeof(*gaps->stimulus));
+    gaps->term = dalcs_arena_alloc(&gaps->arena, DALCS_STIMULUS_MOST_TERMS, sizeof(*gaps->term));
+    if (gaps->curved == NULL || gaps->stimulus == NULL || gaps->term == NULL) {
+        return false;
+    }
+    for (int i = 0; i < circuit->n_stimuli; i++) {
+        if (dalcs_stimulus_n_terms(&circuit->stimulus[i]) > 0) {
+            gaps->curved[gaps->n_curved++] = i;
+        }
+    }
+    return true;
+}
+
+enum dalcs_status dalcs_row_gaps_setup(struct dalcs_row_gaps *gaps, struct dalcs_rows *rows,
+                                       int n_outputs, double bound) {
+    *gaps = (struct dalcs_row_gaps){.rows = rows, .n_outputs = n_outputs, .bound = bound};
+    struct dalcs_arena *arena = &gaps->arena;
+    size_t n_read = (size_t)rows->n_outputs;
+    gaps->largest = dalcs_arena_alloc(arena, (size_t)n_outputs, sizeof(double));
+    gaps->cross = dalcs_arena_alloc(arena, (size_t)n_outputs, sizeof(double));
+    gaps->of_steps = dalcs_arena_alloc(arena, n_read, sizeof(*gaps->of_steps));
+    gaps->of_sources = dalcs_arena_alloc(arena, n_read, sizeof(*gaps->of_sources));
+    gaps->part = dalcs_arena_alloc(arena, (size_t)rows->radau->n_parts, sizeof(*gaps->part));
+    bool complete = gaps->largest != NULL && gaps->cross != NULL && gaps->of_steps != NULL &&
+                    gaps->of_sources != NULL && gaps->part != NULL && set_up_parts(gaps) &&
+                    set_up_stimuli(gaps, rows->radau->base->circuit);
+    if (!complete) {
+        dalcs_row_gaps_finish(gaps);
+        return DALCS_E_NOMEM;
+    }
+    return DALCS_OK;
+}
+
+void dalcs_row_gaps_finish(struct dalcs_row_gaps *gaps) {
+    dalcs_arena_finish(&gaps->arena);
+    *gaps = (struct dalcs_row_gaps){0};
+}
+
+/* ---- Derivatives ------------------------------------------------------------------------------- */
+
+/* The largest magnitude of a polynomial at some places of a step's first part. */
+static inline __attribute__((always_inline)) double
+size_of(const struct dalcs_collocation *c, const double *coefficient, double part) {
+    static const double place[DALCS_QUAD] = {0.0, 0.4, 0.7, 1.0};
+    dalcs_quad theta;
+    dalcs_quad_load(&theta, place);
+    theta *= part;
+    dalcs_quad value = {0.0};
+    value += coefficient[c->s];
+    for (int k = c->s - 1; k >= 0; k--) {
+        value = value * (theta - c->newton_node[k]) + coefficient[k];
+    }
+    dalcs_quad_unsign(&value);
+    return dalcs_quad_largest(&value);
+}
+
+/* sum of coefficient times derivative, its largest magnitude over the places. */
+static inline __attribute__((always_inline)) double
+largest_of(int s, const double *coefficient, const double (*derivative)[N_PLACES]) {
+    dalcs_quad sum[N_PLACES / DALCS_QUAD] = {{0.0}};
+    for (int k = 2; k <= s; k++) {
+        for (int q = 0; q < N_PLACES / DALCS_QUAD; q++) {
+            dalcs_quad factor;
+            dalcs_quad_load(&factor, derivative[k] + q * DALCS_QUAD);
+            sum[q] += factor * coefficient[k];
+        }
+    }
+    dalcs_quad largest = {0.0};
+    for (int q = 0; q < N_PLACES / DALCS_QUAD; q++) {
+        dalcs_quad_unsign(&sum[q]);
+        dalcs_quad_raise(&largest, &sum[q]);
+    }
+    return dalcs_quad_largest(&largest);
+}
+
+/* Of polynomials in steps of length h, of which a part counts. */
+DALCS_TWICE(void, find_bends,
+            (const struct dalcs_row_basis *basis, const struct dalcs_collocation *c, double h,
+             double part, const double *coefficient, int n, struct dalcs_bend *bend),
+            (basis, c, h, part, coefficient, n, bend)) {
+    const double per_second = 1.0 / (h * h);
+    const double per_fourth = per_second * per_second;
+    for (int i = 0; i < n; i++, coefficient += DALCS_MAX_NODES) {
+        bend[i].size = size_of(c, coefficient, part);
+        bend[i].second = per_second * largest_of(c->s, coefficient, basis->second);
+        bend[i].fourth = per_fourth * largest_of(c->s, coefficient, basis->fourth);
+    }
+}
+
+/* Of the sources, from one time to another between edges: of sums of exponentials and sinusoids no larger than those
+ * of their terms together. */
+static void bend_stimuli(struct dalcs_row_gaps *gaps, double from, double to) {
+    const struct dalcs_circuit *circuit = gaps->rows->radau->base->circuit;
+    for (int i = 0; i < gaps->n_curved; i++) {
+        struct dalcs_bend *bend = &gaps->stimulus[gaps->curved[i]];
+        struct dalcs_stimulus_piece piece = {.term = gaps->term};
+        dalcs_stimulus_piece_at(&circuit->stimulus[gaps->curved[i]], from, &piece);
+        *bend = (struct dalcs_bend){0.0, 0.0, 0.0};
+        for (int k = 0; k < piece.n_terms; k++) {
+            const struct dalcs_stimulus_term *term = &piece.term[k];
+            double rate = term->decay * term->decay + term->omega * term->omega;
+            double size = hypot(term->cosine, term->sine);
+            size *= term->decay < 0.0 ? exp(-term->decay * (to - from)) : 1.0;
+            bend->size += size;
+            bend->second += rate * size;
+            bend->fourth += rate * rate * size;
+        }
+    }
+}
+
+static inline void add(struct dalcs_bend *to, double factor, const struct dalcs_bend *bend) {
+    double size = fabs(factor);
+    to->size += size * bend->size;
+    to->second += size * bend->second;
+    to->fourth += size * bend->fourth;
+}
+
+/* What sources alone decide, times a factor. */
+static void add_source(const struct dalcs_row_gaps *gaps, const struct dalcs_radau_part *part,
+                       const struct dalcs_row_source *source, double factor,
+                       struct dalcs_bend *to) {
+    const struct dalcs_system *s = part->component->system;
+    if (!source->is_bystander) {
+        add(to, factor, &gaps->stimulus[s->stimulus[source->index]]);
+        return;
+    }
+    const double *gain = part->excitation.bystanders.gain + source->index * s->n_inputs;
+    for (int k = 1; k < s->n_inputs; k++) {
+        add(to, factor * gain[k], &gaps->stimulus[s->stimulus[k]]);
+    }
+}
+
+static void add_sources(const struct dalcs_row_gaps *gaps, const struct dalcs_rows_part *p,
+                        const struct dalcs_radau_part *part, const struct dalcs_probe *probe,
+                        struct dalcs_bend *to) {
+    int n_columns = dalcs_system_n_columns(part->component->system);
+    for (int i = 0; i < probe->n_terms + probe->n_inputs; i++) {
+        const struct dalcs_probe_term *term = &probe->term[i];
+        int place = p->place[i < probe->n_terms ? term->index : n_columns + term->index];
+        if (place >= 0) {
+            add_source(gaps, part, &p->source[place], term->coefficient, to);
+        }
+    }
+}
+
+static enum dalcs_status look_at_stepped(struct dalcs_row_gaps *gaps,
+                                         struct dalcs_radau_part *part) {
+    const struct dalcs_rows_part *p = &gaps->rows->part[part->index];
+    struct dalcs_row_gaps_part *g = &gaps->part[part->index];
+    if (p->n_read > 0 && (g->since != part->segment.t || g->length != part->segment.h)) {
+        DALCS_TRY(dalcs_rows_find_polynomials(gaps->rows, part));
+        find_bends(g->basis, part->stages.method, part->segment.h, part->segment.end,
+                   p->coefficient, p->n_read, g->bend);
+        g->since = part->segment.t;
+        g->length = part->segment.h;
+    }
+    if (part->segment.by_euler || part->stages.method->s < ENOUGH_STAGES) {
+        gaps->line = dalcs_smaller(gaps->line, part->segment.h);
+        gaps->cubic = dalcs_smaller(gaps->cubic, part->segment.h);
+    }
+    const struct dalcs_bend *bend = g->bend;
+    for (int i = 0; i < p->n_signals; bend++) {
+        int output = p->signal[i].output;
+        add(&gaps->of_steps[output], 1.0, bend);
+        for (; i < p->n_signals && p->signal[i].output == output; i++) {
+            if (gaps->n_curved > 0) {
+                add_sources(gaps, p, part, p->signal[i].probe, &gaps->of_sources[output]);
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
+/* What such a part makes of sources is a fixed sum of them: it bends as the one does that bends most for its size. */
+static void look_at_algebraic(struct dalcs_row_gaps *gaps, const struct dalcs_radau_part *part) {
+    const struct dalcs_component *c = part->component;
+    for (int i = 0; i < c->n_varying && gaps->rows->part[part->index].n_signals > 0; i++) {
+        const struct dalcs_bend *bend = &gaps->stimulus[c->system->stimulus[c->varying[i]]];
+        if (bend->size > 0.0) {
+            struct dalcs_bend *most = &gaps->algebraic;
+            most->second = dalcs_larger(most->second, bend->second / bend->size);
+            most->fourth = dalcs_larger(most->fourth, bend->fourth / bend->size);
+        }
+    }
+}
+
+/* ---- Gaps -------------------------------------------------------------------------------------- */
+
+void dalcs_row_gaps_note(struct dalcs_row_gaps *gaps) {
+    for (int i = 0; i < gaps->n_outputs; i++) {
+        gaps->largest[i] = dalcs_larger(gaps->largest[i], fabs(gaps->rows->value[i].at[0]));
+    }
+}
+
+/* What outputs are at least, somewhere in the stretch; of_unit[2]: the largest in V and A. */
+static void raise_largest(struct dalcs_row_gaps *gaps, double *of_unit) {
+    for (int i = 0; i < gaps->n_outputs; i++) {
+        double size = fabs(gaps->of_steps[i].size - gaps->of_sources[i].size);
+        gaps->largest[i] = dalcs_larger(gaps->largest[i], size);
+        double *unit = &of_unit[is_current(gaps, i) ? 1 : 0];
+        *unit = dalcs_larger(*unit, gaps->largest[i]);
+    }
+}
+
+/* What it is measured by. */
+static double scale_of(const struct dalcs_row_gaps *gaps, int output, const double *of_unit) {
+    int unit = is_current(gaps, output) ? 1 : 0;
+    double least =
+        dalcs_larger(least_size * of_unit[unit], gaps->cross[output] * of_unit[1 - unit]);
+    return dalcs_larger(gaps->largest[output], least);
+}
+
+static void choose_gaps(struct dalcs_row_gaps *gaps) {
+    double of_unit[2] = {0.0, 0.0};
+    raise_largest(gaps, of_unit);
+    struct dalcs_bend most = gaps->algebraic;
+    for (int i = 0; i < gaps->n_outputs; i++) {
+        double size = scale_of(gaps, i, of_unit);
+        double second = gaps->of_steps[i].second + gaps->of_sources[i].second;
+        double fourth = gaps->of_steps[i].fourth + gaps->of_sources[i].fourth;
+        if (size > 0.0 && second > most.second * size) {
+            most.second = second / size;
+        }
+        if (size > 0.0 && fourth > most.fourth * size) {
+            most.fourth = fourth / size;
+        }
+    }
+    double allowed = share * gaps->bound;
+    gaps->line = dalcs_smaller(gaps->line, sqrt(8.0 * allowed / most.second));
+    gaps->cubic = dalcs_smaller(gaps->cubic, sqrt(sqrt(128.0 / 3.0 * allowed / most.fourth)));
+}
+
+enum dalcs_status dalcs_row_gaps_look(struct dalcs_row_gaps *gaps, double from, double to) {
+    const struct dalcs_rows *rows = gaps->rows;
+    const size_t size = (size_t)rows->n_outputs * sizeof(*gaps->of_steps);
+    memset(gaps->of_steps, 0, size);
+    memset(gaps->of_sources, 0, size);
+    gaps->algebraic = (struct dalcs_bend){0.0, 0.0, 0.0};
+    gaps->line = INFINITY;
+    gaps->cubic = INFINITY;
+    bend_stimuli(gaps, from, to);
+    for (int i = 0; i < rows->n_asked; i++) {
+        struct dalcs_radau_part *part = &rows->radau->part[rows->asked[i]];
+        if (part->kind == DALCS_PART_ALGEBRAIC) {
+            look_at_algebraic(gaps, part);
+        } else {
+            DALCS_TRY(look_at_stepped(gaps, part));
+        }
+    }
+    choose_gaps(gaps);
+    return DALCS_OK;
+}

@@ -1,0 +1,26 @@
+/* current_error.h - errors of currents that are small differences of large voltages, and the other way round. */
+#ifndef DALCS_CURRENT_ERROR_H
+#define DALCS_CURRENT_ERROR_H
+
+#include "radau_state.h"
+
+/* Errors over what is allowed: the tolerance times a scale at these units (V, A), and `besides`, V and A. */
+struct dalcs_lever_error {
+    double
+        of_currents; /* the largest of a branch current without memory; 0 if far less than allowed */
+    double of_voltages; /* of a voltage that resistors make of coils' currents; likewise */
+    double of_unit;     /* the largest that is not allowed, over its unit */
+};
+
+/* Those of the step that was solved last. */
+void dalcs_current_error(struct dalcs_radau_part *part, struct dalcs_stage_entry *entry,
+                         const double unit[2], const double besides[2],
+                         struct dalcs_lever_error *error);
+
+/* The largest of a current of a closed pair, by a map, over what is allowed; 0: none is more. For the first step of a
+ * mode: there states have the errors of an event, and what they make of diodes' currents dies away between two
+ * nodes. */
+double dalcs_current_error_of_pairs(const struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                    struct dalcs_stage_entry *entry, const double unit[2]);
+
+#endif
