@@ -30,6 +30,7 @@ struct dalcs_rows_part {
     } * signal; /* [n_signals] what outputs read of this part, those of an output in a row */
 
     int n_read;                  /* outputs that read this part */
+    int map_rows;                /* the rows of a map of it */
     int offset[DALCS_MAX_NODES]; /* [s + 1] of the nodes in an answer, in Newton's order */
 
     /* Of a step that recurs the polynomials are one map of its inputs, from the second time on that it has rows. */

@@ -1,0 +1,118 @@
+/* jump_report.c - a jump of a component: what it is, what it costs, and how it is told. */
+#include "euler.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What two micro-steps tell of what is no state, over its size. */
+static const double micro_error = 1e-6;
+
+double dalcs_euler_jump_energy(const struct dalcs_system *s, const double *before,
+                               const double *after) {
+    double energy = 0.0;
+    for (int i = 0; i < s->n_x; i++) {
+        for (int k = s->storage.p[i]; k < s->storage.p[i + 1]; k++) {
+            int j = s->storage.j[k];
+            energy += 0.5 * s->storage.x[k] * (after[i] - before[i]) * (after[j] - before[j]);
+        }
+    }
+    return energy;
+}
+
+double dalcs_euler_stored_energy(const struct dalcs_system *s, const double *x) {
+    double energy = 0.0;
+    for (int i = 0; i < s->n_x; i++) {
+        energy += 0.5 * x[i] * dalcs_csr_row_dot(&s->storage, i, x);
+    }
+    return energy;
+}
+
+/* What a jump cost, J: stored, lost, and in the thresholds that charge has passed. */
+static double cost_of(const struct dalcs_system *s, const double *before,
+                      const struct dalcs_jump_answer *jump) {
+    double cost = dalcs_euler_stored_energy(s, jump->after) - dalcs_euler_stored_energy(s, before) +
+                  dalcs_euler_jump_energy(s, before, jump->after);
+    for (int d = 0; d < s->n_pairs; d++) {
+        for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
+            cost += s->F.j[k] == 0 ? s->F.x[k] * jump->charge[d] : 0.0;
+        }
+    }
+    return cost;
+}
+
+enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k, const double *u) {
+    const struct dalcs_osnsp *p = &e->component[k].osnsp;
+    const struct dalcs_system *s = p->system;
+    DALCS_TRY(dalcs_jumps_solve(&e->jumps, e->circuit, e->network, &p->options, k, p->mode, u,
+                                u + s->n_x, &e->jump));
+    if (!e->jump.is_known) {
+        memcpy(e->jump.after, e->after, (size_t)s->n_x * sizeof(double));
+        memcpy(e->jump.charge, e->charge, (size_t)s->n_pairs * sizeof(double));
+        memcpy(e->jump.flux, e->flux, (size_t)s->n_pairs * sizeof(double));
+        e->jump.source_work = cost_of(s, u, &e->jump);
+    }
+    return DALCS_OK;
+}
+
+/* e->told_from and e->told: the states before and after a jump, without what is rounding. Impulses of charge come with
+ * voltages that jump, those of flux with currents. */
+static bool tell_states(struct dalcs_euler *e, const struct dalcs_system *s, const double *before) {
+    bool jumps[2] = {false, false};
+    for (int x = 0; x < s->n_x; x++) {
+        bool is_told = fabs(e->jump.after[x] - before[x]) > e->noise[x];
+        e->told_from[x] = before[x];
+        e->told[x] = is_told ? e->jump.after[x] : before[x];
+        jumps[s->column_is_current[x]] = jumps[s->column_is_current[x]] || is_told;
+    }
+    if (!jumps[0]) {
+        memset(e->jump.charge, 0, (size_t)s->n_pairs * sizeof(double));
+    }
+    if (!jumps[1]) {
+        memset(e->jump.flux, 0, (size_t)s->n_pairs * sizeof(double));
+    }
+    return jumps[0] || jumps[1];
+}
+
+/* And the other columns of the equations, as far as they are known. */
+static void tell_columns(struct dalcs_euler *e, const struct dalcs_system *s, const double *from,
+                         const double *to) {
+    for (int c = s->n_x; c < dalcs_system_n_equations(s); c++) {
+        double size = fmax(fabs(from[c]), fabs(to[c]));
+        e->told_from[c] = from[c];
+        e->told[c] = fabs(to[c] - from[c]) <= micro_error * size  ? from[c]
+                     : fabs(to[c]) <= micro_error * fabs(from[c]) ? 0.0
+                                                                  : to[c];
+    }
+}
+
+enum dalcs_status dalcs_euler_report_jump(struct dalcs_euler *e, int k, double time,
+                                          const double *before, const double *from,
+                                          const double *to) {
+    const struct dalcs_system *s = e->component[k].system;
+    struct dalcs_euler_jump jump = {
+        .time = time,
+        .system = k,
+        .mode = e->component[k].osnsp.mode,
+        .before = before,
+        .after = e->jump.after,
+        .n_known = s->n_x,
+        .charge = e->jump.charge,
+        .flux = e->jump.flux,
+        .energy_lost = dalcs_euler_jump_energy(s, before, e->jump.after),
+        .source_work = e->jump.source_work,
+    };
+    if (e->observer != NULL) {
+        e->observer->jump(e->observer->user, &jump);
+    }
+    if (e->on_jump == NULL || !tell_states(e, s, before)) {
+        return DALCS_OK;
+    }
+    if (from != NULL && to != NULL) {
+        tell_columns(e, s, from, to);
+        jump.n_known = dalcs_system_n_equations(s);
+    }
+    jump.before = e->told_from;
+    jump.after = e->told;
+    jump.energy_lost = dalcs_euler_jump_energy(s, before, e->told);
+    return e->on_jump(e->jump_user, &jump);
+}

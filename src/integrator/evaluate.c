@@ -1,0 +1,134 @@
+/* evaluate.c - the solution of all parts at one time. */
+#include "present.h"
+#include "radau.h"
+#include "recurrence.h"
+#include "step_error.h"
+
+#include <math.h>
+#include <string.h>
+
+double dalcs_radau_bystander(const struct dalcs_radau_part *part, int bystander, double t,
+                             enum dalcs_side side) {
+    const struct dalcs_component *c = part->component;
+    const struct dalcs_system *s = c->system;
+    const double *gain = part->excitation.bystanders.gain + bystander * s->n_inputs;
+    double sum = 0.0;
+    for (int k = 0; k < s->n_inputs; k++) {
+        if (gain[k] != 0.0) {
+            const struct dalcs_stimulus *stimulus =
+                k > 0 ? &c->circuit->stimulus[s->stimulus[k]] : NULL;
+            sum += gain[k] * (k > 0 ? dalcs_stimulus_value(stimulus, t, side) : 1.0);
+        }
+    }
+    return sum;
+}
+
+/* A part without memory has no solution at t: then it has had none, but for single times, since its
+ * sources had an edge, for in between they are analytic. */
+static void note_failure(const struct dalcs_radau *r, struct dalcs_radau_part *part, double t,
+                         enum dalcs_side side) {
+    struct dalcs_component *c = part->component;
+    double since = 0.0;
+    for (double next = 0.0; next < t || (next == t && side == DALCS_RIGHT);) {
+        since = next;
+        next = INFINITY;
+        for (int i = 0; i < c->n_varying; i++) {
+            const struct dalcs_stimulus *s =
+                &c->circuit->stimulus[c->system->stimulus[c->varying[i]]];
+            next = fmin(next, dalcs_stimulus_next_edge(s, since));
+        }
+    }
+    c->failed_sigma = 0.0;
+    c->failed_u = c->u;
+    r->base->failed_system = part->index;
+    r->base->failed_time = since;
+}
+
+static void evaluate_stepped(struct dalcs_radau_part *part, double t, enum dalcs_side side) {
+    struct dalcs_component *c = part->component;
+    const struct dalcs_system *s = c->system;
+    const struct dalcs_bystanders *b = &part->excitation.bystanders;
+    int n_equations = dalcs_system_n_equations(s);
+    dalcs_recurrence_complete(part);
+    dalcs_step_values(part, dalcs_radau_theta(part, t), part->work.y1);
+    memcpy(c->y, part->work.y1, (size_t)dalcs_system_n_columns(s) * sizeof(double));
+    for (int d = 0; d < s->n_pairs; d++) {
+        c->y[n_equations + d] *= dalcs_osnsp_is_on(&c->osnsp, d) ? 1.0 : 0.0;
+    }
+    for (int i = 0; i < b->n; i++) {
+        c->y[b->column[i]] = dalcs_radau_bystander(part, i, t, side);
+    }
+    for (int i = 0; i < part->n_used_inputs; i++) {
+        int k = part->used_input[i];
+        c->u[s->n_x + k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+    }
+}
+
+void dalcs_radau_read(struct dalcs_radau *r, int part, double t, enum dalcs_side side) {
+    evaluate_stepped(&r->part[part], t, side);
+}
+
+static void evaluate_all_stepped(struct dalcs_radau *r, double t, enum dalcs_side side) {
+    for (int k = 0; k < r->n_parts; k++) {
+        if (r->part[k].kind == DALCS_PART_STEPPED) {
+            evaluate_stepped(&r->part[k], t, side);
+        }
+    }
+}
+
+enum dalcs_status dalcs_radau_solve(struct dalcs_radau *r, struct dalcs_radau_part *part, double t,
+                                    enum dalcs_side side) {
+    struct dalcs_component *c = part->component;
+    const struct dalcs_system *s = c->system;
+    if (c->n_varying == 0 && t > 0.0) {
+        return DALCS_OK;
+    }
+    for (int i = 0; i < c->n_varying; i++) {
+        int k = c->varying[i];
+        c->u[k] = dalcs_stimulus_value(&c->circuit->stimulus[s->stimulus[k]], t, side);
+    }
+    r->base->t = t;
+    enum dalcs_status status = dalcs_component_solve(c, 0.0, c->u, c->y);
+    if (status > DALCS_OK) {
+        note_failure(r, part, t, side);
+    }
+    DALCS_TRY(status);
+    if (!dalcs_osnsp_is_open(&c->osnsp)) {
+        return DALCS_OK;
+    }
+    evaluate_all_stepped(r, t, side); /* voltages between parts are told, too */
+    return dalcs_euler_tell_open(r->base, part->index);
+}
+
+enum dalcs_status dalcs_radau_evaluate(struct dalcs_radau *r, double t, enum dalcs_side side) {
+    evaluate_all_stepped(r, t, side);
+    for (int k = 0; k < r->n_parts; k++) {
+        if (r->part[k].kind == DALCS_PART_ALGEBRAIC) {
+            DALCS_TRY(dalcs_radau_solve(r, &r->part[k], t, side));
+        }
+    }
+    return DALCS_OK;
+}
+
+static void evaluate_end_of_last(struct dalcs_radau_part *part) {
+    struct dalcs_component *c = part->component;
+    dalcs_recurrence_complete_before(part);
+    dalcs_radau_swap_out(part, &part->segment.out_before);
+    dalcs_step_values(part, part->segment.end_before, part->work.y1);
+    memcpy(c->y, part->work.y1, (size_t)dalcs_system_n_columns(c->system) * sizeof(double));
+}
+
+/* A component that found no next segment is where its last one ended. */
+void dalcs_radau_break_off(struct dalcs_radau *r, double t) {
+    for (int k = 0; k < r->n_parts; k++) {
+        struct dalcs_radau_part *part = &r->part[k];
+        if (part->kind != DALCS_PART_STEPPED) {
+            continue;
+        }
+        if (part->segment.t_end > part->segment.t) {
+            evaluate_stepped(part, t, DALCS_LEFT);
+        } else if (part->segment.t > 0.0) {
+            evaluate_end_of_last(part);
+        }
+    }
+}
