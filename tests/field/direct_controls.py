@@ -16,7 +16,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 SAMPLES = 4000       # between two edges, or in the whole run
 DIRECT = 1e-12       # of the stop time: a time that is computed from the sources
@@ -261,7 +261,7 @@ def by_current(program, checker):
 def main():
     checker = Checker("direct_controls")
     program = sys.argv[1]
-    for control in controls():
+    for control in some_of(controls()):
         wanted = control.moves()
         checker.check(len(wanted) > 0, f"{control.name}: nothing moves")
         for way, (_, _, allowed) in WAYS.items():

@@ -15,7 +15,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 SAME = 1e-9  # of the largest voltage or current
 
@@ -121,7 +121,7 @@ def negative(checker):
 
 def main():
     checker = Checker("own_resistances")
-    for name, (cards, place, signals, known) in CIRCUITS.items():
+    for name, (cards, place, signals, known) in some_of(CIRCUITS.items()):
         compare(checker, name, cards, place, signals, known)
     negative(checker)
     return checker.finish()

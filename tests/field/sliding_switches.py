@@ -14,7 +14,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support"))
-from dalcs_program import Checker, run  # noqa: E402
+from dalcs_program import Checker, run, some_of  # noqa: E402
 
 SIZES = (("a regulator", 0.5, 5.0, 10e-6), ("kiloamperes", 5e3, 5e3, 1e-3), ("microamperes", 5e-6, 5.0, 1.0),
          ("hours", 5.0, 10.0, 36000.0))
@@ -125,7 +125,7 @@ def leaves(c, name, volts, seconds):
 
 def main():
     c = Sliding("sliding_switches")
-    for size in SIZES:
+    for size in some_of(SIZES):
         current_limit(c, *size)
         complementary(c, *size)
         moving_threshold(c, *size)

@@ -7,6 +7,7 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -121,6 +122,12 @@ def run(program, netlist, step=None, at=None, options=(), report=True, environme
         return Run(done.returncode, done.stderr,
                    output.read_bytes() if output.exists() else None,
                    json.loads(saved_report.read_text()) if saved_report.exists() else None)
+
+
+def some_of(cases):
+    """Every n-th of the cases where a test is called as `TEST PROGRAM N`, as with sanitizers, else all."""
+    step = int(sys.argv[2]) if len(sys.argv) > 2 else 1
+    return list(cases)[::step]
 
 
 class Checker:
