@@ -113,26 +113,3 @@ enum dalcs_status dalcs_front_close(struct dalcs_radau_part *part, bool *found) 
     free(f.queue);
     return DALCS_OK;
 }
-
-static bool reopen(struct dalcs_osnsp *p, const uint64_t *before, const double *lambda,
-                   bool negative) {
-    bool found = false;
-    for (int d = 0; d < p->system->n_pairs; d++) {
-        bool was_open = !dalcs_mode_has(before, d);
-        if (was_open && dalcs_osnsp_is_on(p, d) &&
-            (negative ? lambda[d] < 0.0 : lambda[d] == 0.0)) {
-            dalcs_osnsp_command(p, d, false);
-            found = true;
-        }
-    }
-    return found;
-}
-
-bool dalcs_front_reopen(struct dalcs_radau_part *part) {
-    struct dalcs_osnsp *p = &part->component->osnsp;
-    const struct dalcs_stage_layout *l = &part->stages.layout;
-    const uint64_t *before = part->memory.modes_before + p->n_words;
-    const double *lambda =
-        part->segment.out + (l->n_nodes - 1) * l->stride + dalcs_system_n_equations(p->system);
-    return reopen(p, before, lambda, true) || reopen(p, before, lambda, false);
-}

@@ -13,8 +13,4 @@
  * part->memory.modes_before: closes the diodes that a front goes through. *found: there are any. */
 enum dalcs_status dalcs_front_close(struct dalcs_radau_part *part, bool *found) DALCS_MUST_CHECK;
 
-/* Opens those again whose current is negative at the end of the step or, if none is, 0. false: there
- * are none. */
-bool dalcs_front_reopen(struct dalcs_radau_part *part);
-
 #endif

@@ -324,12 +324,12 @@ static bool may_be_brief(const struct dalcs_radau *r, const struct dalcs_radau_p
 
 /* Asks the circuit by micro-steps that are shorter still, for a segment about as long as that. */
 static enum dalcs_status ask_closer(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                    struct dalcs_search *search, double recovery, bool mode_only) {
+                                    struct dalcs_search *search, double recovery) {
     search->closer = true;
     search->projected = false;
     search->asked_level = part->length.level - 2 - ilogb(recovery);
     start_over(part, search, search->asked_level);
-    return dalcs_radau_restart(r, part, search->restarts++, mode_only, NULL);
+    return dalcs_radau_restart(r, part, search->restarts++, false, NULL);
 }
 
 /* Have switches turned to where they stood, from the same state, so that they would for ever? Brent's way: modes are
@@ -402,7 +402,7 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
     bool is_resolved =
         recovery * part->segment.h >= 64.0 * r->resolution; /* else no micro-step sees it */
     if (recovery > 0.0 && recovery < briefly && is_resolved) {
-        return ask_closer(r, part, search, recovery, false);
+        return ask_closer(r, part, search, recovery);
     }
     if (search->closer && search->flips_closer++ < MOST_FLIPS_CLOSER) {
         dalcs_guards_flip(part);
@@ -450,35 +450,5 @@ enum dalcs_status dalcs_search_untie(struct dalcs_radau *r, struct dalcs_radau_p
     search->untied = true;
     keep_mode(part);
     search->opened = dalcs_tied_turn(part, quality->unit);
-    return DALCS_OK;
-}
-
-enum dalcs_status dalcs_search_look_at_start(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                             struct dalcs_search *search, const double *unit,
-                                             bool *holds) {
-    *holds = true;
-    if (!is_state_known(r, part) || search->closer || search->fixed) {
-        return DALCS_OK;
-    }
-    bool is_sure;
-    double least = 64.0 * r->resolution / part->segment.h;
-    double most = dalcs_smaller(briefly, part->guards.seen / part->segment.h);
-    double rise = dalcs_guards_rise(part, least, most, unit, &is_sure);
-    if (!(rise < most)) {
-        return DALCS_OK;
-    }
-    int level = part->length.level;
-    keep_mode(part);
-    enum dalcs_status status = ask_closer(r, part, search, rise, true);
-    if (status < DALCS_OK) {
-        return status;
-    }
-    bool differs = status == DALCS_OK && !is_mode_kept(part);
-    if (!differs) {
-        put_mode_back(part);
-    }
-    *holds = !differs && !is_sure;
-    search->opened = search->opened && *holds;
-    part->length.level = *holds ? level : part->length.level;
     return DALCS_OK;
 }

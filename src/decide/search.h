@@ -20,7 +20,6 @@ struct dalcs_search {
     bool turned;
     bool guessed;  /* the mode is one remembered from the last time, or that of a front */
     bool front;    /* the latter */
-    int reopened;  /* times that diodes of a front were opened again */
     int refined;   /* times that a step was shortened for the signs at its start */
     int shortened; /* times that one was for currents of pairs */
     bool closer;   /* micro-steps have looked for a mode that lasts for a small part of the step */
@@ -90,13 +89,6 @@ enum dalcs_status dalcs_search_go_on_trying(struct dalcs_radau_part *part,
 /* Those that have crossed cannot: they go back to the side they were on, and the others are tried without them. */
 enum dalcs_status dalcs_search_tie_crossed(struct dalcs_radau_part *part,
                                            struct dalcs_search *search) DALCS_MUST_CHECK;
-
-/* At the start of a run the state is exact. A diode that is on the wrong side of 0 there, if only for picoseconds, is
- * on the other one until then, and its change is an event. *holds: none is; micro-steps that end before say so where
- * it may be the polynomial, which is least exact at its start. */
-enum dalcs_status dalcs_search_look_at_start(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                             struct dalcs_search *search, const double *unit,
-                                             bool *holds) DALCS_MUST_CHECK;
 
 /* Implicit Euler instead, for `most` at first: where a step has been accurate, it is as short. It is certified and
  * takes every event and jump that the step covers. In a row its steps double, up to a part of the ladder's: sliding

@@ -1,13 +1,13 @@
 /* radau.c - the parts of a run: set up, started, passed from segment to segment, evaluated. */
 #include "radau.h"
 #include "cycle.h"
+#include "guards.h"
 #include "periodic.h"
 #include "present.h"
 #include "recurrence.h"
 #include "restart.h"
 #include "segment.h"
 #include "step_error.h"
-#include "twins.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,7 +45,6 @@ enum dalcs_status dalcs_radau_start(struct dalcs_radau *r, double *const *initia
         dalcs_commands_start(&part->commands);
         obey_commands(part);
         part->guards.fresh = true;
-        part->guards.seen = INFINITY;
         if (initial != NULL || dalcs_component_jumps_at_start(c)) {
             bool is_off; /* for the first segment to find */
             DALCS_TRY(dalcs_radau_restart(r, part, 0, false, &is_off));
@@ -168,7 +167,7 @@ static enum dalcs_status pass(struct dalcs_radau *r, struct dalcs_radau_part *pa
     }
     part->segment.t = part->segment.t_end;
     if (part->guards.n_crossed > 0) {
-        dalcs_twins_flip(part);
+        dalcs_guards_flip(part);
         part->guards.fresh = true;
         part->guards.flipped = true;
     }

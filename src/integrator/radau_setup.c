@@ -8,7 +8,6 @@
 #include "radau.h"
 #include "step_length.h"
 #include "transition.h"
-#include "twins.h"
 
 #include <float.h>
 #include <math.h>
@@ -164,7 +163,6 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     DALCS_TRY(allocate(part));
     DALCS_TRY(dalcs_transition_setup(part));
     DALCS_TRY(dalcs_guards_setup(part));
-    DALCS_TRY(dalcs_twins_setup(part));
     DALCS_TRY(dalcs_step_setup(part));
     bool *used = dalcs_arena_alloc(&part->arena, (size_t)c->system->n_inputs, sizeof(bool));
     if (used == NULL) {

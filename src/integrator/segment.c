@@ -19,7 +19,6 @@
 #include "step_length.h"
 #include "tied.h"
 #include "transition.h"
-#include "twins.h"
 
 #include <math.h>
 #include <string.h>
@@ -38,8 +37,7 @@ enum {
     MOST_PREFERRED = 2, /* rungs of the ladder, for the sake of factors */
     CROWD = 40,
     FLURRY = 4096,
-    MOST_FRONTS_REFUSED = 16,
-    MOST_REOPENED = 8
+    MOST_FRONTS_REFUSED = 16
 };
 
 /* All of a step of the ladder: a longer one may be as good. */
@@ -238,12 +236,7 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     if (search->opened && dalcs_tied_open_idle(part, part->work.mode_tied, *next, q->unit)) {
         return dalcs_search_go_on_trying(part, search);
     }
-    if (search->opened && dalcs_tied_turn_back(part, *next, q->unit)) {
-        return dalcs_search_tie_crossed(part, search);
-    }
-    if (part->guards.fresh &&
-        (dalcs_twins_close(part, q->unit) ||
-         (part->guards.flipped && dalcs_guards_open_resting(part, q->unit)))) {
+    if (part->guards.fresh && part->guards.flipped && dalcs_guards_open_resting(part, q->unit)) {
         return DALCS_OK;
     }
     if (part->guards.fresh && search->restarts == 0 &&
@@ -260,8 +253,7 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
         return dalcs_search_refine(r, part, search);
     }
     *holds = true;
-    return part->segment.t == 0.0 ? dalcs_search_look_at_start(r, part, search, q->unit, holds)
-                                  : DALCS_OK;
+    return DALCS_OK;
 }
 
 /* One try. *done: there is a segment. */
@@ -275,8 +267,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     }
     bool holds;
     DALCS_TRY(solve_accurately(r, part, search, &entry, &quality, &holds, done));
-    if (!holds ||
-        (search->front && search->reopened++ < MOST_REOPENED && dalcs_front_reopen(part))) {
+    if (!holds) {
         return DALCS_OK;
     }
     double of_pairs = errors_of_pairs(r, part, search, &quality, entry);

@@ -59,8 +59,7 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
                                        sizeof(*part->laws.law));
     part->laws.rate =
         dalcs_pair_rate_create(&part->arena, s->n_pairs, part->component->osnsp.n_words);
-    part->laws.cluster = dalcs_arena_alloc(&part->arena, n_equations, sizeof(int));
-    part->laws.cluster_charge = dalcs_arena_alloc(&part->arena, n_equations, sizeof(double));
+    part->laws.inductance = dalcs_arena_alloc(&part->arena, n_equations, sizeof(double));
     part->guards.bound = dalcs_arena_alloc(
         &part->arena, (size_t)dalcs_quads_of(dalcs_guards_number(part)) + DALCS_QUAD,
         sizeof(double));
@@ -69,7 +68,7 @@ enum dalcs_status dalcs_guards_setup(struct dalcs_radau_part *part) {
     if (part->guards.bound == NULL || part->guards.doubtful == NULL ||
         part->laws.held_charge == NULL || part->laws.held_flux == NULL ||
         part->laws.pair_row == NULL || part->laws.law == NULL || part->laws.rate == NULL ||
-        part->laws.cluster == NULL || part->laws.cluster_charge == NULL) {
+        part->laws.inductance == NULL) {
         return DALCS_E_NOMEM;
     }
     dalcs_pair_laws_find(part);
@@ -104,9 +103,6 @@ void dalcs_guards_arm(struct dalcs_radau_part *part, bool at_end, const double *
     int n_pairs = p->system->n_pairs;
     double band = dalcs_doubt_band(part);
     double known = dalcs_doubt_noise(part);
-    if (!at_end && n_pairs > DALCS_MANY_PAIRS) {
-        dalcs_pair_laws_gather(part);
-    }
     const double *value = part->segment.out + (at_end ? (l->n_nodes - 1) * l->stride : 0) +
                           dalcs_system_n_equations(p->system);
     bool *armed = part->guards.armed;
@@ -356,34 +352,6 @@ double dalcs_guards_recovery(const struct dalcs_radau_part *part) {
         latest = dalcs_larger(latest, rise_of(part, value, stride));
     }
     return latest;
-}
-
-double dalcs_guards_rise(const struct dalcs_radau_part *part, double least, double most,
-                         const double *unit, bool *is_sure) {
-    int n_pairs = part->component->system->n_pairs;
-    double earliest = INFINITY;
-    *is_sure = false;
-    for (int k = 0; k < part->guards.n_doubtful && n_pairs <= DALCS_MANY_PAIRS; k++) {
-        int d = part->guards.doubtful[k];
-        if (d >= n_pairs) {
-            break;
-        }
-        double work[DALCS_MAX_NODES] = {0.0};
-        int stride;
-        const double *value = dalcs_guard_values(part, d, work, &stride);
-        double scale = dalcs_guard_scale(part, d, unit);
-        double noise = dalcs_beyond_noise * dalcs_doubt_noise(part) * scale;
-        if (!(value[0] < -noise) || !(dalcs_guard_value_at(part, value, stride, most) > 0.0)) {
-            continue;
-        }
-        noise += dalcs_guard_rounding(part, d, unit);
-        double rise = value[0] < -noise ? rise_of(part, value, stride) : INFINITY;
-        if (rise > least && rise < most) {
-            earliest = dalcs_smaller(earliest, rise);
-            *is_sure = *is_sure || value[0] < -noise - dalcs_doubt_band(part) * scale;
-        }
-    }
-    return earliest;
 }
 
 bool dalcs_guards_swing(const struct dalcs_radau_part *part) {

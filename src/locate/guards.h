@@ -27,12 +27,6 @@ bool dalcs_guards_recover(const struct dalcs_radau_part *part, const double *uni
  * INFINITY if one is not. */
 double dalcs_guards_recovery(const struct dalcs_radau_part *part);
 
-/* The earliest rise above 0, between `least` and `most` in steps, of a pair that begins the step below it by more than
- * rounding and is above at `most`, among those that a first fall has been looked for; INFINITY if there is none.
- * *is_sure: one of these is beyond doubt. Large components are not asked. */
-double dalcs_guards_rise(const struct dalcs_radau_part *part, double least, double most,
-                         const double *unit, bool *is_sure);
-
 /* Did what crossed only dip below 0, by a part of what it began with, and is it above at the end? That may be
  * two crossings, or the polynomial, which swings where something has died away between two nodes. */
 bool dalcs_guards_swing(const struct dalcs_radau_part *part);

@@ -100,8 +100,7 @@ static struct dalcs_pair_law law_of_resistance(const struct dalcs_system *s, int
 void dalcs_pair_laws_find(struct dalcs_radau_part *part) {
     const struct dalcs_system *s = part->component->system;
     find_charges(part);
-    double *inductance =
-        part->laws.cluster_charge; /* [n_equations] at nodes; a work space of later */
+    double *inductance = part->laws.inductance;
     find_fluxes(part, inductance);
     for (int d = 0; d < s->n_pairs; d++) {
         part->laws.law[DALCS_PAIR_LAWS * d] =
@@ -110,32 +109,6 @@ void dalcs_pair_laws_find(struct dalcs_radau_part *part) {
             law_of_node(s, part->laws.pair_row[2 * d + 1], inductance);
         part->laws.law[DALCS_PAIR_LAWS * d + 2] = law_of_resistance(s, d);
     }
-}
-
-void dalcs_pair_laws_gather(struct dalcs_radau_part *part) {
-    const struct dalcs_system *s = part->component->system;
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    int n_equations = dalcs_system_n_equations(s);
-    dalcs_union_reset(part->laws.cluster, n_equations);
-    for (int d = 0; d < s->n_pairs; d++) {
-        const int *row = &part->laws.pair_row[2 * d];
-        if (dalcs_osnsp_is_on(p, d) && row[0] >= 0 && row[1] >= 0) {
-            dalcs_union_join(part->laws.cluster, row[0], row[1]);
-        }
-    }
-    memset(part->laws.cluster_charge, 0, (size_t)n_equations * sizeof(double));
-    for (int r = 0; r < s->n_x; r++) {
-        part->laws.cluster_charge[dalcs_union_find(part->laws.cluster, r)] += storage_of(s, r);
-    }
-    for (int d = 0; d < s->n_pairs; d++) {
-        const int *row = &part->laws.pair_row[2 * d];
-        part->laws.held_charge[d] = 0.0;
-        for (int e = 0; e < 2 && row[e] >= 0; e++) {
-            double charge = part->laws.cluster_charge[dalcs_union_find(part->laws.cluster, row[e])];
-            part->laws.held_charge[d] = fmax(part->laws.held_charge[d], charge);
-        }
-    }
-    part->laws.rate->h = 0.0;
 }
 
 /* By one of its laws; what other closed pairs carry away from its node is as well known as it is so far. */

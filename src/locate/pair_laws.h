@@ -28,10 +28,6 @@ struct dalcs_pair_rate *dalcs_pair_rate_create(struct dalcs_arena *arena, int n_
 /* Fills what the part knows of its pairs: pair_row, held_charge, held_flux, pair_law. */
 void dalcs_pair_laws_find(struct dalcs_radau_part *part);
 
-/* Along a chain of closed pairs the current of one rounds what all the capacitors on the chain take: in a
- * large component that may be far more than its own two nodes hold. Brings held_charge up to the mode. */
-void dalcs_pair_laws_gather(struct dalcs_radau_part *part);
-
 /* A of the current of a closed pair per V by which voltages are rounded, in the present step: by the law
  * that makes the least of them. */
 double dalcs_pair_charge_rate(const struct dalcs_radau_part *part, int pair);

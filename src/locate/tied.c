@@ -160,13 +160,3 @@ bool dalcs_tied_turn(struct dalcs_radau_part *part, const double *unit) {
     bool may_share = p->system->n_pairs <= DALCS_MANY_PAIRS && !dalcs_osnsp_is_unique(p);
     return found || (may_share && close_tied(part, unit));
 }
-
-bool dalcs_tied_turn_back(const struct dalcs_radau_part *part, double end, const double *unit) {
-    bool turns = false;
-    for (int k = 0; k < part->guards.n_crossed && !turns; k++) {
-        int g = part->guards.crossed[k];
-        turns = !part->guards.armed[g] &&
-                !(g < part->component->system->n_pairs && is_above(part, g, end, unit));
-    }
-    return turns;
-}

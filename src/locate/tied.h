@@ -27,9 +27,6 @@ bool dalcs_tied_turn(struct dalcs_radau_part *part, const double *unit);
 bool dalcs_tied_open_idle(struct dalcs_radau_part *part, const uint64_t *before, double end,
                           const double *unit);
 
-/* Is there one in the first fall, at `end` in steps, that was not clear of 0 before? */
-bool dalcs_tied_turn_back(const struct dalcs_radau_part *part, double end, const double *unit);
-
 /* Has a pair been 0 for all of the segment before, on the side where it is? */
 bool dalcs_tied_was_at_rest(const struct dalcs_radau_part *part, int pair, const double *unit);
 

@@ -82,7 +82,7 @@ struct dalcs_part_scales {
     } probe;
 };
 
-/* Which guards are on which side of 0, and how surely: guards.h, doubt.h, tied.h, twins.h. */
+/* Which guards are on which side of 0, and how surely: guards.h, doubt.h, tied.h. */
 struct dalcs_part_guards {
     bool fresh;    /* something just happened at t: nothing is known of how pairs start */
     bool flipped;  /* and it is that pairs changed sides */
@@ -95,11 +95,8 @@ struct dalcs_part_guards {
     int *doubtful; /* [n_pairs + n_watched] those whose bound is below 0 */
     int n_crossed;
     int *crossed; /* [n_pairs + n_watched] what ended the segment; watched behind pairs */
-    double seen;  /* s: of the last micro-steps, both in one mode; INFINITY: not so, or none */
     bool slides;  /* micro-steps: a switch opens what closes it, and closes what opens it */
     bool *tied;   /* [n_pairs] work */
-    int *twin;    /* [n_pairs] the first one with the same law; NULL: nobody asked (twins.h) */
-    int n_twins;  /* that another one comes before */
 };
 
 /* What gives the current of a pair: pair_laws.h. */
@@ -107,10 +104,9 @@ struct dalcs_part_laws {
     double *held_charge, *held_flux; /* [n_pairs] F, H: storage next to a pair */
     struct dalcs_pair_law *law;      /* [n_pairs][3] what gives the current of a pair */
     struct dalcs_pair_rate *rate;
-    int *charging_row;      /* [n_equations] of the capacitor that a current charges, -1: none */
-    int *pair_row;          /* [n_pairs][2] KCL rows that its current enters, -1: ground */
-    int *cluster;           /* [n_equations] work */
-    double *cluster_charge; /* [n_equations] work */
+    int *charging_row;  /* [n_equations] of the capacitor that a current charges, -1: none */
+    int *pair_row;      /* [n_pairs][2] KCL rows that its current enters, -1: ground */
+    double *inductance; /* [n_equations] H, at nodes; work */
 };
 
 /* What is remembered of the past. It proposes; a step or a bound of its own accepts. */

@@ -1,0 +1,53 @@
+/* micro_steps.h - pairs of micro-steps of implicit Euler from part->segment.t, and what they tell of states. */
+#ifndef DALCS_MICRO_STEPS_H
+#define DALCS_MICRO_STEPS_H
+
+#include "radau_state.h"
+
+/* A micro-step over a longer one that it is compared with. */
+static const double dalcs_micro_shorter = 1.0 / 1024.0;
+
+/* States that move by less, over the largest of their unit, have not jumped. */
+static const double dalcs_micro_smallest_jump = 1e-9;
+
+/* Notes a failure at part->segment.t with the problem of sigma and u[n_x + n_inputs]; returns status. */
+enum dalcs_status dalcs_micro_fail(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                   double sigma, const double *u,
+                                   enum dalcs_status status) DALCS_MUST_CHECK;
+
+/* Switches whose control reads the circuit. all: those with hysteresis move, too; in micro-steps they stand as they
+ * are, see dalcs_search_change_mode(). */
+void dalcs_micro_positions(struct dalcs_radau_part *part, bool all);
+
+/* part->work.y1 and y2 by two micro-steps of length h (s), in each of which sources go on by tau (s). */
+enum dalcs_status dalcs_micro_pair(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                                   double tau) DALCS_MUST_CHECK;
+
+/* The same with tau = h. */
+enum dalcs_status dalcs_micro_steps(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                    double h) DALCS_MUST_CHECK;
+
+/* The states just after part->segment.t from y1 and y2, into after[n_x]. Does any jump, and *noticeable: by more than
+ * the error that the state of an event has? A fast transient moves in both micro-steps and is left to be stepped
+ * through. It may hide a jump, or the mode that it is in: *closer is how short micro-steps that show it are, over
+ * these. */
+bool dalcs_micro_extrapolate(const struct dalcs_radau_part *part, double *after, bool *noticeable,
+                             double *closer);
+
+/* The impulses of the micro-steps of length h (s) into r->base->charge and flux. */
+void dalcs_micro_impulses(struct dalcs_radau *r, const struct dalcs_radau_part *part, double h);
+
+/* V, A: the largest so far, and of the states, into largest[2]. */
+void dalcs_micro_largest(const struct dalcs_radau_part *part, double *largest);
+
+/* V, A: and of what sources and thresholds drive, in the inputs of the last micro-step. */
+void dalcs_micro_raise_to_drives(const struct dalcs_radau_part *part, double *largest);
+
+/* V, A: no less than |y[0..n-1]|. */
+void dalcs_micro_raise(const struct dalcs_system *s, const double *y, int n, double *largest);
+
+/* V or A (of = 0, 1): a state that changes by less has not: rounding of the largest of its unit, or what rounding of
+ * the other unit drives. */
+double dalcs_micro_rounding(const struct dalcs_radau_part *part, int of, const double *largest);
+
+#endif
