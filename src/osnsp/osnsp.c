@@ -412,6 +412,9 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
     if (status == DALCS_INFEASIBLE) {
         dalcs_witness_complete(p);
     }
+    if (status == DALCS_OK && p->least_norm && p->n_tied > 0) {
+        status = dalcs_basis_prefer(p, u, y);
+    }
     p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;
     return status;
 }
