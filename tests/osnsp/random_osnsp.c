@@ -313,6 +313,8 @@ static void check_feasible(const struct problem *p, const struct engine_answer *
     count->singular += a->least_norm ? 1 : 0;
     if (a->status != DALCS_OK && is_demanding(p->family)) {
         count->missed++;
+        printf("missed %s %lu: system %d, sigma %g: %s\n", family_name[p->family], p->seed,
+               p->system, p->sigma, dalcs_status_text(a->status));
         return;
     }
     if (a->status != DALCS_OK) {
