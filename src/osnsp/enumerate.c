@@ -55,10 +55,13 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double
     return DALCS_INFEASIBLE;
 }
 
-/* Answers nearer to each other than this part of the largest voltage or current are one. */
+/* Answers nearer to each other than this part of the largest voltage or current are one, as are those that are no
+ * farther apart than the certificate lets each be off: beside amperes 1e-17 V is no other answer than 0 V. */
 static const double same_answer = 1e-9;
 
-static bool are_same(const struct dalcs_system *s, const double *a, const double *b) {
+static bool are_same(const struct dalcs_osnsp *p, const double *a, const double *b) {
+    const struct dalcs_system *s = p->system;
+    double tolerance = p->options.certificate_tolerance;
     double apart[2] = {0.0, 0.0};
     double largest[2] = {0.0, 0.0};
     for (int c = 0; c < dalcs_system_n_columns(s); c++) {
@@ -66,7 +69,9 @@ static bool are_same(const struct dalcs_system *s, const double *a, const double
         apart[of] = fmax(apart[of], fabs(a[c] - b[c]));
         largest[of] = fmax(largest[of], fmax(fabs(a[c]), fabs(b[c])));
     }
-    return apart[0] <= same_answer * largest[0] && apart[1] <= same_answer * largest[1];
+    double off[2] = {tolerance * p->certificate.volt, tolerance * p->certificate.ampere};
+    return apart[0] <= fmax(same_answer * largest[0], off[0]) &&
+           apart[1] <= fmax(same_answer * largest[1], off[1]);
 }
 
 static enum dalcs_status list_answers(struct dalcs_osnsp *p, const double *u, int most,
@@ -92,7 +97,7 @@ static enum dalcs_status list_answers(struct dalcs_osnsp *p, const double *u, in
         bool is_new = status == DALCS_OK && dalcs_certificate_holds(p, sources_clash) &&
                       dalcs_certificate_signs_hold(p, u, y);
         for (int k = 0; k < *n && is_new; k++) {
-            is_new = !are_same(p->system, answer + (size_t)k * n_columns, y);
+            is_new = !are_same(p, answer + (size_t)k * n_columns, y);
         }
         *n += is_new ? 1 : 0;
     }

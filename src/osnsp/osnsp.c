@@ -277,7 +277,7 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     if (e->map != NULL && !by_factors) {
         dalcs_step_map_apply(p, e, u, y);
         dalcs_certificate_evaluate(p, u, y, sources_clash);
-        if (p->n_violating > 0 || p->certificate.worst <= tolerance) {
+        if (p->n_violating > 0 || (p->certificate.worst <= tolerance && !*sources_clash)) {
             return DALCS_OK;
         }
     }
@@ -291,11 +291,13 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     solve_to_answer(p, e, u, y);
     dalcs_certificate_evaluate(p, u, y, sources_clash);
     int wanted = p->refines && p->n_violating == 0 ? 1 : 0;
-    if (p->certificate.worst > tolerance || wanted > 0) {
+    if (p->certificate.worst > tolerance || *sources_clash || wanted > 0) {
         dalcs_osnsp_scale(p, y);
         dalcs_csr_multiply(&p->form[0]->R, u, p->right);
     }
-    for (int k = 0; k < MAX_REFINEMENTS && (p->certificate.worst > tolerance || k < wanted); k++) {
+    for (int k = 0;
+         k < MAX_REFINEMENTS && (p->certificate.worst > tolerance || *sources_clash || k < wanted);
+         k++) {
         refine(p, e);
         dalcs_osnsp_unscale(p, y);
         dalcs_certificate_evaluate(p, u, y, sources_clash);
@@ -411,6 +413,9 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
     }
     if (status == DALCS_INFEASIBLE) {
         dalcs_witness_complete(p);
+    }
+    if (status == DALCS_OK && p->least_norm && p->n_tied > 0) {
+        status = dalcs_basis_prefer(p, u, y);
     }
     p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;
     return status;

@@ -181,6 +181,15 @@ enum dalcs_status dalcs_choices_make(struct dalcs_whole *whole) DALCS_MUST_CHECK
 enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u,
                                     double *y) DALCS_MUST_CHECK;
 
+/* Names the set of tied pairs, never 0. */
+uint64_t dalcs_ties_name(const struct dalcs_osnsp *p);
+
+/* ---- basis.c ------------------------------------------------------------------------------- */
+
+/* The certified answer y of a singular mode, with ties, in a regular mode that it belongs to, if there is one. */
+enum dalcs_status dalcs_basis_prefer(struct dalcs_osnsp *p, const double *u,
+                                     double *y) DALCS_MUST_CHECK;
+
 /* ---- step_map.c ---------------------------------------------------------------------------- */
 
 bool dalcs_step_map_pays(const struct dalcs_osnsp *p);

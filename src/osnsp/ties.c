@@ -61,7 +61,7 @@ static bool is_unique_in_other_steps(const struct dalcs_osnsp *p) {
 }
 
 /* Names the set of tied pairs: FNV-1a, never 0. */
-static uint64_t name_of_ties(const struct dalcs_osnsp *p) {
+uint64_t dalcs_ties_name(const struct dalcs_osnsp *p) {
     uint64_t name = 14695981039346656037u;
     for (int d = 0; d < p->system->n_pairs; d++) {
         if (p->tied[d]) {
@@ -125,7 +125,7 @@ enum dalcs_status dalcs_ties_settle(struct dalcs_osnsp *p, const double *u, doub
     }
     size_t mode_bytes = (size_t)p->n_words * sizeof(*p->mode);
     size_t answer_bytes = (size_t)dalcs_system_n_columns(p->system) * sizeof(*y);
-    uint64_t tie = name_of_ties(p);
+    uint64_t tie = dalcs_ties_name(p);
     struct dalcs_mode_entry *e;
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
     if (e->tie == tie && !e->tie_has_choice) {

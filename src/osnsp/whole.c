@@ -163,6 +163,19 @@ enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dal
     return status;
 }
 
+enum dalcs_status dalcs_whole_null_space(const struct dalcs_osnsp *p, int *place,
+                                         struct dalcs_null_space *space) {
+    struct dalcs_whole whole = {.p = p, .sigma = p->form[0]->sigma, .place = place};
+    struct dalcs_triplets t = {0};
+    whole.n = place_columns(&whole);
+    enum dalcs_status status = fill(&whole, &t);
+    if (status == DALCS_OK) {
+        status = dalcs_null_space_find(space, whole.n, whole.n, &t);
+    }
+    dalcs_triplets_finish(&t);
+    return status;
+}
+
 static long double row_times(const struct dalcs_csr *a, int row, const double *v) {
     long double sum = 0.0L;
     for (int k = a->p[row]; k < a->p[row + 1]; k++) {

@@ -11,6 +11,7 @@
 #ifndef DALCS_WHOLE_H
 #define DALCS_WHOLE_H
 
+#include "null_space.h"
 #include "osnsp.h"
 
 struct dalcs_whole {
@@ -33,6 +34,11 @@ struct dalcs_whole {
  * failure there is nothing to finish. */
 enum dalcs_status dalcs_whole_factor(struct dalcs_whole *whole, const struct dalcs_osnsp *p,
                                      const double *resistance) DALCS_MUST_CHECK;
+
+/* What p->mode leaves open at the present sigma, and which rows follow from others; place[n_columns] becomes that of
+ * struct dalcs_whole. On failure there is nothing to finish. */
+enum dalcs_status dalcs_whole_null_space(const struct dalcs_osnsp *p, int *place,
+                                         struct dalcs_null_space *space) DALCS_MUST_CHECK;
 
 /* y[n_columns] for u; line[n_pairs] has t, NULL for a mode. */
 void dalcs_whole_solve(const struct dalcs_whole *whole, const double *u, const double *line,

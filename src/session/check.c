@@ -1,6 +1,7 @@
 /* check.c - the session's circuit under the theorems, part by part; equal parts once. */
 #include "session_internal.h"
 
+#include "commands.h"
 #include "part.h"
 
 #include <math.h>
@@ -82,13 +83,39 @@ static double choose_step(const struct dalcs_session *s, double given) {
                                            : 1e-6;
 }
 
+/* *system becomes `from` with the switches that sources command where these have them at the start. That it is passive is
+ * no proof where a file of matrices says so. */
+static enum dalcs_status find_start(struct dalcs_session *s, const struct dalcs_system *from,
+                                    struct dalcs_system *system) {
+    size_t n_pairs = (size_t)from->n_pairs;
+    struct dalcs_commands commands;
+    *system = *from;
+    system->monotone = from->monotone && s->circuit.n_devices > 0;
+    system->pair = dalcs_arena_alloc(&s->checked, n_pairs, sizeof(*system->pair));
+    if (system->pair == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    if (n_pairs > 0) {
+        memcpy(system->pair, from->pair, n_pairs * sizeof(*system->pair));
+    }
+    DALCS_TRY(dalcs_commands_setup(&commands, &s->circuit, from));
+    dalcs_commands_start(&commands);
+    for (int k = 0; k < commands.n; k++) {
+        system->pair[commands.command[k].pair].initially_on = commands.command[k].is_on;
+    }
+    dalcs_commands_finish(&commands);
+    return DALCS_OK;
+}
+
 static enum dalcs_status check_parts(struct dalcs_session *s, struct dalcs_check *check,
-                                     struct dalcs_checked_part *part, int *system_of,
+                                     struct dalcs_checked_part *part, struct dalcs_system *of,
                                      const bool *jumps_of) {
     const struct dalcs_network *n = &s->network;
     for (int k = 0; k < n->n_systems; k++) {
+        struct dalcs_system *system = &of[check->n_parts];
         size_t like = 0;
-        while (like < check->n_parts && !are_equal(&n->system[k], &n->system[system_of[like]])) {
+        DALCS_TRY(find_start(s, &n->system[k], system));
+        while (like < check->n_parts && !are_equal(system, &of[like])) {
             like++;
         }
         if (like < check->n_parts) {
@@ -96,17 +123,13 @@ static enum dalcs_status check_parts(struct dalcs_session *s, struct dalcs_check
             continue;
         }
         bool *jumps;
-        struct dalcs_system system = n->system[k];
-        system.monotone =
-            system.monotone && s->circuit.n_devices > 0; /* a file's promise is no proof */
-        DALCS_TRY(find_jumps(s, &system, jumps_of, &jumps));
+        DALCS_TRY(find_jumps(s, system, jumps_of, &jumps));
         /* a file of matrices has no devices that could give power */
         const struct dalcs_power *power = n->power != NULL ? &n->power[k] : NULL;
         enum dalcs_status status =
-            dalcs_part_check(&part[like], &s->checked, &system, power, jumps, check->step);
+            dalcs_part_check(&part[like], &s->checked, system, power, jumps, check->step);
         free(jumps);
         DALCS_TRY(status);
-        system_of[like] = k;
         check->n_parts++;
     }
     return DALCS_OK;
@@ -126,10 +149,10 @@ enum dalcs_status dalcs_session_check(struct dalcs_session *s, double step,
     size_t n = (size_t)s->network.n_systems + 1;
     struct dalcs_check *check = dalcs_arena_alloc(&s->checked, 1, sizeof(*check));
     struct dalcs_checked_part *part = dalcs_arena_alloc(&s->checked, n, sizeof(*part));
-    int *system_of = dalcs_arena_alloc(&s->checked, n, sizeof(*system_of));
+    struct dalcs_system *of = dalcs_arena_alloc(&s->checked, n, sizeof(*of));
     bool *jumps_of =
         dalcs_arena_alloc(&s->checked, (size_t)s->circuit.n_stimuli + 1, sizeof(*jumps_of));
-    if (check == NULL || part == NULL || system_of == NULL || jumps_of == NULL) {
+    if (check == NULL || part == NULL || of == NULL || jumps_of == NULL) {
         return DALCS_E_NOMEM;
     }
     const struct dalcs_transient *t = &s->circuit.transient;
@@ -138,7 +161,7 @@ enum dalcs_status dalcs_session_check(struct dalcs_session *s, double step,
     }
     *check = (struct dalcs_check){
         .netlist = s->name, .title = s->circuit.title, .step = choose_step(s, step), .part = part};
-    DALCS_TRY(check_parts(s, check, part, system_of, jumps_of));
+    DALCS_TRY(check_parts(s, check, part, of, jumps_of));
     *result = check;
     return DALCS_OK;
 }

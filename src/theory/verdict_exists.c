@@ -10,8 +10,9 @@
 
 /* ---- Exists --------------------------------------------------------------------------------- */
 
-/* "v(c1) - v1 >= 0": a member's inequality. */
-static const char *inequality(const struct dalcs_facts *facts, const double *member) {
+/* "v(c1) - v1 >= 0": a member's inequality, or its equation. */
+static const char *inequality(const struct dalcs_facts *facts, const double *member,
+                              bool is_equation) {
     const struct dalcs_system *s = facts->system;
     struct dalcs_arena *arena = facts->f->result;
     int n = dalcs_system_n_equations(s);
@@ -52,7 +53,8 @@ static const char *inequality(const struct dalcs_facts *facts, const double *mem
                    : dalcs_arena_printf(arena, "%s%s%.4g %s", text, sign, fabs(c), name);
         n_written++;
     }
-    return text == NULL ? NULL : dalcs_arena_printf(arena, "%s >= 0", text);
+    return text == NULL ? NULL
+                        : dalcs_arena_printf(arena, is_equation ? "%s = 0" : "%s >= 0", text);
 }
 
 static enum dalcs_status add_member(struct dalcs_facts *facts, const double *member) {
@@ -119,6 +121,13 @@ static int asked_input(const struct dalcs_facts *facts, const double **member) {
     return -1;
 }
 
+/* Does a point qualify, and does nothing ask a source to be 0, as where an open switch cuts it off? That point is one
+ * without sources: what equations without diodes ask of them it does not tell. */
+static bool is_qualified(const struct dalcs_facts *facts) {
+    const double *member;
+    return facts->cones.is_solved && facts->cones.is_qualified && asked_input(facts, &member) < 0;
+}
+
 /* One step of a monotone problem has a solution exactly when its constraints can be met. */
 static enum dalcs_status exists_if_feasible(struct dalcs_facts *facts) {
     const struct dalcs_cones *cones = &facts->cones;
@@ -129,7 +138,7 @@ static enum dalcs_status exists_if_feasible(struct dalcs_facts *facts) {
             "wherever the sources leave the diodes a choice: whether they do needs linear programs "
             "(GLPK)");
     }
-    if (cones->is_qualified) {
+    if (is_qualified(facts)) {
         const struct dalcs_lure *lure = &facts->lure;
         bool swept = facts->has_lcs && lure->is_coupled && lure->D_is_zero;
         bool shifted = facts->has_lcs && lure->is_coupled && lure->can_shift;
@@ -141,20 +150,26 @@ static enum dalcs_status exists_if_feasible(struct dalcs_facts *facts) {
             "yes: for every start and every source"));
         return add_point(facts);
     }
-    if (asked_input(facts, &member) < 0) {
+    int asked = asked_input(facts, &member);
+    if (asked < 0) {
         DALCS_TRY(dalcs_findings_verdict(facts->f, "exists", DALCS_YES,
                                          "monotone linear complementarity: feasible",
                                          "yes: for every start and every source; no loop or cutset "
                                          "of diodes has a source in it"));
         return cones->ray != NULL ? add_member(facts, cones->ray) : DALCS_OK;
     }
-    const char *text = inequality(facts, member);
+    const struct dalcs_cone_range *range = &cones->range[DALCS_CONE_SOURCES][asked];
+    bool is_equation = cones->is_qualified && range->lower < 0.0 && range->upper > 0.0;
+    const char *text = inequality(facts, is_equation ? range->highest : member, is_equation);
     if (text == NULL) {
         return DALCS_E_NOMEM;
     }
     DALCS_TRY(dalcs_findings_verdict(
-        facts->f, "exists", DALCS_CONDITIONAL, "Farkas' lemma; " BT10 "(22) fails",
-        "only while %s: a loop or cutset of diodes and sources", text));
+        facts->f, "exists", DALCS_CONDITIONAL,
+        is_equation ? "Farkas' lemma" : "Farkas' lemma; " BT10 "(22) fails",
+        is_equation ? "only while %s: sources alone, with the switches where they start"
+                    : "only while %s: a loop or cutset of diodes and sources",
+        text));
     return add_member(facts, member);
 }
 
@@ -192,7 +207,7 @@ enum dalcs_status dalcs_verdict_exists(struct dalcs_facts *facts) {
             "yes: the diodes are functions of the states, for every start "
             "and source");
     }
-    bool qualified = facts->cones.is_solved && facts->cones.is_qualified;
+    bool qualified = is_qualified(facts);
     if (facts->has_lcs && lure->D_is_zero && lure->is_coupled && qualified) {
         return dalcs_findings_verdict(facts->f, "exists", DALCS_YES, BT10 "theorem 3.5 (K1, K2)",
                                       "yes: for every start and source");

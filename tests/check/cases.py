@@ -53,6 +53,17 @@ MADE = {
              {"periodic": ("undecided", [])}),
     "linear": ("linear\nV1 a 0 SIN(0 1 1)\nR1 a b 1\nC1 b 0 0.25\n.tran 1 9\n.end\n",
                {"contracting": ("yes", []), "jumps": ("yes", []), "stable": ("yes", [])}),
+    # an open switch and a source's current, a closed one and its voltage: what no diode has a part in
+    "cut_off": ("cut off\nI1 0 a 2\nS1 a b 0 0 si\nR1 b 0 1k\nD1 0 b di\nC1 b 0 1u\n.model si SW(vt=1)\n" + DI +
+                ".tran 1m 1 uic\n.end\n", {"exists": ("depends", []), "unique": ("yes", [])}),
+    "cut_off_alone": ("cut off\nI1 0 a 2\nS1 a b 0 0 si\nR1 b 0 1k\n.model si SW(vt=1)\n.tran 1m 1 uic\n.end\n",
+                      {"exists": ("depends", [])}),
+    "shorted": ("shorted\nV1 a 0 2\nS1 a 0 0 0 si\nR1 a b 1k\nD1 b 0 di\n.model si SW(vt=-1)\n" + DI +
+                ".tran 1m 1 uic\n.end\n", {"exists": ("depends", [])}),
+    "let_out": ("let out\nI1 0 a 2\nS1 a b 0 0 si\nR1 b 0 1k\nD1 0 b di\nC1 b 0 1u\nD2 a b di\n.model si SW(vt=1)\n" + DI +
+                ".tran 1m 1 uic\n.end\n", {"exists": ("depends", [])}),
+    "leaking": ("leaking\nI1 0 a 2\nS1 a b 0 0 si\nR1 b 0 1k\nD1 0 b di\nR2 a 0 1meg\n.model si SW(vt=1)\n" + DI +
+                ".tran 1m 1 uic\n.end\n", {"exists": ("yes", [])}),
     # of matrices: nobody is blamed, and the second system grows
     "two_systems": ("dalcs-system 2 two\nstate x 1\npair d\nmatrix A\n+ -1\nmatrix B\n+ 1\n"
                     "matrix C\n+ 1\nsystem\nstate y 2\npair e\nmatrix A\n+ 3\nmatrix B\n+ 1\n"

@@ -6,8 +6,9 @@ usage: degenerate.py SOLVE_NETLISTS COUNT [FIRST]
 Stars and islands that nothing ties to ground, rings of diodes, cutsets of diodes and current sources, ladders,
 bridges, with values of 1e-6 to 1e6 that are often
 equal and always powers of 2: their sums are what is solved, not a rounding away. Solvable ones (a linear programme decides it in rational
-numbers) must be answered, whether or not controlled sources look on, with each equation, each sign and complementarity right to rounding; the others must be
-refused.
+numbers) must be answered, whether or not controlled sources look on, with each equation, each sign and complementarity right
+to rounding; of the others weights of their own equations prove, in rational numbers, that they have none, and they must
+be refused.
 """
 
 import pathlib
@@ -156,7 +157,10 @@ def draw(seed):
 
 def judge(problem, words):
     status, residual = int(words[3]), float(words[4])
-    if not problem.is_solvable():
+    witness = problem.witness()
+    if witness is not None:
+        if not problem.is_refuted_by(witness):
+            return "the witness is none"
         return None if status in REFUSED else f"it has no solution, but the status is {status}"
     if status != 0:
         return f"it has a solution, but the status is {status}"

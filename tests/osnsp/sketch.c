@@ -211,6 +211,17 @@ struct sketch sketch_unit_values(const struct sketch *sketch) {
     return unit;
 }
 
+struct sketch sketch_with_sources(const struct sketch *sketch, double value) {
+    struct sketch rest = *sketch;
+    for (int k = 0; k < rest.n; k++) {
+        struct sketch_element *e = &rest.element[k];
+        char kind = e->kind;
+        e->kind = kind == 'e' || kind == 'h' ? 'v' : kind == 'f' || kind == 'g' ? 'i' : kind;
+        e->value = e->kind != kind ? value : e->value;
+    }
+    return rest;
+}
+
 static int write_nodes(char *text, const struct sketch_element *e, int n) {
     int length = 0;
     for (int k = 0; k < n; k++) {

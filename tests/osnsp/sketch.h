@@ -57,6 +57,9 @@ void sketch_write(const struct sketch *sketch, char text[SKETCH_TEXT_SIZE]);
 /* The number of the element of this name, -1 if there is none. */
 int sketch_find(const struct sketch *sketch, const char *name);
 
+/* What is controlled becomes a source of this value. */
+struct sketch sketch_with_sources(const struct sketch *sketch, double value);
+
 /* What is left when elements not kept are taken out (open), or replaced by wires. Numbers and names
  * of elements stay. */
 struct sketch sketch_without(const struct sketch *sketch, const bool *keep);
