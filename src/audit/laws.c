@@ -124,17 +124,22 @@ static void diode_defects(const struct dalcs_audit *audit, const struct dalcs_au
     }
 }
 
-static void check_diode(struct dalcs_audit *audit, const struct audit_part *part,
-                        const struct dalcs_audit_state *s, int device) {
+void audit_diode_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device,
+                       double scale[2]) {
     const struct dalcs_device *d = &audit->circuit->device[device];
-    const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
     /* currents of pairs are held to 1e-2 of the largest, others to 1e-5 (doc/methods.md) */
     const double amperes = fmax(audit_amperes(audit, part, device), 1e3 * part->ampere);
     /* what is within rounding of 0 is nothing: it is over a scale that is not less */
-    const double scale[2] = {audit->sums.volts / part->tolerance +
-                                 audit_volts(audit, part, d->node[0], d->node[1]) +
-                                 m->ron * amperes,
-                             amperes + ampere_rounding(audit, d) / part->tolerance};
+    scale[0] = audit->sums.volts / part->tolerance +
+               audit_volts(audit, part, d->node[0], d->node[1]) +
+               audit->circuit->diode_model[d->model].ron * amperes;
+    scale[1] = amperes + ampere_rounding(audit, d) / part->tolerance;
+}
+
+static void check_diode(struct dalcs_audit *audit, const struct audit_part *part,
+                        const struct dalcs_audit_state *s, int device) {
+    double scale[2];
+    audit_diode_scale(audit, part, device, scale);
     double branch;
     double blocked;
     diode_defects(audit, s, device, scale, &branch, &blocked);
@@ -365,8 +370,8 @@ static double rounding_of(const struct dalcs_audit *audit, const struct audit_pa
     return AUDIT_ROUNDING * (g * volts + fabs(current)) + 2.0 * g * audit->sums.volts;
 }
 
-static void sum_currents(struct dalcs_audit *audit, const struct audit_part *part,
-                         const struct dalcs_audit_state *s) {
+void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part,
+                        const struct dalcs_audit_state *s) {
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
         audit->sums.current[node] = audit->sums.scale[node] = audit->sums.rounding[node] = 0.0;
@@ -415,7 +420,7 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
 void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s) {
     audit->count.instants++;
-    sum_currents(audit, part, s);
+    audit_sum_currents(audit, part, s);
     for (int k = 0; k < part->n_devices; k++) {
         check_branch(audit, part, s, part->device[k]);
     }

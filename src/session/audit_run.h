@@ -13,6 +13,7 @@ struct dalcs_audit_run {
     struct dalcs_radau *radau;
     struct dalcs_audit *audit;  /* NULL: nothing is audited */
     struct audit_members *part; /* [n_systems] */
+    int *pair_of_lambda;        /* [n_lambdas] in its system */
     double *tried;              /* states that a leap would lead to, and work */
     double leap_time;           /* s, where one began */
     double tried_time;          /* s, when; INFINITY: none is tried */

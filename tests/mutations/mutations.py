@@ -120,7 +120,7 @@ MUTATIONS = {
         "integrator/control_course.c", "k < a->p[pair + 1]; k++", "k + 1 < a->p[pair + 1]; k++", PWM),
     "a command is lost": (
         "integrator/commands.c", "            m->is_on = !m->is_on;\n",
-        "            m->is_on = m->n[0] % 7 == 5 ? m->is_on : !m->is_on;\n", BUCK),
+        "            m->is_on = m->n[0] == 205 ? m->is_on : !m->is_on;\n", BUCK),
     "a command comes early": (
         "integrator/commands.c", "    m->next = dalcs_command_time(m, way, m->n[way]);\n",
         "    m->next = dalcs_command_time(m, way, m->n[way]) * (1.0 - 1e-4);\n", FLYBACK),
