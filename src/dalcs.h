@@ -510,6 +510,7 @@ struct dalcs_report {
         long instants;         /* at which laws were checked */
         long segments;         /* between two events or ends of steps, of all parts */
         long audited;          /* of them, those that were looked into */
+        long screened;         /* those of which all linear laws were asked at once */
         long positions;        /* of switches, compared with their controls */
         double worst, allowed; /* the worst defect over its scale, and what it was held to */
         double time;           /* s, of that */

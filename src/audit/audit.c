@@ -102,6 +102,10 @@ bool dalcs_audit_may(struct dalcs_audit *audit, double work) {
     return may;
 }
 
+double dalcs_audit_chance(struct dalcs_audit *audit) {
+    return audit_draw(audit);
+}
+
 void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int index, double defect,
                      double time) {
     audit->part[index].is_coarse = false; /* what the last look was at is no matter here */

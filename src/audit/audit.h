@@ -177,6 +177,9 @@ void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int in
 /* May so much more be looked at, in instructions, about? It is charged where it may. */
 bool dalcs_audit_may(struct dalcs_audit *audit, double work);
 
+/* 0 <= chance < 1, the same in each run. */
+double dalcs_audit_chance(struct dalcs_audit *audit);
+
 /* More that the run has done, in instructions, about: rows. */
 void dalcs_audit_earn(struct dalcs_audit *audit, double work);
 

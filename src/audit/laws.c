@@ -412,9 +412,11 @@ void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
     }
     part->largest_volt = volt;
     /* doc/methods.md, "What the tolerance means": signals below 1e-5 of the largest of their unit are held to
-     * that one's scale, and each unit vouches a millionth for the other through the conductances. */
-    part->volt = fmax(1e-5 * volt, part->most > 0.0 ? 1e-6 / part->most * ampere : 0.0);
-    part->ampere = fmax(1e-5 * ampere, 1e-6 * part->least * volt);
+     * that one's scale, and each unit vouches a millionth for the other through the conductances, of 1 S where there
+     * are none. */
+    const bool has_any = part->most > 0.0;
+    part->volt = fmax(1e-5 * volt, 1e-6 / (has_any ? part->most : 1.0) * ampere);
+    part->ampere = fmax(1e-5 * ampere, 1e-6 * (has_any ? part->least : 1.0) * volt);
 }
 
 void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,

@@ -43,20 +43,81 @@ void dalcs_audit_run_start_leap(struct dalcs_audit_run *a) {
     }
 }
 
+/* map is applied to that of `to`, into work, which both have [n][n + 1] of. */
+static void compose(int n, const double *map, const double *to, double *work) {
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j <= n; j++) {
+            double sum = j == n ? map[i * (n + 1) + n] : 0.0;
+            for (int k = 0; k < n; k++) {
+                sum += map[i * (n + 1) + k] * to[k * (n + 1) + j];
+            }
+            work[i * (n + 1) + j] = sum;
+        }
+    }
+}
+
+static void apply(int n, const double *map, double *x, double *work) {
+    for (int i = 0; i < n; i++) {
+        work[i] = map[i * (n + 1) + n];
+        for (int k = 0; k < n; k++) {
+            work[i] += map[i * (n + 1) + k] * x[k];
+        }
+    }
+    memcpy(x, work, (size_t)n * sizeof(double));
+}
+
+/* x[n] goes so many periods on. By squares of the map (D. E. Knuth, The Art of Computer Programming 2, sec. 4.6.3), not
+ * one by one as the leap went. */
+static void go_on(int n, const double *map, long periods, double *x, double *work) {
+    double *square = work + n;
+    double *next = square + n * (n + 1);
+    memcpy(square, map, (size_t)(n * (n + 1)) * sizeof(double));
+    for (long left = periods; left > 0; left /= 2) {
+        if (left % 2 == 1) {
+            apply(n, square, x, work);
+        }
+        if (left > 1) {
+            compose(n, square, square, next);
+            memcpy(square, next, (size_t)(n * (n + 1)) * sizeof(double));
+        }
+    }
+}
+
+/* Instructions, about, of a product and its sum; and of a period that is leapt over, for each element of its map. */
+static const double product_work = 5.0, leapt_work = 2.0;
+
+/* A leap takes some thousand instructions, whatever it leads over: so many more, and each is looked at. */
+static const double small_work = 1000.0;
+
 void dalcs_audit_run_end_leap(struct dalcs_audit_run *a) {
     const struct dalcs_radau_part *part = a->radau->cycling;
-    if (a->audit != NULL) {
-        dalcs_audit_put_off(a->audit, part->index);
+    if (a->audit == NULL) {
+        return;
     }
+    dalcs_audit_put_off(a->audit, part->index);
     const int n_x = part->component->system->n_x;
+    const double elements = (double)n_x * (n_x + 1);
     const double periods = rint((part->t - a->leap_time) / dalcs_cycle_period(part->cycle));
-    const double work = 3.0 * n_x * (n_x + 1) * periods;
-    if (a->audit != NULL && (dalcs_audit_may(a->audit, work) || !a->has_passed)) {
+    const double work = product_work * elements * (n_x + 1) * (1.0 + log2(fmax(periods, 1.0)));
+    dalcs_audit_earn(a->audit, leapt_work * elements * periods);
+    if (work <= small_work || dalcs_audit_may(a->audit, work) || !a->has_passed) {
         a->has_passed = true;
-        dalcs_cycle_pass(part, (long)periods, a->tried, a->tried + n_x);
+        go_on(n_x, dalcs_cycle_map(part), (long)periods, a->tried, a->tried + n_x);
         dalcs_audit_add(a->audit, DALCS_AUDIT_PERIOD, part->index, distance(part, a->tried),
                         part->t);
     }
+}
+
+/* Instructions of the segment that a leap lands in, and of another leap from there. */
+static const double landing_work = 10000.0;
+
+double dalcs_audit_run_until(struct dalcs_audit_run *a, double until) {
+    const struct dalcs_radau_part *part = a->radau->cycling;
+    if (a->audit == NULL || !(until < INFINITY) ||
+        !dalcs_audit_may(a->audit, landing_work)) {
+        return until;
+    }
+    return part->t + dalcs_audit_chance(a->audit) * (until - part->t);
 }
 
 /* The segment that a leap was tried to has begun, or another one has instead. */

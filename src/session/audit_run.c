@@ -72,7 +72,8 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
     enum dalcs_status status = dalcs_audit_members_make(a);
     if (status == DALCS_OK && radau->cycling != NULL) {
         const int n_x = radau->cycling->component->system->n_x;
-        a->tried = dalcs_arena_alloc(&a->arena, 2 * (size_t)n_x, sizeof(double));
+        const int n_elements = n_x * (n_x + 1);
+        a->tried = dalcs_arena_alloc(&a->arena, (size_t)(2 * n_x + 2 * n_elements), sizeof(double));
         status = a->tried != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
     status = status == DALCS_OK ? create(a) : status;

@@ -92,6 +92,7 @@ enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) {
     s->report.audit.instants = found.instants;
     s->report.audit.segments = found.stretches;
     s->report.audit.audited = found.audited;
+    s->report.audit.screened = found.screened;
     s->report.audit.positions = found.positions;
     s->report.audit.worst = found.defect;
     s->report.audit.allowed = found.allowed;
