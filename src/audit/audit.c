@@ -9,13 +9,13 @@
  * with it each segment of a short run is looked into. In instructions, as are these of an instant and a device: measured
  * with callgrind on the netlists of the repository (doc/testing.md). */
 static const double start_work = 6.5e5;
-static const double device_work = 500.0, node_work = 200.0;
+static const double device_work = 300.0, node_work = 120.0;
 
 /* Of switches, whose controls are read, and sources, whose edges are looked for. */
-static const double moving_work = 3000.0;
+static const double moving_work = 1800.0;
 
 /* Of a coupling, for all coils of which fluxes are added up. */
-static const double coupling_work = 2000.0;
+static const double coupling_work = 1200.0;
 
 static double instant_work(const struct dalcs_circuit *c, const struct audit_part *part) {
     double work = node_work * part->n_nodes + coupling_work * part->n_couplings;
@@ -190,7 +190,9 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
         return false;
     }
     const bool asks = audit_watch_asks(audit, stretch, can_look_inside(audit, stretch));
-    const bool passes = !asks && audit->credit < audit->threshold;
+    const bool is_drawn = audit->credit >= audit->threshold;
+    part->watch->is_brief = part->watch->makes && !is_drawn;
+    const bool passes = !asks && !is_drawn;
     if (passes) {
         part->is_open = false;
     }
@@ -246,6 +248,12 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     audit->count.audited++;
     audit->credit -= stretch->first_look;
     raise_scales(audit, stretch->part);
+    if (part->watch->is_brief && !stretch->is_last) {
+        look_inside(audit, stretch);
+        audit_watch_learn(audit, stretch);
+        part->is_open = false;
+        return;
+    }
     if ((part->watch->asked >= 0.0 || part->watch->makes) && !part->watch->saw_beginning) {
         look_back(audit, stretch);
     }

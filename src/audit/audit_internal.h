@@ -34,6 +34,7 @@ struct audit_watch {
     bool is_put_off;              /* the present one does not begin there */
     bool saw_beginning;           /* its beginning was looked at */
     bool makes;                   /* the present stretch is to be looked at, and a screen to be made of it */
+    bool is_brief;                /* no more of it than that takes */
     double asked;                 /* s: a time in it that asks for a look; < 0: none does */
 };
 

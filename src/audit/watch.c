@@ -4,8 +4,9 @@
 /* Stretches that a screen rests after an alarm that was false and stays: twice as many each time, up to 2 to this power. */
 enum { MOST_DOUBLINGS = 16 };
 
+/* One instant, and a screen of about the same work. */
 static bool is_affordable(const struct audit_part *part, const struct dalcs_audit *audit) {
-    return audit->credit - AUDIT_LOOK_INSTANTS * part->cost > -audit->reserve;
+    return audit->credit - 2.0 * part->cost > -audit->reserve;
 }
 
 static bool store(const struct dalcs_audit *audit, int index, bool wants_values,
@@ -17,6 +18,16 @@ static bool store(const struct dalcs_audit *audit, int index, bool wants_values,
 static bool wants_values(const struct audit_screen *screen,
                          const struct dalcs_audit_polynomials *p) {
     return p->value == NULL && (screen == NULL || !audit_screen_has_image(screen, p));
+}
+
+/* Do the values reach from one end of the stretch to the other? Times are known to their resolution, and events to what
+ * changes no value by more than the tolerance. */
+static bool spans(const struct dalcs_audit *audit, const struct audit_part *part,
+                  const struct dalcs_audit_polynomials *p,
+                  const struct dalcs_audit_stretch *stretch) {
+    const double length = stretch->to - stretch->from;
+    return length - p->end * p->step <=
+           part->tolerance * length + 4.0 * audit->options.resolution;
 }
 
 bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
@@ -45,6 +56,9 @@ bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretc
     }
     struct audit_answer answer;
     audit_screen_ask(audit, part, screen, &p, stretch, &answer);
+    if (!spans(audit, part, &p, stretch)) {
+        answer.worst = INFINITY;
+    }
     const double jump = knew ? fabs(answer.start - watch->states) : 0.0;
     watch->states = answer.end;
     watch->knows_states = true;
@@ -76,6 +90,7 @@ void audit_watch_learn(struct dalcs_audit *audit, const struct dalcs_audit_stret
         return;
     }
     struct audit_screen *screen = audit_screen_make(audit, part, &p, &audit->now);
+    audit->credit -= part->cost;
     watch->knows_states = screen != NULL;
     if (screen == NULL) {
         return;
