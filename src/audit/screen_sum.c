@@ -245,27 +245,23 @@ static double stimuli_over(const struct dalcs_audit *audit, const struct audit_t
  * or too late is seen. */
 static const double beside = 1e-6;
 
-/* How far below 0 a sign is at its worst. Those that sources have a part in are asked at one time. */
-static double worst_sign(struct dalcs_audit *audit, const struct audit_screen *screen,
+/* How far below 0 a sign is at its worst. */
+static double worst_sign(const struct dalcs_audit *audit, const struct audit_screen *screen,
                          const struct dalcs_audit_stretch *stretch, double t,
                          const double *place) {
+    const double near = beside * (stretch->to - stretch->from);
+    const double time[AUDIT_SIGN_TIMES] = {t, stretch->from + near, stretch->to - near};
     double worst = 0.0;
     for (int s = 0; s < screen->n_signs; s++) {
         const struct audit_sign *sign = &screen->sign[s];
-        const double *of = place + AUDIT_SIGN_TIMES * s;
-        double least = of[1] < of[0] ? of[1] : of[0];
-        least = of[2] < least ? of[2] : least;
-        if (sign->n_stimuli > 0) {
-            const double near = beside * (stretch->to - stretch->from);
-            const int at = (int)(AUDIT_SIGN_TIMES * audit_draw(audit));
-            const double time = at == 0   ? t
-                                : at == 1 ? stretch->from + near
-                                          : stretch->to - near;
-            least = of[at] + stimuli_at(audit, screen->term + sign->first + sign->n,
-                                        sign->n_stimuli, time, DALCS_RIGHT);
+        const struct audit_term *term = screen->term + sign->first + sign->n;
+        for (int at = 0; at < AUDIT_SIGN_TIMES; at++) {
+            double value = sign->constant + place[AUDIT_SIGN_TIMES * s + at];
+            if (sign->n_stimuli > 0) {
+                value += stimuli_at(audit, term, sign->n_stimuli, time[at], DALCS_RIGHT);
+            }
+            worst = -value > worst || value != value ? -value : worst;
         }
-        const double value = sign->constant + least;
-        worst = -value > worst || value != value ? -value : worst;
     }
     return worst;
 }

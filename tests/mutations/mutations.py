@@ -214,10 +214,11 @@ MUTATIONS = {
         "integrator/commands.c", "    m->next = dalcs_command_time(m, way, m->n[way]);\n",
         "    m->next = dalcs_command_time(m, way, m->n[way]);\n"
         "    m->next -= m->next > 16.001e-3 && m->next < 16.009e-3 ? 4e-9 : 0.0;\n", SLOW),
-    "a map is stale once": (
-        "integrator/stages.c", "return e->h == h && dalcs_mode_is(e->mode, mode, stages->n_words);",
-        "static long calls_; return dalcs_mode_is(e->mode, mode, stages->n_words) && (e->h == h || (e->h == 0.5 * h && ++calls_ == 2));",
-        FILTER),
+    "one map of 4000 is stale": (
+        "integrator/segment.c",
+        "    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->h, part->in,",
+        "    static long calls_;\n    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, "
+        "++calls_ == 3210 ? 0.5 * part->h : part->h, part->in,", SLOW),
     "one event of 200 comes late": (
         "integrator/segment.c", "    part->t_end = dalcs_smaller(t_end, search->limit);\n",
         "    t_end += part->n_crossed > 0 && part->t > 1.0 && part->t < 1.01 ? 1e-3 * part->h : 0.0;\n"
