@@ -244,7 +244,8 @@ static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretc
 void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
     take_up(part, stretch);
-    audit->threshold = 2.0 * (AUDIT_LOOK_INSTANTS * part->cost + stretch->first_look) * audit_draw(audit);
+    audit->threshold =
+        2.0 * (AUDIT_LOOK_INSTANTS * part->cost + stretch->first_look) * audit_draw(audit);
     audit->count.audited++;
     audit->credit -= stretch->first_look;
     raise_scales(audit, stretch->part);

@@ -47,8 +47,8 @@ struct dalcs_audit_polynomials {
 /* A linear function of such columns and of stimuli, while it is put together. */
 struct dalcs_audit_row {
     double constant;
-    double *column, *stimulus;         /* [n_columns], [n_stimuli] factors, 0 where none is listed */
-    int n_columns, n_stimuli;          /* that are listed */
+    double *column, *stimulus; /* [n_columns], [n_stimuli] factors, 0 where none is listed */
+    int n_columns, n_stimuli;  /* that are listed */
     int *listed_column, *listed_stimulus;
     bool *has_column, *has_stimulus;
 };

@@ -22,20 +22,21 @@ struct audit_watch {
     int log2_screens;
     struct dalcs_audit_row row[5]; /* sums of laws by audit_screen_row, and a sign */
     double barycentric[AUDIT_MOST_NODES];
-    double *state_factor;         /* [n_devices of the part] of a state, in their sum */
-    double *node_weight;          /* [2][n_nodes] work: of Kirchhoff's laws now and over time */
-    double theta[AUDIT_SCREEN_TIMES]; /* in steps: one in each fourth, and its weights, of values and integrals */
+    double *state_factor; /* [n_devices of the part] of a state, in their sum */
+    double *node_weight;  /* [2][n_nodes] work: of Kirchhoff's laws now and over time */
+    double theta
+        [AUDIT_SCREEN_TIMES]; /* in steps: one in each fourth, and its weights, of values and integrals */
     double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
-    double *column;               /* [3][n_columns in whole quads] work */
-    double *place;                /* work */
+    double *column; /* [3][n_columns in whole quads] work */
+    double *place;  /* work */
     size_t place_room;
-    double states;                /* the sum of states where the stretch before ended */
+    double states; /* the sum of states where the stretch before ended */
     bool knows_states;
-    bool is_put_off;              /* the present one does not begin there */
-    bool saw_beginning;           /* its beginning was looked at */
-    bool makes;                   /* the present stretch is to be looked at, and a screen to be made of it */
-    bool is_brief;                /* no more of it than that takes */
-    double asked;                 /* s: a time in it that asks for a look; < 0: none does */
+    bool is_put_off;    /* the present one does not begin there */
+    bool saw_beginning; /* its beginning was looked at */
+    bool makes;         /* the present stretch is to be looked at, and a screen to be made of it */
+    bool is_brief;      /* no more of it than that takes */
+    double asked;       /* s: a time in it that asks for a look; < 0: none does */
 };
 
 /* A part: its devices and the nodes that they hang on, shorts merged, without ground. */

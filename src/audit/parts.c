@@ -98,7 +98,8 @@ static enum dalcs_status make_parts(struct dalcs_audit *audit) {
         part->node = dalcs_arena_alloc(arena, (size_t)part->n_nodes, sizeof(int));
         part->watch = dalcs_arena_alloc(arena, 1, sizeof(*part->watch));
         part->coupling = dalcs_arena_alloc(arena, (size_t)part->n_couplings, sizeof(int));
-        if (part->watch == NULL || part->device == NULL || part->node == NULL || part->coupling == NULL) {
+        if (part->watch == NULL || part->device == NULL || part->node == NULL ||
+            part->coupling == NULL) {
             return DALCS_E_NOMEM;
         }
         part->tolerance = audit->options.tolerance[k];
@@ -194,7 +195,8 @@ enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
     audit->has_charge = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
     audit->is_fed = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
     audit->is_held = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
-    if (audit->is_held == NULL || audit->node_of == NULL || audit->has_charge == NULL || audit->is_fed == NULL) {
+    if (audit->is_held == NULL || audit->node_of == NULL || audit->has_charge == NULL ||
+        audit->is_fed == NULL) {
         return DALCS_E_NOMEM;
     }
     find_fed(audit);

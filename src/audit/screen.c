@@ -83,7 +83,8 @@ void audit_screen_rescale(const struct dalcs_audit *audit, struct audit_part *pa
     }
     for (int k = 0; k < part->n_devices; k++) {
         const double allowed = allowed_of_state(audit, part, part->device[k]);
-        watch->state_factor[k] = allowed > 0.0 ? copysign(1.0 / allowed, watch->state_factor[k]) : 0.0;
+        watch->state_factor[k] =
+            allowed > 0.0 ? copysign(1.0 / allowed, watch->state_factor[k]) : 0.0;
     }
     for (int k = 0; k < 1 << watch->log2_screens; k++) {
         watch->screen[k].is_made = false;
@@ -94,8 +95,7 @@ void audit_screen_rescale(const struct dalcs_audit *audit, struct audit_part *pa
 /* [n_devices] how the state of a coil or a capacitor goes into the sum of states. */
 static bool draw_states(struct dalcs_audit *audit, const struct audit_part *part,
                         struct audit_watch *watch) {
-    watch->state_factor =
-        dalcs_arena_alloc(&audit->arena, (size_t)part->n_devices, sizeof(double));
+    watch->state_factor = dalcs_arena_alloc(&audit->arena, (size_t)part->n_devices, sizeof(double));
     watch->node_weight =
         dalcs_arena_alloc(&audit->arena, 2 * (size_t)audit->circuit->n_nodes, sizeof(double));
     for (int k = 0; watch->state_factor != NULL && k < part->n_devices; k++) {
@@ -112,15 +112,15 @@ static bool start(struct dalcs_audit *audit, struct audit_part *part,
         return false;
     }
     struct audit_watch *watch = part->watch;
-    const int each = AUDIT_N_ROWS * p->n_columns +
-                     AUDIT_SCREEN_TIMES * (p->n_inputs + 1) *
-                         (AUDIT_PLACE_SIGNS + AUDIT_SIGN_TIMES * part->n_devices);
+    const int each =
+        AUDIT_N_ROWS * p->n_columns + AUDIT_SCREEN_TIMES * (p->n_inputs + 1) *
+                                          (AUDIT_PLACE_SIGNS + AUDIT_SIGN_TIMES * part->n_devices);
     for (watch->log2_screens = 2; (2 << watch->log2_screens) <= MOST_SCREENS &&
                                   (each << watch->log2_screens) <= MOST_NUMBERS;) {
         watch->log2_screens++;
     }
-    struct audit_screen *screen = dalcs_arena_alloc(&audit->arena, (size_t)1 << watch->log2_screens,
-                                      sizeof(*screen));
+    struct audit_screen *screen =
+        dalcs_arena_alloc(&audit->arena, (size_t)1 << watch->log2_screens, sizeof(*screen));
     watch->column =
         dalcs_arena_alloc(&audit->arena, 3 * (size_t)dalcs_quads_of(p->n_columns), sizeof(double));
     bool complete = screen != NULL && watch->column != NULL && draw_states(audit, part, watch);
@@ -185,9 +185,9 @@ void audit_screen_see_step(const struct dalcs_audit *audit, const struct audit_p
     const bool is_same = p->step == screen->step && audit_is_same_end(p->end, screen->end);
     screen->step = p->step;
     screen->end = p->end;
-    const size_t need =
-        AUDIT_SCREEN_TIMES * (size_t)p->n_inputs * (size_t)screen->n_places;
-    if (!is_same || p->n_inputs == 0 || part->watch->theta[0] > p->end || audit_screen_has_image(screen, p) || need > MOST_NUMBERS ||
+    const size_t need = AUDIT_SCREEN_TIMES * (size_t)p->n_inputs * (size_t)screen->n_places;
+    if (!is_same || p->n_inputs == 0 || part->watch->theta[0] > p->end ||
+        audit_screen_has_image(screen, p) || need > MOST_NUMBERS ||
         dalcs_grow(&screen->image, &screen->image_room, need, sizeof(double)) != DALCS_OK) {
         return;
     }

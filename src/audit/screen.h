@@ -42,30 +42,30 @@ struct audit_term {
 /* constant + terms >= -1. */
 struct audit_sign {
     double constant;
-    int first, n; /* of columns */
-    int n_stimuli;                 /* after these */
+    int first, n;  /* of columns */
+    int n_stimuli; /* after these */
 };
 
 struct audit_screen {
     uint64_t key;
     bool is_made;
-    double limit;            /* that a sum or a sign may be beyond */
-    int alarms;              /* that were false */
-    long rests;              /* stretches that it is not asked of after one */
-    double *row;             /* [AUDIT_N_ROWS][n_columns in whole quads] */
-    double constant, rate;   /* of the laws; 1/s, of what is integrated */
-    int n_stimuli, n_flows;  /* that stand in the laws, in what is integrated */
+    double limit;           /* that a sum or a sign may be beyond */
+    int alarms;             /* that were false */
+    long rests;             /* stretches that it is not asked of after one */
+    double *row;            /* [AUDIT_N_ROWS][n_columns in whole quads] */
+    double constant, rate;  /* of the laws; 1/s, of what is integrated */
+    int n_stimuli, n_flows; /* that stand in the laws, in what is integrated */
     int n_signs;
     struct audit_sign *sign;
-    int first, n_terms;        /* first: of those of the laws */
+    int first, n_terms; /* first: of those of the laws */
     size_t term_room, sign_room, row_room, image_room;
-    struct audit_term *term; /* [n_terms] of signs, then stimuli and flows of the laws */
-    double step, end;        /* s, in steps: of the stretch that was asked last */
-    int n_inputs;            /* of the image; 0: there is none */
+    struct audit_term *term;      /* [n_terms] of signs, then stimuli and flows of the laws */
+    double step, end;             /* s, in steps: of the stretch that was asked last */
+    int n_inputs;                 /* of the image; 0: there is none */
     double image_step, image_end; /* of the stretches whose image it is */
-    int n_times;             /* of the watch's, that are in these */
-    int n_places;            /* in whole quads */
-    double *image;           /* [AUDIT_SCREEN_TIMES][n_inputs][n_places] */
+    int n_times;                  /* of the watch's, that are in these */
+    int n_places;                 /* in whole quads */
+    double *image;                /* [AUDIT_SCREEN_TIMES][n_inputs][n_places] */
 };
 
 /* The screen of these polynomials; NULL: there is none yet. */
@@ -91,8 +91,7 @@ void audit_watch_learn(struct dalcs_audit *audit, const struct dalcs_audit_stret
 
 /* screen_rows.c: the laws and signs of a mode, into the rows and lists of a screen. */
 bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part,
-                       struct audit_screen *screen, double step,
-                       const struct dalcs_audit_state *s);
+                       struct audit_screen *screen, double step, const struct dalcs_audit_state *s);
 
 /* The sums so far become rows of n columns of a screen with room for them. */
 void audit_screen_put_rows(struct audit_watch *watch, struct audit_screen *screen, int n);

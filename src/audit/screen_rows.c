@@ -108,9 +108,9 @@ static void clear(struct dalcs_audit_row *row) {
 
 static void list(struct filling *f, int index, double factor) {
     struct audit_screen *screen = f->screen;
-    f->complete = f->complete && dalcs_grow(&screen->term, &screen->term_room,
-                                            (size_t)screen->n_terms + 1,
-                                            sizeof(*screen->term)) == DALCS_OK;
+    f->complete =
+        f->complete && dalcs_grow(&screen->term, &screen->term_room, (size_t)screen->n_terms + 1,
+                                  sizeof(*screen->term)) == DALCS_OK;
     if (f->complete) {
         screen->term[screen->n_terms++] = (struct audit_term){index, factor};
     }
@@ -137,9 +137,9 @@ static int list_stimuli(struct filling *f, struct dalcs_audit_row *row) {
 static void put_sign(struct filling *f) {
     struct audit_screen *screen = f->screen;
     struct dalcs_audit_row *row = &f->watch->row[AUDIT_N_ROWS];
-    f->complete = f->complete && dalcs_grow(&screen->sign, &screen->sign_room,
-                                            (size_t)screen->n_signs + 1,
-                                            sizeof(*screen->sign)) == DALCS_OK;
+    f->complete =
+        f->complete && dalcs_grow(&screen->sign, &screen->sign_room, (size_t)screen->n_signs + 1,
+                                  sizeof(*screen->sign)) == DALCS_OK;
     if (f->complete) {
         struct audit_sign sign = {.first = screen->n_terms, .n = row->n_columns};
         for (int k = 0; k < row->n_columns; k++) {
@@ -175,8 +175,8 @@ static void add_own_current(const struct filling *f, struct dalcs_audit_row *row
 }
 
 /* factor (v - at - r own) */
-static void add_line(const struct filling *f, struct dalcs_audit_row *row, int device,
-                     double roff, double at, double r, double factor) {
+static void add_line(const struct filling *f, struct dalcs_audit_row *row, int device, double roff,
+                     double at, double r, double factor) {
     add_voltage(f, row, &f->audit->circuit->device[device], 0, factor);
     row->constant -= factor * at;
     add_own_current(f, row, device, roff, -r * factor);
@@ -221,8 +221,7 @@ static void fill_switch(struct filling *f, int device) {
     if (is_closed) {
         const double volts = audit_volts(f->audit, f->part, d->node[0], d->node[1]);
         add_line(f, now(f), device, INFINITY, 0.0, m->ron,
-                 over(f, f->part->tolerance * volts + m->ron * rounding +
-                             f->audit->options.vntol));
+                 over(f, f->part->tolerance * volts + m->ron * rounding + f->audit->options.vntol));
     } else {
         const double amperes = audit_amperes(f->audit, f->part, device);
         add_own_current(
@@ -273,13 +272,13 @@ static double value_of(const struct filling *f, int device, const struct dalcs_a
     double sum = a->constant;
     for (int k = 0; k < a->n; k++) {
         const struct dalcs_affine_term *term = &a->term[k];
-        const double of =
-            term->kind == DALCS_QUANTITY_VOLTAGE   ? f->s->v[term->index]
-            : term->kind == DALCS_QUANTITY_CURRENT ? audit_current(f->audit, f->s, term->index)
-            : term->kind == DALCS_QUANTITY_PAIR
-                ? f->s->lambda[f->audit->first_lambda[device] + term->index]
-                : dalcs_stimulus_value(&f->audit->circuit->stimulus[term->index], f->s->t,
-                                       f->s->side);
+        const double of = term->kind == DALCS_QUANTITY_VOLTAGE ? f->s->v[term->index]
+                          : term->kind == DALCS_QUANTITY_CURRENT
+                              ? audit_current(f->audit, f->s, term->index)
+                          : term->kind == DALCS_QUANTITY_PAIR
+                              ? f->s->lambda[f->audit->first_lambda[device] + term->index]
+                              : dalcs_stimulus_value(&f->audit->circuit->stimulus[term->index],
+                                                     f->s->t, f->s->side);
         sum += term->coefficient * of;
     }
     return sum;
@@ -321,10 +320,9 @@ static void fill_formula(struct filling *f, int device) {
 static void fill_coil(struct filling *f, int device) {
     const struct dalcs_device *d = &f->audit->circuit->device[device];
     const double volts = audit_volts(f->audit, f->part, d->node[0], d->node[1]);
-    const double factor =
-        over(f, f->part->tolerance *
-                        (audit_flux_scale(f->audit, f->part, device) + volts * f->step) +
-                    f->audit->options.vntol * f->step);
+    const double factor = over(
+        f, f->part->tolerance * (audit_flux_scale(f->audit, f->part, device) + volts * f->step) +
+               f->audit->options.vntol * f->step);
     struct dalcs_audit_row *start = &f->watch->row[AUDIT_ROW_START];
     add_voltage(f, &f->watch->row[AUDIT_ROW_FLOW], d, 0, -factor);
     add_read_current(f, start, device, factor * d->value);

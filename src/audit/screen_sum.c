@@ -127,8 +127,7 @@ static void fill_places(const struct audit_watch *watch, const struct audit_scre
     }
     const double *row = screen->row;
     const double *states = row + AUDIT_ROW_STATES * n;
-    place[AUDIT_PLACE_NODE] =
-        product(n, row + AUDIT_ROW_NOW * n, value + w->node * p->stride);
+    place[AUDIT_PLACE_NODE] = product(n, row + AUDIT_ROW_NOW * n, value + w->node * p->stride);
     place[AUDIT_PLACE_LAWS] = product(n, row + AUDIT_ROW_NOW * n, sum[0]) +
                               p->step * product(n, row + AUDIT_ROW_FLOW * n, sum[1]) -
                               product(n, row + AUDIT_ROW_START * n, value);
@@ -247,8 +246,7 @@ static const double beside = 1e-6;
 
 /* How far below 0 a sign is at its worst. */
 static double worst_sign(const struct dalcs_audit *audit, const struct audit_screen *screen,
-                         const struct dalcs_audit_stretch *stretch, double t,
-                         const double *place) {
+                         const struct dalcs_audit_stretch *stretch, double t, const double *place) {
     const double near = beside * (stretch->to - stretch->from);
     const double time[AUDIT_SIGN_TIMES] = {t, stretch->from + near, stretch->to - near};
     double worst = 0.0;
@@ -292,17 +290,16 @@ static double ask_values(struct dalcs_audit *audit, const struct audit_watch *wa
 
 /* By its image; where values are there, those at a node are held to it. */
 static double ask_image(struct dalcs_audit *audit, const struct audit_watch *watch,
-                        const struct audit_screen *screen,
-                        const struct dalcs_audit_polynomials *p, double *off) {
+                        const struct audit_screen *screen, const struct dalcs_audit_polynomials *p,
+                        double *off) {
     const int m = (int)(screen->n_times * audit_draw(audit));
     multiply(screen->n_places, p->n_inputs, screen->image + m * p->n_inputs * screen->n_places,
              p->input, watch->place);
     *off = 0.0;
     if (p->value != NULL) {
         const int n = dalcs_quads_of(p->n_columns);
-        *off = fabs(watch->place[AUDIT_PLACE_NODE] -
-                    product(n, screen->row + AUDIT_ROW_NOW * n,
-                            p->value + node_of(p, m) * p->stride));
+        *off = fabs(watch->place[AUDIT_PLACE_NODE] - product(n, screen->row + AUDIT_ROW_NOW * n,
+                                                             p->value + node_of(p, m) * p->stride));
     }
     return watch->theta[m];
 }

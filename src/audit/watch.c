@@ -11,7 +11,8 @@ static bool is_affordable(const struct audit_part *part, const struct dalcs_audi
 
 static bool store(const struct dalcs_audit *audit, int index, bool wants_values,
                   struct dalcs_audit_polynomials *p) {
-    return audit->reader.store != NULL && audit->reader.store(audit->reader.user, index, wants_values, p);
+    return audit->reader.store != NULL &&
+           audit->reader.store(audit->reader.user, index, wants_values, p);
 }
 
 /* Where nobody needed values until now, and no image will do. */
@@ -26,8 +27,7 @@ static bool spans(const struct dalcs_audit *audit, const struct audit_part *part
                   const struct dalcs_audit_polynomials *p,
                   const struct dalcs_audit_stretch *stretch) {
     const double length = stretch->to - stretch->from;
-    return length - p->end * p->step <=
-           part->tolerance * length + 4.0 * audit->options.resolution;
+    return length - p->end * p->step <= part->tolerance * length + 4.0 * audit->options.resolution;
 }
 
 bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,

@@ -15,7 +15,8 @@ enum dalcs_status dalcs_audit_run_leap(struct dalcs_audit_run *a, double until, 
         a->was_tried = false;
         return DALCS_OK;
     }
-    const double work = TRIED_PERIODS * dalcs_cycle_n_segments(part->cycle) * dalcs_audit_segment_work;
+    const double work =
+        TRIED_PERIODS * dalcs_cycle_n_segments(part->cycle) * dalcs_audit_segment_work;
     if (!dalcs_audit_may(a->audit, work) && a->has_tried) {
         return DALCS_OK;
     }
@@ -113,8 +114,7 @@ static const double landing_work = 10000.0;
 
 double dalcs_audit_run_until(struct dalcs_audit_run *a, double until) {
     const struct dalcs_radau_part *part = a->radau->cycling;
-    if (a->audit == NULL || !(until < INFINITY) ||
-        !dalcs_audit_may(a->audit, landing_work)) {
+    if (a->audit == NULL || !(until < INFINITY) || !dalcs_audit_may(a->audit, landing_work)) {
         return until;
     }
     return part->t + dalcs_audit_chance(a->audit) * (until - part->t);

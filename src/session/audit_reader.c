@@ -143,7 +143,8 @@ static uint64_t key_of(const struct dalcs_radau_part *part) {
     for (int k = 0; k < osnsp->n_words; k++) {
         hash = mix(hash, osnsp->mode[k]);
     }
-    return mix(hash, (uint64_t)(ilogb(part->h) / 2)); /* steps of a like length are held to the same */
+    return mix(hash,
+               (uint64_t)(ilogb(part->h) / 2)); /* steps of a like length are held to the same */
 }
 
 /* The map whose image of part->in the segment is; NULL: none. One of those kept of a period has none, and another start. */
@@ -151,8 +152,7 @@ static const struct dalcs_stage_entry *map_of(const struct dalcs_radau_part *par
     if (part->late != NULL) {
         return part->late;
     }
-    const struct dalcs_stage_entry *entry =
-        part->brief != NULL ? part->brief->entry : part->entry;
+    const struct dalcs_stage_entry *entry = part->brief != NULL ? part->brief->entry : part->entry;
     bool is = entry != NULL && dalcs_stages_have_maps(&part->stages) && dalcs_stage_has_map(entry);
     for (int x = 0; x < part->component->system->n_x && is; x++) {
         is = part->in[x] == part->out[x];
@@ -169,15 +169,15 @@ static bool store(void *user, int index, bool wants_values, struct dalcs_audit_p
     if (wants_values) {
         dalcs_recurrence_complete(part);
     }
-    *p = (struct dalcs_audit_polynomials){
-        .key = key_of(part),
-        .n_columns = dalcs_system_n_columns(part->component->system),
-        .n_nodes = part->stages.layout.n_nodes,
-        .stride = part->stages.layout.stride,
-        .node = part->stages.method->node,
-        .step = part->h,
-        .end = part->end,
-        .value = part->late != NULL ? NULL : part->out};
+    *p = (struct dalcs_audit_polynomials){.key = key_of(part),
+                                          .n_columns =
+                                              dalcs_system_n_columns(part->component->system),
+                                          .n_nodes = part->stages.layout.n_nodes,
+                                          .stride = part->stages.layout.stride,
+                                          .node = part->stages.method->node,
+                                          .step = part->h,
+                                          .end = part->end,
+                                          .value = part->late != NULL ? NULL : part->out};
     if (map_of(part) != NULL) {
         p->n_inputs = dalcs_stage_brief_columns(&part->stages);
         p->input = dalcs_stage_brief_input(&part->stages, part->in);

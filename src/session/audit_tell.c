@@ -59,7 +59,8 @@ static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
         "the report lists the laws that are broken; please report this netlist",
         "the waveform seems wrong: the audit finds %s broken by %.2g of its scale at t = "
         "%s, and %.2g is allowed",
-        name, found->defect, dalcs_quantity_write(time, found->time, "s", 9), dalcs_audit_most_allowed(a));
+        name, found->defect, dalcs_quantity_write(time, found->time, "s", 9),
+        dalcs_audit_most_allowed(a));
     return DALCS_NOT_CONVERGED;
 }
 
