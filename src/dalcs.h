@@ -284,7 +284,7 @@ const char *dalcs_method_name(size_t index);
 
 /* How much of a waveform is checked against the netlist's devices (doc/methods.md). */
 enum dalcs_audit_mode {
-    DALCS_AUDIT_SAMPLE, /* as much as costs at most 5 % of the run, drawn with a fixed seed */
+    DALCS_AUDIT_SAMPLE, /* each segment by a screen, some more closely, drawn with a fixed seed */
     DALCS_AUDIT_FULL,   /* every segment */
     DALCS_AUDIT_OFF
 };

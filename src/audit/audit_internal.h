@@ -167,7 +167,13 @@ enum { AUDIT_GAUSS = 5 };
 
 extern const double audit_gauss_node[AUDIT_GAUSS], audit_gauss_weight[AUDIT_GAUSS];
 
-/* laws.c: what leaves each node of a part, audit->sums, with its scale and rounding. */
+/* formulas.c, laws.c */
+void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
+                         const struct dalcs_audit_state *s, int device);
+void audit_check_branch(struct dalcs_audit *audit, struct audit_part *part,
+                        const struct dalcs_audit_state *s, int device);
+
+/* kirchhoff.c: what leaves each node of a part, audit->sums, with its scale and rounding. */
 void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part,
                         const struct dalcs_audit_state *s);
 
@@ -175,7 +181,7 @@ void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part
 void audit_diode_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device,
                        double scale[2]);
 
-/* laws.c: all that holds at one time. */
+/* kirchhoff.c: all that holds at one time. */
 void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s);
 

@@ -4,6 +4,10 @@
 /* Stretches that a screen rests after an alarm that was false and stays: twice as many each time, up to 2 to this power. */
 enum { MOST_DOUBLINGS = 16 };
 
+/* So many alarms of a screen are looked at whatever they cost. What was found would have ended the run; more, which are
+ * false, such as of states that jump in each period, are looked at while the run can afford it. */
+enum { FEW_ALARMS = 4 };
+
 /* One instant, and a screen of about the same work. */
 static bool is_affordable(const struct audit_part *part, const struct dalcs_audit *audit) {
     return audit->credit - 2.0 * part->cost > -audit->reserve;
@@ -66,6 +70,10 @@ bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretc
     if (answer.worst <= screen->limit && jump <= screen->limit) {
         return false;
     }
+    if (screen->alarms >= FEW_ALARMS && !is_affordable(part, audit)) {
+        return false;
+    }
+    screen->alarms++;
     watch->asked = answer.t;
     return true;
 }
@@ -74,7 +82,6 @@ bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretc
 static void allow(const struct dalcs_audit *audit, const struct audit_part *part,
                   struct audit_screen *screen, double worst) {
     const double most = fmax(1.0, audit->options.failure / part->tolerance);
-    screen->alarms++;
     if (2.0 * worst <= most) {
         screen->limit = fmax(screen->limit, 2.0 * worst);
     } else {

@@ -88,7 +88,7 @@ static void go_on(int n, const double *map, long periods, double *x, double *wor
 static const double product_work = 5.0, leapt_work = 2.0;
 
 /* A leap takes some thousand instructions, whatever it leads over: so many more, and each is looked at. */
-static const double small_work = 1000.0;
+static const double small_work = 3000.0;
 
 void dalcs_audit_run_end_leap(struct dalcs_audit_run *a) {
     const struct dalcs_radau_part *part = a->radau->cycling;
