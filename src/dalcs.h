@@ -284,7 +284,7 @@ const char *dalcs_method_name(size_t index);
 
 /* How much of a waveform is checked against the netlist's devices (doc/methods.md). */
 enum dalcs_audit_mode {
-    DALCS_AUDIT_SAMPLE, /* as much as costs at most 5 % of the run, drawn with a fixed seed */
+    DALCS_AUDIT_SAMPLE, /* each segment by a screen, some more closely, drawn with a fixed seed */
     DALCS_AUDIT_FULL,   /* every segment */
     DALCS_AUDIT_OFF
 };
@@ -510,6 +510,7 @@ struct dalcs_report {
         long instants;         /* at which laws were checked */
         long segments;         /* between two events or ends of steps, of all parts */
         long audited;          /* of them, those that were looked into */
+        long screened;         /* those of which all linear laws were asked at once */
         long positions;        /* of switches, compared with their controls */
         double worst, allowed; /* the worst defect over its scale, and what it was held to */
         double time;           /* s, of that */

@@ -19,6 +19,8 @@
 
 #include "circuit.h"
 
+#include <stdint.h>
+
 /* All of a part at one time. */
 struct dalcs_audit_state {
     double t;
@@ -31,9 +33,61 @@ struct dalcs_audit_state {
         is_mean; /* [n_devices] what a switch that slides takes along, and that: values are means of two positions */
 };
 
+/* A stretch as it is stored: value[k stride + c] is column c at node k of its step. */
+struct dalcs_audit_polynomials {
+    uint64_t key; /* the same: the same mode and a step of about the same length */
+    int n_columns, n_nodes, stride;
+    const double *node;  /* [n_nodes] in steps, from 0 to 1 */
+    double step, end;    /* s; in steps, where the stretch ends */
+    const double *value; /* NULL: nobody has asked for them yet */
+    int n_inputs;        /* 0: none. They are the sum of columns times these */
+    const double *input;
+};
+
+/* A linear function of such columns and of stimuli, while it is put together. */
+struct dalcs_audit_row {
+    double constant;
+    double *column, *stimulus; /* [n_columns], [n_stimuli] factors, 0 where none is listed */
+    int n_columns, n_stimuli;  /* that are listed */
+    int *listed_column, *listed_stimulus;
+    bool *has_column, *has_stimulus;
+};
+
+static inline void dalcs_audit_row_add_column(struct dalcs_audit_row *row, int column,
+                                              double factor) {
+    if (!row->has_column[column]) {
+        row->has_column[column] = true;
+        row->listed_column[row->n_columns++] = column;
+    }
+    row->column[column] += factor;
+}
+
+static inline void dalcs_audit_row_add_stimulus(struct dalcs_audit_row *row, int stimulus,
+                                                double factor) {
+    if (!row->has_stimulus[stimulus]) {
+        row->has_stimulus[stimulus] = true;
+        row->listed_stimulus[row->n_stimuli++] = stimulus;
+    }
+    row->stimulus[stimulus] += factor;
+}
+
 /* How a waveform is read. */
 struct dalcs_audit_reader {
     void *user;
+
+    /* The present stretch as it is stored, with its values where it has no input. false: it is nothing that holds at
+     * all its times, steps of implicit Euler or means of two positions. NULL: nothing is stored. */
+    bool (*store)(void *user, int part, bool wants_values, struct dalcs_audit_polynomials *p);
+    /* [n_nodes stride] what input j is multiplied by. */
+    const double *(*column)(void *user, int part, int j);
+    /* Adds so many times the voltage of a node, the current of a device and a formula's lambda, as read() has them. */
+    void (*add_voltage)(void *user, int part, int node, double factor, struct dalcs_audit_row *row);
+    void (*add_current)(void *user, int part, int device, double factor,
+                        struct dalcs_audit_row *row);
+    void (*add_lambda)(void *user, int part, int lambda, double factor,
+                       struct dalcs_audit_row *row);
+    /* The state where the stretch before the present one ended. */
+    void (*read_before)(void *user, int part, struct dalcs_audit_state *state);
     /* The state of the part at state->t, as the limit from state->side. */
     void (*read)(void *user, int part, struct dalcs_audit_state *state);
     /* Raises v[n_nodes] and i[n_devices] to the largest magnitudes of the part so far. */
@@ -95,15 +149,19 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
 
 void dalcs_audit_destroy(struct dalcs_audit *audit);
 
-/* A stretch is complete, which took so much work, in instructions, about: need nobody look at it? Where somebody must, and
- * at the last one in any case, dalcs_audit_leave() follows. */
-bool dalcs_audit_passes_over(struct dalcs_audit *audit, int part, double work);
+/* A stretch is complete, which took so much work, in instructions, about: need nobody look at it more closely? Where
+ * somebody must, and at the last one in any case, dalcs_audit_leave() follows. */
+bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
+                             double work);
 
 /* It can be read, up to its end. */
 void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
 
-/* Was the last stretch of the part looked at, or is there none? Then dalcs_audit_enter() follows. */
-bool dalcs_audit_was_left(const struct dalcs_audit *audit, int part);
+/* The next stretch of the part has begun. Is its beginning to be looked at? Then dalcs_audit_enter() follows. */
+bool dalcs_audit_begins(struct dalcs_audit *audit, int part);
+
+/* The present stretch of the part does not begin where the one before ended: it was put off. */
+void dalcs_audit_put_off(struct dalcs_audit *audit, int part);
 
 /* The next one begins where that ended, or is the first one of all, and can be read there; `first_look` is not used. */
 void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
@@ -119,6 +177,9 @@ void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int in
 /* May so much more be looked at, in instructions, about? It is charged where it may. */
 bool dalcs_audit_may(struct dalcs_audit *audit, double work);
 
+/* 0 <= chance < 1, the same in each run. */
+double dalcs_audit_chance(struct dalcs_audit *audit);
+
 /* More that the run has done, in instructions, about: rows. */
 void dalcs_audit_earn(struct dalcs_audit *audit, double work);
 
@@ -127,6 +188,7 @@ struct dalcs_audit_summary {
     long instants;  /* at which laws were checked */
     long stretches; /* of all, and those that were looked into */
     long audited;
+    long screened;  /* all laws of which were asked at once, at one instant */
     long positions; /* of switches that were compared with their controls */
     double defect;  /* over the scale, of the law that is worst against what is allowed */
     double allowed; /* what it was held to */

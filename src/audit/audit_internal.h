@@ -7,6 +7,38 @@
 #include <math.h>
 #include <stdint.h>
 
+/* Instants of a look: one inside, and both sides of its end. */
+enum { AUDIT_LOOK_INSTANTS = 3 };
+
+/* Nodes of a step, at most. */
+enum { AUDIT_MOST_NODES = 12 };
+
+/* Times in a step that it is asked at, one of them each time. */
+enum { AUDIT_SCREEN_TIMES = 4 };
+
+/* How all stretches of a part are looked at by screens (screen.h). */
+struct audit_watch {
+    struct audit_screen *screen; /* [2^log2_screens] NULL: none yet */
+    int log2_screens;
+    struct dalcs_audit_row row[5]; /* sums of laws by audit_screen_row, and a sign */
+    double barycentric[AUDIT_MOST_NODES];
+    double *state_factor; /* [n_devices of the part] of a state, in their sum */
+    double *node_weight;  /* [2][n_nodes] work: of Kirchhoff's laws now and over time */
+    double theta
+        [AUDIT_SCREEN_TIMES]; /* in steps: one in each fourth, and its weights, of values and integrals */
+    double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
+    double *column; /* [3][n_columns in whole quads] work */
+    double *place;  /* work */
+    size_t place_room;
+    double states; /* the sum of states where the stretch before ended */
+    bool knows_states;
+    bool is_put_off;    /* the present one does not begin there */
+    bool saw_beginning; /* its beginning was looked at */
+    bool makes;         /* the present stretch is to be looked at, and a screen to be made of it */
+    bool is_brief;      /* no more of it than that takes */
+    double asked;       /* s: a time in it that asks for a look; < 0: none does */
+};
+
 /* A part: its devices and the nodes that they hang on, shorts merged, without ground. */
 struct audit_part {
     int n_devices, *device;
@@ -18,7 +50,8 @@ struct audit_part {
     double formula[2];   /* V, A: the largest terms of its formulas */
     double least, most;  /* S, of its conductances; 0: it has none */
     double step;         /* s, of the stretch at hand */
-    double past;         /* s, of the stretch before it */
+    double length;       /* s, of the stretch that was complete last */
+    double past;         /* s, of the one before the stretch at hand */
     double lateness;     /* s, that an event may be early by, while its far side is looked at */
     double slope; /* 1/s: most that a derivative in the stretch at hand may be of what it is of */
     double cost;  /* of one instant, in instructions, about */
@@ -26,6 +59,7 @@ struct audit_part {
     bool has_entered; /* the state at its last event is in `before` */
     bool is_open;     /* `before` is the end of the stretch that was just left */
     bool is_coarse;   /* the stretch at hand */
+    struct audit_watch *watch;
 };
 
 /* Sums over the branches at each node, or of each coil, while a law is checked. */
@@ -46,6 +80,7 @@ struct dalcs_audit {
     int *node_of;      /* [n_nodes] that stands for all that shorts join with it */
     bool *has_charge;  /* [n_nodes] a capacitor hangs on it */
     bool *is_fed;      /* [n_nodes] ground, or a source without a jump at 0 holds it */
+    bool *is_held;     /* [n_nodes] likewise, whatever it does */
     int *first_lambda; /* [n_devices] */
     struct audit_part *part;
     double *v_scale, *i_scale, *lambda_scale;     /* largest so far */
@@ -67,6 +102,7 @@ struct dalcs_audit {
     struct dalcs_audit_summary count; /* of it, what is counted */
     uint64_t seed;
     double credit, threshold; /* instructions */
+    double reserve;           /* that what is new may take besides */
     struct dalcs_arena arena;
 };
 
@@ -106,6 +142,9 @@ static inline double audit_amperes(const struct dalcs_audit *audit, const struct
 double audit_current(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
                      int device);
 
+/* parts.c: parts, and room for all, in audit->arena. */
+enum dalcs_status audit_set_up(struct dalcs_audit *audit) DALCS_MUST_CHECK;
+
 /* What controls a switch, less its threshold, and half the width of its hysteresis. */
 double audit_control(const struct dalcs_audit *audit, const struct dalcs_audit_state *s, int device,
                      double *half_width);
@@ -123,7 +162,26 @@ double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *p
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time);
 
-/* laws.c: all that holds at one time. */
+/* Gauss' rule with five nodes on (0, 1), exact for polynomials up to degree 9 (Abramowitz and Stegun, 25.4.29). */
+enum { AUDIT_GAUSS = 5 };
+
+extern const double audit_gauss_node[AUDIT_GAUSS], audit_gauss_weight[AUDIT_GAUSS];
+
+/* formulas.c, laws.c */
+void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
+                         const struct dalcs_audit_state *s, int device);
+void audit_check_branch(struct dalcs_audit *audit, struct audit_part *part,
+                        const struct dalcs_audit_state *s, int device);
+
+/* kirchhoff.c: what leaves each node of a part, audit->sums, with its scale and rounding. */
+void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part,
+                        const struct dalcs_audit_state *s);
+
+/* V and A that the two branches of a diode are held to. */
+void audit_diode_scale(const struct dalcs_audit *audit, const struct audit_part *part, int device,
+                       double scale[2]);
+
+/* kirchhoff.c: all that holds at one time. */
 void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s);
 

@@ -16,6 +16,17 @@ static bool may_have_turned(const struct dalcs_audit *audit, int model) {
     return audit->circuit->switch_model[model].vh > 0.0;
 }
 
+/* Coils without leakage between them hand an impulse of current on: their fluxes stay what they are. */
+static bool is_perfectly_coupled(const struct dalcs_audit *audit, const struct audit_part *part,
+                                 int device) {
+    bool is = false;
+    for (int k = 0; k < part->n_couplings && !is; k++) {
+        const struct dalcs_coupling *m = &audit->circuit->coupling[part->coupling[k]];
+        is = (m->inductor[0] == device || m->inductor[1] == device) && fabs(m->k) == 1.0;
+    }
+    return is;
+}
+
 /* May charge pass in no time? The impulse of a diode's current needs that it stands at its knee thereafter. */
 static bool passes_charge(const struct dalcs_audit *audit, const struct audit_part *part,
                           const struct dalcs_audit_state *before,
@@ -29,6 +40,8 @@ static bool passes_charge(const struct dalcs_audit *audit, const struct audit_pa
         return true;
     case DALCS_VCCS:
         return d->behaviour != NULL;
+    case DALCS_INDUCTOR:
+        return is_perfectly_coupled(audit, part, device);
     case DALCS_SWITCH:
         return audit->circuit->switch_model[d->model].ron == 0.0 &&
                (before->is_closed[device] || after->is_closed[device] ||

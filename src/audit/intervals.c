@@ -4,13 +4,10 @@
  * integrals: the charge that capacitors at a node took up is what its other branches brought. */
 #include "audit_internal.h"
 
-/* Gauss' rule with five nodes on (0, 1), exact for polynomials up to degree 9 (Abramowitz and Stegun, 25.4.29). */
-static const double NODE[] = {0.04691007703066800, 0.23076534494715845, 0.5, 0.76923465505284155,
-                              0.95308992296933200};
-static const double WEIGHT[] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
-                                0.23931433524968324, 0.11846344252809454};
-
-enum { N_NODES = sizeof NODE / sizeof NODE[0] };
+const double audit_gauss_node[] = {0.04691007703066800, 0.23076534494715845, 0.5,
+                                   0.76923465505284155, 0.95308992296933200};
+const double audit_gauss_weight[] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
+                                     0.23931433524968324, 0.11846344252809454};
 
 static void clear(struct dalcs_audit *audit, const struct audit_part *part) {
     for (int k = 0; k < part->n_nodes; k++) {
@@ -142,10 +139,10 @@ void audit_check_interval(struct dalcs_audit *audit, struct audit_part *part, do
     s->t = from;
     audit->reader.read(audit->reader.user, index, s);
     add_storage(audit, part, s, -1.0);
-    for (int k = 0; k < N_NODES; k++) {
-        s->t = from + NODE[k] * (to - from);
+    for (int k = 0; k < AUDIT_GAUSS; k++) {
+        s->t = from + audit_gauss_node[k] * (to - from);
         audit->reader.read(audit->reader.user, index, s);
-        add_flow(audit, part, s, WEIGHT[k] * (to - from));
+        add_flow(audit, part, s, audit_gauss_weight[k] * (to - from));
     }
     s->side = DALCS_LEFT;
     s->t = to;

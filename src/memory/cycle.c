@@ -538,17 +538,6 @@ double dalcs_cycle_period(const struct dalcs_cycle *cycle) {
     return cycle->period;
 }
 
-void dalcs_cycle_pass(const struct dalcs_radau_part *part, long n, double *x, double *later) {
-    const int n_x = part->component->system->n_x;
-    const double *map = part->memory.cycle->segment[part->memory.cycle->at].period_last.row;
-    for (long k = 0; k < n; k++) {
-        for (int i = 0; i < n_x; i++) {
-            const double *row = map + i * (n_x + 1);
-            later[i] = row[n_x];
-            for (int j = 0; j < n_x; j++) {
-                later[i] += row[j] * x[j];
-            }
-        }
-        memcpy(x, later, (size_t)n_x * sizeof(double));
-    }
+const double *dalcs_cycle_map(const struct dalcs_radau_part *part) {
+    return part->memory.cycle->segment[part->memory.cycle->at].period_last.row;
 }

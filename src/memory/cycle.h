@@ -70,9 +70,9 @@ enum dalcs_status dalcs_cycle_leap(struct dalcs_radau *r, double until, long mos
 int dalcs_cycle_n_segments(const struct dalcs_cycle *cycle);
 double dalcs_cycle_period(const struct dalcs_cycle *cycle);
 
-/* Takes states x[n_x] with which the present segment began n periods on, one by one and with nothing looked at; later[n_x]
- * is work. Just after a leap. */
-void dalcs_cycle_pass(const struct dalcs_radau_part *part, long n, double *x, double *later);
+/* [n_x][n_x + 1] with which the present segment begins a period on, as a function of those with which it begins. Just after
+ * a leap. */
+const double *dalcs_cycle_map(const struct dalcs_radau_part *part);
 
 /* Where a leap of at most so many periods would lead to, which then are stepped all the same, so that the two can be
  * compared: the states x[n_x] with which the present segment begins at *t (s; INFINITY: no leap). */

@@ -69,6 +69,7 @@ static void write_audit(struct dalcs_json *json, const struct dalcs_report *repo
     dalcs_json_integer(json, "instants", report->audit.instants);
     dalcs_json_integer(json, "segments", report->audit.segments);
     dalcs_json_integer(json, "audited", report->audit.audited);
+    dalcs_json_integer(json, "screened", report->audit.screened);
     dalcs_json_integer(json, "positions", report->audit.positions);
     dalcs_json_number(json, "worst", report->audit.worst);
     dalcs_json_number(json, "allowed", report->audit.allowed);

@@ -13,6 +13,7 @@ struct dalcs_audit_run {
     struct dalcs_radau *radau;
     struct dalcs_audit *audit;  /* NULL: nothing is audited */
     struct audit_members *part; /* [n_systems] */
+    int *pair_of_lambda;        /* [n_lambdas] in its system */
     double *tried;              /* states that a leap would lead to, and work */
     double leap_time;           /* s, where one began */
     double tried_time;          /* s, when; INFINITY: none is tried */
@@ -40,8 +41,11 @@ void dalcs_audit_run_enter(struct dalcs_audit_run *a);
 enum dalcs_status dalcs_audit_run_leap(struct dalcs_audit_run *a, double until,
                                        bool *may) DALCS_MUST_CHECK;
 
-/* Around a leap: the states behind it are those that the period's map leads to in the time that has passed, counted by
- * periods and applied one by one. */
+/* A time up to `until` that the leap may go to: now and then it lands on its way, and the segment there is audited. */
+double dalcs_audit_run_until(struct dalcs_audit_run *a, double until);
+
+/* Around a leap: the states behind it are those that the power of the period's map leads to, for the time that has
+ * passed. */
 void dalcs_audit_run_start_leap(struct dalcs_audit_run *a);
 void dalcs_audit_run_end_leap(struct dalcs_audit_run *a);
 

@@ -276,6 +276,7 @@ static enum dalcs_status leap(struct transient *c) {
     if (!may) {
         return DALCS_OK;
     }
+    until = dalcs_audit_run_until(c->audit, until);
     dalcs_audit_run_start_leap(c->audit);
     DALCS_TRY(dalcs_cycle_leap(c->radau, until, c->to_go, &leap));
     if (leap == NULL) {

@@ -114,13 +114,54 @@ c2 d 0 4.7u
 """
 
 
+SLOW = """a buck of 2000 periods, on which a sine that is slow by far acts: no two periods are the same
+vin in 0 12
+vg g 0 PULSE(0 1 0 0 0 4u 10u)
+s1 in x g 0 sw
+d1 0 x di
+l1 x out 47u
+c1 out 0 100u
+r1 out 0 2
+vq q 0 SIN(0 1 50)
+rq q out 1k
+.model sw SW(vt=0.5 ron=0.01)
+.model di D(ron=0.01)
+.tran 5m 20m uic
+"""
+
+SHORT = BUCK.replace(".tran 5m 5m uic", ".tran 10u 100u uic")
+
+APART = """a buck beside a part of its own: no periods are leapt over
+vin in 0 12
+vg g 0 PULSE(0 1 0 0 0 4u 10u)
+s1 in x g 0 sw
+d1 0 x di
+l1 x out 47u
+c1 out 0 100u
+r1 out 0 2
+v2 y 0 1
+r2 y z 1
+c2 z 0 1m
+.model sw SW(vt=0.5 ron=0.01)
+.model di D(ron=0.01)
+.tran 5m 20m uic
+"""
+
+
+LEAPS = BUCK.replace(".tran 5m 5m uic", ".tran 1m 20m uic")
+
+BEAT = BRIDGE.replace("v1 a b SIN(0 24 50)", "v1 a m SIN(0 24 50)\nv2 m b SIN(0 1 7.77)")
+
+
+def once(calls, good, bad):
+    """In C: `bad` the so-manieth time only."""
+    return f"static long calls_; if (++calls_ == {calls}) {{ {bad} }} else {{ {good} }}"
+
+
 # name: (file, what to replace, by what, netlist)
 MUTATIONS = {
     "a source is dropped from a control": (
         "excitation/control_course.c", "k < a->p[pair + 1]; k++", "k + 1 < a->p[pair + 1]; k++", PWM),
-    "a command is lost": (
-        "excitation/commands.c", "            m->is_on = !m->is_on;\n",
-        "            m->is_on = m->n[0] % 7 == 5 ? m->is_on : !m->is_on;\n", BUCK),
     "a command comes early": (
         "excitation/commands.c", "    m->next = dalcs_command_time(m, way, m->n[way]);\n",
         "    m->next = dalcs_command_time(m, way, m->n[way]) * (1.0 - 1e-4);\n", FLYBACK),
@@ -152,6 +193,40 @@ MUTATIONS = {
         HELD),
     "a resistor is stamped too large": (
         "dalcs/stamp_device.c", "1.0 / d->value", "1.0 / (1.00001 * d->value)", FILTER),
+    "a state is nudged by 1e-6 in one segment of 20": (
+        "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
+        "    part->segment.in[s->n_x] = 1.0;\n" + once(15, "", "part->segment.in[0] *= 1.0 + 1e-6;"), SHORT),
+    "a state is nudged by 1e-6 in one segment of 4000": (
+        "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
+        "    part->segment.in[s->n_x] = 1.0;\n" + once(3210, "", "part->segment.in[0] *= 1.0 + 1e-6;"), SLOW),
+    "a state is nudged by 1e-6 in one segment of 4000 that recur": (
+        "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
+        "    part->segment.in[s->n_x] = 1.0;\n" + once(3210, "", "part->segment.in[0] *= 1.0 + 1e-6;"), APART),
+    "the values of one segment of 4000 are too large by 1e-5": (
+        "integrator/segment.c", "    part->segment.rounding = dalcs_stage_rounding(*entry);\n",
+        "    part->segment.rounding = dalcs_stage_rounding(*entry);\n"
+        + once(3210, "", "for (int k = part->stages.layout.stride; k < part->stages.layout.n_fixed; k++) "
+                         "{ part->segment.out[k] *= 1.00001; }"), SLOW),
+    "one command of 4000 is lost": (
+        "excitation/commands.c", "            m->is_on = !m->is_on;\n",
+        "            " + once(3210, "m->is_on = !m->is_on;", ""), SLOW),
+    "one command of 4000 comes 1e-3 of its time too early": (
+        "excitation/commands.c", "    m->next = dalcs_command_time(m, way, m->n[way]);\n",
+        "    m->next = dalcs_command_time(m, way, m->n[way]);\n"
+        "    m->next -= m->next > 16.001e-3 && m->next < 16.009e-3 ? 4e-9 : 0.0;\n", SLOW),
+    "one map of 4000 is stale": (
+        "integrator/segment.c",
+        "    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->segment.h, part->segment.in,",
+        "    static long calls_;\n    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, "
+        "++calls_ == 3210 ? 0.5 * part->segment.h : part->segment.h, part->segment.in,", SLOW),
+    "one event of 200 comes late": (
+        "integrator/segment.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
+        "    t_end += part->guards.n_crossed > 0 && part->segment.t > 1.0 && part->segment.t < 1.01 ? 1e-3 * part->segment.h : 0.0;\n"
+        "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n", BEAT),
+    "one leap of many is nudged by 1e-6": (
+        "memory/cycle.c", "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n    return n;\n",
+        "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n"
+        + once(5, "", "part->x[0] *= 1.0 + 1e-6;") + "\n    return n;\n", LEAPS),
 }
 
 
@@ -196,13 +271,14 @@ def mutant(build, source, file, old, new, where):
 
 
 AT = "4.9e-3\n"  # s, so that there are few rows
+OFTEN = "".join(f"{k}.1e-3\n" for k in range(20))
 
 
 def verdict(program, netlist, where):
     """("passes" | "noticed" | "broken" | "fails otherwise", what the run said)."""
     (where / "circuit.cir").write_text(netlist + ".end\n")
-    (where / "at").write_text(AT)
-    few_rows = ["--at", str(where / "at")] if "leapt" in netlist else []
+    (where / "at").write_text(OFTEN if netlist == LEAPS else AT)
+    few_rows = ["--at", str(where / "at")] if netlist in (BUCK, SLOW, APART, LEAPS) else []
     try:
         command = [str(program), "run", str(where / "circuit.cir"), "-o", str(where / "out.csv")]
         ran = subprocess.run(command + few_rows, capture_output=True, text=True, timeout=60)

@@ -95,17 +95,18 @@ static struct dalcs_audit_summary audited(enum fault which) {
                                                 .tolerance = &tolerance,
                                                 .failure = tolerance,
                                                 .read_work = &work};
-    const struct dalcs_audit_reader reader = {NULL, read_exact, raise_nothing};
+    const struct dalcs_audit_reader reader = {.read = read_exact, .raise = raise_nothing};
     struct dalcs_audit *audit;
     ck_assert_int_eq(dalcs_audit_create(&audit, &t.circuit, &options, &reader), DALCS_OK);
     const struct dalcs_audit_stretch open = {.to = CLOSES, .step = CLOSES, .degree = 3};
     const struct dalcs_audit_stretch closed = {
         .from = CLOSES, .to = CLOSES + LONG, .step = LONG, .degree = 3};
     dalcs_audit_enter(audit, &open);
-    ck_assert(!dalcs_audit_passes_over(audit, 0, 1.0));
+    ck_assert(!dalcs_audit_passes_over(audit, &open, 1.0));
     dalcs_audit_leave(audit, &open);
+    ck_assert(dalcs_audit_begins(audit, 0));
     dalcs_audit_enter(audit, &closed);
-    ck_assert(!dalcs_audit_passes_over(audit, 0, 1.0));
+    ck_assert(!dalcs_audit_passes_over(audit, &closed, 1.0));
     dalcs_audit_leave(audit, &closed);
     const struct dalcs_audit_summary found = dalcs_audit_summarise(audit);
     dalcs_audit_destroy(audit);

@@ -1,0 +1,98 @@
+/* findings.c - the worst that was found of each law, and its name. */
+#include "audit_internal.h"
+
+#include <stdio.h>
+
+int dalcs_audit_n_of(const struct dalcs_audit *audit, enum dalcs_audit_law law) {
+    return law == DALCS_AUDIT_KCL      ? audit->circuit->n_nodes
+           : law >= DALCS_AUDIT_ENERGY ? audit->options.n_parts
+                                       : audit->circuit->n_devices;
+}
+
+static void find_coarse(struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
+                        double defect, double time) {
+    if (!(defect <= audit->coarse.defect)) {
+        audit->coarse.defect = isnan(defect) ? INFINITY : defect;
+        audit->coarse.time = time;
+        audit->coarse_law = law;
+        audit->coarse_index = index;
+    }
+}
+
+void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
+                int index, double defect, double scale, double time) {
+    struct audit_worst *worst = &audit->worst_of[law][index];
+    if (part->is_coarse) {
+        find_coarse(audit, law, index, audit_ratio(defect, scale), time);
+        return;
+    }
+    worst->part = (int)(part - audit->part);
+    worst->scale = fmax(worst->scale, scale);
+    if (!(defect <= worst->defect)) { /* not a number is as wrong as can be */
+        worst->defect = isnan(defect) ? INFINITY : defect;
+        worst->time = time;
+    }
+}
+
+struct dalcs_audit_finding dalcs_audit_finding_of(const struct dalcs_audit *audit,
+                                                  enum dalcs_audit_law law, int index) {
+    const struct audit_worst *worst = &audit->worst_of[law][index];
+    return (struct dalcs_audit_finding){audit_ratio(worst->defect, worst->scale), worst->time};
+}
+
+struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit) {
+    struct dalcs_audit_summary sum = audit->count;
+    sum.index = -1;
+    for (int law = 0; law < DALCS_AUDIT_N_LAWS && audit->options.n_parts > 0; law++) {
+        for (int i = 0; i < dalcs_audit_n_of(audit, law); i++) {
+            const struct dalcs_audit_finding f = dalcs_audit_finding_of(audit, law, i);
+            const double allowed = audit->part[audit->worst_of[law][i].part].tolerance;
+            const bool is_broken = f.defect > audit->options.failure;
+            const bool is_worse = f.defect * sum.allowed > sum.defect * allowed;
+            if (sum.index < 0 || is_broken > sum.is_broken ||
+                (is_broken == sum.is_broken && is_worse)) {
+                sum.is_broken = is_broken;
+                sum.defect = f.defect;
+                sum.allowed = allowed;
+                sum.time = f.time;
+                sum.law = law;
+                sum.index = i;
+            }
+        }
+    }
+    return sum;
+}
+
+struct dalcs_audit_summary dalcs_audit_summarise_coarse(const struct dalcs_audit *audit) {
+    struct dalcs_audit_summary sum = audit->count;
+    sum.index = audit->coarse.defect > 0.0 ? audit->coarse_index : -1;
+    sum.defect = audit->coarse.defect;
+    sum.time = audit->coarse.time;
+    sum.law = audit->coarse_law;
+    return sum;
+}
+
+void dalcs_audit_law_name(const struct dalcs_audit *audit, enum dalcs_audit_law law, int index,
+                          char *text, size_t size) {
+    const struct dalcs_circuit *c = audit->circuit;
+    switch (law) {
+    case DALCS_AUDIT_KCL:
+        snprintf(text, size, "KCL at %s", c->node_name[index]);
+        break;
+    case DALCS_AUDIT_BRANCH:
+        snprintf(text, size, "%s", c->device[index].name);
+        break;
+    case DALCS_AUDIT_CURRENT:
+        snprintf(text, size, "i(%s)", c->device[index].name);
+        break;
+    case DALCS_AUDIT_POSITION:
+        snprintf(text, size, "position of %s", c->device[index].name);
+        break;
+    case DALCS_AUDIT_ENERGY:
+        snprintf(text, size, "Tellegen");
+        break;
+    default:
+        snprintf(text, size, "periods leapt over");
+        break;
+    }
+}

@@ -1,0 +1,94 @@
+/* formulas.c - what B, and E and G with formulas, put out, and each of their pairs. */
+#include "audit_internal.h"
+
+/* *size: what the terms are held to, added up; *terms: what they are. */
+static double affine_value(const struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *s, int device,
+                           const struct dalcs_affine *a, double *size, double *terms) {
+    double sum = a->constant;
+    *size = *terms = fabs(a->constant);
+    for (int k = 0; k < a->n; k++) {
+        const struct dalcs_affine_term *term = &a->term[k];
+        double value;
+        double scale;
+        switch (term->kind) {
+        case DALCS_QUANTITY_VOLTAGE:
+            value = s->v[term->index];
+            scale = term->index > 0 ? audit_volts(audit, part, term->index, 0) : 0.0;
+            break;
+        case DALCS_QUANTITY_CURRENT:
+            value = audit_current(audit, s, term->index);
+            scale = audit_amperes(audit, part, term->index);
+            break;
+        case DALCS_QUANTITY_PAIR:
+            value = s->lambda[audit->first_lambda[device] + term->index];
+            scale = audit->lambda_scale[audit->first_lambda[device] + term->index];
+            break;
+        default:
+            value = dalcs_stimulus_value(&audit->circuit->stimulus[term->index], s->t, s->side);
+            scale = fabs(value);
+            break;
+        }
+        sum += term->coefficient * value;
+        *size += fabs(term->coefficient) * fmax(scale, fabs(value));
+        *terms += fabs(term->coefficient * value);
+    }
+    return sum;
+}
+
+/* A lambda that adds to what an affine function reads besides is held to that one's scale, too. */
+static void raise_lambdas(struct dalcs_audit *audit, int device, const struct dalcs_affine *a,
+                          double size) {
+    double *scale = audit->lambda_scale + audit->first_lambda[device];
+    for (int k = 0; k < a->n; k++) {
+        if (a->term[k].kind == DALCS_QUANTITY_PAIR) {
+            size -= fabs(a->term[k].coefficient) * scale[a->term[k].index];
+        }
+    }
+    for (int k = 0; k < a->n; k++) {
+        if (a->term[k].kind == DALCS_QUANTITY_PAIR) {
+            scale[a->term[k].index] =
+                fmax(scale[a->term[k].index], size / fabs(a->term[k].coefficient));
+        }
+    }
+}
+
+/* What rounding of charges and fluxes makes of the currents and voltages that an affine function reads. */
+static double rounding_read(const struct dalcs_audit *audit, const struct dalcs_affine *a) {
+    double rounding = 0.0;
+    for (int k = 0; k < a->n; k++) {
+        const struct dalcs_affine_term *term = &a->term[k];
+        rounding +=
+            term->kind == DALCS_QUANTITY_CURRENT   ? fabs(term->coefficient) * audit->sums.amperes
+            : term->kind == DALCS_QUANTITY_VOLTAGE ? fabs(term->coefficient) * audit->sums.volts
+                                                   : 0.0;
+    }
+    return rounding;
+}
+
+/* A formula's output, less what the device puts out; each of its pairs. */
+void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
+                         const struct dalcs_audit_state *s, int device) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    double size;
+    double terms;
+    const double f = affine_value(audit, part, s, device, &d->behaviour->output, &size, &terms);
+    const bool is_voltage = d->kind == DALCS_VCVS;
+    double *largest = &part->formula[is_voltage ? 0 : 1];
+    *largest = fmax(*largest, terms);
+    const double is = is_voltage ? audit_voltage(s, d) : s->i[device];
+    const double scale = is_voltage ? audit_volts(audit, part, d->node[0], d->node[1])
+                                    : audit_amperes(audit, part, device);
+    const double held = size + scale;
+    const enum dalcs_audit_law law = is_voltage ? DALCS_AUDIT_BRANCH : DALCS_AUDIT_CURRENT;
+    const double rounding = AUDIT_ROUNDING * size + rounding_read(audit, &d->behaviour->output);
+    audit_find(audit, part, law, device, fabs(is - f) - rounding, held, s->t);
+    for (int k = 0; k < d->behaviour->n_pairs; k++) {
+        const int pair = audit->first_lambda[device] + k;
+        const double w = affine_value(audit, part, s, device, &d->behaviour->w[k], &size, &terms);
+        raise_lambdas(audit, device, &d->behaviour->w[k], size);
+        const double lambda = audit_ratio(s->lambda[pair], audit->lambda_scale[pair]);
+        const double over = fabs(fmin(lambda, audit_ratio(w, size))) - AUDIT_ROUNDING;
+        audit_find(audit, part, law, device, over * held, held, s->t);
+    }
+}

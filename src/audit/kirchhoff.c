@@ -1,0 +1,121 @@
+/* kirchhoff.c - what leaves each node, with its rounding, and all that holds at one time. */
+#include "audit_internal.h"
+
+static void leave(const struct dalcs_audit *audit, int node, double current, double scale,
+                  double rounding) {
+    node = audit->node_of[node];
+    audit->sums.current[node] += current;
+    audit->sums.scale[node] += scale;
+    audit->sums.rounding[node] += rounding;
+}
+
+/* Charge and flux are each a product and a sum, at the two ends that a derivative is taken between. */
+#define STORED_ROUNDING (4.0 * 0x1p-52)
+
+/* What rounding of fluxes makes of voltages and of charges of currents. Conducting branches hand it on, and along a chain
+ * of them it adds up: what is at one device may come from all others. */
+static void round_storage(struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *s) {
+    const double least = STORED_ROUNDING * part->slope;
+    audit->sums.volts = audit->sums.amperes = 0.0;
+    for (int k = 0; k < part->n_devices; k++) {
+        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        if (d->kind == DALCS_INDUCTOR) {
+            audit->sums.volts += least * audit_flux_scale(audit, part, part->device[k]);
+        } else if (d->kind == DALCS_CAPACITOR) {
+            const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
+            audit->sums.amperes += least * d->value * volts;
+        }
+    }
+}
+
+/* What rounding of the voltages at a device makes of its current, of a charge over a step, or over a step of a flux. */
+static double rounding_of(const struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *s, const struct dalcs_device *d,
+                          double current) {
+    const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
+    if (d->kind == DALCS_CAPACITOR) {
+        return STORED_ROUNDING * d->value * part->slope * volts;
+    }
+    if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
+        const double controls = fabs(s->v[d->node[2]]) + fabs(s->v[d->node[3]]);
+        return fabs(d->value) * (AUDIT_ROUNDING * controls + audit->sums.volts);
+    }
+    if (d->kind == DALCS_CCCS) {
+        return AUDIT_ROUNDING * fabs(current) + fabs(d->value) * audit->sums.amperes;
+    }
+    if (d->kind == DALCS_INDUCTOR) {
+        /* a voltage of 0 is that to the rounding of the largest one in the same equations (Wilkinson) */
+        return AUDIT_ROUNDING * fabs(current) +
+               STORED_ROUNDING * fmax(volts, part->largest_volt) * part->step / d->value;
+    }
+    const double g = d->kind == DALCS_RESISTOR && d->value != 0.0 ? fabs(1.0 / d->value) : 0.0;
+    return AUDIT_ROUNDING * (g * volts + fabs(current)) + 2.0 * g * audit->sums.volts;
+}
+
+void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part,
+                        const struct dalcs_audit_state *s) {
+    for (int k = 0; k < part->n_nodes; k++) {
+        const int node = part->node[k];
+        audit->sums.current[node] = audit->sums.scale[node] = audit->sums.rounding[node] = 0.0;
+    }
+    round_storage(audit, part, s);
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        const struct dalcs_device *d = &audit->circuit->device[device];
+        const bool is_charge = d->kind == DALCS_CAPACITOR;
+        const double current = is_charge ? 0.0 : audit_current(audit, s, device);
+        const double scale = is_charge ? 0.0 : audit_amperes(audit, part, device);
+        const double rounding = rounding_of(audit, part, s, d, current);
+        leave(audit, d->node[0], current, scale, rounding);
+        leave(audit, d->node[1], -current, scale, rounding);
+    }
+    audit->sums.rounding[0] = 0.0;
+}
+
+void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
+                       const struct dalcs_audit_state *s) {
+    double volt = part->formula[0]; /* what cancels in a formula leaves its rounding */
+    double ampere = part->formula[1];
+    for (int k = 0; k < part->n_devices; k++) {
+        const int device = part->device[k];
+        const struct dalcs_device *d = &audit->circuit->device[device];
+        const double i = d->kind == DALCS_CAPACITOR ? 0.0 : audit_current(audit, s, device);
+        audit->i_scale[device] = fmax(audit->i_scale[device], fabs(i));
+        ampere = fmax(ampere, audit->i_scale[device]);
+        for (int e = 0; e < 2; e++) {
+            const int node = d->node[e];
+            audit->v_scale[node] = fmax(audit->v_scale[node], fabs(s->v[node]));
+            volt = fmax(volt, audit->v_scale[node]);
+        }
+        for (int p = 0; d->behaviour != NULL && p < d->behaviour->n_pairs; p++) {
+            double *scale = &audit->lambda_scale[audit->first_lambda[device] + p];
+            *scale = fmax(*scale, fabs(s->lambda[audit->first_lambda[device] + p]));
+        }
+    }
+    part->largest_volt = volt;
+    /* doc/methods.md, "What the tolerance means": signals below 1e-5 of the largest of their unit are held to
+     * that one's scale, and each unit vouches a millionth for the other through the conductances, of 1 S where there
+     * are none. */
+    const bool has_any = part->most > 0.0;
+    part->volt = fmax(1e-5 * volt, 1e-6 / (has_any ? part->most : 1.0) * ampere);
+    part->ampere = fmax(1e-5 * ampere, 1e-6 * (has_any ? part->least : 1.0) * volt);
+}
+
+void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
+                         const struct dalcs_audit_state *s) {
+    audit->count.instants++;
+    audit_sum_currents(audit, part, s);
+    for (int k = 0; k < part->n_devices; k++) {
+        audit_check_branch(audit, part, s, part->device[k]);
+    }
+    for (int k = 0; k < part->n_nodes; k++) {
+        const int node = part->node[k];
+        if (!audit->has_charge[node]) {
+            audit_find(audit, part, DALCS_AUDIT_KCL, node,
+                       fabs(audit->sums.current[node]) - audit->sums.rounding[node] -
+                           audit->options.abstol,
+                       audit->sums.scale[node], s->t);
+        }
+    }
+}

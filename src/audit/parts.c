@@ -1,0 +1,212 @@
+/* parts.c - who belongs to a part, and room for what is read of it. */
+#include "audit_internal.h"
+
+#include "union_find.h"
+
+/* ---- Parts --------------------------------------------------------------------------------------- */
+
+static void count_members(struct dalcs_audit *audit, int *part_of_node) {
+    const struct dalcs_circuit *c = audit->circuit;
+    for (int i = 0; i < c->n_devices; i++) {
+        const int k = audit->options.device_part[i];
+        if (k < 0 || dalcs_device_is_short(&c->device[i])) {
+            continue;
+        }
+        audit->part[k].n_devices++;
+        for (int e = 0; e < 2; e++) {
+            const int node = audit->node_of[c->device[i].node[e]];
+            if (node != 0 && part_of_node[node] < 0) {
+                part_of_node[node] = k;
+                audit->part[k].n_nodes++;
+            }
+        }
+    }
+    for (int i = 0; i < c->n_couplings; i++) {
+        const int k = audit->options.device_part[c->coupling[i].inductor[0]];
+        if (k >= 0) {
+            audit->part[k].n_couplings++;
+        }
+    }
+}
+
+static void see_conductance(struct audit_part *part, double g) {
+    if (g > 0.0 && isfinite(g)) {
+        part->most = fmax(part->most, g);
+        part->least = part->least > 0.0 ? fmin(part->least, g) : g;
+    }
+}
+
+static void list_members(struct dalcs_audit *audit, const int *part_of_node) {
+    const struct dalcs_circuit *c = audit->circuit;
+    for (int k = 0; k < audit->options.n_parts; k++) {
+        audit->part[k].n_devices = audit->part[k].n_nodes = audit->part[k].n_couplings = 0;
+    }
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        const int k = audit->options.device_part[i];
+        if (k < 0 || dalcs_device_is_short(d)) {
+            continue;
+        }
+        struct audit_part *part = &audit->part[k];
+        part->device[part->n_devices++] = i;
+        for (int e = 0; e < 2; e++) {
+            const bool is_charged = d->kind == DALCS_CAPACITOR;
+            audit->has_charge[audit->node_of[d->node[e]]] |= is_charged;
+        }
+        part->has_formula |= d->behaviour != NULL && d->behaviour->n_pairs > 0;
+        if (d->kind == DALCS_RESISTOR) {
+            see_conductance(part, fabs(1.0 / d->value));
+        } else if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
+            see_conductance(part, fabs(d->value));
+        } else if (d->kind == DALCS_SWITCH) {
+            see_conductance(part, 1.0 / c->switch_model[d->model].ron);
+            see_conductance(part, 1.0 / c->switch_model[d->model].roff);
+        } else if (d->kind == DALCS_DIODE) {
+            see_conductance(part, 1.0 / c->diode_model[d->model].ron);
+            see_conductance(part, 1.0 / c->diode_model[d->model].roff);
+        }
+    }
+    for (int node = 1; node < c->n_nodes; node++) {
+        if (part_of_node[node] >= 0) {
+            struct audit_part *part = &audit->part[part_of_node[node]];
+            part->node[part->n_nodes++] = node;
+        }
+    }
+    for (int i = 0; i < c->n_couplings; i++) {
+        const int k = audit->options.device_part[c->coupling[i].inductor[0]];
+        if (k >= 0) {
+            audit->part[k].coupling[audit->part[k].n_couplings++] = i;
+        }
+    }
+}
+
+static enum dalcs_status make_parts(struct dalcs_audit *audit) {
+    struct dalcs_arena *arena = &audit->arena;
+    const struct dalcs_circuit *c = audit->circuit;
+    int *part_of_node = dalcs_arena_alloc(arena, (size_t)c->n_nodes, sizeof(int));
+    audit->part = dalcs_arena_alloc(arena, (size_t)audit->options.n_parts, sizeof(*audit->part));
+    if (part_of_node == NULL || audit->part == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int n = 0; n < c->n_nodes; n++) {
+        part_of_node[n] = -1;
+    }
+    count_members(audit, part_of_node);
+    for (int k = 0; k < audit->options.n_parts; k++) {
+        struct audit_part *part = &audit->part[k];
+        part->device = dalcs_arena_alloc(arena, (size_t)part->n_devices, sizeof(int));
+        part->node = dalcs_arena_alloc(arena, (size_t)part->n_nodes, sizeof(int));
+        part->watch = dalcs_arena_alloc(arena, 1, sizeof(*part->watch));
+        part->coupling = dalcs_arena_alloc(arena, (size_t)part->n_couplings, sizeof(int));
+        if (part->watch == NULL || part->device == NULL || part->node == NULL ||
+            part->coupling == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        part->tolerance = audit->options.tolerance[k];
+    }
+    list_members(audit, part_of_node);
+    return DALCS_OK;
+}
+
+static void merge_shorts(struct dalcs_audit *audit) {
+    const struct dalcs_circuit *c = audit->circuit;
+    dalcs_union_reset(audit->node_of, c->n_nodes);
+    for (int i = 0; i < c->n_devices; i++) {
+        if (dalcs_device_is_short(&c->device[i])) {
+            dalcs_union_join(audit->node_of, c->device[i].node[0], c->device[i].node[1]);
+        }
+    }
+    for (int n = 0; n < c->n_nodes; n++) {
+        audit->node_of[n] = dalcs_union_find(audit->node_of, n);
+    }
+}
+
+/* ---- Room ---------------------------------------------------------------------------------------- */
+
+static enum dalcs_status make_state(struct dalcs_audit *audit, struct dalcs_audit_state *s) {
+    const struct dalcs_circuit *c = audit->circuit;
+    s->v = dalcs_arena_alloc(&audit->arena, (size_t)c->n_nodes, sizeof(double));
+    s->i = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(double));
+    s->lambda = dalcs_arena_alloc(&audit->arena, (size_t)audit->n_lambdas, sizeof(double));
+    s->is_closed = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(bool));
+    s->is_mean = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(bool));
+    bool complete = s->v != NULL && s->i != NULL && s->lambda != NULL && s->is_closed != NULL &&
+                    s->is_mean != NULL;
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+static enum dalcs_status make_sums(struct dalcs_audit *audit) {
+    const size_t n_nodes = (size_t)audit->circuit->n_nodes;
+    const size_t n_devices = (size_t)audit->circuit->n_devices;
+    double **per_node[] = {&audit->sums.current, &audit->sums.scale, &audit->sums.rounding,
+                           &audit->v_scale, &audit->offset};
+    double **per_device[] = {&audit->sums.flux, &audit->i_scale};
+    bool complete = true;
+    for (size_t k = 0; k < sizeof per_node / sizeof *per_node; k++) {
+        *per_node[k] = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(double));
+        complete = complete && *per_node[k] != NULL;
+    }
+    for (size_t k = 0; k < sizeof per_device / sizeof *per_device; k++) {
+        *per_device[k] = dalcs_arena_alloc(&audit->arena, n_devices, sizeof(double));
+        complete = complete && *per_device[k] != NULL;
+    }
+    for (int law = 0; law < DALCS_AUDIT_N_LAWS; law++) {
+        audit->worst_of[law] = dalcs_arena_alloc(
+            &audit->arena, (size_t)dalcs_audit_n_of(audit, law), sizeof(*audit->worst_of[law]));
+        complete = complete && audit->worst_of[law] != NULL;
+    }
+    audit->lambda_scale =
+        dalcs_arena_alloc(&audit->arena, (size_t)audit->n_lambdas, sizeof(double));
+    audit->cluster = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(int));
+    return complete && audit->lambda_scale != NULL && audit->cluster != NULL ? DALCS_OK
+                                                                             : DALCS_E_NOMEM;
+}
+
+static enum dalcs_status number_lambdas(struct dalcs_audit *audit) {
+    const struct dalcs_circuit *c = audit->circuit;
+    audit->first_lambda = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(int));
+    if (audit->first_lambda == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < c->n_devices; i++) {
+        audit->first_lambda[i] = audit->n_lambdas;
+        audit->n_lambdas += c->device[i].behaviour != NULL ? c->device[i].behaviour->n_pairs : 0;
+    }
+    return DALCS_OK;
+}
+
+static void find_fed(const struct dalcs_audit *audit) {
+    const struct dalcs_circuit *c = audit->circuit;
+    audit->is_fed[0] = audit->is_held[0] = true;
+    for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_device *d = &c->device[i];
+        if (d->kind == DALCS_VSOURCE && (d->node[0] == 0 || d->node[1] == 0)) {
+            const struct dalcs_stimulus *s = &c->stimulus[d->stimulus];
+            audit->is_held[d->node[d->node[0] == 0]] = true;
+            audit->is_fed[d->node[d->node[0] == 0]] = dalcs_stimulus_value(s, 0.0, DALCS_LEFT) ==
+                                                      dalcs_stimulus_value(s, 0.0, DALCS_RIGHT);
+        }
+    }
+}
+
+enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
+    const size_t n_nodes = (size_t)audit->circuit->n_nodes;
+    audit->node_of = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(int));
+    audit->has_charge = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
+    audit->is_fed = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
+    audit->is_held = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
+    if (audit->is_held == NULL || audit->node_of == NULL || audit->has_charge == NULL ||
+        audit->is_fed == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    find_fed(audit);
+    merge_shorts(audit);
+    DALCS_TRY(number_lambdas(audit));
+    DALCS_TRY(make_parts(audit));
+    DALCS_TRY(make_sums(audit));
+    DALCS_TRY(make_state(audit, &audit->now));
+    DALCS_TRY(make_state(audit, &audit->later));
+    DALCS_TRY(make_state(audit, &audit->shifted));
+    DALCS_TRY(make_state(audit, &audit->before));
+    return DALCS_OK;
+}

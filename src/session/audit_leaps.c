@@ -1,0 +1,136 @@
+/* audit_leaps.c - leaps over periods are tried, and passed once more. */
+#include "audit_reader.h"
+
+#include "cycle.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { TRIED_PERIODS = 3 };
+
+enum dalcs_status dalcs_audit_run_leap(struct dalcs_audit_run *a, double until, bool *may) {
+    const struct dalcs_radau_part *part = a->radau->cycling;
+    *may = a->tried_time == INFINITY;
+    if (a->audit == NULL || !*may || a->was_tried) {
+        a->was_tried = false;
+        return DALCS_OK;
+    }
+    const double work =
+        TRIED_PERIODS * dalcs_cycle_n_segments(part->memory.cycle) * dalcs_audit_segment_work;
+    if (!dalcs_audit_may(a->audit, work) && a->has_tried) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_cycle_try(a->radau, until, TRIED_PERIODS, a->tried, &a->tried_time));
+    *may = a->tried_time == INFINITY;
+    a->has_tried |= !*may;
+    return DALCS_OK;
+}
+
+/* How far the states of the cycling part are from x, over their scales. */
+static double distance(const struct dalcs_radau_part *part, const double *x) {
+    double worst = 0.0;
+    for (int k = 0; k < part->component->system->n_x; k++) {
+        const double off = fabs(x[k] - part->x[k]);
+        worst = off > worst * part->scales.column[k] ? off / part->scales.column[k] : worst;
+    }
+    return worst;
+}
+
+void dalcs_audit_run_start_leap(struct dalcs_audit_run *a) {
+    const struct dalcs_radau_part *part = a->radau->cycling;
+    if (a->audit != NULL) {
+        memcpy(a->tried, part->x, (size_t)part->component->system->n_x * sizeof(double));
+        a->leap_time = part->segment.t;
+    }
+}
+
+/* map is applied to that of `to`, into work, which both have [n][n + 1] of. */
+static void compose(int n, const double *map, const double *to, double *work) {
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j <= n; j++) {
+            double sum = j == n ? map[i * (n + 1) + n] : 0.0;
+            for (int k = 0; k < n; k++) {
+                sum += map[i * (n + 1) + k] * to[k * (n + 1) + j];
+            }
+            work[i * (n + 1) + j] = sum;
+        }
+    }
+}
+
+static void apply(int n, const double *map, double *x, double *work) {
+    for (int i = 0; i < n; i++) {
+        work[i] = map[i * (n + 1) + n];
+        for (int k = 0; k < n; k++) {
+            work[i] += map[i * (n + 1) + k] * x[k];
+        }
+    }
+    memcpy(x, work, (size_t)n * sizeof(double));
+}
+
+/* x[n] goes so many periods on. By squares of the map (D. E. Knuth, The Art of Computer Programming 2, sec. 4.6.3), not
+ * one by one as the leap went. */
+static void go_on(int n, const double *map, long periods, double *x, double *work) {
+    double *square = work + n;
+    double *next = square + n * (n + 1);
+    memcpy(square, map, (size_t)(n * (n + 1)) * sizeof(double));
+    for (long left = periods; left > 0; left /= 2) {
+        if (left % 2 == 1) {
+            apply(n, square, x, work);
+        }
+        if (left > 1) {
+            compose(n, square, square, next);
+            memcpy(square, next, (size_t)(n * (n + 1)) * sizeof(double));
+        }
+    }
+}
+
+/* Instructions, about, of a product and its sum; and of a period that is leapt over, for each element of its map. */
+static const double product_work = 5.0, leapt_work = 2.0;
+
+/* A leap takes some thousand instructions, whatever it leads over: so many more, and each is looked at. */
+static const double small_work = 3000.0;
+
+void dalcs_audit_run_end_leap(struct dalcs_audit_run *a) {
+    const struct dalcs_radau_part *part = a->radau->cycling;
+    if (a->audit == NULL) {
+        return;
+    }
+    dalcs_audit_put_off(a->audit, part->index);
+    const int n_x = part->component->system->n_x;
+    const double elements = (double)n_x * (n_x + 1);
+    const double periods =
+        rint((part->segment.t - a->leap_time) / dalcs_cycle_period(part->memory.cycle));
+    const double work = product_work * elements * (n_x + 1) * (1.0 + log2(fmax(periods, 1.0)));
+    dalcs_audit_earn(a->audit, leapt_work * elements * periods);
+    if (work <= small_work || dalcs_audit_may(a->audit, work) || !a->has_passed) {
+        a->has_passed = true;
+        go_on(n_x, dalcs_cycle_map(part), (long)periods, a->tried, a->tried + n_x);
+        dalcs_audit_add(a->audit, DALCS_AUDIT_PERIOD, part->index, distance(part, a->tried),
+                        part->segment.t);
+    }
+}
+
+/* Instructions of the segment that a leap lands in, and of another leap from there. */
+static const double landing_work = 10000.0;
+
+double dalcs_audit_run_until(struct dalcs_audit_run *a, double until) {
+    const struct dalcs_radau_part *part = a->radau->cycling;
+    if (a->audit == NULL || !(until < INFINITY) || !dalcs_audit_may(a->audit, landing_work)) {
+        return until;
+    }
+    return part->segment.t + dalcs_audit_chance(a->audit) * (until - part->segment.t);
+}
+
+/* The segment that a leap was tried to has begun, or another one has instead. */
+void dalcs_audit_leaps_compare(struct dalcs_audit_run *a) {
+    const struct dalcs_radau_part *part = a->radau->cycling;
+    const double near = 4.0 * a->radau->resolution;
+    if (part == NULL || part->segment.t < a->tried_time - near) {
+        return;
+    }
+    const bool is_other = part->segment.t > a->tried_time + near;
+    const double worst = is_other ? 1.0 : distance(part, a->tried);
+    dalcs_audit_add(a->audit, DALCS_AUDIT_PERIOD, part->index, worst, part->segment.t);
+    a->tried_time = INFINITY;
+    a->was_tried = true;
+}

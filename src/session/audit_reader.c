@@ -1,0 +1,256 @@
+/* audit_reader.c - the engine's answers, for the auditor. */
+#include "audit_reader.h"
+
+#include "present.h"
+#include "radau.h"
+#include "recurrence.h"
+#include "sliding.h"
+#include "step_error.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- Reading ------------------------------------------------------------------------------------- */
+
+/* Do pairs of a device stand on both sides in turn? */
+static bool is_mean(const struct dalcs_audit_run *a, const struct dalcs_component *c, int device) {
+    const struct dalcs_circuit *circuit = &a->run->s->circuit;
+    const struct dalcs_device *d = &circuit->device[device];
+    const int first = a->run->s->network.readout->first_pair[device];
+    if (!c->positions.joined || first < 0) {
+        return false;
+    }
+    const int n = d->behaviour != NULL ? d->behaviour->n_pairs
+                  : d->kind == DALCS_DIODE && isfinite(circuit->diode_model[d->model].vrev) ? 2
+                                                                                            : 1;
+    bool is = false;
+    for (int k = 0; k < n && !is; k++) {
+        is = dalcs_sliding_turns(&c->positions, first + k);
+    }
+    return is;
+}
+
+/* mode[]: of the pairs, where y has the lambdas. */
+static void copy_answer(const struct dalcs_audit_run *a, int index, const double *y,
+                        const uint64_t *mode, struct dalcs_audit_state *s) {
+    const struct audit_members *m = &a->part[index];
+    const struct dalcs_readout *readout = a->run->s->network.readout;
+    const struct dalcs_component *c = &a->euler->component[index];
+    for (int k = 0; k < m->n_nodes; k++) {
+        s->v[m->node[k]] = y[m->node_column[k]];
+    }
+    for (int k = 0; k < m->n_devices; k++) {
+        const int d = m->device[k];
+        double current = 0.0;
+        for (int j = readout->start[d]; j < readout->start[d + 1]; j++) {
+            current += readout->term[j].coefficient * y[readout->term[j].column];
+        }
+        s->i[d] = current;
+        s->is_mean[d] = is_mean(a, c, d);
+        if (a->run->s->circuit.device[d].kind == DALCS_SWITCH) {
+            s->is_closed[d] = dalcs_mode_has(mode, readout->first_pair[d]);
+        }
+    }
+    const int n_equations = dalcs_system_n_equations(c->system);
+    for (int k = 0; k < m->n_lambdas; k++) {
+        s->lambda[m->lambda[k]] = y[n_equations + m->lambda_pair[k]];
+    }
+}
+
+static void read_state(void *user, int part, struct dalcs_audit_state *s) {
+    const struct dalcs_audit_run *a = user;
+    const struct dalcs_component *c = &a->euler->component[part];
+    if (a->radau->part[part].kind == DALCS_PART_STEPPED) {
+        dalcs_radau_read(a->radau, part, s->t, s->side);
+    }
+    copy_answer(a, part, c->y, c->osnsp.mode, s);
+}
+
+static void raise(double *largest, double value) {
+    *largest = value > *largest ? value : *largest;
+}
+
+/* The engine's scales are of whole segments, the auditor has seen instants. */
+static void raise_scales(void *user, int part, double *v, double *i, double *lambda) {
+    const struct dalcs_audit_run *a = user;
+    if (a->radau->part[part].kind != DALCS_PART_STEPPED) {
+        return;
+    }
+    const struct audit_members *m = &a->part[part];
+    const struct dalcs_readout *readout = a->run->s->network.readout;
+    const double *scale = a->radau->part[part].scales.column;
+    for (int k = 0; k < m->n_nodes; k++) {
+        raise(&v[m->node[k]], scale[m->node_column[k]]);
+    }
+    for (int k = 0; k < m->n_devices; k++) {
+        const int d = m->device[k];
+        if (readout->start[d + 1] == readout->start[d] + 1) {
+            const struct dalcs_readout_term *term = &readout->term[readout->start[d]];
+            raise(&i[d], fabs(term->coefficient) * scale[term->column]);
+        }
+    }
+    const int n_equations = dalcs_system_n_equations(a->euler->component[part].system);
+    for (int k = 0; k < m->n_lambdas; k++) {
+        raise(&lambda[m->lambda[k]], scale[n_equations + m->lambda_pair[k]]);
+    }
+}
+
+/* ---- Where the segment before ended -------------------------------------------------------------- */
+
+void dalcs_audit_reader_keep(const struct dalcs_audit_run *a, int index) {
+    const struct dalcs_radau_part *part = &a->radau->part[index];
+    const struct dalcs_component *c = part->component;
+    struct audit_members *m = &a->part[index];
+    m->last_out = part->segment.out;
+    m->last_end = part->segment.end;
+    m->last_time = part->segment.t_end;
+    memcpy(m->last_mode, c->osnsp.mode, (size_t)c->osnsp.n_words * sizeof(uint64_t));
+}
+
+/* The numbers of that segment are where they were until the next one has ended. */
+static void read_before(void *user, int index, struct dalcs_audit_state *s) {
+    const struct dalcs_audit_run *a = user;
+    struct dalcs_radau_part *part = &a->radau->part[index];
+    const struct dalcs_component *c = part->component;
+    const struct audit_members *m = &a->part[index];
+    const int n_equations = dalcs_system_n_equations(c->system);
+    dalcs_recurrence_complete_before(part);
+    double *present = part->segment.out;
+    part->segment.out = m->last_out;
+    dalcs_step_values(part, m->last_end, part->work.y1);
+    part->segment.out = present;
+    for (int d = 0; d < c->system->n_pairs; d++) {
+        part->work.y1[n_equations + d] *= dalcs_mode_has(m->last_mode, d) ? 1.0 : 0.0;
+    }
+    for (int i = 0; i < part->excitation.bystanders.n; i++) {
+        part->work.y1[part->excitation.bystanders.column[i]] =
+            dalcs_radau_bystander(part, i, m->last_time, DALCS_LEFT);
+    }
+    s->t = m->last_time;
+    s->side = DALCS_LEFT;
+    copy_answer(a, index, part->work.y1, m->last_mode, s);
+}
+
+/* ---- As it is stored ----------------------------------------------------------------------------- */
+
+/* FNV-1a over words (G. Fowler, L. C. Noll and K.-P. Vo, IETF draft-eastlake-fnv). */
+static uint64_t mix(uint64_t hash, uint64_t word) {
+    return (hash ^ word) * 0x100000001b3u;
+}
+
+static uint64_t key_of(const struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *osnsp = &part->component->osnsp;
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (int k = 0; k < osnsp->n_words; k++) {
+        hash = mix(hash, osnsp->mode[k]);
+    }
+    return mix(hash, (uint64_t)(ilogb(part->segment.h) /
+                                2)); /* steps of a like length are held to the same */
+}
+
+/* The map whose image of part->in the segment is; NULL: none. One of those kept of a period has none, and another start. */
+static const struct dalcs_stage_entry *map_of(const struct dalcs_radau_part *part) {
+    if (part->segment.late != NULL) {
+        return part->segment.late;
+    }
+    const struct dalcs_stage_entry *entry =
+        part->segment.brief != NULL ? part->segment.brief->entry : part->segment.entry;
+    bool is = entry != NULL && dalcs_stages_have_maps(&part->stages) && dalcs_stage_has_map(entry);
+    for (int x = 0; x < part->component->system->n_x && is; x++) {
+        is = part->segment.in[x] == part->segment.out[x];
+    }
+    return is ? entry : NULL;
+}
+
+static bool store(void *user, int index, bool wants_values, struct dalcs_audit_polynomials *p) {
+    const struct dalcs_audit_run *a = user;
+    struct dalcs_radau_part *part = &a->radau->part[index];
+    if (part->segment.by_euler || part->component->positions.joined) {
+        return false;
+    }
+    if (wants_values) {
+        dalcs_recurrence_complete(part);
+    }
+    *p = (struct dalcs_audit_polynomials){
+        .key = key_of(part),
+        .n_columns = dalcs_system_n_columns(part->component->system),
+        .n_nodes = part->stages.layout.n_nodes,
+        .stride = part->stages.layout.stride,
+        .node = part->stages.method->node,
+        .step = part->segment.h,
+        .end = part->segment.end,
+        .value = part->segment.late != NULL ? NULL : part->segment.out};
+    if (map_of(part) != NULL) {
+        p->n_inputs = dalcs_stage_brief_columns(&part->stages);
+        p->input = dalcs_stage_brief_input(&part->stages, part->segment.in);
+    }
+    return true;
+}
+
+static const double *column(void *user, int index, int j) {
+    const struct dalcs_audit_run *a = user;
+    return dalcs_stage_brief_column(map_of(&a->radau->part[index]), j);
+}
+
+/* In the place of the lambda of an open pair is another number, and sources alone decide bystanders. */
+static void add_column(const struct dalcs_radau_part *part, int column, double factor,
+                       struct dalcs_audit_row *row) {
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_bystanders *b = &part->excitation.bystanders;
+    const int pair = column - dalcs_system_n_equations(s);
+    if (pair >= 0 && !dalcs_osnsp_is_on(&part->component->osnsp, pair)) {
+        return;
+    }
+    for (int i = 0; i < b->n; i++) {
+        if (b->column[i] == column) {
+            const double *gain = b->gain + i * s->n_inputs;
+            row->constant += factor * gain[0];
+            for (int k = 1; k < s->n_inputs; k++) {
+                if (gain[k] != 0.0) {
+                    dalcs_audit_row_add_stimulus(row, s->stimulus[k], factor * gain[k]);
+                }
+            }
+            return;
+        }
+    }
+    dalcs_audit_row_add_column(row, column, factor);
+}
+
+static void add_voltage(void *user, int index, int node, double factor,
+                        struct dalcs_audit_row *row) {
+    const struct dalcs_audit_run *a = user;
+    const int node_column = a->run->s->network.readout->node_column[node];
+    if (node_column >= 0) {
+        add_column(&a->radau->part[index], node_column, factor, row);
+    }
+}
+
+static void add_current(void *user, int index, int device, double factor,
+                        struct dalcs_audit_row *row) {
+    const struct dalcs_audit_run *a = user;
+    const struct dalcs_readout *readout = a->run->s->network.readout;
+    for (int j = readout->start[device]; j < readout->start[device + 1]; j++) {
+        add_column(&a->radau->part[index], readout->term[j].column,
+                   factor * readout->term[j].coefficient, row);
+    }
+}
+
+static void add_lambda(void *user, int index, int lambda, double factor,
+                       struct dalcs_audit_row *row) {
+    const struct dalcs_audit_run *a = user;
+    const struct dalcs_radau_part *part = &a->radau->part[index];
+    add_column(part, dalcs_system_n_equations(part->component->system) + a->pair_of_lambda[lambda],
+               factor, row);
+}
+
+struct dalcs_audit_reader dalcs_audit_reader_of(struct dalcs_audit_run *a) {
+    return (struct dalcs_audit_reader){.user = a,
+                                       .store = store,
+                                       .column = column,
+                                       .add_voltage = add_voltage,
+                                       .add_current = add_current,
+                                       .add_lambda = add_lambda,
+                                       .read_before = read_before,
+                                       .read = read_state,
+                                       .raise = raise_scales};
+}

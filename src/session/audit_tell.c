@@ -1,0 +1,108 @@
+/* audit_tell.c - what the audit found, for the report and in words. */
+#include "audit_reader.h"
+
+#include "quantity.h"
+
+#include <string.h>
+
+enum { NAME_SIZE = 512 };
+
+/* Each value that a law adds up is promised to the tolerance times its scale, so is their sum to that times the sum of
+ * scales, by which a defect is divided. */
+bool dalcs_audit_run_fails(const struct dalcs_audit_run *a) {
+    return a->audit != NULL && dalcs_audit_summarise(a->audit).is_broken;
+}
+
+static enum dalcs_status tell_law(const struct dalcs_audit_run *a, enum dalcs_audit_law law,
+                                  int index, const struct dalcs_audit_finding *f,
+                                  struct dalcs_audited *to) {
+    char name[NAME_SIZE];
+    dalcs_audit_law_name(a->audit, law, index, name, sizeof name);
+    const char *copy = dalcs_arena_copy(&a->run->s->arena, name, strlen(name));
+    *to = (struct dalcs_audited){copy, f->defect, f->time};
+    return copy != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* Laws with a defect: how many, and into list[] where that is not NULL. */
+static enum dalcs_status list_laws(const struct dalcs_audit_run *a, struct dalcs_audited *list,
+                                   size_t *n) {
+    *n = 0;
+    for (int law = 0; law < DALCS_AUDIT_N_LAWS; law++) {
+        for (int i = 0; i < dalcs_audit_n_of(a->audit, law); i++) {
+            const struct dalcs_audit_finding f = dalcs_audit_finding_of(a->audit, law, i);
+            if (f.defect > 0.0 && list != NULL) {
+                DALCS_TRY(tell_law(a, law, i, &f, &list[*n]));
+            }
+            *n += f.defect > 0.0 ? 1 : 0;
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status report_laws(const struct dalcs_audit_run *a) {
+    struct dalcs_report *report = &a->run->s->report;
+    size_t n;
+    DALCS_TRY(list_laws(a, NULL, &n));
+    struct dalcs_audited *list = dalcs_arena_alloc(&a->run->s->arena, n, sizeof *list);
+    if (list == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    report->audit.law = list;
+    return list_laws(a, list, &report->audit.n_laws);
+}
+
+static enum dalcs_status tell_broken(const struct dalcs_audit_run *a,
+                                     const struct dalcs_audit_summary *found, const char *name) {
+    char time[DALCS_QUANTITY_SIZE];
+    dalcs_diag_add(
+        &a->run->s->diag, DALCS_ERROR, NULL,
+        "the report lists the laws that are broken; please report this netlist",
+        "the waveform seems wrong: the audit finds %s broken by %.2g of its scale at t = "
+        "%s, and %.2g is allowed",
+        name, found->defect, dalcs_quantity_write(time, found->time, "s", 9),
+        dalcs_audit_most_allowed(a));
+    return DALCS_NOT_CONVERGED;
+}
+
+/* Where the run fell back to implicit Euler, nobody controls the error: it is told. */
+static void tell_coarse(const struct dalcs_audit_run *a) {
+    const struct dalcs_audit_summary coarse = dalcs_audit_summarise_coarse(a->audit);
+    if (coarse.index < 0 || coarse.defect <= dalcs_audit_most_allowed(a)) {
+        return;
+    }
+    char name[NAME_SIZE];
+    char time[DALCS_QUANTITY_SIZE];
+    dalcs_audit_law_name(a->audit, coarse.law, coarse.index, name, sizeof name);
+    dalcs_diag_add(&a->run->s->diag, DALCS_WARNING, NULL, NULL,
+                   "the waveform is coarse where the run fell back to implicit Euler: the audit "
+                   "finds %s broken by %.2g of its scale at t = %s",
+                   name, coarse.defect, dalcs_quantity_write(time, coarse.time, "s", 9));
+}
+
+enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) {
+    if (a->audit == NULL) {
+        return DALCS_OK;
+    }
+    struct dalcs_session *s = a->run->s;
+    const struct dalcs_audit_summary found = dalcs_audit_summarise(a->audit);
+    char name[NAME_SIZE] = "";
+    if (found.index >= 0) {
+        dalcs_audit_law_name(a->audit, found.law, found.index, name, sizeof name);
+    }
+    s->report.audit.mode = a->run->options->audit == DALCS_AUDIT_FULL ? "full" : "sample";
+    s->report.audit.instants = found.instants;
+    s->report.audit.segments = found.stretches;
+    s->report.audit.audited = found.audited;
+    s->report.audit.screened = found.screened;
+    s->report.audit.positions = found.positions;
+    s->report.audit.worst = found.defect;
+    s->report.audit.allowed = found.allowed;
+    s->report.audit.time = found.time;
+    s->report.audit.where = dalcs_arena_copy(&s->arena, name, strlen(name));
+    if (s->report.audit.where == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(report_laws(a));
+    tell_coarse(a);
+    return found.is_broken ? tell_broken(a, &found, name) : DALCS_OK;
+}
