@@ -11,6 +11,7 @@ struct dalcs_formula_source {
     bool has_table;
     struct dalcs_piecewise table;
     const struct dalcs_gate *gate; /* once it is compiled: the values that it has, or NULL */
+    bool is_resolved;              /* or about to be */
 };
 
 static const char USAGE[] =
@@ -216,24 +217,144 @@ const struct dalcs_formula *dalcs_behavioural_formula_of(const struct dalcs_buil
     return is_one && !source->has_table ? source->token->formula : NULL;
 }
 
-static void resolve(struct dalcs_compiler *c, struct dalcs_formula_source *source) {
-    struct dalcs_device *device = &c->builder->circuit->device[source->device];
-    c->failed = false;
+static const struct dalcs_form *form_of(struct dalcs_compiler *c,
+                                        const struct dalcs_formula_source *source) {
     c->n_waves = 0;
     c->n_cells = 0;
     c->n_pairs = 0;
+    const struct dalcs_form *form =
+        input_of(c, source, &c->builder->circuit->device[source->device]);
+    return source->has_table ? dalcs_form_apply(c, &source->table, form) : form;
+}
+
+/* Without pairs for what sources alone decide, if any do. Products have made parts of their own, which know nothing of
+ * that. */
+static const struct dalcs_behaviour *decide(struct dalcs_compiler *c,
+                                            const struct dalcs_formula_source *source,
+                                            const struct dalcs_potentials *potentials,
+                                            const struct dalcs_behaviour *written) {
+    if (written == NULL || potentials->n == 0 || c->n_nodes > 0 ||
+        !dalcs_potentials_reach(potentials, written)) {
+        return written;
+    }
+    c->is_silent = true;
+    c->potentials = potentials;
+    const struct dalcs_form *form = form_of(c, source);
+    struct dalcs_behaviour *made =
+        form != NULL && !c->failed ? dalcs_behaviour_make(c, form) : NULL;
+    c->potentials = NULL;
+    c->is_silent = c->failed = false;
+    if (made == NULL) {
+        return written;
+    }
+    made->written = written;
+    return made;
+}
+
+static void resolve(struct dalcs_compiler *c, struct dalcs_formula_source *source,
+                    struct dalcs_potentials *potentials) {
+    c->failed = false;
     c->n_nodes = 0;
     c->element = c->builder->device_token[source->device];
-    const struct dalcs_form *form = input_of(c, source, device);
-    if (source->has_table) {
-        form = dalcs_form_apply(c, &source->table, form);
-    }
-    device = &c->builder->circuit->device[source->device]; /* products may have moved it */
+    const struct dalcs_form *form = form_of(c, source);
+    /* products may have moved it */
+    struct dalcs_device *device = &c->builder->circuit->device[source->device];
+    const int control[2] = {device->node[2], device->node[3]};
     device->node[2] = device->node[3] = 0;
     if (form != NULL && !c->failed) {
-        device->behaviour = dalcs_behaviour_make(c, form);
+        const struct dalcs_behaviour *written = dalcs_behaviour_make(c, form);
         source->gate = dalcs_gate_find(c, device, form);
+        device->node[2] = control[0];
+        device->node[3] = control[1];
+        device->behaviour = decide(c, source, potentials, written);
+        device->node[2] = device->node[3] = 0;
+        dalcs_potentials_note(potentials, c->builder->circuit, source->device);
     }
+}
+
+/* ---- What is read first -------------------------------------------------------------------------- */
+
+/* Formulas that read each other along a longer chain than this are resolved in the order of their cards: what sources
+ * decide behind it has pairs. */
+enum { LONGEST_CHAIN = 64 };
+
+struct resolving {
+    struct dalcs_compiler *compiler;
+    struct dalcs_potentials *potentials;
+    int *driver; /* [n_nodes] a source with a formula, and 1; 0: none */
+    int n_nodes;
+    int depth;
+};
+
+static void resolve_node(struct resolving *r, int node);
+
+/* Parts that are used more than once are there once. */
+static void resolve_read(struct resolving *r, const struct dalcs_formula *f, bool *seen) {
+    if (seen[f->number_of]) {
+        return;
+    }
+    seen[f->number_of] = true;
+    for (int k = 0; f->kind == DALCS_FORMULA_VOLTAGE && k < 2; k++) {
+        if (f->signal[k] != NULL) {
+            resolve_node(r, dalcs_names_find(&r->compiler->builder->nodes, f->signal[k]->text));
+        }
+    }
+    for (int k = 0; k < f->n; k++) {
+        resolve_read(r, f->argument[k], seen);
+    }
+}
+
+static void resolve_formula(struct resolving *r, const struct dalcs_formula *f) {
+    bool *seen = dalcs_arena_alloc(r->compiler->arena, (size_t)f->number_of + 1, sizeof *seen);
+    if (seen != NULL) {
+        resolve_read(r, f, seen);
+    } else {
+        r->compiler->builder->out_of_memory = true;
+    }
+}
+
+static void resolve_in_order(struct resolving *r, struct dalcs_formula_source *source) {
+    if (source->is_resolved || r->depth > LONGEST_CHAIN || r->compiler->builder->out_of_memory) {
+        return;
+    }
+    source->is_resolved = true;
+    r->depth++;
+    const struct dalcs_device *device = &r->compiler->builder->circuit->device[source->device];
+    if (source->token != NULL) {
+        resolve_formula(r, source->token->formula);
+    } else {
+        const int control[2] = {device->node[2], device->node[3]};
+        resolve_node(r, control[0]);
+        resolve_node(r, control[1]);
+    }
+    r->depth--;
+    resolve(r->compiler, source, r->potentials);
+}
+
+static void resolve_node(struct resolving *r, int node) {
+    if (node > 0 && node < r->n_nodes && r->driver[node] > 0) {
+        resolve_in_order(r, &r->compiler->builder->formula[r->driver[node] - 1]);
+    }
+}
+
+static void resolve_all(struct dalcs_compiler *c, struct dalcs_potentials *potentials) {
+    struct dalcs_builder *builder = c->builder;
+    const struct dalcs_circuit *circuit = builder->circuit;
+    struct resolving r = {.compiler = c,
+                          .potentials = potentials,
+                          .driver = calloc((size_t)circuit->n_nodes, sizeof *r.driver),
+                          .n_nodes = circuit->n_nodes};
+    builder->out_of_memory = builder->out_of_memory || r.driver == NULL;
+    for (size_t k = 0; k < builder->n_formulas && !builder->out_of_memory; k++) {
+        const struct dalcs_device *device = &circuit->device[builder->formula[k].device];
+        if (device->kind == DALCS_VCVS) {
+            r.driver[device->node[0]] = (int)k + 1;
+        }
+    }
+    for (size_t k = 0; k < builder->n_formulas; k++) {
+        resolve_in_order(&r, &builder->formula[k]);
+    }
+    free(r.driver);
 }
 
 /* Those that formulas made come after those of V and I. */
@@ -255,8 +376,11 @@ static void take_stimuli(struct dalcs_compiler *c) {
 
 void dalcs_behavioural_resolve(struct dalcs_builder *builder) {
     struct dalcs_compiler c = {.builder = builder, .arena = &builder->scratch};
-    for (size_t k = 0; k < builder->n_formulas && !builder->out_of_memory; k++) {
-        resolve(&c, &builder->formula[k]);
+    struct dalcs_potentials potentials = {0};
+    if (builder->n_formulas > 0) {
+        dalcs_potentials_find(&potentials, builder);
+        resolve_all(&c, &potentials);
+        dalcs_potentials_finish(&potentials);
     }
     struct dalcs_gate_readers readers = {0};
     for (size_t k = 0; k < builder->n_formulas && !builder->out_of_memory; k++) {
