@@ -77,18 +77,18 @@ void dalcs_potentials_note(struct dalcs_potentials *p, const struct dalcs_circui
 
 struct reach {
     const struct dalcs_potentials *potentials;
-    bool found;
+    bool has_pairs, found;
 };
 
 static void look_at(void *to, const struct dalcs_affine_term *term) {
     struct reach *r = to;
-    r->found = r->found || term->kind == DALCS_QUANTITY_STIMULUS ||
+    r->found = r->found || (r->has_pairs && term->kind == DALCS_QUANTITY_STIMULUS) ||
                (term->kind == DALCS_QUANTITY_VOLTAGE && is_known(r->potentials, term->index));
 }
 
 bool dalcs_potentials_reach(const struct dalcs_potentials *p,
                             const struct dalcs_behaviour *behaviour) {
-    struct reach r = {.potentials = p};
+    struct reach r = {.potentials = p, .has_pairs = behaviour->n_pairs > 0};
     dalcs_behaviour_visit(behaviour, look_at, &r);
     return r.found;
 }

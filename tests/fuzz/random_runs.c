@@ -17,7 +17,7 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 /* The largest netlists of 12 elements take 120 choices or so; most are of a few. */
-enum { MOST_BYTES = 160, MOST_SECONDS = 20, RUNS_BETWEEN_LINES = 100000 };
+enum { MOST_BYTES = 160, MOST_SECONDS = 120, RUNS_BETWEEN_LINES = 100000 };
 
 static volatile sig_atomic_t has_printed;
 static uint64_t seed, run;
