@@ -1,6 +1,8 @@
 /* course.c - derivatives of a sum of stimuli, and going along it by a bound of the second. */
 #include "course.h"
 
+#include "formula_stimulus.h"
+
 #include <float.h>
 #include <math.h>
 
@@ -33,16 +35,17 @@ struct sizes {
     double of[DALCS_COURSE_ORDERS + 2];
 };
 
-static void add_term(const struct dalcs_stimulus_term *term, double factor, struct dalcs_course *c,
+static void add_term(const struct dalcs_stimulus_term *term, struct dalcs_course *c,
                      struct sizes *sizes) {
-    const double speed = hypot(term->decay, term->omega);
-    double cosine = factor * term->cosine;
-    double sine = factor * term->sine;
+    double cosine = term->cosine;
+    double sine = term->sine;
     double size = hypot(cosine, sine);
     if (size == 0.0) {
         return;
     }
+    const double speed = hypot(term->decay, term->omega);
     double grown = size;
+    c->value += cosine;
     if (term->decay < 0.0) { /* it grows by a factor of e up to there */
         c->reach = fmin(c->reach, -1.0 / term->decay);
         grown *= 2.718281828459045;
@@ -61,28 +64,44 @@ static void add_term(const struct dalcs_stimulus_term *term, double factor, stru
     sizes->of[DALCS_COURSE_ORDERS + 1] += size * speed;
 }
 
+/* When a formula has its next edge takes a search, and is of no interest here. */
+static void piece_of(const struct dalcs_stimulus *s, double t, struct dalcs_stimulus_piece *piece) {
+    if (s->kind != DALCS_STIMULUS_FORMULA) {
+        dalcs_stimulus_piece_at(s, t, piece);
+        return;
+    }
+    piece->n_terms = dalcs_formula_stimulus_n_terms(s);
+    dalcs_formula_stimulus_piece(s, t, piece);
+}
+
+static void add_part(const struct dalcs_stimulus_summand *part, double t,
+                     struct dalcs_stimulus_piece *piece, struct dalcs_course *c,
+                     struct sizes *sizes) {
+    piece_of(part->of, t, piece);
+    c->straight += part->factor * piece->level;
+    c->rise += part->factor * piece->slope;
+    sizes->of[0] += fabs(part->factor * piece->level);
+    sizes->of[1] += fabs(part->factor * piece->slope);
+    for (int i = 0; i < piece->n_terms; i++) {
+        piece->term[i].cosine *= part->factor;
+        piece->term[i].sine *= part->factor;
+        add_term(&piece->term[i], c, sizes);
+    }
+}
+
 void dalcs_course_look(const struct dalcs_stimulus_sum *sum, double t, enum dalcs_side side,
-                       struct dalcs_course *c) {
-    struct dalcs_stimulus_term term[DALCS_STIMULUS_MOST_TERMS];
+                       struct dalcs_stimulus_term *term, struct dalcs_course *c) {
     struct sizes sizes = {{fabs(sum->constant)}};
     const bool before = side == DALCS_LEFT;
-    *c = (struct dalcs_course){
-        .straight = sum->constant, .reach = INFINITY, .before = before};
+    *c = (struct dalcs_course){.straight = sum->constant, .reach = INFINITY, .before = before};
     const double at = before ? t - just_before * t : t;
     for (int k = 0; k < sum->n && (!before || t > 0.0); k++) {
-        const double factor = sum->part[k].factor;
         struct dalcs_stimulus_piece piece = {.term = term};
-        dalcs_stimulus_piece_at(sum->part[k].of, at, &piece);
-        c->straight += factor * piece.level;
-        c->rise += factor * piece.slope;
-        sizes.of[0] += fabs(factor * piece.level);
-        sizes.of[1] += fabs(factor * piece.slope);
-        for (int i = 0; i < piece.n_terms; i++) {
-            add_term(&piece.term[i], factor, c, &sizes);
-        }
+        add_part(&sum->part[k], at, &piece, c, &sizes);
+        term += piece.n_terms;
     }
     c->derivative[0] += c->rise;
-    c->value = dalcs_sum_value(sum, t, side);
+    c->value = before ? dalcs_sum_value(sum, t, side) : c->value + c->straight;
     c->rounding = sum_rounded * (sizes.of[0] + fabs(c->value)) + time_rounded * t * sizes.of[1];
     for (int k = 0; k < DALCS_COURSE_ORDERS; k++) {
         c->rounded[k] = sum_rounded * sizes.of[k + 1] + just_before * t * sizes.of[k + 2];
@@ -131,10 +150,11 @@ static bool passes_on_line(const struct dalcs_stimulus_sum *sum, double sign, do
 
 bool dalcs_course_passes(const struct dalcs_stimulus_sum *sum, int sign, double threshold,
                          double edge, double *t) {
+    struct dalcs_stimulus_term term[DALCS_STIMULUS_MOST_TERMS];
     const double start = *t;
     for (int k = 0; k < LOOKS_AT_A_TIME && *t < edge; k++) {
         struct dalcs_course c;
-        dalcs_course_look(sum, *t, DALCS_RIGHT, &c);
+        dalcs_course_look(sum, *t, DALCS_RIGHT, term, &c);
         if (c.swing == 0.0) {
             return passes_on_line(sum, sign, threshold, edge, t);
         }

@@ -24,8 +24,10 @@ struct dalcs_course {
 double dalcs_sum_value(const struct dalcs_stimulus_sum *sum, double t, enum dalcs_side side);
 double dalcs_sum_next_edge(const struct dalcs_stimulus_sum *sum, double t);
 
+/* The terms of all parts, one behind the other, times their factors, go to `term`, which has room for them; before a
+ * time they are those just before it. */
 void dalcs_course_look(const struct dalcs_stimulus_sum *sum, double t, enum dalcs_side side,
-                       struct dalcs_course *course);
+                       struct dalcs_stimulus_term *term, struct dalcs_course *course);
 
 /* Is it above (1) or below (-1) a threshold just beyond the time? 0: it rests there. */
 int dalcs_course_side(const struct dalcs_course *course, double threshold);

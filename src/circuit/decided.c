@@ -160,24 +160,67 @@ static const struct dalcs_stimulus *stimulus_of(const struct dalcs_compiler *c, 
                                       : &c->stimulus[index - circuit->n_stimuli];
 }
 
-/* Copies: the arrays of stimuli still grow. false: out of memory, or too many oscillations. */
+/* What is nothing but a sum of others is none of its own in a sum. */
+static bool is_sum(const struct dalcs_stimulus *s) {
+    const struct dalcs_piecewise *f = &s->u.formula.function;
+    return s->kind == DALCS_STIMULUS_FORMULA && f->n == 1 && f->before == 1 && f->after == 1 &&
+           f->knot[0].at == 0 && f->knot[0].left == 0 && f->knot[0].value == 0 &&
+           f->knot[0].right == 0;
+}
+
+static int count_parts(const struct dalcs_compiler *c, const struct dalcs_affine *a) {
+    int n = 0;
+    for (int k = 0; k < a->n; k++) {
+        const struct dalcs_stimulus *s = stimulus_of(c, a->term[k].index);
+        n += is_sum(s) ? s->u.formula.argument.n : 1;
+    }
+    return n;
+}
+
+/* A formula that reads another one twice, which reads another one twice ... is evaluated from the bottom each time:
+ * with more stimuli than this in it pairs are cheaper. */
+enum { MOST_STIMULI = 256 };
+
+static int count_stimuli(const struct dalcs_stimulus *s) {
+    int n = 1;
+    for (int k = 0; s->kind == DALCS_STIMULUS_FORMULA && k < s->u.formula.argument.n; k++) {
+        n += count_stimuli(s->u.formula.argument.part[k].of);
+    }
+    return n;
+}
+
+/* Copies: the arrays of stimuli still grow. false: out of memory, or too many oscillations or stimuli. */
 static bool copy_parts(struct dalcs_compiler *c, const struct dalcs_affine *a,
                        struct dalcs_stimulus_sum *sum) {
     struct dalcs_arena *arena = &c->builder->circuit->arena;
-    struct dalcs_stimulus_summand *part = dalcs_arena_alloc(arena, (size_t)a->n, sizeof *part);
+    const size_t n = (size_t)count_parts(c, a);
+    struct dalcs_stimulus_summand *part = dalcs_arena_alloc(arena, n, sizeof *part);
     struct dalcs_stimulus *of = dalcs_arena_alloc(arena, (size_t)a->n, sizeof *of);
     if (part == NULL || of == NULL) {
         c->builder->out_of_memory = c->failed = true;
         return false;
     }
-    int n_terms = 0;
+    *sum = (struct dalcs_stimulus_sum){.constant = a->constant, .part = part};
     for (int k = 0; k < a->n; k++) {
+        const double factor = a->term[k].coefficient;
         of[k] = *stimulus_of(c, a->term[k].index);
-        part[k] = (struct dalcs_stimulus_summand){a->term[k].coefficient, &of[k]};
-        n_terms += dalcs_stimulus_n_terms(&of[k]);
+        const struct dalcs_stimulus_sum *inner = is_sum(&of[k]) ? &of[k].u.formula.argument : NULL;
+        sum->constant += inner != NULL ? factor * inner->constant : 0;
+        for (int i = 0; inner != NULL && i < inner->n; i++) {
+            part[sum->n++] = (struct dalcs_stimulus_summand){factor * inner->part[i].factor,
+                                                             inner->part[i].of};
+        }
+        if (inner == NULL) {
+            part[sum->n++] = (struct dalcs_stimulus_summand){factor, &of[k]};
+        }
     }
-    *sum = (struct dalcs_stimulus_sum){a->constant, a->n, part};
-    return n_terms <= DALCS_STIMULUS_MOST_TERMS;
+    int n_terms = 0;
+    int n_stimuli = 0;
+    for (int k = 0; k < sum->n; k++) {
+        n_terms += dalcs_stimulus_n_terms(part[k].of);
+        n_stimuli += count_stimuli(part[k].of);
+    }
+    return n_terms <= DALCS_STIMULUS_MOST_TERMS && n_stimuli <= MOST_STIMULI;
 }
 
 static bool copy_function(struct dalcs_compiler *c, const struct dalcs_piecewise *f,

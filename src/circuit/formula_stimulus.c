@@ -18,17 +18,24 @@ struct place {
     bool rests;
 };
 
-static struct place find_place(const struct dalcs_stimulus *s, double t, enum dalcs_side side) {
+static struct place place_of(const struct dalcs_stimulus *s, const struct dalcs_course *course) {
     const struct dalcs_piecewise *f = &s->u.formula.function;
-    struct dalcs_course course;
-    dalcs_course_look(&s->u.formula.argument, t, side, &course);
     for (int k = 0; k < f->n; k++) {
-        const int is = dalcs_course_side(&course, f->knot[k].at);
+        const int is = dalcs_course_side(course, f->knot[k].at);
         if (is <= 0) {
             return (struct place){k, is == 0};
         }
     }
     return (struct place){f->n, false};
+}
+
+static struct place find_place(const struct dalcs_stimulus *s, double t, enum dalcs_side side,
+                               double *argument) {
+    struct dalcs_stimulus_term term[DALCS_STIMULUS_MOST_TERMS];
+    struct dalcs_course course;
+    dalcs_course_look(&s->u.formula.argument, t, side, term, &course);
+    *argument = course.value;
+    return place_of(s, &course);
 }
 
 /* Of the line before knot k, which on a flat one is exact. */
@@ -46,7 +53,9 @@ static double value_at(const struct dalcs_stimulus *s, struct place place, doubl
 
 double dalcs_formula_stimulus_value(const struct dalcs_stimulus *s, double t,
                                     enum dalcs_side side) {
-    return value_at(s, find_place(s, t, side), dalcs_sum_value(&s->u.formula.argument, t, side));
+    double argument;
+    const struct place place = find_place(s, t, side, &argument);
+    return value_at(s, place, argument);
 }
 
 double dalcs_formula_stimulus_operating_value(const struct dalcs_stimulus *s,
@@ -85,7 +94,8 @@ static bool leaves(const struct dalcs_stimulus *s, struct place place, double ed
 
 double dalcs_formula_stimulus_next_edge(const struct dalcs_stimulus *s, double t) {
     const struct dalcs_stimulus_sum *sum = &s->u.formula.argument;
-    const struct place place = find_place(s, t, DALCS_RIGHT);
+    double argument;
+    const struct place place = find_place(s, t, DALCS_RIGHT, &argument);
     const bool is_flat =
         place.rests || dalcs_piecewise_slope(&s->u.formula.function, place.knot) == 0.0;
     double until = t;
@@ -102,7 +112,7 @@ double dalcs_formula_stimulus_next_edge(const struct dalcs_stimulus *s, double t
         if (until < edge) {
             continue;
         }
-        const struct place next = find_place(s, edge, DALCS_RIGHT);
+        const struct place next = find_place(s, edge, DALCS_RIGHT, &argument);
         if (!is_flat || next.knot != place.knot || next.rests != place.rests) {
             return edge;
         }
@@ -121,22 +131,17 @@ int dalcs_formula_stimulus_n_terms(const struct dalcs_stimulus *s) {
 
 void dalcs_formula_stimulus_piece(const struct dalcs_stimulus *s, double t,
                                   struct dalcs_stimulus_piece *piece) {
-    const struct dalcs_stimulus_sum *sum = &s->u.formula.argument;
-    const struct dalcs_piecewise *f = &s->u.formula.function;
-    const struct place place = find_place(s, t, DALCS_RIGHT);
-    const double slope = place.rests ? 0.0 : dalcs_piecewise_slope(f, place.knot);
-    double level = sum->constant;
-    struct dalcs_stimulus_piece of = {.term = piece->term};
-    for (int k = 0; k < sum->n && piece->n_terms + (slope != 0.0) > 0; k++) {
-        const double factor = slope * sum->part[k].factor;
-        dalcs_stimulus_piece_at(sum->part[k].of, t, &of);
-        level += sum->part[k].factor * of.level;
-        piece->slope += factor * of.slope;
-        for (int i = 0; i < of.n_terms; i++) {
-            of.term[i].cosine *= factor;
-            of.term[i].sine *= factor;
-        }
-        of.term += of.n_terms;
+    struct dalcs_stimulus_term work[DALCS_STIMULUS_MOST_TERMS];
+    struct dalcs_course course;
+    dalcs_course_look(&s->u.formula.argument, t, DALCS_RIGHT,
+                      piece->n_terms > 0 ? piece->term : work, &course);
+    const struct place place = place_of(s, &course);
+    const double slope =
+        place.rests ? 0.0 : dalcs_piecewise_slope(&s->u.formula.function, place.knot);
+    piece->level = value_at(s, place, course.straight);
+    piece->slope = slope * course.rise;
+    for (int i = 0; i < piece->n_terms; i++) {
+        piece->term[i].cosine *= slope;
+        piece->term[i].sine *= slope;
     }
-    piece->level = value_at(s, place, level);
 }
