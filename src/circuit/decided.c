@@ -111,8 +111,8 @@ static bool add_potential(struct dalcs_compiler *c, struct dalcs_affine *sum, do
         const int device = c->potentials->device[node] - 1;
         const struct dalcs_device *d = &circuit->device[device];
         const bool upward = d->node[0] == node;
-        const int stimulus = d->kind == DALCS_VSOURCE ? d->stimulus
-                                                      : d->behaviour->output.term[0].index;
+        const int stimulus =
+            d->kind == DALCS_VSOURCE ? d->stimulus : d->behaviour->output.term[0].index;
         add_stimulus(c, sum, upward ? factor : -factor, stimulus);
         node = d->node[upward ? 1 : 0];
     }
@@ -207,8 +207,8 @@ static bool copy_parts(struct dalcs_compiler *c, const struct dalcs_affine *a,
         const struct dalcs_stimulus_sum *inner = is_sum(&of[k]) ? &of[k].u.formula.argument : NULL;
         sum->constant += inner != NULL ? factor * inner->constant : 0;
         for (int i = 0; inner != NULL && i < inner->n; i++) {
-            part[sum->n++] = (struct dalcs_stimulus_summand){factor * inner->part[i].factor,
-                                                             inner->part[i].of};
+            part[sum->n++] =
+                (struct dalcs_stimulus_summand){factor * inner->part[i].factor, inner->part[i].of};
         }
         if (inner == NULL) {
             part[sum->n++] = (struct dalcs_stimulus_summand){factor, &of[k]};

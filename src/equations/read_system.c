@@ -113,8 +113,7 @@ static bool read_knots(struct dalcs_reader *reader, struct dalcs_piecewise *f) {
         return false;
     }
     f->n = (int)n;
-    f->knot =
-        dalcs_arena_alloc(&reader->builder->circuit->arena, (size_t)f->n, sizeof *f->knot);
+    f->knot = dalcs_arena_alloc(&reader->builder->circuit->arena, (size_t)f->n, sizeof *f->knot);
     bool ok = f->knot != NULL;
     reader->builder->out_of_memory = reader->builder->out_of_memory || !ok;
     for (int k = 0; k < f->n && ok; k++) {
@@ -131,14 +130,14 @@ static bool read_knots(struct dalcs_reader *reader, struct dalcs_piecewise *f) {
 /* FORMULA(before after knots, at left value right of each, constant, factor (stimulus) ...): what a formula of sources
  * alone puts out. */
 static bool read_formula(struct dalcs_reader *reader, struct dalcs_stimulus *s, int depth) {
-    reader->usage = "FORMULA(before after knots at left value right ... constant factor (function) ...)";
+    reader->usage =
+        "FORMULA(before after knots at left value right ... constant factor (function) ...)";
     s->kind = DALCS_STIMULUS_FORMULA;
-    const bool ok =
-        dalcs_reader_take(reader, DALCS_TOKEN_OPEN) &&
-        read_knots(reader, &s->u.formula.function) &&
-        dalcs_reader_list_number(reader, DALCS_PLAIN, "a constant",
-                                 &s->u.formula.argument.constant) &&
-        read_parts(reader, s, depth) && dalcs_reader_take(reader, DALCS_TOKEN_CLOSE);
+    const bool ok = dalcs_reader_take(reader, DALCS_TOKEN_OPEN) &&
+                    read_knots(reader, &s->u.formula.function) &&
+                    dalcs_reader_list_number(reader, DALCS_PLAIN, "a constant",
+                                             &s->u.formula.argument.constant) &&
+                    read_parts(reader, s, depth) && dalcs_reader_take(reader, DALCS_TOKEN_CLOSE);
     if (!ok) {
         dalcs_reader_unexpected(reader);
     }

@@ -132,9 +132,8 @@ static long double largest_of(const struct work *w, int r, const struct entry *o
     long double largest = fabsl(of->value);
     for (int k = 0; k < column->n; k++) {
         const int other = column->row[k];
-        const struct entry *e = other != r && w->pivot_of[other] < 0
-                                    ? find_entry(&w->row[other], of->column)
-                                    : NULL;
+        const struct entry *e =
+            other != r && w->pivot_of[other] < 0 ? find_entry(&w->row[other], of->column) : NULL;
         largest = e != NULL && fabsl(e->value) > largest ? fabsl(e->value) : largest;
     }
     return largest;

@@ -4,20 +4,21 @@
  *
  * What libFuzzer does with fuzz_run.c, less its bookkeeping of coverage, which takes longer than a short run: for many
  * runs. Run k of a seed has bytes of its own: `random_runs SEED 1 k` is that run alone. Most netlists are small. What
- * ends the process, or a run of more than MOST_SECONDS, is told with its number. */
+ * ends the process, or a run of more than MOST_SECONDS of processor time, is told with its number. */
 #include <inttypes.h>
 #include <signal.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 /* The largest netlists of 12 elements take 120 choices or so; most are of a few. */
-enum { MOST_BYTES = 160, MOST_SECONDS = 120, RUNS_BETWEEN_LINES = 100000 };
+enum { MOST_BYTES = 160, MOST_SECONDS = 60, RUNS_BETWEEN_LINES = 100000 };
 
 static volatile sig_atomic_t has_printed;
 static uint64_t seed, run;
@@ -27,14 +28,15 @@ static void tell(int signal_number) {
     char line[96];
     if (!has_printed) {
         has_printed = 1;
-        const int n = snprintf(line, sizeof line, "signal %d in run: random_runs %" PRIu64 " 1 %" PRIu64 "\n",
-                               signal_number, seed, run);
+        const int n =
+            snprintf(line, sizeof line, "signal %d in run: random_runs %" PRIu64 " 1 %" PRIu64 "\n",
+                     signal_number, seed, run);
         if (write(2, line, (size_t)n) < 0) {
             _exit(2);
         }
     }
     signal(signal_number, SIG_DFL);
-    raise(signal_number == SIGALRM ? SIGABRT : signal_number);
+    raise(signal_number == SIGPROF ? SIGABRT : signal_number);
 }
 
 /* Steele, Lea and Flood, OOPSLA 2014: SplitMix64. */
@@ -56,7 +58,8 @@ static void one(void) {
         const uint64_t word = next(&state);
         memcpy(data + k, &word, k + sizeof word <= size ? sizeof word : size - k);
     }
-    alarm(MOST_SECONDS);
+    const struct itimerval most = {.it_value = {.tv_sec = MOST_SECONDS}};
+    setitimer(ITIMER_PROF, &most, NULL);
     LLVMFuzzerTestOneInput(data, size);
 }
 
@@ -68,7 +71,7 @@ int main(int argc, char **argv) {
     seed = strtoull(argv[1], NULL, 10);
     const uint64_t count = strtoull(argv[2], NULL, 10);
     const uint64_t first = argc > 3 ? strtoull(argv[3], NULL, 10) : 0;
-    static const int failures[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGALRM};
+    static const int failures[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGPROF};
     for (size_t k = 0; k < sizeof failures / sizeof failures[0]; k++) {
         signal(failures[k], tell);
     }
