@@ -52,6 +52,16 @@ struct dalcs_cell {
     int pair;          /* the first */
 };
 
+/* A source that waits for all elements to be known. */
+struct dalcs_formula_source {
+    int device;
+    const struct dalcs_token *token; /* its formula; NULL: the voltage of its controlling nodes */
+    bool has_table;
+    struct dalcs_piecewise table;
+    const struct dalcs_gate *gate; /* once it is compiled: the values that it has, or NULL */
+    bool is_resolved;              /* or about to be */
+};
+
 struct dalcs_compiler {
     struct dalcs_builder *builder;
     struct dalcs_arena *arena;         /* of values: scratch */
