@@ -52,6 +52,16 @@ struct dalcs_cell {
     int pair;          /* the first */
 };
 
+/* A source that waits for all elements to be known. */
+struct dalcs_formula_source {
+    int device;
+    const struct dalcs_token *token; /* its formula; NULL: the voltage of its controlling nodes */
+    bool has_table;
+    struct dalcs_piecewise table;
+    const struct dalcs_gate *gate; /* once it is compiled: the values that it has, or NULL */
+    bool is_resolved;              /* or about to be */
+};
+
 struct dalcs_compiler {
     struct dalcs_builder *builder;
     struct dalcs_arena *arena;         /* of values: scratch */
@@ -67,6 +77,8 @@ struct dalcs_compiler {
     size_t n_forms;                    /* room in form_of */
     int depth;                         /* of products that are parts of products */
     int n_nodes;                       /* that products made, to name them */
+
+    const struct dalcs_potentials *potentials; /* NULL: what sources decide has pairs, too */
 
     bool is_silent; /* a formula is only asked what it is */
     bool failed;
@@ -166,9 +178,36 @@ bool dalcs_wave_multiply(struct dalcs_compiler *c, int a, int b, const struct da
 /* A wave that begins at a time; -1: a damped one, or out of memory. */
 int dalcs_wave_delayed(struct dalcs_compiler *c, int wave, double delay);
 
+/* Its number among those of the circuit; -1: out of memory. */
+int dalcs_compiler_add_stimulus(struct dalcs_compiler *c, const struct dalcs_stimulus *stimulus);
+
 /* The stimulus of a wave, and of a piecewise-linear function of time; -1: out of memory. */
 int dalcs_wave_stimulus(struct dalcs_compiler *c, int wave);
 int dalcs_time_stimulus(struct dalcs_compiler *c, const struct dalcs_piecewise *f);
+
+/* ---- decided.c: formulas of sources alone ---------------------------------------------------------- */
+
+/* What sources alone make of the voltages of nodes. */
+struct dalcs_potentials {
+    int n;       /* nodes */
+    int *device; /* [n] from each that is decided towards ground, and 1; 0: none */
+};
+
+/* Those that V sources decide. Heap; zero-initialise. */
+void dalcs_potentials_find(struct dalcs_potentials *p, struct dalcs_builder *builder);
+
+/* Of a source with a formula, where that is decided. */
+void dalcs_potentials_note(struct dalcs_potentials *p, const struct dalcs_circuit *circuit,
+                           int device);
+
+/* Does a behaviour read what is decided? */
+bool dalcs_potentials_reach(const struct dalcs_potentials *p,
+                            const struct dalcs_behaviour *behaviour);
+void dalcs_potentials_finish(struct dalcs_potentials *p);
+
+/* f(argument) as a stimulus, NULL: the argument itself; false where other things than sources decide it. */
+bool dalcs_decided(struct dalcs_compiler *c, const struct dalcs_affine *argument,
+                   const struct dalcs_piecewise *f, struct dalcs_affine *stimulus);
 
 /* ---- pairs.c --------------------------------------------------------------------------------------- */
 
@@ -176,8 +215,8 @@ int dalcs_time_stimulus(struct dalcs_compiler *c, const struct dalcs_piecewise *
 struct dalcs_affine dalcs_behaviour_freeze(struct dalcs_compiler *c, const struct dalcs_form *v);
 
 /* Freezes the output and makes the behaviour, in the circuit's arena; NULL when out of memory. */
-const struct dalcs_behaviour *dalcs_behaviour_make(struct dalcs_compiler *c,
-                                                   const struct dalcs_form *output);
+struct dalcs_behaviour *dalcs_behaviour_make(struct dalcs_compiler *c,
+                                             const struct dalcs_form *output);
 
 /* ---- commutate.c ----------------------------------------------------------------------------------- */
 

@@ -4,15 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A source that waits for all elements to be known. */
-struct dalcs_formula_source {
-    int device;
-    const struct dalcs_token *token; /* its formula; NULL: the voltage of its controlling nodes */
-    bool has_table;
-    struct dalcs_piecewise table;
-    const struct dalcs_gate *gate; /* once it is compiled: the values that it has, or NULL */
-};
-
 static const char USAGE[] =
     "a behavioural source is: Bname node node V=expression, or I=expression";
 
@@ -178,97 +169,4 @@ void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_devi
         source->has_table = is_table;
         source->table = table;
     }
-}
-
-/* ---- When all elements are known --------------------------------------------------------------- */
-
-static const struct dalcs_form *input_of(struct dalcs_compiler *c,
-                                         const struct dalcs_formula_source *source,
-                                         const struct dalcs_device *device) {
-    if (source->token != NULL) {
-        const struct dalcs_formula *formula = source->token->formula;
-        c->n_forms = (size_t)formula->number_of + 1;
-        c->form_of = dalcs_arena_alloc(c->arena, c->n_forms, sizeof(const struct dalcs_form *));
-        c->builder->out_of_memory = c->builder->out_of_memory || c->form_of == NULL;
-        return c->form_of != NULL ? dalcs_compile(c, formula) : NULL;
-    }
-    struct dalcs_affine sum = dalcs_affine_constant(0);
-    for (int k = 0; k < 2; k++) {
-        const int node = device->node[2 + k];
-        const struct dalcs_affine v = dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, node);
-        sum = node != 0 ? dalcs_affine_add(c, &sum, k == 0 ? 1 : -1, &v) : sum;
-    }
-    return dalcs_form_affine(c, &sum);
-}
-
-const struct dalcs_formula *dalcs_behavioural_formula_of(const struct dalcs_builder *builder,
-                                                         int device) {
-    size_t low = 0;
-    size_t high = builder->n_formulas;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        const bool is_before = builder->formula[middle].device < device;
-        *(is_before ? &low : &high) = is_before ? middle + 1 : middle;
-    }
-    const struct dalcs_formula_source *source =
-        low < builder->n_formulas ? &builder->formula[low] : NULL;
-    const bool is_one = source != NULL && source->device == device && source->token != NULL;
-    return is_one && !source->has_table ? source->token->formula : NULL;
-}
-
-static void resolve(struct dalcs_compiler *c, struct dalcs_formula_source *source) {
-    struct dalcs_device *device = &c->builder->circuit->device[source->device];
-    c->failed = false;
-    c->n_waves = 0;
-    c->n_cells = 0;
-    c->n_pairs = 0;
-    c->n_nodes = 0;
-    c->element = c->builder->device_token[source->device];
-    const struct dalcs_form *form = input_of(c, source, device);
-    if (source->has_table) {
-        form = dalcs_form_apply(c, &source->table, form);
-    }
-    device = &c->builder->circuit->device[source->device]; /* products may have moved it */
-    device->node[2] = device->node[3] = 0;
-    if (form != NULL && !c->failed) {
-        device->behaviour = dalcs_behaviour_make(c, form);
-        source->gate = dalcs_gate_find(c, device, form);
-    }
-}
-
-/* Those that formulas made come after those of V and I. */
-static void take_stimuli(struct dalcs_compiler *c) {
-    struct dalcs_circuit *circuit = c->builder->circuit;
-    const size_t n = (size_t)circuit->n_stimuli;
-    struct dalcs_stimulus *all = dalcs_arena_alloc(&circuit->arena, n + c->n_stimuli, sizeof *all);
-    if (all == NULL) {
-        c->builder->out_of_memory = true;
-        return;
-    }
-    if (n > 0) {
-        memcpy(all, circuit->stimulus, n * sizeof *all);
-    }
-    memcpy(all + n, c->stimulus, c->n_stimuli * sizeof *all);
-    circuit->stimulus = all;
-    circuit->n_stimuli += (int)c->n_stimuli;
-}
-
-void dalcs_behavioural_resolve(struct dalcs_builder *builder) {
-    struct dalcs_compiler c = {.builder = builder, .arena = &builder->scratch};
-    for (size_t k = 0; k < builder->n_formulas && !builder->out_of_memory; k++) {
-        resolve(&c, &builder->formula[k]);
-    }
-    struct dalcs_gate_readers readers = {0};
-    for (size_t k = 0; k < builder->n_formulas && !builder->out_of_memory; k++) {
-        if (builder->formula[k].gate != NULL) {
-            dalcs_gate_settle(builder, &readers, builder->formula[k].gate);
-        }
-    }
-    dalcs_gate_readers_finish(&readers);
-    if (c.n_stimuli > 0 && !builder->out_of_memory) {
-        take_stimuli(&c);
-    }
-    free(c.wave);
-    free(c.cell);
-    free(c.stimulus);
 }

@@ -51,6 +51,9 @@ struct dalcs_behaviour {
     struct dalcs_affine output; /* V or A */
     int n_pairs;
     const struct dalcs_affine *w; /* [n_pairs] */
+
+    /* With pairs for what sources alone decide, as the formula says; NULL: this one has them. */
+    const struct dalcs_behaviour *written;
 };
 
 struct dalcs_device {
@@ -214,6 +217,21 @@ void dalcs_circuit_finish(struct dalcs_circuit *circuit);
 /* A resistor of 0 ohm: its two nodes are one, unless a signal asks for its current. */
 static inline bool dalcs_device_is_short(const struct dalcs_device *device) {
     return device->kind == DALCS_RESISTOR && device->value == 0.0;
+}
+
+/* A voltage that is one stimulus. */
+static inline bool dalcs_device_is_decided(const struct dalcs_device *device) {
+    const struct dalcs_behaviour *b = device->behaviour;
+    return device->kind == DALCS_VSOURCE ||
+           (device->kind == DALCS_VCVS && b != NULL && b->n_pairs == 0 && b->output.n == 1 &&
+            b->output.constant == 0.0 && b->output.term[0].coefficient == 1.0 &&
+            b->output.term[0].kind == DALCS_QUANTITY_STIMULUS);
+}
+
+/* The behaviour as its formula says, with pairs for what sources alone decide, too; NULL: it has none. */
+static inline const struct dalcs_behaviour *dalcs_device_written(const struct dalcs_device *d) {
+    const struct dalcs_behaviour *b = d->behaviour;
+    return b != NULL && b->written != NULL ? b->written : b;
 }
 
 /* Calls visit(to, term) for each term of a behaviour. */

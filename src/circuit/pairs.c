@@ -122,6 +122,11 @@ static void freeze_part(struct dalcs_compiler *c, const struct dalcs_form_part *
         *sum = dalcs_affine_add(c, sum, 1, &s);
         return;
     }
+    struct dalcs_affine decided;
+    if (c->potentials != NULL && dalcs_decided(c, &part->direction, f, &decided)) {
+        *sum = dalcs_affine_add(c, sum, 1, &decided);
+        return;
+    }
     const int base = base_of(f);
     const struct dalcs_knot *knot = &f->knot[base < f->n ? base : f->n - 1];
     const double value = base < f->n ? knot->left : knot->right;
@@ -194,10 +199,14 @@ static void keep_cell(struct dalcs_compiler *c, const struct dalcs_cell *cell,
     w[cell->pair] = keep(c, &excess);
 }
 
-const struct dalcs_behaviour *dalcs_behaviour_make(struct dalcs_compiler *c,
-                                                   const struct dalcs_form *output) {
+struct dalcs_behaviour *dalcs_behaviour_make(struct dalcs_compiler *c,
+                                             const struct dalcs_form *output) {
     struct dalcs_arena *arena = &c->builder->circuit->arena;
-    const struct dalcs_affine frozen = dalcs_behaviour_freeze(c, output);
+    struct dalcs_affine frozen = dalcs_behaviour_freeze(c, output);
+    struct dalcs_affine decided;
+    if (c->potentials != NULL && dalcs_decided(c, &frozen, NULL, &decided)) {
+        frozen = decided;
+    }
     struct dalcs_behaviour *behaviour = dalcs_arena_alloc(arena, 1, sizeof *behaviour);
     struct dalcs_affine *w = dalcs_arena_alloc(arena, (size_t)c->n_pairs, sizeof *w);
     if (behaviour == NULL || w == NULL) {

@@ -4,7 +4,7 @@
  * segment (rise, high, fall, low). Every question is answered from the few edges around t: edges at
  * the same time within rounding form a cluster, whose left limit is the end of the segment before it
  * and whose right limit is the start of the segment after it, both exact values of the card. */
-#include "stimulus.h"
+#include "formula_stimulus.h"
 
 #include <float.h>
 #include <math.h>
@@ -328,6 +328,8 @@ double dalcs_stimulus_value(const struct dalcs_stimulus *s, double t, enum dalcs
         return exponential_value(s, t, side);
     case DALCS_STIMULUS_TONES:
         return tones_value(s, t, side);
+    case DALCS_STIMULUS_FORMULA:
+        return dalcs_formula_stimulus_value(s, t, side);
     }
     return 0;
 }
@@ -352,6 +354,8 @@ double dalcs_stimulus_next_edge(const struct dalcs_stimulus *s, double t) {
                     if_after(s->u.exponential.fall_delay, t, tolerance(t, 0)));
     case DALCS_STIMULUS_TONES:
         return if_after(s->u.tones.delay, t, tolerance(t, 0));
+    case DALCS_STIMULUS_FORMULA:
+        return dalcs_formula_stimulus_next_edge(s, t);
     }
     return INFINITY;
 }
@@ -429,6 +433,8 @@ int dalcs_stimulus_n_terms(const struct dalcs_stimulus *s) {
         return 2;
     case DALCS_STIMULUS_TONES:
         return s->u.tones.n;
+    case DALCS_STIMULUS_FORMULA:
+        return dalcs_formula_stimulus_n_terms(s);
     case DALCS_STIMULUS_DC:
     case DALCS_STIMULUS_PULSE:
     case DALCS_STIMULUS_PWL:
@@ -451,6 +457,9 @@ void dalcs_stimulus_piece_at(const struct dalcs_stimulus *s, double t,
         return;
     case DALCS_STIMULUS_TONES:
         tones_piece(s, t, piece);
+        return;
+    case DALCS_STIMULUS_FORMULA:
+        dalcs_formula_stimulus_piece(s, t, piece);
         return;
     case DALCS_STIMULUS_DC:
     case DALCS_STIMULUS_PULSE:
@@ -477,6 +486,9 @@ void dalcs_stimulus_terms_at(const struct dalcs_stimulus *s, double t,
 double dalcs_stimulus_operating_value(const struct dalcs_stimulus *s, bool transient_follows) {
     if (s->has_dc && !transient_follows) {
         return s->dc;
+    }
+    if (s->kind == DALCS_STIMULUS_FORMULA) {
+        return dalcs_formula_stimulus_operating_value(s, transient_follows);
     }
     return dalcs_stimulus_value(s, 0, DALCS_LEFT);
 }

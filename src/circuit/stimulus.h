@@ -9,7 +9,7 @@
 #ifndef DALCS_STIMULUS_H
 #define DALCS_STIMULUS_H
 
-#include "memory.h"
+#include "piecewise.h"
 
 enum dalcs_stimulus_kind {
     DALCS_STIMULUS_DC,
@@ -17,7 +17,8 @@ enum dalcs_stimulus_kind {
     DALCS_STIMULUS_PULSE,
     DALCS_STIMULUS_PWL,
     DALCS_STIMULUS_EXP,
-    DALCS_STIMULUS_TONES /* AM and SFFM */
+    DALCS_STIMULUS_TONES,  /* AM and SFFM */
+    DALCS_STIMULUS_FORMULA /* of others: decided.h */
 };
 
 /* Which limit to take at a discontinuity. */
@@ -26,6 +27,17 @@ enum dalcs_side { DALCS_LEFT, DALCS_RIGHT };
 /* amplitude sin(2 pi (frequency t + phase)); V or A, Hz, cycles. */
 struct dalcs_tone {
     double amplitude, frequency, phase;
+};
+
+/* constant + sum of factors times stimuli. */
+struct dalcs_stimulus_sum {
+    double constant;
+    int n;
+
+    const struct dalcs_stimulus_summand {
+        double factor;
+        const struct dalcs_stimulus *of;
+    } * part;
 };
 
 struct dalcs_stimulus {
@@ -75,6 +87,13 @@ struct dalcs_stimulus {
             int n; /* at most DALCS_STIMULUS_MOST_TERMS */
             const struct dalcs_tone *tone;
         } tones;
+
+        /* function(argument); its edges are those of the argument and where that passes a knot. A jump of the function
+         * has its `value` while the argument rests on it. */
+        struct {
+            struct dalcs_stimulus_sum argument;
+            struct dalcs_piecewise function;
+        } formula;
     } u;
 };
 

@@ -78,7 +78,7 @@ int dalcs_wave_delayed(struct dalcs_compiler *c, int wave, double delay) {
     return add_wave(c, later);
 }
 
-static int add_stimulus(struct dalcs_compiler *c, const struct dalcs_stimulus *stimulus) {
+int dalcs_compiler_add_stimulus(struct dalcs_compiler *c, const struct dalcs_stimulus *stimulus) {
     if (c->failed || dalcs_grow(&c->stimulus, &c->stimulus_capacity, c->n_stimuli + 1,
                                 sizeof *c->stimulus) != DALCS_OK) {
         c->builder->out_of_memory = c->builder->out_of_memory || !c->failed;
@@ -111,7 +111,7 @@ int dalcs_wave_stimulus(struct dalcs_compiler *c, int wave) {
         s.u.sine.damping = w->decay;
         s.u.sine.phase = 360 * w->phase;
     }
-    return add_stimulus(c, &s);
+    return dalcs_compiler_add_stimulus(c, &s);
 }
 
 int dalcs_time_stimulus(struct dalcs_compiler *c, const struct dalcs_piecewise *f) {
@@ -142,5 +142,5 @@ int dalcs_time_stimulus(struct dalcs_compiler *c, const struct dalcs_piecewise *
     }
     const struct dalcs_stimulus s = {.kind = DALCS_STIMULUS_PWL,
                                      .u.pwl = {.n = used, .t = t, .v = v}};
-    return add_stimulus(c, &s);
+    return dalcs_compiler_add_stimulus(c, &s);
 }

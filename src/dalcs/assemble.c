@@ -28,7 +28,7 @@ static enum dalcs_status stamp_formulas(struct stamps *b, int n_devices, const i
     return DALCS_OK;
 }
 
-/* The controlling voltages that V sources fix, once every source has its input. */
+/* The controlling voltages that sources fix, once every source has its input. */
 static enum dalcs_status stamp_direct_controls(struct stamps *b, int n_devices, const int *device) {
     const struct dalcs_layout *l = b->layout;
     const struct dalcs_topology *t = &l->topology;
@@ -42,7 +42,7 @@ static enum dalcs_status stamp_direct_controls(struct stamps *b, int n_devices, 
             sign = e == 0 ? sign : -sign;
             for (int n = t->node_of[d->node[2 + e]]; n != 0;) {
                 int source = t->potential_source[n];
-                const struct dalcs_device *v = &l->circuit->device[source];
+                const struct dalcs_device *v = &l->circuit->device[source]; /* one stimulus */
                 bool upward = t->node_of[v->node[0]] == n;
                 DALCS_TRY(dalcs_triplets_add(&b->direct_control, l->pair[device[i]],
                                              l->input[source], upward ? sign : -sign));
@@ -280,10 +280,10 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_de
         status = stamp_current_controls(&b, n_devices, device);
     }
     if (status == DALCS_OK) {
-        status = stamp_direct_controls(&b, n_devices, device);
+        status = stamp_formulas(&b, n_devices, device);
     }
     if (status == DALCS_OK) {
-        status = stamp_formulas(&b, n_devices, device);
+        status = stamp_direct_controls(&b, n_devices, device);
     }
     if (status == DALCS_OK) {
         status = stamp_references(&b, n_nodes, node);

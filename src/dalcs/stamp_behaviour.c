@@ -102,6 +102,7 @@ static enum dalcs_status stamp_affine(struct stamps *b, int device, const struct
         default:
             input = b->next_input++;
             s->stimulus[input] = term->index;
+            l->input[device] = input; /* for one that is nothing else */
             s->input_element[input] = l->circuit->device[device].name;
             DALCS_TRY(dalcs_triplets_add(t->inputs, t->row, input, coefficient));
             break;

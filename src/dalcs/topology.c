@@ -48,7 +48,8 @@ static void merge_shorts(struct dalcs_topology *t, const struct dalcs_circuit *c
     }
 }
 
-/* What a formula reads belongs to its source. */
+/* What a formula reads belongs to its source, also where it is known beforehand: a source that nothing else needs is a
+ * bystander there, and would be a part of its own here. */
 struct reader {
     struct dalcs_topology *topology;
     const struct dalcs_circuit *circuit;
@@ -84,7 +85,7 @@ static void find_components(struct dalcs_topology *t, const struct dalcs_circuit
             dalcs_union_join(parent, c->n_nodes + i, c->n_nodes + d->control);
         }
         struct reader reader = {t, c, parent, i};
-        dalcs_behaviour_visit(d->behaviour, join_term, &reader);
+        dalcs_behaviour_visit(dalcs_device_written(d), join_term, &reader);
     }
     for (int k = 0; k < c->n_couplings; k++) {
         dalcs_union_join(parent, c->n_nodes + c->coupling[k].inductor[0],
@@ -151,7 +152,7 @@ static void find_potentials(struct dalcs_topology *t, const struct dalcs_circuit
     }
     for (int end = 2 * c->n_devices - 1; end >= 0; end--) {
         const struct dalcs_device *d = &c->device[end / 2];
-        if (d->kind == DALCS_VSOURCE) {
+        if (dalcs_device_is_decided(d)) {
             int *place = &first[t->node_of[d->node[end % 2]]];
             next[end] = *place;
             *place = end;

@@ -75,10 +75,85 @@ static bool read_tones(struct dalcs_reader *reader, struct dalcs_stimulus *s) {
     return true;
 }
 
-/* input NAME [DC] [value] [function] */
-static bool read_function(struct dalcs_reader *reader, struct dalcs_stimulus *s) {
+static bool read_function(struct dalcs_reader *reader, struct dalcs_stimulus *s, int depth);
+
+/* Parts in formulas in formulas ... */
+enum { DEEPEST_FORMULA = 64 };
+
+/* factor (stimulus), up to the end. */
+static bool read_parts(struct dalcs_reader *reader, struct dalcs_stimulus *s, int depth) {
+    struct dalcs_arena *arena = &reader->builder->circuit->arena;
+    const size_t most = (size_t)reader->card->n;
+    struct dalcs_stimulus_summand *part = dalcs_arena_alloc(arena, most, sizeof *part);
+    bool ok = part != NULL && depth < DEEPEST_FORMULA;
+    int n_terms = 0;
+    reader->builder->out_of_memory = reader->builder->out_of_memory || part == NULL;
+    while (ok && dalcs_reader_peek(reader, 0) != NULL &&
+           dalcs_reader_is_number(dalcs_reader_peek(reader, 0))) {
+        struct dalcs_stimulus *of = dalcs_arena_alloc(arena, 1, sizeof *of);
+        struct dalcs_stimulus_summand *next = &part[s->u.formula.argument.n++];
+        reader->builder->out_of_memory = reader->builder->out_of_memory || of == NULL;
+        next->of = of;
+        ok = of != NULL &&
+             dalcs_reader_list_number(reader, DALCS_PLAIN, "a factor", &next->factor) &&
+             dalcs_reader_take(reader, DALCS_TOKEN_OPEN) && read_function(reader, of, depth + 1) &&
+             dalcs_reader_take(reader, DALCS_TOKEN_CLOSE);
+        n_terms += ok ? dalcs_stimulus_n_terms(of) : 0;
+    }
+    s->u.formula.argument.part = part;
+    return ok && n_terms <= DALCS_STIMULUS_MOST_TERMS;
+}
+
+static bool read_knots(struct dalcs_reader *reader, struct dalcs_piecewise *f) {
+    double n;
+    if (!dalcs_reader_list_number(reader, DALCS_PLAIN, "a slope", &f->before) ||
+        !dalcs_reader_list_number(reader, DALCS_PLAIN, "a slope", &f->after) ||
+        !dalcs_reader_list_number(reader, DALCS_PLAIN, "a number of knots", &n) ||
+        !(n >= 1.0 && 4.0 * n <= (double)reader->card->n)) {
+        return false;
+    }
+    f->n = (int)n;
+    f->knot = dalcs_arena_alloc(&reader->builder->circuit->arena, (size_t)f->n, sizeof *f->knot);
+    bool ok = f->knot != NULL;
+    reader->builder->out_of_memory = reader->builder->out_of_memory || !ok;
+    for (int k = 0; k < f->n && ok; k++) {
+        struct dalcs_knot *knot = &f->knot[k];
+        double *const value[] = {&knot->at, &knot->left, &knot->value, &knot->right};
+        for (int i = 0; i < 4 && ok; i++) {
+            ok = dalcs_reader_list_number(reader, DALCS_PLAIN, "a number of a knot", value[i]);
+        }
+        ok = ok && (k == 0 || knot->at > knot[-1].at);
+    }
+    return ok;
+}
+
+/* FORMULA(before after knots, at left value right of each, constant, factor (stimulus) ...): what a formula of sources
+ * alone puts out. */
+static bool read_formula(struct dalcs_reader *reader, struct dalcs_stimulus *s, int depth) {
+    reader->usage =
+        "FORMULA(before after knots at left value right ... constant factor (function) ...)";
+    s->kind = DALCS_STIMULUS_FORMULA;
+    const bool ok = dalcs_reader_take(reader, DALCS_TOKEN_OPEN) &&
+                    read_knots(reader, &s->u.formula.function) &&
+                    dalcs_reader_list_number(reader, DALCS_PLAIN, "a constant",
+                                             &s->u.formula.argument.constant) &&
+                    read_parts(reader, s, depth) && dalcs_reader_take(reader, DALCS_TOKEN_CLOSE);
+    if (!ok) {
+        dalcs_reader_unexpected(reader);
+    }
+    return ok;
+}
+
+static bool is_closed(struct dalcs_reader *reader) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    return token != NULL && token->kind == DALCS_TOKEN_CLOSE;
+}
+
+/* input NAME [DC] [value] [function], or up to the parenthesis that closes a part of a formula */
+static bool read_function(struct dalcs_reader *reader, struct dalcs_stimulus *s, int depth) {
     bool has_function = false;
-    while (!dalcs_reader_at_end(reader)) {
+    *s = (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC};
+    while (!dalcs_reader_at_end(reader) && !(depth > 0 && is_closed(reader))) {
         const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
         bool ok;
         if (!s->has_dc && (dalcs_reader_take_word(reader, "dc") || dalcs_reader_is_number(token))) {
@@ -87,6 +162,9 @@ static bool read_function(struct dalcs_reader *reader, struct dalcs_stimulus *s)
         } else if (!has_function && dalcs_reader_take_word(reader, "tones")) {
             has_function = true;
             ok = read_tones(reader, s);
+        } else if (!has_function && dalcs_reader_take_word(reader, "formula")) {
+            has_function = true;
+            ok = read_formula(reader, s, depth);
         } else if (!has_function && token->kind == DALCS_TOKEN_WORD &&
                    dalcs_waveform_card_is_name(token->text)) {
             has_function = true;
@@ -121,7 +199,7 @@ static bool grow_inputs(struct dalcs_reading *r) {
 static void take_input(struct dalcs_reading *r, const struct dalcs_card *card) {
     struct dalcs_reader reader = dalcs_reader_start(
         &r->builder, card, "input name value, or input name SIN(...), PULSE, PWL, EXP, AM, SFFM");
-    struct dalcs_stimulus s = {.kind = DALCS_STIMULUS_DC};
+    struct dalcs_stimulus s;
     const char *name = dalcs_reading_name(&reader, "a name");
     if (r->n_systems > 0 || r->network != &r->description->network) {
         dalcs_builder_error(&r->builder, card->token, NULL, "inputs come before the systems");
@@ -133,7 +211,7 @@ static void take_input(struct dalcs_reading *r, const struct dalcs_card *card) {
             return;
         }
     }
-    if (name != NULL && read_function(&reader, &s) && grow_inputs(r)) {
+    if (name != NULL && read_function(&reader, &s, 0) && grow_inputs(r)) {
         r->input[r->n_inputs] = s;
         r->input_name[r->n_inputs] = name;
         r->input_token[r->n_inputs++] = card->token;

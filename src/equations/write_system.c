@@ -155,6 +155,34 @@ static void write_tones(FILE *f, const struct dalcs_stimulus *s) {
     fputc(')', f);
 }
 
+static void write_numbers(FILE *f, const double *value, int n) {
+    for (int k = 0; k < n; k++) {
+        dalcs_write_number(f, value[k]);
+        fputc(' ', f);
+    }
+}
+
+/* FORMULA(before after knots, at left value right of each, constant, factor (stimulus) ...) */
+static void write_formula(FILE *f, const struct dalcs_stimulus *s) {
+    const struct dalcs_piecewise *of = &s->u.formula.function;
+    const struct dalcs_stimulus_sum *sum = &s->u.formula.argument;
+    fputs("FORMULA(", f);
+    write_numbers(f, (const double[]){of->before, of->after, of->n}, 3);
+    for (int k = 0; k < of->n; k++) {
+        const struct dalcs_knot *knot = &of->knot[k];
+        write_numbers(f, (const double[]){knot->at, knot->left, knot->value, knot->right}, 4);
+    }
+    dalcs_write_number(f, sum->constant);
+    for (int k = 0; k < sum->n; k++) {
+        fputc(' ', f);
+        dalcs_write_number(f, sum->part[k].factor);
+        fputs(" (", f);
+        dalcs_write_stimulus(f, sum->part[k].of);
+        fputc(')', f);
+    }
+    fputc(')', f);
+}
+
 void dalcs_write_stimulus(FILE *f, const struct dalcs_stimulus *s) {
     if (s->has_dc || s->kind == DALCS_STIMULUS_DC) {
         fputs("dc ", f);
@@ -194,6 +222,9 @@ void dalcs_write_stimulus(FILE *f, const struct dalcs_stimulus *s) {
         break;
     case DALCS_STIMULUS_TONES:
         write_tones(f, s);
+        break;
+    case DALCS_STIMULUS_FORMULA:
+        write_formula(f, s);
         break;
     }
 }

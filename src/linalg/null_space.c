@@ -118,7 +118,7 @@ static int shortest_row(struct work *w) {
 }
 
 static const struct entry *find_entry(const struct row *row, int column) {
-    for (int k = 0; k < row->n; k++) {
+    for (int k = 0; k < row->n && row->entry[k].column <= column; k++) {
         if (row->entry[k].column == column) {
             return &row->entry[k];
         }
@@ -126,24 +126,32 @@ static const struct entry *find_entry(const struct row *row, int column) {
     return NULL;
 }
 
-static long double largest_of(const struct work *w, const struct column *column, int index) {
-    long double largest = 0.0L;
+/* In a column, of the rows that are left; r is one of them. */
+static long double largest_of(const struct work *w, int r, const struct entry *of) {
+    const struct column *column = &w->column[of->column];
+    long double largest = fabsl(of->value);
     for (int k = 0; k < column->n; k++) {
+        const int other = column->row[k];
         const struct entry *e =
-            w->pivot_of[column->row[k]] < 0 ? find_entry(&w->row[column->row[k]], index) : NULL;
-        largest = e != NULL ? fmaxl(largest, fabsl(e->value)) : largest;
+            other != r && w->pivot_of[other] < 0 ? find_entry(&w->row[other], of->column) : NULL;
+        largest = e != NULL && fabsl(e->value) > largest ? fabsl(e->value) : largest;
     }
     return largest;
 }
 
-/* The largest of its column, as near as the row has it: with less, bounds would grow along a chain. */
-static struct entry choose_pivot(const struct work *w, const struct row *row) {
+/* The largest of its column, as near as the row has it: with less, bounds would grow along a chain. Where there is no
+ * other entry there is nothing to look up. */
+static struct entry choose_pivot(const struct work *w, int r) {
+    const struct row *row = &w->row[r];
+    if (row->n == 1) {
+        return row->entry[0];
+    }
     const struct entry *chosen = row->entry;
     long double best = -1.0L;
     for (int k = 0; k < row->n; k++) {
         const struct entry *e = &row->entry[k];
         const struct column *column = &w->column[e->column];
-        long double part = fabsl(e->value) / largest_of(w, column, e->column);
+        long double part = fabsl(e->value) / largest_of(w, r, e);
         if (part > best || (part == best && column->n < w->column[chosen->column].n)) {
             chosen = e;
             best = part;
@@ -201,7 +209,7 @@ static enum dalcs_status eliminate_all(struct work *w, int n_rows, int *rank) {
         if (row->n == 0) {
             continue;
         }
-        struct entry pivot = choose_pivot(w, row);
+        struct entry pivot = choose_pivot(w, r);
         w->pivot_of[r] = pivot.column;
         w->eliminated[(*rank)++] = r;
         const struct column *column = &w->column[pivot.column];

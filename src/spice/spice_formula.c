@@ -150,7 +150,7 @@ void dalcs_spice_write_formula(const struct dalcs_spice_names *names,
                                const struct dalcs_spice_options *options, FILE *stream, int i,
                                const char *first_node) {
     const struct dalcs_device *device = &names->circuit->device[i];
-    const struct formula f = {names, options, stream, i, device->behaviour};
+    const struct formula f = {names, options, stream, i, dalcs_device_written(device)};
     fprintf(stream, "%s %s %s %c=", names->device[i], first_node,
             names->node[names->node_of[device->node[1]]], device->kind == DALCS_VCVS ? 'v' : 'i');
     write_affine(&f, &f.behaviour->output, 1.0, -1, -1);
@@ -177,7 +177,7 @@ static void look_at(void *to, const struct dalcs_affine_term *term) {
 
 bool dalcs_spice_takes_stimulus(const struct dalcs_circuit *circuit, int i, int k) {
     struct search search = {.stimulus = k};
-    dalcs_behaviour_visit(circuit->device[i].behaviour, look_at, &search);
+    dalcs_behaviour_visit(dalcs_device_written(&circuit->device[i]), look_at, &search);
     return search.found;
 }
 

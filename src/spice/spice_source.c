@@ -137,6 +137,7 @@ const char *dalcs_spice_write_source(FILE *stream, const struct dalcs_stimulus *
         return NULL;
     }
     case DALCS_STIMULUS_TONES:
+    case DALCS_STIMULUS_FORMULA:
         break; /* an expression */
     }
     return NULL;

@@ -68,12 +68,23 @@ static bool has_source(const struct dalcs_component *c, enum dalcs_stimulus_kind
     return found;
 }
 
+/* A formula of sources that swings, or steps. */
+static bool has_formula(const struct dalcs_component *c, bool swings) {
+    bool found = false;
+    for (int k = 1; k < c->system->n_inputs && !found; k++) {
+        const struct dalcs_stimulus *s = &c->circuit->stimulus[c->system->stimulus[k]];
+        found = s->kind == DALCS_STIMULUS_FORMULA && (dalcs_stimulus_n_terms(s) > 0) == swings;
+    }
+    return found;
+}
+
 static bool is_pulsed(const struct dalcs_component *c) {
-    return has_source(c, DALCS_STIMULUS_PULSE);
+    return has_source(c, DALCS_STIMULUS_PULSE) || has_formula(c, false);
 }
 
 static bool is_swinging(const struct dalcs_component *c) {
-    return has_source(c, DALCS_STIMULUS_SIN) || has_source(c, DALCS_STIMULUS_TONES);
+    return has_source(c, DALCS_STIMULUS_SIN) || has_source(c, DALCS_STIMULUS_TONES) ||
+           has_formula(c, true);
 }
 
 /* Whoever chooses the stages or the step gets what is asked for. */

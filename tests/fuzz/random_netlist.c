@@ -304,17 +304,28 @@ static void couplings(struct draft *d) {
     }
 }
 
+/* Those that elements name; the others would only take time to read. */
+static void model(struct draft *d, const char *name, const char *format, const char *a,
+                  const char *b) {
+    if (strstr(d->text, name) != NULL) {
+        put(d, ".model%s ", name);
+        put(d, format, a, b);
+    }
+}
+
 static void models(struct draft *d) {
-    put(d, ".model dm0 D\n.model dm1 D(Ron=%s Vfwd=0.7)\n", WORD(d, "10m", "0", "1"));
-    put(d, ".model dm2 D(Ron=1m Roff=1Meg Vrev=%s)\n", WORD(d, "10", "0.1", "400"));
-    put(d, ".model dm3 D(IS=1e-14 N=1 RS=1m)\n.model dm4 D(Ron=1 Ilimit=%s)\n", WORD(d, "1", "1m"));
-    put(d, ".model sm0 SW(Ron=1m Roff=1Meg Vt=0.5)\n.model sm1 SW(Vt=%s)\n",
-        WORD(d, "0.5", "0", "3"));
-    put(d, ".model sm2 SW(Ron=1 Roff=10k Vt=%s Vh=%s)\n", WORD(d, "1", "0"),
-        WORD(d, "0.2", "1", "1m"));
-    put(d, ".model sm3 VSWITCH(Ron=1 Roff=1Meg Von=2 Voff=1)\n");
-    put(d, ".model wm0 CSW(Ron=1m Roff=1Meg It=%s)\n", WORD(d, "1m", "0", "1"));
-    put(d, ".model wm1 CSW(It=10m Ih=%s)\n", WORD(d, "1m", "5m", "0"));
+    model(d, " dm0", "D\n%s%s", "", "");
+    model(d, " dm1", "D(Ron=%s Vfwd=0.7)%s\n", WORD(d, "10m", "0", "1"), "");
+    model(d, " dm2", "D(Ron=1m Roff=1Meg Vrev=%s)%s\n", WORD(d, "10", "0.1", "400"), "");
+    model(d, " dm3", "D(IS=1e-14 N=1 RS=1m)%s%s\n", "", "");
+    model(d, " dm4", "D(Ron=1 Ilimit=%s)%s\n", WORD(d, "1", "1m"), "");
+    model(d, " sm0", "SW(Ron=1m Roff=1Meg Vt=0.5)%s%s\n", "", "");
+    model(d, " sm1", "SW(Vt=%s)%s\n", WORD(d, "0.5", "0", "3"), "");
+    const char *vt = WORD(d, "1", "0");
+    model(d, " sm2", "SW(Ron=1 Roff=10k Vt=%s Vh=%s)\n", vt, WORD(d, "0.2", "1", "1m"));
+    model(d, " sm3", "VSWITCH(Ron=1 Roff=1Meg Von=2 Voff=1)%s%s\n", "", "");
+    model(d, " wm0", "CSW(Ron=1m Roff=1Meg It=%s)%s\n", WORD(d, "1m", "0", "1"), "");
+    model(d, " wm1", "CSW(It=10m Ih=%s)%s\n", WORD(d, "1m", "5m", "0"), "");
 }
 
 static void measurement(struct draft *d, int n) {

@@ -263,7 +263,7 @@ START_TEST(test_random_formulas) {
         state = (unsigned long long)k;
         any(&t, 1 + k % 4);
         build_formula(&circuit, t.formula);
-        const struct dalcs_behaviour *b = device_named(&circuit, "b1")->behaviour;
+        const struct dalcs_behaviour *b = dalcs_device_written(device_named(&circuit, "b1"));
         n_with_pairs += b->n_pairs > 0;
         for (int i = 0; i < 4; i++) {
             struct point p = {0};
@@ -288,7 +288,7 @@ END_TEST
 static void check_pairs(const char *formula, int n_pairs) {
     struct dalcs_circuit circuit;
     build_formula(&circuit, formula);
-    const struct dalcs_behaviour *b = device_named(&circuit, "b1")->behaviour;
+    const struct dalcs_behaviour *b = dalcs_device_written(device_named(&circuit, "b1"));
     ck_assert_msg(b->n_pairs == n_pairs, "%s: %d pairs, not %d", formula, b->n_pairs, n_pairs);
     dalcs_circuit_finish(&circuit);
 }
@@ -324,7 +324,7 @@ START_TEST(test_rails_are_exact) {
     for (size_t k = 0; k < sizeof formulas / sizeof formulas[0]; k++) {
         struct dalcs_circuit circuit;
         build_formula(&circuit, formulas[k]);
-        const struct dalcs_behaviour *b = device_named(&circuit, "b1")->behaviour;
+        const struct dalcs_behaviour *b = dalcs_device_written(device_named(&circuit, "b1"));
         const struct point high = {.v = {0, 3.3, 0, 0}};
         const struct point low = {.v = {0, -1234.5, 0, 0}};
         ck_assert_double_eq(output_at(&circuit, b, &high), 10);
@@ -340,7 +340,7 @@ END_TEST
 static void check_time(const char *formula, double (*wanted)(double t)) {
     struct dalcs_circuit circuit;
     build_formula(&circuit, formula);
-    const struct dalcs_behaviour *b = device_named(&circuit, "b1")->behaviour;
+    const struct dalcs_behaviour *b = dalcs_device_written(device_named(&circuit, "b1"));
     ck_assert_int_eq(b->n_pairs, 0);
     for (int k = 0; k < 200; k++) {
         const struct point p = {.t = k * 0.0173};
