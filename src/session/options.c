@@ -223,8 +223,7 @@ static enum dalcs_status choose_step(struct dalcs_run *r) {
     } else { /* without memory only the times that are printed matter */
         r->h = t->step > 0.0 ? t->step : t->stop / 1000.0;
     }
-    r->fixed_step =
-        r->method == DALCS_METHOD_RADAU || r->method == DALCS_METHOD_LOBATTO ? asked : 0.0;
+    r->fixed_step = r->method != DALCS_METHOD_AUTO && r->method != DALCS_METHOD_EULER ? asked : 0.0;
     r->max_step = asked > 0.0 ? asked : t->max_step;
     double least = r->h;
     if (r->method != DALCS_METHOD_EULER && r->max_step > 0.0) {

@@ -396,14 +396,14 @@ static enum dalcs_status report_methods(struct dalcs_run *r, const struct dalcs_
     if (component == NULL) {
         return DALCS_E_NOMEM;
     }
-    const char *radau_name = dalcs_method_name(
-        r->family == DALCS_LOBATTO_IIIC ? DALCS_METHOD_LOBATTO : DALCS_METHOD_RADAU);
+    const char *family_name =
+        dalcs_method_name(r->method == DALCS_METHOD_AUTO ? DALCS_METHOD_RADAU : r->method);
     for (size_t k = 0; k < n; k++) {
         component[k] = (struct dalcs_component_method){.method = "euler", .stages = 1};
         if (radau != NULL) {
             const struct dalcs_radau_part *part = &radau->part[k];
             bool steps = part->kind == DALCS_PART_STEPPED;
-            component[k].method = steps ? radau_name : "algebraic";
+            component[k].method = steps ? family_name : "algebraic";
             component[k].stages = steps ? part->stages.method->n_stages : 1;
             component[k].because = part->because;
         }
