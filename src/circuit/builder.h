@@ -285,6 +285,24 @@ void dalcs_reader_unexpected(struct dalcs_reader *reader);
 
 /* ---- One file per family; each takes a whole card -------------------------------------------- */
 
+/* What limits a current, current_limit.c: A, INFINITY: nothing. */
+struct dalcs_current_limits {
+    double forward, reverse; /* from node[0] to node[1] inside the device, and back */
+};
+
+int dalcs_diode_ideal_model(struct dalcs_builder *builder);
+
+bool dalcs_current_limit_is_name(const char *name);
+/* The value behind the parameter; false when an error was reported. */
+bool dalcs_current_limit_read(struct dalcs_reader *reader, const struct dalcs_token *name,
+                              struct dalcs_current_limits *limits);
+/* Puts them behind node[1] of the device, which becomes an inner one: two devices and a stimulus for each. */
+void dalcs_current_limit_expand(struct dalcs_builder *builder, const struct dalcs_token *name,
+                                struct dalcs_device *device,
+                                const struct dalcs_current_limits *limits);
+/* How many there may be of a card. */
+int dalcs_current_limit_count(const struct dalcs_card *card);
+
 /* Rser, Lser, Rpar, Cpar, RLshunt of a card; zero-initialise. */
 struct dalcs_parasitics {
     double value[5];

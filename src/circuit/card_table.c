@@ -171,6 +171,11 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
     }
     if (strchr("rlcviefghdswab", letter) != NULL) {
         table->n_stimuli += strchr("vic", letter) != NULL;
+        if (letter == 'v') {
+            const size_t n_limits = (size_t)dalcs_current_limit_count(card);
+            table->n_inner += 2 * n_limits;
+            table->n_stimuli += n_limits;
+        }
         table->n_inner += count_parasitics(card);
         table->n_inner += letter == 'l' &&
                           dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_LTSPICE);

@@ -64,6 +64,7 @@ struct dalcs_device {
     double value;     /* ohm, H, F, or gain */
     double initial;   /* IC=: V for C, A for L */
     bool has_initial;
+    bool is_limit;          /* I: limits a current, and what it takes is lost as in a diode */
     bool initially_on;      /* S ... ON */
     bool has_initial_state; /* S carries ON or OFF */
     int stimulus;           /* V, I: index into circuit->stimulus, else -1 */

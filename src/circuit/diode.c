@@ -1,8 +1,7 @@
 /* diode.c - D elements, and A elements whose model is a sidiode.
  *
  * m= diodes in parallel and n= in series are LTspice's; the area is that of SPICE's exponential
- * diode. A diode with one of these has a model of its own. What limits the current is a current
- * source with an ideal diode across it, in series: it lets less pass, never more. */
+ * diode. A diode with one of these has a model of its own. What limits its current: current_limit.c. */
 #include "builder.h"
 
 #include <math.h>
@@ -16,16 +15,6 @@ struct scale {
     double area, parallel, series;
     const struct dalcs_token *place; /* of the last one, NULL: none */
 };
-
-static int ideal_model(struct dalcs_builder *builder) {
-    if (builder->ideal_diode < 0) {
-        struct dalcs_circuit *circuit = builder->circuit;
-        builder->ideal_diode = circuit->n_diode_models++;
-        circuit->diode_model[builder->ideal_diode] = (struct dalcs_diode_model){
-            .name = "ideal", .roff = (double)INFINITY, .vrev = (double)INFINITY};
-    }
-    return builder->ideal_diode;
-}
 
 static bool read_positive(struct dalcs_reader *reader, const char *what, double *value) {
     if (!dalcs_reader_number(reader, DALCS_PLAIN, what, value)) {
@@ -113,48 +102,6 @@ static bool scale_model(struct dalcs_builder *builder, const struct dalcs_diode_
     return true;
 }
 
-/* Lets at most `limit` pass from `from` to `to`. */
-static void add_limit(struct dalcs_builder *builder, const struct dalcs_token *name,
-                      const char *const *what, double limit, int from, int to) {
-    struct dalcs_circuit *circuit = builder->circuit;
-    struct dalcs_device *source =
-        dalcs_builder_add_inner_device(builder, DALCS_ISOURCE, what[0], name);
-    struct dalcs_device *bypass =
-        dalcs_builder_add_inner_device(builder, DALCS_DIODE, what[1], name);
-    if (source == NULL || bypass == NULL) {
-        return;
-    }
-    source->node[0] = bypass->node[1] = from;
-    source->node[1] = bypass->node[0] = to;
-    source->stimulus = circuit->n_stimuli++;
-    circuit->stimulus[source->stimulus] =
-        (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .has_dc = true, .dc = limit};
-    bypass->model = ideal_model(builder);
-}
-
-static void add_limits(struct dalcs_builder *builder, const struct dalcs_token *name,
-                       const struct dalcs_diode_card *card, struct dalcs_device *device,
-                       double parallel) {
-    static const char *const forward[2] = {"ilimit", "below_ilimit"};
-    static const char *const reverse[2] = {"revilimit", "below_revilimit"};
-    if (isfinite(card->ilimit)) {
-        const int node = dalcs_builder_inner_node(builder, "before_ilimit", name);
-        if (node < 0) {
-            return;
-        }
-        add_limit(builder, name, forward, card->ilimit * parallel, node, device->node[1]);
-        device->node[1] = node;
-    }
-    if (isfinite(card->revilimit)) {
-        const int node = dalcs_builder_inner_node(builder, "before_revilimit", name);
-        if (node < 0) {
-            return;
-        }
-        add_limit(builder, name, reverse, card->revilimit * parallel, device->node[1], node);
-        device->node[1] = node;
-    }
-}
-
 /* After the nodes. */
 static void read_model(struct dalcs_reader *reader, struct dalcs_device *device) {
     struct dalcs_builder *builder = reader->builder;
@@ -172,7 +119,9 @@ static void read_model(struct dalcs_reader *reader, struct dalcs_device *device)
     if (scale.place != NULL && !scale_model(builder, card, device, &scale)) {
         return;
     }
-    add_limits(builder, reader->card->token, card, device, scale.parallel);
+    const struct dalcs_current_limits limits = {.forward = card->ilimit * scale.parallel,
+                                                .reverse = card->revilimit * scale.parallel};
+    dalcs_current_limit_expand(builder, reader->card->token, device, &limits);
 }
 
 void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -182,7 +131,7 @@ void dalcs_diode_parse(struct dalcs_builder *builder, const struct dalcs_card *c
         return;
     }
     if (dalcs_reader_at_end(&reader)) {
-        device->model = ideal_model(builder);
+        device->model = dalcs_diode_ideal_model(builder);
         return;
     }
     read_model(&reader, device);

@@ -69,6 +69,13 @@ static bool takes_parasitic(struct dalcs_reader *reader, enum dalcs_quantity qua
            dalcs_reader_take_parameter(reader) != NULL;
 }
 
+/* Ilimit= or revIlimit= of a V. */
+static bool takes_limit(struct dalcs_reader *reader, enum dalcs_quantity quantity) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    return quantity == DALCS_VOLTAGE && dalcs_current_limit_is_name(token->text) &&
+           dalcs_reader_take_parameter(reader) != NULL;
+}
+
 /* SIN, PULSE, ... */
 static bool is_function(const struct dalcs_token *token) {
     return token != NULL && token->kind == DALCS_TOKEN_WORD &&
@@ -76,7 +83,8 @@ static bool is_function(const struct dalcs_token *token) {
 }
 
 static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantity,
-                        struct dalcs_stimulus *stimulus, struct dalcs_parasitics *parasitics) {
+                        struct dalcs_stimulus *stimulus, struct dalcs_parasitics *parasitics,
+                        struct dalcs_current_limits *limits) {
     bool has_function = false;
     bool has_ac = false;
     const struct dalcs_token *token;
@@ -91,6 +99,10 @@ static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantit
             }
         } else if (takes_parasitic(reader, quantity)) {
             if (!dalcs_parasitic_read(reader, token, parasitics)) {
+                return;
+            }
+        } else if (takes_limit(reader, quantity)) {
+            if (!dalcs_current_limit_read(reader, token, limits)) {
                 return;
             }
         } else if (dalcs_reader_take_word(reader, "ac")) {
@@ -140,9 +152,11 @@ void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *
     }
     device->stimulus = circuit->n_stimuli++;
     struct dalcs_parasitics parasitics = {.place = {NULL}};
+    struct dalcs_current_limits limits = {INFINITY, INFINITY};
     read_source(&reader, kind == DALCS_VSOURCE ? DALCS_VOLTAGE : DALCS_CURRENT,
-                &circuit->stimulus[device->stimulus], &parasitics);
+                &circuit->stimulus[device->stimulus], &parasitics, &limits);
     dalcs_parasitic_expand(builder, card->token, device, &parasitics);
+    dalcs_current_limit_expand(builder, card->token, device, &limits);
 }
 
 /* Edges are told apart to 1e-15 of the time; leave room for a few points in between. */

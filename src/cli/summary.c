@@ -56,7 +56,7 @@ static void write_group(FILE *out, const struct dalcs_report *report,
     }
     if (method->because) {
         fprintf(out, " (%s)", method->because);
-    } else if (report->step == 0.0 && strcmp(method->method, "radau") == 0) {
+    } else if (report->step == 0.0 && dalcs_method_has_stages(method->method)) {
         fprintf(out, " (tolerance %g)", report->tolerance);
     }
 }

@@ -6,6 +6,8 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
 
 /* Of C11, but glibc has them for gcc alone. */
 #ifndef CMPLX
@@ -17,8 +19,13 @@ static const struct dalcs_collocation METHODS[] = {
 #include "collocation_table.h"
 };
 
-const struct dalcs_collocation *dalcs_collocation_of(int s) {
-    return &METHODS[(s - 1) / 2];
+const struct dalcs_collocation *dalcs_collocation_of(enum dalcs_family family, int n_stages) {
+    const struct dalcs_collocation *found = NULL;
+    for (size_t k = 0; k < sizeof(METHODS) / sizeof(METHODS[0]); k++) {
+        bool is = METHODS[k].family == family && METHODS[k].n_stages == n_stages;
+        found = is ? &METHODS[k] : found;
+    }
+    return found;
 }
 
 /* Barycentric weights over the distances from theta. */
@@ -53,10 +60,10 @@ static void take_node(const struct dalcs_collocation *c, double theta, double *w
 void dalcs_collocation_parts(const struct dalcs_collocation *c, const double *at_stages,
                              struct dalcs_extended_row *part) {
     struct dalcs_extended factor[DALCS_MAX_STAGES];
-    for (int i = 0; i < c->s; i++) {
+    for (int i = 0; i < c->n_stages; i++) {
         factor[i] = (struct dalcs_extended){at_stages[i], 0.0};
     }
-    dalcs_extended_combine(1 + 2 * c->n_pairs, c->s, factor, c->exact_from, NULL, part);
+    dalcs_extended_combine(1 + 2 * c->n_pairs, c->n_stages, factor, c->exact_from, NULL, part);
 }
 
 void dalcs_collocation_weights(const struct dalcs_collocation *c, double theta, double *weight) {

@@ -1,4 +1,4 @@
-/* collocation.h - the Radau IIA methods: implicit Euler's family of order 2s - 1.
+/* collocation.h - the methods. Radau IIA: implicit Euler's family of order 2s - 1.
  *
  * A step of length h looks for the polynomial of degree s that starts at the present state and obeys
  * the equations at the nodes c_1 < ... < c_s = 1 (Ehle 1969; Hairer and Wanner, Solving ODEs II,
@@ -7,6 +7,11 @@
  * A^-1 has one real and (s-1)/2 pairs of conjugate eigenvalues mu; in the coordinates of its
  * eigenvectors, scaled so that each sees the constant 1 as 1, the stages separate into steps of
  * implicit Euler with sigma = mu / h, all but one complex. s = 1 is implicit Euler itself.
+ *
+ * Lobatto IIIC (Chipman 1971; Hairer and Wanner, table IV.5.12) has a stage at the start, too, which its
+ * state need not meet, A_i1 = b_1, and otherwise the same equations, with one node less for as many
+ * stages. It is of order 2s - 2 in its number of stages, L-stable and stiffly accurate. That stage's Y is
+ * where the polynomial through the stages starts, of which Radau IIA has an extrapolation.
  *
  * The numbers are computed in extended precision when dalcs is built, not typed in. */
 #ifndef DALCS_COLLOCATION_H
@@ -24,8 +29,12 @@ enum {
     DALCS_SOLUTION_PARTS = 1 + 2 * DALCS_MAX_CONJUGATES
 };
 
+enum dalcs_family { DALCS_RADAU_IIA, DALCS_LOBATTO_IIIC };
+
 struct dalcs_collocation {
-    int s;                        /* stages: 1, 3, 5, 7 or 9 */
+    enum dalcs_family family;
+    int s;        /* nodes behind the start, and the degree of the polynomials */
+    int n_stages; /* 1, 3, 5, 7 or 9: those nodes, in this order, and with LOBATTO_IIIC, last, the start */
     int n_pairs;                  /* conjugate pairs of eigenvalues */
     double node[DALCS_MAX_NODES]; /* 0, c_1, ..., c_s */
     double lambda;                /* the real eigenvalue of A^-1 */
@@ -35,8 +44,8 @@ struct dalcs_collocation {
     long double exact_back[DALCS_MAX_STAGES];
     long double exact_lambda;
     long double complex exact_mu[DALCS_MAX_CONJUGATES];
-    /* of solutions as 1 + 2 n_pairs parts, that of lambda and (re, im) of each of mu: what the stages, and in
-     * place s the polynomial through them at 0, take of each part; what the parts take of each stage. Stage i is
+    /* of solutions as 1 + 2 n_pairs parts, that of lambda and (re, im) of each of mu: what the nodes, and in
+     * place s the polynomial through the stages at 0, take of each part; what the parts take of each stage. Stage i is
      * to[i] W + sum over pairs of 2 Re(to_pair[i][p] W_p) */
     struct dalcs_extended_row exact_to[DALCS_SOLUTION_PARTS];
     struct dalcs_extended_row exact_from[DALCS_MAX_STAGES];
@@ -62,8 +71,8 @@ struct dalcs_collocation {
     double bernstein_spread; /* coefficients leave the range of the values by at most this part */
 };
 
-/* s must be 1, 3, 5, 7 or 9. */
-const struct dalcs_collocation *dalcs_collocation_of(int s);
+/* NULL: there is none. */
+const struct dalcs_collocation *dalcs_collocation_of(enum dalcs_family family, int n_stages);
 
 /* The parts of a function of time by its values at the stages. */
 void dalcs_collocation_parts(const struct dalcs_collocation *c, const double *at_stages,

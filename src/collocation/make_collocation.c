@@ -1,4 +1,4 @@
-/* make_collocation.c - runs while dalcs is built: nodes, eigenvectors and polynomial bases of Radau IIA
+/* make_collocation.c - runs while dalcs is built: nodes, eigenvectors and polynomial bases of all methods
  * in extended precision, printed as the table that collocation.c includes. */
 #include "collocation.h"
 
@@ -57,33 +57,36 @@ static void legendre(int n, real t, real *p, real *before) {
     *before = b;
 }
 
-/* Whose roots are sought in (-1, 1): Legendre for Gauss, the difference for Radau. */
-static real node_polynomial(int n, bool radau, real t) {
+enum nodes { GAUSS, RADAU, LOBATTO };
+
+/* Whose roots are sought in (-1, 1): Legendre for Gauss, the difference for Radau, (1 - t^2) P'_n-1 but for a
+ * factor for Lobatto. */
+static real node_polynomial(int n, enum nodes nodes, real t) {
     real p;
     real before;
     legendre(n, t, &p, &before);
-    return radau ? p - before : p;
+    return nodes == GAUSS ? p : nodes == RADAU ? p - before : t * before - p;
 }
 
 /* Roots in (0, 1), ascending: each sign change of a scan, bisected. Returns their number. */
-static int roots_in_unit_interval(int n, bool radau, real *root) {
+static int roots_in_unit_interval(int n, enum nodes nodes, real *root) {
     int found = 0;
     for (int k = 0; k < SCAN && found < n; k++) {
         real a = (real)k / SCAN;
         real b = (real)(k + 1) / SCAN;
-        real at_a = node_polynomial(n, radau, 2 * a - 1);
+        real at_a = node_polynomial(n, nodes, 2 * a - 1);
         if (at_a == 0.0L) {
             if (a > 0.0L) {
                 root[found++] = a;
             }
             continue;
         }
-        if (k == SCAN - 1 || at_a * node_polynomial(n, radau, 2 * b - 1) >= 0.0L) {
+        if (k == SCAN - 1 || at_a * node_polynomial(n, nodes, 2 * b - 1) >= 0.0L) {
             continue;
         }
         for (int round = 0; round < 130; round++) {
             real middle = 0.5L * (a + b);
-            bool left = at_a * node_polynomial(n, radau, 2 * middle - 1) <= 0.0L;
+            bool left = at_a * node_polynomial(n, nodes, 2 * middle - 1) <= 0.0L;
             *(left ? &b : &a) = middle;
         }
         root[found++] = 0.5L * (a + b);
@@ -103,7 +106,7 @@ static void lagrange(int n, const real *node, real x, real *value) {
 
 /* Gauss' rule for integrals over (0, 1). */
 static void gauss_rule(int n, real *node, real *weight) {
-    (void)roots_in_unit_interval(n, false, node);
+    (void)roots_in_unit_interval(n, GAUSS, node);
     for (int g = 0; g < n; g++) {
         real p;
         real before;
@@ -131,13 +134,33 @@ static void butcher_matrix(int s, const real *c, const real *gauss, const real *
     }
 }
 
-/* The eigenvalues of A^-1 are the poles of the stability function, the (s-1, s) Pade approximant of
- * exp (Hairer and Wanner, sec. IV.3, eq. (3.29)): all at once by Weierstrass' iteration. */
-static void eigenvalues(int s, complex_real *mu) {
+/* Of Lobatto IIIC, from that of IIIA, whose stages are the same but for a multiple of what all polynomials
+ * of a degree below s - 1 have none of, their last divided difference: A_ij = b_j at the start, stage s - 1. */
+static void start_freely(int s, const real *c, real A[MAX][MAX]) {
+    real difference[MAX];
+    for (int j = 0; j < s; j++) {
+        difference[j] = 1.0L;
+        for (int k = 0; k < s; k++) {
+            difference[j] /= k != j ? c[j] - c[k] : 1.0L;
+        }
+    }
+    real at_start = A[s - 2][s - 1];
+    for (int i = 0; i < s; i++) {
+        real multiple = (at_start - A[i][s - 1]) / difference[s - 1];
+        for (int j = 0; j < s; j++) {
+            A[i][j] += multiple * difference[j];
+        }
+    }
+}
+
+/* The eigenvalues of A^-1 are the poles of the stability function, the (k, s) Pade approximant of
+ * exp, k = s - 1 for Radau IIA and s - 2 for Lobatto IIIC (Hairer and Wanner, sec. IV.3, eq. (3.29)): all
+ * at once by Weierstrass' iteration. */
+static void eigenvalues(int k_and_s, int s, complex_real *mu) {
     real coefficient[MAX + 1];
     coefficient[0] = 1.0L;
     for (int j = 1; j <= s; j++) {
-        coefficient[j] = -coefficient[j - 1] * (real)(s - j + 1) / (real)((2 * s - j) * j);
+        coefficient[j] = -coefficient[j - 1] * (real)(s - j + 1) / (real)((k_and_s + 1 - j) * j);
     }
     complex_real start = 0.4L + 0.9L * I;
     for (int i = 0; i < s; i++) {
@@ -218,9 +241,9 @@ static void eigenvector(int s, real A[MAX][MAX], complex_real mu, bool transpose
 }
 
 static void diagonalise(struct dalcs_collocation *c, real A[MAX][MAX]) {
-    int s = c->s;
+    int s = c->n_stages;
     complex_real mu[MAX];
-    eigenvalues(s, mu);
+    eigenvalues(c->s + s - 1, s, mu);
     for (int k = 0; k < s; k++) {
         if (__imag__(mu[k]) < -1e-9L) {
             continue; /* the conjugate of another */
@@ -375,10 +398,12 @@ static void order_nodes(struct dalcs_collocation *c, const real *node) {
     }
 }
 
-static void compute(struct dalcs_collocation *c, int s) {
-    *c = (struct dalcs_collocation){.s = s};
+static void compute(struct dalcs_collocation *c, enum dalcs_family family, int n_stages) {
+    bool starts = family == DALCS_LOBATTO_IIIC; /* with a stage there, behind the others */
+    int s = starts ? n_stages - 1 : n_stages;
+    *c = (struct dalcs_collocation){.family = family, .s = s, .n_stages = n_stages};
     real node[MAX] = {0.0L};
-    (void)roots_in_unit_interval(s, true, node + 1);
+    (void)roots_in_unit_interval(n_stages, starts ? LOBATTO : RADAU, node + 1);
     node[s] = 1.0L;
     for (int i = 0; i <= s; i++) {
         c->node[i] = (double)node[i];
@@ -392,23 +417,26 @@ static void compute(struct dalcs_collocation *c, int s) {
     real A[MAX][MAX];
     real gauss[MAX];
     real gauss_weight[MAX];
-    gauss_rule(s, gauss, gauss_weight);
-    butcher_matrix(s, node + 1, gauss, gauss_weight, A);
-    for (int i = 0; i < s; i++) {
+    gauss_rule(n_stages, gauss, gauss_weight);
+    butcher_matrix(n_stages, node + 1, gauss, gauss_weight, A);
+    if (starts) {
+        start_freely(n_stages, node + 1, A);
+    }
+    for (int i = 0; i < n_stages; i++) {
         c->weight[i] = (double)A[s - 1][i];
     }
     for (int i = 0; i < MAX; i++) {
-        c->gauss[i] = i < s ? (double)gauss[i] : 1.0;
-        c->gauss_weight[i] = i < s ? (double)gauss_weight[i] : 0.0;
+        c->gauss[i] = i < n_stages ? (double)gauss[i] : 1.0;
+        c->gauss_weight[i] = i < n_stages ? (double)gauss_weight[i] : 0.0;
     }
     diagonalise(c, A);
     real value[MAX];
-    lagrange(s, node + 1, 0.0L, value);
-    for (int i = 0; i < s; i++) {
+    lagrange(n_stages, node + 1, 0.0L, value);
+    for (int i = 0; i < n_stages; i++) {
         c->exact_back[i] = value[i];
         c->back[i] = (double)value[i];
     }
-    for (int part = 0; part < 1 + 2 * c->n_pairs; part++) {
+    for (int part = 0; part < 1 + 2 * c->n_pairs && !starts; part++) {
         real at_0 = 0;
         for (int i = 0; i < s; i++) {
             at_0 += value[i] * ((real)c->exact_to[part].high[i] + c->exact_to[part].low[i]);
@@ -485,7 +513,8 @@ static void print_exact_complexes(int n, const long double complex *x) {
 static void print_method(const struct dalcs_collocation *c) {
     int s = c->s;
     int pairs = DALCS_MAX_CONJUGATES;
-    printf("    {\n        .s = %d,\n        .n_pairs = %d,\n", s, c->n_pairs);
+    printf("    {\n        .family = %d,\n        .s = %d,\n", (int)c->family, s);
+    printf("        .n_stages = %d,\n        .n_pairs = %d,\n", c->n_stages, c->n_pairs);
     print_reals("node", s + 1, c->node);
     printf("        .lambda = %.17g,\n        .mu = ", c->lambda);
     print_complexes(pairs, c->mu);
@@ -493,9 +522,9 @@ static void print_method(const struct dalcs_collocation *c) {
     printf("        .exact_lambda = %.21LgL,\n        .exact_mu = ", c->exact_lambda);
     print_exact_complexes(pairs, c->exact_mu);
     printf(",\n");
-    print_exacts("exact_back", s, c->exact_back);
+    print_exacts("exact_back", c->n_stages, c->exact_back);
     print_rows("exact_to", 1 + 2 * c->n_pairs, c->exact_to);
-    print_rows("exact_from", s, c->exact_from);
+    print_rows("exact_from", c->n_stages, c->exact_from);
     print_reals("binomial", s + 1, c->binomial);
     print_reals("barycentric", s + 1, c->barycentric);
     printf("        .newton_order = {");
@@ -505,8 +534,8 @@ static void print_method(const struct dalcs_collocation *c) {
     printf("},\n");
     print_reals("newton_node", s + 1, c->newton_node);
     print_square("newton", s, c->newton);
-    print_reals("back", s, c->back);
-    print_reals("weight", s, c->weight);
+    print_reals("back", c->n_stages, c->back);
+    print_reals("weight", c->n_stages, c->weight);
     print_reals("gauss", MAX, c->gauss);
     print_reals("gauss_weight", MAX, c->gauss_weight);
     print_reals("test", s + 1, c->test);
@@ -523,7 +552,12 @@ int main(void) {
     printf("/* made by make_collocation.c */\n");
     for (int s = 1; s <= DALCS_MAX_STAGES; s += 2) {
         struct dalcs_collocation c;
-        compute(&c, s);
+        compute(&c, DALCS_RADAU_IIA, s);
+        print_method(&c);
+    }
+    for (int s = 3; s <= DALCS_MAX_STAGES; s += 2) {
+        struct dalcs_collocation c;
+        compute(&c, DALCS_LOBATTO_IIIC, s);
         print_method(&c);
     }
     return 0;

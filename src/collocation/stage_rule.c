@@ -30,8 +30,9 @@ DALCS_TWICE(void, set_cut,
         before[g] = behind[g] = (dalcs_points){1.0, 1.0, 1.0, 1.0};
         slope[g] = (dalcs_points){0.0};
     }
+    bool starts = m->n_stages > m->s;
     double start = 1.0;
-    for (int j = 0; j < m->s; j++) {
+    for (int j = 0; j < m->n_stages; j++) {
         for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
             rule->value[j][g] = before[g];
             before[g] *= point[g] - m->node[j + 1];
@@ -39,8 +40,9 @@ DALCS_TWICE(void, set_cut,
         start *= -m->node[j + 1];
     }
     rule->miss_at_end = before[DALCS_POINT_GROUPS - 1][3] / start;
-    for (int j = m->s - 1; j >= 0; j--) {
-        double scale = m->barycentric[j + 1] * m->node[j + 1]; /* without the node at the start */
+    for (int j = m->n_stages - 1; j >= 0; j--) {
+        double scale = starts ? m->barycentric[(j + 1) % m->n_stages]
+                              : m->barycentric[j + 1] * m->node[j + 1]; /* no node at the start */
         for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
             dalcs_points others = rule->value[j][g] * behind[g];
             behind[g] *= point[g] - m->node[j + 1];
@@ -49,14 +51,17 @@ DALCS_TWICE(void, set_cut,
         }
     }
     for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
-        rule->slope[g] = slope[g] / start;
+        rule->slope[g] = starts ? rule->value[m->s][g] / -m->weight[m->s] : slope[g] / start;
+    }
+    if (starts) {
+        rule->miss_at_end = rule->value[m->s][DALCS_POINT_GROUPS - 1][3];
     }
 }
 
 void dalcs_stage_rule_set(struct dalcs_stage_rule *rule, const struct dalcs_collocation *m,
                           double end) {
-    rule->s = m->s;
-    rule->is_whole = end == 1.0;
+    rule->n_stages = m->n_stages;
+    rule->is_whole = end == 1.0 && m->family == DALCS_RADAU_IIA;
     rule->integral = m->weight;
     if (!rule->is_whole) {
         set_cut(rule, m, end);
@@ -67,7 +72,7 @@ void dalcs_stage_rule_set(struct dalcs_stage_rule *rule, const struct dalcs_coll
 static inline void spread(const struct dalcs_stage_rule *rule, const double *a,
                           dalcs_points *value) {
     dalcs_points sum[DALCS_POINT_GROUPS] = {{0.0}};
-    for (int j = 0; j < rule->s; j++) {
+    for (int j = 0; j < rule->n_stages; j++) {
         for (int g = 0; g < DALCS_POINT_GROUPS; g++) {
             sum[g] += a[j] * rule->value[j][g];
         }
@@ -103,7 +108,7 @@ double dalcs_stage_rule_integral(const struct dalcs_stage_rule *rule, const doub
         return integral_of_cut(rule, a);
     }
     double sum = 0.0;
-    for (int j = 0; j < rule->s; j++) {
+    for (int j = 0; j < rule->n_stages; j++) {
         sum += rule->integral[j] * a[j];
     }
     return sum;
@@ -115,7 +120,7 @@ double dalcs_stage_rule_product(const struct dalcs_stage_rule *rule, const doubl
         return product_of_cut(rule, a, b);
     }
     double sum = 0.0;
-    for (int j = 0; j < rule->s; j++) {
+    for (int j = 0; j < rule->n_stages; j++) {
         sum += rule->integral[j] * a[j] * b[j];
     }
     return sum;

@@ -70,13 +70,15 @@ static void put_current_source(const struct dalcs_layout *l, struct terms *t, in
     const struct dalcs_device *d = &l->circuit->device[device];
     const struct dalcs_stimulus *stimulus = &l->circuit->stimulus[d->stimulus];
     bool is_dc = stimulus->kind == DALCS_STIMULUS_DC;
+    enum dalcs_power_account account = d->is_limit ? DALCS_POWER_DIODES : DALCS_POWER_SOURCES;
     for (int end = 0; end < 2; end++) {
         double sign = end == 0 ? -1.0 : 1.0;
+        double side = d->is_limit ? -sign : sign; /* taken, or given */
         int column = dalcs_stamp_node_column(l, d->node[end]);
         if (column >= 0) {
             struct dalcs_power_term *term =
-                put(t, DALCS_POWER_SOURCES, is_dc ? DALCS_POWER_CONSTANT : DALCS_POWER_INPUT,
-                    is_dc ? sign * stimulus->dc : sign);
+                put(t, account, is_dc ? DALCS_POWER_CONSTANT : DALCS_POWER_INPUT,
+                    is_dc ? side * stimulus->dc : side);
             term->first[0] = column;
             term->input = l->input[device];
         }

@@ -40,7 +40,7 @@ static void find_beginning(struct dalcs_radau_part *part, bool *moves) {
     int stride = part->stages.layout.stride;
     for (int x = 0; x < part->component->system->n_x; x++) {
         part->work.after[x] = 0.0;
-        for (int i = 1; i <= m->s; i++) {
+        for (int i = 1; i <= m->n_stages; i++) {
             part->work.after[x] += m->back[i - 1] * part->segment.out[i * stride + x];
         }
         double defect = fabs(part->work.after[x] - part->x[x]);

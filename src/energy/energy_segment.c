@@ -6,25 +6,25 @@
 #include <math.h>
 #include <string.h>
 
-/* value[s] of a difference of columns at the stages. */
+/* value[n_stages] of a difference of columns at the stages. */
 static void fetch(const struct dalcs_radau_part *part, const int *column, double *value) {
-    int s = part->stages.method->s;
+    int n = part->stages.method->n_stages;
     int stride = part->stages.layout.stride;
     const double *y = part->segment.out + stride;
     if (column[0] >= 0 && column[1] >= 0) {
-        for (int i = 0; i < s; i++) {
+        for (int i = 0; i < n; i++) {
             value[i] = y[i * stride + column[0]] - y[i * stride + column[1]];
         }
         return;
     }
     int one = column[0] >= 0 ? column[0] : column[1];
     if (one < 0) {
-        memset(value, 0, (size_t)s * sizeof(double));
+        memset(value, 0, (size_t)n * sizeof(double));
         return;
     }
     double sign = column[0] >= 0 ? 1.0 : -1.0;
     y += one;
-    for (int i = 0; i < s; i++, y += stride) {
+    for (int i = 0; i < n; i++, y += stride) {
         value[i] = sign * *y;
     }
 }
@@ -37,11 +37,11 @@ static bool varies(const struct dalcs_excitation *e, int input) {
     return found;
 }
 
-/* value[s] of an input, from the coefficients that the step was made with. */
+/* value[n_stages] of an input, from the coefficients that the step was made with. */
 static void fetch_input(const struct dalcs_radau_part *part, int input, double *value) {
     const struct dalcs_excitation *e = &part->excitation;
     const double *coefficient = part->segment.in + part->component->system->n_x + 1;
-    for (int i = 0; i < part->stages.method->s; i++) {
+    for (int i = 0; i < part->stages.method->n_stages; i++) {
         value[i] = e->constant[input];
         for (int f = 0; f < e->n_functions; f++) {
             if (e->function[f].input == input) {
@@ -85,7 +85,7 @@ static double integral_of(struct dalcs_energy_part *ledger, const struct dalcs_r
                    dalcs_stage_rule_integral(rule, first);
         }
         fetch_input(part, term->input, second);
-        note_drive(ledger, term, second, part->stages.method->s);
+        note_drive(ledger, term, second, part->stages.method->n_stages);
         return term->coefficient * dalcs_stage_rule_product(rule, first, second);
     }
     return 0.0;
@@ -104,7 +104,7 @@ static double loss_of(const struct dalcs_energy_part *ledger, const struct dalcs
         double start = 0.0;
         const double *at = y + x;
 #pragma GCC unroll 8
-        for (int i = 0; i < m->s; i++, at += stride) {
+        for (int i = 0; i < m->n_stages; i++, at += stride) {
             start += m->back[i] * *at;
         }
         ledger->defect[x] = state[x] - start;
@@ -115,7 +115,7 @@ static double loss_of(const struct dalcs_energy_part *ledger, const struct dalcs
         along_start += loaded * (state[x] - ledger->defect[x]);
         const double *at = y + x;
 #pragma GCC unroll 8
-        for (int i = 0; i < m->s; i++, at += stride) {
+        for (int i = 0; i < m->n_stages; i++, at += stride) {
             along[i] += loaded * *at;
         }
     }

@@ -154,7 +154,8 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->because = steps ? choice.because : "no state, no diode and no switch";
     DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system));
     DALCS_TRY(dalcs_commands_setup(&part->commands, c->circuit, c->system));
-    DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, choice.stages,
+    DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation,
+                                 dalcs_collocation_of(r->options.family, choice.stages),
                                  choice.map_limit, osnsp->rcond_min,
                                  osnsp->cache_bytes / (size_t)r->n_parts));
     part->stages.block_of = c->osnsp.partition.block_of;

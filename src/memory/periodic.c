@@ -153,7 +153,7 @@ enum dalcs_status dalcs_periodic_setup(const struct dalcs_radau *r, struct dalcs
     }
     periodic->period = period;
     periodic->by_commands = period == 0.0;
-    periodic->n_out = (size_t)l->n_nodes * (size_t)l->stride;
+    periodic->n_out = (size_t)l->drift;
     periodic->n_in = (size_t)part->stages.n_in;
     periodic->n_x = (size_t)p->system->n_x;
     periodic->n_values = periodic->n_out + periodic->n_in + periodic->n_x;

@@ -4,7 +4,12 @@
 
 #include "dalcs.h"
 
+#include <stdbool.h>
+
 enum { DALCS_METHOD_TEXT_SIZE = 64 };
+
+/* And a tolerance. */
+bool dalcs_method_has_stages(const char *method);
 
 /* "radau, 5 stages", "euler", "algebraic" */
 const char *dalcs_method_text(char text[DALCS_METHOD_TEXT_SIZE],

@@ -27,7 +27,7 @@ struct dalcs_run_options dalcs_run_options_default(void) {
 }
 
 /* By enum dalcs_method. */
-static const char *const METHODS[] = {"auto", "radau", "euler"};
+static const char *const METHODS[] = {"auto", "radau", "lobatto", "euler"};
 
 enum { N_METHODS = sizeof METHODS / sizeof METHODS[0] };
 
@@ -55,7 +55,7 @@ static enum dalcs_status choose_method(struct dalcs_run *r) {
     const struct dalcs_circuit_options *netlist = &r->s->circuit.options;
     r->method = DALCS_METHOD_AUTO;
     if (given != NULL && !find_method(given, &r->method)) {
-        dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, "the methods are: auto radau euler",
+        dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, "the methods are: auto radau lobatto euler",
                        "unknown method '%s'", given);
         return DALCS_E_OPTION;
     }
@@ -93,12 +93,16 @@ static enum dalcs_status choose_accuracy(struct dalcs_run *r) {
     if (o->stages != 0 && !DALCS_HAS_STAGES(o->stages)) {
         return option_error(r->s, "the number of stages must be 1, 3, 5, 7 or 9");
     }
+    r->family = r->method == DALCS_METHOD_LOBATTO ? DALCS_LOBATTO_IIIC : DALCS_RADAU_IIA;
     r->tolerance = o->tolerance > 0.0      ? o->tolerance
                    : netlist->reltol > 0.0 ? netlist->reltol
                                            : USUAL_TOLERANCE;
     r->abstol = netlist->abstol;
     r->vntol = netlist->vntol;
     r->stages = o->stages > 0 ? o->stages : netlist->stages;
+    if (r->stages > 0 && dalcs_collocation_of(r->family, r->stages) == NULL) {
+        return option_error(r->s, "the number of stages of lobatto must be 3, 5, 7 or 9");
+    }
     if (r->method == DALCS_METHOD_EULER) {
         note_unused_accuracy(r);
     }
@@ -219,7 +223,7 @@ static enum dalcs_status choose_step(struct dalcs_run *r) {
     } else { /* without memory only the times that are printed matter */
         r->h = t->step > 0.0 ? t->step : t->stop / 1000.0;
     }
-    r->fixed_step = r->method == DALCS_METHOD_RADAU ? asked : 0.0;
+    r->fixed_step = r->method != DALCS_METHOD_AUTO && r->method != DALCS_METHOD_EULER ? asked : 0.0;
     r->max_step = asked > 0.0 ? asked : t->max_step;
     double least = r->h;
     if (r->method != DALCS_METHOD_EULER && r->max_step > 0.0) {

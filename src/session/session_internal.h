@@ -35,7 +35,12 @@ struct dalcs_session {
 };
 
 /* In the order of dalcs_method_name. */
-enum dalcs_method { DALCS_METHOD_AUTO, DALCS_METHOD_RADAU, DALCS_METHOD_EULER };
+enum dalcs_method {
+    DALCS_METHOD_AUTO,
+    DALCS_METHOD_RADAU,
+    DALCS_METHOD_LOBATTO,
+    DALCS_METHOD_EULER
+};
 
 struct dalcs_run {
     struct dalcs_session *s;
@@ -47,7 +52,8 @@ struct dalcs_run {
     enum dalcs_method method;
     double tolerance;     /* of radau and auto */
     double abstol, vntol; /* A, V; allowed on top of it */
-    int stages;           /* of radau; 0: not asked for */
+    enum dalcs_family family;
+    int stages;           /* of it; 0: not asked for */
     double compress;      /* 0: keep all rows */
     double fill;          /* INFINITY: add no rows */
     bool lines;           /* of filled rows */

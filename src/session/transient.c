@@ -397,13 +397,15 @@ static enum dalcs_status report_methods(struct dalcs_run *r, const struct dalcs_
     if (component == NULL) {
         return DALCS_E_NOMEM;
     }
+    const char *family_name =
+        dalcs_method_name(r->method == DALCS_METHOD_AUTO ? DALCS_METHOD_RADAU : r->method);
     for (size_t k = 0; k < n; k++) {
         component[k] = (struct dalcs_component_method){.method = "euler", .stages = 1};
         if (radau != NULL) {
             const struct dalcs_radau_part *part = &radau->part[k];
             bool steps = part->kind == DALCS_PART_STEPPED;
-            component[k].method = steps ? "radau" : "algebraic";
-            component[k].stages = steps ? part->stages.method->s : 1;
+            component[k].method = steps ? family_name : "algebraic";
+            component[k].stages = steps ? part->stages.method->n_stages : 1;
             component[k].because = part->because;
         }
     }
@@ -559,6 +561,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
         const struct dalcs_radau_options options = {.tolerance = r->tolerance,
                                                     .abstol = r->abstol,
                                                     .vntol = r->vntol,
+                                                    .family = r->family,
                                                     .stages = r->stages,
                                                     .fixed_step = r->fixed_step,
                                                     .max_step = r->max_step,

@@ -68,10 +68,11 @@ static void find_function_shares(const struct dalcs_stages *stages, double h,
     for (int k = 0; k <= m->s; k++) {
         share[k] = dalcs_excitation_function_at(function, h, m->node[k]);
     }
+    share[m->s + 1] = share[0]; /* of a stage at the start, if any */
     struct dalcs_extended_row part;
     long double drift = share[0];
     double missed = dalcs_excitation_missed(function, m, h, share);
-    for (int i = 1; i <= m->s; i++) {
+    for (int i = 1; i <= m->n_stages; i++) {
         drift -= m->exact_back[i - 1] * share[i];
     }
     dalcs_collocation_parts(m, share + 1, &part);

@@ -203,7 +203,7 @@ static void put_run(const struct dalcs_stage_plan *plan, const struct dalcs_stag
         int count = run.end - first;
         count = count < DALCS_STAGE_PIECE ? count : DALCS_STAGE_PIECE;
         unload(entry->factors, first, count, piece);
-        for (int node = 0; node < l->n_nodes; node++) {
+        for (int node = 0; node <= plan->stages->method->n_stages; node++) {
             dalcs_dense_map_apply(piece->n_rows, plan->n_parts, piece->part, plan->to[node],
                                   piece->y);
             put_piece(plan, entry, piece, kind, first, count, node, out + node * l->stride);
@@ -348,7 +348,7 @@ enum dalcs_status dalcs_stage_factors_apply(struct dalcs_stages *stages,
         add_real(plan, entry, out);
         put_runs(f, &plan->rest.states, -1.0, plan->missed); /* what the filter leaves of it */
     }
-    for (int node = 0; node < l->n_nodes; node++) {
+    for (int node = 0; node <= stages->method->n_stages; node++) {
         put_other_sides(plan, entry, in[n_x], node, true, out + node * l->stride);
     }
     if (stages->excitation->is_curved) {

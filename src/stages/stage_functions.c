@@ -15,7 +15,7 @@ static void find_factors(const struct dalcs_collocation *m, struct dalcs_stage_f
     int n_parts = 1 + 2 * m->n_pairs;
     struct dalcs_extended_row weight;
     long double start = 0.0L;
-    for (int i = 0; i < m->s; i++) {
+    for (int i = 0; i < m->n_stages; i++) {
         start += m->exact_back[i] * of->share[i + 1];
     }
     memset(&of->stages, 0, sizeof(of->stages));
@@ -44,6 +44,7 @@ static void fill(const struct dalcs_stages *stages, const struct dalcs_stage_len
         for (int k = 0; k <= m->s; k++) {
             of->share[k] = dalcs_excitation_function_at(&e->function[f], length->h, m->node[k]);
         }
+        of->share[m->s + 1] = of->share[0]; /* of a stage at the start, if any */
         of->share[DALCS_RIPPLE_LANE] =
             dalcs_excitation_missed(&e->function[f], m, length->h, of->share);
         find_factors(m, of);

@@ -208,8 +208,9 @@ struct drive {
 static void put_stages(const struct dalcs_stage_workshop *b, int unknown,
                        const struct dalcs_extended_row *row, double unit) {
     int s = b->stages->method->s;
+    int n_stages = b->stages->method->n_stages;
     double scale = b->column_scale[unknown];
-    dalcs_extended_round(s, row, scale, unit, b->lanes + unknown * DALCS_LANES + 1);
+    dalcs_extended_round(n_stages, row, scale, unit, b->lanes + unknown * DALCS_LANES + 1);
     b->start[unknown] = dalcs_extended_scaled(row->high[s], row->low[s], scale);
 }
 
@@ -259,7 +260,7 @@ static void fill_start(struct dalcs_stage_workshop *b, int column, int rhs_colum
     int n_x = b->n_x;
     int n_missed = column < n_x ? n_x : n_x + 1; /* a source has its own */
     long double source_drift = share[0];
-    for (int i = 1; i <= m->s; i++) {
+    for (int i = 1; i <= m->n_stages; i++) {
         source_drift -= m->exact_back[i - 1] * share[i];
     }
     b->missed[n_x] = dalcs_extended_of(source_drift);
@@ -333,7 +334,7 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
         choose(b);
         find_guards(b, rhs_column, share);
     }
-    for (int k = 0; k <= m->s; k++) {
+    for (int k = 0; k <= m->n_stages; k++) {
         double *columns = out + k * l->stride;
         put_columns(b, k, columns);
         for (int i = 0; i < b->stages->n_watched; i++) {
@@ -438,7 +439,7 @@ static void fill_map(struct dalcs_stage_workshop *b, const struct dalcs_stage_fu
         check_column(b, x, x, 0.0);
     }
     if (b->has_constants) {
-        for (int k = 0; k <= m->s; k++) {
+        for (int k = 0; k <= m->n_stages; k++) {
             share[k] = 1.0;
         }
         fill_column(b, b->n_x, b->n_x, &constant, &to);

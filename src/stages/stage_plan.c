@@ -108,7 +108,7 @@ static void fill_combination(struct dalcs_stage_plan *plan) {
         for (int i = 0; i < m->s; i++) {
             plan->to[i + 1][q] = m->exact_to[q].high[i];
         }
-        plan->to[0][q] = m->exact_to[q].high[m->s];
+        plan->to[0][q] = plan->to[m->s + 1][q] = m->exact_to[q].high[m->s];
     }
 }
 

@@ -44,17 +44,18 @@ static void list_levered(struct dalcs_stages *stages) {
 }
 
 enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,
-                                     const struct dalcs_excitation *excitation, int s,
-                                     int dense_limit, double rcond_min, size_t most_bytes) {
+                                     const struct dalcs_excitation *excitation,
+                                     const struct dalcs_collocation *method, int dense_limit,
+                                     double rcond_min, size_t most_bytes) {
     *stages = (struct dalcs_stages){.system = system,
                                     .excitation = excitation,
+                                    .method = method,
                                     .n_in = system->n_x + 1 + excitation->n_functions,
                                     .n_words = (system->n_pairs + 63) / 64,
                                     .dense_limit = dense_limit,
                                     .rcond_min = rcond_min,
                                     .most_bytes = most_bytes,
                                     .update_trust = DALCS_STAGE_FIRST_TRUST};
-    stages->method = dalcs_collocation_of(s);
     dalcs_lu_common_init(&stages->klu);
     dalcs_lu_common_init(&stages->klu_complex);
     /* A capacitor across a conducting diode turns what digits cost, times C/h, into a current of it. */
@@ -78,8 +79,8 @@ enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct d
     int n_columns = dalcs_system_n_columns(system);
     struct dalcs_stage_layout *l = &stages->layout;
     l->stride = n_columns + stages->n_watched;
-    l->n_nodes = s + 1;
-    l->drift = l->n_nodes * l->stride;
+    l->n_nodes = method->s + 1;
+    l->drift = (method->n_stages + 1) * l->stride;
     l->ripple = l->drift + system->n_x;
     l->n_fixed = l->ripple + (excitation->is_curved ? n_columns : 0);
     return DALCS_OK;

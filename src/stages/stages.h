@@ -22,7 +22,7 @@ struct dalcs_stage_plan;
 struct dalcs_stage_workshop;
 
 /* Where things are in an answer. Node k of the step starts at k * stride: the columns, then the
- * watched voltages. In the place of lambda_d an open pair has its w_d. */
+ * watched voltages. Behind the nodes is a stage at the start, if the method has one. In the place of lambda_d an open pair has its w_d. */
 struct dalcs_stage_layout {
     int stride;
     int n_nodes; /* s + 1 */
@@ -61,9 +61,9 @@ struct dalcs_stages {
 };
 
 enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct dalcs_system *system,
-                                     const struct dalcs_excitation *excitation, int s,
-                                     int dense_limit, double rcond_min,
-                                     size_t most_bytes) DALCS_MUST_CHECK;
+                                     const struct dalcs_excitation *excitation,
+                                     const struct dalcs_collocation *method, int dense_limit,
+                                     double rcond_min, size_t most_bytes) DALCS_MUST_CHECK;
 
 void dalcs_stages_finish(struct dalcs_stages *stages);
 

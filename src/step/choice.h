@@ -12,7 +12,7 @@ struct dalcs_conductances {
 
 struct dalcs_choice {
     double tolerance;    /* that the part is held to; no more than asked for */
-    int stages;          /* of Radau IIA */
+    int stages;          /* of the family asked for */
     const char *because; /* why so many; NULL: asked for */
     int map_limit;       /* unknowns of a mode up to which its steps are dense maps */
 };

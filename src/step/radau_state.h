@@ -168,10 +168,11 @@ struct dalcs_radau_part {
 struct dalcs_radau_options {
     double tolerance;     /* largest error over each waveform's scale */
     double abstol, vntol; /* A, V: error allowed besides */
-    int stages;           /* 0: chosen */
-    double fixed_step;    /* s; 0: the error is controlled */
-    double max_step;      /* s; 0: none */
-    double stop;          /* s */
+    enum dalcs_family family;
+    int stages;        /* 0: chosen */
+    double fixed_step; /* s; 0: the error is controlled */
+    double max_step;   /* s; 0: none */
+    double stop;       /* s */
 };
 
 struct dalcs_radau {

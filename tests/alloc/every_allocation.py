@@ -107,6 +107,8 @@ R1 p m 1k
 .end
 """, 0),
     "elements": ("""What cards expand into
+Vlimited limited 0 1 Ilimit=1 revIlimit=1m
+Rlimited limited 0 100
 V1 a 0 AM(5 2 1k 20k) Rser=1 Cpar=1n
 V2 b 0 PWL REPEAT FOREVER (0 0 2u 3 4u 0) ENDREPEAT
 I3 0 b SFFM(0 1 10k 0.3 50k)

@@ -126,7 +126,7 @@ class Completion(unittest.TestCase):
                 # _arguments takes a name, a text in brackets, and for a value two more fields
                 self.assertRegex(text, rf"(?m)^(\([^)]*\))?{name}\[[^\]]+\]"
                                  + (r":[^:]+:" if value else "$"))
-        self.assertIn("--method[how to integrate]:auto|radau|euler:(auto radau euler)",
+        self.assertIn("--method[how to integrate]:auto|radau|lobatto|euler:(auto radau lobatto euler)",
                       told("dalcs", "run"))
 
 

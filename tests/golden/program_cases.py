@@ -179,7 +179,7 @@ class Usage(Case):
     def test_unknown_method(self):
         self.write(RECTIFIER)
         message = self.refused("run", "a.cir", "--method", "eluer")
-        self.assertIn("unknown method 'eluer'; the methods are: auto radau euler\n", message)
+        self.assertIn("unknown method 'eluer'; the methods are: auto radau lobatto euler\n", message)
         self.write(MISTAKE)  # which is not read
         self.assertEqual(self.refused("run", "a.cir", "--method", "eluer"), message)
 

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Runs one circuit of this folder with the default method and compares it with its exact solution.
 
-usage: reference_case.py PROGRAM CASE [between]
+usage: reference_case.py PROGRAM CASE [between|lobatto]
 
 between: with seven stages, asked for by number, and tolerances between 1e-6 and 1e-9, each of which
 must be kept: whoever asks for a number of stages gets no smaller errors than asked for.
+
+lobatto: with that method, at the default tolerance and at 1e-9, audited in full; events to what 1e-9 of a sine moves its crossing by.
 
 NAME.json holds, of the circuit NAME.cir:
   signals, scale  what is compared, and its largest value
@@ -40,6 +42,7 @@ DEFAULT = 1e-6
 FINE = 1e-9          # what is kept at any tolerance
 EVENT_TIME = 1e-11   # of the stop time
 SLOW = 10
+SINE = 1 / (2 * math.pi)  # of a period, for each of its amplitude; a run is no shorter
 CERTIFIED = 2e-13
 TOLERANCES = [10.0 ** -k for k in range(3, 11)]
 # step lengths depend on the tolerance: these meet transients and events in other ways
@@ -106,22 +109,24 @@ def compare_events(checker, case, result, allowed, label):
 
 def main():
     program, name = sys.argv[1:3]
-    between = sys.argv[3:] == ["between"]
+    between, lobatto = sys.argv[3:] == ["between"], sys.argv[3:] == ["lobatto"]
     case, checker = json.loads((HERE / f"{name}.json").read_text()), Checker(name)
     times = [row[0] for row in case["rows"]]
-    for tolerance in BETWEEN if between else TOLERANCES:
+    for tolerance in BETWEEN if between else [DEFAULT, FINE] if lobatto else TOLERANCES:
         label = f"tolerance {tolerance:.1e}" if between else f"tolerance {tolerance:.0e}"
         if between:
             result = run(program, HERE / f"{name}.cir", at=times, method="radau", stages=7,
                          tolerance=tolerance)
         else:
-            result = run(program, HERE / f"{name}.cir", at=times, method=None,
+            result = run(program, HERE / f"{name}.cir", at=times, method="lobatto" if lobatto else None,
+                         options=["--audit", "full"] if lobatto else [],
                          tolerance=None if tolerance == DEFAULT else tolerance)
         if not checker.check(result.status == 0, f"{label}: exit {result.status}: {result.stderr}"):
             continue
         certificate = result.report["certificate"]["worst"]
         checker.check(certificate <= CERTIFIED, f"{label}: certificate {certificate:.2e}")
-        error, delay = (tolerance, SLOW * tolerance) if between else (FINE, EVENT_TIME)
+        error, delay = ((tolerance, SLOW * tolerance) if between
+                        else (FINE, SINE * FINE if lobatto else EVENT_TIME))
         worst = compare_rows(checker, case, result, error, label)
         late = compare_events(checker, case, result, delay, label)
         print(f"{label}: error {worst:.1e}, events {len(case['events'])} within {late:.1e}, "

@@ -9,9 +9,17 @@
 
 static const int STAGES[] = {1, 3, 5, 7, 9};
 
+/* Radau IIA, then Lobatto IIIC. */
+static const struct dalcs_collocation *next_method(const struct dalcs_collocation *c) {
+    const struct dalcs_collocation *next = dalcs_collocation_of(c->family, c->n_stages + 2);
+    return next == NULL && c->family == DALCS_RADAU_IIA
+               ? dalcs_collocation_of(DALCS_LOBATTO_IIIC, 3)
+               : next;
+}
+
 #define FOR_ALL_METHODS(c)                                                                         \
-    for (const struct dalcs_collocation *c = dalcs_collocation_of(1); c != NULL;                   \
-         c = c->s < DALCS_MAX_STAGES ? dalcs_collocation_of(c->s + 2) : NULL)
+    for (const struct dalcs_collocation *c = dalcs_collocation_of(DALCS_RADAU_IIA, 1); c != NULL;  \
+         c = next_method(c))
 
 static void check_near(long double a, long double b, double tolerance) {
     ck_assert_msg(fabsl(a - b) <= tolerance, "%.21Lg is not %.21Lg to %g", a, b, tolerance);
@@ -28,7 +36,7 @@ static long double polynomial(int degree, int seed, long double x) {
 
 START_TEST(test_closed_forms) {
     for (int k = 0; k < 4; k++) {
-        const struct dalcs_collocation *c = dalcs_collocation_of(STAGES[k]);
+        const struct dalcs_collocation *c = dalcs_collocation_of(DALCS_RADAU_IIA, STAGES[k]);
         ck_assert_int_eq(c->s, STAGES[k]);
         ck_assert_int_eq(c->n_pairs, (STAGES[k] - 1) / 2);
         ck_assert_double_eq(c->node[0], 0.0);
@@ -37,12 +45,12 @@ START_TEST(test_closed_forms) {
             ck_assert(c->node[i] < c->node[i + 1]);
         }
     }
-    const struct dalcs_collocation *euler = dalcs_collocation_of(1);
+    const struct dalcs_collocation *euler = dalcs_collocation_of(DALCS_RADAU_IIA, 1);
     ck_assert_double_eq(euler->lambda, 1.0);
     ck_assert_double_eq(euler->exact_to[0].high[0], 1.0);
     ck_assert_double_eq(euler->exact_from[0].high[0], 1.0);
     /* Hairer and Wanner, Solving ODEs II, sec. IV.8 */
-    const struct dalcs_collocation *three = dalcs_collocation_of(3);
+    const struct dalcs_collocation *three = dalcs_collocation_of(DALCS_RADAU_IIA, 3);
     double a = cbrt(81.0);
     double b = cbrt(9.0);
     double re = (12.0 - a + b) / 60.0;
@@ -81,23 +89,25 @@ static long double butcher(const struct dalcs_collocation *c, int i, int j) {
 }
 
 /* The matrix that the eigenvalues and vectors make satisfies A c^(k-1) = c^k / k for k up to s, which
- * is collocation, and its last row integrates up to order 2s - 1. */
+ * is collocation, or with a stage at the start stage order s, and the row of the last node integrates up to
+ * order 2s - 1, of Lobatto IIIC 2s: that is 2 less than two times its stages. */
 START_TEST(test_order_conditions) {
     FOR_ALL_METHODS(c) {
         long double node[DALCS_MAX_STAGES] = {0.0L};
-        for (int i = 0; i < c->s; i++) {
-            for (int j = 0; j < c->s; j++) {
+        for (int i = 0; i < c->n_stages; i++) {
+            for (int j = 0; j < c->n_stages; j++) {
                 node[i] += butcher(c, i, j);
             }
-            check_near(node[i], c->node[i + 1], 2 * DBL_EPSILON);
+            check_near(node[i], i < c->s ? c->node[i + 1] : 0.0, 2 * DBL_EPSILON);
         }
-        for (int k = 1; k <= 2 * c->s; k++) {
-            for (int i = k <= c->s ? 0 : c->s - 1; i < c->s; i++) {
+        int beyond = c->n_stages + c->s;
+        for (int k = 1; k <= beyond; k++) {
+            for (int i = k <= c->s ? 0 : c->s - 1; i < (k <= c->s ? c->n_stages : c->s); i++) {
                 long double sum = 0.0L;
-                for (int j = 0; j < c->s; j++) {
-                    sum += butcher(c, i, j) * powl(node[j], k - 1);
+                for (int j = 0; j < c->n_stages; j++) {
+                    sum += butcher(c, i, j) * (k > 1 ? powl(node[j], k - 1) : 1.0L);
                 }
-                if (k < 2 * c->s) {
+                if (k < beyond) {
                     check_near(sum, powl(node[i], k) / k, 1e-15);
                 } else {
                     ck_assert(fabsl(sum - 1.0L / k) > 9e-11L); /* 9.4e-11 with nine */
@@ -109,10 +119,27 @@ START_TEST(test_order_conditions) {
 
 END_TEST
 
+/* Hairer and Wanner, Solving ODEs II, table IV.5.12; the start is the last stage here. */
+START_TEST(test_lobatto_of_three) {
+    static const long double A[3][3] = {{5.0L / 12.0L, -1.0L / 12.0L, 1.0L / 6.0L},
+                                        {2.0L / 3.0L, 1.0L / 6.0L, 1.0L / 6.0L},
+                                        {-1.0L / 3.0L, 1.0L / 6.0L, 1.0L / 6.0L}};
+    const struct dalcs_collocation *c = dalcs_collocation_of(DALCS_LOBATTO_IIIC, 3);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            check_near(butcher(c, i, j), A[i][j], 1e-17);
+        }
+    }
+    ck_assert(dalcs_collocation_of(DALCS_LOBATTO_IIIC, 1) == NULL);
+    ck_assert(dalcs_collocation_of(DALCS_RADAU_IIA, 4) == NULL);
+}
+
+END_TEST
+
 START_TEST(test_coordinates) {
     FOR_ALL_METHODS(c) {
-        for (int i = 0; i < c->s; i++) {
-            for (int j = 0; j < c->s; j++) {
+        for (int i = 0; i < c->n_stages; i++) {
+            for (int j = 0; j < c->n_stages; j++) {
                 long double exact =
                     dalcs_extended_at(&c->exact_to[0], i) * dalcs_extended_at(&c->exact_from[j], 0);
                 for (int p = 0; p < c->n_pairs; p++) {
@@ -122,14 +149,14 @@ START_TEST(test_coordinates) {
             }
         }
         long double one = 0.0L;
-        for (int i = 0; i < c->s; i++) {
+        for (int i = 0; i < c->n_stages; i++) {
             one += dalcs_extended_at(&c->exact_from[i], 0);
         }
         check_near(one, 1.0L, 1e-17);
         check_near(c->exact_lambda, c->lambda, DBL_EPSILON * c->lambda);
         for (int p = 0; p < c->n_pairs; p++) {
             long double complex sum = 0.0L;
-            for (int i = 0; i < c->s; i++) {
+            for (int i = 0; i < c->n_stages; i++) {
                 sum += from_pair(c, p, i);
             }
             check_near(cabsl(sum - 1.0L), 0.0L, 1e-17);
@@ -199,13 +226,15 @@ START_TEST(test_extrapolation) {
             long double start = 0.0L;
             long double exact = 0.0L;
             long double between = c->test[0] * polynomial(c->s, seed, 0.0L);
-            for (int k = 1; k <= c->s; k++) {
-                exact += c->exact_back[k - 1] * polynomial(c->s - 1, seed, c->node[k]);
-                start += c->back[k - 1] * polynomial(c->s - 1, seed, c->node[k]);
-                between += c->test[k] * polynomial(c->s, seed, c->node[k]);
+            int degree = c->n_stages - 1;
+            for (int k = 1; k <= c->n_stages; k++) {
+                double node = k <= c->s ? c->node[k] : 0.0;
+                exact += c->exact_back[k - 1] * polynomial(degree, seed, node);
+                start += c->back[k - 1] * polynomial(degree, seed, node);
+                between += k <= c->s ? c->test[k] * polynomial(c->s, seed, node) : 0.0;
             }
-            check_near(exact, polynomial(c->s - 1, seed, 0.0L), 1e-13); /* nodes are rounded */
-            check_near(start, polynomial(c->s - 1, seed, 0.0L), 1e-13);
+            check_near(exact, polynomial(degree, seed, 0.0L), 1e-13); /* nodes are rounded */
+            check_near(start, polynomial(degree, seed, 0.0L), 1e-13);
             check_near(between, polynomial(c->s, seed, c->test_node), 1e-14);
         }
         for (int at = 0; at <= 1000; at++) {
@@ -272,7 +301,7 @@ END_TEST
 
 START_TEST(test_spread) {
     for (int s = 1; s <= DALCS_MAX_STAGES; s += 2) {
-        const struct dalcs_collocation *c = dalcs_collocation_of(s);
+        const struct dalcs_collocation *c = dalcs_collocation_of(DALCS_RADAU_IIA, s);
         double worst = 0.0;
         for (int at = 0; at <= 997; at++) {
             double weight[DALCS_MAX_NODES];
@@ -290,5 +319,6 @@ START_TEST(test_spread) {
 
 END_TEST
 
-RUN_TESTS("collocation", test_closed_forms, test_order_conditions, test_coordinates, test_weights,
-          test_newton, test_extrapolation, test_bernstein, test_spread)
+RUN_TESTS("collocation", test_closed_forms, test_order_conditions, test_lobatto_of_three,
+          test_coordinates, test_weights, test_newton, test_extrapolation, test_bernstein,
+          test_spread)

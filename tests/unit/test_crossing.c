@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 static struct dalcs_crossing find(int s, double (*f)(double), double end, double depth) {
-    const struct dalcs_collocation *c = dalcs_collocation_of(s);
+    const struct dalcs_collocation *c = dalcs_collocation_of(DALCS_RADAU_IIA, s);
     double value[3 * DALCS_MAX_NODES];
     for (int k = 0; k < 3 * DALCS_MAX_NODES; k++) {
         value[k] = -1.0; /* what lies between is not looked at */
@@ -96,7 +96,7 @@ static double dipping(double x) {
 START_TEST(test_grazing) {
     for (int s = 3; s <= 7; s += 2) {
         for (dip = 1e-3; dip > 1e-12; dip *= 0.1) {
-            const struct dalcs_collocation *c = dalcs_collocation_of(s);
+            const struct dalcs_collocation *c = dalcs_collocation_of(DALCS_RADAU_IIA, s);
             for (int k = 0; k <= s; k++) {
                 ck_assert(dipping(c->node[k]) > 0.0);
             }
@@ -182,7 +182,8 @@ START_TEST(test_random) {
     int n_hidden = 0;
     int n_only = 0;
     for (int trial = 0; trial < N_TRIALS; trial++) {
-        const struct dalcs_collocation *c = dalcs_collocation_of(1 + 2 * (trial % 5));
+        const struct dalcs_collocation *c =
+            dalcs_collocation_of(DALCS_RADAU_IIA, 1 + 2 * (trial % 5));
         double value[DALCS_MAX_NODES];
         double end = trial % 3 == 0 ? 1.0 : uniform();
         double depth = trial % 2 == 0 ? 0.0 : 0.3 * uniform();
@@ -238,7 +239,8 @@ START_TEST(test_bounds) {
     enum { N = 6, STRIDE = 7, N_TRIALS = 200, SCAN = 100 };
 
     for (int trial = 0; trial < N_TRIALS; trial++) {
-        const struct dalcs_collocation *c = dalcs_collocation_of(1 + 2 * (trial % 4));
+        const struct dalcs_collocation *c =
+            dalcs_collocation_of(DALCS_RADAU_IIA, 1 + 2 * (trial % 4));
         double value[DALCS_MAX_NODES * STRIDE + 8] = {0.0};
         double bound[8];
         for (int k = 0; k <= c->s; k++) {

@@ -49,7 +49,10 @@ static void start_with(const char *netlist) {
                                      .guards.armed = armed,
                                      .guards.crossed = crossed};
     ck_assert_int_eq(dalcs_excitation_setup(&x, &t.circuit, s), DALCS_OK);
-    ck_assert_int_eq(dalcs_stages_setup(&part.stages, s, &x, 5, 64, 1e-14, 1 << 20), DALCS_OK);
+    ck_assert_int_eq(dalcs_stages_setup(&part.stages, s, &x,
+                                        dalcs_collocation_of(DALCS_RADAU_IIA, 5), 64, 1e-14,
+                                        1 << 20),
+                     DALCS_OK);
     ck_assert_int_eq(part.stages.n_watched, 1);
     ck_assert_int_eq(dalcs_step_setup(&part), DALCS_OK);
     ck_assert_int_eq(dalcs_guards_setup(&part), DALCS_OK);

@@ -45,8 +45,14 @@ static void setup_fed(const char *feed, const char *more) {
     ck_assert_int_eq(text.network.n_systems, 1);
     const struct dalcs_system *s = &text.network.system[0];
     ck_assert_int_eq(dalcs_excitation_setup(&excitation, &text.circuit, s), DALCS_OK);
-    ck_assert_int_eq(dalcs_stages_setup(&whole, s, &excitation, 5, 0, 1e-14, SIZE_MAX), DALCS_OK);
-    ck_assert_int_eq(dalcs_stages_setup(&resting, s, &excitation, 5, 0, 1e-14, SIZE_MAX), DALCS_OK);
+    ck_assert_int_eq(dalcs_stages_setup(&whole, s, &excitation,
+                                        dalcs_collocation_of(DALCS_RADAU_IIA, 5), 0, 1e-14,
+                                        SIZE_MAX),
+                     DALCS_OK);
+    ck_assert_int_eq(dalcs_stages_setup(&resting, s, &excitation,
+                                        dalcs_collocation_of(DALCS_RADAU_IIA, 5), 0, 1e-14,
+                                        SIZE_MAX),
+                     DALCS_OK);
     ck_assert_int_eq(dalcs_stage_plan_get(&whole), DALCS_OK);
     ck_assert_int_eq(dalcs_stage_plan_get(&resting), DALCS_OK);
     dalcs_stage_rest_end(whole.plan);

@@ -24,7 +24,7 @@ static void powers(const struct dalcs_collocation *m, int p, double *value) {
 /* x^p x^q with p, q < s: exactly end^(p + q + 1) / (p + q + 1). */
 START_TEST(test_products) {
     for (int k = 0; k < 4; k++) {
-        const struct dalcs_collocation *m = dalcs_collocation_of(STAGES[k]);
+        const struct dalcs_collocation *m = dalcs_collocation_of(DALCS_RADAU_IIA, STAGES[k]);
         for (int e = 0; e < N_ENDS; e++) {
             struct dalcs_stage_rule rule;
             dalcs_stage_rule_set(&rule, m, ENDS[e]);
@@ -50,7 +50,7 @@ END_TEST
  * of x~ x', x~ of degree s - 1 through the stages. */
 START_TEST(test_loss) {
     for (int k = 0; k < 4; k++) {
-        const struct dalcs_collocation *m = dalcs_collocation_of(STAGES[k]);
+        const struct dalcs_collocation *m = dalcs_collocation_of(DALCS_RADAU_IIA, STAGES[k]);
         for (int e = 0; e < N_ENDS; e++) {
             const double storage = 5.0;
             struct dalcs_stage_rule rule;
@@ -85,4 +85,38 @@ START_TEST(test_loss) {
 
 END_TEST
 
-RUN_TESTS("stage_rule", test_products, test_loss)
+/* With a stage at the start: v, of degree s, through the stages, which starts 0.1 beside the state. The equations hold
+ * as v' and, at the start alone, what pulls it to the state (SBP form of Lobatto IIIC): -0.1 / weight. */
+START_TEST(test_loss_with_start) {
+    for (int n = 3; n <= DALCS_MAX_STAGES; n += 2) {
+        const struct dalcs_collocation *m = dalcs_collocation_of(DALCS_LOBATTO_IIIC, n);
+        for (int e = 0; e < N_ENDS; e++) {
+            const double storage = 5.0;
+            const double defect = 0.1;
+            struct dalcs_stage_rule rule;
+            double v[DALCS_MAX_STAGES];
+            double slope[DALCS_MAX_STAGES];
+            double along[DALCS_MAX_STAGES];
+            double weight[DALCS_MAX_NODES];
+            dalcs_stage_rule_set(&rule, m, ENDS[e]);
+            for (int i = 0; i < n; i++) {
+                double c = i < m->s ? m->node[i + 1] : 0.0;
+                v[i] = pow(c, m->s) + 2.0 * c - 3.0;
+                slope[i] =
+                    m->s * pow(c, m->s - 1) + 2.0 - (i == m->s ? defect / m->weight[i] : 0.0);
+                along[i] = storage * defect * v[i];
+            }
+            dalcs_collocation_weights(m, ENDS[e], weight);
+            double at_end = pow(ENDS[e], m->s) + 2.0 * ENDS[e] - 3.0 + defect * weight[0];
+            double stored = 0.5 * storage * (at_end * at_end - 2.9 * 2.9);
+            double given = storage * dalcs_stage_rule_product(&rule, v, slope);
+            double loss = dalcs_stage_rule_loss(&rule, storage * defect * defect, along,
+                                                storage * defect * -3.0);
+            check_near(given, stored + loss);
+        }
+    }
+}
+
+END_TEST
+
+RUN_TESTS("stage_rule", test_products, test_loss, test_loss_with_start)
