@@ -290,7 +290,8 @@ enum dalcs_audit_mode {
 };
 
 struct dalcs_run_options {
-    const char *method; /* "auto", "radau", "lobatto" or "euler", the papers' implicit Euler; NULL: the
+    const char
+        *method; /* "auto", "radau", "lobatto" or "euler", the papers' implicit Euler; NULL: the
                            netlist's or the default */
     double tolerance;  /* of radau and auto: largest error of a waveform over its scale; 0: .options
                            reltol, else 1e-6. Small parts are held to 1e-9 where more is allowed,

@@ -53,13 +53,13 @@ struct dalcs_run {
     double tolerance;     /* of radau and auto */
     double abstol, vntol; /* A, V; allowed on top of it */
     enum dalcs_family family;
-    int stages;           /* of it; 0: not asked for */
-    double compress;      /* 0: keep all rows */
-    double fill;          /* INFINITY: add no rows */
-    bool lines;           /* of filled rows */
-    double h;             /* s; the step of euler */
-    double fixed_step;    /* s; of radau without error control; 0: with it */
-    double max_step;      /* s; of radau with error control; 0: no bound */
+    int stages;        /* of it; 0: not asked for */
+    double compress;   /* 0: keep all rows */
+    double fill;       /* INFINITY: add no rows */
+    bool lines;        /* of filled rows */
+    double h;          /* s; the step of euler */
+    double fixed_step; /* s; of radau without error control; 0: with it */
+    double max_step;   /* s; of radau with error control; 0: no bound */
 
     struct dalcs_measurement *measurement; /* [n_measures] of the report; NULL: none yet */
     double *result;                        /* [n_measures] NAN: could not be measured */
