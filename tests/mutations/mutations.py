@@ -203,7 +203,7 @@ MUTATIONS = {
         "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
         "    part->segment.in[s->n_x] = 1.0;\n" + once(3210, "", "part->segment.in[0] *= 1.0 + 1e-6;"), APART),
     "the values of one segment of 4000 are too large by 1e-5": (
-        "integrator/segment.c", "    part->segment.rounding = dalcs_stage_rounding(*entry);\n",
+        "step/present.c", "    part->segment.rounding = dalcs_stage_rounding(*entry);\n",
         "    part->segment.rounding = dalcs_stage_rounding(*entry);\n"
         + once(3210, "", "for (int k = part->stages.layout.stride; k < part->stages.layout.n_fixed; k++) "
                          "{ part->segment.out[k] *= 1.00001; }"), SLOW),
@@ -215,13 +215,14 @@ MUTATIONS = {
         "    m->next = dalcs_command_time(m, way, m->n[way]);\n"
         "    m->next -= m->next > 16.001e-3 && m->next < 16.009e-3 ? 4e-9 : 0.0;\n", SLOW),
     "one map of 4000 is stale": (
-        "integrator/segment.c",
-        "    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->segment.h, part->segment.in,",
+        "step/present.c",
+        "    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->segment.h,",
         "    static long calls_;\n    DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, "
-        "++calls_ == 3210 ? 0.5 * part->segment.h : part->segment.h, part->segment.in,", SLOW),
+        "++calls_ == 3210 ? 0.5 * part->segment.h : part->segment.h,", SLOW),
     "one event of 200 comes late": (
         "integrator/segment.c", "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n",
-        "    t_end += part->guards.n_crossed > 0 && part->segment.t > 1.0 && part->segment.t < 1.01 ? 1e-3 * part->segment.h : 0.0;\n"
+        "    t_end += part->guards.n_crossed > 0 && part->segment.t > 1.0 && part->segment.t < 1.01 "
+        "? 1e-3 * part->segment.h : 0.0;\n"
         "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n", BEAT),
     "one leap of many is nudged by 1e-6": (
         "memory/cycle.c", "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n    return n;\n",
