@@ -235,10 +235,12 @@ static enum dalcs_status factor_large(struct dalcs_osnsp *p, struct dalcs_mode_e
     return status;
 }
 
-bool dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu, int n,
-                              const int *start, const int *row, const double *value, double apart) {
-    return p->is_passing && n <= DALCS_LU_SMALL &&
-           dalcs_lu_factor_small(lu, n, start, row, value, apart) == DALCS_OK;
+enum dalcs_status dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu, int n,
+                                           const int *start, const int *row, const double *value,
+                                           double apart) {
+    return p->is_passing && n <= DALCS_LU_SMALL
+               ? dalcs_lu_factor_small(lu, n, start, row, value, apart)
+               : DALCS_SINGULAR;
 }
 
 static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *e,
@@ -246,10 +248,11 @@ static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *
     if (a->n >= LARGE_MODE) {
         return factor_large(p, e, a);
     }
-    return dalcs_modes_factor_small(p, &e->lu, a->n, a->p, a->i, a->x, dalcs_far_apart)
-               ? DALCS_OK
-               : dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, NULL,
-                                 p->options.rcond_min);
+    enum dalcs_status status =
+        dalcs_modes_factor_small(p, &e->lu, a->n, a->p, a->i, a->x, dalcs_far_apart);
+    return status > DALCS_OK ? dalcs_lu_factor(&e->lu, &p->klu, a->n, a->p, a->i, a->x, NULL,
+                                               p->options.rcond_min)
+                             : status;
 }
 
 static enum dalcs_status factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {

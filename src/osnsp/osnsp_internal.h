@@ -44,10 +44,11 @@ enum dalcs_status dalcs_forms_get(struct dalcs_osnsp *p, double sigma) DALCS_MUS
 enum dalcs_status dalcs_modes_get(struct dalcs_osnsp *p, int kind,
                                   struct dalcs_mode_entry **entry) DALCS_MUST_CHECK;
 
-/* Factors of a small matrix by columns of which little will be asked; false: it is not, or more has to be known of
- * it than plain elimination tells. */
-bool dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu, int n,
-                              const int *start, const int *row, const double *value, double apart);
+/* Factors of a small matrix by columns of which little will be asked. DALCS_SINGULAR: it is not small, or more has to be
+ * known of it than plain elimination tells. */
+enum dalcs_status dalcs_modes_factor_small(const struct dalcs_osnsp *p, struct dalcs_lu *lu, int n,
+                                           const int *start, const int *row, const double *value,
+                                           double apart);
 
 /* Pivots of a mode that is not clearly regular. */
 static const double dalcs_far_apart = 1e-6;

@@ -92,9 +92,9 @@ static enum dalcs_status put_columns(const struct dalcs_whole *whole,
 static enum dalcs_status factor(struct dalcs_whole *whole, const struct dalcs_triplets *t) {
     struct dalcs_csr columns = {0};
     DALCS_TRY(put_columns(whole, t, &columns));
-    enum dalcs_status status = DALCS_OK;
-    if (!dalcs_modes_factor_small(whole->p, &whole->lu, whole->n, columns.p, columns.j, columns.x,
-                                  dalcs_far_apart)) {
+    enum dalcs_status status = dalcs_modes_factor_small(whole->p, &whole->lu, whole->n, columns.p,
+                                                        columns.j, columns.x, dalcs_far_apart);
+    if (status > DALCS_OK) {
         klu_common common;
         dalcs_lu_common_init(&common);
         dalcs_lu_pivot_carefully(&common);
