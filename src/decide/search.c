@@ -383,7 +383,12 @@ static bool are_switches_that_remember(const struct dalcs_radau_part *part) {
 }
 
 enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                           struct dalcs_search *search, bool *done) {
+                                           struct dalcs_search *search, const double *unit,
+                                           bool *done) {
+    bool is_remembered = search->guessed && !search->front;
+    if (!is_remembered && dalcs_search_may_refine(search) && dalcs_guards_recover(part, unit)) {
+        return dalcs_search_refine(r, part, search);
+    }
     if (search->guessed) {
         return dalcs_search_refuse(part, search);
     }

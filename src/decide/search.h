@@ -42,9 +42,10 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
                                        const struct dalcs_step_quality *quality,
                                        bool *done) DALCS_MUST_CHECK;
 
-/* The mode is wrong from the start: asks the circuit, then tries the other sides. */
+/* The mode is wrong from the start: asks the circuit, then tries the other sides. Unless it may be the
+ * polynomial that is wrong there, as a shorter step will tell. unit[2]: V, A. */
 enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                           struct dalcs_search *search,
+                                           struct dalcs_search *search, const double *unit,
                                            bool *done) DALCS_MUST_CHECK;
 
 /* By micro-steps: the mode, and where that is not all, the state (restart.c). */

@@ -231,7 +231,7 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
         return dalcs_search_refuse(part, search);
     }
     if (at_once && part->guards.fresh) {
-        return dalcs_search_change_mode(r, part, search, done);
+        return dalcs_search_change_mode(r, part, search, q->unit, done);
     }
     if (search->opened && dalcs_tied_open_idle(part, part->work.mode_tied, *next, q->unit)) {
         return dalcs_search_go_on_trying(part, search);

@@ -318,6 +318,20 @@ double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_p
     return part->guards.n_doubtful > 0 ? find_first(r, part, end, unit, at_once) : INFINITY;
 }
 
+bool dalcs_guards_recover(const struct dalcs_radau_part *part, const double *unit) {
+    int last = part->stages.layout.n_nodes - 1;
+    bool all = true;
+    for (int k = 0; k < part->guards.n_crossed && all; k++) {
+        double work[DALCS_MAX_NODES];
+        int stride;
+        const double *value = dalcs_guard_values(part, part->guards.crossed[k], work, &stride);
+        double band =
+            dalcs_doubt_band(part) * dalcs_guard_scale(part, part->guards.crossed[k], unit);
+        all = value[0] >= -shallow * band && value[last * stride] > 0.0;
+    }
+    return all;
+}
+
 /* Where in the step a guard that is below 0 at its start is above again; INFINITY if it is not. */
 static double rise_of(const struct dalcs_radau_part *part, const double *value, int stride) {
     double negative[DALCS_MAX_NODES];

@@ -19,6 +19,10 @@ void dalcs_guards_arm(struct dalcs_radau_part *part, bool at_end, const double *
 double dalcs_guards_first_fall(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                                double end, const double *unit, bool *at_once);
 
+/* Do the guards of a first fall at once come back within the step, and from no farther below 0 than an error
+ * of the polynomial may put them, which is least exact at its start? */
+bool dalcs_guards_recover(const struct dalcs_radau_part *part, const double *unit);
+
 /* Where in the step the guards that have just fallen, all below 0 from the start, are above it again;
  * INFINITY if one is not. */
 double dalcs_guards_recovery(const struct dalcs_radau_part *part);

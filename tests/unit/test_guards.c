@@ -224,6 +224,19 @@ START_TEST(test_faint) {
 
 END_TEST
 
+/* What starts below 0 by an error and comes back may be the polynomial's, what stays is not. */
+START_TEST(test_recover) {
+    start();
+    arm_beside(-1e-6, 0.5);
+    ck_assert(falls_at_once() && dalcs_guards_recover(&part, unit));
+    draw("d2", -1e-6, -1e-7);
+    ck_assert(falls_at_once() && !dalcs_guards_recover(&part, unit));
+    draw("d2", 1.0, 1.0);
+    draw("d1", -1e-4, 0.5);
+    ck_assert(falls_at_once() && !dalcs_guards_recover(&part, unit));
+    finish();
+}
+
 END_TEST
 
 /* One that goes on where the segment before ended is known, be it within the error of 0. */
@@ -451,5 +464,5 @@ START_TEST(test_recovery) {
 END_TEST
 
 RUN_TESTS("guards", test_rounding, test_law, test_own_doubt, test_stop, test_recovery, test_pairs,
-          test_watched, test_arming, test_faint, test_goes_on, test_signs_and_ties, test_stays,
-          test_over_soon, test_swing)
+          test_watched, test_arming, test_faint, test_recover, test_goes_on, test_signs_and_ties,
+          test_stays, test_over_soon, test_swing)
