@@ -222,6 +222,9 @@ bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part,
         clear(&f.watch->row[k]);
     }
     screen->n_terms = screen->n_signs = 0;
+    /* room for one term, so that lists without any begin somewhere */
+    f.complete =
+        dalcs_grow(&screen->term, &screen->term_room, 1, sizeof(*screen->term)) == DALCS_OK;
     audit_sum_currents(audit, part, s);
     weigh_nodes(&f);
     for (int k = 0; k < part->n_devices; k++) {
