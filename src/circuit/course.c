@@ -3,16 +3,10 @@
 
 #include "formula_stimulus.h"
 
-#include <float.h>
 #include <math.h>
 
-/* Times looked at in one search; a sum that never crosses must not cost its whole future. */
-enum { LOOKS_AT_A_TIME = 256 };
-
-/* A sum of sources is right to so many roundings of its largest term, and a time to those that an edge may be off by
- * (stimulus.h). Just before a time means so many roundings of it earlier: none of the edges at it. */
-static const double sum_rounded = 16.0 * DBL_EPSILON, time_rounded = 4.0 * DBL_EPSILON,
-                    just_before = 64.0 * DBL_EPSILON;
+/* Just before a time means so many roundings of it earlier: none of the edges at it. */
+static const double just_before = 64.0 * DBL_EPSILON;
 
 double dalcs_sum_value(const struct dalcs_stimulus_sum *sum, double t, enum dalcs_side side) {
     double value = sum->constant;
@@ -102,15 +96,16 @@ void dalcs_course_look(const struct dalcs_stimulus_sum *sum, double t, enum dalc
     }
     c->derivative[0] += c->rise;
     c->value = before ? dalcs_sum_value(sum, t, side) : c->value + c->straight;
-    c->rounding = sum_rounded * (sizes.of[0] + fabs(c->value)) + time_rounded * t * sizes.of[1];
+    c->rounding =
+        dalcs_sum_rounded * (sizes.of[0] + fabs(c->value)) + dalcs_edge_rounded * t * sizes.of[1];
     for (int k = 0; k < DALCS_COURSE_ORDERS; k++) {
-        c->rounded[k] = sum_rounded * sizes.of[k + 1] + just_before * t * sizes.of[k + 2];
+        c->rounded[k] = dalcs_sum_rounded * sizes.of[k + 1] + just_before * t * sizes.of[k + 2];
     }
 }
 
 int dalcs_course_side(const struct dalcs_course *c, double threshold) {
     const double above = c->value - threshold;
-    if (fabs(above) > c->rounding + sum_rounded * fabs(threshold)) {
+    if (fabs(above) > c->rounding + dalcs_sum_rounded * fabs(threshold)) {
         return above > 0.0 ? 1 : -1;
     }
     int way = 1;
@@ -130,6 +125,23 @@ static double earliest_fall(double value, double slope, double bend) {
         return 2.0 * value / (root - slope);
     }
     return bend > 0.0 ? (slope + root) / bend : INFINITY;
+}
+
+bool dalcs_course_advance(const struct dalcs_course *c, double sign, double threshold,
+                          double rounding, double start, double edge, double *t) {
+    const double above = sign * (c->value - threshold);
+    const double slope = sign * c->derivative[0];
+    if (above < -0.5 * rounding) {
+        *t = slope < 0.0 ? fmax(start, *t - above / slope) : *t;
+        return true;
+    }
+    const double line = sign * (c->straight - threshold);
+    const double last =
+        isfinite(edge) ? line + sign * c->rise * (edge - *t) : (c->rise == 0.0 ? line : -INFINITY);
+    const bool stays = c->reach == INFINITY && fmin(line, last) > c->swing;
+    const double tau = earliest_fall(fmax(above, 0.0) + rounding, slope, c->bend);
+    *t = stays ? edge : fmin(edge, *t + fmin(tau, c->reach));
+    return false;
 }
 
 /* Counted from the edge, which is the same from wherever one looks, so that the crossing is, too. */
@@ -152,25 +164,16 @@ bool dalcs_course_passes(const struct dalcs_stimulus_sum *sum, int sign, double 
                          double edge, double *t) {
     struct dalcs_stimulus_term term[DALCS_STIMULUS_MOST_TERMS];
     const double start = *t;
-    for (int k = 0; k < LOOKS_AT_A_TIME && *t < edge; k++) {
+    for (int k = 0; k < DALCS_COURSE_LOOKS && *t < edge; k++) {
         struct dalcs_course c;
         dalcs_course_look(sum, *t, DALCS_RIGHT, term, &c);
         if (c.swing == 0.0) {
             return passes_on_line(sum, sign, threshold, edge, t);
         }
-        const double rounding = c.rounding + sum_rounded * fabs(threshold);
-        const double above = sign * (c.value - threshold);
-        const double slope = sign * c.derivative[0];
-        if (above < -0.5 * rounding) {
-            *t = slope < 0.0 ? fmax(start, *t - above / slope) : *t;
+        const double rounding = c.rounding + dalcs_sum_rounded * fabs(threshold);
+        if (dalcs_course_advance(&c, sign, threshold, rounding, start, edge, t)) {
             return true;
         }
-        const double line = sign * (c.straight - threshold);
-        const double last = isfinite(edge) ? line + sign * c.rise * (edge - *t)
-                                           : (c.rise == 0.0 ? line : -INFINITY);
-        const bool stays = c.reach == INFINITY && fmin(line, last) > c.swing;
-        const double tau = earliest_fall(fmax(above, 0.0) + rounding, slope, c.bend);
-        *t = stays ? edge : fmin(edge, *t + fmin(tau, c.reach));
     }
     return false;
 }

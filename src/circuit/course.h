@@ -8,6 +8,8 @@
 
 #include "stimulus.h"
 
+#include <float.h>
+
 enum { DALCS_COURSE_ORDERS = 4 };
 
 /* On one side of a time: the limit of the value, and derivatives. */
@@ -31,6 +33,19 @@ void dalcs_course_look(const struct dalcs_stimulus_sum *sum, double t, enum dalc
 
 /* Is it above (1) or below (-1) a threshold just beyond the time? 0: it rests there. */
 int dalcs_course_side(const struct dalcs_course *course, double threshold);
+
+/* A sum of sources is right to so many roundings of its largest term, and a time to those that an edge may be off by
+ * (stimulus.h). */
+static const double dalcs_sum_rounded = 16.0 * DBL_EPSILON, dalcs_edge_rounded = 4.0 * DBL_EPSILON;
+
+/* Times looked at in one search; a sum that never crosses must not cost its whole future. */
+enum { DALCS_COURSE_LOOKS = 256 };
+
+/* One look, at *t, along a course that bends, of which value, derivative[0], bend, straight, rise, swing and reach are
+ * known: true: it has passed the threshold, between `start` and *t, which becomes where; false: *t becomes a time before
+ * which it cannot, `edge` at most. */
+bool dalcs_course_advance(const struct dalcs_course *course, double sign, double threshold,
+                          double rounding, double start, double edge, double *t);
 
 /* From *t on, where it is on one side of a threshold (`sign` 1: above), to its next edge: goes to where it passes the
  * threshold and returns true; or to the edge, or as far as a number of looks bring it. */

@@ -4,7 +4,6 @@
  * diode. A diode with one of these has a model of its own. What limits its current: current_limit.c. */
 #include "builder.h"
 
-#include <math.h>
 #include <string.h>
 
 static const char USAGE[] =

@@ -2,7 +2,6 @@
 #include "front.h"
 
 #include "doubt.h"
-#include "guards.h"
 #include "stage_plan.h"
 
 #include <math.h>

@@ -1,7 +1,6 @@
 /* search.c - the answers to a step that does not hold. */
 #include "search.h"
 
-#include "extremes.h"
 #include "guard_scale.h"
 #include "guards.h"
 #include "present.h"

@@ -21,7 +21,6 @@
 #include "transition.h"
 
 #include <math.h>
-#include <string.h>
 
 /* A remembered first step gets longer the next time if its error, over the signal, is below this: for
  * a row more at each event waveforms would be worse than they need. */

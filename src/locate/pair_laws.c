@@ -6,7 +6,6 @@
 #include "pair_laws.h"
 
 #include "extremes.h"
-#include "union_find.h"
 
 #include <math.h>
 #include <string.h>

@@ -12,7 +12,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* What a pair has in a vector: lambda of a closed one and w of an open one, in units of one conductance; 0 where it is

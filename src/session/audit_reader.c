@@ -1,7 +1,6 @@
 /* audit_reader.c - the engine's answers, for the auditor. */
 #include "audit_reader.h"
 
-#include "present.h"
 #include "radau.h"
 #include "recurrence.h"
 #include "sliding.h"

@@ -1,8 +1,6 @@
 /* audit_run.c - which segments are handed to the auditor, and when. */
 #include "audit_reader.h"
 
-#include "cycle.h"
-
 #include <math.h>
 #include <string.h>
 
