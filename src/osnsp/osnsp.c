@@ -404,7 +404,6 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
         enum dalcs_status otherwise = dalcs_scattering_solve(p, u, y);
         status = otherwise <= DALCS_OK ? otherwise : status;
     }
-    p->looks_around = false;
     if (status > DALCS_OK && !p->system->monotone) {
         status = dalcs_enumerate(p, u, y);
         if (status == DALCS_INFEASIBLE) {
@@ -417,6 +416,7 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
     if (status == DALCS_OK && p->least_norm && p->n_tied > 0) {
         status = dalcs_basis_prefer(p, u, y);
     }
+    p->looks_around = false; /* what is certified by whole chains is so in every mode of that vertex */
     p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;
     return status;
 }
