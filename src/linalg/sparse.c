@@ -48,6 +48,20 @@ static void order_by_column(const struct dalcs_triplets *t, int n_columns, int *
     }
 }
 
+/* The sum of x[0..n-1], all but rounded once (A. Neumaier, Z. angew. Math. Mech. 54, 1974). The KCL of a tree of
+ * capacitors adds up the conductances that leave each of its nodes: what stays inside must cancel without a trace,
+ * however much larger it is than what leaves the tree. */
+static double sum_of(const double *x, int n) {
+    double sum = x[0];
+    double lost = 0.0;
+    for (int k = 1; k < n; k++) {
+        double next = sum + x[k];
+        lost += fabs(sum) >= fabs(x[k]) ? (sum - next) + x[k] : (x[k] - next) + sum;
+        sum = next;
+    }
+    return isfinite(lost) ? sum + lost : sum;
+}
+
 /* p[r] is the end of row r: walk forward, merge duplicates, drop what cancelled. */
 static void merge_duplicates(struct dalcs_csr *a) {
     int out = 0;
@@ -57,10 +71,11 @@ static void merge_duplicates(struct dalcs_csr *a) {
         a->p[r] = out;
         for (int k = begin; k < end;) {
             int column = a->j[k];
-            double sum = 0.0;
-            for (; k < end && a->j[k] == column; k++) {
-                sum += a->x[k];
+            int first = k++;
+            while (k < end && a->j[k] == column) {
+                k++;
             }
+            double sum = sum_of(a->x + first, k - first);
             if (sum != 0.0) {
                 a->j[out] = column;
                 a->x[out++] = sum;

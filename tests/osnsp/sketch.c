@@ -133,7 +133,12 @@ static void add_passives(struct draw *d) {
         e->initial = between(d, -3, 3);
     }
     if (n_coils == 2 && chance(d, 40)) {
-        add(d, 'k', coil, coil + 1)->value = chance(d, 50) ? 1.0 : 0.5;
+        bool is_perfect = chance(d, 50);
+        add(d, 'k', coil, coil + 1)->value = is_perfect ? 1.0 : 0.5;
+        if (is_perfect && spread) { /* the ratio of turns decides what is feasible: 1, 2 or 3 */
+            double turns = small(d);
+            d->s.element[coil + 1].value = d->s.element[coil].value * turns * turns;
+        }
     }
 }
 
@@ -206,6 +211,13 @@ struct sketch sketch_unit_values(const struct sketch *sketch) {
         struct sketch_element *e = &unit.element[k];
         if (strchr("rlc", e->kind) != NULL && e->value != 0.0) {
             e->value = 1.0;
+        }
+    }
+    for (int k = 0; k < unit.n; k++) {
+        const struct sketch_element *e = &unit.element[k];
+        if (e->kind == 'k' && e->value == 1.0) { /* an ideal transformer keeps its ratio */
+            const struct sketch_element *coil = sketch->element;
+            unit.element[e->node[1]].value = coil[e->node[1]].value / coil[e->node[0]].value;
         }
     }
     return unit;
