@@ -410,6 +410,10 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
     if (search->restarts < MOST_RESTARTS && search->flips == 0) {
         return dalcs_search_ask(r, part, search, false);
     }
+    if (search->flips == 2 && dalcs_search_may_refine(search)) {
+        search->flips = 0; /* on neither side: a shorter step may tell which */
+        return dalcs_search_refine(r, part, search);
+    }
     if (search->flips++ < MOST_FLIPS) {
         dalcs_guards_flip(part);
         return DALCS_OK;

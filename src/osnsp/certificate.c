@@ -1,83 +1,12 @@
 /* certificate.c - the proof that comes with every accepted step.
  *
  * Nothing of how the answer was found is used: the rows of the system itself are evaluated with
- * (x_k, s) and (x+, z+, lambda+), and each residual is measured against the row's norm times the
- * largest voltage and current of the answer (the backward error of that row, volts and amperes
- * apart). Voltages and currents vouch for each other through a thousandth of the typical conductance
- * and resistance, so that a part without current is not asked for more digits than its voltages
- * have. */
-#include "osnsp_internal.h"
+ * (x_k, s) and (x+, z+, lambda+), and each residual and each wrong sign is measured on a scale of its own (scales.h). */
+#include "scales.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
-
-struct scales {
-    double volt, ampere;
-};
-
-/* The largest |y[begin..end-1]|. Four running maxima: one alone would wait for itself. */
-static double largest_of(const double *y, int begin, int end) {
-    double m[4] = {0.0, 0.0, 0.0, 0.0};
-    int c = begin;
-    for (; c + 4 <= end; c += 4) {
-        for (int i = 0; i < 4; i++) {
-            double a = fabs(y[c + i]);
-            m[i] = a > m[i] ? a : m[i];
-        }
-    }
-    for (; c < end; c++) {
-        double a = fabs(y[c]);
-        m[0] = a > m[0] ? a : m[0];
-    }
-    m[0] = m[1] > m[0] ? m[1] : m[0];
-    m[2] = m[3] > m[2] ? m[3] : m[2];
-    return m[2] > m[0] ? m[2] : m[0];
-}
-
-/* The largest voltage and current that sources, thresholds and states put in. */
-static struct scales driving_scales(const struct dalcs_osnsp *p, const double *u) {
-    double largest[2] = {0.0, 0.0};
-    int n_x = p->form[0]->sigma > 0.0 ? p->system->n_x : 0;
-    for (int k = 0; k < p->n_runs && p->run[k].begin < n_x; k++) {
-        const struct dalcs_unit_run *run = &p->run[k];
-        double a = largest_of(u, run->begin, run->end < n_x ? run->end : n_x);
-        largest[run->is_current] = a > largest[run->is_current] ? a : largest[run->is_current];
-    }
-    for (int k = 0; k < p->n_drives; k++) {
-        const struct dalcs_drive *d = &p->drive[k];
-        double a = d->coefficient * fabs(u[d->input]);
-        largest[d->is_current] = a > largest[d->is_current] ? a : largest[d->is_current];
-    }
-    return (struct scales){largest[0], largest[1]};
-}
-
-/* An answer this many times what drives the circuit could raise is one that runs away. */
-static const double runaway = 1e9;
-
-/* Scales reach into the other unit no further than what drives the circuit could raise there, and not
- * far beyond it in their own: a false answer, with 1e12 A around a loop of sources that clash, must
- * not vouch for its own residual. */
-static struct scales physical_scales(const struct dalcs_osnsp *p, struct scales drive,
-                                     const double *y) {
-    const struct dalcs_step_form *f = p->form[0];
-    double largest[2] = {drive.volt, drive.ampere};
-    for (int k = 0; k < p->n_runs; k++) {
-        const struct dalcs_unit_run *run = &p->run[k];
-        double a = largest_of(y, run->begin, run->end);
-        largest[run->is_current] = a > largest[run->is_current] ? a : largest[run->is_current];
-    }
-    double raised_volt = drive.volt + drive.ampere / f->least_conductance;
-    double raised_ampere = drive.ampere + drive.volt * f->most_conductance;
-    largest[0] = largest[0] < runaway * raised_volt ? largest[0] : runaway * raised_volt;
-    largest[1] = largest[1] < runaway * raised_ampere ? largest[1] : runaway * raised_ampere;
-    raised_volt = raised_volt < largest[0] ? raised_volt : largest[0];
-    raised_ampere = raised_ampere < largest[1] ? raised_ampere : largest[1];
-    double volt = f->ampere_in_volts * raised_ampere;
-    double ampere = f->volt_in_amperes * raised_volt;
-    return (struct scales){largest[0] > volt ? largest[0] : volt,
-                           largest[1] > ampere ? largest[1] : ampere};
-}
 
 static void note(struct dalcs_certificate *c, double residual, double scale, int where) {
     if (residual > c->worst * scale) {
@@ -116,54 +45,8 @@ static void recover_states(const struct dalcs_osnsp *p, const double *u, double 
     }
 }
 
-/* The magnitude that row r can have at these voltages and currents: its norm times theirs. No residual
- * of it is known better than this times a rounding. */
-static inline double row_size(const struct dalcs_step_form *f, struct scales scale, int r) {
-    return f->row_volts[r] * scale.volt + f->row_amperes[r] * scale.ampere;
-}
-
-/* So many nodes of a chain are looked at. */
-enum { MOST_AROUND = 32 };
-
-static bool is_among(const int *list, int n, int i) {
-    for (int k = 0; k < n; k++) {
-        if (list[k] == i) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool is_bare(const struct dalcs_osnsp *p, int row) {
-    return p->system->row_is_current[row] && p->form[0]->row_volts[row] == 0.0;
-}
-
-/* The KCL that closed pairs tie to that of this row, and any pairs to those that only pairs enter,
- * together: their rounding flows along the chain. */
-static double size_around(const struct dalcs_osnsp *p, struct scales scale, int row) {
-    const struct dalcs_system *s = p->system;
-    int reached[MOST_AROUND] = {row};
-    int n = 1;
-    double size = 0.0;
-    for (int i = 0; i < n; i++) {
-        size += row_size(p->form[0], scale, reached[i]);
-        for (int k = s->A.p[reached[i]]; k < s->A.p[reached[i] + 1]; k++) {
-            int d = s->A.j[k] - dalcs_system_n_equations(s);
-            if (d < 0 || !(is_bare(p, reached[i]) || dalcs_osnsp_is_on(p, d))) {
-                continue;
-            }
-            for (int e = p->pair_rows_p[d]; e < p->pair_rows_p[d + 1]; e++) {
-                if (n < MOST_AROUND && !is_among(reached, n, p->pair_rows[e])) {
-                    reached[n++] = p->pair_rows[e];
-                }
-            }
-        }
-    }
-    return size;
-}
-
 static void check_equations(struct dalcs_osnsp *p, const double *u, const double *y,
-                            struct scales scale) {
+                            struct dalcs_scales scale) {
     const struct dalcs_system *s = p->system;
     const struct dalcs_step_form *f = p->form[0];
     const struct dalcs_csr check = f->check;
@@ -174,43 +57,25 @@ static void check_equations(struct dalcs_osnsp *p, const double *u, const double
     int where = -1;
     for (int i = 0; i < check.n_rows; i++) {
         double residual = fabs(dalcs_csr_row_dot(&check, i, v));
-        double size = row_size(f, scale, f->checked[i]);
-        if (!(residual <= worst * size)) {
-            if (p->looks_around && is_bare(p, f->checked[i])) {
-                size = fmax(size, size_around(p, scale, f->checked[i]));
-            }
-            if (residual <= worst * size) {
-                continue;
-            }
+        if (residual == 0.0) {
+            continue;
+        }
+        double norm = dalcs_scales_norm(f, scale, f->checked[i]);
+        double terms = dalcs_scales_row_terms(p, u, y, i);
+        if (residual <= worst * dalcs_scales_own(p, terms, norm) && residual < INFINITY) {
+            continue;
+        }
+        if (p->looks_around && dalcs_scales_is_bare(p, f->checked[i])) {
+            norm = fmax(norm, dalcs_scales_norm_around(p, scale, f->checked[i]));
+        }
+        double size = dalcs_scales_own(p, terms, norm);
+        if (!(residual <= worst * size && residual < INFINITY)) {
             /* A NaN must stay the worst: it compares with nothing that follows. */
             worst = size > 0.0 && residual < INFINITY ? residual / size : INFINITY;
             where = f->checked[i];
         }
     }
     note(&p->certificate, worst, 1.0, where);
-}
-
-/* The current of a diode is known no better than the KCL that it enters. */
-static double current_scale(const struct dalcs_osnsp *p, int pair, struct scales scale) {
-    double size = scale.ampere;
-    for (int k = p->pair_rows_p[pair]; k < p->pair_rows_p[pair + 1]; k++) {
-        int r = p->pair_rows[k];
-        size =
-            fmax(size, p->looks_around ? size_around(p, scale, r) : row_size(p->form[0], scale, r));
-    }
-    return size;
-}
-
-static double pair_size(const struct dalcs_osnsp *p, const double *u, const double *y, int d) {
-    const struct dalcs_system *s = p->system;
-    double size = 0.0;
-    for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
-        size += fabs(s->C.x[k] * y[s->C.j[k]]);
-    }
-    for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
-        size += fabs(s->F.x[k] * u[s->n_x + s->F.j[k]]);
-    }
-    return size;
 }
 
 static double pair_voltage(const struct dalcs_osnsp *p, const double *u, const double *y, int d) {
@@ -239,7 +104,7 @@ static void judge_sign(struct dalcs_osnsp *p, int d, double excess, double size)
 }
 
 static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
-                        struct scales scale) {
+                        struct dalcs_scales scale) {
     const struct dalcs_system *s = p->system;
     const double *lambda = y + dalcs_system_n_equations(s);
     double tolerance = p->options.certificate_tolerance;
@@ -250,21 +115,23 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
         bool is_diode = p->is_diode[d];
         if (dalcs_osnsp_is_on(p, d)) {
             /* w = 0 by the mode: what is left of it is a residual. */
-            double residual = fabs(w);
-            double size = residual <= tolerance * scale.volt
-                              ? scale.volt
-                              : fmax(scale.volt, pair_size(p, u, y, d));
-            note(&p->certificate, residual, size, n_equations + d);
+            note(&p->certificate, fabs(w),
+                 w == 0.0 ? 1.0
+                          : dalcs_scales_own(p, dalcs_scales_pair_terms(p, u, y, d), scale.volt),
+                 n_equations + d);
             p->w[d] = 0.0;
             p->tied[d] = is_diode && lambda[d] <= tolerance * scale.ampere;
             if (is_diode && lambda[d] < 0.0) {
-                judge_sign(p, d, -lambda[d], current_scale(p, d, scale));
+                judge_sign(p, d, -lambda[d],
+                           dalcs_scales_own(p, dalcs_scales_current_terms(p, u, y, d),
+                                            dalcs_scales_current_norm(p, d, scale)));
             }
         } else {
             p->w[d] = w;
             p->tied[d] = is_diode && w <= tolerance * scale.volt;
             if (is_diode && w < 0.0) {
-                judge_sign(p, d, -w, fmax(scale.volt, pair_size(p, u, y, d)));
+                judge_sign(p, d, -w,
+                           dalcs_scales_own(p, dalcs_scales_pair_terms(p, u, y, d), scale.volt));
             }
         }
         p->n_tied += p->tied[d] ? 1 : 0;
@@ -277,15 +144,15 @@ static const double clash_roundings = 32.0 * DBL_EPSILON;
 
 /* The reference of a floating island would have to carry what its current sources do not balance. It
  * is the sum of the island's KCL, known as well as the largest of them. */
-static void check_references(struct dalcs_osnsp *p, const double *y, struct scales scale,
-                             struct scales drive, bool *sources_clash) {
+static void check_references(struct dalcs_osnsp *p, const double *y, struct dalcs_scales scale,
+                             struct dalcs_scales drive, bool *sources_clash) {
     const struct dalcs_system *s = p->system;
     if (p->n_references == 0) {
         return;
     }
     double size = scale.ampere;
     for (int r = 0; r < dalcs_system_n_equations(s); r++) {
-        size = s->row_is_current[r] ? fmax(size, row_size(p->form[0], scale, r)) : size;
+        size = s->row_is_current[r] ? fmax(size, dalcs_scales_norm(p->form[0], scale, r)) : size;
     }
     double limit = fmin(p->options.certificate_tolerance * size,
                         fmax(clash_part * drive.ampere, clash_roundings * size));
@@ -296,24 +163,6 @@ static void check_references(struct dalcs_osnsp *p, const double *y, struct scal
     }
 }
 
-/* What the terms of the equations that hold lambda_d add up to: the currents around the pair. */
-static double current_size(const struct dalcs_osnsp *p, const double *u, const double *y, int d) {
-    const struct dalcs_system *s = p->system;
-    double largest = 0.0;
-    for (int k = p->pair_rows_p[d]; k < p->pair_rows_p[d + 1]; k++) {
-        int r = p->pair_rows[k];
-        double size = 0.0;
-        for (int i = s->A.p[r]; i < s->A.p[r + 1]; i++) {
-            size += fabs(s->A.x[i] * y[s->A.j[i]]);
-        }
-        for (int i = s->E.p[r]; i < s->E.p[r + 1]; i++) {
-            size += fabs(s->E.x[i] * u[s->n_x + s->E.j[i]]);
-        }
-        largest = fmax(largest, size);
-    }
-    return largest;
-}
-
 bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, const double *y) {
     const double *lambda = y + dalcs_system_n_equations(p->system);
     double tolerance = p->options.certificate_tolerance;
@@ -322,7 +171,8 @@ bool dalcs_certificate_signs_hold(const struct dalcs_osnsp *p, const double *u, 
         bool is_on = dalcs_osnsp_is_on(p, d);
         double value = is_on ? lambda[d] : p->w[d];
         hold = !p->is_diode[d] || !(value < 0.0) ||
-               -value <= tolerance * (is_on ? current_size(p, u, y, d) : pair_size(p, u, y, d));
+               -value <= tolerance * (is_on ? dalcs_scales_current_terms(p, u, y, d)
+                                            : dalcs_scales_pair_terms(p, u, y, d));
     }
     return hold;
 }
@@ -337,8 +187,8 @@ void dalcs_certificate_evaluate(struct dalcs_osnsp *p, const double *u, double *
     p->n_violating = 0;
     *sources_clash = false;
     recover_states(p, u, y);
-    struct scales drive = driving_scales(p, u);
-    struct scales scale = physical_scales(p, drive, y);
+    struct dalcs_scales drive = dalcs_scales_driving(p, u);
+    struct dalcs_scales scale = dalcs_scales_physical(p, drive, y);
     p->certificate.volt = scale.volt;
     p->certificate.ampere = scale.ampere;
     if (!(scale.volt <= largest_scale && scale.ampere <= largest_scale)) {
@@ -360,12 +210,13 @@ void dalcs_osnsp_find_ties(struct dalcs_osnsp *p, const double *u, const double 
                            double scale[2]) {
     const double *lambda = y + dalcs_system_n_equations(p->system);
     double tolerance = p->options.certificate_tolerance;
-    struct scales s = physical_scales(p, driving_scales(p, u), y);
+    struct dalcs_scales s = dalcs_scales_physical(p, dalcs_scales_driving(p, u), y);
     double typical_resistance = sqrt(p->form[0]->ampere_in_volts / p->form[0]->volt_in_amperes);
     double volts = fmax(s.volt, typical_resistance * s.ampere);
     for (int d = 0; d < p->system->n_pairs; d++) {
-        bool small = dalcs_osnsp_is_on(p, d) ? lambda[d] <= tolerance * current_scale(p, d, s)
-                                             : p->w[d] <= tolerance * volts;
+        bool small = dalcs_osnsp_is_on(p, d)
+                         ? lambda[d] <= tolerance * dalcs_scales_current_norm(p, d, s)
+                         : p->w[d] <= tolerance * volts;
         p->tied[d] = p->is_diode[d] && small;
     }
     scale[0] = s.volt;

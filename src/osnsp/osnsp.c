@@ -416,7 +416,8 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
     if (status == DALCS_OK && p->least_norm && p->n_tied > 0) {
         status = dalcs_basis_prefer(p, u, y);
     }
-    p->looks_around = false; /* what is certified by whole chains is so in every mode of that vertex */
+    p->looks_around =
+        false; /* what is certified by whole chains is so in every mode of that vertex */
     p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;
     return status;
 }

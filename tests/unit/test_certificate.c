@@ -3,6 +3,10 @@
 
 #include "build_network.h"
 
+#include <float.h>
+#include <stdio.h>
+#include <string.h>
+
 static struct text_network t;
 static struct dalcs_osnsp p;
 static const struct dalcs_system *s;
@@ -169,5 +173,37 @@ START_TEST(test_tampered_factors) {
 
 END_TEST
 
-RUN_TESTS("certificate", test_perturbed, test_where, test_other_inputs, test_wrong_mode,
-          test_not_a_number, test_reference, test_tampered_factors)
+/* 1 MV drives a current through R2, whose KCL at b has terms of twice this current, beside a norm of 1 S * 1 MV. Twice
+ * 1000 n roundings of the norm are an answer of their own, half as many may be rounding: a node that is off by 1 pV is
+ * seen in the one and not in the other, while 1 uV is in both. */
+static bool accepts(double roundings, double off) {
+    char netlist[256];
+
+    enum { N_COLUMNS = 5 }; /* a, b, c, i(V1), lambda */
+
+    double terms = roundings * N_COLUMNS * DBL_EPSILON * 1e6;
+    snprintf(netlist, sizeof(netlist), "faint\nV1 a 0 1meg\nR2 a b %.17g\nR3 b c 1\nD1 c 0\n.op\n",
+             2e6 / terms);
+    setup(netlist);
+    ck_assert_int_eq(dalcs_system_n_columns(s), N_COLUMNS);
+    ck_assert(evaluate(y));
+    int c = 0;
+    while (strcmp(s->column[c].element, "b") != 0) {
+        c++;
+    }
+    memcpy(wrong, y, sizeof(y));
+    wrong[c] += off;
+    const bool accepted = evaluate(wrong);
+    finish();
+    return accepted;
+}
+
+START_TEST(test_own_terms) {
+    ck_assert(accepts(500.0, 1e-12));
+    ck_assert(!accepts(2000.0, 1e-12));
+    ck_assert(!accepts(500.0, 1e-6));
+}
+
+END_TEST
+RUN_TESTS("certificate", test_perturbed, test_own_terms, test_where, test_other_inputs,
+          test_wrong_mode, test_not_a_number, test_reference, test_tampered_factors)

@@ -1,0 +1,194 @@
+/* scales.c - what residuals and wrong signs of an answer are measured against. */
+#include "scales.h"
+
+#include <float.h>
+#include <math.h>
+
+/* The largest |y[begin..end-1]|. Four running maxima: one alone would wait for itself. */
+static double largest_of(const double *y, int begin, int end) {
+    double m[4] = {0.0, 0.0, 0.0, 0.0};
+    int c = begin;
+    for (; c + 4 <= end; c += 4) {
+        for (int i = 0; i < 4; i++) {
+            double a = fabs(y[c + i]);
+            m[i] = a > m[i] ? a : m[i];
+        }
+    }
+    for (; c < end; c++) {
+        double a = fabs(y[c]);
+        m[0] = a > m[0] ? a : m[0];
+    }
+    m[0] = m[1] > m[0] ? m[1] : m[0];
+    m[2] = m[3] > m[2] ? m[3] : m[2];
+    return m[2] > m[0] ? m[2] : m[0];
+}
+
+struct dalcs_scales dalcs_scales_driving(const struct dalcs_osnsp *p, const double *u) {
+    double largest[2] = {0.0, 0.0};
+    int n_x = p->form[0]->sigma > 0.0 ? p->system->n_x : 0;
+    for (int k = 0; k < p->n_runs && p->run[k].begin < n_x; k++) {
+        const struct dalcs_unit_run *run = &p->run[k];
+        double a = largest_of(u, run->begin, run->end < n_x ? run->end : n_x);
+        largest[run->is_current] = a > largest[run->is_current] ? a : largest[run->is_current];
+    }
+    for (int k = 0; k < p->n_drives; k++) {
+        const struct dalcs_drive *d = &p->drive[k];
+        double a = d->coefficient * fabs(u[d->input]);
+        largest[d->is_current] = a > largest[d->is_current] ? a : largest[d->is_current];
+    }
+    return (struct dalcs_scales){largest[0], largest[1]};
+}
+
+/* An answer this many times what drives the circuit could raise is one that runs away. */
+static const double runaway = 1e9;
+
+/* Scales reach into the other unit no further than what drives the circuit could raise there, and not
+ * far beyond it in their own: a false answer, with 1e12 A around a loop of sources that clash, must
+ * not vouch for its own residual. */
+struct dalcs_scales dalcs_scales_physical(const struct dalcs_osnsp *p, struct dalcs_scales drive,
+                                          const double *y) {
+    const struct dalcs_step_form *f = p->form[0];
+    double largest[2] = {drive.volt, drive.ampere};
+    for (int k = 0; k < p->n_runs; k++) {
+        const struct dalcs_unit_run *run = &p->run[k];
+        double a = largest_of(y, run->begin, run->end);
+        largest[run->is_current] = a > largest[run->is_current] ? a : largest[run->is_current];
+    }
+    double raised_volt = drive.volt + drive.ampere / f->least_conductance;
+    double raised_ampere = drive.ampere + drive.volt * f->most_conductance;
+    largest[0] = largest[0] < runaway * raised_volt ? largest[0] : runaway * raised_volt;
+    largest[1] = largest[1] < runaway * raised_ampere ? largest[1] : runaway * raised_ampere;
+    raised_volt = raised_volt < largest[0] ? raised_volt : largest[0];
+    raised_ampere = raised_ampere < largest[1] ? raised_ampere : largest[1];
+    double volt = f->ampere_in_volts * raised_ampere;
+    double ampere = f->volt_in_amperes * raised_volt;
+    return (struct dalcs_scales){largest[0] > volt ? largest[0] : volt,
+                                 largest[1] > ampere ? largest[1] : ampere};
+}
+
+/* So many nodes of a chain are looked at. */
+enum { MOST_AROUND = 32 };
+
+static bool is_among(const int *list, int n, int i) {
+    for (int k = 0; k < n; k++) {
+        if (list[k] == i) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool dalcs_scales_is_bare(const struct dalcs_osnsp *p, int row) {
+    return p->system->row_is_current[row] && p->form[0]->row_volts[row] == 0.0;
+}
+
+double dalcs_scales_norm_around(const struct dalcs_osnsp *p, struct dalcs_scales scale, int row) {
+    const struct dalcs_system *s = p->system;
+    int reached[MOST_AROUND] = {row};
+    int n = 1;
+    double size = 0.0;
+    for (int i = 0; i < n; i++) {
+        size += dalcs_scales_norm(p->form[0], scale, reached[i]);
+        for (int k = s->A.p[reached[i]]; k < s->A.p[reached[i] + 1]; k++) {
+            int d = s->A.j[k] - dalcs_system_n_equations(s);
+            if (d < 0 || !(dalcs_scales_is_bare(p, reached[i]) || dalcs_osnsp_is_on(p, d))) {
+                continue;
+            }
+            for (int e = p->pair_rows_p[d]; e < p->pair_rows_p[d + 1]; e++) {
+                if (n < MOST_AROUND && !is_among(reached, n, p->pair_rows[e])) {
+                    reached[n++] = p->pair_rows[e];
+                }
+            }
+        }
+    }
+    return size;
+}
+
+/* V or A: a state that is recovered is known as well as what it is recovered from. */
+static double state_size(const struct dalcs_osnsp *p, const double *u, const double *y, int x) {
+    const struct dalcs_step_form *f = p->form[0];
+    const int *ends = &f->x_ends[2 * x];
+    double sum = fabs(u[x]);
+    if (ends[0] >= 0) {
+        return sum + fabs(y[ends[0]]) + fabs(y[ends[1]]);
+    }
+    if (p->keeps_states && f->Xu.p[x] < f->Xu.p[x + 1]) {
+        return sum + fabs(y[x]);
+    }
+    for (int k = f->X.p[x]; k < f->X.p[x + 1]; k++) {
+        sum += fabs(f->X.x[k] * y[f->X.j[k]]);
+    }
+    for (int k = f->Xu.p[x]; k < f->Xu.p[x + 1]; k++) {
+        sum += fabs(f->Xu.x[k] * u[f->Xu.j[k]]);
+    }
+    return sum;
+}
+
+double dalcs_scales_row_terms(const struct dalcs_osnsp *p, const double *u, const double *y,
+                              int i) {
+    const struct dalcs_csr *a = &p->form[0]->check;
+    int n_x = p->system->n_x;
+    int n_columns = dalcs_system_n_columns(p->system);
+    double of_states = 0.0;
+    double sum = 0.0;
+    int k = a->p[i];
+    for (; k < a->p[i + 1] && a->j[k] < n_x; k++) {
+        of_states += fabs(a->x[k]) * state_size(p, u, y, a->j[k]);
+    }
+    for (; k < a->p[i + 1] && a->j[k] < n_x + n_columns; k++) {
+        sum += fabs(a->x[k] * y[a->j[k] - n_x]);
+    }
+    for (; k < a->p[i + 1]; k++) {
+        sum += fabs(a->x[k] * u[a->j[k] - n_columns]);
+    }
+    return p->form[0]->sigma * of_states + sum;
+}
+
+/* Roundings of the whole, over n: those of Arioli, Demmel and Duff. */
+static const double roundings = 1000.0;
+
+double dalcs_scales_own(const struct dalcs_osnsp *p, double terms, double norm) {
+    double rounding = roundings * dalcs_system_n_columns(p->system) * DBL_EPSILON;
+    return terms > rounding * norm ? terms : terms + norm;
+}
+
+double dalcs_scales_current_norm(const struct dalcs_osnsp *p, int pair, struct dalcs_scales scale) {
+    double size = scale.ampere;
+    for (int k = p->pair_rows_p[pair]; k < p->pair_rows_p[pair + 1]; k++) {
+        int r = p->pair_rows[k];
+        size = fmax(size, p->looks_around ? dalcs_scales_norm_around(p, scale, r)
+                                          : dalcs_scales_norm(p->form[0], scale, r));
+    }
+    return size;
+}
+
+double dalcs_scales_pair_terms(const struct dalcs_osnsp *p, const double *u, const double *y,
+                               int d) {
+    const struct dalcs_system *s = p->system;
+    double size = 0.0;
+    for (int k = s->C.p[d]; k < s->C.p[d + 1]; k++) {
+        size += fabs(s->C.x[k] * y[s->C.j[k]]);
+    }
+    for (int k = s->F.p[d]; k < s->F.p[d + 1]; k++) {
+        size += fabs(s->F.x[k] * u[s->n_x + s->F.j[k]]);
+    }
+    return size;
+}
+
+double dalcs_scales_current_terms(const struct dalcs_osnsp *p, const double *u, const double *y,
+                                  int d) {
+    const struct dalcs_system *s = p->system;
+    double largest = 0.0;
+    for (int k = p->pair_rows_p[d]; k < p->pair_rows_p[d + 1]; k++) {
+        int r = p->pair_rows[k];
+        double size = 0.0;
+        for (int i = s->A.p[r]; i < s->A.p[r + 1]; i++) {
+            size += fabs(s->A.x[i] * y[s->A.j[i]]);
+        }
+        for (int i = s->E.p[r]; i < s->E.p[r + 1]; i++) {
+            size += fabs(s->E.x[i] * u[s->n_x + s->E.j[i]]);
+        }
+        largest = fmax(largest, size);
+    }
+    return largest;
+}
