@@ -5,11 +5,16 @@
 #include "wide_vectors.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 double *dalcs_dense_map_alloc(int rows, int columns) {
     size_t bytes = (size_t)rows * (size_t)(columns > 0 ? columns : 1) * sizeof(double);
     bytes = (bytes + 63) / 64 * 64;
-    return aligned_alloc(64, bytes > 0 ? bytes : 64);
+    char *map = aligned_alloc(64, bytes + DALCS_DENSE_MAP_SPARE * sizeof(double));
+    if (map != NULL) {
+        memset(map + bytes, 0, DALCS_DENSE_MAP_SPARE * sizeof(double));
+    }
+    return (double *)(void *)map;
 }
 
 enum { MOST_QUADS = 8 };

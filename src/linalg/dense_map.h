@@ -11,7 +11,10 @@ static inline int dalcs_dense_map_rows(int n) {
     return (n + 7) / 8 * 8;
 }
 
-/* For dalcs_dense_map_rows(n) x columns elements, not zeroed; NULL when out of memory; free() it. */
+/* Zeros behind the last column, so that any elements of it may be read four at a time. */
+enum { DALCS_DENSE_MAP_SPARE = 8 };
+
+/* For dalcs_dense_map_rows(n) x columns elements, not zeroed, and the spare ones; NULL when out of memory; free() it. */
 double *dalcs_dense_map_alloc(int rows, int columns);
 
 /* y[rows] = map x[columns]; rows is a multiple of 8. */
