@@ -103,6 +103,13 @@ static void judge_sign(struct dalcs_osnsp *p, int d, double excess, double size)
     }
 }
 
+/* The scale of a pair's voltage: a threshold may be far beyond all else. */
+static double voltage_size(const struct dalcs_osnsp *p, const double *u, const double *y, int d,
+                           struct dalcs_scales scale) {
+    double terms = dalcs_scales_pair_terms(p, u, y, d);
+    return dalcs_scales_own(p, terms, fmax(scale.volt, terms));
+}
+
 static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
                         struct dalcs_scales scale) {
     const struct dalcs_system *s = p->system;
@@ -115,9 +122,7 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
         bool is_diode = p->is_diode[d];
         if (dalcs_osnsp_is_on(p, d)) {
             /* w = 0 by the mode: what is left of it is a residual. */
-            note(&p->certificate, fabs(w),
-                 w == 0.0 ? 1.0
-                          : dalcs_scales_own(p, dalcs_scales_pair_terms(p, u, y, d), scale.volt),
+            note(&p->certificate, fabs(w), w == 0.0 ? 1.0 : voltage_size(p, u, y, d, scale),
                  n_equations + d);
             p->w[d] = 0.0;
             p->tied[d] = is_diode && lambda[d] <= tolerance * scale.ampere;
@@ -130,8 +135,7 @@ static void check_pairs(struct dalcs_osnsp *p, const double *u, const double *y,
             p->w[d] = w;
             p->tied[d] = is_diode && w <= tolerance * scale.volt;
             if (is_diode && w < 0.0) {
-                judge_sign(p, d, -w,
-                           dalcs_scales_own(p, dalcs_scales_pair_terms(p, u, y, d), scale.volt));
+                judge_sign(p, d, -w, voltage_size(p, u, y, d, scale));
             }
         }
         p->n_tied += p->tied[d] ? 1 : 0;

@@ -41,8 +41,12 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double
         if (status == DALCS_OK && dalcs_certificate_holds(p, sources_clash)) {
             return DALCS_OK;
         }
-        if (status == DALCS_SINGULAR) {
-            status = dalcs_exact_pivot(p, u, y, 0);
+        struct dalcs_mode_entry *entry;
+        if (status >= DALCS_OK) {
+            status = dalcs_modes_get(p, DALCS_PLAIN, &entry);
+        }
+        if (status == DALCS_OK && entry->singular) {
+            status = dalcs_open_mode_solve(p, u, y);
             if (status == DALCS_OK) {
                 return DALCS_OK;
             }

@@ -1,42 +1,41 @@
 /* open_mode.c - of all answers that a singular mode leaves open, the one of least norm that has the right signs.
  *
- * They are y + sum t_k n_k. With directions n_k that are orthonormal to the pairs, sum G w^2 + lambda^2 / G, the least
- * |t| with V t + b >= 0 for the signs b of y is t = V' a, where
- *     0 <= a _|_ V V' a + b >= 0
- * (C. L. Lawson and R. J. Hanson, Solving Least Squares Problems, 1974, ch. 23): a linear complementarity problem with
- * a positive semidefinite matrix, whatever the circuit is, so that Lemke's method ends in its answer or shows that there
- * is none. With a + b = s it is a - b = (2 (1 + V V')^-1 - 1) s - 2 (1 + V V')^-1 b. Where the circuit is passive the
- * proximal iterates come to it; elsewhere every mode is tried, and has to be asked for more than its answer of least
- * norm. */
-#include "lemke.h"
+ * They are y + sum t_k n_k. With directions n_k that are orthonormal to the pairs, sum G w^2 + lambda^2 / G, it has the
+ * least |t| with V t + b >= 0, where b are the signs of y, the answer of least norm of all: least distance programming,
+ * which non-negative least squares decide (C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, 1974, ch. 23).
+ * What the reference of an island carries must be 0 as well: a source that reads the island may drive it, by as much as
+ * is open. Where the circuit is passive the proximal iterates come to it; elsewhere every mode is tried. */
+#include "nonnegative.h"
 #include "osnsp_internal.h"
 #include "whole.h"
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 struct open_mode {
-    struct dalcs_osnsp *p;
+    const struct dalcs_osnsp *p;
     struct dalcs_whole whole;
-    size_t n_columns, n_pairs;
-    int n;             /* directions that pairs see */
-    double *direction; /* [n_choices][n_columns] */
-    double *part;      /* [n_choices][n_pairs] what they are to each pair, in units of one conductance */
-    double *sign;      /* [n_pairs] b */
-    double *inverse;   /* [n][n] of 1 + V' V */
-    struct dalcs_lemke lemke;
+    size_t n_columns, n_pairs, n_parts; /* parts: of pairs, then of references */
+    int n;                              /* directions that these see */
+    double *direction;                  /* [n_choices][n_columns] */
+    double *part;                       /* [n_choices][n_parts] V, by columns */
+    double *sign;                       /* [n_parts] b */
     struct dalcs_arena arena;
 };
 
-/* lambda of closed pairs and w of open ones, of an answer or of a direction. */
-static void look_at_pairs(const struct open_mode *m, const double *y, double *part) {
+/* lambda of closed pairs and w of open ones, of an answer or of a direction, and currents of references, in units of
+ * one conductance. */
+static void look_at_parts(const struct open_mode *m, const double *y, bool is_answer,
+                          double *part) {
     const struct dalcs_system *s = m->p->system;
     double root = sqrt(m->p->form[0]->pair_conductance);
     for (int d = 0; d < s->n_pairs; d++) {
         double lambda = y[m->n_columns - m->n_pairs + (size_t)d];
-        part[d] = dalcs_osnsp_is_on(m->p, d) ? lambda / root
-                                             : dalcs_csr_row_dot(&s->C, d, y) * root;
+        double w = is_answer ? m->p->w[d] : dalcs_csr_row_dot(&s->C, d, y);
+        part[d] = dalcs_osnsp_is_on(m->p, d) ? lambda / root : w * root;
+    }
+    for (int k = 0; k < m->p->n_references; k++) {
+        part[s->n_pairs + k] = y[m->p->reference[k]] / root;
     }
 }
 
@@ -48,110 +47,114 @@ static double product(const double *a, const double *b, size_t n) {
     return sum;
 }
 
-static void subtract(double *a, const double *b, double factor, size_t n) {
+static void add(double *a, double factor, const double *b, size_t n) {
     for (size_t i = 0; i < n; i++) {
-        a[i] -= factor * b[i];
+        a[i] += factor * b[i];
     }
 }
 
-/* Gram and Schmidt; a direction of which nothing but rounding is left says nothing new to the pairs. */
+/* The largest element of a direction, in the same units: what its parts are known by. */
+static double size_of(const struct open_mode *m, const double *direction) {
+    double root = sqrt(m->p->form[0]->pair_conductance);
+    double largest = 0.0;
+    for (size_t c = 0; c < m->n_columns; c++) {
+        double size = fabs(direction[c]);
+        largest = fmax(largest, m->p->system->column_is_current[c] ? size / root : size * root);
+    }
+    return largest;
+}
+
+/* Gram and Schmidt; a direction of which only rounding is left says nothing new to the parts. */
 static void find_directions(struct open_mode *m) {
     for (int k = 0; k < m->whole.n_choices; k++) {
         double *direction = m->direction + (size_t)m->n * m->n_columns;
-        double *part = m->part + (size_t)m->n * m->n_pairs;
+        double *part = m->part + (size_t)m->n * m->n_parts;
         dalcs_whole_direction(&m->whole, k, direction);
-        look_at_pairs(m, direction, part);
-        double before = product(part, part, m->n_pairs);
+        look_at_parts(m, direction, false, part);
+        double before = size_of(m, direction);
         for (int j = 0; j < m->n; j++) {
-            double factor = product(part, m->part + (size_t)j * m->n_pairs, m->n_pairs);
-            subtract(part, m->part + (size_t)j * m->n_pairs, factor, m->n_pairs);
-            subtract(direction, m->direction + (size_t)j * m->n_columns, factor, m->n_columns);
+            const double *other = m->part + (size_t)j * m->n_parts;
+            double factor = product(part, other, m->n_parts);
+            add(part, -factor, other, m->n_parts);
+            add(direction, -factor, m->direction + (size_t)j * m->n_columns, m->n_columns);
         }
-        double norm = product(part, part, m->n_pairs);
+        double norm = sqrt(product(part, part, m->n_parts));
         if (norm > (double)m->n_columns * DBL_EPSILON * before) {
-            subtract(part, part, 1.0 - 1.0 / sqrt(norm), m->n_pairs);
-            subtract(direction, direction, 1.0 - 1.0 / sqrt(norm), m->n_columns);
+            add(part, 1.0 / norm - 1.0, part, m->n_parts);
+            add(direction, 1.0 / norm - 1.0, direction, m->n_columns);
             m->n++;
         }
     }
 }
 
-static const double *row_of(const struct open_mode *m, int k) {
-    return m->part + (size_t)k * m->n_pairs;
+/* How wrong a part is: a negative sign, or any current of a reference. */
+static double wrong_by(const struct open_mode *m, size_t part) {
+    double sign = m->sign[part];
+    return part >= m->n_pairs ? fabs(sign) : m->p->is_diode[part] ? -sign : 0.0;
 }
 
-/* Of a matrix that is at least 1, by Gauss and Jordan. */
-static void invert(struct open_mode *m) {
-    size_t n = (size_t)m->n;
-    for (size_t i = 0; i < n; i++) {
-        for (size_t k = 0; k < n; k++) {
-            double sum = i == k ? 1.0 : 0.0;
-            for (size_t d = 0; d < m->n_pairs; d++) {
-                sum += m->p->is_diode[d] ? row_of(m, (int)i)[d] * row_of(m, (int)k)[d] : 0.0;
-            }
-            m->inverse[i * n + k] = sum;
-        }
+/* Least |t| with V t >= -b: of |E q - f| with E = (V'; -b') and f = (0, ..., 0, 1), q >= 0, free for what must be 0, the
+ * rest r = f - E q is 0 where there is none, and else t = -r / r_last. As r is perpendicular to E q, r_last = |r|^2, but
+ * for rounding, which is all that is left of r where that is not so. The unit is what is most wrong. */
+static enum dalcs_status move(struct open_mode *m, double *y) {
+    struct dalcs_nonnegative least;
+    DALCS_TRY(dalcs_nonnegative_setup(&least, &m->arena, m->n + 1, (int)m->n_parts));
+    double unit = 0.0;
+    int n = 0;
+    for (size_t i = 0; i < m->n_parts; i++) {
+        unit = fmax(unit, wrong_by(m, i));
     }
-    for (size_t i = 0; i < n; i++) {
-        double pivot = m->inverse[i * n + i];
-        for (size_t r = 0; r < n; r++) {
-            double factor = r == i ? 0.0 : m->inverse[r * n + i] / pivot;
-            for (size_t k = 0; k < n && r != i; k++) {
-                m->inverse[r * n + k] -= k == i ? 0.0 : factor * m->inverse[i * n + k];
-            }
-            m->inverse[r * n + i] = r == i ? 1.0 / pivot : -factor;
+    for (size_t i = 0; i < m->n_parts && unit > 0.0; i++) {
+        if (i < m->n_pairs && !m->p->is_diode[i]) {
+            continue;
         }
-        for (size_t k = 0; k < n; k++) {
-            m->inverse[i * n + k] *= k == i ? 1.0 : 1.0 / pivot;
+        double *column = least.a + (size_t)n * (size_t)least.m;
+        for (int k = 0; k < m->n; k++) {
+            column[k] = m->part[(size_t)k * m->n_parts + i];
         }
+        column[m->n] = -m->sign[i] / unit;
+        least.is_free[n++] = i >= m->n_pairs;
     }
+    least.b[m->n] = 1.0;
+    dalcs_nonnegative_solve(&least, n);
+    double last = least.rest[m->n];
+    bool is_rounding =
+        !(last > 0.0 && 2.0 * product(least.rest, least.rest, (size_t)least.m) > last);
+    for (int k = 0; k < m->n && !is_rounding; k++) {
+        double t = -unit * least.rest[k] / last;
+        add(y, t, m->direction + (size_t)k * m->n_columns, m->n_columns);
+    }
+    return DALCS_OK;
 }
 
-/* (1 + V V')^-1 = 1 - V (1 + V' V)^-1 V' */
-static double resolvent(const struct open_mode *m, size_t i, size_t k) {
-    double sum = i == k ? 1.0 : 0.0;
-    for (int a = 0; a < m->n; a++) {
-        for (int b = 0; b < m->n; b++) {
-            sum -= row_of(m, a)[i] * m->inverse[(size_t)a * (size_t)m->n + (size_t)b] *
-                   row_of(m, b)[k];
-        }
-    }
-    return sum;
+static enum dalcs_status allocate(struct open_mode *m) {
+    size_t n_choices = (size_t)m->whole.n_choices;
+    m->n_columns = (size_t)dalcs_system_n_columns(m->p->system);
+    m->n_pairs = (size_t)m->p->system->n_pairs;
+    m->n_parts = m->n_pairs + (size_t)m->p->n_references;
+    m->direction = dalcs_arena_alloc(&m->arena, n_choices * m->n_columns, sizeof(double));
+    m->part = dalcs_arena_alloc(&m->arena, n_choices * m->n_parts, sizeof(double));
+    m->sign = dalcs_arena_alloc(&m->arena, m->n_parts, sizeof(double));
+    return m->direction != NULL && m->part != NULL && m->sign != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-static void pose(struct open_mode *m) {
-    size_t n = m->n_pairs;
-    double less = 1.0 - DBL_EPSILON; /* and the problem has exactly one answer */
-    for (size_t i = 0; i < n; i++) {
-        bool is_diode = m->p->is_diode[i];
-        m->lemke.law[i] = is_diode ? DALCS_LEMKE_EITHER : DALCS_LEMKE_B_FREE;
-        m->lemke.h[i] = 0.0;
-        for (size_t k = 0; k < n; k++) {
-            double r = is_diode && m->p->is_diode[k] ? resolvent(m, i, k) : 0.0;
-            m->lemke.S[i * n + k] = less * (2.0 * r - (i == k ? 1.0 : 0.0));
-            m->lemke.h[i] -= 2.0 * r * m->sign[k];
-        }
+enum dalcs_status dalcs_open_mode_solve(struct dalcs_osnsp *p, const double *u, double *y) {
+    struct open_mode m = {.p = p};
+    bool sources_clash;
+    DALCS_TRY(dalcs_whole_factor(&m.whole, p, NULL));
+    enum dalcs_status status = allocate(&m);
+    if (status == DALCS_OK) {
+        dalcs_exact_evaluate(p, &m.whole, u, y, &sources_clash);
+        look_at_parts(&m, y, true, m.sign);
+        find_directions(&m);
+        status = move(&m, y);
     }
-}
-
-/* The signs that are 0 in the answer: V_i (V' a) + b_i = 0 for these, solved for t with the least |t| by as many
- * sweeps of Kaczmarz's projections as gain all digits. */
-static void move(struct open_mode *m, double *y) {
-    enum { SWEEPS = 200 };
-
-    for (int sweep = 0; sweep < SWEEPS; sweep++) {
-        for (size_t i = 0; i < m->n_pairs; i++) {
-            double norm = 0.0;
-            for (int k = 0; k < m->n; k++) {
-                norm += row_of(m, k)[i] * row_of(m, k)[i];
-            }
-            bool is_bound = m->p->is_diode[i] && m->lemke.is_a[i] && norm > 0.0;
-            double factor = is_bound ? m->sign[i] / norm : 0.0;
-            for (int k = 0; k < m->n && factor != 0.0; k++) {
-                double t = factor * row_of(m, k)[i];
-                subtract(y, m->direction + (size_t)k * m->n_columns, t, m->n_columns);
-                subtract(m->sign, row_of(m, k), t, m->n_pairs);
-            }
-        }
+    dalcs_whole_finish(&m.whole);
+    dalcs_arena_finish(&m.arena);
+    if (status != DALCS_OK) {
+        return status;
     }
+    dalcs_certificate_evaluate_with_states(p, u, y, &sources_clash);
+    p->least_norm = true;
+    return dalcs_certificate_holds(p, sources_clash) ? DALCS_OK : DALCS_NOT_CONVERGED;
 }

@@ -159,6 +159,12 @@ enum dalcs_status dalcs_scattering_solve(struct dalcs_osnsp *p, const double *u,
 enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u,
                                   double *y) DALCS_MUST_CHECK;
 
+/* ---- open_mode.c --------------------------------------------------------------------------- */
+
+/* In p->mode, which is singular. DALCS_OK: certified; DALCS_NOT_CONVERGED: no answer of it has the right signs. */
+enum dalcs_status dalcs_open_mode_solve(struct dalcs_osnsp *p, const double *u,
+                                        double *y) DALCS_MUST_CHECK;
+
 /* ---- exact.c ------------------------------------------------------------------------------- */
 
 /* Solves and evaluates in the mode of `whole`. */

@@ -245,6 +245,15 @@ void dalcs_whole_solve(const struct dalcs_whole *whole, const double *u, const d
     }
 }
 
+void dalcs_whole_direction(const struct dalcs_whole *whole, int k, double *y) {
+    memset(whole->residual, 0, (size_t)whole->n * sizeof(double));
+    whole->residual[whole->redundant[k]] = 1.0;
+    dalcs_lu_solve(&whole->lu, whole->residual);
+    for (int c = 0; c < dalcs_system_n_columns(whole->p->system); c++) {
+        y[c] = whole->place[c] >= 0 ? whole->residual[whole->place[c]] : 0.0;
+    }
+}
+
 size_t dalcs_whole_bytes(const struct dalcs_whole *whole) {
     size_t n_columns = (size_t)dalcs_system_n_columns(whole->p->system);
     size_t n_choices = (size_t)whole->n_choices;

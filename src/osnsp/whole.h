@@ -44,6 +44,9 @@ enum dalcs_status dalcs_whole_null_space(const struct dalcs_osnsp *p, int *place
 void dalcs_whole_solve(const struct dalcs_whole *whole, const double *u, const double *line,
                        double *y);
 
+/* What choice k leaves open: the answers of the mode that differ from one in this choice alone, into y[n_columns]. */
+void dalcs_whole_direction(const struct dalcs_whole *whole, int k, double *y);
+
 size_t dalcs_whole_bytes(const struct dalcs_whole *whole);
 
 void dalcs_whole_finish(struct dalcs_whole *whole);
