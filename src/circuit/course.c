@@ -1,8 +1,6 @@
 /* course.c - derivatives of a sum of stimuli, and going along it by a bound of the second. */
 #include "course.h"
 
-#include "formula_stimulus.h"
-
 #include <math.h>
 
 /* Just before a time means so many roundings of it earlier: none of the edges at it. */
@@ -58,20 +56,10 @@ static void add_term(const struct dalcs_stimulus_term *term, struct dalcs_course
     sizes->of[DALCS_COURSE_ORDERS + 1] += size * speed;
 }
 
-/* When a formula has its next edge takes a search, and is of no interest here. */
-static void piece_of(const struct dalcs_stimulus *s, double t, struct dalcs_stimulus_piece *piece) {
-    if (s->kind != DALCS_STIMULUS_FORMULA) {
-        dalcs_stimulus_piece_at(s, t, piece);
-        return;
-    }
-    piece->n_terms = dalcs_formula_stimulus_n_terms(s);
-    dalcs_formula_stimulus_piece(s, t, piece);
-}
-
 static void add_part(const struct dalcs_stimulus_summand *part, double t,
                      struct dalcs_stimulus_piece *piece, struct dalcs_course *c,
                      struct sizes *sizes) {
-    piece_of(part->of, t, piece);
+    dalcs_stimulus_course_at(part->of, t, piece);
     c->straight += part->factor * piece->level;
     c->rise += part->factor * piece->slope;
     sizes->of[0] += fabs(part->factor * piece->level);

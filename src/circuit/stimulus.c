@@ -473,6 +473,16 @@ void dalcs_stimulus_piece_at(const struct dalcs_stimulus *s, double t,
     }
 }
 
+void dalcs_stimulus_course_at(const struct dalcs_stimulus *s, double t,
+                              struct dalcs_stimulus_piece *piece) {
+    if (s->kind != DALCS_STIMULUS_FORMULA) {
+        dalcs_stimulus_piece_at(s, t, piece);
+        return;
+    }
+    piece->n_terms = dalcs_stimulus_n_terms(s);
+    dalcs_formula_stimulus_piece(s, t, piece);
+}
+
 void dalcs_stimulus_terms_at(const struct dalcs_stimulus *s, double t,
                              struct dalcs_stimulus_term *term) {
     if (s->kind == DALCS_STIMULUS_SIN && s->u.sine.n_cycles == 0) {

@@ -130,6 +130,10 @@ int dalcs_stimulus_n_terms(const struct dalcs_stimulus *s);
 void dalcs_stimulus_piece_at(const struct dalcs_stimulus *s, double t,
                              struct dalcs_stimulus_piece *piece);
 
+/* The same of which the end is not asked: to find that of a formula's takes a search. */
+void dalcs_stimulus_course_at(const struct dalcs_stimulus *s, double t,
+                              struct dalcs_stimulus_piece *piece);
+
 /* The terms alone of a piece that has no end, at a t in it. */
 void dalcs_stimulus_terms_at(const struct dalcs_stimulus *s, double t,
                              struct dalcs_stimulus_term *term);

@@ -28,27 +28,38 @@ static enum dalcs_status stamp_formulas(struct stamps *b, int n_devices, const i
     return DALCS_OK;
 }
 
+/* Adds a factor times the voltage of a node that sources fix: from source to source to ground, and for an E source from
+ * the nodes that control it on. */
+static enum dalcs_status add_potential(struct stamps *b, int pair, int node, double factor) {
+    const struct dalcs_layout *l = b->layout;
+    const struct dalcs_topology *t = &l->topology;
+    for (int n = t->node_of[node]; n != 0;) {
+        int source = t->potential_source[n];
+        const struct dalcs_device *d = &l->circuit->device[source];
+        bool upward = t->node_of[d->node[0]] == n;
+        double of_source = upward ? factor : -factor;
+        if (d->kind == DALCS_VCVS && d->behaviour == NULL) {
+            DALCS_TRY(add_potential(b, pair, d->node[2], of_source * d->value));
+            DALCS_TRY(add_potential(b, pair, d->node[3], -of_source * d->value));
+        } else { /* one stimulus */
+            DALCS_TRY(dalcs_triplets_add(&b->direct_control, pair, l->input[source], of_source));
+        }
+        n = t->node_of[d->node[upward ? 1 : 0]];
+    }
+    return DALCS_OK;
+}
+
 /* The controlling voltages that sources fix, once every source has its input. */
 static enum dalcs_status stamp_direct_controls(struct stamps *b, int n_devices, const int *device) {
     const struct dalcs_layout *l = b->layout;
-    const struct dalcs_topology *t = &l->topology;
     for (int i = 0; i < n_devices; i++) {
         const struct dalcs_device *d = &l->circuit->device[device[i]];
         if (d->kind != DALCS_SWITCH || !b->s->pair[l->pair[device[i]]].is_direct) {
             continue;
         }
-        for (int e = 0; e < 2; e++) {
-            double sign = dalcs_stamp_control_sign(&l->circuit->switch_model[d->model]);
-            sign = e == 0 ? sign : -sign;
-            for (int n = t->node_of[d->node[2 + e]]; n != 0;) {
-                int source = t->potential_source[n];
-                const struct dalcs_device *v = &l->circuit->device[source]; /* one stimulus */
-                bool upward = t->node_of[v->node[0]] == n;
-                DALCS_TRY(dalcs_triplets_add(&b->direct_control, l->pair[device[i]],
-                                             l->input[source], upward ? sign : -sign));
-                n = t->node_of[v->node[upward ? 1 : 0]];
-            }
-        }
+        double sign = dalcs_stamp_control_sign(&l->circuit->switch_model[d->model]);
+        DALCS_TRY(add_potential(b, l->pair[device[i]], d->node[2], sign));
+        DALCS_TRY(add_potential(b, l->pair[device[i]], d->node[3], -sign));
     }
     return DALCS_OK;
 }

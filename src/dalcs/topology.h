@@ -17,9 +17,10 @@ struct dalcs_topology {
     bool *has_current;     /* [n_devices] shorts and capacitors whose current is an unknown */
     bool *is_idle; /* [n_devices] V sources and shorts that close a loop of such elements whose
                               voltages agree: they carry no current by convention */
-    int *potential_source; /* [n_nodes] V device between a node and one nearer to ground, when V
-                              sources alone fix the node's voltage; else -1, as all are without
-                              switches */
+    int *
+        potential_source; /* [n_nodes] V device between a node and one nearer to ground, or an E that such
+                              nodes control, when sources alone fix the node's voltage; else -1, as all are
+                              without switches */
     int *forest_root; /* [n_nodes] root of the capacitor tree that a node is in; itself if none */
 };
 

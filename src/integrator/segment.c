@@ -45,8 +45,8 @@ static bool is_whole(const struct dalcs_radau_part *part, double theta) {
 }
 
 /* What began after pairs changed sides. */
-static void learn(struct dalcs_radau_part *part, const struct dalcs_search *search, double theta,
-                  double error) {
+static enum dalcs_status learn(struct dalcs_radau_part *part, const struct dalcs_search *search,
+                               double theta, double error) {
     double ratio = error * fmax(1.0, part->inner_tolerance / fine);
     bool longer = !search->fixed && is_whole(part, theta) && part->guards.n_crossed == 0 &&
                   dalcs_length_rungs_promised(part, ratio) > 1.0 &&
@@ -59,20 +59,21 @@ static void learn(struct dalcs_radau_part *part, const struct dalcs_search *sear
         int by_analogy = search->first_level - part->length.level_before;
         dalcs_transition_began(part, search->first_level, (int)promised);
         spare = (int)dalcs_larger(spare, dalcs_smaller(promised, by_analogy));
-        dalcs_transition_learn(part, part->length.level - spare, by_analogy - spare);
+        DALCS_TRY(dalcs_transition_learn(part, part->length.level - spare, by_analogy - spare));
     } else if (!search->front) {
         dalcs_transition_pass(part, spare);
     } else if (spare > 0) {
-        dalcs_transition_learn(part, part->length.level - spare, 0);
+        DALCS_TRY(dalcs_transition_learn(part, part->length.level - spare, 0));
     }
     if (!search->fixed) {
         dalcs_recurrence_note(part);
     }
+    return DALCS_OK;
 }
 
-static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                   const struct dalcs_search *search, double theta,
-                   const struct dalcs_step_quality *quality, double residual) {
+static enum dalcs_status accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                const struct dalcs_search *search, double theta,
+                                const struct dalcs_step_quality *quality, double residual) {
     double t_end = part->segment.t + theta * part->segment.h;
     part->segment.why = part->guards.n_crossed > 0 ? DALCS_END_AT_EVENT : DALCS_END_OF_STEP;
     if (part->guards.n_crossed == 0 && t_end >= search->limit - r->resolution) {
@@ -95,13 +96,14 @@ static void accept(struct dalcs_radau *r, struct dalcs_radau_part *part,
         r->wrong_time = part->segment.t;
     }
     if (part->guards.fresh && part->guards.flipped && !search->turned) {
-        learn(part, search, theta, quality->ratio);
+        DALCS_TRY(learn(part, search, theta, quality->ratio));
     }
     dalcs_segment_accept(r, part, theta, residual);
     part->length.held_level = part->length.level;
     if (!search->fixed && is_whole(part, theta)) {
         dalcs_length_lengthen(part, quality->ratio);
     }
+    return DALCS_OK;
 }
 
 /* Signals so many times as large as any before: it may be that a coil's current has nowhere to go in this
@@ -289,7 +291,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (holds) {
         part->segment.open =
             part->guards.fresh && (search->untied || dalcs_stage_n_clashes(entry) > 0);
-        accept(r, part, search, next, &quality, dalcs_stage_residual(entry));
+        DALCS_TRY(accept(r, part, search, next, &quality, dalcs_stage_residual(entry)));
         *done = true;
     }
     return DALCS_OK;

@@ -46,7 +46,7 @@ static double first_span(const struct dalcs_radau_part *part, double span) {
     if (known > 0.0) {
         return known;
     }
-    for (int k = 0; k < DALCS_TRANSITIONS; k++) {
+    for (int k = 0; k < part->memory.n_transitions; k++) {
         const struct dalcs_recurring *other = &part->memory.transition[k].span;
         if (other->brief != NULL &&
             dalcs_length_is_same(other->length, part->segment.t, part->segment.t + span)) {

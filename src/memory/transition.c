@@ -1,10 +1,18 @@
-/* transition.c - a small table, the place of an entry being the hash of the modes before. */
+/* transition.c - a table, the place of an entry being the hash of the modes before.
+ *
+ * It begins small, for most circuits have a few modes, and doubles where a place and its neighbours are all taken, as
+ * long as it is no more than the maps that its modes lead to. A bridge of six switches with their diodes and a
+ * rectifier behind it has thousands of transitions, which come back in every period of the modulation.
+ */
 #include "transition.h"
 
 #include <limits.h>
 
 /* An entry has three modes: the one that held, the one after pairs changed sides, what followed. */
-enum { SLOTS = DALCS_TRANSITIONS, MODES = 3 };
+enum { MODES = 3 };
+
+/* At first, and places in which an entry may be. */
+enum { SLOTS = 64, NEIGHBOURS = 8 };
 
 /* Transitions that come back so often are worth a try of a longer step. */
 enum { OFTEN = 16 };
@@ -12,24 +20,39 @@ enum { OFTEN = 16 };
 /* A length that held is begun with so many times at most before a longer one is tried. */
 enum { MOST_PATIENCE = 64 };
 
+static size_t bytes_of(const struct dalcs_radau_part *part, size_t n_slots) {
+    size_t modes = MODES * (size_t)part->component->osnsp.n_words * sizeof(uint64_t);
+    return n_slots * (sizeof(*part->memory.transition) + modes);
+}
+
+static enum dalcs_status make_table(struct dalcs_radau_part *part, int n_slots) {
+    size_t n_words = MODES * (size_t)n_slots * (size_t)part->component->osnsp.n_words;
+    struct dalcs_transition *table =
+        dalcs_arena_alloc(&part->arena, (size_t)n_slots, sizeof(*part->memory.transition));
+    uint64_t *modes = dalcs_arena_alloc(&part->arena, n_words, sizeof(*modes));
+    if (table == NULL || modes == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    part->memory.transition = table;
+    part->memory.transition_modes = modes;
+    part->memory.n_transitions = n_slots;
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) {
     size_t words = (size_t)part->component->osnsp.n_words;
-    part->memory.transition =
-        dalcs_arena_alloc(&part->arena, SLOTS, sizeof(*part->memory.transition));
-    part->memory.transition_modes =
-        dalcs_arena_alloc(&part->arena, SLOTS * MODES * words, sizeof(uint64_t));
+    DALCS_TRY(make_table(part, SLOTS));
     part->memory.modes_before = dalcs_arena_alloc(&part->arena, 2 * words, sizeof(uint64_t));
     part->work.mode_tied = dalcs_arena_alloc(&part->arena, words, sizeof(uint64_t));
     part->work.mode_turned = dalcs_arena_alloc(&part->arena, words, sizeof(uint64_t));
     part->memory.beginning[0] = part->memory.beginning[1] = (struct dalcs_beginning){INT_MIN, 0, 1};
-    bool complete = part->memory.transition != NULL && part->memory.transition_modes != NULL &&
-                    part->memory.modes_before != NULL && part->work.mode_tied != NULL &&
+    bool complete = part->memory.modes_before != NULL && part->work.mode_tied != NULL &&
                     part->work.mode_turned != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 void dalcs_transition_finish(struct dalcs_radau_part *part) {
-    for (int k = 0; k < SLOTS && part->memory.transition != NULL; k++) {
+    for (int k = 0; k < part->memory.n_transitions; k++) {
         if (part->memory.transition[k].is_known) {
             dalcs_transition_count(part, &part->memory.transition[k].span, 0.0);
             dalcs_transition_count(part, &part->memory.transition[k].step, 0.0);
@@ -49,14 +72,28 @@ void dalcs_transition_count(struct dalcs_radau_part *part, struct dalcs_recurrin
     recurring->times = 0;
 }
 
-/* Of part->modes_before. */
-static size_t find_slot(const struct dalcs_radau_part *part) {
+static uint64_t *modes_in(const struct dalcs_radau_part *part, size_t slot) {
+    return part->memory.transition_modes + slot * MODES * (size_t)part->component->osnsp.n_words;
+}
+
+/* Of the mode that held and the one after pairs changed sides: where it is, or else an empty place for it; where there is
+ * none, its first. */
+static size_t find_slot(const struct dalcs_radau_part *part, const uint64_t *before) {
+    int n_words = 2 * part->component->osnsp.n_words;
+    size_t n_slots = (size_t)part->memory.n_transitions;
     uint64_t hash = 14695981039346656037u;
-    for (int k = 0; k < 2 * part->component->osnsp.n_words; k++) {
-        hash = (hash ^ part->memory.modes_before[k]) * 1099511628211u;
+    for (int k = 0; k < n_words; k++) {
+        hash = (hash ^ before[k]) * 1099511628211u;
         hash ^= hash >> 29;
     }
-    return (size_t)(hash % SLOTS);
+    for (size_t k = 0; k < NEIGHBOURS; k++) {
+        size_t slot = (size_t)(hash + k) % n_slots;
+        if (!part->memory.transition[slot].is_known ||
+            dalcs_mode_is(modes_in(part, slot), before, n_words)) {
+            return slot;
+        }
+    }
+    return (size_t)hash % n_slots;
 }
 
 /* Modes are a word or two, which calls would cost more than. */
@@ -80,9 +117,9 @@ bool dalcs_transition_guess(struct dalcs_radau_part *part) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     size_t words = (size_t)p->n_words;
     copy_mode(part->memory.modes_before + words, p->mode, words);
-    size_t slot = find_slot(part);
+    size_t slot = find_slot(part, part->memory.modes_before);
     part->memory.present_transition = (int)slot;
-    const uint64_t *known = part->memory.transition_modes + slot * MODES * words;
+    const uint64_t *known = modes_in(part, slot);
     part->length.level_before = part->length.level;
     part->length.tries_longer = false;
     if (!part->memory.transition[slot].is_known ||
@@ -105,7 +142,7 @@ int dalcs_transition_longest_level(const struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     const uint64_t *followed = part->memory.transition_modes + 2 * p->n_words;
     int level = part->length.level;
-    for (int k = 0; k < SLOTS; k++, followed += MODES * p->n_words) {
+    for (int k = 0; k < part->memory.n_transitions; k++, followed += MODES * p->n_words) {
         const struct dalcs_transition *t = &part->memory.transition[k];
         if (t->is_known && t->level < level && dalcs_mode_is(followed, p->mode, p->n_words)) {
             level = t->level;
@@ -148,11 +185,40 @@ void dalcs_transition_began(struct dalcs_radau_part *part, int tried, int promis
     }
 }
 
-void dalcs_transition_learn(struct dalcs_radau_part *part, int level, int untried) {
+/* Has the place of what is to be learned another transition? */
+static bool is_taken(const struct dalcs_radau_part *part) {
+    size_t slot = (size_t)part->memory.present_transition;
+    return part->memory.transition[slot].is_known &&
+           !dalcs_mode_is(modes_in(part, slot), part->memory.modes_before,
+                          2 * part->component->osnsp.n_words);
+}
+
+/* All find places in a table twice as large, for those of any two neighbourhoods here are no fewer there. */
+static enum dalcs_status grow(struct dalcs_radau_part *part) {
+    size_t words = MODES * (size_t)part->component->osnsp.n_words;
+    const struct dalcs_transition *table = part->memory.transition;
+    const uint64_t *modes = part->memory.transition_modes;
+    int n = part->memory.n_transitions;
+    DALCS_TRY(make_table(part, 2 * n));
+    for (int k = 0; k < n; k++, modes += words) {
+        if (table[k].is_known) {
+            size_t slot = find_slot(part, modes);
+            part->memory.transition[slot] = table[k];
+            copy_mode(modes_in(part, slot), modes, words);
+        }
+    }
+    part->memory.present_transition = (int)find_slot(part, part->memory.modes_before);
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_transition_learn(struct dalcs_radau_part *part, int level, int untried) {
     const struct dalcs_osnsp *p = &part->component->osnsp;
     size_t words = (size_t)p->n_words;
-    uint64_t *modes =
-        part->memory.transition_modes + (size_t)part->memory.present_transition * MODES * words;
+    while (is_taken(part) &&
+           bytes_of(part, 2 * (size_t)part->memory.n_transitions) <= part->stages.bytes) {
+        DALCS_TRY(grow(part));
+    }
+    uint64_t *modes = modes_in(part, (size_t)part->memory.present_transition);
     struct dalcs_transition *known = dalcs_transition_known(part);
     bool is_same = known->is_known &&
                    dalcs_mode_is(modes, part->memory.modes_before, 2 * p->n_words) &&
@@ -167,4 +233,5 @@ void dalcs_transition_learn(struct dalcs_radau_part *part, int level, int untrie
         dalcs_transition_count(part, &known->span, 0.0);
         dalcs_transition_count(part, &known->step, 0.0);
     }
+    return DALCS_OK;
 }

@@ -27,9 +27,6 @@ struct dalcs_transition {
     int step_level;              /* of the ladder, on which `step` was found */
 };
 
-/* part->memory.transition[DALCS_TRANSITIONS]. */
-enum { DALCS_TRANSITIONS = 64 };
-
 enum dalcs_status dalcs_transition_setup(struct dalcs_radau_part *part) DALCS_MUST_CHECK;
 
 void dalcs_transition_finish(struct dalcs_radau_part *part);
@@ -63,6 +60,7 @@ void dalcs_transition_began(struct dalcs_radau_part *part, int tried, int promis
 
 /* The present mode is what followed, and `level` the step to begin with. It may be longer by so many
  * `untried` rungs, which is tried if the transition comes back often. */
-void dalcs_transition_learn(struct dalcs_radau_part *part, int level, int untried);
+enum dalcs_status dalcs_transition_learn(struct dalcs_radau_part *part, int level,
+                                         int untried) DALCS_MUST_CHECK;
 
 #endif

@@ -17,28 +17,41 @@ void dalcs_exact_evaluate(struct dalcs_osnsp *p, const struct dalcs_whole *whole
     }
 }
 
-/* In p->mode. What a singular mode leaves open is found once, if it is certified. */
+/* The factors of p->mode with its choices; a singular mode keeps them, for its next problem. */
+static enum dalcs_status factor_whole(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
+                                      struct dalcs_whole **whole) {
+    *whole = malloc(sizeof(**whole));
+    enum dalcs_status status = *whole == NULL ? DALCS_E_NOMEM : dalcs_whole_factor(*whole, p, NULL);
+    if (status != DALCS_OK) {
+        entry->is_too_open = status == DALCS_SINGULAR;
+        free(*whole);
+        return status;
+    }
+    if (entry->singular) {
+        entry->whole = *whole;
+        dalcs_modes_grew(p, entry, dalcs_whole_bytes(*whole));
+    }
+    return DALCS_OK;
+}
+
+/* In p->mode. From the first certified answer on a singular mode is one like others. */
 static enum dalcs_status try_whole(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
                                    const double *u, double *y, bool *sources_clash) {
     if (entry->is_too_open) {
         return DALCS_SINGULAR;
     }
-    struct dalcs_whole *whole = malloc(sizeof(*whole));
-    enum dalcs_status status = whole == NULL ? DALCS_E_NOMEM : dalcs_whole_factor(whole, p, NULL);
-    if (status != DALCS_OK) {
-        entry->is_too_open = status == DALCS_SINGULAR;
-        free(whole);
-        return status;
+    struct dalcs_whole *whole = entry->whole;
+    if (whole == NULL) {
+        DALCS_TRY(factor_whole(p, entry, &whole));
     }
     dalcs_exact_evaluate(p, whole, u, y, sources_clash);
     p->least_norm = whole->n_choices > 0;
-    if (entry->singular && dalcs_certificate_holds(p, *sources_clash)) {
-        entry->whole = whole;
-        dalcs_modes_grew(p, entry, dalcs_whole_bytes(whole));
-        return DALCS_OK;
+    if (entry->singular) {
+        entry->answers = dalcs_certificate_holds(p, *sources_clash);
+    } else {
+        dalcs_whole_finish(whole);
+        free(whole);
     }
-    dalcs_whole_finish(whole);
-    free(whole);
     return DALCS_OK;
 }
 
@@ -49,7 +62,7 @@ static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double
     enum dalcs_status status = dalcs_osnsp_try_mode(p, u, y, sources_clash);
     bool is_settled = status == DALCS_OK && (dalcs_certificate_holds(p, *sources_clash) ||
                                              (p->n_violating > 0 && !entry->singular));
-    if (status < DALCS_OK || is_settled || entry->whole != NULL) {
+    if (status < DALCS_OK || is_settled || entry->answers) {
         return status;
     }
     return try_whole(p, entry, u, y, sources_clash);

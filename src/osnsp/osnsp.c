@@ -145,6 +145,7 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
     p->mode = dalcs_arena_alloc(&p->arena, words, sizeof(*p->mode));
     p->key = dalcs_arena_alloc(&p->arena, words + 1, sizeof(*p->key));
     p->regularised_mode = dalcs_arena_alloc(&p->arena, words, sizeof(*p->regularised_mode));
+    p->met_mode = dalcs_arena_alloc(&p->arena, words, sizeof(*p->met_mode));
     p->w = dalcs_arena_alloc(&p->arena, n_pairs, sizeof(double));
     p->form = dalcs_arena_alloc(&p->arena, 33, sizeof(*p->form));
     p->form_id = dalcs_arena_alloc(&p->arena, 33, sizeof(*p->form_id));
@@ -169,12 +170,12 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
     p->witness.ray = dalcs_arena_alloc(&p->arena, n_columns, sizeof(double));
     enum dalcs_status status = DALCS_E_NOMEM;
     if (p->witness.ray != NULL && p->mode != NULL && p->key != NULL &&
-        p->regularised_mode != NULL && p->w != NULL && p->form != NULL && p->form_id != NULL &&
-        p->difference != NULL && p->run != NULL && p->w_ends != NULL && p->is_diode != NULL &&
-        p->violating != NULL && p->tied != NULL && p->tied_mode != NULL && p->tied_answer != NULL &&
-        p->mapped != NULL && p->right != NULL && p->scaled != NULL && p->rhs != NULL &&
-        p->residual != NULL && p->centre != NULL && p->centre_w != NULL && p->step_before != NULL &&
-        p->step_now != NULL) {
+        p->regularised_mode != NULL && p->met_mode != NULL && p->w != NULL && p->form != NULL &&
+        p->form_id != NULL && p->difference != NULL && p->run != NULL && p->w_ends != NULL &&
+        p->is_diode != NULL && p->violating != NULL && p->tied != NULL && p->tied_mode != NULL &&
+        p->tied_answer != NULL && p->mapped != NULL && p->right != NULL && p->scaled != NULL &&
+        p->rhs != NULL && p->residual != NULL && p->centre != NULL && p->centre_w != NULL &&
+        p->step_before != NULL && p->step_now != NULL) {
         list_runs(p);
         list_w_ends(p);
         status = list_pair_rows(p);
@@ -268,9 +269,9 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     struct dalcs_mode_entry *e;
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &e));
     double tolerance = p->options.certificate_tolerance;
-    p->least_norm = e->singular && (e->whole == NULL || e->whole->n_choices > 0);
+    p->least_norm = e->singular && (!e->answers || e->whole->n_choices > 0);
     bool by_factors = p->refines && !e->singular;
-    bool may_recur = e->singular ? e->whole != NULL : !by_factors;
+    bool may_recur = e->singular ? e->answers : !by_factors;
     if (e->map == NULL && may_recur && e->n_uses++ > 2 && dalcs_step_map_pays(p)) {
         DALCS_TRY(dalcs_step_map_build(p, e));
     }
@@ -282,7 +283,7 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
         }
     }
     if (e->singular) {
-        if (e->whole == NULL) {
+        if (!e->answers) {
             return DALCS_SINGULAR;
         }
         dalcs_exact_evaluate(p, e->whole, u, y, sources_clash);
@@ -308,6 +309,7 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
 enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
     int fewest = p->system->n_pairs + 1;
     int patience = PATIENCE;
+    int n_single = 0;
     for (int round = 0; round <= limit; round++) {
         bool sources_clash;
         DALCS_TRY(dalcs_osnsp_try_mode(p, u, y, &sources_clash));
@@ -323,8 +325,12 @@ enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, doub
         if (p->n_violating < fewest) {
             fewest = p->n_violating;
             patience = PATIENCE;
+            n_single = 0;
         } else {
             patience--;
+        }
+        if (patience <= 0 && dalcs_osnsp_goes_round(p, ++n_single)) {
+            break;
         }
         dalcs_osnsp_flip_violating(p, patience > 0);
     }

@@ -135,6 +135,7 @@ struct dalcs_osnsp {
     double *step_before, *step_now; /* [n + 2 n_pairs] displacements of the proximal iteration */
     uint64_t *key;                  /* [n_words + 1] */
     uint64_t *regularised_mode;     /* [n_words] where the proximal method stands */
+    uint64_t *met_mode;             /* [n_words] one that single pivots passed */
     struct dalcs_arena arena;       /* what has the same size during the run */
 };
 

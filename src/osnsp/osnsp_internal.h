@@ -5,6 +5,8 @@
 #include "osnsp.h"
 #include "whole.h"
 
+#include <string.h>
+
 #define HASH_NONFATAL_OOM 1
 #include <uthash.h>
 
@@ -24,9 +26,10 @@ struct dalcs_mode_entry {
     struct dalcs_lu lu;
     int *row_of, *column_of; /* [lu.n] plain factors: row of R, column of y, in pivot order */
     double *scale_of;        /* [lu.n]; behind it the two */
-    struct dalcs_whole
-        *whole; /* of a singular mode that was answered: its factors with choices; else NULL */
-    bool is_too_open;    /* or it leaves more open than is chosen among */
+    struct dalcs_whole *
+        whole; /* of a singular mode that was asked for its factors with choices: these; else NULL */
+    bool answers;        /* they gave a certified answer once */
+    bool is_too_open;    /* or there are none, as it leaves more open than is chosen among */
     double *map;         /* see step_map.h; NULL until the mode has recurred */
     uint64_t tie;        /* which ties of this mode were looked at last; 0: none yet */
     bool tie_has_choice; /* they leave a choice */
@@ -244,6 +247,18 @@ static inline void dalcs_osnsp_flip_violating(struct dalcs_osnsp *p, bool all) {
     for (int k = all ? 0 : p->n_violating - 1; k < p->n_violating; k++) {
         dalcs_osnsp_flip(p, p->violating[k]);
     }
+}
+
+/* Is p->mode one that single pivots have passed, of which `n_single` is the next? What they do depends on the mode
+ * alone, so that they would pass it for ever. Compared with the mode of the last power of 2 (R. P. Brent, BIT 20, 1980),
+ * which meets a round of any length. */
+static inline bool dalcs_osnsp_goes_round(struct dalcs_osnsp *p, int n_single) {
+    size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
+    bool is_met = n_single > 1 && memcmp(p->mode, p->met_mode, bytes) == 0;
+    if ((n_single & (n_single - 1)) == 0) {
+        memcpy(p->met_mode, p->mode, bytes);
+    }
+    return is_met;
 }
 
 /* From p->mode by block principal pivoting over regular modes, at most `limit` changes. DALCS_SINGULAR

@@ -183,6 +183,7 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, int rung, bool singly, boo
     int fewest = p->system->n_pairs + 1;
     int patience = PATIENCE;
     int limit = p->options.max_pivots + 2 * p->system->n_pairs;
+    int n_single = 0;
     *stalled = false;
     for (int round = 0; round <= limit; round++) {
         struct dalcs_mode_entry *e;
@@ -200,12 +201,16 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, int rung, bool singly, boo
         if (p->n_violating < fewest) {
             fewest = p->n_violating;
             patience = PATIENCE;
+            n_single = 0;
         } else {
             patience--;
         }
         if (patience <= 0 && !singly) {
             *stalled = true;
             return DALCS_OK;
+        }
+        if (patience <= 0 && dalcs_osnsp_goes_round(p, ++n_single)) {
+            break;
         }
         dalcs_osnsp_flip_violating(p, patience > 0);
     }

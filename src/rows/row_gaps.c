@@ -107,7 +107,7 @@ static bool set_up_stimuli(struct dalcs_row_gaps *gaps, const struct dalcs_circu
     }
     for (int i = 0; i < circuit->n_stimuli; i++) {
         if (dalcs_stimulus_n_terms(&circuit->stimulus[i]) > 0) {
-            gaps->curved[gaps->n_curved++] = i;
+            gaps->curved[gaps->n_curved++].stimulus = i;
         }
     }
     return true;
@@ -189,23 +189,35 @@ DALCS_TWICE(void, find_bends,
     }
 }
 
-/* Of the sources, from one time to another between edges: of sums of exponentials and sinusoids no larger than those
- * of their terms together. */
+/* Of a stimulus, from one time to another between edges: of a sum of exponentials and sinusoids no larger than those of
+ * its terms together. Without damping it is the same up to the next edge, which a formula is asked for but once. */
+static void bend_stimulus(struct dalcs_row_gaps *gaps, struct dalcs_row_gaps_curve *curve,
+                          double from, double to) {
+    const struct dalcs_stimulus *s = &gaps->rows->radau->base->circuit->stimulus[curve->stimulus];
+    struct dalcs_bend *bend = &gaps->stimulus[curve->stimulus];
+    struct dalcs_stimulus_piece piece = {.term = gaps->term};
+    bool stays = true;
+    dalcs_stimulus_course_at(s, from, &piece);
+    *bend = (struct dalcs_bend){0.0, 0.0, 0.0};
+    for (int k = 0; k < piece.n_terms; k++) {
+        const struct dalcs_stimulus_term *term = &piece.term[k];
+        double rate = term->decay * term->decay + term->omega * term->omega;
+        double size = hypot(term->cosine, term->sine);
+        size *= term->decay < 0.0 ? exp(-term->decay * (to - from)) : 1.0;
+        bend->size += size;
+        bend->second += rate * size;
+        bend->fourth += rate * rate * size;
+        stays = stays && term->decay == 0.0;
+    }
+    curve->from = from;
+    curve->to = stays ? dalcs_stimulus_next_edge(s, from) : from;
+}
+
 static void bend_stimuli(struct dalcs_row_gaps *gaps, double from, double to) {
-    const struct dalcs_circuit *circuit = gaps->rows->radau->base->circuit;
     for (int i = 0; i < gaps->n_curved; i++) {
-        struct dalcs_bend *bend = &gaps->stimulus[gaps->curved[i]];
-        struct dalcs_stimulus_piece piece = {.term = gaps->term};
-        dalcs_stimulus_piece_at(&circuit->stimulus[gaps->curved[i]], from, &piece);
-        *bend = (struct dalcs_bend){0.0, 0.0, 0.0};
-        for (int k = 0; k < piece.n_terms; k++) {
-            const struct dalcs_stimulus_term *term = &piece.term[k];
-            double rate = term->decay * term->decay + term->omega * term->omega;
-            double size = hypot(term->cosine, term->sine);
-            size *= term->decay < 0.0 ? exp(-term->decay * (to - from)) : 1.0;
-            bend->size += size;
-            bend->second += rate * size;
-            bend->fourth += rate * rate * size;
+        struct dalcs_row_gaps_curve *curve = &gaps->curved[i];
+        if (!(from >= curve->from && from < curve->to)) {
+            bend_stimulus(gaps, curve, from, to);
         }
     }
 }

@@ -22,7 +22,12 @@ struct dalcs_row_gaps {
     struct dalcs_bend *of_steps,
         *of_sources; /* [rows->n_outputs] work: polynomials' and sources' share */
     int n_curved;
-    int *curved;                 /* [n_curved] stimuli that are not straight between their edges */
+
+    struct dalcs_row_gaps_curve { /* a stimulus that is not straight between its edges */
+        int stimulus;
+        double from, to; /* s, where its bend stays what it was found to be at `from` */
+    } * curved;
+
     struct dalcs_bend *stimulus; /* [n_stimuli] in the stretch at hand; 0 where it is straight */
     struct dalcs_stimulus_term *term; /* work */
     struct dalcs_bend algebraic;      /* of what is read of parts without memory, over its size */

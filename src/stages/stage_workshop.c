@@ -536,9 +536,19 @@ static long double solve_kept(struct dalcs_stage_workshop *b) {
     return dalcs_extended_solve(b->n_kept, b->n_rhs, b->of_real, NULL);
 }
 
+/* The real system as one of the four that were solved last has it. */
+static void take_well(const struct dalcs_stage_workshop *b, int lane) {
+    const int width = b->n_kept + b->n_rhs;
+    for (int i = 0; i < b->n_kept; i++) {
+        for (int j = b->n_kept; j < width; j++) {
+            const struct dalcs_extended_four *x = &b->of_pairs[i * width + j];
+            b->of_real[i * width + j] = (long double)x->re[lane] + x->re_low[lane];
+        }
+    }
+}
+
 /* The real system once more, with the digits that the complex ones have. */
 static bool solve_kept_well(struct dalcs_stage_workshop *b) {
-    const int width = b->n_kept + b->n_rhs;
     long double complex sigma[DALCS_QUAD];
     for (int p = 0; p < DALCS_QUAD; p++) {
         sigma[p] = b->stages->method->exact_lambda / b->entry->h;
@@ -547,16 +557,12 @@ static bool solve_kept_well(struct dalcs_stage_workshop *b) {
     if (!(dalcs_extended_solve_four(b->n_kept, b->n_rhs, b->of_pairs, b->filled) > 0.0)) {
         return false;
     }
-    for (int i = 0; i < b->n_kept; i++) {
-        for (int j = b->n_kept; j < width; j++) {
-            const struct dalcs_extended_four *x = &b->of_pairs[i * width + j];
-            b->of_real[i * width + j] = (long double)x->re[0] + x->re_low[0];
-        }
-    }
+    take_well(b, 0);
     return true;
 }
 
-static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
+/* is_lossy: it takes more digits. */
+static enum dalcs_status solve_real(struct dalcs_stage_workshop *b, bool *is_lossy) {
     if (b->is_known) {
         rescale_followers(b);
     } else {
@@ -574,24 +580,32 @@ static enum dalcs_status solve_real(struct dalcs_stage_workshop *b) {
         }
     }
     b->entry->frees_states = b->n_kept == b->n_x && b->nullity == 0;
-    if (pivot < lossy_pivot && b->stages->method->n_pairs > 0 && !solve_kept_well(b)) {
-        return DALCS_SINGULAR;
-    }
-    take_real(b);
+    *is_lossy = pivot < lossy_pivot && b->stages->method->n_pairs > 0;
     return pivot > 0.0L ? DALCS_OK : DALCS_SINGULAR;
 }
 
-static enum dalcs_status solve_pairs(struct dalcs_stage_workshop *b) {
+/* is_lossy: the real system is solved in the place of a pair, where there are fewer of them. */
+static enum dalcs_status solve_pairs(struct dalcs_stage_workshop *b, bool is_lossy) {
     const struct dalcs_collocation *m = b->stages->method;
     if (m->n_pairs == 0) {
         return DALCS_OK;
+    }
+    const bool has_place = is_lossy && m->n_pairs < DALCS_QUAD;
+    if (is_lossy && !has_place && !solve_kept_well(b)) {
+        return DALCS_SINGULAR;
     }
     long double complex sigma[DALCS_QUAD]; /* where there are fewer, the first stands in */
     for (int p = 0; p < DALCS_QUAD; p++) {
         sigma[p] = m->exact_mu[p < m->n_pairs ? p : 0] / b->entry->h;
     }
+    if (has_place) {
+        sigma[m->n_pairs] = m->exact_lambda / b->entry->h;
+    }
     fill_four(b, sigma);
     double pivot = dalcs_extended_solve_four(b->n_kept, b->n_rhs, b->of_pairs, b->filled);
+    if (has_place) {
+        take_well(b, m->n_pairs);
+    }
     take_pairs(b);
     return pivot > 0.0 ? DALCS_OK : DALCS_SINGULAR;
 }
@@ -618,8 +632,10 @@ enum dalcs_status dalcs_stage_workshop_solve(struct dalcs_stage_workshop *b,
     recall(b);
     balance(b);
     if (b->n > 0) {
-        DALCS_TRY(solve_real(b));
-        DALCS_TRY(solve_pairs(b));
+        bool is_lossy;
+        DALCS_TRY(solve_real(b, &is_lossy));
+        DALCS_TRY(solve_pairs(b, is_lossy));
+        take_real(b);
     }
     b->is_known = b->n_followers > 0;
     return DALCS_OK;

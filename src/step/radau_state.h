@@ -111,8 +111,9 @@ struct dalcs_part_laws {
 
 /* What is remembered of the past. It proposes; a step or a bound of its own accepts. */
 struct dalcs_part_memory {
-    struct dalcs_transition *transition; /* [DALCS_TRANSITIONS], see transition.h */
-    int present_transition;              /* the slot of the latest guess */
+    struct dalcs_transition *transition; /* [n_transitions], see transition.h */
+    int n_transitions;
+    int present_transition; /* the slot of the latest guess */
     uint64_t *transition_modes;
 
     struct dalcs_beginning {

@@ -5,8 +5,8 @@ usage: direct_controls.py PROGRAM
 
 Each control is a sum of sources, in series or between the switch's two nodes. The times at which it crosses the
 thresholds are found here by sampling the formulas between their edges and halving the intervals. Each netlist runs with
-its switches alone; in a part of many unknowns; and with the control taken through an E source, a formula and a
-subcircuit, where the program does not know the times beforehand.
+its switches alone; in a part of many unknowns; through E sources; and with the control taken through a formula, a
+subcircuit, or an E source that reads itself, where the program does not know the times beforehand.
 """
 
 import itertools
@@ -204,11 +204,23 @@ def two_sided(terms):
 CABLE_CARDS = ["rc0 p c0 1k"] + [line for k in range(CABLE) for line in (
     f"rc{k + 1} c{k} c{k + 1} 1k", f"cc{k} c{k} 0 1n")]
 
+
+def doubled(n):
+    """E sources from g to f, each a mean of two that read the one before: the number of terms doubles n times."""
+    return [line for k in range(n) for line in (
+        f"em{k} m{k} 0 0 d{k} 1", f"ed{k} d{k + 1} 0 d{k} m{k} 0.5")] + [f"ef f 0 d{n} 0 1", "e0 d0 0 g 0 1"]
+
+
 WAYS = {  # name: (cards, control nodes, how well times are known)
     "stacked": (lambda c: sources(c.terms), "g 0", DIRECT),
     "two-sided": (lambda c: two_sided(c.terms), "gh gk", DIRECT),
     "stacked, cable": (lambda c: sources(c.terms) + CABLE_CARDS, "g 0", DIRECT),
-    "E": (lambda c: two_sided(c.terms) + ["e1 f 0 gh gk 1"], "f 0", LOCATED),
+    "E": (lambda c: two_sided(c.terms) + ["e1 f 0 gh gk 1"], "f 0", DIRECT),
+    "E by E": (lambda c: two_sided(c.terms) + ["e3 f 0 m x 0.5", "e1 m 0 gh 0 2", "e2 0 x gk 0 -2"], "f 0", DIRECT),
+    "E on V": (lambda c: sources(c.terms) + ["v9 n9 0 3", "e1 f n9 g n9 1"], "f 0", DIRECT),
+    "E by itself": (lambda c: sources(c.terms) + ["e1 f 0 g f 1", "e2 h f f 0 1"], "h 0", LOCATED),
+    "E, 8-fold": (lambda c: sources(c.terms) + doubled(3), "f 0", DIRECT),
+    "E, 512-fold": (lambda c: sources(c.terms) + doubled(9), "f 0", LOCATED),
     "B": (lambda c: two_sided(c.terms) + ["b1 f 0 V=v(gh)-v(gk)"], "f 0", LOCATED),
     "B, cable": (lambda c: two_sided(c.terms) + CABLE_CARDS + ["b1 f 0 V=v(gh)-v(gk)"], "f 0", IN_LARGE),
     "R": (lambda c: sources(c.terms) + ["rg g f 1k", "rf f 0 1meg"], "f 0", LOCATED),

@@ -381,7 +381,7 @@ END_TEST
 
 START_TEST(test_watched) {
     start("watched\nV1 a 0 SIN(0 1 0.1)\nR1 a b 1\nC1 b 0 1\nS1 b 0 b 0 sm\nS2 b 0 e 0 sm\n"
-          "E1 e 0 a 0 1\nS3 b 0 g 0 sm\nS4 b 0 a 0 sm\nVg g 0 PULSE(0 1 0 0 0 1 2)\n.model sm "
+          "E1 e 0 b 0 2\nS3 b 0 g 0 sm\nS4 b 0 a 0 sm\nVg g 0 PULSE(0 1 0 0 0 1 2)\n.model sm "
           "SW(Vt=0.5 Roff=10 Ron=1)\n"
           ".tran 1 1\n",
           3);

@@ -28,7 +28,7 @@ static bool guess(uint64_t first, uint64_t second) {
 static void learn(uint64_t first, uint64_t second, int level) {
     mode[0] = first;
     mode[1] = second;
-    dalcs_transition_learn(&part, level, 0);
+    ck_assert_int_eq(dalcs_transition_learn(&part, level, 0), DALCS_OK);
 }
 
 START_TEST(test_learns) {
@@ -107,6 +107,33 @@ START_TEST(test_many) {
 
 END_TEST
 
+/* As many as there are, while the table is no more than the maps; without any it stays as it began. */
+START_TEST(test_grows) {
+    enum { MANY = 1000, AT_FIRST = 64 };
+
+    start();
+    for (int round = 0; round < 2; round++) {
+        int n_known = 0;
+        part.stages.bytes = round == 0 ? 0 : (size_t)1 << 30;
+        for (uint64_t k = 0; k < MANY; k++) {
+            (void)guess(k, k % 7);
+            learn(3 * k, k, (int)k);
+        }
+        for (uint64_t k = 0; k < MANY; k++) {
+            bool is_known = guess(k, k % 7);
+            ck_assert(!is_known || (mode[0] == 3 * k && part.length.level == (int)k));
+            n_known += is_known ? 1 : 0;
+        }
+        ck_assert_int_eq(part.memory.n_transitions == AT_FIRST, round == 0);
+        ck_assert_int_le(part.memory.n_transitions, 8 * MANY);
+        ck_assert_int_eq(n_known == MANY, round == 1);
+    }
+    dalcs_transition_finish(&part);
+    dalcs_arena_finish(&part.arena);
+}
+
+END_TEST
+
 /* What has not been before begins with the length that suited the last pair that closed. */
 START_TEST(test_beginning) {
     start();
@@ -178,7 +205,7 @@ END_TEST
 START_TEST(test_untried) {
     start();
     ck_assert(!guess(1, 2));
-    dalcs_transition_learn(&part, 17, 3);
+    ck_assert_int_eq(dalcs_transition_learn(&part, 17, 3), DALCS_OK);
     for (int k = 0; k < 16; k++) {
         ck_assert(guess(1, 2) && part.length.level == 17);
         dalcs_transition_pass(&part, 0);
@@ -200,5 +227,5 @@ START_TEST(test_untried) {
 
 END_TEST
 
-RUN_TESTS("transition", test_learns, test_held, test_many, test_beginning, test_patience,
-          test_untried)
+RUN_TESTS("transition", test_learns, test_held, test_many, test_grows, test_beginning,
+          test_patience, test_untried)
