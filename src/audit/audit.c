@@ -5,11 +5,13 @@
 
 #include <stdlib.h>
 
-/* A run that does nothing, of two elements: it starts, reads, writes and ends. A part of that nobody feels: a quarter is
- * for the first segments, each of which is looked into, a quarter for modes that are new. In instructions, as are these of
- * an instant and a device: measured with callgrind on the netlists of the repository (doc/testing.md). */
-static const double start_work = 6.5e5, unfelt = 0.25;
+/* A run that does nothing, of two elements: it starts, reads, writes and ends. In instructions, as are these of an
+ * instant and a device: measured with callgrind on the netlists of the repository (doc/testing.md). */
+static const double start_work = 6.5e5;
 static const double device_work = 300.0, node_work = 120.0;
+
+/* Of the work of the run, the part that closer looks may cost in any case, however much screens take. */
+static const double least_share = 0.005;
 
 /* Of switches, whose controls are read, and sources, whose edges are looked for. */
 static const double moving_work = 1800.0;
@@ -43,8 +45,7 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
                               .options = *options,
                               .reader = *reader,
                               .seed = first_seed,
-                              .credit = unfelt * start_work,
-                              .reserve = unfelt * start_work};
+                              .credit = options->share * start_work};
     enum dalcs_status status = options->n_parts > 0 ? audit_set_up(a) : DALCS_OK;
     for (int k = 0; k < options->n_parts && status == DALCS_OK; k++) {
         a->part[k].cost = instant_work(circuit, &a->part[k]) + options->read_work[k];
@@ -113,7 +114,8 @@ void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int in
 }
 
 void dalcs_audit_earn(struct dalcs_audit *audit, double work) {
-    audit->credit += audit->options.share * work;
+    audit->credit += fmax(audit->options.share * work - audit->spent, least_share * work);
+    audit->spent = 0.0;
 }
 
 /* Instants in a stretch with --audit full, beside its ends, and pieces that integrals are taken over. */
@@ -159,9 +161,10 @@ static void integrate(struct dalcs_audit *audit, const struct dalcs_audit_stretc
         }
         return;
     }
-    if (!(audit_draw(audit) < with_interval || stretch->is_last)) {
+    if (!(audit_draw(audit) < with_interval || (stretch->is_last && part->was_integrated))) {
         return;
     }
+    part->was_integrated = true;
     const double from = stretch->from + 0.5 * audit_draw(audit) * length;
     const double to = stretch->to - 0.5 * audit_draw(audit) * length;
     if (from < to) {
@@ -183,16 +186,15 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
                              double work) {
     struct audit_part *part = &audit->part[stretch->part];
     audit->count.stretches++;
-    audit->credit += audit->options.share * work;
     part->length = stretch->to - stretch->from;
     part->watch->asked = -1.0;
     if (audit->options.mode == DALCS_AUDIT_FULL) {
         return false;
     }
     const bool asks = audit_watch_asks(audit, stretch, can_look_inside(audit, stretch));
-    const bool is_drawn = audit->credit >= audit->threshold;
-    part->watch->is_brief = part->watch->makes && !is_drawn;
-    const bool passes = !asks && !is_drawn;
+    dalcs_audit_earn(audit, work);
+    part->is_drawn = audit->credit >= audit->threshold;
+    const bool passes = !asks && !part->is_drawn;
     if (passes) {
         part->is_open = false;
     }
@@ -241,21 +243,29 @@ static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretc
     audit_screen_rescale(audit, part);
 }
 
+/* A mode that is new is looked at by the screen that is made of it, from a state in it. */
+static bool is_settled(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    struct audit_part *part = &audit->part[stretch->part];
+    audit->now.side = DALCS_RIGHT;
+    audit->now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
+    audit->reader.read(audit->reader.user, stretch->part, &audit->now);
+    audit_note_scales(audit, part, &audit->now);
+    return !audit_watch_begins(audit, stretch) && !part->is_drawn && !stretch->is_last;
+}
+
 void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
     take_up(part, stretch);
-    audit->threshold =
-        2.0 * (AUDIT_LOOK_INSTANTS * part->cost + stretch->first_look) * audit_draw(audit);
-    audit->count.audited++;
     audit->credit -= stretch->first_look;
     raise_scales(audit, stretch->part);
-    if (part->watch->is_brief && !stretch->is_last) {
-        look_inside(audit, stretch);
-        audit_watch_learn(audit, stretch);
+    if (part->watch->makes && is_settled(audit, stretch)) {
         part->is_open = false;
         return;
     }
-    if ((part->watch->asked >= 0.0 || part->watch->makes) && !part->watch->saw_beginning) {
+    audit->threshold =
+        2.0 * (AUDIT_LOOK_INSTANTS * part->cost + stretch->first_look) * audit_draw(audit);
+    audit->count.audited++;
+    if (part->watch->asked >= 0.0 && !part->watch->saw_beginning) {
         look_back(audit, stretch);
     }
     if (can_look_inside(audit, stretch)) {

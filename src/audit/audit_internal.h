@@ -16,14 +16,42 @@ enum { AUDIT_MOST_NODES = 12 };
 /* Times in a step that it is asked at, one of them each time. */
 enum { AUDIT_SCREEN_TIMES = 4 };
 
+/* What a stimulus is between two times, as a polynomial. */
+enum { AUDIT_COURSE_TERMS = 10 };
+
+struct audit_course {
+    double from, to, origin; /* s */
+    int n;                   /* terms */
+    double term[AUDIT_COURSE_TERMS];
+};
+
 /* How all stretches of a part are looked at by screens (screen.h). */
 struct audit_watch {
-    struct audit_screen *screen; /* [2^log2_screens] NULL: none yet */
-    int log2_screens;
-    struct dalcs_audit_row row[5]; /* sums of laws by audit_screen_row, and a sign */
+    struct audit_screens {
+        int n, log2_slots;
+        struct audit_screen **slot; /* [2^log2_slots] by key; NULL: none */
+        size_t numbers;             /* in all of them */
+    } screens;
+
+    struct audit_sums_of_laws {
+        struct dalcs_audit_row row[5]; /* by audit_screen_row, and a sign */
+        double *node_weight;           /* [2][n_nodes] of Kirchhoff's laws now and over time */
+        double *sign;                  /* constants */
+        int n_signs;
+        size_t sign_room;
+
+        struct audit_list {
+            struct audit_term *term;
+            int n;
+            size_t room;
+        } list[3]; /* by audit_term_kind */
+
+        bool complete; /* there was room for all */
+    } fill;            /* while a screen is made */
+
+    double
+        *state_factor; /* [n_devices of the part] of a state, in their sum; NULL: not drawn yet */
     double barycentric[AUDIT_MOST_NODES];
-    double *state_factor; /* [n_devices of the part] of a state, in their sum */
-    double *node_weight;  /* [2][n_nodes] work: of Kirchhoff's laws now and over time */
     double theta
         [AUDIT_SCREEN_TIMES]; /* in steps: one in each fourth, and its weights, of values and integrals */
     double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
@@ -34,8 +62,7 @@ struct audit_watch {
     bool knows_states;
     bool is_put_off;    /* the present one does not begin there */
     bool saw_beginning; /* its beginning was looked at */
-    bool makes;         /* the present stretch is to be looked at, and a screen to be made of it */
-    bool is_brief;      /* no more of it than that takes */
+    bool makes;         /* a screen is to be made of the present stretch */
     double asked;       /* s: a time in it that asks for a look; < 0: none does */
 };
 
@@ -59,6 +86,8 @@ struct audit_part {
     bool has_entered; /* the state at its last event is in `before` */
     bool is_open;     /* `before` is the end of the stretch that was just left */
     bool is_coarse;   /* the stretch at hand */
+    bool is_drawn;    /* likewise, for a closer look */
+    bool was_integrated;
     struct audit_watch *watch;
 };
 
@@ -83,6 +112,7 @@ struct dalcs_audit {
     bool *is_held;     /* [n_nodes] likewise, whatever it does */
     int *first_lambda; /* [n_devices] */
     struct audit_part *part;
+    struct audit_course *course;                  /* [n_stimuli] */
     double *v_scale, *i_scale, *lambda_scale;     /* largest so far */
     struct dalcs_audit_state now, later, shifted; /* work */
     struct dalcs_audit_state before; /* where stretches ended: parts share only ground */
@@ -102,9 +132,25 @@ struct dalcs_audit {
     struct dalcs_audit_summary count; /* of it, what is counted */
     uint64_t seed;
     double credit, threshold; /* instructions */
-    double reserve;           /* that what is new may take besides */
+    double spent;             /* likewise, by screens since work was earned */
     struct dalcs_arena arena;
 };
+
+/* courses.c: the value of a stimulus where its course is not known. */
+double audit_course_begin(struct dalcs_audit *audit, int stimulus, double t);
+
+/* At a time that is no edge. */
+static inline double audit_stimulus_at(struct dalcs_audit *audit, int stimulus, double t) {
+    const struct audit_course *c = &audit->course[stimulus];
+    if (!(c->from <= t && t <= c->to)) {
+        return audit_course_begin(audit, stimulus, t);
+    }
+    double value = c->term[c->n - 1];
+    for (int k = c->n - 2; k >= 0; k--) {
+        value = value * (t - c->origin) + c->term[k];
+    }
+    return value;
+}
 
 /* 0 <= draw < 1, the same in each run. */
 static inline double audit_draw(struct dalcs_audit *audit) {

@@ -162,6 +162,15 @@ static enum dalcs_status make_sums(struct dalcs_audit *audit) {
                                                                              : DALCS_E_NOMEM;
 }
 
+static enum dalcs_status make_courses(struct dalcs_audit *audit) {
+    const int n = audit->circuit->n_stimuli;
+    audit->course = dalcs_arena_alloc(&audit->arena, (size_t)n, sizeof(*audit->course));
+    for (int k = 0; k < n && audit->course != NULL; k++) {
+        audit->course[k].from = audit->course[k].origin = INFINITY;
+    }
+    return audit->course != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
 static enum dalcs_status number_lambdas(struct dalcs_audit *audit) {
     const struct dalcs_circuit *c = audit->circuit;
     audit->first_lambda = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(int));
@@ -204,6 +213,7 @@ enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
     DALCS_TRY(number_lambdas(audit));
     DALCS_TRY(make_parts(audit));
     DALCS_TRY(make_sums(audit));
+    DALCS_TRY(make_courses(audit));
     DALCS_TRY(make_state(audit, &audit->now));
     DALCS_TRY(make_state(audit, &audit->later));
     DALCS_TRY(make_state(audit, &audit->shifted));

@@ -2,7 +2,7 @@
 #include "screen_rows.h"
 
 static struct dalcs_audit_row *sign(const struct audit_filling *f) {
-    return &f->watch->row[AUDIT_N_ROWS];
+    return &f->watch->fill.row[AUDIT_N_ROWS];
 }
 
 /* factor (i - v/roff) */
@@ -166,8 +166,8 @@ static void fill_coil(struct audit_filling *f, int device) {
     const double factor = audit_over(
         f, f->part->tolerance * (audit_flux_scale(f->audit, f->part, device) + volts * f->step) +
                f->audit->options.vntol * f->step);
-    struct dalcs_audit_row *start = &f->watch->row[AUDIT_ROW_START];
-    audit_add_voltage(f, &f->watch->row[AUDIT_ROW_FLOW], d, 0, -factor);
+    struct dalcs_audit_row *start = &f->watch->fill.row[AUDIT_ROW_START];
+    audit_add_voltage(f, &f->watch->fill.row[AUDIT_ROW_FLOW], d, 0, -factor);
     audit_add_read_current(f, start, device, factor * d->value);
     for (int k = 0; k < f->part->n_couplings; k++) {
         const struct dalcs_coupling *m = &f->audit->circuit->coupling[f->part->coupling[k]];

@@ -8,21 +8,13 @@ enum { MOST_DOUBLINGS = 16 };
  * false, such as of states that jump in each period, are looked at while the run can afford it. */
 enum { FEW_ALARMS = 4 };
 
-/* One instant, and a screen of about the same work. */
-static bool is_affordable(const struct audit_part *part, const struct dalcs_audit *audit) {
-    return audit->credit - 2.0 * part->cost > -audit->reserve;
-}
+/* Instructions of a screen, about: of all, of an element of its image, of a value in its polynomials. */
+static const double screen_work = 250.0, element_work = 0.5, value_work = 2.5;
 
 static bool store(const struct dalcs_audit *audit, int index, bool wants_values,
                   struct dalcs_audit_polynomials *p) {
     return audit->reader.store != NULL &&
            audit->reader.store(audit->reader.user, index, wants_values, p);
-}
-
-/* Where nobody needed values until now, and no image will do. */
-static bool wants_values(const struct audit_screen *screen,
-                         const struct dalcs_audit_polynomials *p) {
-    return p->value == NULL && (screen == NULL || !audit_screen_has_image(screen, p));
 }
 
 /* Do the values reach from one end of the stretch to the other? Times are known to their resolution, and events to what
@@ -34,48 +26,65 @@ static bool spans(const struct dalcs_audit *audit, const struct audit_part *part
     return length - p->end * p->step <= part->tolerance * length + 4.0 * audit->options.resolution;
 }
 
+/* At one of the watch's times, by an image of such steps where there is one. */
+static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
+                struct dalcs_audit_polynomials *p, const struct dalcs_audit_stretch *stretch,
+                struct audit_answer *answer) {
+    const struct audit_part *part = &audit->part[stretch->part];
+    const int n_times = audit_n_times_before(part->watch, p->end);
+    const int m = (int)(n_times * audit_draw(audit));
+    const struct audit_image *image =
+        n_times > 0 ? audit_image_of(audit, part, screen, p, m) : NULL;
+    if (image == NULL && p->value == NULL) {
+        (void)store(audit, stretch->part, true, p);
+    }
+    audit_screen_ask(audit, part, screen, image, m, p, stretch, answer);
+    if (!spans(audit, part, p, stretch)) {
+        answer->worst = INFINITY;
+    }
+    audit->spent += screen_work + (image != NULL ? element_work * p->n_inputs * screen->n_places
+                                                 : value_work * p->n_nodes * p->n_columns);
+}
+
+/* Is the stretch to be looked at, for what the screen says, or because states are not what they were at the end of the one
+ * before? */
+static bool alarms(struct dalcs_audit *audit, struct audit_watch *watch,
+                   struct audit_screen *screen, const struct audit_answer *answer) {
+    const double jump =
+        watch->knows_states && !watch->is_put_off ? fabs(answer->start - watch->states) : 0.0;
+    watch->states = answer->end;
+    watch->knows_states = true;
+    audit->count.screened++;
+    if ((answer->worst <= screen->limit && jump <= screen->limit) ||
+        (screen->alarms >= FEW_ALARMS && audit->credit < 0.0)) {
+        return false;
+    }
+    screen->alarms++;
+    watch->asked = answer->t;
+    return true;
+}
+
 bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
                       bool can_look) {
     struct audit_part *part = &audit->part[stretch->part];
     struct audit_watch *watch = part->watch;
-    const bool knew = watch->knows_states && !watch->is_put_off;
     struct dalcs_audit_polynomials p;
     watch->asked = -1.0;
-    watch->knows_states = watch->makes = false;
-    if (!can_look || !store(audit, stretch->part, false, &p)) {
-        return false;
+    watch->makes = false;
+    const bool can_ask = can_look && store(audit, stretch->part, false, &p);
+    struct audit_screen *screen = can_ask ? audit_screen_of(part, &p) : NULL;
+    watch->makes = can_ask && screen == NULL;
+    if (screen != NULL && screen->rests > 0) {
+        screen->rests--;
+        screen = NULL;
     }
-    struct audit_screen *screen = audit_screen_of(part, &p);
     if (screen == NULL) {
-        watch->makes = is_affordable(part, audit);
+        watch->knows_states = watch->knows_states && watch->makes;
         return watch->makes;
     }
-    if (screen->rests > 0) {
-        screen->rests--;
-        return false;
-    }
-    audit_screen_see_step(audit, part, screen, &p);
-    if (wants_values(screen, &p)) {
-        (void)store(audit, stretch->part, true, &p);
-    }
     struct audit_answer answer;
-    audit_screen_ask(audit, part, screen, &p, stretch, &answer);
-    if (!spans(audit, part, &p, stretch)) {
-        answer.worst = INFINITY;
-    }
-    const double jump = knew ? fabs(answer.start - watch->states) : 0.0;
-    watch->states = answer.end;
-    watch->knows_states = true;
-    audit->count.screened++;
-    if (answer.worst <= screen->limit && jump <= screen->limit) {
-        return false;
-    }
-    if (screen->alarms >= FEW_ALARMS && !is_affordable(part, audit)) {
-        return false;
-    }
-    screen->alarms++;
-    watch->asked = answer.t;
-    return true;
+    ask(audit, screen, &p, stretch, &answer);
+    return alarms(audit, watch, screen, &answer);
 }
 
 /* What the look has found counts. What the screen makes of such a stretch, which holds or ends the run, asks for none. */
@@ -89,23 +98,43 @@ static void allow(const struct dalcs_audit *audit, const struct audit_part *part
     }
 }
 
-void audit_watch_learn(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+/* The screen of the present stretch, and what it says of that; NULL: there is none. */
+static struct audit_screen *make(struct dalcs_audit *audit,
+                                 const struct dalcs_audit_stretch *stretch,
+                                 struct audit_answer *answer) {
     struct audit_part *part = &audit->part[stretch->part];
-    struct audit_watch *watch = part->watch;
     struct dalcs_audit_polynomials p;
-    if (!(watch->makes || watch->asked >= 0.0) || !store(audit, stretch->part, true, &p)) {
-        return;
+    if (!store(audit, stretch->part, true, &p)) {
+        return NULL;
     }
     struct audit_screen *screen = audit_screen_make(audit, part, &p, &audit->now);
-    audit->credit -= part->cost;
-    watch->knows_states = screen != NULL;
-    if (screen == NULL) {
+    audit->spent += part->cost;
+    if (screen != NULL) {
+        ask(audit, screen, &p, stretch, answer);
+    }
+    return screen;
+}
+
+bool audit_watch_begins(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    struct audit_watch *watch = audit->part[stretch->part].watch;
+    struct audit_answer answer;
+    struct audit_screen *screen = make(audit, stretch, &answer);
+    watch->knows_states = watch->knows_states && screen != NULL;
+    return screen == NULL || alarms(audit, watch, screen, &answer);
+}
+
+void audit_watch_learn(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    struct audit_part *part = &audit->part[stretch->part];
+    struct audit_answer answer;
+    if (part->watch->asked < 0.0) {
         return;
     }
-    struct audit_answer answer;
-    audit_screen_ask(audit, part, screen, &p, stretch, &answer);
-    watch->states = answer.end;
-    if (!(answer.worst <= screen->limit)) {
+    struct audit_screen *screen = make(audit, stretch, &answer);
+    part->watch->knows_states = screen != NULL;
+    if (screen != NULL) {
+        part->watch->states = answer.end;
+    }
+    if (screen != NULL && !(answer.worst <= screen->limit)) {
         allow(audit, part, screen, answer.worst);
     }
 }
