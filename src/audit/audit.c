@@ -114,7 +114,9 @@ void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int in
 }
 
 void dalcs_audit_earn(struct dalcs_audit *audit, double work) {
-    audit->credit += fmax(audit->options.share * work - audit->spent, least_share * work);
+    const double left = audit->options.share * work - audit->spent;
+    const double least = least_share * work;
+    audit->credit += left > least ? left : least;
     audit->spent = 0.0;
 }
 
@@ -182,10 +184,18 @@ static void take_up(struct audit_part *part, const struct dalcs_audit_stretch *s
     part->slope = stretch->step > 0.0 ? 2.0 * s * s / stretch->step : 0.0;
 }
 
+/* The next stretch begins where that ended, and nobody has looked at it. */
+static void leave_behind(struct audit_part *part) {
+    part->is_open = false;
+    part->watch->saw_beginning = false;
+    part->watch->is_put_off = false;
+}
+
 bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
                              double work) {
     struct audit_part *part = &audit->part[stretch->part];
     audit->count.stretches++;
+    part->past = part->length;
     part->length = stretch->to - stretch->from;
     part->watch->asked = -1.0;
     if (audit->options.mode == DALCS_AUDIT_FULL) {
@@ -196,16 +206,13 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     part->is_drawn = audit->credit >= audit->threshold;
     const bool passes = !asks && !part->is_drawn;
     if (passes) {
-        part->is_open = false;
+        leave_behind(part);
     }
     return passes;
 }
 
 bool dalcs_audit_begins(struct dalcs_audit *audit, int index) {
-    struct audit_part *part = &audit->part[index];
-    part->past = part->length;
-    part->watch->saw_beginning = false;
-    part->watch->is_put_off = false;
+    const struct audit_part *part = &audit->part[index];
     return part->is_open || !part->has_entered;
 }
 
@@ -213,14 +220,15 @@ void dalcs_audit_put_off(struct dalcs_audit *audit, int index) {
     audit->part[index].watch->is_put_off = true;
 }
 
-static void look_at_beginning(struct dalcs_audit *audit,
-                              const struct dalcs_audit_stretch *stretch) {
+/* past: s, the length of the stretch before. */
+static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
+                              double past) {
     struct audit_part *part = &audit->part[stretch->part];
     audit->now.t = stretch->from;
     audit->now.side = DALCS_RIGHT;
     /* An event is early or late by what changes no value by more than the tolerance: that share of the stretch that it
      * ended, over which values change by their scales at most. A diode may have its signs that much later. */
-    part->lateness = fmin(part->tolerance * part->past, stretch->to - stretch->from);
+    part->lateness = fmin(part->tolerance * past, stretch->to - stretch->from);
     look(audit, stretch->part, &audit->now);
     part->lateness = 0.0;
     if (part->is_open) {
@@ -235,11 +243,11 @@ static void look_at_beginning(struct dalcs_audit *audit,
 /* It was passed over, and what came before. */
 static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
-    if (!part->watch->is_put_off && part->length > 0.0) {
+    if (!part->watch->is_put_off && part->past > 0.0) {
         audit->reader.read_before(audit->reader.user, stretch->part, &audit->before);
         part->is_open = true;
     }
-    look_at_beginning(audit, stretch);
+    look_at_beginning(audit, stretch, part->past);
     audit_screen_rescale(audit, part);
 }
 
@@ -259,7 +267,7 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     audit->credit -= stretch->first_look;
     raise_scales(audit, stretch->part);
     if (part->watch->makes && is_settled(audit, stretch)) {
-        part->is_open = false;
+        leave_behind(part);
         return;
     }
     audit->threshold =
@@ -275,6 +283,7 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     end->t = stretch->to;
     end->side = DALCS_LEFT;
     look(audit, stretch->part, end);
+    leave_behind(part);
     part->is_open = true;
     if (can_look_inside(audit, stretch)) {
         integrate(audit, stretch);
@@ -291,7 +300,7 @@ void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stret
     }
     take_up(part, stretch);
     raise_scales(audit, index);
-    look_at_beginning(audit, stretch);
+    look_at_beginning(audit, stretch, part->length);
 }
 
 void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dalcs_side side,

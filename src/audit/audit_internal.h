@@ -29,22 +29,23 @@ struct audit_course {
 struct audit_watch {
     struct audit_screens {
         int n, log2_slots;
-        struct audit_screen **slot; /* [2^log2_slots] by key; NULL: none */
-        size_t numbers;             /* in all of them */
+        struct audit_screen **slot;  /* [2^log2_slots] by key; NULL: none */
+        struct audit_screen *latest; /* that was found; NULL: none */
+        size_t numbers;              /* in all of them */
     } screens;
 
     struct audit_sums_of_laws {
         struct dalcs_audit_row row[5]; /* by audit_screen_row, and a sign */
         double *node_weight;           /* [2][n_nodes] of Kirchhoff's laws now and over time */
-        double *sign;                  /* constants */
-        int n_signs;
-        size_t sign_room;
+        double *sign, *guard;          /* constants */
+        int n_signs, n_guards;
+        size_t sign_room, guard_room;
 
         struct audit_list {
             struct audit_term *term;
             int n;
             size_t room;
-        } list[3]; /* by audit_term_kind */
+        } list[5]; /* by audit_term_kind */
 
         bool complete; /* there was room for all */
     } fill;            /* while a screen is made */

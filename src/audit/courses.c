@@ -10,7 +10,11 @@ static void follow_pulse(const struct dalcs_stimulus *s, double t, struct audit_
     const double edge[] = {0.0, s->u.pulse.rise, top, foot, repeats ? s->u.pulse.period : INFINITY};
     const double low = s->u.pulse.low;
     const double level[] = {low, s->u.pulse.high, s->u.pulse.high, low, low};
-    if (s->u.pulse.n_periods > 0.0 || !(from > 0.0) || foot > edge[4]) {
+    if (s->u.pulse.n_periods > 0.0 || foot > edge[4]) {
+        return;
+    }
+    if (!(from > 0.0)) {
+        *c = (struct audit_course){-INFINITY, s->u.pulse.delay, 0.0, 1, {low}};
         return;
     }
     const double past = repeats ? floor(from / s->u.pulse.period) * s->u.pulse.period : 0.0;

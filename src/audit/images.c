@@ -2,70 +2,84 @@
 #include "screen.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-/* Ends of stretches are a rounding of t apart, which is as much more in steps as these are shorter than t. */
-static bool is_same_end(double a, double b) {
-    return fabs(a - b) <= 0x1p-32;
+static void forget(struct audit_image *image) {
+    for (int m = 0; m < AUDIT_SCREEN_TIMES; m++) {
+        free(image->at[m].place);
+    }
+    *image = (struct audit_image){0};
 }
 
-/* The image of these steps; NULL: they are the first of that length. */
+/* The image of these steps, which may be new. */
 static struct audit_image *find(struct audit_screen *screen,
                                 const struct dalcs_audit_polynomials *p) {
     for (int k = 0; k < AUDIT_IMAGES; k++) {
         const int at = (screen->image_at + k) % AUDIT_IMAGES;
         struct audit_image *image = &screen->image[at];
-        if (image->step == p->step && is_same_end(image->end, p->end)) {
+        if (image->step == p->step && audit_is_same_end(image->end, p->end)) {
             screen->image_at = at;
             return image;
         }
     }
     screen->image_at = (screen->image_at + 1) % AUDIT_IMAGES;
     struct audit_image *image = &screen->image[screen->image_at];
+    forget(image);
     image->step = p->step;
     image->end = p->end;
-    image->made = 0;
-    return NULL;
+    return image;
 }
 
-static bool make_room(struct audit_watch *watch, struct audit_image *image, size_t numbers) {
-    if (image->place == NULL && watch->screens.numbers + numbers <= AUDIT_MOST_NUMBERS) {
-        image->place = dalcs_alloc(numbers, sizeof(double));
-        watch->screens.numbers += numbers;
+/* To make an image takes as much as to ask as many stretches as it has inputs, whose values are there: it is made when so
+ * much was spent without it (A. Karlin et al., Competitive snoopy caching, Algorithmica 3 (1988)). */
+static bool is_due(const struct audit_image *image, const struct dalcs_audit_polynomials *p) {
+    int n_made = 1;
+    for (int m = 0; m < AUDIT_SCREEN_TIMES; m++) {
+        n_made += image->at[m].place != NULL ? 1 : 0;
     }
-    return image->place != NULL;
+    return p->value == NULL || image->n_asked >= (long)n_made * p->n_inputs;
 }
 
 static void compose(const struct dalcs_audit *audit, const struct audit_part *part,
                     const struct audit_screen *screen, const struct dalcs_audit_polynomials *p,
-                    int m, double *place) {
+                    int m, struct audit_image_at *at) {
     const struct dalcs_audit_reader *r = &audit->reader;
     for (int j = 0; j < p->n_inputs; j++) {
         const double *value = r->column(r->user, (int)(part - audit->part), j);
-        memset(place, 0, (size_t)screen->n_places * sizeof(double));
+        double *place = at->place + j * screen->n_places;
         audit_screen_place(part->watch, screen, p, m, value, place);
-        place += screen->n_places;
+        for (int k = AUDIT_PLACE_SIGNS; k < screen->n_places; k++) {
+            at->reach[j] = fmax(at->reach[j], fabs(place[k]));
+        }
     }
+    at->slack = -1.0;
 }
 
-const struct audit_image *audit_image_of(const struct dalcs_audit *audit,
-                                         const struct audit_part *part, struct audit_screen *screen,
-                                         const struct dalcs_audit_polynomials *p, int m) {
-    const int each = p->n_inputs * screen->n_places;
-    struct audit_image *image = each > 0 ? find(screen, p) : NULL;
-    if (image == NULL || !make_room(part->watch, image, AUDIT_SCREEN_TIMES * (size_t)each)) {
-        return NULL;
+struct audit_image_at *audit_image_of(const struct dalcs_audit *audit,
+                                      const struct audit_part *part, struct audit_screen *screen,
+                                      const struct dalcs_audit_polynomials *p, int m) {
+    const size_t n_inputs = (size_t)p->n_inputs;
+    const size_t numbers = n_inputs * ((size_t)screen->n_places + 2);
+    struct audit_screens *screens = &part->watch->screens;
+    struct audit_image *image = p->input != NULL ? find(screen, p) : NULL;
+    struct audit_image_at *at = image != NULL ? &image->at[m] : NULL;
+    if (at != NULL && at->place == NULL && is_due(image, p) &&
+        screens->numbers + numbers <= AUDIT_MOST_NUMBERS) {
+        at->place = dalcs_alloc(numbers, sizeof(double));
+        if (at->place != NULL) {
+            screens->numbers += numbers;
+            at->reach = at->place + n_inputs * (size_t)screen->n_places;
+            at->input = at->reach + n_inputs;
+            compose(audit, part, screen, p, m, at);
+        }
     }
-    if ((image->made & 1u << m) == 0) {
-        compose(audit, part, screen, p, m, image->place + m * each);
-        image->made |= 1u << m;
+    if (image != NULL) {
+        image->n_asked++;
     }
-    return image;
+    return at != NULL && at->place != NULL ? at : NULL;
 }
 
 void audit_images_forget(struct audit_screen *screen) {
     for (int k = 0; k < AUDIT_IMAGES; k++) {
-        free(screen->image[k].place);
-        screen->image[k] = (struct audit_image){0};
+        forget(&screen->image[k]);
     }
 }

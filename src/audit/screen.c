@@ -21,9 +21,11 @@ static struct audit_screen **slot_of(const struct audit_screens *screens, uint64
 
 struct audit_screen *audit_screen_of(const struct audit_part *part,
                                      const struct dalcs_audit_polynomials *p) {
-    const struct audit_screens *screens = &part->watch->screens;
-    struct audit_screen *screen = screens->n > 0 ? *slot_of(screens, p->key) : NULL;
-    return screen != NULL && screen->is_made ? screen : NULL;
+    struct audit_screens *screens = &part->watch->screens;
+    if (screens->latest == NULL || screens->latest->key != p->key) {
+        screens->latest = screens->n > 0 ? *slot_of(screens, p->key) : NULL;
+    }
+    return screens->latest != NULL && screens->latest->is_made ? screens->latest : NULL;
 }
 
 /* At most half of the slots are taken. */
@@ -49,12 +51,10 @@ static bool grow(struct audit_screens *screens) {
 }
 
 static void drop(struct audit_screen *screen) {
-    for (int k = 0; screen != NULL && k < AUDIT_IMAGES; k++) {
-        free(screen->image[k].place);
-    }
     if (screen != NULL) {
+        audit_images_forget(screen);
         free(screen->row);
-        free(screen->term);
+        free(screen->term[0]);
     }
     free(screen);
 }
@@ -66,6 +66,7 @@ static void drop_all(struct audit_screens *screens) {
     }
     screens->n = 0;
     screens->numbers = 0;
+    screens->latest = NULL;
 }
 
 /* The screen with that key, which need not be made. Where there is no room for more all begin anew. */
@@ -202,6 +203,7 @@ void audit_screen_finish(struct audit_part *part) {
     free(watch->screens.slot);
     free(watch->place);
     free(watch->fill.sign);
+    free(watch->fill.guard);
     for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {
         free(watch->fill.list[k].term);
     }
@@ -211,14 +213,20 @@ void audit_screen_finish(struct audit_part *part) {
 static bool put(struct audit_watch *watch, struct audit_screen *screen, int n_columns) {
     const struct audit_sums_of_laws *fill = &watch->fill;
     const int n = dalcs_quads_of(n_columns);
-    const int n_terms = fill->list[0].n + fill->list[1].n + fill->list[2].n;
+    int n_terms = 0;
+    for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {
+        n_terms += fill->list[k].n;
+    }
+    screen->n_guards = fill->n_guards;
+    screen->guarded_from = INFINITY;
     screen->n_places = dalcs_quads_of(AUDIT_PLACE_SIGNS + AUDIT_SIGN_TIMES * fill->n_signs);
     free(screen->row);
-    free(screen->term);
-    const size_t numbers = (size_t)(AUDIT_N_ROWS * n + screen->n_places);
+    free(screen->term[0]);
+    const size_t numbers = (size_t)(AUDIT_N_ROWS * n + screen->n_places + screen->n_guards);
     screen->row = dalcs_alloc(numbers, sizeof(double));
-    screen->term = dalcs_alloc((size_t)n_terms + 1, sizeof(*screen->term));
-    if (screen->row == NULL || screen->term == NULL ||
+    struct audit_term *to = screen->term[0] =
+        dalcs_alloc((size_t)n_terms + 1, sizeof(**screen->term));
+    if (screen->row == NULL || to == NULL ||
         dalcs_grow(&watch->place, &watch->place_room, (size_t)screen->n_places, sizeof(double)) !=
             DALCS_OK) {
         return false;
@@ -233,12 +241,16 @@ static bool put(struct audit_watch *watch, struct audit_screen *screen, int n_co
     screen->constant = screen->row + AUDIT_N_ROWS * n;
     screen->constant[AUDIT_PLACE_LAWS] = fill->row[AUDIT_ROW_NOW].constant;
     screen->rate = fill->row[AUDIT_ROW_FLOW].constant;
-    for (int k = 0; k < AUDIT_SIGN_TIMES * fill->n_signs; k++) {
-        screen->constant[AUDIT_PLACE_SIGNS + k] = fill->sign[k / AUDIT_SIGN_TIMES];
+    for (int k = AUDIT_PLACE_SIGNS; k < screen->n_places; k++) { /* no sign behind the last */
+        const int sign = (k - AUDIT_PLACE_SIGNS) / AUDIT_SIGN_TIMES;
+        screen->constant[k] = sign < fill->n_signs ? fill->sign[sign] : INFINITY;
     }
-    struct audit_term *to = screen->term;
+    for (int k = 0; k < fill->n_guards; k++) {
+        screen->constant[screen->n_places + k] = fill->guard[k];
+    }
     for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {
         screen->n_terms[k] = fill->list[k].n;
+        screen->term[k] = to;
         if (fill->list[k].n > 0) {
             memcpy(to, fill->list[k].term, (size_t)fill->list[k].n * sizeof *to);
         }

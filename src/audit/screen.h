@@ -40,14 +40,29 @@ struct audit_term {
     double factor;
 };
 
-/* What the terms of a screen are of: columns, in signs; stimuli, in signs and laws; stimuli, in what is integrated. */
-enum audit_term_kind { AUDIT_TERM_COLUMN, AUDIT_TERM_SOURCE, AUDIT_TERM_FLOW, AUDIT_N_TERM_KINDS };
+/* What the terms of a screen are of: columns in signs; stimuli in signs that read columns, too, and in guards, which read
+ * none, with the number of the guard for a place; in laws at one time, and in what is integrated. */
+enum audit_term_kind {
+    AUDIT_TERM_COLUMN,
+    AUDIT_TERM_SIGN,
+    AUDIT_TERM_GUARD,
+    AUDIT_TERM_LAW,
+    AUDIT_TERM_FLOW,
+    AUDIT_N_TERM_KINDS
+};
 
-/* What the rows make of steps of one length that end at one place, by what these are a linear image of. */
+/* What the rows make of steps of one length that end at one place, by what these are a linear image of. Signs change by no
+ * more than the inputs do times what they reach: near an input at which they were asked they need not be asked again. */
 struct audit_image {
     double step, end; /* s, in steps */
-    unsigned made;    /* a bit for each of the watch's times */
-    double *place;    /* [AUDIT_SCREEN_TIMES][n_inputs][n_places]; NULL: none of them recurred */
+    long n_asked;     /* by their values */
+
+    struct audit_image_at { /* a time */
+        double *place;      /* [n_inputs][n_places]; NULL: not made yet */
+        double *reach;      /* [n_inputs] most that one of the signs changes by */
+        double *input;      /* [n_inputs] at which signs were asked */
+        double slack;       /* that the least of them had there, above -1 */
+    } at[AUDIT_SCREEN_TIMES];
 };
 
 /* Numbers that the screens of a part may have in all: 8 MB of them. */
@@ -63,12 +78,14 @@ struct audit_screen {
     int alarms;       /* that were false */
     long rests;       /* stretches that it is not asked of after one */
     double *row;      /* [AUDIT_N_ROWS][n_columns in whole quads], constants behind them */
-    double *constant; /* [n_places] */
+    double *constant; /* [n_places], and of guards */
     double rate;      /* 1/s, of what is integrated */
     int n_places;     /* in whole quads */
+    int n_guards;
+    double guarded_from, guarded_to; /* s: no guard is below 0 in between */
     int n_terms[AUDIT_N_TERM_KINDS];
-    struct audit_term *term; /* one kind after the other */
-    int image_at;            /* the one that was of use last */
+    struct audit_term *term[AUDIT_N_TERM_KINDS]; /* one behind the other */
+    int image_at;                                /* the one that was of use last */
     struct audit_image image[AUDIT_IMAGES];
 };
 
@@ -109,10 +126,9 @@ struct audit_answer {
     double start, end; /* sums of states */
 };
 
-/* screen_sum.c: of an image that is ready for the m-th of the watch's times; NULL: of the values. */
-void audit_screen_ask(struct dalcs_audit *audit, const struct audit_part *part,
-                      const struct audit_screen *screen, const struct audit_image *image, int m,
-                      const struct dalcs_audit_polynomials *p,
+/* screen_sum.c: of an image at the m-th of the watch's times; NULL: of the values. */
+void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch,
+                      struct audit_screen *screen, struct audit_image_at *image, int m,
                       const struct dalcs_audit_stretch *stretch, struct audit_answer *answer);
 
 /* What the rows make of n_nodes values of each column, without constants and stimuli, at the m-th time. */
@@ -133,10 +149,43 @@ static inline int audit_n_times_before(const struct audit_watch *watch, double e
     return n;
 }
 
-/* images.c: the image of such steps, ready for the m-th time; NULL: there is none, or none yet. */
-const struct audit_image *audit_image_of(const struct dalcs_audit *audit,
-                                         const struct audit_part *part, struct audit_screen *screen,
-                                         const struct dalcs_audit_polynomials *p, int m);
+/* Sources are asked this part of a stretch from its ends, where they have no edge: a command that comes so much too early
+ * or too late is seen. */
+static const double audit_beside = 1e-6;
+
+/* guards.c: how far below 0 the worst guard is at three times. */
+double audit_worst_guard_between(struct dalcs_audit *audit, struct audit_screen *screen,
+                                 double from, double to, double t);
+
+static inline double audit_worst_guard(struct dalcs_audit *audit, struct audit_screen *screen,
+                                       const struct dalcs_audit_stretch *stretch, double t) {
+    const double near = audit_beside * (stretch->to - stretch->from);
+    const double from = stretch->from + near;
+    const double to = stretch->to - near;
+    return screen->guarded_from <= from && to <= screen->guarded_to
+               ? 0.0
+               : audit_worst_guard_between(audit, screen, from, to, t);
+}
+
+/* Ends of stretches are a rounding of t apart, which is as much more in steps as these are shorter than t. */
+static inline bool audit_is_same_end(double a, double b) {
+    return fabs(a - b) <= 0x1p-32;
+}
+
+/* images.c: the image of such steps at the m-th time; NULL: there is none, or none yet. */
+struct audit_image_at *audit_image_of(const struct dalcs_audit *audit,
+                                      const struct audit_part *part, struct audit_screen *screen,
+                                      const struct dalcs_audit_polynomials *p, int m);
+
+/* Likewise where it is that of the stretch asked last. */
+static inline struct audit_image_at *
+audit_image_again(struct audit_screen *screen, const struct dalcs_audit_polynomials *p, int m) {
+    struct audit_image *image = &screen->image[screen->image_at];
+    return image->step == p->step && audit_is_same_end(image->end, p->end) &&
+                   image->at[m].place != NULL && p->input != NULL
+               ? &image->at[m]
+               : NULL;
+}
 
 /* The rows of the screen are new. */
 void audit_images_forget(struct audit_screen *screen);

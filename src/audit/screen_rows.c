@@ -118,6 +118,15 @@ static void list_stimuli(struct audit_filling *f, struct dalcs_audit_row *row,
     }
 }
 
+static void add_constant(struct audit_sums_of_laws *fill, double **list, size_t *room, int *n,
+                         double constant) {
+    fill->complete =
+        fill->complete && dalcs_grow(list, room, (size_t)*n + 1, sizeof(**list)) == DALCS_OK;
+    if (fill->complete) {
+        (*list)[(*n)++] = constant;
+    }
+}
+
 /* value / allowed >= -1, of the row for signs, which is empty thereafter. */
 void audit_put_sign(struct audit_filling *f) {
     struct audit_sums_of_laws *fill = &f->watch->fill;
@@ -127,12 +136,12 @@ void audit_put_sign(struct audit_filling *f) {
         const int column = row->listed_column[k];
         list(fill, AUDIT_TERM_COLUMN, (struct audit_term){place, column, row->column[column]});
     }
-    list_stimuli(f, row, AUDIT_TERM_SOURCE, place);
-    fill->complete =
-        fill->complete && dalcs_grow(&fill->sign, &fill->sign_room, (size_t)fill->n_signs + 1,
-                                     sizeof(*fill->sign)) == DALCS_OK;
-    if (fill->complete) {
-        fill->sign[fill->n_signs++] = row->constant;
+    if (row->n_columns > 0) {
+        list_stimuli(f, row, AUDIT_TERM_SIGN, place);
+        add_constant(fill, &fill->sign, &fill->sign_room, &fill->n_signs, row->constant);
+    } else {
+        list_stimuli(f, row, AUDIT_TERM_GUARD, fill->n_guards);
+        add_constant(fill, &fill->guard, &fill->guard_room, &fill->n_guards, row->constant);
     }
     clear(row);
 }
@@ -219,7 +228,7 @@ bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part, doubl
     for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {
         fill->list[k].n = 0;
     }
-    fill->n_signs = 0;
+    fill->n_signs = fill->n_guards = 0;
     fill->complete = true;
     audit_sum_currents(audit, part, s);
     weigh_nodes(&f);
@@ -231,7 +240,7 @@ bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part, doubl
         audit_fill_branch(&f, part->device[k]);
     }
     add_start(&f);
-    list_stimuli(&f, audit_row_now(&f), AUDIT_TERM_SOURCE, AUDIT_PLACE_LAWS);
+    list_stimuli(&f, audit_row_now(&f), AUDIT_TERM_LAW, AUDIT_PLACE_LAWS);
     list_stimuli(&f, &fill->row[AUDIT_ROW_FLOW], AUDIT_TERM_FLOW, AUDIT_PLACE_LAWS);
     return fill->complete && fill->row[AUDIT_ROW_START].n_stimuli == 0;
 }

@@ -73,7 +73,8 @@ DALCS_TWICE(void, combine_both,
     }
 }
 
-DALCS_TWICE(double, product, (int n, const double *row, const double *value), (n, row, value)) {
+static inline __attribute__((always_inline)) double find_product(int n, const double *row,
+                                                                 const double *value) {
     dalcs_quad sum = {0.0};
     for (int c = 0; c < n; c += DALCS_QUAD) {
         dalcs_quad of;
@@ -83,6 +84,10 @@ DALCS_TWICE(double, product, (int n, const double *row, const double *value), (n
         sum += of * by;
     }
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+DALCS_TWICE(double, product, (int n, const double *row, const double *value), (n, row, value)) {
+    return find_product(n, row, value);
 }
 
 /* ---- Places -------------------------------------------------------------------------------------- */
@@ -119,7 +124,7 @@ static void add_places(const struct audit_watch *watch, const struct audit_scree
                                product(n, row + AUDIT_ROW_START * n, value);
     place[AUDIT_PLACE_START] += product(n, states, value);
     place[AUDIT_PLACE_END] += product(n, states, last);
-    const struct audit_term *term = screen->term;
+    const struct audit_term *term = screen->term[AUDIT_TERM_COLUMN];
     for (int k = 0; k < screen->n_terms[AUDIT_TERM_COLUMN]; k++) {
         double *of = place + term[k].place;
         of[0] += term[k].factor * sum[0][term[k].index];
@@ -149,71 +154,10 @@ void audit_screen_place(const struct audit_watch *watch, const struct audit_scre
     add_places(watch, screen, p, &w, value, place);
 }
 
-/* place = constant + image input, four quads of places at a time. */
-DALCS_TWICE(void, multiply,
-            (int n_places, int n_inputs, const double *constant, const double *image,
-             const double *input, double *place),
-            (n_places, n_inputs, constant, image, input, place)) {
-    int first = 0;
-    for (; first + 4 * DALCS_QUAD <= n_places; first += 4 * DALCS_QUAD) {
-        dalcs_quad sum[4];
-        memcpy(sum, constant + first, sizeof sum);
-        const double *from = image + first;
-        for (int j = 0; j < n_inputs; j++, from += n_places) {
-            dalcs_quad of[4];
-            memcpy(of, from, sizeof of);
-            for (int k = 0; k < 4; k++) {
-                sum[k] += of[k] * input[j];
-            }
-        }
-        memcpy(place + first, sum, sizeof sum);
-    }
-    for (; first < n_places; first += DALCS_QUAD) {
-        dalcs_quad sum;
-        dalcs_quad_load(&sum, constant + first);
-        const double *from = image + first;
-        for (int j = 0; j < n_inputs; j++, from += n_places) {
-            dalcs_quad of;
-            dalcs_quad_load(&of, from);
-            sum += of * input[j];
-        }
-        dalcs_quad_store(place + first, &sum);
-    }
-}
-
-/* ---- Stimuli ------------------------------------------------------------------------------------- */
-
-/* Sources are asked this part of a stretch from its ends, where they have no edge: a command that comes so much too early
- * or too late is seen. */
-static const double beside = 1e-6;
-
-static void add_sources(struct dalcs_audit *audit, const struct audit_screen *screen,
-                        const struct dalcs_audit_stretch *stretch, double t, double *place) {
-    const struct audit_term *term = screen->term + screen->n_terms[AUDIT_TERM_COLUMN];
-    const double near = beside * (stretch->to - stretch->from);
-    for (int k = 0; k < screen->n_terms[AUDIT_TERM_SOURCE]; k++, term++) {
-        double *of = place + term->place;
-        of[0] += term->factor * audit_stimulus_at(audit, term->index, t);
-        if (term->place >= AUDIT_PLACE_SIGNS) {
-            of[1] += term->factor * audit_stimulus_at(audit, term->index, stretch->from + near);
-            of[2] += term->factor * audit_stimulus_at(audit, term->index, stretch->to - near);
-        }
-    }
-    const double past = t - stretch->from;
-    double flow = screen->rate * past;
-    for (int k = 0; k < screen->n_terms[AUDIT_TERM_FLOW]; k++, term++) {
-        for (int g = 0; g < AUDIT_GAUSS; g++) {
-            flow +=
-                term->factor * audit_gauss_weight[g] * past *
-                audit_stimulus_at(audit, term->index, stretch->from + audit_gauss_node[g] * past);
-        }
-    }
-    place[AUDIT_PLACE_LAWS] += flow;
-}
-
-/* How far below 0 a place is at its worst; what is no number is. Those behind the signs are 0. */
-DALCS_TWICE(double, worst_sign, (int n_places, const double *place), (n_places, place)) {
-    dalcs_quad least = {0.0};
+/* The least of the signs; no number where one of them is none. */
+static inline __attribute__((always_inline)) double find_least_sign(int n_places,
+                                                                    const double *place) {
+    dalcs_quad least = {INFINITY, INFINITY, INFINITY, INFINITY};
     dalcs_quad sum = {0.0};
     for (int k = AUDIT_PLACE_SIGNS; k < n_places; k += DALCS_QUAD) {
         dalcs_quad of;
@@ -221,14 +165,90 @@ DALCS_TWICE(double, worst_sign, (int n_places, const double *place), (n_places, 
         dalcs_quad_lower(&least, &of);
         sum += of;
     }
-    dalcs_quad most = -least;
     const double all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    return all == all ? dalcs_quad_largest(&most) : INFINITY;
+    dalcs_quad most = -least;
+    return all == all ? -dalcs_quad_largest(&most) : all;
+}
+
+DALCS_TWICE(double, least_sign, (int n_places, const double *place), (n_places, place)) {
+    return find_least_sign(n_places, place);
+}
+
+/* Laws and states, and how far the input is from that at which signs were asked; by these, where that is too far. Where
+ * there are values, those at a node are held to the image, *off. The least of the signs, or less. */
+DALCS_TWICE(double, multiply,
+            (const struct audit_screen *screen, const struct dalcs_audit_polynomials *p, int m,
+             struct audit_image_at *at, double *place, double *off),
+            (screen, p, m, at, place, off)) {
+    const int n_places = screen->n_places;
+    const int n_inputs = p->n_inputs;
+    const double *input = p->input;
+    const double *from = at->place;
+    double far = 0.0;
+    dalcs_quad sum;
+    dalcs_quad_load(&sum, screen->constant);
+    for (int j = 0; j < n_inputs; j++, from += n_places) {
+        dalcs_quad of;
+        dalcs_quad_load(&of, from);
+        sum += of * input[j];
+        far += at->reach[j] * fabs(input[j] - at->input[j]);
+    }
+    dalcs_quad_store(place, &sum);
+    if (p->value != NULL) {
+        const int n = dalcs_quads_of(p->n_columns);
+        *off = fabs(place[AUDIT_PLACE_NODE] - find_product(n, screen->row + AUDIT_ROW_NOW * n,
+                                                           p->value + node_of(p, m) * p->stride));
+    }
+    if (far <= at->slack) {
+        return at->slack - far - 1.0;
+    }
+    for (int first = AUDIT_PLACE_SIGNS; first < n_places; first += DALCS_QUAD) {
+        dalcs_quad_load(&sum, screen->constant + first);
+        from = at->place + first;
+        for (int j = 0; j < n_inputs; j++, from += n_places) {
+            dalcs_quad of;
+            dalcs_quad_load(&of, from);
+            sum += of * input[j];
+        }
+        dalcs_quad_store(place + first, &sum);
+    }
+    memcpy(at->input, input, (size_t)n_inputs * sizeof(double));
+    const double least = find_least_sign(n_places, place);
+    at->slack = screen->n_terms[AUDIT_TERM_SIGN] == 0 ? least + 1.0 : -1.0;
+    return least;
+}
+
+/* ---- Stimuli ------------------------------------------------------------------------------------- */
+
+/* In the signs that read them, at their three times. */
+static void add_to_signs(struct dalcs_audit *audit, const struct audit_screen *screen,
+                         const struct dalcs_audit_stretch *stretch, double t, double *place) {
+    const double near = audit_beside * (stretch->to - stretch->from);
+    for (int k = 0; k < screen->n_terms[AUDIT_TERM_SIGN]; k++) {
+        const struct audit_term *term = &screen->term[AUDIT_TERM_SIGN][k];
+        double *of = place + term->place;
+        of[0] += term->factor * audit_stimulus_at(audit, term->index, t);
+        of[1] += term->factor * audit_stimulus_at(audit, term->index, stretch->from + near);
+        of[2] += term->factor * audit_stimulus_at(audit, term->index, stretch->to - near);
+    }
+}
+
+static double flows(struct dalcs_audit *audit, const struct audit_screen *screen, double from,
+                    double past) {
+    double sum = 0.0;
+    for (int k = 0; k < screen->n_terms[AUDIT_TERM_FLOW]; k++) {
+        const struct audit_term *term = &screen->term[AUDIT_TERM_FLOW][k];
+        for (int g = 0; g < AUDIT_GAUSS; g++) {
+            sum += term->factor * audit_gauss_weight[g] * past *
+                   audit_stimulus_at(audit, term->index, from + audit_gauss_node[g] * past);
+        }
+    }
+    return sum;
 }
 
 /* ---- What is beyond ------------------------------------------------------------------------------ */
 
-/* One of the times that the watch has weights for, or any where the stretch ends before these. */
+/* At one of the times that the watch has weights for, or at any where the stretch ends before these. */
 static double ask_values(struct dalcs_audit *audit, const struct audit_watch *watch,
                          const struct audit_screen *screen, int m,
                          const struct dalcs_audit_polynomials *p) {
@@ -249,38 +269,39 @@ static double ask_values(struct dalcs_audit *audit, const struct audit_watch *wa
     return theta;
 }
 
-/* By its image; where values are there, those at a node are held to it. */
-static double ask_image(const struct audit_watch *watch, const struct audit_screen *screen,
-                        const struct audit_image *image, int m,
-                        const struct dalcs_audit_polynomials *p) {
-    multiply(screen->n_places, p->n_inputs, screen->constant,
-             image->place + m * p->n_inputs * screen->n_places, p->input, watch->place);
-    if (p->value == NULL) {
-        return 0.0;
-    }
-    const int n = dalcs_quads_of(p->n_columns);
-    return fabs(watch->place[AUDIT_PLACE_NODE] -
-                product(n, screen->row + AUDIT_ROW_NOW * n, p->value + node_of(p, m) * p->stride));
-}
-
-void audit_screen_ask(struct dalcs_audit *audit, const struct audit_part *part,
-                      const struct audit_screen *screen, const struct audit_image *image, int m,
-                      const struct dalcs_audit_polynomials *p,
+void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch,
+                      struct audit_screen *screen, struct audit_image_at *image, int m,
                       const struct dalcs_audit_stretch *stretch, struct audit_answer *answer) {
-    const struct audit_watch *watch = part->watch;
+    const struct dalcs_audit_polynomials *p = stretch->stored;
     double *place = watch->place;
-    double off = 0.0;
     double theta = watch->theta[m];
+    double laws = 0.0;
+    double sign;
     if (image != NULL) {
-        off = ask_image(watch, screen, image, m, p);
+        sign = multiply(screen, p, m, image, place, &laws);
     } else {
         theta = ask_values(audit, watch, screen, m, p);
+        sign = least_sign(screen->n_places, place);
     }
-    answer->t = stretch->from + theta * p->step;
-    add_sources(audit, screen, stretch, answer->t, place);
-    const double laws = fabs(place[AUDIT_PLACE_LAWS]) + off;
-    const double sign = worst_sign(screen->n_places, place);
-    answer->worst = laws != laws ? INFINITY : laws > sign ? laws : sign;
+    const double t = stretch->from + theta * p->step;
+    if (screen->n_terms[AUDIT_TERM_SIGN] > 0) {
+        add_to_signs(audit, screen, stretch, t, place);
+        sign = least_sign(screen->n_places, place);
+    }
+    double sum = place[AUDIT_PLACE_LAWS] + screen->rate * (t - stretch->from);
+    for (int k = 0; k < screen->n_terms[AUDIT_TERM_LAW]; k++) {
+        const struct audit_term *term = &screen->term[AUDIT_TERM_LAW][k];
+        sum += term->factor * audit_stimulus_at(audit, term->index, t);
+    }
+    if (screen->n_terms[AUDIT_TERM_FLOW] > 0) {
+        sum += flows(audit, screen, stretch->from, t - stretch->from);
+    }
+    laws += fabs(sum);
+    if (screen->n_guards > 0) {
+        laws += audit_worst_guard(audit, screen, stretch, t);
+    }
+    answer->worst = laws != laws || sign != sign ? INFINITY : laws > -sign ? laws : -sign;
+    answer->t = t;
     answer->start = place[AUDIT_PLACE_START];
     answer->end = place[AUDIT_PLACE_END];
 }

@@ -11,12 +11,6 @@ enum { FEW_ALARMS = 4 };
 /* Instructions of a screen, about: of all, of an element of its image, of a value in its polynomials. */
 static const double screen_work = 250.0, element_work = 0.5, value_work = 2.5;
 
-static bool store(const struct dalcs_audit *audit, int index, bool wants_values,
-                  struct dalcs_audit_polynomials *p) {
-    return audit->reader.store != NULL &&
-           audit->reader.store(audit->reader.user, index, wants_values, p);
-}
-
 /* Do the values reach from one end of the stretch to the other? Times are known to their resolution, and events to what
  * changes no value by more than the tolerance. */
 static bool spans(const struct dalcs_audit *audit, const struct audit_part *part,
@@ -28,17 +22,20 @@ static bool spans(const struct dalcs_audit *audit, const struct audit_part *part
 
 /* At one of the watch's times, by an image of such steps where there is one. */
 static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
-                struct dalcs_audit_polynomials *p, const struct dalcs_audit_stretch *stretch,
-                struct audit_answer *answer) {
+                const struct dalcs_audit_stretch *stretch, struct audit_answer *answer) {
+    const struct dalcs_audit_polynomials *p = stretch->stored;
     const struct audit_part *part = &audit->part[stretch->part];
-    const int n_times = audit_n_times_before(part->watch, p->end);
+    const int n_times =
+        p->end >= 1.0 ? AUDIT_SCREEN_TIMES : audit_n_times_before(part->watch, p->end);
     const int m = (int)(n_times * audit_draw(audit));
-    const struct audit_image *image =
-        n_times > 0 ? audit_image_of(audit, part, screen, p, m) : NULL;
-    if (image == NULL && p->value == NULL) {
-        (void)store(audit, stretch->part, true, p);
+    struct audit_image_at *image = audit_image_again(screen, p, m);
+    if (image == NULL && n_times > 0) {
+        image = audit_image_of(audit, part, screen, p, m);
     }
-    audit_screen_ask(audit, part, screen, image, m, p, stretch, answer);
+    if (image == NULL && p->value == NULL) {
+        audit->reader.complete(audit->reader.user, stretch->part);
+    }
+    audit_screen_ask(audit, part->watch, screen, image, m, stretch, answer);
     if (!spans(audit, part, p, stretch)) {
         answer->worst = INFINITY;
     }
@@ -68,11 +65,9 @@ bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretc
                       bool can_look) {
     struct audit_part *part = &audit->part[stretch->part];
     struct audit_watch *watch = part->watch;
-    struct dalcs_audit_polynomials p;
     watch->asked = -1.0;
-    watch->makes = false;
-    const bool can_ask = can_look && store(audit, stretch->part, false, &p);
-    struct audit_screen *screen = can_ask ? audit_screen_of(part, &p) : NULL;
+    const bool can_ask = can_look && stretch->stored != NULL;
+    struct audit_screen *screen = can_ask ? audit_screen_of(part, stretch->stored) : NULL;
     watch->makes = can_ask && screen == NULL;
     if (screen != NULL && screen->rests > 0) {
         screen->rests--;
@@ -83,7 +78,7 @@ bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretc
         return watch->makes;
     }
     struct audit_answer answer;
-    ask(audit, screen, &p, stretch, &answer);
+    ask(audit, screen, stretch, &answer);
     return alarms(audit, watch, screen, &answer);
 }
 
@@ -103,14 +98,14 @@ static struct audit_screen *make(struct dalcs_audit *audit,
                                  const struct dalcs_audit_stretch *stretch,
                                  struct audit_answer *answer) {
     struct audit_part *part = &audit->part[stretch->part];
-    struct dalcs_audit_polynomials p;
-    if (!store(audit, stretch->part, true, &p)) {
+    if (stretch->stored == NULL) {
         return NULL;
     }
-    struct audit_screen *screen = audit_screen_make(audit, part, &p, &audit->now);
+    audit->reader.complete(audit->reader.user, stretch->part);
+    struct audit_screen *screen = audit_screen_make(audit, part, stretch->stored, &audit->now);
     audit->spent += part->cost;
     if (screen != NULL) {
-        ask(audit, screen, &p, stretch, answer);
+        ask(audit, screen, stretch, answer);
     }
     return screen;
 }
