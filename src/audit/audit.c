@@ -5,9 +5,8 @@
 
 #include <stdlib.h>
 
-/* A run that does nothing, of two elements: it starts, reads, writes and ends. In instructions, as are these of an
- * instant and a device: measured with callgrind on the netlists of the repository (doc/testing.md). */
-static const double start_work = 6.5e5;
+/* Instructions of an instant and a device, a node: measured with callgrind on the netlists of the repository
+ * (doc/testing.md). */
 static const double device_work = 300.0, node_work = 120.0;
 
 /* Of the work of the run, the part that closer looks may cost in any case, however much screens take. */
@@ -41,11 +40,8 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
     if (a == NULL) {
         return DALCS_E_NOMEM;
     }
-    *a = (struct dalcs_audit){.circuit = circuit,
-                              .options = *options,
-                              .reader = *reader,
-                              .seed = first_seed,
-                              .credit = options->share * start_work};
+    *a = (struct dalcs_audit){
+        .circuit = circuit, .options = *options, .reader = *reader, .seed = first_seed};
     enum dalcs_status status = options->n_parts > 0 ? audit_set_up(a) : DALCS_OK;
     for (int k = 0; k < options->n_parts && status == DALCS_OK; k++) {
         a->part[k].cost = instant_work(circuit, &a->part[k]) + options->read_work[k];
@@ -198,7 +194,8 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     part->past = part->length;
     part->length = stretch->to - stretch->from;
     part->watch->asked = -1.0;
-    if (audit->options.mode == DALCS_AUDIT_FULL) {
+    part->is_drawn = audit->options.mode == DALCS_AUDIT_FULL;
+    if (part->is_drawn) {
         return false;
     }
     const bool asks = audit_watch_asks(audit, stretch, can_look_inside(audit, stretch));
@@ -276,7 +273,10 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     if (part->watch->asked >= 0.0 && !part->watch->saw_beginning) {
         look_back(audit, stretch);
     }
-    if (can_look_inside(audit, stretch)) {
+    /* the last one of all is looked at for the scales that the run ends with */
+    const bool is_inside = can_look_inside(audit, stretch) &&
+                           (part->is_drawn || part->watch->asked >= 0.0 || part->was_integrated);
+    if (is_inside) {
         look_inside(audit, stretch);
     }
     struct dalcs_audit_state *end = &audit->before;
@@ -285,7 +285,7 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     look(audit, stretch->part, end);
     leave_behind(part);
     part->is_open = true;
-    if (can_look_inside(audit, stretch)) {
+    if (is_inside) {
         integrate(audit, stretch);
         audit_watch_learn(audit, stretch);
     }

@@ -55,6 +55,7 @@ struct audit_watch {
     double barycentric[AUDIT_MOST_NODES];
     double theta
         [AUDIT_SCREEN_TIMES]; /* in steps: one in each fourth, and its weights, of values and integrals */
+    bool is_weighed[AUDIT_SCREEN_TIMES]; /* their weights are there */
     double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
     double *column; /* [3][n_columns in whole quads] work */
     double *place;  /* work */

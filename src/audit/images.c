@@ -10,7 +10,7 @@ static void forget(struct audit_image *image) {
     *image = (struct audit_image){0};
 }
 
-/* The image of these steps, which may be new. */
+/* The image of these steps, which may be new; NULL: they may not come back. */
 static struct audit_image *find(struct audit_screen *screen,
                                 const struct dalcs_audit_polynomials *p) {
     for (int k = 0; k < AUDIT_IMAGES; k++) {
@@ -20,6 +20,13 @@ static struct audit_image *find(struct audit_screen *screen,
             screen->image_at = at;
             return image;
         }
+    }
+    const bool comes_back =
+        p->value == NULL || (screen->step == p->step && audit_is_same_end(screen->end, p->end));
+    screen->step = p->step;
+    screen->end = p->end;
+    if (!comes_back) {
+        return NULL;
     }
     screen->image_at = (screen->image_at + 1) % AUDIT_IMAGES;
     struct audit_image *image = &screen->image[screen->image_at];

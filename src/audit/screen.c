@@ -190,7 +190,9 @@ static bool start(struct dalcs_audit *audit, struct audit_part *part,
     watch->state_factor = factor;
     draw_states(audit, part, watch);
     find_barycentric(p, watch->barycentric);
-    audit_screen_draw_times(audit, watch, p);
+    for (int m = 0; m < AUDIT_SCREEN_TIMES; m++) {
+        watch->theta[m] = (m + audit_draw(audit)) / AUDIT_SCREEN_TIMES;
+    }
     return true;
 }
 

@@ -85,6 +85,7 @@ struct audit_screen {
     double guarded_from, guarded_to; /* s: no guard is below 0 in between */
     int n_terms[AUDIT_N_TERM_KINDS];
     struct audit_term *term[AUDIT_N_TERM_KINDS]; /* one behind the other */
+    double step, end;                            /* of the stretch before that had no image */
     int image_at;                                /* the one that was of use last */
     struct audit_image image[AUDIT_IMAGES];
 };
@@ -136,9 +137,8 @@ void audit_screen_place(const struct audit_watch *watch, const struct audit_scre
                         const struct dalcs_audit_polynomials *p, int m, const double *value,
                         double *place);
 
-/* The times that stretches are asked at. */
-void audit_screen_draw_times(struct dalcs_audit *audit, struct audit_watch *watch,
-                             const struct dalcs_audit_polynomials *p);
+/* The weights of the m-th of the times that stretches are asked at. */
+void audit_screen_weigh(struct audit_watch *watch, const struct dalcs_audit_polynomials *p, int m);
 
 /* Of these times, those before an end, in steps. */
 static inline int audit_n_times_before(const struct audit_watch *watch, double end) {

@@ -133,13 +133,10 @@ static void add_places(const struct audit_watch *watch, const struct audit_scree
     }
 }
 
-void audit_screen_draw_times(struct dalcs_audit *audit, struct audit_watch *watch,
-                             const struct dalcs_audit_polynomials *p) {
-    for (int m = 0; m < AUDIT_SCREEN_TIMES; m++) {
-        watch->theta[m] = (m + audit_draw(audit)) / AUDIT_SCREEN_TIMES;
-        weights_at(p, watch->barycentric, watch->theta[m], watch->now[m]);
-        flow_weights(p, watch->barycentric, watch->theta[m], watch->flow[m]);
-    }
+void audit_screen_weigh(struct audit_watch *watch, const struct dalcs_audit_polynomials *p, int m) {
+    weights_at(p, watch->barycentric, watch->theta[m], watch->now[m]);
+    flow_weights(p, watch->barycentric, watch->theta[m], watch->flow[m]);
+    watch->is_weighed[m] = true;
 }
 
 void audit_screen_place(const struct audit_watch *watch, const struct audit_screen *screen,

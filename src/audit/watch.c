@@ -28,6 +28,9 @@ static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
     const int n_times =
         p->end >= 1.0 ? AUDIT_SCREEN_TIMES : audit_n_times_before(part->watch, p->end);
     const int m = (int)(n_times * audit_draw(audit));
+    if (!part->watch->is_weighed[m]) {
+        audit_screen_weigh(part->watch, p, m);
+    }
     struct audit_image_at *image = audit_image_again(screen, p, m);
     if (image == NULL && n_times > 0) {
         image = audit_image_of(audit, part, screen, p, m);
