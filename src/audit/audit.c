@@ -45,7 +45,7 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
     enum dalcs_status status = options->n_parts > 0 ? audit_set_up(a) : DALCS_OK;
     for (int k = 0; k < options->n_parts && status == DALCS_OK; k++) {
         a->part[k].cost = instant_work(circuit, &a->part[k]) + options->read_work[k];
-        a->credit -=
+        a->budget.credit -=
             AUDIT_LOOK_INSTANTS * a->part[k].cost; /* of its end, which is looked at in any case */
     }
     if (status != DALCS_OK) {
@@ -69,8 +69,8 @@ void dalcs_audit_destroy(struct dalcs_audit *audit) {
 
 /* What the largest values so far are, at the beginning of each look at a stretch. */
 static void raise_scales(struct dalcs_audit *audit, int index) {
-    audit->reader.raise(audit->reader.user, index, audit->v_scale, audit->i_scale,
-                        audit->lambda_scale);
+    audit->reader.raise(audit->reader.user, index, audit->scale.v, audit->scale.i,
+                        audit->scale.lambda);
 }
 
 static void look(struct dalcs_audit *audit, int index, struct dalcs_audit_state *s) {
@@ -78,7 +78,7 @@ static void look(struct dalcs_audit *audit, int index, struct dalcs_audit_state 
     audit->reader.read(audit->reader.user, index, s);
     audit_note_scales(audit, part, s);
     audit_check_instant(audit, part, s);
-    audit->credit -= part->cost;
+    audit->budget.credit -= part->cost;
 }
 
 /* Is it this stretch's turn? Which ones are is drawn, so that no period of the circuit hides any. */
@@ -86,16 +86,16 @@ static bool is_drawn(struct dalcs_audit *audit, double cost) {
     if (audit->options.mode == DALCS_AUDIT_FULL) {
         return true;
     }
-    if (audit->credit < audit->threshold) {
+    if (audit->budget.credit < audit->budget.threshold) {
         return false;
     }
-    audit->threshold = 2.0 * cost * audit_draw(audit);
+    audit->budget.threshold = 2.0 * cost * audit_draw(audit);
     return true;
 }
 
 bool dalcs_audit_may(struct dalcs_audit *audit, double work) {
     const bool may = is_drawn(audit, work);
-    audit->credit -= may ? work : 0.0;
+    audit->budget.credit -= may ? work : 0.0;
     return may;
 }
 
@@ -105,15 +105,15 @@ double dalcs_audit_chance(struct dalcs_audit *audit) {
 
 void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int index, double defect,
                      double time) {
-    audit->part[index].is_coarse = false; /* what the last look was at is no matter here */
+    audit->part[index].at.is_coarse = false; /* what the last look was at is no matter here */
     audit_find(audit, &audit->part[index], law, index, defect, 1.0, time);
 }
 
 void dalcs_audit_earn(struct dalcs_audit *audit, double work) {
-    const double left = audit->options.share * work - audit->spent;
+    const double left = audit->options.share * work - audit->budget.spent;
     const double least = least_share * work;
-    audit->credit += left > least ? left : least;
-    audit->spent = 0.0;
+    audit->budget.credit += left > least ? left : least;
+    audit->budget.spent = 0.0;
 }
 
 /* Instants in a stretch with --audit full, beside its ends, and pieces that integrals are taken over. */
@@ -167,7 +167,7 @@ static void integrate(struct dalcs_audit *audit, const struct dalcs_audit_stretc
     const double to = stretch->to - 0.5 * audit_draw(audit) * length;
     if (from < to) {
         audit_check_interval(audit, part, from, to);
-        audit->credit -= INTERVAL_INSTANTS * part->cost;
+        audit->budget.credit -= INTERVAL_INSTANTS * part->cost;
     }
 }
 
@@ -175,9 +175,9 @@ static void integrate(struct dalcs_audit *audit, const struct dalcs_audit_stretc
  * (A. and V. Markov): what rounding of charges makes of currents, and of fluxes of voltages. */
 static void take_up(struct audit_part *part, const struct dalcs_audit_stretch *stretch) {
     const double s = stretch->degree;
-    part->is_coarse = stretch->rule == DALCS_AUDIT_COARSE;
-    part->step = stretch->step;
-    part->slope = stretch->step > 0.0 ? 2.0 * s * s / stretch->step : 0.0;
+    part->at.is_coarse = stretch->rule == DALCS_AUDIT_COARSE;
+    part->at.step = stretch->step;
+    part->at.slope = stretch->step > 0.0 ? 2.0 * s * s / stretch->step : 0.0;
 }
 
 /* The next stretch begins where that ended, and nobody has looked at it. */
@@ -191,17 +191,17 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
                              double work) {
     struct audit_part *part = &audit->part[stretch->part];
     audit->count.stretches++;
-    part->past = part->length;
-    part->length = stretch->to - stretch->from;
+    part->at.past = part->at.length;
+    part->at.length = stretch->to - stretch->from;
     part->watch->asked = -1.0;
-    part->is_drawn = audit->options.mode == DALCS_AUDIT_FULL;
-    if (part->is_drawn) {
+    part->at.is_drawn = audit->options.mode == DALCS_AUDIT_FULL;
+    if (part->at.is_drawn) {
         return false;
     }
     const bool asks = audit_watch_asks(audit, stretch, can_look_inside(audit, stretch));
     dalcs_audit_earn(audit, work);
-    part->is_drawn = audit->credit >= audit->threshold;
-    const bool passes = !asks && !part->is_drawn;
+    part->at.is_drawn = audit->budget.credit >= audit->budget.threshold;
+    const bool passes = !asks && !part->at.is_drawn;
     if (passes) {
         leave_behind(part);
     }
@@ -225,12 +225,12 @@ static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audi
     audit->now.side = DALCS_RIGHT;
     /* An event is early or late by what changes no value by more than the tolerance: that share of the stretch that it
      * ended, over which values change by their scales at most. A diode may have its signs that much later. */
-    part->lateness = fmin(part->tolerance * past, stretch->to - stretch->from);
+    part->at.lateness = fmin(part->tolerance * past, stretch->to - stretch->from);
     look(audit, stretch->part, &audit->now);
-    part->lateness = 0.0;
+    part->at.lateness = 0.0;
     if (part->is_open) {
         audit_check_crossing(audit, part, &audit->before, &audit->now);
-        audit->credit -= part->cost;
+        audit->budget.credit -= part->cost;
     }
     part->watch->saw_beginning = true;
     part->has_entered = true;
@@ -240,11 +240,11 @@ static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audi
 /* It was passed over, and what came before. */
 static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
-    if (!part->watch->is_put_off && part->past > 0.0) {
+    if (!part->watch->is_put_off && part->at.past > 0.0) {
         audit->reader.read_before(audit->reader.user, stretch->part, &audit->before);
         part->is_open = true;
     }
-    look_at_beginning(audit, stretch, part->past);
+    look_at_beginning(audit, stretch, part->at.past);
     audit_screen_rescale(audit, part);
 }
 
@@ -255,19 +255,19 @@ static bool is_settled(struct dalcs_audit *audit, const struct dalcs_audit_stret
     audit->now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
     audit->reader.read(audit->reader.user, stretch->part, &audit->now);
     audit_note_scales(audit, part, &audit->now);
-    return !audit_watch_begins(audit, stretch) && !part->is_drawn && !stretch->is_last;
+    return !audit_watch_begins(audit, stretch) && !part->at.is_drawn && !stretch->is_last;
 }
 
 void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
     take_up(part, stretch);
-    audit->credit -= stretch->first_look;
+    audit->budget.credit -= stretch->first_look;
     raise_scales(audit, stretch->part);
     if (part->watch->makes && is_settled(audit, stretch)) {
         leave_behind(part);
         return;
     }
-    audit->threshold =
+    audit->budget.threshold =
         2.0 * (AUDIT_LOOK_INSTANTS * part->cost + stretch->first_look) * audit_draw(audit);
     audit->count.audited++;
     if (part->watch->asked >= 0.0 && !part->watch->saw_beginning) {
@@ -275,7 +275,7 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     }
     /* the last one of all is looked at for the scales that the run ends with */
     const bool is_inside = can_look_inside(audit, stretch) &&
-                           (part->is_drawn || part->watch->asked >= 0.0 || part->was_integrated);
+                           (part->at.is_drawn || part->watch->asked >= 0.0 || part->was_integrated);
     if (is_inside) {
         look_inside(audit, stretch);
     }
@@ -300,7 +300,7 @@ void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stret
     }
     take_up(part, stretch);
     raise_scales(audit, index);
-    look_at_beginning(audit, stretch, part->length);
+    look_at_beginning(audit, stretch, part->at.length);
 }
 
 void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dalcs_side side,

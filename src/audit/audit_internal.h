@@ -74,22 +74,29 @@ struct audit_part {
     int n_nodes, *node;
     int n_couplings, *coupling;
     double tolerance;
-    double largest_volt; /* V: so far */
-    double volt, ampere; /* scales that every voltage and current is at least held to */
-    double formula[2];   /* V, A: the largest terms of its formulas */
-    double least, most;  /* S, of its conductances; 0: it has none */
-    double step;         /* s, of the stretch at hand */
-    double length;       /* s, of the stretch that was complete last */
-    double past;         /* s, of the one before the stretch at hand */
-    double lateness;     /* s, that an event may be early by, while its far side is looked at */
-    double slope; /* 1/s: most that a derivative in the stretch at hand may be of what it is of */
-    double cost;  /* of one instant, in instructions, about */
-    bool has_formula; /* one that bends or jumps: in no time it may be anything between */
-    bool has_entered; /* the state at its last event is in `before` */
-    bool is_open;     /* `before` is the end of the stretch that was just left */
-    bool is_coarse;   /* the stretch at hand */
-    bool is_drawn;    /* likewise, for a closer look */
-    bool was_integrated;
+
+    struct audit_floor {     /* of scales */
+        double largest_volt; /* V: so far */
+        double volt, ampere; /* that every voltage and current is at least held to */
+        double formula[2];   /* V, A: the largest terms of its formulas */
+        double least, most;  /* S, of its conductances; 0: it has none */
+    } floor;
+
+    struct audit_at_hand { /* the stretch that is looked at */
+        double step;       /* s */
+        double length;     /* s, of the stretch that was complete last */
+        double past;       /* s, of the one before that */
+        double lateness;   /* s, that an event may be early by, while its far side is looked at */
+        double slope;      /* 1/s: most that a derivative in it may be of what it is of */
+        bool is_coarse;
+        bool is_drawn; /* for a closer look */
+    } at;
+
+    double cost;         /* of one instant, in instructions, about */
+    bool has_formula;    /* one that bends or jumps: in no time it may be anything between */
+    bool has_entered;    /* the state at its last event is in `before` */
+    bool is_open;        /* `before` is the end of the stretch that was just left */
+    bool was_integrated; /* an interval in it was looked at */
     struct audit_watch *watch;
 };
 
@@ -107,34 +114,52 @@ struct dalcs_audit {
     const struct dalcs_circuit *circuit;
     struct dalcs_audit_options options;
     struct dalcs_audit_reader reader;
-    int n_lambdas;
-    int *node_of;      /* [n_nodes] that stands for all that shorts join with it */
-    bool *has_charge;  /* [n_nodes] a capacitor hangs on it */
-    bool *is_fed;      /* [n_nodes] ground, or a source without a jump at 0 holds it */
-    bool *is_held;     /* [n_nodes] likewise, whatever it does */
-    int *first_lambda; /* [n_devices] */
+
+    struct audit_net {
+        int n_lambdas;
+        int *node_of;      /* [n_nodes] that stands for all that shorts join with it */
+        bool *has_charge;  /* [n_nodes] a capacitor hangs on it */
+        bool *is_fed;      /* [n_nodes] ground, or a source without a jump at 0 holds it */
+        bool *is_held;     /* [n_nodes] likewise, whatever it does */
+        int *first_lambda; /* [n_devices] */
+    } net;
+
     struct audit_part *part;
-    struct audit_course *course;                  /* [n_stimuli] */
-    double *v_scale, *i_scale, *lambda_scale;     /* largest so far */
+    struct audit_course *course; /* [n_stimuli] */
+
+    struct audit_scales {
+        double *v, *i, *lambda; /* largest so far */
+    } scale;
+
     struct dalcs_audit_state now, later, shifted; /* work */
     struct dalcs_audit_state before; /* where stretches ended: parts share only ground */
     struct audit_sums sums;
-    int *cluster;   /* [n_nodes] work of crossing.c */
-    double *offset; /* [n_nodes] likewise */
+
+    struct audit_crossing {
+        int *cluster;   /* [n_nodes] work of crossing.c */
+        double *offset; /* [n_nodes] likewise */
+    } crossing;
 
     struct audit_worst {
         double defect, scale; /* the largest of each, in the law's own unit */
         double time;          /* s, of the defect */
         int part;
     } * worst_of[DALCS_AUDIT_N_LAWS]; /* [dalcs_audit_n_of] */
-    struct audit_worst coarse; /* of all of them, over its scale, at ends of coarse stretches */
-    enum dalcs_audit_law coarse_law;
-    int coarse_index;
+
+    struct audit_coarse {
+        double defect, time; /* the worst of all, over its scale, at ends of coarse stretches */
+        enum dalcs_audit_law law;
+        int index;
+    } coarse;
 
     struct dalcs_audit_summary count; /* of it, what is counted */
     uint64_t seed;
-    double credit, threshold; /* instructions */
-    double spent;             /* likewise, by screens since work was earned */
+
+    struct audit_budget {
+        double credit, threshold; /* instructions */
+        double spent;             /* likewise, by screens since work was earned */
+    } budget;
+
     struct dalcs_arena arena;
 };
 
@@ -178,12 +203,12 @@ static inline double audit_voltage(const struct dalcs_audit_state *s,
 /* What a voltage between two nodes is held to. */
 static inline double audit_volts(const struct dalcs_audit *audit, const struct audit_part *part,
                                  int a, int b) {
-    return fmax(fmax(audit->v_scale[a], audit->v_scale[b]), part->volt);
+    return fmax(fmax(audit->scale.v[a], audit->scale.v[b]), part->floor.volt);
 }
 
 static inline double audit_amperes(const struct dalcs_audit *audit, const struct audit_part *part,
                                    int device) {
-    return fmax(audit->i_scale[device], part->ampere);
+    return fmax(audit->scale.i[device], part->floor.ampere);
 }
 
 /* The current of a branch that is no capacitor, from the device's own law where that gives it. */

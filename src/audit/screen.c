@@ -125,37 +125,11 @@ static double allowed_of_state(const struct dalcs_audit *audit, const struct aud
     if (d->kind == DALCS_INDUCTOR) {
         return part->tolerance * audit_amperes(audit, part, device) + audit->options.abstol;
     }
-    const bool is_held = audit->is_held[d->node[0]] && audit->is_held[d->node[1]];
+    const bool is_held = audit->net.is_held[d->node[0]] && audit->net.is_held[d->node[1]];
     return d->kind == DALCS_CAPACITOR && !is_held
                ? part->tolerance * audit_volts(audit, part, d->node[0], d->node[1]) +
                      audit->options.vntol
                : 0.0;
-}
-
-/* What a scale may grow to before states are held to it. */
-static const double much = 4.0;
-
-void audit_screen_rescale(const struct dalcs_audit *audit, struct audit_part *part) {
-    struct audit_watch *watch = part->watch;
-    bool has_grown = false;
-    for (int k = 0; k < part->n_devices && watch->state_factor != NULL; k++) {
-        const double allowed = allowed_of_state(audit, part, part->device[k]);
-        has_grown |= allowed * fabs(watch->state_factor[k]) > much;
-    }
-    if (!has_grown) {
-        return;
-    }
-    for (int k = 0; k < part->n_devices; k++) {
-        const double allowed = allowed_of_state(audit, part, part->device[k]);
-        watch->state_factor[k] =
-            allowed > 0.0 ? copysign(1.0 / allowed, watch->state_factor[k]) : 0.0;
-    }
-    for (int k = 0; watch->screens.slot != NULL && k < 1 << watch->screens.log2_slots; k++) {
-        if (watch->screens.slot[k] != NULL) {
-            watch->screens.slot[k]->is_made = false;
-        }
-    }
-    watch->knows_states = false;
 }
 
 /* How the state of a coil or a capacitor goes into the sum of states. */
@@ -165,6 +139,25 @@ static void draw_states(struct dalcs_audit *audit, const struct audit_part *part
         const double allowed = allowed_of_state(audit, part, part->device[k]);
         watch->state_factor[k] = allowed > 0.0 ? audit_screen_weight(audit) / allowed : 0.0;
     }
+}
+
+void audit_screen_rescale(struct dalcs_audit *audit, struct audit_part *part) {
+    struct audit_watch *watch = part->watch;
+    bool has_grown = false;
+    for (int k = 0; k < part->n_devices && watch->state_factor != NULL; k++) {
+        const double allowed = allowed_of_state(audit, part, part->device[k]);
+        has_grown |= allowed * fabs(watch->state_factor[k]) > 1.0; /* than any that is drawn */
+    }
+    if (!has_grown) {
+        return;
+    }
+    draw_states(audit, part, watch);
+    for (int k = 0; watch->screens.slot != NULL && k < 1 << watch->screens.log2_slots; k++) {
+        if (watch->screens.slot[k] != NULL) {
+            watch->screens.slot[k]->is_made = false;
+        }
+    }
+    watch->knows_states = false;
 }
 
 /* What all screens of a part share, when the first of them is made. */

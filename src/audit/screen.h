@@ -99,8 +99,8 @@ struct audit_screen *audit_screen_make(struct dalcs_audit *audit, struct audit_p
                                        const struct dalcs_audit_polynomials *p,
                                        const struct dalcs_audit_state *s);
 
-/* States are held to the scales of now, where these have grown much: then no screen is left. */
-void audit_screen_rescale(const struct dalcs_audit *audit, struct audit_part *part);
+/* States are held to the scales of now, where these have grown: then no screen is left. */
+void audit_screen_rescale(struct dalcs_audit *audit, struct audit_part *part);
 
 void audit_screen_finish(struct audit_part *part);
 
@@ -121,16 +121,23 @@ bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part, doubl
 /* A random factor and sign, for a sum. */
 double audit_screen_weight(struct dalcs_audit *audit);
 
+struct audit_question {
+    const struct dalcs_audit_stretch *stretch;
+    double near;                  /* s, from its ends, where sources have no edge */
+    int m;                        /* of the watch's times */
+    struct audit_image_at *image; /* of that; NULL: values are asked */
+};
+
 struct audit_answer {
     double worst;      /* how far beyond what is allowed the worst is, 1 where it just is not */
     double t;          /* s, of a time that was asked at */
     double start, end; /* sums of states */
 };
 
-/* screen_sum.c: of an image at the m-th of the watch's times; NULL: of the values. */
+/* screen_sum.c */
 void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch,
-                      struct audit_screen *screen, struct audit_image_at *image, int m,
-                      const struct dalcs_audit_stretch *stretch, struct audit_answer *answer);
+                      struct audit_screen *screen, const struct audit_question *q,
+                      struct audit_answer *answer);
 
 /* What the rows make of n_nodes values of each column, without constants and stimuli, at the m-th time. */
 void audit_screen_place(const struct audit_watch *watch, const struct audit_screen *screen,
@@ -149,19 +156,14 @@ static inline int audit_n_times_before(const struct audit_watch *watch, double e
     return n;
 }
 
-/* Sources are asked this part of a stretch from its ends, where they have no edge: a command that comes so much too early
- * or too late is seen. */
-static const double audit_beside = 1e-6;
-
 /* guards.c: how far below 0 the worst guard is at three times. */
 double audit_worst_guard_between(struct dalcs_audit *audit, struct audit_screen *screen,
                                  double from, double to, double t);
 
 static inline double audit_worst_guard(struct dalcs_audit *audit, struct audit_screen *screen,
-                                       const struct dalcs_audit_stretch *stretch, double t) {
-    const double near = audit_beside * (stretch->to - stretch->from);
-    const double from = stretch->from + near;
-    const double to = stretch->to - near;
+                                       const struct audit_question *q, double t) {
+    const double from = q->stretch->from + q->near;
+    const double to = q->stretch->to - q->near;
     return screen->guarded_from <= from && to <= screen->guarded_to
                ? 0.0
                : audit_worst_guard_between(audit, screen, from, to, t);

@@ -68,8 +68,8 @@ void audit_add_affine(const struct audit_filling *f, struct dalcs_audit_row *row
             add_current(f, row, term->index, times);
             break;
         case DALCS_QUANTITY_PAIR:
-            r->add_lambda(r->user, f->index, f->audit->first_lambda[device] + term->index, times,
-                          row);
+            r->add_lambda(r->user, f->index, f->audit->net.first_lambda[device] + term->index,
+                          times, row);
             break;
         default:
             dalcs_audit_row_add_stimulus(row, term->index, times);
@@ -153,7 +153,7 @@ static void weigh_nodes(struct audit_filling *f) {
     const struct dalcs_audit *audit = f->audit;
     double *by_current = f->watch->fill.node_weight;
     double *by_charge = f->watch->fill.node_weight + audit->circuit->n_nodes;
-    double *charge = audit->offset; /* free between events */
+    double *charge = audit->crossing.offset; /* free between events */
     by_current[0] = by_charge[0] = 0.0;
     for (int k = 0; k < f->part->n_nodes; k++) {
         charge[f->part->node[k]] = 0.0;
@@ -161,7 +161,7 @@ static void weigh_nodes(struct audit_filling *f) {
     for (int k = 0; k < f->part->n_devices; k++) {
         const struct dalcs_device *d = &audit->circuit->device[f->part->device[k]];
         for (int e = 0; e < 2 && d->kind == DALCS_CAPACITOR; e++) {
-            charge[audit->node_of[d->node[e]]] +=
+            charge[audit->net.node_of[d->node[e]]] +=
                 d->value * audit_volts(audit, f->part, d->node[0], d->node[1]);
         }
     }
@@ -169,7 +169,7 @@ static void weigh_nodes(struct audit_filling *f) {
         const int node = f->part->node[k];
         const double amperes = f->part->tolerance * audit->sums.scale[node] +
                                audit->sums.rounding[node] + audit->options.abstol;
-        const bool is_charge = audit->has_charge[node];
+        const bool is_charge = audit->net.has_charge[node];
         by_current[node] = is_charge ? 0.0 : audit_over(f, amperes);
         by_charge[node] =
             is_charge ? audit_over(f, f->part->tolerance * charge[node] + amperes * f->step) : 0.0;
@@ -181,8 +181,8 @@ static void fill_nodes(const struct audit_filling *f, int device) {
     const struct dalcs_audit *audit = f->audit;
     const struct dalcs_device *d = &audit->circuit->device[device];
     const int n_nodes = audit->circuit->n_nodes;
-    const int a = audit->node_of[d->node[0]];
-    const int b = audit->node_of[d->node[1]];
+    const int a = audit->net.node_of[d->node[0]];
+    const int b = audit->net.node_of[d->node[1]];
     const double *weight = f->watch->fill.node_weight;
     const double by_charge = weight[n_nodes + a] - weight[n_nodes + b];
     if (d->kind == DALCS_CAPACITOR) {

@@ -219,14 +219,13 @@ DALCS_TWICE(double, multiply,
 
 /* In the signs that read them, at their three times. */
 static void add_to_signs(struct dalcs_audit *audit, const struct audit_screen *screen,
-                         const struct dalcs_audit_stretch *stretch, double t, double *place) {
-    const double near = audit_beside * (stretch->to - stretch->from);
+                         const struct audit_question *q, double t, double *place) {
     for (int k = 0; k < screen->n_terms[AUDIT_TERM_SIGN]; k++) {
         const struct audit_term *term = &screen->term[AUDIT_TERM_SIGN][k];
         double *of = place + term->place;
         of[0] += term->factor * audit_stimulus_at(audit, term->index, t);
-        of[1] += term->factor * audit_stimulus_at(audit, term->index, stretch->from + near);
-        of[2] += term->factor * audit_stimulus_at(audit, term->index, stretch->to - near);
+        of[1] += term->factor * audit_stimulus_at(audit, term->index, q->stretch->from + q->near);
+        of[2] += term->factor * audit_stimulus_at(audit, term->index, q->stretch->to - q->near);
     }
 }
 
@@ -267,22 +266,23 @@ static double ask_values(struct dalcs_audit *audit, const struct audit_watch *wa
 }
 
 void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch,
-                      struct audit_screen *screen, struct audit_image_at *image, int m,
-                      const struct dalcs_audit_stretch *stretch, struct audit_answer *answer) {
+                      struct audit_screen *screen, const struct audit_question *q,
+                      struct audit_answer *answer) {
+    const struct dalcs_audit_stretch *stretch = q->stretch;
     const struct dalcs_audit_polynomials *p = stretch->stored;
     double *place = watch->place;
-    double theta = watch->theta[m];
+    double theta = watch->theta[q->m];
     double laws = 0.0;
     double sign;
-    if (image != NULL) {
-        sign = multiply(screen, p, m, image, place, &laws);
+    if (q->image != NULL) {
+        sign = multiply(screen, p, q->m, q->image, place, &laws);
     } else {
-        theta = ask_values(audit, watch, screen, m, p);
+        theta = ask_values(audit, watch, screen, q->m, p);
         sign = least_sign(screen->n_places, place);
     }
     const double t = stretch->from + theta * p->step;
     if (screen->n_terms[AUDIT_TERM_SIGN] > 0) {
-        add_to_signs(audit, screen, stretch, t, place);
+        add_to_signs(audit, screen, q, t, place);
         sign = least_sign(screen->n_places, place);
     }
     double sum = place[AUDIT_PLACE_LAWS] + screen->rate * (t - stretch->from);
@@ -295,7 +295,7 @@ void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch
     }
     laws += fabs(sum);
     if (screen->n_guards > 0) {
-        laws += audit_worst_guard(audit, screen, stretch, t);
+        laws += audit_worst_guard(audit, screen, q, t);
     }
     answer->worst = laws != laws || sign != sign ? INFINITY : laws > -sign ? laws : -sign;
     answer->t = t;

@@ -11,39 +11,37 @@ enum { FEW_ALARMS = 4 };
 /* Instructions of a screen, about: of all, of an element of its image, of a value in its polynomials. */
 static const double screen_work = 250.0, element_work = 0.5, value_work = 2.5;
 
-/* Do the values reach from one end of the stretch to the other? Times are known to their resolution, and events to what
- * changes no value by more than the tolerance. */
-static bool spans(const struct dalcs_audit *audit, const struct audit_part *part,
-                  const struct dalcs_audit_polynomials *p,
-                  const struct dalcs_audit_stretch *stretch) {
-    const double length = stretch->to - stretch->from;
-    return length - p->end * p->step <= part->tolerance * length + 4.0 * audit->options.resolution;
-}
-
-/* At one of the watch's times, by an image of such steps where there is one. */
+/* At one of the watch's times, by an image of such steps where there is one. The values have to reach from one end of the
+ * stretch to the other. Times are known to their resolution, and events to what changes no value by more than the
+ * tolerance: so near an end is as good as there. */
 static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
                 const struct dalcs_audit_stretch *stretch, struct audit_answer *answer) {
     const struct dalcs_audit_polynomials *p = stretch->stored;
     const struct audit_part *part = &audit->part[stretch->part];
+    struct audit_watch *watch = part->watch;
+    const double length = stretch->to - stretch->from;
     const int n_times =
         p->end >= 1.0 ? AUDIT_SCREEN_TIMES : audit_n_times_before(part->watch, p->end);
-    const int m = (int)(n_times * audit_draw(audit));
-    if (!part->watch->is_weighed[m]) {
-        audit_screen_weigh(part->watch, p, m);
+    struct audit_question q = {.stretch = stretch,
+                               .near = part->tolerance * length + 4.0 * audit->options.resolution,
+                               .m = (int)(n_times * audit_draw(audit))};
+    if (!watch->is_weighed[q.m]) {
+        audit_screen_weigh(watch, p, q.m);
     }
-    struct audit_image_at *image = audit_image_again(screen, p, m);
-    if (image == NULL && n_times > 0) {
-        image = audit_image_of(audit, part, screen, p, m);
+    q.image = audit_image_again(screen, p, q.m);
+    if (q.image == NULL && n_times > 0) {
+        q.image = audit_image_of(audit, part, screen, p, q.m);
     }
-    if (image == NULL && p->value == NULL) {
+    if (q.image == NULL && p->value == NULL) {
         audit->reader.complete(audit->reader.user, stretch->part);
     }
-    audit_screen_ask(audit, part->watch, screen, image, m, stretch, answer);
-    if (!spans(audit, part, p, stretch)) {
+    audit_screen_ask(audit, watch, screen, &q, answer);
+    if (length - p->end * p->step > q.near) {
         answer->worst = INFINITY;
     }
-    audit->spent += screen_work + (image != NULL ? element_work * p->n_inputs * screen->n_places
-                                                 : value_work * p->n_nodes * p->n_columns);
+    audit->budget.spent +=
+        screen_work + (q.image != NULL ? element_work * p->n_inputs * screen->n_places
+                                       : value_work * p->n_nodes * p->n_columns);
 }
 
 /* Is the stretch to be looked at, for what the screen says, or because states are not what they were at the end of the one
@@ -56,7 +54,7 @@ static bool alarms(struct dalcs_audit *audit, struct audit_watch *watch,
     watch->knows_states = true;
     audit->count.screened++;
     if ((answer->worst <= screen->limit && jump <= screen->limit) ||
-        (screen->alarms >= FEW_ALARMS && audit->credit < 0.0)) {
+        (screen->alarms >= FEW_ALARMS && audit->budget.credit < 0.0)) {
         return false;
     }
     screen->alarms++;
@@ -106,7 +104,7 @@ static struct audit_screen *make(struct dalcs_audit *audit,
     }
     audit->reader.complete(audit->reader.user, stretch->part);
     struct audit_screen *screen = audit_screen_make(audit, part, stretch->stored, &audit->now);
-    audit->spent += part->cost;
+    audit->budget.spent += part->cost;
     if (screen != NULL) {
         ask(audit, screen, stretch, answer);
     }
