@@ -21,8 +21,7 @@ static struct audit_image *find(struct audit_screen *screen,
             return image;
         }
     }
-    const bool comes_back =
-        p->value == NULL || (screen->step == p->step && audit_is_same_end(screen->end, p->end));
+    const bool comes_back = screen->step == p->step && audit_is_same_end(screen->end, p->end);
     screen->step = p->step;
     screen->end = p->end;
     if (!comes_back) {
@@ -43,7 +42,7 @@ static bool is_due(const struct audit_image *image, const struct dalcs_audit_pol
     for (int m = 0; m < AUDIT_SCREEN_TIMES; m++) {
         n_made += image->at[m].place != NULL ? 1 : 0;
     }
-    return p->value == NULL || image->n_asked >= (long)n_made * p->n_inputs;
+    return image->n_asked >= (long)n_made * p->n_inputs;
 }
 
 static void compose(const struct dalcs_audit *audit, const struct audit_part *part,
