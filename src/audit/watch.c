@@ -8,8 +8,8 @@ enum { MOST_DOUBLINGS = 16 };
  * false, such as of states that jump in each period, are looked at while the run can afford it. */
 enum { FEW_ALARMS = 4 };
 
-/* Instructions of a screen, about: of all, of an element of its image, of a value in its polynomials. */
-static const double screen_work = 250.0, element_work = 0.5, value_work = 2.5;
+/* Instructions of a screen, about: of what is handed over and asked, of an element of its image, of a value in its polynomials. */
+static const double screen_work = 600.0, element_work = 0.5, value_work = 2.5;
 
 /* At one of the watch's times, by an image of such steps where there is one. The values have to reach from one end of the
  * stretch to the other. Times are known to their resolution, and events to what changes no value by more than the
