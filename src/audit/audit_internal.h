@@ -57,7 +57,7 @@ struct audit_watch {
         [AUDIT_SCREEN_TIMES]; /* in steps: one in each fourth, and its weights, of values and integrals */
     bool is_weighed[AUDIT_SCREEN_TIMES]; /* their weights are there */
     double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
-    double *column; /* [3][n_columns in whole quads] work */
+    double *column; /* [2][n_columns in whole quads] work */
     double *place;  /* work */
     size_t place_room;
     double states; /* the sum of states where the stretch before ended */

@@ -14,10 +14,9 @@ static void forget(struct audit_image *image) {
 static struct audit_image *find(struct audit_screen *screen,
                                 const struct dalcs_audit_polynomials *p) {
     for (int k = 0; k < AUDIT_IMAGES; k++) {
-        const int at = (screen->image_at + k) % AUDIT_IMAGES;
-        struct audit_image *image = &screen->image[at];
+        struct audit_image *image = &screen->image[k];
         if (image->step == p->step && audit_is_same_end(image->end, p->end)) {
-            screen->image_at = at;
+            screen->image_at = k;
             return image;
         }
     }

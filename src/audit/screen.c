@@ -169,7 +169,7 @@ static bool start(struct dalcs_audit *audit, struct audit_part *part,
     struct audit_watch *watch = part->watch;
     struct audit_sums_of_laws *fill = &watch->fill;
     const size_t n_columns = (size_t)dalcs_quads_of(p->n_columns);
-    watch->column = dalcs_arena_alloc(&audit->arena, 3 * n_columns, sizeof(double));
+    watch->column = dalcs_arena_alloc(&audit->arena, 2 * n_columns, sizeof(double));
     fill->node_weight =
         dalcs_arena_alloc(&audit->arena, 2 * (size_t)audit->circuit->n_nodes, sizeof(double));
     bool complete = watch->column != NULL && fill->node_weight != NULL;

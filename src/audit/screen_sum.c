@@ -13,7 +13,7 @@
 static void weights_at(const struct dalcs_audit_polynomials *p, const double *barycentric,
                        double theta, double *w) {
     double sum = 0.0;
-    for (int k = 0; k < p->n_nodes; k++) {
+    for (int k = p->n_nodes - 1; k >= 0; k--) { /* most end at the last one */
         if (theta == p->node[k]) {
             memset(w, 0, (size_t)p->n_nodes * sizeof(double));
             w[k] = 1.0;
@@ -40,39 +40,6 @@ static void flow_weights(const struct dalcs_audit_polynomials *p, const double *
     }
 }
 
-/* Sums over the nodes of values times weights; n in whole quads. */
-DALCS_TWICE(void, combine,
-            (int n, int stride, int n_nodes, const double *value, const double *w, double *sum),
-            (n, stride, n_nodes, value, w, sum)) {
-    for (int c = 0; c < n; c += DALCS_QUAD) {
-        dalcs_quad all = {0.0};
-        for (int k = 0; k < n_nodes; k++) {
-            dalcs_quad of;
-            dalcs_quad_load(&of, value + k * stride + c);
-            all += of * w[k];
-        }
-        dalcs_quad_store(sum + c, &all);
-    }
-}
-
-/* Two at once. */
-DALCS_TWICE(void, combine_both,
-            (int n, int stride, int n_nodes, const double *value, const double *const *w,
-             double *const *sum),
-            (n, stride, n_nodes, value, w, sum)) {
-    for (int c = 0; c < n; c += DALCS_QUAD) {
-        dalcs_quad all[2] = {{0.0}, {0.0}};
-        for (int k = 0; k < n_nodes; k++) {
-            dalcs_quad of;
-            dalcs_quad_load(&of, value + k * stride + c);
-            all[0] += of * w[0][k];
-            all[1] += of * w[1][k];
-        }
-        dalcs_quad_store(sum[0] + c, &all[0]);
-        dalcs_quad_store(sum[1] + c, &all[1]);
-    }
-}
-
 static inline __attribute__((always_inline)) double find_product(int n, const double *row,
                                                                  const double *value) {
     dalcs_quad sum = {0.0};
@@ -86,13 +53,9 @@ static inline __attribute__((always_inline)) double find_product(int n, const do
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-DALCS_TWICE(double, product, (int n, const double *row, const double *value), (n, row, value)) {
-    return find_product(n, row, value);
-}
-
 /* ---- Places -------------------------------------------------------------------------------------- */
 
-/* Of a time in the stretch and its end; end == NULL: that of the step. Beside them a node. */
+/* Of a time in the stretch and its end. Beside them a node. */
 struct weights {
     const double *now, *flow, *end;
     int node;
@@ -103,33 +66,81 @@ static int node_of(const struct dalcs_audit_polynomials *p, int m) {
     return 1 + m * (p->n_nodes - 1) / AUDIT_SCREEN_TIMES;
 }
 
-/* Adds what the rows make of these values. */
+/* Sums of a quad of columns over the nodes: at the time, over the time before it, and at the end. */
+struct audit_quads {
+    dalcs_quad now, flow, end;
+};
+
+static inline __attribute__((always_inline)) struct audit_quads
+combine(const struct dalcs_audit_polynomials *p, const struct weights *w, const double *value) {
+    struct audit_quads sum = {{0.0}, {0.0}, {0.0}};
+    const double *now = w->now;
+    const double *flow = w->flow;
+    const double *end = w->end;
+    for (int k = 0; k < p->n_nodes; k++, value += p->stride) {
+        dalcs_quad of;
+        dalcs_quad_load(&of, value);
+        sum.now += of * now[k];
+        sum.flow += of * flow[k];
+        sum.end += of * end[k];
+    }
+    return sum;
+}
+
+static inline __attribute__((always_inline)) double total(const dalcs_quad *q) {
+    return ((*q)[0] + (*q)[1]) + ((*q)[2] + (*q)[3]);
+}
+
+/* Adds what the rows make of these values; *now and *last: those at the time and at the end. */
+DALCS_TWICE(void, add_rows,
+            (const struct audit_screen *screen, const struct dalcs_audit_polynomials *p,
+             const struct weights *w, const double *value, double *now, double *last,
+             double *place),
+            (screen, p, w, value, now, last, place)) {
+    const int n = dalcs_quads_of(p->n_columns);
+    const double *row = screen->row;
+    dalcs_quad laws = {0.0};
+    dalcs_quad start = {0.0};
+    dalcs_quad end = {0.0};
+    dalcs_quad node = {0.0};
+    for (int c = 0; c < n; c += DALCS_QUAD, row += DALCS_QUAD, value += DALCS_QUAD) {
+        const struct audit_quads sum = combine(p, w, value);
+        dalcs_quad first;
+        dalcs_quad of_node;
+        dalcs_quad by;
+        dalcs_quad_load(&first, value);
+        dalcs_quad_load(&of_node, value + w->node * p->stride);
+        dalcs_quad_load(&by, row + AUDIT_ROW_NOW * n);
+        laws += by * sum.now;
+        node += by * of_node;
+        dalcs_quad_load(&by, row + AUDIT_ROW_FLOW * n);
+        laws += by * (sum.flow * p->step);
+        dalcs_quad_load(&by, row + AUDIT_ROW_START * n);
+        laws -= by * first;
+        dalcs_quad_load(&by, row + AUDIT_ROW_STATES * n);
+        start += by * first;
+        end += by * sum.end;
+        dalcs_quad_store(now + c, &sum.now);
+        dalcs_quad_store(last + c, &sum.end);
+    }
+    place[AUDIT_PLACE_LAWS] += total(&laws);
+    place[AUDIT_PLACE_START] += total(&start);
+    place[AUDIT_PLACE_END] += total(&end);
+    place[AUDIT_PLACE_NODE] += total(&node);
+}
+
 static void add_places(const struct audit_watch *watch, const struct audit_screen *screen,
                        const struct dalcs_audit_polynomials *p, const struct weights *w,
                        const double *value, double *place) {
-    const int n = dalcs_quads_of(p->n_columns);
-    const double *const by[2] = {w->now, w->flow};
-    double *const sum[2] = {watch->column, watch->column + n};
-    combine_both(n, p->stride, p->n_nodes, value, by, sum);
-    const double *last = value + (p->n_nodes - 1) * p->stride;
-    if (w->end != NULL) {
-        combine(n, p->stride, p->n_nodes, value, w->end, watch->column + 2 * n);
-        last = watch->column + 2 * n;
-    }
-    const double *row = screen->row;
-    const double *states = row + AUDIT_ROW_STATES * n;
-    place[AUDIT_PLACE_NODE] += product(n, row + AUDIT_ROW_NOW * n, value + w->node * p->stride);
-    place[AUDIT_PLACE_LAWS] += product(n, row + AUDIT_ROW_NOW * n, sum[0]) +
-                               p->step * product(n, row + AUDIT_ROW_FLOW * n, sum[1]) -
-                               product(n, row + AUDIT_ROW_START * n, value);
-    place[AUDIT_PLACE_START] += product(n, states, value);
-    place[AUDIT_PLACE_END] += product(n, states, last);
+    double *now = watch->column;
+    double *last = watch->column + dalcs_quads_of(p->n_columns);
+    add_rows(screen, p, w, value, now, last, place);
     const struct audit_term *term = screen->term[AUDIT_TERM_COLUMN];
-    for (int k = 0; k < screen->n_terms[AUDIT_TERM_COLUMN]; k++) {
-        double *of = place + term[k].place;
-        of[0] += term[k].factor * sum[0][term[k].index];
-        of[1] += term[k].factor * value[term[k].index];
-        of[2] += term[k].factor * last[term[k].index];
+    for (int k = 0; k < screen->n_terms[AUDIT_TERM_COLUMN]; k++, term++) {
+        double *of = place + term->place;
+        of[0] += term->factor * now[term->index];
+        of[1] += term->factor * value[term->index];
+        of[2] += term->factor * last[term->index];
     }
 }
 
@@ -143,11 +154,8 @@ void audit_screen_place(const struct audit_watch *watch, const struct audit_scre
                         const struct dalcs_audit_polynomials *p, int m, const double *value,
                         double *place) {
     double end[AUDIT_MOST_NODES];
-    struct weights w = {watch->now[m], watch->flow[m], NULL, node_of(p, m)};
-    if (p->end != 1.0) {
-        weights_at(p, watch->barycentric, p->end, end);
-        w.end = end;
-    }
+    weights_at(p, watch->barycentric, p->end, end);
+    const struct weights w = {watch->now[m], watch->flow[m], end, node_of(p, m)};
     add_places(watch, screen, p, &w, value, place);
 }
 
