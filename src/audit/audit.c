@@ -5,11 +5,12 @@
 
 #include <stdlib.h>
 
-/* A run that does nothing, of two elements: it starts, reads, writes and ends. A part of that nobody feels: a quarter is
- * for the first segments, each of which is looked into, a quarter for modes that are new. In instructions, as are these of
- * an instant and a device: measured with callgrind on the netlists of the repository (doc/testing.md). */
-static const double start_work = 6.5e5, unfelt = 0.25;
+/* Instructions of an instant and a device, a node: measured with callgrind on the netlists of the repository
+ * (doc/testing.md). */
 static const double device_work = 300.0, node_work = 120.0;
+
+/* Of the work of the run, the part that closer looks may cost in any case, however much screens take. */
+static const double least_share = 0.005;
 
 /* Of switches, whose controls are read, and sources, whose edges are looked for. */
 static const double moving_work = 1800.0;
@@ -39,16 +40,12 @@ enum dalcs_status dalcs_audit_create(struct dalcs_audit **audit,
     if (a == NULL) {
         return DALCS_E_NOMEM;
     }
-    *a = (struct dalcs_audit){.circuit = circuit,
-                              .options = *options,
-                              .reader = *reader,
-                              .seed = first_seed,
-                              .credit = unfelt * start_work,
-                              .reserve = unfelt * start_work};
+    *a = (struct dalcs_audit){
+        .circuit = circuit, .options = *options, .reader = *reader, .seed = first_seed};
     enum dalcs_status status = options->n_parts > 0 ? audit_set_up(a) : DALCS_OK;
     for (int k = 0; k < options->n_parts && status == DALCS_OK; k++) {
         a->part[k].cost = instant_work(circuit, &a->part[k]) + options->read_work[k];
-        a->credit -=
+        a->budget.credit -=
             AUDIT_LOOK_INSTANTS * a->part[k].cost; /* of its end, which is looked at in any case */
     }
     if (status != DALCS_OK) {
@@ -72,8 +69,8 @@ void dalcs_audit_destroy(struct dalcs_audit *audit) {
 
 /* What the largest values so far are, at the beginning of each look at a stretch. */
 static void raise_scales(struct dalcs_audit *audit, int index) {
-    audit->reader.raise(audit->reader.user, index, audit->v_scale, audit->i_scale,
-                        audit->lambda_scale);
+    audit->reader.raise(audit->reader.user, index, audit->scale.v, audit->scale.i,
+                        audit->scale.lambda);
 }
 
 static void look(struct dalcs_audit *audit, int index, struct dalcs_audit_state *s) {
@@ -81,7 +78,7 @@ static void look(struct dalcs_audit *audit, int index, struct dalcs_audit_state 
     audit->reader.read(audit->reader.user, index, s);
     audit_note_scales(audit, part, s);
     audit_check_instant(audit, part, s);
-    audit->credit -= part->cost;
+    audit->budget.credit -= part->cost;
 }
 
 /* Is it this stretch's turn? Which ones are is drawn, so that no period of the circuit hides any. */
@@ -89,16 +86,16 @@ static bool is_drawn(struct dalcs_audit *audit, double cost) {
     if (audit->options.mode == DALCS_AUDIT_FULL) {
         return true;
     }
-    if (audit->credit < audit->threshold) {
+    if (audit->budget.credit < audit->budget.threshold) {
         return false;
     }
-    audit->threshold = 2.0 * cost * audit_draw(audit);
+    audit->budget.threshold = 2.0 * cost * audit_draw(audit);
     return true;
 }
 
 bool dalcs_audit_may(struct dalcs_audit *audit, double work) {
     const bool may = is_drawn(audit, work);
-    audit->credit -= may ? work : 0.0;
+    audit->budget.credit -= may ? work : 0.0;
     return may;
 }
 
@@ -108,12 +105,15 @@ double dalcs_audit_chance(struct dalcs_audit *audit) {
 
 void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int index, double defect,
                      double time) {
-    audit->part[index].is_coarse = false; /* what the last look was at is no matter here */
+    audit->part[index].at.is_coarse = false; /* what the last look was at is no matter here */
     audit_find(audit, &audit->part[index], law, index, defect, 1.0, time);
 }
 
 void dalcs_audit_earn(struct dalcs_audit *audit, double work) {
-    audit->credit += audit->options.share * work;
+    const double left = audit->options.share * work - audit->budget.spent;
+    const double least = least_share * work;
+    audit->budget.credit += left > least ? left : least;
+    audit->budget.spent = 0.0;
 }
 
 /* Instants in a stretch with --audit full, beside its ends, and pieces that integrals are taken over. */
@@ -159,14 +159,15 @@ static void integrate(struct dalcs_audit *audit, const struct dalcs_audit_stretc
         }
         return;
     }
-    if (!(audit_draw(audit) < with_interval || stretch->is_last)) {
+    if (!(audit_draw(audit) < with_interval || (stretch->is_last && part->was_integrated))) {
         return;
     }
+    part->was_integrated = true;
     const double from = stretch->from + 0.5 * audit_draw(audit) * length;
     const double to = stretch->to - 0.5 * audit_draw(audit) * length;
     if (from < to) {
         audit_check_interval(audit, part, from, to);
-        audit->credit -= INTERVAL_INSTANTS * part->cost;
+        audit->budget.credit -= INTERVAL_INSTANTS * part->cost;
     }
 }
 
@@ -174,36 +175,41 @@ static void integrate(struct dalcs_audit *audit, const struct dalcs_audit_stretc
  * (A. and V. Markov): what rounding of charges makes of currents, and of fluxes of voltages. */
 static void take_up(struct audit_part *part, const struct dalcs_audit_stretch *stretch) {
     const double s = stretch->degree;
-    part->is_coarse = stretch->rule == DALCS_AUDIT_COARSE;
-    part->step = stretch->step;
-    part->slope = stretch->step > 0.0 ? 2.0 * s * s / stretch->step : 0.0;
+    part->at.is_coarse = stretch->rule == DALCS_AUDIT_COARSE;
+    part->at.step = stretch->step;
+    part->at.slope = stretch->step > 0.0 ? 2.0 * s * s / stretch->step : 0.0;
+}
+
+/* The next stretch begins where that ended, and nobody has looked at it. */
+static void leave_behind(struct audit_part *part) {
+    part->is_open = false;
+    part->watch->saw_beginning = false;
+    part->watch->is_put_off = false;
 }
 
 bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
                              double work) {
     struct audit_part *part = &audit->part[stretch->part];
     audit->count.stretches++;
-    audit->credit += audit->options.share * work;
-    part->length = stretch->to - stretch->from;
+    part->at.past = part->at.length;
+    part->at.length = stretch->to - stretch->from;
     part->watch->asked = -1.0;
-    if (audit->options.mode == DALCS_AUDIT_FULL) {
+    part->at.is_drawn = audit->options.mode == DALCS_AUDIT_FULL;
+    if (part->at.is_drawn) {
         return false;
     }
     const bool asks = audit_watch_asks(audit, stretch, can_look_inside(audit, stretch));
-    const bool is_drawn = audit->credit >= audit->threshold;
-    part->watch->is_brief = part->watch->makes && !is_drawn;
-    const bool passes = !asks && !is_drawn;
+    dalcs_audit_earn(audit, work);
+    part->at.is_drawn = audit->budget.credit >= audit->budget.threshold;
+    const bool passes = !asks && !part->at.is_drawn;
     if (passes) {
-        part->is_open = false;
+        leave_behind(part);
     }
     return passes;
 }
 
 bool dalcs_audit_begins(struct dalcs_audit *audit, int index) {
-    struct audit_part *part = &audit->part[index];
-    part->past = part->length;
-    part->watch->saw_beginning = false;
-    part->watch->is_put_off = false;
+    const struct audit_part *part = &audit->part[index];
     return part->is_open || !part->has_entered;
 }
 
@@ -211,19 +217,20 @@ void dalcs_audit_put_off(struct dalcs_audit *audit, int index) {
     audit->part[index].watch->is_put_off = true;
 }
 
-static void look_at_beginning(struct dalcs_audit *audit,
-                              const struct dalcs_audit_stretch *stretch) {
+/* past: s, the length of the stretch before. */
+static void look_at_beginning(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
+                              double past) {
     struct audit_part *part = &audit->part[stretch->part];
     audit->now.t = stretch->from;
     audit->now.side = DALCS_RIGHT;
     /* An event is early or late by what changes no value by more than the tolerance: that share of the stretch that it
      * ended, over which values change by their scales at most. A diode may have its signs that much later. */
-    part->lateness = fmin(part->tolerance * part->past, stretch->to - stretch->from);
+    part->at.lateness = fmin(part->tolerance * past, stretch->to - stretch->from);
     look(audit, stretch->part, &audit->now);
-    part->lateness = 0.0;
+    part->at.lateness = 0.0;
     if (part->is_open) {
         audit_check_crossing(audit, part, &audit->before, &audit->now);
-        audit->credit -= part->cost;
+        audit->budget.credit -= part->cost;
     }
     part->watch->saw_beginning = true;
     part->has_entered = true;
@@ -233,40 +240,52 @@ static void look_at_beginning(struct dalcs_audit *audit,
 /* It was passed over, and what came before. */
 static void look_back(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
-    if (!part->watch->is_put_off && part->length > 0.0) {
+    if (!part->watch->is_put_off && part->at.past > 0.0) {
         audit->reader.read_before(audit->reader.user, stretch->part, &audit->before);
         part->is_open = true;
     }
-    look_at_beginning(audit, stretch);
+    look_at_beginning(audit, stretch, part->at.past);
     audit_screen_rescale(audit, part);
+}
+
+/* A mode that is new is looked at by the screen that is made of it, from a state in it. */
+static bool is_settled(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    struct audit_part *part = &audit->part[stretch->part];
+    audit->now.side = DALCS_RIGHT;
+    audit->now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);
+    audit->reader.read(audit->reader.user, stretch->part, &audit->now);
+    audit_note_scales(audit, part, &audit->now);
+    return !audit_watch_begins(audit, stretch) && !part->at.is_drawn && !stretch->is_last;
 }
 
 void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
     take_up(part, stretch);
-    audit->threshold =
-        2.0 * (AUDIT_LOOK_INSTANTS * part->cost + stretch->first_look) * audit_draw(audit);
-    audit->count.audited++;
-    audit->credit -= stretch->first_look;
+    audit->budget.credit -= stretch->first_look;
     raise_scales(audit, stretch->part);
-    if (part->watch->is_brief && !stretch->is_last) {
-        look_inside(audit, stretch);
-        audit_watch_learn(audit, stretch);
-        part->is_open = false;
+    if (part->watch->makes && is_settled(audit, stretch)) {
+        leave_behind(part);
         return;
     }
-    if ((part->watch->asked >= 0.0 || part->watch->makes) && !part->watch->saw_beginning) {
+    audit->budget.threshold =
+        2.0 * (AUDIT_LOOK_INSTANTS * part->cost + stretch->first_look) * audit_draw(audit);
+    audit->count.audited++;
+    if (part->watch->asked >= 0.0 && !part->watch->saw_beginning) {
         look_back(audit, stretch);
     }
-    if (can_look_inside(audit, stretch)) {
+    /* the last one of all is looked at for the scales that the run ends with */
+    const bool is_inside = can_look_inside(audit, stretch) &&
+                           (part->at.is_drawn || part->watch->asked >= 0.0 || part->was_integrated);
+    if (is_inside) {
         look_inside(audit, stretch);
     }
     struct dalcs_audit_state *end = &audit->before;
     end->t = stretch->to;
     end->side = DALCS_LEFT;
     look(audit, stretch->part, end);
+    leave_behind(part);
     part->is_open = true;
-    if (can_look_inside(audit, stretch)) {
+    if (is_inside) {
         integrate(audit, stretch);
         audit_watch_learn(audit, stretch);
     }
@@ -281,7 +300,7 @@ void dalcs_audit_enter(struct dalcs_audit *audit, const struct dalcs_audit_stret
     }
     take_up(part, stretch);
     raise_scales(audit, index);
-    look_at_beginning(audit, stretch);
+    look_at_beginning(audit, stretch, part->at.length);
 }
 
 void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dalcs_side side,

@@ -39,9 +39,9 @@ struct dalcs_audit_polynomials {
     int n_columns, n_nodes, stride;
     const double *node;  /* [n_nodes] in steps, from 0 to 1 */
     double step, end;    /* s; in steps, where the stretch ends */
-    const double *value; /* NULL: nobody has asked for them yet */
-    int n_inputs;        /* 0: none. They are the sum of columns times these */
-    const double *input;
+    const double *value; /* NULL: they are not complete (dalcs_audit_reader) */
+    int n_inputs;        /* where there are any */
+    const double *input; /* they are the sum of columns times these; NULL: of nothing */
 };
 
 /* A linear function of such columns and of stimuli, while it is put together. */
@@ -75,9 +75,8 @@ static inline void dalcs_audit_row_add_stimulus(struct dalcs_audit_row *row, int
 struct dalcs_audit_reader {
     void *user;
 
-    /* The present stretch as it is stored, with its values where it has no input. false: it is nothing that holds at
-     * all its times, steps of implicit Euler or means of two positions. NULL: nothing is stored. */
-    bool (*store)(void *user, int part, bool wants_values, struct dalcs_audit_polynomials *p);
+    /* Sees to the values of the present stretch, where nobody has asked for them yet. NULL: nothing is stored. */
+    void (*complete)(void *user, int part);
     /* [n_nodes stride] what input j is multiplied by. */
     const double *(*column)(void *user, int part, int j);
     /* Adds so many times the voltage of a node, the current of a device and a formula's lambda, as read() has them. */
@@ -102,6 +101,9 @@ struct dalcs_audit_stretch {
     int degree;        /* of its polynomials over such a step */
     double first_look; /* what the first look at it takes besides, in instructions, about */
     bool is_last; /* of the part: an interval is looked at for the scales that the run ends with */
+
+    /* NULL: nothing that holds at all its times, steps of implicit Euler or means of two positions */
+    const struct dalcs_audit_polynomials *stored;
 
     enum dalcs_audit_rule {
         DALCS_AUDIT_SMOOTH, /* a polynomial, right at all times to the tolerance */

@@ -16,26 +16,55 @@ enum { AUDIT_MOST_NODES = 12 };
 /* Times in a step that it is asked at, one of them each time. */
 enum { AUDIT_SCREEN_TIMES = 4 };
 
+/* What a stimulus is between two times, as a polynomial. */
+enum { AUDIT_COURSE_TERMS = 10 };
+
+struct audit_course {
+    double from, to, origin; /* s */
+    int n;                   /* terms */
+    double term[AUDIT_COURSE_TERMS];
+};
+
 /* How all stretches of a part are looked at by screens (screen.h). */
 struct audit_watch {
-    struct audit_screen *screen; /* [2^log2_screens] NULL: none yet */
-    int log2_screens;
-    struct dalcs_audit_row row[5]; /* sums of laws by audit_screen_row, and a sign */
+    struct audit_screens {
+        int n, log2_slots;
+        struct audit_screen **slot;  /* [2^log2_slots] by key; NULL: none */
+        struct audit_screen *latest; /* that was found; NULL: none */
+        size_t numbers;              /* in all of them */
+    } screens;
+
+    struct audit_sums_of_laws {
+        struct dalcs_audit_row row[5]; /* by audit_screen_row, and a sign */
+        double *node_weight;           /* [2][n_nodes] of Kirchhoff's laws now and over time */
+        double *sign, *guard;          /* constants */
+        int n_signs, n_guards;
+        size_t sign_room, guard_room;
+
+        struct audit_list {
+            struct audit_term *term;
+            int n;
+            size_t room;
+        } list[5]; /* by audit_term_kind */
+
+        bool complete; /* there was room for all */
+    } fill;            /* while a screen is made */
+
+    double
+        *state_factor; /* [n_devices of the part] of a state, in their sum; NULL: not drawn yet */
     double barycentric[AUDIT_MOST_NODES];
-    double *state_factor; /* [n_devices of the part] of a state, in their sum */
-    double *node_weight;  /* [2][n_nodes] work: of Kirchhoff's laws now and over time */
     double theta
         [AUDIT_SCREEN_TIMES]; /* in steps: one in each fourth, and its weights, of values and integrals */
+    bool is_weighed[AUDIT_SCREEN_TIMES]; /* their weights are there */
     double now[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES], flow[AUDIT_SCREEN_TIMES][AUDIT_MOST_NODES];
-    double *column; /* [3][n_columns in whole quads] work */
+    double *column; /* [2][n_columns in whole quads] work */
     double *place;  /* work */
     size_t place_room;
     double states; /* the sum of states where the stretch before ended */
     bool knows_states;
     bool is_put_off;    /* the present one does not begin there */
     bool saw_beginning; /* its beginning was looked at */
-    bool makes;         /* the present stretch is to be looked at, and a screen to be made of it */
-    bool is_brief;      /* no more of it than that takes */
+    bool makes;         /* a screen is to be made of the present stretch */
     double asked;       /* s: a time in it that asks for a look; < 0: none does */
 };
 
@@ -45,20 +74,29 @@ struct audit_part {
     int n_nodes, *node;
     int n_couplings, *coupling;
     double tolerance;
-    double largest_volt; /* V: so far */
-    double volt, ampere; /* scales that every voltage and current is at least held to */
-    double formula[2];   /* V, A: the largest terms of its formulas */
-    double least, most;  /* S, of its conductances; 0: it has none */
-    double step;         /* s, of the stretch at hand */
-    double length;       /* s, of the stretch that was complete last */
-    double past;         /* s, of the one before the stretch at hand */
-    double lateness;     /* s, that an event may be early by, while its far side is looked at */
-    double slope; /* 1/s: most that a derivative in the stretch at hand may be of what it is of */
-    double cost;  /* of one instant, in instructions, about */
-    bool has_formula; /* one that bends or jumps: in no time it may be anything between */
-    bool has_entered; /* the state at its last event is in `before` */
-    bool is_open;     /* `before` is the end of the stretch that was just left */
-    bool is_coarse;   /* the stretch at hand */
+
+    struct audit_floor {     /* of scales */
+        double largest_volt; /* V: so far */
+        double volt, ampere; /* that every voltage and current is at least held to */
+        double formula[2];   /* V, A: the largest terms of its formulas */
+        double least, most;  /* S, of its conductances; 0: it has none */
+    } floor;
+
+    struct audit_at_hand { /* the stretch that is looked at */
+        double step;       /* s */
+        double length;     /* s, of the stretch that was complete last */
+        double past;       /* s, of the one before that */
+        double lateness;   /* s, that an event may be early by, while its far side is looked at */
+        double slope;      /* 1/s: most that a derivative in it may be of what it is of */
+        bool is_coarse;
+        bool is_drawn; /* for a closer look */
+    } at;
+
+    double cost;         /* of one instant, in instructions, about */
+    bool has_formula;    /* one that bends or jumps: in no time it may be anything between */
+    bool has_entered;    /* the state at its last event is in `before` */
+    bool is_open;        /* `before` is the end of the stretch that was just left */
+    bool was_integrated; /* an interval in it was looked at */
     struct audit_watch *watch;
 };
 
@@ -76,35 +114,70 @@ struct dalcs_audit {
     const struct dalcs_circuit *circuit;
     struct dalcs_audit_options options;
     struct dalcs_audit_reader reader;
-    int n_lambdas;
-    int *node_of;      /* [n_nodes] that stands for all that shorts join with it */
-    bool *has_charge;  /* [n_nodes] a capacitor hangs on it */
-    bool *is_fed;      /* [n_nodes] ground, or a source without a jump at 0 holds it */
-    bool *is_held;     /* [n_nodes] likewise, whatever it does */
-    int *first_lambda; /* [n_devices] */
+
+    struct audit_net {
+        int n_lambdas;
+        int *node_of;      /* [n_nodes] that stands for all that shorts join with it */
+        bool *has_charge;  /* [n_nodes] a capacitor hangs on it */
+        bool *is_fed;      /* [n_nodes] ground, or a source without a jump at 0 holds it */
+        bool *is_held;     /* [n_nodes] likewise, whatever it does */
+        int *first_lambda; /* [n_devices] */
+    } net;
+
     struct audit_part *part;
-    double *v_scale, *i_scale, *lambda_scale;     /* largest so far */
+    struct audit_course *course; /* [n_stimuli] */
+
+    struct audit_scales {
+        double *v, *i, *lambda; /* largest so far */
+    } scale;
+
     struct dalcs_audit_state now, later, shifted; /* work */
     struct dalcs_audit_state before; /* where stretches ended: parts share only ground */
     struct audit_sums sums;
-    int *cluster;   /* [n_nodes] work of crossing.c */
-    double *offset; /* [n_nodes] likewise */
+
+    struct audit_crossing {
+        int *cluster;   /* [n_nodes] work of crossing.c */
+        double *offset; /* [n_nodes] likewise */
+    } crossing;
 
     struct audit_worst {
         double defect, scale; /* the largest of each, in the law's own unit */
         double time;          /* s, of the defect */
         int part;
     } * worst_of[DALCS_AUDIT_N_LAWS]; /* [dalcs_audit_n_of] */
-    struct audit_worst coarse; /* of all of them, over its scale, at ends of coarse stretches */
-    enum dalcs_audit_law coarse_law;
-    int coarse_index;
+
+    struct audit_coarse {
+        double defect, time; /* the worst of all, over its scale, at ends of coarse stretches */
+        enum dalcs_audit_law law;
+        int index;
+    } coarse;
 
     struct dalcs_audit_summary count; /* of it, what is counted */
     uint64_t seed;
-    double credit, threshold; /* instructions */
-    double reserve;           /* that what is new may take besides */
+
+    struct audit_budget {
+        double credit, threshold; /* instructions */
+        double spent;             /* likewise, by screens since work was earned */
+    } budget;
+
     struct dalcs_arena arena;
 };
+
+/* courses.c: the value of a stimulus where its course is not known. */
+double audit_course_begin(struct dalcs_audit *audit, int stimulus, double t);
+
+/* At a time that is no edge. */
+static inline double audit_stimulus_at(struct dalcs_audit *audit, int stimulus, double t) {
+    const struct audit_course *c = &audit->course[stimulus];
+    if (!(c->from <= t && t <= c->to)) {
+        return audit_course_begin(audit, stimulus, t);
+    }
+    double value = c->term[c->n - 1];
+    for (int k = c->n - 2; k >= 0; k--) {
+        value = value * (t - c->origin) + c->term[k];
+    }
+    return value;
+}
 
 /* 0 <= draw < 1, the same in each run. */
 static inline double audit_draw(struct dalcs_audit *audit) {
@@ -130,12 +203,12 @@ static inline double audit_voltage(const struct dalcs_audit_state *s,
 /* What a voltage between two nodes is held to. */
 static inline double audit_volts(const struct dalcs_audit *audit, const struct audit_part *part,
                                  int a, int b) {
-    return fmax(fmax(audit->v_scale[a], audit->v_scale[b]), part->volt);
+    return fmax(fmax(audit->scale.v[a], audit->scale.v[b]), part->floor.volt);
 }
 
 static inline double audit_amperes(const struct dalcs_audit *audit, const struct audit_part *part,
                                    int device) {
-    return fmax(audit->i_scale[device], part->ampere);
+    return fmax(audit->scale.i[device], part->floor.ampere);
 }
 
 /* The current of a branch that is no capacitor, from the device's own law where that gives it. */

@@ -88,15 +88,15 @@ typedef bool joins(const struct dalcs_audit *, const struct audit_part *,
 static void find_clusters(const struct dalcs_audit *audit, const struct audit_part *part,
                           const struct dalcs_audit_state *before,
                           const struct dalcs_audit_state *after, joins *join) {
-    audit->cluster[0] = 0;
+    audit->crossing.cluster[0] = 0;
     for (int k = 0; k < part->n_nodes; k++) {
-        audit->cluster[part->node[k]] = part->node[k];
+        audit->crossing.cluster[part->node[k]] = part->node[k];
     }
     for (int k = 0; k < part->n_devices; k++) {
         const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
         if (join(audit, part, before, after, part->device[k])) {
-            dalcs_union_join(audit->cluster, audit->node_of[d->node[0]],
-                             audit->node_of[d->node[1]]);
+            dalcs_union_join(audit->crossing.cluster, audit->net.node_of[d->node[0]],
+                             audit->net.node_of[d->node[1]]);
         }
     }
 }
@@ -105,7 +105,7 @@ static void find_clusters(const struct dalcs_audit *audit, const struct audit_pa
 
 static void gather_charge(struct dalcs_audit *audit, const struct dalcs_device *d, int end,
                           double charge, double scale) {
-    const int cluster = dalcs_union_find(audit->cluster, audit->node_of[d->node[end]]);
+    const int cluster = dalcs_union_find(audit->crossing.cluster, audit->net.node_of[d->node[end]]);
     audit->sums.current[cluster] += charge;
     audit->sums.scale[cluster] += scale;
 }
@@ -130,7 +130,7 @@ static void check_charge(struct dalcs_audit *audit, const struct audit_part *par
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
         const double scale = audit->sums.scale[node];
-        if (scale > 0.0 && dalcs_union_find(audit->cluster, node) == node) {
+        if (scale > 0.0 && dalcs_union_find(audit->crossing.cluster, node) == node) {
             audit_find(audit, part, DALCS_AUDIT_KCL, node,
                        fabs(audit->sums.current[node]) - AUDIT_ROUNDING * scale, scale, after->t);
         }
@@ -142,9 +142,9 @@ static void check_charge(struct dalcs_audit *audit, const struct audit_part *par
 /* The root of a node, and the flux between the two: offset[n] is that of n over its parent. */
 static int find_root(const struct dalcs_audit *audit, int node, double *flux) {
     *flux = 0.0;
-    while (audit->cluster[node] != node) {
-        *flux += audit->offset[node];
-        node = audit->cluster[node];
+    while (audit->crossing.cluster[node] != node) {
+        *flux += audit->crossing.offset[node];
+        node = audit->crossing.cluster[node];
     }
     return node;
 }
@@ -176,8 +176,8 @@ static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
     sum_fluxes(audit, part, before, after);
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
-        audit->cluster[node] = dalcs_union_find(audit->cluster, node);
-        audit->offset[node] = audit->sums.scale[node] = 0.0;
+        audit->crossing.cluster[node] = dalcs_union_find(audit->crossing.cluster, node);
+        audit->crossing.offset[node] = audit->sums.scale[node] = 0.0;
     }
     audit->sums.scale[0] = 0.0; /* here of what was added up in the tree of a root */
     for (int k = 0; k < part->n_devices; k++) {
@@ -187,13 +187,13 @@ static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
             continue;
         }
         double flux[2];
-        const int a = find_root(audit, audit->node_of[d->node[0]], &flux[0]);
-        const int b = find_root(audit, audit->node_of[d->node[1]], &flux[1]);
+        const int a = find_root(audit, audit->net.node_of[d->node[0]], &flux[0]);
+        const int b = find_root(audit, audit->net.node_of[d->node[1]], &flux[1]);
         const double over = audit->sums.flux[device] - (flux[0] - flux[1]);
         const double scale = audit_flux_scale(audit, part, device);
         if (a != b) {
-            audit->cluster[a] = b;
-            audit->offset[a] = over;
+            audit->crossing.cluster[a] = b;
+            audit->crossing.offset[a] = over;
             audit->sums.scale[b] += audit->sums.scale[a] + scale;
         } else {
             audit_find(audit, part, DALCS_AUDIT_BRANCH, device, fabs(over) - AUDIT_ROUNDING * scale,

@@ -14,15 +14,15 @@ static void find_coarse(struct dalcs_audit *audit, enum dalcs_audit_law law, int
     if (!(defect <= audit->coarse.defect)) {
         audit->coarse.defect = isnan(defect) ? INFINITY : defect;
         audit->coarse.time = time;
-        audit->coarse_law = law;
-        audit->coarse_index = index;
+        audit->coarse.law = law;
+        audit->coarse.index = index;
     }
 }
 
 void audit_find(struct dalcs_audit *audit, const struct audit_part *part, enum dalcs_audit_law law,
                 int index, double defect, double scale, double time) {
     struct audit_worst *worst = &audit->worst_of[law][index];
-    if (part->is_coarse) {
+    if (part->at.is_coarse) {
         find_coarse(audit, law, index, audit_ratio(defect, scale), time);
         return;
     }
@@ -65,10 +65,10 @@ struct dalcs_audit_summary dalcs_audit_summarise(const struct dalcs_audit *audit
 
 struct dalcs_audit_summary dalcs_audit_summarise_coarse(const struct dalcs_audit *audit) {
     struct dalcs_audit_summary sum = audit->count;
-    sum.index = audit->coarse.defect > 0.0 ? audit->coarse_index : -1;
+    sum.index = audit->coarse.defect > 0.0 ? audit->coarse.index : -1;
     sum.defect = audit->coarse.defect;
     sum.time = audit->coarse.time;
-    sum.law = audit->coarse_law;
+    sum.law = audit->coarse.law;
     return sum;
 }
 

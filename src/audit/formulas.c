@@ -21,8 +21,8 @@ static double affine_value(const struct dalcs_audit *audit, const struct audit_p
             scale = audit_amperes(audit, part, term->index);
             break;
         case DALCS_QUANTITY_PAIR:
-            value = s->lambda[audit->first_lambda[device] + term->index];
-            scale = audit->lambda_scale[audit->first_lambda[device] + term->index];
+            value = s->lambda[audit->net.first_lambda[device] + term->index];
+            scale = audit->scale.lambda[audit->net.first_lambda[device] + term->index];
             break;
         default:
             value = dalcs_stimulus_value(&audit->circuit->stimulus[term->index], s->t, s->side);
@@ -39,7 +39,7 @@ static double affine_value(const struct dalcs_audit *audit, const struct audit_p
 /* A lambda that adds to what an affine function reads besides is held to that one's scale, too. */
 static void raise_lambdas(struct dalcs_audit *audit, int device, const struct dalcs_affine *a,
                           double size) {
-    double *scale = audit->lambda_scale + audit->first_lambda[device];
+    double *scale = audit->scale.lambda + audit->net.first_lambda[device];
     for (int k = 0; k < a->n; k++) {
         if (a->term[k].kind == DALCS_QUANTITY_PAIR) {
             size -= fabs(a->term[k].coefficient) * scale[a->term[k].index];
@@ -74,7 +74,7 @@ void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
     double terms;
     const double f = affine_value(audit, part, s, device, &d->behaviour->output, &size, &terms);
     const bool is_voltage = d->kind == DALCS_VCVS;
-    double *largest = &part->formula[is_voltage ? 0 : 1];
+    double *largest = &part->floor.formula[is_voltage ? 0 : 1];
     *largest = fmax(*largest, terms);
     const double is = is_voltage ? audit_voltage(s, d) : s->i[device];
     const double scale = is_voltage ? audit_volts(audit, part, d->node[0], d->node[1])
@@ -84,10 +84,10 @@ void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
     const double rounding = AUDIT_ROUNDING * size + rounding_read(audit, &d->behaviour->output);
     audit_find(audit, part, law, device, fabs(is - f) - rounding, held, s->t);
     for (int k = 0; k < d->behaviour->n_pairs; k++) {
-        const int pair = audit->first_lambda[device] + k;
+        const int pair = audit->net.first_lambda[device] + k;
         const double w = affine_value(audit, part, s, device, &d->behaviour->w[k], &size, &terms);
         raise_lambdas(audit, device, &d->behaviour->w[k], size);
-        const double lambda = audit_ratio(s->lambda[pair], audit->lambda_scale[pair]);
+        const double lambda = audit_ratio(s->lambda[pair], audit->scale.lambda[pair]);
         const double over = fabs(fmin(lambda, audit_ratio(w, size))) - AUDIT_ROUNDING;
         audit_find(audit, part, law, device, over * held, held, s->t);
     }

@@ -23,7 +23,7 @@ static void clear(struct dalcs_audit *audit, const struct audit_part *part) {
 static void leave(const struct dalcs_audit *audit, const struct dalcs_device *d, double charge,
                   double scale, double rounding) {
     for (int e = 0; e < 2; e++) {
-        const int node = audit->node_of[d->node[e]];
+        const int node = audit->net.node_of[d->node[e]];
         audit->sums.current[node] += e == 0 ? charge : -charge;
         audit->sums.scale[node] += scale;
         audit->sums.rounding[node] += rounding;
@@ -109,7 +109,7 @@ static void judge(struct dalcs_audit *audit, const struct audit_part *part, doub
                   double time) {
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
-        if (audit->has_charge[node]) {
+        if (audit->net.has_charge[node]) {
             audit_find(audit, part, DALCS_AUDIT_KCL, node,
                        fabs(audit->sums.current[node]) - audit->sums.rounding[node] -
                            audit->options.abstol * duration,

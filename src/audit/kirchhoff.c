@@ -3,7 +3,7 @@
 
 static void leave(const struct dalcs_audit *audit, int node, double current, double scale,
                   double rounding) {
-    node = audit->node_of[node];
+    node = audit->net.node_of[node];
     audit->sums.current[node] += current;
     audit->sums.scale[node] += scale;
     audit->sums.rounding[node] += rounding;
@@ -16,7 +16,7 @@ static void leave(const struct dalcs_audit *audit, int node, double current, dou
  * of them it adds up: what is at one device may come from all others. */
 static void round_storage(struct dalcs_audit *audit, const struct audit_part *part,
                           const struct dalcs_audit_state *s) {
-    const double least = STORED_ROUNDING * part->slope;
+    const double least = STORED_ROUNDING * part->at.slope;
     audit->sums.volts = audit->sums.amperes = 0.0;
     for (int k = 0; k < part->n_devices; k++) {
         const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
@@ -35,7 +35,7 @@ static double rounding_of(const struct dalcs_audit *audit, const struct audit_pa
                           double current) {
     const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
     if (d->kind == DALCS_CAPACITOR) {
-        return STORED_ROUNDING * d->value * part->slope * volts;
+        return STORED_ROUNDING * d->value * part->at.slope * volts;
     }
     if (d->kind == DALCS_VCCS && d->behaviour == NULL) {
         const double controls = fabs(s->v[d->node[2]]) + fabs(s->v[d->node[3]]);
@@ -47,7 +47,7 @@ static double rounding_of(const struct dalcs_audit *audit, const struct audit_pa
     if (d->kind == DALCS_INDUCTOR) {
         /* a voltage of 0 is that to the rounding of the largest one in the same equations (Wilkinson) */
         return AUDIT_ROUNDING * fabs(current) +
-               STORED_ROUNDING * fmax(volts, part->largest_volt) * part->step / d->value;
+               STORED_ROUNDING * fmax(volts, part->floor.largest_volt) * part->at.step / d->value;
     }
     const double g = d->kind == DALCS_RESISTOR && d->value != 0.0 ? fabs(1.0 / d->value) : 0.0;
     return AUDIT_ROUNDING * (g * volts + fabs(current)) + 2.0 * g * audit->sums.volts;
@@ -75,31 +75,31 @@ void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part
 
 void audit_note_scales(struct dalcs_audit *audit, struct audit_part *part,
                        const struct dalcs_audit_state *s) {
-    double volt = part->formula[0]; /* what cancels in a formula leaves its rounding */
-    double ampere = part->formula[1];
+    double volt = part->floor.formula[0]; /* what cancels in a formula leaves its rounding */
+    double ampere = part->floor.formula[1];
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const struct dalcs_device *d = &audit->circuit->device[device];
         const double i = d->kind == DALCS_CAPACITOR ? 0.0 : audit_current(audit, s, device);
-        audit->i_scale[device] = fmax(audit->i_scale[device], fabs(i));
-        ampere = fmax(ampere, audit->i_scale[device]);
+        audit->scale.i[device] = fmax(audit->scale.i[device], fabs(i));
+        ampere = fmax(ampere, audit->scale.i[device]);
         for (int e = 0; e < 2; e++) {
             const int node = d->node[e];
-            audit->v_scale[node] = fmax(audit->v_scale[node], fabs(s->v[node]));
-            volt = fmax(volt, audit->v_scale[node]);
+            audit->scale.v[node] = fmax(audit->scale.v[node], fabs(s->v[node]));
+            volt = fmax(volt, audit->scale.v[node]);
         }
         for (int p = 0; d->behaviour != NULL && p < d->behaviour->n_pairs; p++) {
-            double *scale = &audit->lambda_scale[audit->first_lambda[device] + p];
-            *scale = fmax(*scale, fabs(s->lambda[audit->first_lambda[device] + p]));
+            double *scale = &audit->scale.lambda[audit->net.first_lambda[device] + p];
+            *scale = fmax(*scale, fabs(s->lambda[audit->net.first_lambda[device] + p]));
         }
     }
-    part->largest_volt = volt;
+    part->floor.largest_volt = volt;
     /* doc/methods.md, "What the tolerance means": signals below 1e-5 of the largest of their unit are held to
      * that one's scale, and each unit vouches a millionth for the other through the conductances, of 1 S where there
      * are none. */
-    const bool has_any = part->most > 0.0;
-    part->volt = fmax(1e-5 * volt, 1e-6 / (has_any ? part->most : 1.0) * ampere);
-    part->ampere = fmax(1e-5 * ampere, 1e-6 * (has_any ? part->least : 1.0) * volt);
+    const bool has_any = part->floor.most > 0.0;
+    part->floor.volt = fmax(1e-5 * volt, 1e-6 / (has_any ? part->floor.most : 1.0) * ampere);
+    part->floor.ampere = fmax(1e-5 * ampere, 1e-6 * (has_any ? part->floor.least : 1.0) * volt);
 }
 
 void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
@@ -111,7 +111,7 @@ void audit_check_instant(struct dalcs_audit *audit, struct audit_part *part,
     }
     for (int k = 0; k < part->n_nodes; k++) {
         const int node = part->node[k];
-        if (!audit->has_charge[node]) {
+        if (!audit->net.has_charge[node]) {
             audit_find(audit, part, DALCS_AUDIT_KCL, node,
                        fabs(audit->sums.current[node]) - audit->sums.rounding[node] -
                            audit->options.abstol,

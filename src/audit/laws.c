@@ -9,8 +9,8 @@ static double pair_defect(double current, double beyond, const double scale[2]) 
 
 /* A, in the currents at the two ends of a device. */
 static double ampere_rounding(const struct dalcs_audit *audit, const struct dalcs_device *d) {
-    return audit->sums.amperes + fmax(audit->sums.rounding[audit->node_of[d->node[0]]],
-                                      audit->sums.rounding[audit->node_of[d->node[1]]]);
+    return audit->sums.amperes + fmax(audit->sums.rounding[audit->net.node_of[d->node[0]]],
+                                      audit->sums.rounding[audit->net.node_of[d->node[1]]]);
 }
 
 /* How wrong a diode's branches are, and the current that it blocks, over scale[2] in V and A. */
@@ -36,7 +36,7 @@ void audit_diode_scale(const struct dalcs_audit *audit, const struct audit_part 
                        double scale[2]) {
     const struct dalcs_device *d = &audit->circuit->device[device];
     /* currents of pairs are held to 1e-2 of the largest, others to 1e-5 (doc/methods.md) */
-    const double amperes = fmax(audit_amperes(audit, part, device), 1e3 * part->ampere);
+    const double amperes = fmax(audit_amperes(audit, part, device), 1e3 * part->floor.ampere);
     /* what is within rounding of 0 is nothing: it is over a scale that is not less */
     scale[0] = audit->sums.volts / part->tolerance +
                audit_volts(audit, part, d->node[0], d->node[1]) +
@@ -51,9 +51,9 @@ static void check_diode(struct dalcs_audit *audit, const struct audit_part *part
     double branch;
     double blocked;
     diode_defects(audit, s, device, scale, &branch, &blocked);
-    if (fmax(branch, blocked) > part->tolerance && part->lateness > 0.0) {
+    if (fmax(branch, blocked) > part->tolerance && part->at.lateness > 0.0) {
         audit->shifted.side = s->side;
-        audit->shifted.t = s->t + part->lateness;
+        audit->shifted.t = s->t + part->at.lateness;
         audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->shifted);
         double later[2];
         diode_defects(audit, &audit->shifted, device, scale, &later[0], &later[1]);
@@ -108,7 +108,7 @@ static void check_mean(struct dalcs_audit *audit, const struct audit_part *part,
         const struct dalcs_diode_model *m = &audit->circuit->diode_model[d->model];
         const double v = audit_voltage(s, d);
         const double own = s->i[device] - (isfinite(m->roff) ? v / m->roff : 0.0);
-        const double amperes = fmax(audit_amperes(audit, part, device), 1e3 * part->ampere);
+        const double amperes = fmax(audit_amperes(audit, part, device), 1e3 * part->floor.ampere);
         audit_find(audit, part, DALCS_AUDIT_BRANCH, device,
                    v - m->vfwd - m->ron * own - audit->options.vntol,
                    audit_volts(audit, part, d->node[0], d->node[1]) + m->ron * amperes, s->t);
@@ -143,7 +143,7 @@ static void check_switch(struct dalcs_audit *audit, const struct audit_part *par
                audit_control_scale(audit, part, device), s->t);
     /* within its hysteresis it starts where the netlist says, if nothing may have moved it there */
     if (s->t == 0.0 && audit->options.is_start && d->control < 0 && fabs(control) < half_width &&
-        audit->is_fed[d->node[2]] && audit->is_fed[d->node[3]]) {
+        audit->net.is_fed[d->node[2]] && audit->net.is_fed[d->node[3]]) {
         const double off = is_closed != d->initially_on ? half_width : 0.0;
         audit_find(audit, part, DALCS_AUDIT_POSITION, device, off, half_width, s->t);
     }

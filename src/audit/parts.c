@@ -14,7 +14,7 @@ static void count_members(struct dalcs_audit *audit, int *part_of_node) {
         }
         audit->part[k].n_devices++;
         for (int e = 0; e < 2; e++) {
-            const int node = audit->node_of[c->device[i].node[e]];
+            const int node = audit->net.node_of[c->device[i].node[e]];
             if (node != 0 && part_of_node[node] < 0) {
                 part_of_node[node] = k;
                 audit->part[k].n_nodes++;
@@ -31,8 +31,8 @@ static void count_members(struct dalcs_audit *audit, int *part_of_node) {
 
 static void see_conductance(struct audit_part *part, double g) {
     if (g > 0.0 && isfinite(g)) {
-        part->most = fmax(part->most, g);
-        part->least = part->least > 0.0 ? fmin(part->least, g) : g;
+        part->floor.most = fmax(part->floor.most, g);
+        part->floor.least = part->floor.least > 0.0 ? fmin(part->floor.least, g) : g;
     }
 }
 
@@ -51,7 +51,7 @@ static void list_members(struct dalcs_audit *audit, const int *part_of_node) {
         part->device[part->n_devices++] = i;
         for (int e = 0; e < 2; e++) {
             const bool is_charged = d->kind == DALCS_CAPACITOR;
-            audit->has_charge[audit->node_of[d->node[e]]] |= is_charged;
+            audit->net.has_charge[audit->net.node_of[d->node[e]]] |= is_charged;
         }
         part->has_formula |= d->behaviour != NULL && d->behaviour->n_pairs > 0;
         if (d->kind == DALCS_RESISTOR) {
@@ -110,14 +110,14 @@ static enum dalcs_status make_parts(struct dalcs_audit *audit) {
 
 static void merge_shorts(struct dalcs_audit *audit) {
     const struct dalcs_circuit *c = audit->circuit;
-    dalcs_union_reset(audit->node_of, c->n_nodes);
+    dalcs_union_reset(audit->net.node_of, c->n_nodes);
     for (int i = 0; i < c->n_devices; i++) {
         if (dalcs_device_is_short(&c->device[i])) {
-            dalcs_union_join(audit->node_of, c->device[i].node[0], c->device[i].node[1]);
+            dalcs_union_join(audit->net.node_of, c->device[i].node[0], c->device[i].node[1]);
         }
     }
     for (int n = 0; n < c->n_nodes; n++) {
-        audit->node_of[n] = dalcs_union_find(audit->node_of, n);
+        audit->net.node_of[n] = dalcs_union_find(audit->net.node_of, n);
     }
 }
 
@@ -127,7 +127,7 @@ static enum dalcs_status make_state(struct dalcs_audit *audit, struct dalcs_audi
     const struct dalcs_circuit *c = audit->circuit;
     s->v = dalcs_arena_alloc(&audit->arena, (size_t)c->n_nodes, sizeof(double));
     s->i = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(double));
-    s->lambda = dalcs_arena_alloc(&audit->arena, (size_t)audit->n_lambdas, sizeof(double));
+    s->lambda = dalcs_arena_alloc(&audit->arena, (size_t)audit->net.n_lambdas, sizeof(double));
     s->is_closed = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(bool));
     s->is_mean = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(bool));
     bool complete = s->v != NULL && s->i != NULL && s->lambda != NULL && s->is_closed != NULL &&
@@ -139,8 +139,8 @@ static enum dalcs_status make_sums(struct dalcs_audit *audit) {
     const size_t n_nodes = (size_t)audit->circuit->n_nodes;
     const size_t n_devices = (size_t)audit->circuit->n_devices;
     double **per_node[] = {&audit->sums.current, &audit->sums.scale, &audit->sums.rounding,
-                           &audit->v_scale, &audit->offset};
-    double **per_device[] = {&audit->sums.flux, &audit->i_scale};
+                           &audit->scale.v, &audit->crossing.offset};
+    double **per_device[] = {&audit->sums.flux, &audit->scale.i};
     bool complete = true;
     for (size_t k = 0; k < sizeof per_node / sizeof *per_node; k++) {
         *per_node[k] = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(double));
@@ -155,48 +155,60 @@ static enum dalcs_status make_sums(struct dalcs_audit *audit) {
             &audit->arena, (size_t)dalcs_audit_n_of(audit, law), sizeof(*audit->worst_of[law]));
         complete = complete && audit->worst_of[law] != NULL;
     }
-    audit->lambda_scale =
-        dalcs_arena_alloc(&audit->arena, (size_t)audit->n_lambdas, sizeof(double));
-    audit->cluster = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(int));
-    return complete && audit->lambda_scale != NULL && audit->cluster != NULL ? DALCS_OK
-                                                                             : DALCS_E_NOMEM;
+    audit->scale.lambda =
+        dalcs_arena_alloc(&audit->arena, (size_t)audit->net.n_lambdas, sizeof(double));
+    audit->crossing.cluster = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(int));
+    return complete && audit->scale.lambda != NULL && audit->crossing.cluster != NULL
+               ? DALCS_OK
+               : DALCS_E_NOMEM;
+}
+
+static enum dalcs_status make_courses(struct dalcs_audit *audit) {
+    const int n = audit->circuit->n_stimuli;
+    audit->course = dalcs_arena_alloc(&audit->arena, (size_t)n, sizeof(*audit->course));
+    for (int k = 0; k < n && audit->course != NULL; k++) {
+        audit->course[k].from = audit->course[k].origin = INFINITY;
+    }
+    return audit->course != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 static enum dalcs_status number_lambdas(struct dalcs_audit *audit) {
     const struct dalcs_circuit *c = audit->circuit;
-    audit->first_lambda = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(int));
-    if (audit->first_lambda == NULL) {
+    audit->net.first_lambda = dalcs_arena_alloc(&audit->arena, (size_t)c->n_devices, sizeof(int));
+    if (audit->net.first_lambda == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int i = 0; i < c->n_devices; i++) {
-        audit->first_lambda[i] = audit->n_lambdas;
-        audit->n_lambdas += c->device[i].behaviour != NULL ? c->device[i].behaviour->n_pairs : 0;
+        audit->net.first_lambda[i] = audit->net.n_lambdas;
+        audit->net.n_lambdas +=
+            c->device[i].behaviour != NULL ? c->device[i].behaviour->n_pairs : 0;
     }
     return DALCS_OK;
 }
 
 static void find_fed(const struct dalcs_audit *audit) {
     const struct dalcs_circuit *c = audit->circuit;
-    audit->is_fed[0] = audit->is_held[0] = true;
+    audit->net.is_fed[0] = audit->net.is_held[0] = true;
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
         if (d->kind == DALCS_VSOURCE && (d->node[0] == 0 || d->node[1] == 0)) {
             const struct dalcs_stimulus *s = &c->stimulus[d->stimulus];
-            audit->is_held[d->node[d->node[0] == 0]] = true;
-            audit->is_fed[d->node[d->node[0] == 0]] = dalcs_stimulus_value(s, 0.0, DALCS_LEFT) ==
-                                                      dalcs_stimulus_value(s, 0.0, DALCS_RIGHT);
+            audit->net.is_held[d->node[d->node[0] == 0]] = true;
+            audit->net.is_fed[d->node[d->node[0] == 0]] =
+                dalcs_stimulus_value(s, 0.0, DALCS_LEFT) ==
+                dalcs_stimulus_value(s, 0.0, DALCS_RIGHT);
         }
     }
 }
 
 enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
     const size_t n_nodes = (size_t)audit->circuit->n_nodes;
-    audit->node_of = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(int));
-    audit->has_charge = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
-    audit->is_fed = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
-    audit->is_held = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
-    if (audit->is_held == NULL || audit->node_of == NULL || audit->has_charge == NULL ||
-        audit->is_fed == NULL) {
+    audit->net.node_of = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(int));
+    audit->net.has_charge = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
+    audit->net.is_fed = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
+    audit->net.is_held = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
+    if (audit->net.is_held == NULL || audit->net.node_of == NULL || audit->net.has_charge == NULL ||
+        audit->net.is_fed == NULL) {
         return DALCS_E_NOMEM;
     }
     find_fed(audit);
@@ -204,6 +216,7 @@ enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
     DALCS_TRY(number_lambdas(audit));
     DALCS_TRY(make_parts(audit));
     DALCS_TRY(make_sums(audit));
+    DALCS_TRY(make_courses(audit));
     DALCS_TRY(make_state(audit, &audit->now));
     DALCS_TRY(make_state(audit, &audit->later));
     DALCS_TRY(make_state(audit, &audit->shifted));

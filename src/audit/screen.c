@@ -6,24 +6,88 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Numbers that all screens of a part may have, about, and screens. */
-enum { MOST_NUMBERS = 1 << 17, MOST_SCREENS = 256, FEWEST_SCREENS = 4 };
-
 /* A multiplier whose product spreads keys (D. E. Knuth, The Art of Computer Programming 3, sec. 6.4). */
 static const uint64_t spread = 0x9e3779b97f4a7c15u;
 
-static struct audit_screen *slot_of(const struct audit_watch *watch, uint64_t key) {
-    return &watch->screen[(key * spread) >> (64 - watch->log2_screens)];
+/* Where the key is, or may go (op. cit., algorithm L). */
+static struct audit_screen **slot_of(const struct audit_screens *screens, uint64_t key) {
+    const uint64_t mask = ((uint64_t)1 << screens->log2_slots) - 1;
+    uint64_t at = (key * spread) >> (64 - screens->log2_slots);
+    while (screens->slot[at] != NULL && screens->slot[at]->key != key) {
+        at = (at + 1) & mask;
+    }
+    return &screens->slot[at];
 }
 
 struct audit_screen *audit_screen_of(const struct audit_part *part,
                                      const struct dalcs_audit_polynomials *p) {
-    const struct audit_watch *watch = part->watch;
-    if (watch->screen == NULL) {
+    struct audit_screens *screens = &part->watch->screens;
+    if (screens->latest == NULL || screens->latest->key != p->key) {
+        screens->latest = screens->n > 0 ? *slot_of(screens, p->key) : NULL;
+    }
+    return screens->latest != NULL && screens->latest->is_made ? screens->latest : NULL;
+}
+
+/* At most half of the slots are taken. */
+static bool grow(struct audit_screens *screens) {
+    if (screens->slot != NULL && 2 * (screens->n + 1) <= 1 << screens->log2_slots) {
+        return true;
+    }
+    struct audit_screens next = *screens;
+    next.log2_slots = screens->slot != NULL ? screens->log2_slots + 1 : 3;
+    next.slot = dalcs_alloc((size_t)1 << next.log2_slots, sizeof(struct audit_screen *));
+    for (int k = 0; next.slot != NULL && screens->slot != NULL && k < 1 << screens->log2_slots;
+         k++) {
+        if (screens->slot[k] != NULL) {
+            *slot_of(&next, screens->slot[k]->key) = screens->slot[k];
+        }
+    }
+    if (next.slot == NULL) {
+        return false;
+    }
+    free(screens->slot);
+    *screens = next;
+    return true;
+}
+
+static void drop(struct audit_screen *screen) {
+    if (screen != NULL) {
+        audit_images_forget(screen);
+        free(screen->row);
+        free(screen->term[0]);
+    }
+    free(screen);
+}
+
+static void drop_all(struct audit_screens *screens) {
+    for (int k = 0; screens->slot != NULL && k < 1 << screens->log2_slots; k++) {
+        drop(screens->slot[k]);
+        screens->slot[k] = NULL;
+    }
+    screens->n = 0;
+    screens->numbers = 0;
+    screens->latest = NULL;
+}
+
+/* The screen with that key, which need not be made. Where there is no room for more all begin anew. */
+static struct audit_screen *take(struct audit_watch *watch, uint64_t key) {
+    struct audit_screens *screens = &watch->screens;
+    if (screens->numbers > AUDIT_MOST_NUMBERS) {
+        drop_all(screens);
+    }
+    if (!grow(screens)) {
         return NULL;
     }
-    struct audit_screen *screen = slot_of(watch, p->key);
-    return screen->is_made && screen->key == p->key ? screen : NULL;
+    struct audit_screen **slot = slot_of(screens, key);
+    if (*slot == NULL) {
+        *slot = dalcs_alloc(1, sizeof(**slot));
+        if (*slot != NULL) {
+            screens->n++;
+            (*slot)->key = key;
+            (*slot)->limit = 1.0;
+        }
+    }
+    return *slot;
 }
 
 static void find_barycentric(const struct dalcs_audit_polynomials *p, double *barycentric) {
@@ -61,139 +125,149 @@ static double allowed_of_state(const struct dalcs_audit *audit, const struct aud
     if (d->kind == DALCS_INDUCTOR) {
         return part->tolerance * audit_amperes(audit, part, device) + audit->options.abstol;
     }
-    const bool is_held = audit->is_held[d->node[0]] && audit->is_held[d->node[1]];
+    const bool is_held = audit->net.is_held[d->node[0]] && audit->net.is_held[d->node[1]];
     return d->kind == DALCS_CAPACITOR && !is_held
                ? part->tolerance * audit_volts(audit, part, d->node[0], d->node[1]) +
                      audit->options.vntol
                : 0.0;
 }
 
-/* What a scale may grow to before states are held to it. */
-static const double much = 4.0;
+/* How the state of a coil or a capacitor goes into the sum of states. */
+static void draw_states(struct dalcs_audit *audit, const struct audit_part *part,
+                        struct audit_watch *watch) {
+    for (int k = 0; k < part->n_devices; k++) {
+        const double allowed = allowed_of_state(audit, part, part->device[k]);
+        watch->state_factor[k] = allowed > 0.0 ? audit_screen_weight(audit) / allowed : 0.0;
+    }
+}
 
-void audit_screen_rescale(const struct dalcs_audit *audit, struct audit_part *part) {
+void audit_screen_rescale(struct dalcs_audit *audit, struct audit_part *part) {
     struct audit_watch *watch = part->watch;
     bool has_grown = false;
-    for (int k = 0; k < part->n_devices && watch->screen != NULL; k++) {
+    for (int k = 0; k < part->n_devices && watch->state_factor != NULL; k++) {
         const double allowed = allowed_of_state(audit, part, part->device[k]);
-        has_grown |= allowed * fabs(watch->state_factor[k]) > much;
+        has_grown |= allowed * fabs(watch->state_factor[k]) > 1.0; /* than any that is drawn */
     }
     if (!has_grown) {
         return;
     }
-    for (int k = 0; k < part->n_devices; k++) {
-        const double allowed = allowed_of_state(audit, part, part->device[k]);
-        watch->state_factor[k] =
-            allowed > 0.0 ? copysign(1.0 / allowed, watch->state_factor[k]) : 0.0;
-    }
-    for (int k = 0; k < 1 << watch->log2_screens; k++) {
-        watch->screen[k].is_made = false;
+    draw_states(audit, part, watch);
+    for (int k = 0; watch->screens.slot != NULL && k < 1 << watch->screens.log2_slots; k++) {
+        if (watch->screens.slot[k] != NULL) {
+            watch->screens.slot[k]->is_made = false;
+        }
     }
     watch->knows_states = false;
 }
 
-/* [n_devices] how the state of a coil or a capacitor goes into the sum of states. */
-static bool draw_states(struct dalcs_audit *audit, const struct audit_part *part,
-                        struct audit_watch *watch) {
-    watch->state_factor = dalcs_arena_alloc(&audit->arena, (size_t)part->n_devices, sizeof(double));
-    watch->node_weight =
-        dalcs_arena_alloc(&audit->arena, 2 * (size_t)audit->circuit->n_nodes, sizeof(double));
-    for (int k = 0; watch->state_factor != NULL && k < part->n_devices; k++) {
-        const double allowed = allowed_of_state(audit, part, part->device[k]);
-        watch->state_factor[k] = allowed > 0.0 ? audit_screen_weight(audit) / allowed : 0.0;
-    }
-    return watch->state_factor != NULL && watch->node_weight != NULL;
-}
-
-/* Once for each part. */
+/* What all screens of a part share, when the first of them is made. */
 static bool start(struct dalcs_audit *audit, struct audit_part *part,
                   const struct dalcs_audit_polynomials *p) {
     if (p->n_nodes > AUDIT_MOST_NODES) {
         return false;
     }
     struct audit_watch *watch = part->watch;
-    const int each =
-        AUDIT_N_ROWS * p->n_columns + AUDIT_SCREEN_TIMES * (p->n_inputs + 1) *
-                                          (AUDIT_PLACE_SIGNS + AUDIT_SIGN_TIMES * part->n_devices);
-    for (watch->log2_screens = 2; (2 << watch->log2_screens) <= MOST_SCREENS &&
-                                  (each << watch->log2_screens) <= MOST_NUMBERS;) {
-        watch->log2_screens++;
-    }
-    struct audit_screen *screen =
-        dalcs_arena_alloc(&audit->arena, (size_t)1 << watch->log2_screens, sizeof(*screen));
-    watch->column =
-        dalcs_arena_alloc(&audit->arena, 3 * (size_t)dalcs_quads_of(p->n_columns), sizeof(double));
-    bool complete = screen != NULL && watch->column != NULL && draw_states(audit, part, watch);
+    struct audit_sums_of_laws *fill = &watch->fill;
+    const size_t n_columns = (size_t)dalcs_quads_of(p->n_columns);
+    watch->column = dalcs_arena_alloc(&audit->arena, 2 * n_columns, sizeof(double));
+    fill->node_weight =
+        dalcs_arena_alloc(&audit->arena, 2 * (size_t)audit->circuit->n_nodes, sizeof(double));
+    bool complete = watch->column != NULL && fill->node_weight != NULL;
     for (int k = 0; k <= AUDIT_N_ROWS && complete; k++) {
-        complete = start_row(audit, &watch->row[k], p->n_columns);
+        complete = start_row(audit, &fill->row[k], p->n_columns);
     }
+    double *factor = dalcs_arena_alloc(&audit->arena, (size_t)part->n_devices, sizeof(double));
+    if (!complete || factor == NULL) {
+        return false;
+    }
+    watch->state_factor = factor;
+    draw_states(audit, part, watch);
     find_barycentric(p, watch->barycentric);
-    audit_screen_draw_times(audit, watch, p);
-    watch->screen = complete ? screen : NULL;
-    return complete;
+    for (int m = 0; m < AUDIT_SCREEN_TIMES; m++) {
+        watch->theta[m] = (m + audit_draw(audit)) / AUDIT_SCREEN_TIMES;
+    }
+    return true;
 }
 
 void audit_screen_finish(struct audit_part *part) {
     struct audit_watch *watch = part->watch;
-    for (int k = 0; watch != NULL && watch->screen != NULL && k < 1 << watch->log2_screens; k++) {
-        free(watch->screen[k].row);
-        free(watch->screen[k].image);
-        free(watch->screen[k].sign);
-        free(watch->screen[k].term);
+    if (watch == NULL) {
+        return;
     }
-    if (watch != NULL) {
-        free(watch->place);
+    drop_all(&watch->screens);
+    free(watch->screens.slot);
+    free(watch->place);
+    free(watch->fill.sign);
+    free(watch->fill.guard);
+    for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {
+        free(watch->fill.list[k].term);
     }
 }
 
-static bool make_room(struct audit_watch *watch, struct audit_screen *screen,
-                      const struct dalcs_audit_polynomials *p) {
-    const size_t rows = AUDIT_N_ROWS * (size_t)dalcs_quads_of(p->n_columns);
-    screen->n_places = dalcs_quads_of(AUDIT_PLACE_SIGNS + AUDIT_SIGN_TIMES * screen->n_signs);
-    return dalcs_grow(&screen->row, &screen->row_room, rows, sizeof(double)) == DALCS_OK &&
-           dalcs_grow(&watch->place, &watch->place_room, (size_t)screen->n_places,
-                      sizeof(double)) == DALCS_OK;
+/* The sums and lists of the watch become those of the screen. */
+static bool put(struct audit_watch *watch, struct audit_screen *screen, int n_columns) {
+    const struct audit_sums_of_laws *fill = &watch->fill;
+    const int n = dalcs_quads_of(n_columns);
+    int n_terms = 0;
+    for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {
+        n_terms += fill->list[k].n;
+    }
+    screen->n_guards = fill->n_guards;
+    screen->guarded_from = INFINITY;
+    screen->n_places = dalcs_quads_of(AUDIT_PLACE_SIGNS + AUDIT_SIGN_TIMES * fill->n_signs);
+    free(screen->row);
+    free(screen->term[0]);
+    const size_t numbers = (size_t)(AUDIT_N_ROWS * n + screen->n_places + screen->n_guards);
+    screen->row = dalcs_alloc(numbers, sizeof(double));
+    struct audit_term *to = screen->term[0] =
+        dalcs_alloc((size_t)n_terms + 1, sizeof(**screen->term));
+    if (screen->row == NULL || to == NULL ||
+        dalcs_grow(&watch->place, &watch->place_room, (size_t)screen->n_places, sizeof(double)) !=
+            DALCS_OK) {
+        return false;
+    }
+    watch->screens.numbers += numbers;
+    for (int r = 0; r < AUDIT_N_ROWS; r++) {
+        const struct dalcs_audit_row *row = &fill->row[r];
+        for (int k = 0; k < row->n_columns; k++) {
+            screen->row[r * n + row->listed_column[k]] = row->column[row->listed_column[k]];
+        }
+    }
+    screen->constant = screen->row + AUDIT_N_ROWS * n;
+    screen->constant[AUDIT_PLACE_LAWS] = fill->row[AUDIT_ROW_NOW].constant;
+    screen->rate = fill->row[AUDIT_ROW_FLOW].constant;
+    for (int k = AUDIT_PLACE_SIGNS; k < screen->n_places; k++) { /* no sign behind the last */
+        const int sign = (k - AUDIT_PLACE_SIGNS) / AUDIT_SIGN_TIMES;
+        screen->constant[k] = sign < fill->n_signs ? fill->sign[sign] : INFINITY;
+    }
+    for (int k = 0; k < fill->n_guards; k++) {
+        screen->constant[screen->n_places + k] = fill->guard[k];
+    }
+    for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {
+        screen->n_terms[k] = fill->list[k].n;
+        screen->term[k] = to;
+        if (fill->list[k].n > 0) {
+            memcpy(to, fill->list[k].term, (size_t)fill->list[k].n * sizeof *to);
+        }
+        to += fill->list[k].n;
+    }
+    return true;
 }
 
 struct audit_screen *audit_screen_make(struct dalcs_audit *audit, struct audit_part *part,
                                        const struct dalcs_audit_polynomials *p,
                                        const struct dalcs_audit_state *s) {
-    if (part->watch->screen == NULL && !start(audit, part, p)) {
+    struct audit_watch *watch = part->watch;
+    if (watch->state_factor == NULL && !start(audit, part, p)) {
         return NULL;
     }
-    struct audit_screen *screen = slot_of(part->watch, p->key);
-    if (screen->key != p->key) {
-        screen->limit = 1.0;
-        screen->alarms = 0;
-        screen->key = p->key;
+    struct audit_screen *screen = take(watch, p->key);
+    if (screen == NULL) {
+        return NULL;
     }
     screen->rests = 0;
-    screen->is_made = false;
-    screen->n_inputs = 0;
-    screen->step = p->step;
-    screen->end = p->end;
-    if (!audit_screen_fill(audit, part, screen, p->step, s) || !make_room(part->watch, screen, p)) {
-        return NULL;
-    }
-    audit_screen_put_rows(part->watch, screen, dalcs_quads_of(p->n_columns));
-    screen->is_made = true;
-    return screen;
-}
-
-void audit_screen_see_step(const struct dalcs_audit *audit, const struct audit_part *part,
-                           struct audit_screen *screen, const struct dalcs_audit_polynomials *p) {
-    const bool is_same = p->step == screen->step && audit_is_same_end(p->end, screen->end);
-    screen->step = p->step;
-    screen->end = p->end;
-    const size_t need = AUDIT_SCREEN_TIMES * (size_t)p->n_inputs * (size_t)screen->n_places;
-    if (!is_same || p->n_inputs == 0 || part->watch->theta[0] > p->end ||
-        audit_screen_has_image(screen, p) || need > MOST_NUMBERS ||
-        dalcs_grow(&screen->image, &screen->image_room, need, sizeof(double)) != DALCS_OK) {
-        return;
-    }
-    screen->n_inputs = p->n_inputs;
-    screen->image_step = p->step;
-    screen->image_end = p->end;
-    memset(screen->image, 0, need * sizeof(double));
-    audit_screen_compose(audit, part, screen, p);
+    audit_images_forget(screen);
+    screen->is_made =
+        audit_screen_fill(audit, part, p->step, s) && put(watch, screen, p->n_columns);
+    return screen->is_made ? screen : NULL;
 }

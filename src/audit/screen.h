@@ -34,38 +34,60 @@ enum audit_screen_place {
 
 enum { AUDIT_SIGN_TIMES = 3 }; /* in the stretch, at its start and at its end */
 
+/* `factor` times a column goes to a place, and at its other two times to the next ones; likewise a stimulus. */
 struct audit_term {
-    int index;
+    int place, index;
     double factor;
 };
 
-/* constant + terms >= -1. */
-struct audit_sign {
-    double constant;
-    int first, n;  /* of columns */
-    int n_stimuli; /* after these */
+/* What the terms of a screen are of: columns in signs; stimuli in signs that read columns, too, and in guards, which read
+ * none, with the number of the guard for a place; in laws at one time, and in what is integrated. */
+enum audit_term_kind {
+    AUDIT_TERM_COLUMN,
+    AUDIT_TERM_SIGN,
+    AUDIT_TERM_GUARD,
+    AUDIT_TERM_LAW,
+    AUDIT_TERM_FLOW,
+    AUDIT_N_TERM_KINDS
 };
+
+/* What the rows make of steps of one length that end at one place, by what these are a linear image of. Signs change by no
+ * more than the inputs do times what they reach: near an input at which they were asked they need not be asked again. */
+struct audit_image {
+    double step, end; /* s, in steps */
+    long n_asked;     /* by their values */
+
+    struct audit_image_at { /* a time */
+        double *place;      /* [n_inputs][n_places]; NULL: not made yet */
+        double *reach;      /* [n_inputs] most that one of the signs changes by */
+        double *input;      /* [n_inputs] at which signs were asked */
+        double slack;       /* that the least of them had there, above -1 */
+    } at[AUDIT_SCREEN_TIMES];
+};
+
+/* Numbers that the screens of a part may have in all: 8 MB of them. */
+enum { AUDIT_MOST_NUMBERS = 1 << 20 };
+
+/* Commands cut the steps of a mode to a few lengths. */
+enum { AUDIT_IMAGES = 4 };
 
 struct audit_screen {
     uint64_t key;
     bool is_made;
-    double limit;           /* that a sum or a sign may be beyond */
-    int alarms;             /* that were false */
-    long rests;             /* stretches that it is not asked of after one */
-    double *row;            /* [AUDIT_N_ROWS][n_columns in whole quads] */
-    double constant, rate;  /* of the laws; 1/s, of what is integrated */
-    int n_stimuli, n_flows; /* that stand in the laws, in what is integrated */
-    int n_signs;
-    struct audit_sign *sign;
-    int first, n_terms; /* first: of those of the laws */
-    size_t term_room, sign_room, row_room, image_room;
-    struct audit_term *term;      /* [n_terms] of signs, then stimuli and flows of the laws */
-    double step, end;             /* s, in steps: of the stretch that was asked last */
-    int n_inputs;                 /* of the image; 0: there is none */
-    double image_step, image_end; /* of the stretches whose image it is */
-    int n_times;                  /* of the watch's, that are in these */
-    int n_places;                 /* in whole quads */
-    double *image;                /* [AUDIT_SCREEN_TIMES][n_inputs][n_places] */
+    double limit;     /* that a sum or a sign may be beyond */
+    int alarms;       /* that were false */
+    long rests;       /* stretches that it is not asked of after one */
+    double *row;      /* [AUDIT_N_ROWS][n_columns in whole quads], constants behind them */
+    double *constant; /* [n_places], and of guards */
+    double rate;      /* 1/s, of what is integrated */
+    int n_places;     /* in whole quads */
+    int n_guards;
+    double guarded_from, guarded_to; /* s: no guard is below 0 in between */
+    int n_terms[AUDIT_N_TERM_KINDS];
+    struct audit_term *term[AUDIT_N_TERM_KINDS]; /* one behind the other */
+    double step, end;                            /* of the stretch before that had no image */
+    int image_at;                                /* the one that was of use last */
+    struct audit_image image[AUDIT_IMAGES];
 };
 
 /* The screen of these polynomials; NULL: there is none yet. */
@@ -77,8 +99,8 @@ struct audit_screen *audit_screen_make(struct dalcs_audit *audit, struct audit_p
                                        const struct dalcs_audit_polynomials *p,
                                        const struct dalcs_audit_state *s);
 
-/* States are held to the scales of now, where these have grown much: then no screen is left. */
-void audit_screen_rescale(const struct dalcs_audit *audit, struct audit_part *part);
+/* States are held to the scales of now, where these have grown: then no screen is left. */
+void audit_screen_rescale(struct dalcs_audit *audit, struct audit_part *part);
 
 void audit_screen_finish(struct audit_part *part);
 
@@ -86,18 +108,25 @@ void audit_screen_finish(struct audit_part *part);
 bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
                       bool can_look);
 
-/* It was, and audit->now is a state in it. */
+/* Its mode is new, and audit->now is a state in it: a screen is made. Is it to be looked at? */
+bool audit_watch_begins(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
+
+/* It was looked at since it was asked for, and audit->now is a state in it. */
 void audit_watch_learn(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
 
-/* screen_rows.c: the laws and signs of a mode, into the rows and lists of a screen. */
-bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part,
-                       struct audit_screen *screen, double step, const struct dalcs_audit_state *s);
-
-/* The sums so far become rows of n columns of a screen with room for them. */
-void audit_screen_put_rows(struct audit_watch *watch, struct audit_screen *screen, int n);
+/* screen_rows.c: the laws and signs of a mode at a state, into the sums and lists of the watch. */
+bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part, double step,
+                       const struct dalcs_audit_state *s);
 
 /* A random factor and sign, for a sum. */
 double audit_screen_weight(struct dalcs_audit *audit);
+
+struct audit_question {
+    const struct dalcs_audit_stretch *stretch;
+    double near;                  /* s, from its ends, where sources have no edge */
+    int m;                        /* of the watch's times */
+    struct audit_image_at *image; /* of that; NULL: values are asked */
+};
 
 struct audit_answer {
     double worst;      /* how far beyond what is allowed the worst is, 1 where it just is not */
@@ -106,32 +135,61 @@ struct audit_answer {
 };
 
 /* screen_sum.c */
-void audit_screen_ask(struct dalcs_audit *audit, const struct audit_part *part,
-                      const struct audit_screen *screen, const struct dalcs_audit_polynomials *p,
-                      const struct dalcs_audit_stretch *stretch, struct audit_answer *answer);
+void audit_screen_ask(struct dalcs_audit *audit, const struct audit_watch *watch,
+                      struct audit_screen *screen, const struct audit_question *q,
+                      struct audit_answer *answer);
+
+/* What the rows make of n_nodes values of each column, without constants and stimuli, at the m-th time. */
+void audit_screen_place(const struct audit_watch *watch, const struct audit_screen *screen,
+                        const struct dalcs_audit_polynomials *p, int m, const double *value,
+                        double *place);
+
+/* The weights of the m-th of the times that stretches are asked at. */
+void audit_screen_weigh(struct audit_watch *watch, const struct dalcs_audit_polynomials *p, int m);
+
+/* Of these times, those before an end, in steps. */
+static inline int audit_n_times_before(const struct audit_watch *watch, double end) {
+    int n = 0;
+    while (n < AUDIT_SCREEN_TIMES && watch->theta[n] <= end) {
+        n++;
+    }
+    return n;
+}
+
+/* guards.c: how far below 0 the worst guard is at three times. */
+double audit_worst_guard_between(struct dalcs_audit *audit, struct audit_screen *screen,
+                                 double from, double to, double t);
+
+static inline double audit_worst_guard(struct dalcs_audit *audit, struct audit_screen *screen,
+                                       const struct audit_question *q, double t) {
+    const double from = q->stretch->from + q->near;
+    const double to = q->stretch->to - q->near;
+    return screen->guarded_from <= from && to <= screen->guarded_to
+               ? 0.0
+               : audit_worst_guard_between(audit, screen, from, to, t);
+}
 
 /* Ends of stretches are a rounding of t apart, which is as much more in steps as these are shorter than t. */
 static inline bool audit_is_same_end(double a, double b) {
     return fabs(a - b) <= 0x1p-32;
 }
 
-/* Will the image do? Of steps whose values are there, one of these is held to it, too. */
-static inline bool audit_screen_has_image(const struct audit_screen *screen,
-                                          const struct dalcs_audit_polynomials *p) {
-    return screen->n_inputs > 0 && p->n_inputs == screen->n_inputs &&
-           p->step == screen->image_step && audit_is_same_end(p->end, screen->image_end);
+/* images.c: the image of such steps at the m-th time; NULL: there is none, or none yet. */
+struct audit_image_at *audit_image_of(const struct dalcs_audit *audit,
+                                      const struct audit_part *part, struct audit_screen *screen,
+                                      const struct dalcs_audit_polynomials *p, int m);
+
+/* Likewise where it is that of the stretch asked last. */
+static inline struct audit_image_at *
+audit_image_again(struct audit_screen *screen, const struct dalcs_audit_polynomials *p, int m) {
+    struct audit_image *image = &screen->image[screen->image_at];
+    return image->step == p->step && audit_is_same_end(image->end, p->end) &&
+                   image->at[m].place != NULL && p->input != NULL
+               ? &image->at[m]
+               : NULL;
 }
 
-/* A step as long as the one before: an image is worth it. */
-void audit_screen_see_step(const struct dalcs_audit *audit, const struct audit_part *part,
-                           struct audit_screen *screen, const struct dalcs_audit_polynomials *p);
-
-/* The times that stretches are asked at. */
-void audit_screen_draw_times(struct dalcs_audit *audit, struct audit_watch *watch,
-                             const struct dalcs_audit_polynomials *p);
-
-/* The images of a screen, whose rows are there. */
-void audit_screen_compose(const struct dalcs_audit *audit, const struct audit_part *part,
-                          struct audit_screen *screen, const struct dalcs_audit_polynomials *p);
+/* The rows of the screen are new. */
+void audit_images_forget(struct audit_screen *screen);
 
 #endif

@@ -2,7 +2,7 @@
 #include "screen_rows.h"
 
 static struct dalcs_audit_row *sign(const struct audit_filling *f) {
-    return &f->watch->row[AUDIT_N_ROWS];
+    return &f->watch->fill.row[AUDIT_N_ROWS];
 }
 
 /* factor (i - v/roff) */
@@ -55,8 +55,8 @@ static void fill_switch(struct audit_filling *f, int device) {
     const struct dalcs_device *d = &f->audit->circuit->device[device];
     const struct dalcs_switch_model *m = &f->audit->circuit->switch_model[d->model];
     const bool is_closed = f->s->is_closed[device];
-    const double rounding = fmax(f->audit->sums.rounding[f->audit->node_of[d->node[0]]],
-                                 f->audit->sums.rounding[f->audit->node_of[d->node[1]]]) +
+    const double rounding = fmax(f->audit->sums.rounding[f->audit->net.node_of[d->node[0]]],
+                                 f->audit->sums.rounding[f->audit->net.node_of[d->node[1]]]) +
                             f->audit->sums.amperes;
     if (is_closed) {
         const double volts = audit_volts(f->audit, f->part, d->node[0], d->node[1]);
@@ -97,7 +97,7 @@ static double size_of(const struct audit_filling *f, int device, const struct da
             of = audit_amperes(f->audit, f->part, term->index);
             break;
         case DALCS_QUANTITY_PAIR:
-            of = f->audit->lambda_scale[f->audit->first_lambda[device] + term->index];
+            of = f->audit->scale.lambda[f->audit->net.first_lambda[device] + term->index];
             break;
         default:
             of = fabs(dalcs_stimulus_value(&f->audit->circuit->stimulus[term->index], f->s->t,
@@ -117,7 +117,7 @@ static double value_of(const struct audit_filling *f, int device, const struct d
                           : term->kind == DALCS_QUANTITY_CURRENT
                               ? audit_current(f->audit, f->s, term->index)
                           : term->kind == DALCS_QUANTITY_PAIR
-                              ? f->s->lambda[f->audit->first_lambda[device] + term->index]
+                              ? f->s->lambda[f->audit->net.first_lambda[device] + term->index]
                               : dalcs_stimulus_value(&f->audit->circuit->stimulus[term->index],
                                                      f->s->t, f->s->side);
         sum += term->coefficient * of;
@@ -141,9 +141,9 @@ static void fill_formula(struct audit_filling *f, int device) {
         audit_add_read_current(f, audit_row_now(f), device, factor);
     }
     for (int k = 0; k < b->n_pairs; k++) {
-        const int pair = f->audit->first_lambda[device] + k;
+        const int pair = f->audit->net.first_lambda[device] + k;
         const double size = fmax(size_of(f, device, &b->w[k]), 0x1p-500);
-        const double lambda_size = fmax(f->audit->lambda_scale[pair], 0x1p-500);
+        const double lambda_size = fmax(f->audit->scale.lambda[pair], 0x1p-500);
         const double w = value_of(f, device, &b->w[k]);
         const double tolerance = f->part->tolerance;
         if (f->s->lambda[pair] * size > fabs(w) * lambda_size) {
@@ -166,8 +166,8 @@ static void fill_coil(struct audit_filling *f, int device) {
     const double factor = audit_over(
         f, f->part->tolerance * (audit_flux_scale(f->audit, f->part, device) + volts * f->step) +
                f->audit->options.vntol * f->step);
-    struct dalcs_audit_row *start = &f->watch->row[AUDIT_ROW_START];
-    audit_add_voltage(f, &f->watch->row[AUDIT_ROW_FLOW], d, 0, -factor);
+    struct dalcs_audit_row *start = &f->watch->fill.row[AUDIT_ROW_START];
+    audit_add_voltage(f, &f->watch->fill.row[AUDIT_ROW_FLOW], d, 0, -factor);
     audit_add_read_current(f, start, device, factor * d->value);
     for (int k = 0; k < f->part->n_couplings; k++) {
         const struct dalcs_coupling *m = &f->audit->circuit->coupling[f->part->coupling[k]];

@@ -1,8 +1,6 @@
 /* screen_rows.c - sums and lists of linear functions of what is stored: Kirchhoff's laws, states. */
 #include "screen_rows.h"
 
-#include <string.h>
-
 /* ---- Sums ---------------------------------------------------------------------------------------- */
 
 static void add_node(const struct audit_filling *f, struct dalcs_audit_row *row, int node,
@@ -70,8 +68,8 @@ void audit_add_affine(const struct audit_filling *f, struct dalcs_audit_row *row
             add_current(f, row, term->index, times);
             break;
         case DALCS_QUANTITY_PAIR:
-            r->add_lambda(r->user, f->index, f->audit->first_lambda[device] + term->index, times,
-                          row);
+            r->add_lambda(r->user, f->index, f->audit->net.first_lambda[device] + term->index,
+                          times, row);
             break;
         default:
             dalcs_audit_row_add_stimulus(row, term->index, times);
@@ -95,19 +93,19 @@ static void clear(struct dalcs_audit_row *row) {
 
 /* ---- Lists --------------------------------------------------------------------------------------- */
 
-static void list(struct audit_filling *f, int index, double factor) {
-    struct audit_screen *screen = f->screen;
-    f->complete =
-        f->complete && dalcs_grow(&screen->term, &screen->term_room, (size_t)screen->n_terms + 1,
-                                  sizeof(*screen->term)) == DALCS_OK;
-    if (f->complete) {
-        screen->term[screen->n_terms++] = (struct audit_term){index, factor};
+static void list(struct audit_sums_of_laws *fill, enum audit_term_kind kind,
+                 struct audit_term term) {
+    struct audit_list *to = &fill->list[kind];
+    fill->complete = fill->complete && dalcs_grow(&to->term, &to->room, (size_t)to->n + 1,
+                                                  sizeof(*to->term)) == DALCS_OK;
+    if (fill->complete) {
+        to->term[to->n++] = term;
     }
 }
 
 /* Those that do not cancel. What is the same at all times goes into the constant. */
-static int list_stimuli(struct audit_filling *f, struct dalcs_audit_row *row) {
-    int n = 0;
+static void list_stimuli(struct audit_filling *f, struct dalcs_audit_row *row,
+                         enum audit_term_kind kind, int place) {
     for (int k = 0; k < row->n_stimuli; k++) {
         const int index = row->listed_stimulus[k];
         const double factor = row->stimulus[index];
@@ -115,28 +113,35 @@ static int list_stimuli(struct audit_filling *f, struct dalcs_audit_row *row) {
         if (s->kind == DALCS_STIMULUS_DC) {
             row->constant += factor * dalcs_stimulus_value(s, 0.0, DALCS_RIGHT);
         } else if (factor != 0.0) {
-            list(f, index, factor);
-            n++;
+            list(&f->watch->fill, kind, (struct audit_term){place, index, factor});
         }
     }
-    return n;
+}
+
+static void add_constant(struct audit_sums_of_laws *fill, double **list, size_t *room, int *n,
+                         double constant) {
+    fill->complete =
+        fill->complete && dalcs_grow(list, room, (size_t)*n + 1, sizeof(**list)) == DALCS_OK;
+    if (fill->complete) {
+        (*list)[(*n)++] = constant;
+    }
 }
 
 /* value / allowed >= -1, of the row for signs, which is empty thereafter. */
 void audit_put_sign(struct audit_filling *f) {
-    struct audit_screen *screen = f->screen;
-    struct dalcs_audit_row *row = &f->watch->row[AUDIT_N_ROWS];
-    f->complete =
-        f->complete && dalcs_grow(&screen->sign, &screen->sign_room, (size_t)screen->n_signs + 1,
-                                  sizeof(*screen->sign)) == DALCS_OK;
-    if (f->complete) {
-        struct audit_sign sign = {.first = screen->n_terms, .n = row->n_columns};
-        for (int k = 0; k < row->n_columns; k++) {
-            list(f, row->listed_column[k], row->column[row->listed_column[k]]);
-        }
-        sign.n_stimuli = list_stimuli(f, row);
-        sign.constant = row->constant;
-        screen->sign[screen->n_signs++] = sign;
+    struct audit_sums_of_laws *fill = &f->watch->fill;
+    struct dalcs_audit_row *row = &fill->row[AUDIT_N_ROWS];
+    const int place = AUDIT_PLACE_SIGNS + AUDIT_SIGN_TIMES * fill->n_signs;
+    for (int k = 0; k < row->n_columns; k++) {
+        const int column = row->listed_column[k];
+        list(fill, AUDIT_TERM_COLUMN, (struct audit_term){place, column, row->column[column]});
+    }
+    if (row->n_columns > 0) {
+        list_stimuli(f, row, AUDIT_TERM_SIGN, place);
+        add_constant(fill, &fill->sign, &fill->sign_room, &fill->n_signs, row->constant);
+    } else {
+        list_stimuli(f, row, AUDIT_TERM_GUARD, fill->n_guards);
+        add_constant(fill, &fill->guard, &fill->guard_room, &fill->n_guards, row->constant);
     }
     clear(row);
 }
@@ -146,9 +151,9 @@ void audit_put_sign(struct audit_filling *f) {
 /* Of each node, in the sum: as a current, or where capacitors hang on it as a charge. */
 static void weigh_nodes(struct audit_filling *f) {
     const struct dalcs_audit *audit = f->audit;
-    double *by_current = f->watch->node_weight;
-    double *by_charge = f->watch->node_weight + audit->circuit->n_nodes;
-    double *charge = audit->offset; /* free between events */
+    double *by_current = f->watch->fill.node_weight;
+    double *by_charge = f->watch->fill.node_weight + audit->circuit->n_nodes;
+    double *charge = audit->crossing.offset; /* free between events */
     by_current[0] = by_charge[0] = 0.0;
     for (int k = 0; k < f->part->n_nodes; k++) {
         charge[f->part->node[k]] = 0.0;
@@ -156,7 +161,7 @@ static void weigh_nodes(struct audit_filling *f) {
     for (int k = 0; k < f->part->n_devices; k++) {
         const struct dalcs_device *d = &audit->circuit->device[f->part->device[k]];
         for (int e = 0; e < 2 && d->kind == DALCS_CAPACITOR; e++) {
-            charge[audit->node_of[d->node[e]]] +=
+            charge[audit->net.node_of[d->node[e]]] +=
                 d->value * audit_volts(audit, f->part, d->node[0], d->node[1]);
         }
     }
@@ -164,7 +169,7 @@ static void weigh_nodes(struct audit_filling *f) {
         const int node = f->part->node[k];
         const double amperes = f->part->tolerance * audit->sums.scale[node] +
                                audit->sums.rounding[node] + audit->options.abstol;
-        const bool is_charge = audit->has_charge[node];
+        const bool is_charge = audit->net.has_charge[node];
         by_current[node] = is_charge ? 0.0 : audit_over(f, amperes);
         by_charge[node] =
             is_charge ? audit_over(f, f->part->tolerance * charge[node] + amperes * f->step) : 0.0;
@@ -176,19 +181,19 @@ static void fill_nodes(const struct audit_filling *f, int device) {
     const struct dalcs_audit *audit = f->audit;
     const struct dalcs_device *d = &audit->circuit->device[device];
     const int n_nodes = audit->circuit->n_nodes;
-    const int a = audit->node_of[d->node[0]];
-    const int b = audit->node_of[d->node[1]];
-    const double *weight = f->watch->node_weight;
+    const int a = audit->net.node_of[d->node[0]];
+    const int b = audit->net.node_of[d->node[1]];
+    const double *weight = f->watch->fill.node_weight;
     const double by_charge = weight[n_nodes + a] - weight[n_nodes + b];
     if (d->kind == DALCS_CAPACITOR) {
-        audit_add_voltage(f, &f->watch->row[AUDIT_ROW_START], d, 0, by_charge * d->value);
+        audit_add_voltage(f, &f->watch->fill.row[AUDIT_ROW_START], d, 0, by_charge * d->value);
         return;
     }
     if (weight[a] != weight[b]) {
         add_current(f, audit_row_now(f), device, weight[a] - weight[b]);
     }
     if (by_charge != 0.0) {
-        add_current(f, &f->watch->row[AUDIT_ROW_FLOW], device, by_charge);
+        add_current(f, &f->watch->fill.row[AUDIT_ROW_FLOW], device, by_charge);
     }
 }
 
@@ -196,7 +201,7 @@ static void fill_nodes(const struct audit_filling *f, int device) {
 static void fill_state(const struct audit_filling *f, int k) {
     const int device = f->part->device[k];
     const struct dalcs_device *d = &f->audit->circuit->device[device];
-    struct dalcs_audit_row *row = &f->watch->row[AUDIT_ROW_STATES];
+    struct dalcs_audit_row *row = &f->watch->fill.row[AUDIT_ROW_STATES];
     if (d->kind == DALCS_CAPACITOR) {
         audit_add_voltage(f, row, d, 0, f->watch->state_factor[k]);
     } else if (d->kind == DALCS_INDUCTOR) {
@@ -206,25 +211,25 @@ static void fill_state(const struct audit_filling *f, int k) {
 
 /* Charges and fluxes at a time and at the start are the same function. */
 static void add_start(const struct audit_filling *f) {
-    const struct dalcs_audit_row *start = &f->watch->row[AUDIT_ROW_START];
+    const struct dalcs_audit_row *start = &f->watch->fill.row[AUDIT_ROW_START];
     for (int k = 0; k < start->n_columns; k++) {
         dalcs_audit_row_add_column(audit_row_now(f), start->listed_column[k],
                                    start->column[start->listed_column[k]]);
     }
 }
 
-bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part,
-                       struct audit_screen *screen, double step,
+bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part, double step,
                        const struct dalcs_audit_state *s) {
-    struct audit_filling f = {audit, part, part->watch, screen, s, (int)(part - audit->part),
-                              step,  true};
+    struct audit_filling f = {audit, part, part->watch, s, (int)(part - audit->part), step};
+    struct audit_sums_of_laws *fill = &part->watch->fill;
     for (int k = 0; k <= AUDIT_N_ROWS; k++) {
-        clear(&f.watch->row[k]);
+        clear(&fill->row[k]);
     }
-    screen->n_terms = screen->n_signs = 0;
-    /* room for one term, so that lists without any begin somewhere */
-    f.complete =
-        dalcs_grow(&screen->term, &screen->term_room, 1, sizeof(*screen->term)) == DALCS_OK;
+    for (int k = 0; k < AUDIT_N_TERM_KINDS; k++) {
+        fill->list[k].n = 0;
+    }
+    fill->n_signs = fill->n_guards = 0;
+    fill->complete = true;
     audit_sum_currents(audit, part, s);
     weigh_nodes(&f);
     for (int k = 0; k < part->n_devices; k++) {
@@ -235,20 +240,7 @@ bool audit_screen_fill(struct dalcs_audit *audit, struct audit_part *part,
         audit_fill_branch(&f, part->device[k]);
     }
     add_start(&f);
-    screen->first = screen->n_terms;
-    screen->n_stimuli = list_stimuli(&f, audit_row_now(&f));
-    screen->n_flows = list_stimuli(&f, &f.watch->row[AUDIT_ROW_FLOW]);
-    return f.complete && f.watch->row[AUDIT_ROW_START].n_stimuli == 0;
-}
-
-void audit_screen_put_rows(struct audit_watch *watch, struct audit_screen *screen, int n) {
-    memset(screen->row, 0, AUDIT_N_ROWS * (size_t)n * sizeof(double));
-    for (int r = 0; r < AUDIT_N_ROWS; r++) {
-        const struct dalcs_audit_row *row = &watch->row[r];
-        for (int k = 0; k < row->n_columns; k++) {
-            screen->row[r * n + row->listed_column[k]] = row->column[row->listed_column[k]];
-        }
-    }
-    screen->constant = watch->row[AUDIT_ROW_NOW].constant;
-    screen->rate = watch->row[AUDIT_ROW_FLOW].constant;
+    list_stimuli(&f, audit_row_now(&f), AUDIT_TERM_LAW, AUDIT_PLACE_LAWS);
+    list_stimuli(&f, &fill->row[AUDIT_ROW_FLOW], AUDIT_TERM_FLOW, AUDIT_PLACE_LAWS);
+    return fill->complete && fill->row[AUDIT_ROW_START].n_stimuli == 0;
 }

@@ -8,16 +8,14 @@ struct audit_filling {
     struct dalcs_audit *audit;
     struct audit_part *part;
     struct audit_watch *watch;
-    struct audit_screen *screen;
     const struct dalcs_audit_state *s; /* of the mode */
     int index;                         /* of the part */
     double step;                       /* s */
-    bool complete;
 };
 
 /* The sum of laws at one time. */
 static inline struct dalcs_audit_row *audit_row_now(const struct audit_filling *f) {
-    return &f->watch->row[AUDIT_ROW_NOW];
+    return &f->watch->fill.row[AUDIT_ROW_NOW];
 }
 
 /* The factor of a law of which so much is allowed. */

@@ -8,74 +8,79 @@ enum { MOST_DOUBLINGS = 16 };
  * false, such as of states that jump in each period, are looked at while the run can afford it. */
 enum { FEW_ALARMS = 4 };
 
-/* One instant, and a screen of about the same work. */
-static bool is_affordable(const struct audit_part *part, const struct dalcs_audit *audit) {
-    return audit->credit - 2.0 * part->cost > -audit->reserve;
-}
+/* Instructions of a screen, about: of what is handed over and asked, of an element of its image, of a value in its polynomials. */
+static const double screen_work = 600.0, element_work = 0.5, value_work = 2.5;
 
-static bool store(const struct dalcs_audit *audit, int index, bool wants_values,
-                  struct dalcs_audit_polynomials *p) {
-    return audit->reader.store != NULL &&
-           audit->reader.store(audit->reader.user, index, wants_values, p);
-}
-
-/* Where nobody needed values until now, and no image will do. */
-static bool wants_values(const struct audit_screen *screen,
-                         const struct dalcs_audit_polynomials *p) {
-    return p->value == NULL && (screen == NULL || !audit_screen_has_image(screen, p));
-}
-
-/* Do the values reach from one end of the stretch to the other? Times are known to their resolution, and events to what
- * changes no value by more than the tolerance. */
-static bool spans(const struct dalcs_audit *audit, const struct audit_part *part,
-                  const struct dalcs_audit_polynomials *p,
-                  const struct dalcs_audit_stretch *stretch) {
+/* At one of the watch's times, by an image of such steps where there is one. The values have to reach from one end of the
+ * stretch to the other. Times are known to their resolution, and events to what changes no value by more than the
+ * tolerance: so near an end is as good as there. */
+static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
+                const struct dalcs_audit_stretch *stretch, struct audit_answer *answer) {
+    const struct dalcs_audit_polynomials *p = stretch->stored;
+    const struct audit_part *part = &audit->part[stretch->part];
+    struct audit_watch *watch = part->watch;
     const double length = stretch->to - stretch->from;
-    return length - p->end * p->step <= part->tolerance * length + 4.0 * audit->options.resolution;
+    const int n_times =
+        p->end >= 1.0 ? AUDIT_SCREEN_TIMES : audit_n_times_before(part->watch, p->end);
+    struct audit_question q = {.stretch = stretch,
+                               .near = part->tolerance * length + 4.0 * audit->options.resolution,
+                               .m = (int)(n_times * audit_draw(audit))};
+    if (!watch->is_weighed[q.m]) {
+        audit_screen_weigh(watch, p, q.m);
+    }
+    q.image = audit_image_again(screen, p, q.m);
+    if (q.image == NULL && n_times > 0) {
+        q.image = audit_image_of(audit, part, screen, p, q.m);
+    }
+    if (q.image == NULL && p->value == NULL) {
+        audit->reader.complete(audit->reader.user, stretch->part);
+    }
+    audit_screen_ask(audit, watch, screen, &q, answer);
+    if (length - p->end * p->step > q.near) {
+        answer->worst = INFINITY;
+    }
+    audit->budget.spent +=
+        screen_work + (q.image != NULL ? element_work * p->n_inputs * screen->n_places
+                                       : value_work * p->n_nodes * p->n_columns);
+}
+
+/* Is the stretch to be looked at, for what the screen says, or because states are not what they were at the end of the one
+ * before? */
+static bool alarms(struct dalcs_audit *audit, struct audit_watch *watch,
+                   struct audit_screen *screen, const struct audit_answer *answer) {
+    const double jump =
+        watch->knows_states && !watch->is_put_off ? fabs(answer->start - watch->states) : 0.0;
+    watch->states = answer->end;
+    watch->knows_states = true;
+    audit->count.screened++;
+    if ((answer->worst <= screen->limit && jump <= screen->limit) ||
+        (screen->alarms >= FEW_ALARMS && audit->budget.credit < 0.0)) {
+        return false;
+    }
+    screen->alarms++;
+    watch->asked = answer->t;
+    return true;
 }
 
 bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
                       bool can_look) {
     struct audit_part *part = &audit->part[stretch->part];
     struct audit_watch *watch = part->watch;
-    const bool knew = watch->knows_states && !watch->is_put_off;
-    struct dalcs_audit_polynomials p;
     watch->asked = -1.0;
-    watch->knows_states = watch->makes = false;
-    if (!can_look || !store(audit, stretch->part, false, &p)) {
-        return false;
+    const bool can_ask = can_look && stretch->stored != NULL;
+    struct audit_screen *screen = can_ask ? audit_screen_of(part, stretch->stored) : NULL;
+    watch->makes = can_ask && screen == NULL;
+    if (screen != NULL && screen->rests > 0) {
+        screen->rests--;
+        screen = NULL;
     }
-    struct audit_screen *screen = audit_screen_of(part, &p);
     if (screen == NULL) {
-        watch->makes = is_affordable(part, audit);
+        watch->knows_states = watch->knows_states && watch->makes;
         return watch->makes;
     }
-    if (screen->rests > 0) {
-        screen->rests--;
-        return false;
-    }
-    audit_screen_see_step(audit, part, screen, &p);
-    if (wants_values(screen, &p)) {
-        (void)store(audit, stretch->part, true, &p);
-    }
     struct audit_answer answer;
-    audit_screen_ask(audit, part, screen, &p, stretch, &answer);
-    if (!spans(audit, part, &p, stretch)) {
-        answer.worst = INFINITY;
-    }
-    const double jump = knew ? fabs(answer.start - watch->states) : 0.0;
-    watch->states = answer.end;
-    watch->knows_states = true;
-    audit->count.screened++;
-    if (answer.worst <= screen->limit && jump <= screen->limit) {
-        return false;
-    }
-    if (screen->alarms >= FEW_ALARMS && !is_affordable(part, audit)) {
-        return false;
-    }
-    screen->alarms++;
-    watch->asked = answer.t;
-    return true;
+    ask(audit, screen, stretch, &answer);
+    return alarms(audit, watch, screen, &answer);
 }
 
 /* What the look has found counts. What the screen makes of such a stretch, which holds or ends the run, asks for none. */
@@ -89,23 +94,43 @@ static void allow(const struct dalcs_audit *audit, const struct audit_part *part
     }
 }
 
+/* The screen of the present stretch, and what it says of that; NULL: there is none. */
+static struct audit_screen *make(struct dalcs_audit *audit,
+                                 const struct dalcs_audit_stretch *stretch,
+                                 struct audit_answer *answer) {
+    struct audit_part *part = &audit->part[stretch->part];
+    if (stretch->stored == NULL) {
+        return NULL;
+    }
+    audit->reader.complete(audit->reader.user, stretch->part);
+    struct audit_screen *screen = audit_screen_make(audit, part, stretch->stored, &audit->now);
+    audit->budget.spent += part->cost;
+    if (screen != NULL) {
+        ask(audit, screen, stretch, answer);
+    }
+    return screen;
+}
+
+bool audit_watch_begins(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
+    struct audit_watch *watch = audit->part[stretch->part].watch;
+    struct audit_answer answer;
+    struct audit_screen *screen = make(audit, stretch, &answer);
+    watch->knows_states = watch->knows_states && screen != NULL;
+    return screen == NULL || alarms(audit, watch, screen, &answer);
+}
+
 void audit_watch_learn(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
-    struct audit_watch *watch = part->watch;
-    struct dalcs_audit_polynomials p;
-    if (!(watch->makes || watch->asked >= 0.0) || !store(audit, stretch->part, true, &p)) {
-        return;
-    }
-    struct audit_screen *screen = audit_screen_make(audit, part, &p, &audit->now);
-    audit->credit -= part->cost;
-    watch->knows_states = screen != NULL;
-    if (screen == NULL) {
-        return;
-    }
     struct audit_answer answer;
-    audit_screen_ask(audit, part, screen, &p, stretch, &answer);
-    watch->states = answer.end;
-    if (!(answer.worst <= screen->limit)) {
+    if (part->watch->asked < 0.0) {
+        return;
+    }
+    struct audit_screen *screen = make(audit, stretch, &answer);
+    part->watch->knows_states = screen != NULL;
+    if (screen != NULL) {
+        part->watch->states = answer.end;
+    }
+    if (screen != NULL && !(answer.worst <= screen->limit)) {
         allow(audit, part, screen, answer.worst);
     }
 }

@@ -128,8 +128,9 @@ static void write_work(FILE *out, const struct dalcs_report *report) {
 /* "proof     audited at 4812 instants: worst defect 3.1e-10 of d1 at 1.24 ms; 511 switch positions right" */
 static void write_audit(FILE *out, const struct dalcs_report *report) {
     char text[DALCS_QUANTITY_SIZE];
-    fprintf(out, "  proof     audited at %ld instant%s: worst defect %.2g", report->audit.instants,
-            plural(report->audit.instants), report->audit.worst);
+    const long instants = report->audit.screened + report->audit.instants; /* sums, and each law */
+    fprintf(out, "  proof     audited at %ld instant%s: worst defect %.2g", instants, plural(instants),
+            report->audit.worst);
     if (report->audit.worst > 0.0) {
         fprintf(out, " of %s at %s", report->audit.where,
                 dalcs_quantity_write(text, report->audit.time, "s", DIGITS));

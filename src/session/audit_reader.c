@@ -103,7 +103,9 @@ void dalcs_audit_reader_keep(const struct dalcs_audit_run *a, int index) {
     m->last_out = part->segment.out;
     m->last_end = part->segment.end;
     m->last_time = part->segment.t_end;
-    memcpy(m->last_mode, c->osnsp.mode, (size_t)c->osnsp.n_words * sizeof(uint64_t));
+    for (int k = 0; k < c->osnsp.n_words; k++) {
+        m->last_mode[k] = c->osnsp.mode[k];
+    }
 }
 
 /* The numbers of that segment are where they were until the next one has ended. */
@@ -137,53 +139,77 @@ static uint64_t mix(uint64_t hash, uint64_t word) {
     return (hash ^ word) * 0x100000001b3u;
 }
 
+/* Steps within a factor of 16 are held to the same: their exponents are, but for the last two bits. */
 static uint64_t key_of(const struct dalcs_radau_part *part) {
     const struct dalcs_osnsp *osnsp = &part->component->osnsp;
-    uint64_t hash = 0xcbf29ce484222325u;
+    uint64_t length;
+    memcpy(&length, &part->segment.h, sizeof length);
+    uint64_t hash = mix(0xcbf29ce484222325u, length >> 54);
     for (int k = 0; k < osnsp->n_words; k++) {
         hash = mix(hash, osnsp->mode[k]);
     }
-    return mix(hash, (uint64_t)(ilogb(part->segment.h) /
-                                2)); /* steps of a like length are held to the same */
+    return hash;
 }
 
 /* The map whose image of part->in the segment is; NULL: none. One of those kept of a period has none, and another start. */
-static const struct dalcs_stage_entry *map_of(const struct dalcs_radau_part *part) {
+static inline const struct dalcs_stage_entry *map_of(const struct dalcs_radau_part *part) {
     if (part->segment.late != NULL) {
         return part->segment.late;
     }
     const struct dalcs_stage_entry *entry =
         part->segment.brief != NULL ? part->segment.brief->entry : part->segment.entry;
-    bool is = entry != NULL && dalcs_stages_have_maps(&part->stages) && dalcs_stage_has_map(entry);
-    for (int x = 0; x < part->component->system->n_x && is; x++) {
-        is = part->segment.in[x] == part->segment.out[x];
+    if (entry == NULL || !dalcs_stages_have_maps(&part->stages) || !dalcs_stage_has_map(entry)) {
+        return NULL;
     }
-    return is ? entry : NULL;
+    const int n_x = part->component->system->n_x;
+    for (int x = 0; x < n_x; x++) {
+        if (part->segment.in[x] != part->segment.out[x]) {
+            return NULL;
+        }
+    }
+    return entry;
 }
 
-static bool store(void *user, int index, bool wants_values, struct dalcs_audit_polynomials *p) {
+static const struct dalcs_audit_polynomials *store(struct audit_members *m,
+                                                   const struct dalcs_radau_part *part) {
+    struct dalcs_audit_polynomials *p = &m->stored;
+    if (part->segment.by_euler || part->component->positions.joined) {
+        return NULL;
+    }
+    p->key = key_of(part);
+    p->step = part->segment.h;
+    p->end = part->segment.end;
+    p->value = part->segment.late != NULL ? NULL : part->segment.out;
+    p->input = NULL;
+    if (m->has_maps && map_of(part) != NULL) {
+        if (p->n_inputs == 0) { /* which nobody knows before the first map */
+            p->n_inputs = dalcs_stage_brief_columns(&part->stages);
+            m->takes_in = p->n_inputs == part->stages.n_in;
+        }
+        p->input = m->takes_in ? part->segment.in
+                               : dalcs_stage_brief_input(&part->stages, part->segment.in);
+    }
+    return p;
+}
+
+struct dalcs_audit_stretch *dalcs_audit_reader_stretch(struct dalcs_audit_run *a, int index,
+                                                       double to) {
+    const struct dalcs_radau_part *part = &a->radau->part[index];
+    struct audit_members *m = &a->part[index];
+    struct dalcs_audit_stretch *stretch = &m->stretch;
+    stretch->from = part->segment.t;
+    stretch->to = to;
+    stretch->step = part->segment.h;
+    stretch->rule = part->segment.by_euler ? DALCS_AUDIT_COARSE : DALCS_AUDIT_SMOOTH;
+    stretch->stored = store(m, part);
+    return stretch;
+}
+
+static void complete(void *user, int index) {
     const struct dalcs_audit_run *a = user;
     struct dalcs_radau_part *part = &a->radau->part[index];
-    if (part->segment.by_euler || part->component->positions.joined) {
-        return false;
-    }
-    if (wants_values) {
-        dalcs_recurrence_complete(part);
-    }
-    *p = (struct dalcs_audit_polynomials){
-        .key = key_of(part),
-        .n_columns = dalcs_system_n_columns(part->component->system),
-        .n_nodes = part->stages.layout.n_nodes,
-        .stride = part->stages.layout.stride,
-        .node = part->stages.method->node,
-        .step = part->segment.h,
-        .end = part->segment.end,
-        .value = part->segment.late != NULL ? NULL : part->segment.out};
-    if (map_of(part) != NULL) {
-        p->n_inputs = dalcs_stage_brief_columns(&part->stages);
-        p->input = dalcs_stage_brief_input(&part->stages, part->segment.in);
-    }
-    return true;
+    dalcs_recurrence_complete(part);
+    a->part[index].stored.value = part->segment.out;
 }
 
 static const double *column(void *user, int index, int j) {
@@ -244,7 +270,7 @@ static void add_lambda(void *user, int index, int lambda, double factor,
 
 struct dalcs_audit_reader dalcs_audit_reader_of(struct dalcs_audit_run *a) {
     return (struct dalcs_audit_reader){.user = a,
-                                       .store = store,
+                                       .complete = complete,
                                        .column = column,
                                        .add_voltage = add_voltage,
                                        .add_current = add_current,

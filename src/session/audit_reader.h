@@ -10,7 +10,12 @@ struct audit_members {
     int *node, *node_column;
     int *device; /* [n_devices] with currents of their own; others are the auditor's matter */
     int *lambda, *lambda_pair;
-    bool was_left; /* its segment ended at the present time */
+    bool was_left;                         /* its segment ended at the present time */
+    struct dalcs_audit_polynomials stored; /* the present segment */
+    struct dalcs_audit_stretch stretch;    /* likewise */
+    bool has_maps, takes_in;               /* they take the segment's own numbers in */
+    double work, brief_work;               /* of a segment, in instructions; of one that recurs */
+    double elements;                       /* of its maps, likewise */
     /* Of the segment that ended last, where it did. */
     double *last_out;
     double last_end, last_time; /* in steps; s */
@@ -18,7 +23,7 @@ struct audit_members {
 };
 
 /* Instructions of a segment beside its maps, at least, that recurs and that nobody reads. */
-static const double dalcs_audit_segment_work = 2500.0;
+static const double dalcs_audit_segment_work = 1200.0;
 
 /* The largest defect that ends no run. */
 double dalcs_audit_most_allowed(const struct dalcs_audit_run *a);
@@ -30,6 +35,10 @@ void dalcs_audit_leaps_compare(struct dalcs_audit_run *a);
 enum dalcs_status dalcs_audit_members_make(struct dalcs_audit_run *a) DALCS_MUST_CHECK;
 
 struct dalcs_audit_reader dalcs_audit_reader_of(struct dalcs_audit_run *a);
+
+/* The present segment of a part, up to a time. */
+struct dalcs_audit_stretch *dalcs_audit_reader_stretch(struct dalcs_audit_run *a, int index,
+                                                       double to);
 
 /* The present segment of a part ends: its end can be read until the next one has. */
 void dalcs_audit_reader_keep(const struct dalcs_audit_run *a, int index);

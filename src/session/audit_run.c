@@ -10,9 +10,10 @@
  * row; an element of a map. */
 static const double value_work = 15.0, source_work = 1000.0, row_work = 30.0, element_work = 0.6;
 
-/* Likewise of segments beside their maps: one that recurs and that nobody reads, one with rows; and what a search for
- * its length and its events takes for each value of its polynomials. */
-static const double read_segment_work = 6000.0, search_work = 100.0;
+/* Likewise of a segment that does not recur, with what the search for its length and its events takes for each of its
+ * values; of rows in it; of an event that ends it. */
+static const double search_work = 3000.0, search_value_work = 15.0, read_work = 2500.0,
+                    event_work = 10000.0;
 
 /* Charges and fluxes are compared with currents and voltages, which are their derivatives: between the nodes of a step
  * these have half the digits, the square root of a rounding, however small the tolerance. The proof line tells what is
@@ -26,7 +27,7 @@ double dalcs_audit_most_allowed(const struct dalcs_audit_run *a) {
 /* What a sample may cost of a run: with the counts above the netlists of the repository stay below 5 %. */
 static const double share = 0.03;
 
-static double read_work(const struct dalcs_audit_run *a, int part) {
+static double state_work(const struct dalcs_audit_run *a, int part) {
     const struct dalcs_component *c = &a->euler->component[part];
     return value_work * dalcs_system_n_columns(c->system) + source_work * c->n_varying;
 }
@@ -41,7 +42,7 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
     }
     for (int k = 0; k < n; k++) {
         tolerance[k] = a->radau->part[k].tolerance;
-        work[k] = read_work(a, k);
+        work[k] = state_work(a, k);
     }
     const struct dalcs_audit_options options = {.mode = run->options->audit,
                                                 .share = share,
@@ -59,6 +60,31 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
     return dalcs_audit_create(&a->audit, &run->s->circuit, &options, &reader);
 }
 
+static void start_part(struct audit_members *m, const struct dalcs_radau_part *part) {
+    const struct dalcs_stages *stages = &part->stages;
+    m->elements = element_work * stages->n_in * stages->layout.n_fixed;
+    m->brief_work = dalcs_audit_segment_work;
+    m->work = search_work + search_value_work * stages->layout.n_fixed + m->elements;
+    m->stored = (struct dalcs_audit_polynomials){
+        .n_columns = dalcs_system_n_columns(part->component->system),
+        .n_nodes = stages->layout.n_nodes,
+        .stride = stages->layout.stride,
+        .node = stages->method->node};
+    m->has_maps = dalcs_stages_have_maps(stages);
+    m->stretch = (struct dalcs_audit_stretch){.part = part->index, .degree = stages->method->s};
+}
+
+static enum dalcs_status list_stepped(struct dalcs_audit_run *a) {
+    a->stepped = dalcs_arena_alloc(&a->arena, (size_t)a->radau->n_parts, sizeof(int));
+    for (int k = 0; k < a->radau->n_parts && a->stepped != NULL; k++) {
+        if (a->radau->part[k].kind == DALCS_PART_STEPPED) {
+            a->stepped[a->n_stepped++] = k;
+            start_part(&a->part[k], &a->radau->part[k]);
+        }
+    }
+    return a->stepped != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
 enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_run *run,
                                         struct dalcs_euler *euler, struct dalcs_radau *radau) {
     *a = (struct dalcs_audit_run){
@@ -67,7 +93,9 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
         run->fixed_step > 0.0 /* whose error nobody controls */) {
         return DALCS_OK;
     }
+    a->row_work = row_work * run->s->network.n_outputs;
     enum dalcs_status status = dalcs_audit_members_make(a);
+    status = status == DALCS_OK ? list_stepped(a) : status;
     if (status == DALCS_OK && radau->cycling != NULL) {
         const int n_x = radau->cycling->component->system->n_x;
         const int n_elements = n_x * (n_x + 1);
@@ -89,51 +117,38 @@ void dalcs_audit_run_finish(struct dalcs_audit_run *a) {
 
 /* ---- On the way ---------------------------------------------------------------------------------- */
 
-static struct dalcs_audit_stretch stretch_of(const struct dalcs_audit_run *a, int k, double to) {
-    const struct dalcs_radau_part *part = &a->radau->part[k];
-    return (struct dalcs_audit_stretch){.part = k,
-                                        .from = part->segment.t,
-                                        .to = to,
-                                        .step = part->segment.h,
-                                        .degree = part->stages.method->s,
-                                        .rule = part->segment.by_euler ? DALCS_AUDIT_COARSE
-                                                                       : DALCS_AUDIT_SMOOTH};
-}
-
 static void enter(struct dalcs_audit_run *a, int k) {
     if (!dalcs_audit_begins(a->audit, k)) {
         return;
     }
-    const struct dalcs_audit_stretch stretch = stretch_of(a, k, a->radau->part[k].segment.t_end);
-    dalcs_audit_enter(a->audit, &stretch);
+    dalcs_audit_enter(a->audit, dalcs_audit_reader_stretch(a, k, a->radau->part[k].segment.t_end));
 }
 
 void dalcs_audit_run_begin(struct dalcs_audit_run *a) {
-    for (int k = 0; a->audit != NULL && k < a->radau->n_parts; k++) {
-        if (a->radau->part[k].kind == DALCS_PART_STEPPED) {
-            enter(a, k);
-        }
+    for (int i = 0; a->audit != NULL && i < a->n_stepped; i++) {
+        enter(a, a->stepped[i]);
     }
 }
 
 static void leave(struct dalcs_audit_run *a, int k, double to) {
-    const struct dalcs_radau_part *part = &a->radau->part[k];
-    const struct dalcs_stages *stages = &part->stages;
-    const double elements = element_work * stages->n_in * stages->layout.n_fixed;
-    const bool is_brief =
-        part->segment.late != NULL; /* of which only what tells that it is one was computed */
-    const bool is_last = to >= a->radau->options.stop;
-    const double work =
-        (a->has_rows ? read_segment_work : dalcs_audit_segment_work) +
-        (is_brief ? 0.1 * elements : elements + search_work * stages->layout.n_fixed);
-    struct dalcs_audit_stretch stretch = stretch_of(a, k, to);
-    if (dalcs_audit_passes_over(a->audit, &stretch, work) && !is_last) {
-        dalcs_audit_reader_keep(a, k);
-        return;
+    const struct dalcs_part_segment *segment = &a->radau->part[k].segment;
+    const struct audit_members *m = &a->part[k];
+    double work = segment->late != NULL ? m->brief_work : m->work;
+    if (segment->why == DALCS_END_AT_EVENT) {
+        work += event_work;
     }
-    stretch.is_last = is_last;
-    stretch.first_look = is_brief ? elements : 0.0;
-    dalcs_audit_leave(a->audit, &stretch);
+    if (a->has_rows) {
+        work += read_work;
+    }
+    struct dalcs_audit_stretch *stretch = dalcs_audit_reader_stretch(a, k, to);
+    const bool is_last = to >= a->radau->options.stop;
+    if (!dalcs_audit_passes_over(a->audit, stretch, work) || is_last) {
+        stretch->is_last = is_last;
+        /* of a late one only what tells that it is a segment was computed */
+        stretch->first_look = segment->late != NULL ? m->elements : 0.0;
+        dalcs_audit_leave(a->audit, stretch);
+        a->was_left = true;
+    }
     dalcs_audit_reader_keep(a, k);
 }
 
@@ -142,10 +157,11 @@ void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
         return;
     }
     const double stop = a->radau->options.stop;
-    for (int k = 0; k < a->radau->n_parts; k++) {
+    for (int i = 0; i < a->n_stepped; i++) {
+        const int k = a->stepped[i];
         const struct dalcs_radau_part *part = &a->radau->part[k];
         const bool ends = part->segment.t_end <= t || t >= stop;
-        a->part[k].was_left = part->kind == DALCS_PART_STEPPED && ends && part->segment.t < stop;
+        a->part[k].was_left = ends && part->segment.t < stop;
         if (a->part[k].was_left) {
             leave(a, k, part->segment.t_end < stop ? part->segment.t_end : stop);
         }
@@ -153,11 +169,13 @@ void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
     a->has_rows = false;
 }
 
-void dalcs_audit_run_enter(struct dalcs_audit_run *a) {
-    if (a->audit != NULL) {
+void dalcs_audit_run_enter_now(struct dalcs_audit_run *a) {
+    if (a->tried_time < INFINITY) {
         dalcs_audit_leaps_compare(a);
     }
-    for (int k = 0; a->audit != NULL && k < a->radau->n_parts; k++) {
+    a->was_left = false;
+    for (int i = 0; i < a->n_stepped; i++) {
+        const int k = a->stepped[i];
         if (a->part[k].was_left && a->radau->part[k].segment.t < a->radau->options.stop) {
             enter(a, k);
         }
@@ -168,10 +186,9 @@ void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side s
     if (a->audit == NULL) {
         return;
     }
-    const double work = row_work * (double)n * a->run->s->network.n_outputs;
-    dalcs_audit_earn(a->audit, work);
+    dalcs_audit_earn(a->audit, a->row_work * (double)n);
     a->has_rows = true;
-    for (int k = 0; k < a->radau->n_parts; k++) {
+    for (int k = 0; a->n_stepped < a->radau->n_parts && k < a->radau->n_parts; k++) {
         if (a->radau->part[k].kind == DALCS_PART_ALGEBRAIC) {
             dalcs_audit_instant(a->audit, k, t, side, dalcs_audit_segment_work);
         }

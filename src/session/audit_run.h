@@ -7,16 +7,21 @@
 #include "audit.h"
 #include "radau.h"
 
+#include <math.h>
+
 struct dalcs_audit_run {
     struct dalcs_run *run;
     struct dalcs_euler *euler;
     struct dalcs_radau *radau;
     struct dalcs_audit *audit;  /* NULL: nothing is audited */
     struct audit_members *part; /* [n_systems] */
+    int *stepped, n_stepped;    /* parts with segments */
+    double row_work;            /* of a row, in instructions */
     int *pair_of_lambda;        /* [n_lambdas] in its system */
     double *tried;              /* states that a leap would lead to, and work */
     double leap_time;           /* s, where one began */
     double tried_time;          /* s, when; INFINITY: none is tried */
+    bool was_left;              /* a segment that was looked at ended at the present time */
     bool has_rows;              /* since the last segment ended */
     bool has_passed;            /* a leap was compared, at least once */
     bool has_tried;             /* at least once */
@@ -35,7 +40,14 @@ void dalcs_audit_run_begin(struct dalcs_audit_run *a);
 
 /* Segments that end at t, before and after they are passed; the ones that go on at the end of the run. */
 void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t);
-void dalcs_audit_run_enter(struct dalcs_audit_run *a);
+void dalcs_audit_run_enter_now(struct dalcs_audit_run *a);
+
+/* Where a segment was looked at there is something to do. */
+static inline void dalcs_audit_run_enter(struct dalcs_audit_run *a) {
+    if (a->was_left || (a->audit != NULL && a->tried_time < INFINITY)) {
+        dalcs_audit_run_enter_now(a);
+    }
+}
 
 /* May the cycling part leap now? Not while periods are stepped that a leap was tried over. */
 enum dalcs_status dalcs_audit_run_leap(struct dalcs_audit_run *a, double until,

@@ -1,0 +1,69 @@
+/* courses.c - stimuli, as the netlist gave them, at many times that are close together. */
+#include "audit_internal.h"
+
+/* A pulse: level by level, less what rounding of times may take for the next one. */
+static void follow_pulse(const struct dalcs_stimulus *s, double t, struct audit_course *c) {
+    const double top = s->u.pulse.rise + s->u.pulse.width;
+    const double foot = top + s->u.pulse.fall;
+    const bool repeats = s->u.pulse.period < INFINITY;
+    const double from = t - s->u.pulse.delay;
+    const double edge[] = {0.0, s->u.pulse.rise, top, foot, repeats ? s->u.pulse.period : INFINITY};
+    const double low = s->u.pulse.low;
+    const double level[] = {low, s->u.pulse.high, s->u.pulse.high, low, low};
+    if (s->u.pulse.n_periods > 0.0 || foot > edge[4]) {
+        return;
+    }
+    if (!(from > 0.0)) {
+        *c = (struct audit_course){-INFINITY, s->u.pulse.delay, 0.0, 1, {low}};
+        return;
+    }
+    const double past = repeats ? floor(from / s->u.pulse.period) * s->u.pulse.period : 0.0;
+    const double begin = s->u.pulse.delay + past;
+    const double near = 16.0 * 0x1p-52 * (t + s->u.pulse.delay);
+    int k = 0;
+    while (k < 3 && from - past >= edge[k + 1]) {
+        k++;
+    }
+    c->origin = begin + edge[k];
+    c->from = c->origin + near;
+    c->to = begin + edge[k + 1] - near;
+    c->n = level[k + 1] != level[k] ? 2 : 1;
+    c->term[0] = level[k];
+    c->term[1] = c->n == 2 ? (level[k + 1] - level[k]) / (edge[k + 1] - edge[k]) : 0.0;
+}
+
+/* An eighth of a radian of a sine that is not damped, by its series: what is left out is 8^-10/10! of it. Its cosine is
+ * its value a fourth of a period later. Two values are worth it where the time asked before was as near. */
+static void follow_sine(const struct dalcs_stimulus *s, double t, struct audit_course *c) {
+    const double omega = 2.0 * 3.14159265358979323846 * s->u.sine.frequency;
+    const bool is_near = omega * fabs(t - c->origin) <= 0.25;
+    c->origin = t;
+    if (!is_near || t < s->u.sine.delay || s->u.sine.n_cycles > 0.0 || s->u.sine.damping != 0.0 ||
+        !(omega > 0.0)) {
+        return;
+    }
+    const double quarter = 0.25 / s->u.sine.frequency;
+    double sine = dalcs_stimulus_value(s, t, DALCS_RIGHT) - s->u.sine.offset;
+    double cosine = dalcs_stimulus_value(s, t + quarter, DALCS_RIGHT) - s->u.sine.offset;
+    *c = (struct audit_course){t, t + 0.125 / omega, t, AUDIT_COURSE_TERMS, {sine}};
+    for (int k = 1; k < AUDIT_COURSE_TERMS; k++) {
+        const double derivative = cosine * omega / k;
+        cosine = -sine * omega / k;
+        sine = derivative;
+        c->term[k] = sine;
+    }
+    c->term[0] += s->u.sine.offset;
+}
+
+double audit_course_begin(struct dalcs_audit *audit, int stimulus, double t) {
+    const struct dalcs_stimulus *s = &audit->circuit->stimulus[stimulus];
+    struct audit_course *c = &audit->course[stimulus];
+    c->from = INFINITY;
+    if (s->kind == DALCS_STIMULUS_PULSE) {
+        follow_pulse(s, t, c);
+    } else if (s->kind == DALCS_STIMULUS_SIN) {
+        follow_sine(s, t, c);
+    }
+    return c->from <= t && t <= c->to ? audit_stimulus_at(audit, stimulus, t)
+                                      : dalcs_stimulus_value(s, t, DALCS_RIGHT);
+}
