@@ -129,8 +129,8 @@ static void write_work(FILE *out, const struct dalcs_report *report) {
 static void write_audit(FILE *out, const struct dalcs_report *report) {
     char text[DALCS_QUANTITY_SIZE];
     const long instants = report->audit.screened + report->audit.instants; /* sums, and each law */
-    fprintf(out, "  proof     audited at %ld instant%s: worst defect %.2g", instants, plural(instants),
-            report->audit.worst);
+    fprintf(out, "  proof     audited at %ld instant%s: worst defect %.2g", instants,
+            plural(instants), report->audit.worst);
     if (report->audit.worst > 0.0) {
         fprintf(out, " of %s at %s", report->audit.where,
                 dalcs_quantity_write(text, report->audit.time, "s", DIGITS));
