@@ -159,6 +159,16 @@ static size_t count_parasitics(const struct dalcs_card *card) {
     return n > 0 ? n + 1 : 0;
 }
 
+/* I1 a b 50m load */
+static bool is_load(const struct dalcs_card *card) {
+    bool found = false;
+    for (int k = 3; k < card->n && card->letter == 'i'; k++) {
+        found = found || (card->token[k].kind == DALCS_TOKEN_WORD &&
+                          strcmp(card->token[k].text, "load") == 0);
+    }
+    return found;
+}
+
 static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
                                               const struct dalcs_card *card) {
     struct dalcs_builder *builder = table->builder;
@@ -177,6 +187,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_stimuli += n_limits;
         }
         table->n_inner += count_parasitics(card);
+        table->n_inner += is_load(card) ? 2 : 0;
         table->n_inner += letter == 'l' &&
                           dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_LTSPICE);
         if (strchr("efgh", letter) != NULL) {
@@ -187,7 +198,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         table->n_inner += letter == 's' && dalcs_formula_find_control(card) < card->n;
         table->n_switches += letter == 's' || letter == 'w';
         table->n_diodes += letter == 'd' || letter == 'a';
-        table->n_scaled += (letter == 'd' || letter == 'a') && card->n > 4;
+        table->n_scaled += (letter == 'd' || letter == 'a') && (card->n > 4 || card->parallel > 0);
         return DALCS_CARD_ELEMENT;
     }
     const char *what = refused_element(letter);

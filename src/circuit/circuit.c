@@ -62,6 +62,9 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
 }
 
 static void read_element(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    if (card->parallel > 0 && dalcs_parallel_is_refused(builder, card)) {
+        return;
+    }
     switch (card->letter) {
     case 'r':
         dalcs_passive_parse(builder, card, DALCS_RESISTOR);

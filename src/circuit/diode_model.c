@@ -38,6 +38,9 @@ enum {
     BV,
     IBV,
     NBV,
+    VB,  /* other names: of BV in PSpice and Xyce, */
+    VRB, /* in HSPICE, */
+    IB,  /* and of IBV there */
     N_PARAMETERS
 };
 
@@ -54,10 +57,7 @@ static const char *const IGNORED[] = {
 static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_token *name) {
     static const char *const ours[] = {"ron",  "roff",   "vfwd",      "vrev",
                                        "rrev", "ilimit", "revilimit", "epsilon"};
-    /* Data that libraries keep in a model, of no effect in any simulator. */
-    static const char *const labels[] = {"mfg",  "type", "vpk",  "ipk",     "iave",
-                                         "irms", "diss", "vceo", "icrating"};
-    if (dalcs_builder_is_one_of(name->text, labels, sizeof labels / sizeof labels[0]) ||
+    if (dalcs_builder_is_label(name->text) ||
         dalcs_builder_is_one_of(name->text, IGNORED, sizeof IGNORED / sizeof IGNORED[0])) {
         return false;
     }
@@ -170,6 +170,13 @@ static bool set_ideal(struct dalcs_builder *builder, struct dalcs_parameter *p,
 
 /* ---- The exponential diode ----------------------------------------------------------------- */
 
+void dalcs_diode_cells(struct dalcs_diode_card *card, double cells) {
+    card->emission *= cells;
+    card->resistance *= cells;
+    card->breakdown *= cells;
+    card->back_emission *= cells;
+}
+
 double dalcs_exponential_voltage(const struct dalcs_exponential *diode, double current) {
     return diode->voltage * log1p(current / diode->saturation) + diode->series * current;
 }
@@ -227,14 +234,15 @@ static const char *ignored_text(struct dalcs_builder *builder, const struct dalc
                                 const struct dalcs_parameter *p, bool with_berkeley) {
     const char *list = NULL;
     int n = 0;
-    for (int k = 0; k + 1 < card->n && n < MOST_IGNORED; k++) {
+    /* behind .model, its name and its type */
+    for (int k = 3; k + 1 < card->n && n < MOST_IGNORED; k++) {
         const char *name = card->token[k].text;
         bool is_ignored =
             dalcs_builder_is_one_of(name, IGNORED, sizeof IGNORED / sizeof IGNORED[0]);
         for (int j = FIRST_BERKELEY; with_berkeley && j < N_PARAMETERS; j++) {
             is_ignored = is_ignored || p[j].place == &card->token[k];
         }
-        if (is_ignored && card->token[k + 1].kind == DALCS_TOKEN_EQUAL) {
+        if (is_ignored && card->token[k - 1].kind != DALCS_TOKEN_EQUAL) {
             n++;
             list = list == NULL ? dalcs_builder_hint(builder, "%s", name)
                                 : dalcs_builder_hint(builder, "%s, %s", list, name);
@@ -280,15 +288,27 @@ static void note_mapping(struct dalcs_reader *reader, const struct dalcs_token *
         1e3 * above[2], ignored);
 }
 
+/* What the card calls by another name. */
+static void take_synonym(struct dalcs_parameter *p, int ours, int other) {
+    if (p[ours].place == NULL && p[other].place != NULL) {
+        p[ours].value = p[other].value;
+        p[ours].place = p[other].place;
+    }
+}
+
 static bool set_berkeley(struct dalcs_reader *reader, const struct dalcs_token *place,
                          struct dalcs_parameter *p, struct dalcs_diode_card *card,
                          struct dalcs_diode_model *model) {
     struct dalcs_builder *builder = reader->builder;
+    take_synonym(p, BV, VB);
+    take_synonym(p, BV, VRB);
+    take_synonym(p, IBV, IB);
+    take_synonym(p, IS, JS);
     if (!check_berkeley(builder, p)) {
         return false;
     }
     card->is_berkeley = true;
-    card->saturation = p[IS].place == NULL && p[JS].place != NULL ? p[JS].value : p[IS].value;
+    card->saturation = p[IS].value;
     card->emission = p[N].value;
     card->resistance = p[RS].value;
     card->breakdown = p[BV].value;
@@ -340,6 +360,9 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_tok
         [BV] = {"bv", DALCS_VOLTAGE, true, infinite, NULL},
         [IBV] = {"ibv", DALCS_CURRENT, false, 1e-3, NULL},
         [NBV] = {"nbv", DALCS_PLAIN, false, 1, NULL},
+        [VB] = {"vb", DALCS_VOLTAGE, true, infinite, NULL},
+        [VRB] = {"vrb", DALCS_VOLTAGE, true, infinite, NULL},
+        [IB] = {"ib", DALCS_CURRENT, false, 1e-3, NULL},
     };
     reader->usage = MODEL_USAGE;
     card->ilimit = card->revilimit = infinite;
@@ -349,7 +372,7 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_tok
     const bool is_block = strcmp(type->text, "sidiode") == 0;
     const bool is_ideal = is_block || has(parameter, RON, REVEPSILON);
     const char *ignored = ignored_text(builder, reader->card, parameter, is_ideal);
-    if (!is_ideal && (has(parameter, FIRST_BERKELEY, NBV) || ignored[0] != '\0')) {
+    if (!is_ideal && (has(parameter, FIRST_BERKELEY, IB) || ignored[0] != '\0')) {
         return set_berkeley(reader, type, parameter, card, model);
     }
     if (!is_block && is_bare(reader->card, type)) {

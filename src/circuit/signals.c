@@ -287,12 +287,12 @@ static bool is_formula(const struct dalcs_reader *reader) {
     return is_operator || is_par || token->kind == DALCS_TOKEN_EXPRESSION;
 }
 
-/* p(r1), which KiCad writes for every part. */
+/* p(r1), which KiCad writes for every part; w(r1) is PSpice's. */
 static void skip_power(struct dalcs_reader *reader) {
     if (!reader->builder->noted_power) {
-        dalcs_builder_note(reader->builder, dalcs_reader_peek(reader, 0),
-                           "a measurement may be of v(a,b)*i(r1)",
-                           "powers are not recorded: p(...) is left out");
+        dalcs_builder_note(
+            reader->builder, dalcs_reader_peek(reader, 0), "a measurement may be of v(a,b)*i(r1)",
+            "powers are not recorded: %s(...) is left out", dalcs_reader_peek(reader, 0)->text);
     }
     reader->builder->noted_power = true;
     int depth = 0;
@@ -342,7 +342,7 @@ static bool read_signal(struct dalcs_reader *reader) {
         }
         return token->text[0] == 'v' ? read_voltage(reader) : read_current(reader);
     }
-    if (strcmp(token->text, "p") == 0) {
+    if (strcmp(token->text, "p") == 0 || strcmp(token->text, "w") == 0) {
         skip_power(reader);
         return true;
     }
