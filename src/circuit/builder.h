@@ -85,7 +85,7 @@ struct dalcs_builder {
 
     struct dalcs_names models; /* name -> index of model */
     struct dalcs_model *model;
-    int n_models;
+    int n_models, model_capacity;
 
     const struct dalcs_token *tran; /* the first .tran and .op, NULL before */
     const struct dalcs_token *op;
@@ -395,6 +395,9 @@ void dalcs_diode_cells(struct dalcs_diode_card *card, double cells);
 /* The lines of an exponential diode: its tangent at a current, for `area` of them in parallel. */
 void dalcs_diode_model_map(const struct dalcs_diode_card *card, double current, double area,
                            struct dalcs_diode_model *model);
+/* The same of a part that the table of diodes knows by this name, with a warning; false: it does not. */
+bool dalcs_diode_take_part(struct dalcs_builder *builder, const struct dalcs_token *name,
+                           struct dalcs_diode_card *card, struct dalcs_diode_model *model);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* type: sw, csw, vswitch or iswitch */
 /* Its number; -1 when out of memory. */

@@ -255,6 +255,30 @@ static const char *wanted_type(enum dalcs_model_kind kind) {
     return kind == DALCS_MODEL_DIODE ? "D" : kind == DALCS_MODEL_SWITCH ? "SW" : "CSW";
 }
 
+/* A model that nothing defines, from the table of diodes; -1: it is not in there. */
+static int add_part(struct dalcs_builder *builder, const struct dalcs_token *name) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    struct dalcs_model *model = &builder->model[builder->n_models];
+    const char *own = dalcs_arena_copy(&circuit->arena, name->text, strlen(name->text));
+    struct dalcs_diode_card diode;
+    struct dalcs_diode_model *lines = &circuit->diode_model[circuit->n_diode_models];
+    if (own == NULL || !dalcs_diode_take_part(builder, name, &diode, lines)) {
+        builder->out_of_memory = builder->out_of_memory || own == NULL;
+        return -1;
+    }
+    *model = (struct dalcs_model){.kind = DALCS_MODEL_DIODE,
+                                  .index = circuit->n_diode_models++,
+                                  .name = name,
+                                  .type = name,
+                                  .diode = diode};
+    lines->name = own;
+    if (dalcs_names_add(&builder->models, own, builder->n_models) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return -1;
+    }
+    return builder->n_models++;
+}
+
 int dalcs_model_find_switch(struct dalcs_builder *builder, const struct dalcs_token *name) {
     const int index = dalcs_names_find(&builder->models, name->text);
     const bool by_current = index >= 0 && builder->model[index].kind == DALCS_MODEL_CURRENT_SWITCH;
@@ -264,7 +288,11 @@ int dalcs_model_find_switch(struct dalcs_builder *builder, const struct dalcs_to
 
 int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *name,
                      enum dalcs_model_kind kind) {
-    const int index = dalcs_names_find(&builder->models, name->text);
+    int index = dalcs_names_find(&builder->models, name->text);
+    if (index < 0 && kind == DALCS_MODEL_DIODE && builder->n_models < builder->model_capacity &&
+        (builder->hidden & DALCS_HIDDEN_MODELS) == 0) {
+        index = add_part(builder, name);
+    }
     if (index < 0) {
         builder->failed = true;
         if ((builder->hidden & DALCS_HIDDEN_MODELS) == 0) {

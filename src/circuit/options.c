@@ -213,6 +213,7 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
         return read_stages(reader, &options->stages);
     }
     if (strcmp(name, "diodecurrent") == 0) {
+        options->has_diode_current = true;
         return read_positive(reader, DALCS_CURRENT, &reader->builder->diode_current);
     }
     if (strcmp(name, "fill") == 0) {
