@@ -123,6 +123,20 @@ int dalcs_behavioural_parse_control(struct dalcs_reader *reader,
     return node;
 }
 
+int dalcs_behavioural_add_readout(struct dalcs_builder *builder, const struct dalcs_token *formula,
+                                  const struct dalcs_token *name) {
+    struct dalcs_device *device =
+        dalcs_builder_add_inner_device(builder, DALCS_VCVS, "readout", name);
+    const int node = dalcs_builder_inner_node(builder, "readout", name);
+    struct dalcs_formula_source *source = device != NULL ? add_source(builder, device) : NULL;
+    if (source == NULL || node < 0) {
+        return -1;
+    }
+    device->node[0] = node;
+    source->token = formula;
+    return node;
+}
+
 bool dalcs_behavioural_is_form(const struct dalcs_token *token) {
     static const char *const forms[] = {"value", "vol", "cur", "table"};
     return token != NULL && token->kind == DALCS_TOKEN_WORD &&

@@ -380,6 +380,9 @@ void dalcs_controlled_resolve(struct dalcs_builder *builder);
 void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* The node whose voltage is the formula that comes next; -1 when an error was reported. */
 int dalcs_behavioural_parse_control(struct dalcs_reader *reader, const struct dalcs_token *element);
+/* The node whose voltage is a formula, for a signal of this name. -1: out of memory. */
+int dalcs_behavioural_add_readout(struct dalcs_builder *builder, const struct dalcs_token *formula,
+                                  const struct dalcs_token *name);
 bool dalcs_behavioural_is_form(const struct dalcs_token *token);
 void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_device *device);
 /* Compiles all formulas, when all elements are known. */

@@ -117,6 +117,15 @@ static void report_unknown(struct dalcs_builder *builder, const struct dalcs_tok
                         "unknown card '%s'", name->text);
 }
 
+/* Formulas on a card that names signals: each may become a source. */
+static size_t count_formulas(const struct dalcs_card *card) {
+    size_t n = 0;
+    for (int k = 1; k < card->n; k++) {
+        n += card->token[k].kind == DALCS_TOKEN_FORMULA ? 1 : 0;
+    }
+    return n;
+}
+
 static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
                                           const struct dalcs_token *name) {
     struct dalcs_builder *builder = table->builder;
@@ -256,6 +265,7 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
     }
     table->has_series = table->has_series || is_model_with(card, "lser", "vser");
     table->has_limits = table->has_limits || is_model_with(card, "ilimit", "revilimit");
+    table->n_inner += card->letter == '.' ? count_formulas(card) : 0;
     return card->letter == '.' ? classify_dot(table, name) : classify_element(table, card);
 }
 

@@ -223,6 +223,9 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
             if (card->letter != '.') {
                 rename_token(language, scope, DALCS_ROLE_DEVICE, token);
             }
+        } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] == DALCS_ROLE_SIGNAL) {
+            token[k].formula = dalcs_formula_make(language, scope, &card->token[k], 1);
+            token[k].kind = token[k].formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;
         } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] != DALCS_ROLE_RAW) {
             evaluate_token(language, scope, item, k, &token[k]);
         } else if (token[k].kind == DALCS_TOKEN_WORD && role[k] != DALCS_ROLE_VALUE) {

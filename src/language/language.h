@@ -261,7 +261,8 @@ enum dalcs_role {
     DALCS_ROLE_NODE,
     DALCS_ROLE_DEVICE,
     DALCS_ROLE_MODEL,
-    DALCS_ROLE_RAW
+    DALCS_ROLE_RAW,
+    DALCS_ROLE_SIGNAL /* a formula of signals, compiled on its own */
 };
 
 /* role[card->n] of an element or a card such as .ic, its first token excepted. RAW: an expression of

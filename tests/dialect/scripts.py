@@ -189,9 +189,35 @@ def second_analyses(c):
         c.check(status == 0 and found == wanted, f"'{cards}' ends with {status}: {found}\n{err}")
 
 
+def printed_formulas(c):
+    """Columns of formulas: sums of signals with constant factors; others are left out."""
+    body = ".param k=2\nV1 a 0 3\nR1 a b 1k\nR2 b 0 2k\nX1 b s\n.subckt s p\nR1 p q 1k\nR2 q 0 1k\n{inner}.ends\n"
+    for word, wanted in (
+            ("{v(a)-v(b)}", 1.5), ("{v(b)*2+1}", 4.0), ("{2*v(b)+1}", 4.0), ("{v(b)/3}", 0.5),
+            ("{-v(b)}", -1.5), ("{v(a,b)*k}", 3.0), ("{i(r1)*1k}", 1.5), ("par('v(a)-v(b)')", 1.5),
+            ("x=par('v(a)-v(b)')", 1.5), ("{ V(A) - v(b) }", 1.5), ("{v(x1.q)*2}", 1.5), ("{k*3}", 6.0),
+            ("{(v(a)+v(b))/(1+2)}", 1.5), ("{v(a)-(v(b)-1)}", 2.5)):
+        for card in (".print op", ".plot op", ".save", ".probe"):
+            status, _, err, out = run(c.program, f"x\n{body.format(inner='')}.op\n{card} v(a) {word}\n.end\n")
+            lines = out.decode().splitlines()
+            good = len(lines) > 1 and abs(float(lines[1].split(",")[-1]) - wanted) < 1e-9
+            c.check(status == 0 and good and "one connection" not in err, f"'{card} {word}' ends with {status}: {lines}\n{err}")
+    for word in ("{v(a)*v(b)}", "{v(a)**2}", "{abs(v(a))}", "{v(a)*i(v1)}", "{sin(v(a))}", "{1/v(a)}"):
+        status, _, err, out = run(c.program, f"x\n{body.format(inner='')}.op\n.print op v(a) {word} v(b)\n.end\n")
+        names = out.decode().splitlines()[0] if out else ""
+        c.check(status == 0 and names.endswith("v(a),v(b)") and "left out" in err, f"{word}: {names} {err}")
+    status, _, err, out = run(c.program, f"x\n{body.format(inner='.print op {v(p)-v(q)} v(q)' + chr(10))}.op\n.end\n")
+    lines = out.decode().splitlines()
+    c.check(status == 0 and len(lines) == 2 and abs(float(lines[1].split(",")[-2]) - 0.75) < 1e-9, f"{lines} {err}")
+    # A formula that is recorded changes nothing else.
+    plain = run(c.program, f"x\n{body.format(inner='')}.op\n.end\n")[3].decode().splitlines()
+    more = run(c.program, f"x\n{body.format(inner='')}.op\n.save all {{v(a)-v(b)}}\n.end\n")[3].decode().splitlines()
+    c.check(more[0].startswith(plain[0]) and more[1].startswith(plain[1]), f"{plain} {more}")
+
+
 def main():
     checks = Checks(pathlib.Path(sys.argv[1]).resolve())
-    for part in (alters, loops, measurements, frequencies, second_analyses):
+    for part in (alters, loops, measurements, frequencies, second_analyses, printed_formulas):
         part(checks)
     return checks.finish()
 
