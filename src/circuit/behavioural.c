@@ -124,10 +124,9 @@ int dalcs_behavioural_parse_control(struct dalcs_reader *reader,
 }
 
 int dalcs_behavioural_add_readout(struct dalcs_builder *builder, const struct dalcs_token *formula,
-                                  const struct dalcs_token *name) {
-    struct dalcs_device *device =
-        dalcs_builder_add_inner_device(builder, DALCS_VCVS, "readout", name);
-    const int node = dalcs_builder_inner_node(builder, "readout", name);
+                                  const char *what, const struct dalcs_token *name) {
+    struct dalcs_device *device = dalcs_builder_add_inner_device(builder, DALCS_VCVS, what, name);
+    const int node = dalcs_builder_inner_node(builder, what, name);
     struct dalcs_formula_source *source = device != NULL ? add_source(builder, device) : NULL;
     if (source == NULL || node < 0) {
         return -1;

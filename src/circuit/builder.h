@@ -15,6 +15,7 @@ enum dalcs_model_kind {
     DALCS_MODEL_DIODE,
     DALCS_MODEL_SWITCH,
     DALCS_MODEL_CURRENT_SWITCH,
+    DALCS_MODEL_THYRISTOR,
     DALCS_MODEL_PASSIVE, /* of R, L or C, whose card has the value */
     DALCS_MODEL_OTHER,   /* of a device that does not exist here */
     DALCS_MODEL_WRONG    /* had errors: a use of it is no second error */
@@ -35,6 +36,7 @@ struct dalcs_model {
     const struct dalcs_token *name;
     const struct dalcs_token *type;
     struct dalcs_diode_card diode;
+    const struct dalcs_thyristor *thyristor;
     const struct dalcs_token *beyond; /* of R, L or C: what would change values; else NULL */
 };
 
@@ -380,9 +382,9 @@ void dalcs_controlled_resolve(struct dalcs_builder *builder);
 void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* The node whose voltage is the formula that comes next; -1 when an error was reported. */
 int dalcs_behavioural_parse_control(struct dalcs_reader *reader, const struct dalcs_token *element);
-/* The node whose voltage is a formula, for a signal of this name. -1: out of memory. */
+/* The node whose voltage is a formula, of a source what(name). -1: out of memory. */
 int dalcs_behavioural_add_readout(struct dalcs_builder *builder, const struct dalcs_token *formula,
-                                  const struct dalcs_token *name);
+                                  const char *what, const struct dalcs_token *name);
 bool dalcs_behavioural_is_form(const struct dalcs_token *token);
 void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_device *device);
 /* Compiles all formulas, when all elements are known. */
@@ -401,6 +403,13 @@ void dalcs_diode_model_map(const struct dalcs_diode_card *card, double current, 
 /* The same of a part that the table of diodes knows by this name, with a warning; false: it does not. */
 bool dalcs_diode_take_part(struct dalcs_builder *builder, const struct dalcs_token *name,
                            struct dalcs_diode_card *card, struct dalcs_diode_model *model);
+/* Thyristors, GTOs and triacs: an A card whose model is one. */
+bool dalcs_thyristor_is(const struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* NULL when an error was reported; the line that it conducts on into *valve. */
+struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
+                                                    const struct dalcs_token *type,
+                                                    struct dalcs_diode_model *valve);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* type: sw, csw, vswitch or iswitch */
 /* Its number; -1 when out of memory. */

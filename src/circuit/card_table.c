@@ -197,6 +197,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         }
         table->n_inner += count_parasitics(card);
         table->n_inner += is_load(card) ? 2 : 0;
+        table->n_inner += letter == 'a' ? 6 : 0; /* what a triac becomes */
         table->n_inner += letter == 'l' &&
                           dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_LTSPICE);
         if (strchr("efgh", letter) != NULL) {

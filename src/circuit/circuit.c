@@ -100,7 +100,11 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_diode_parse(builder, card);
         return;
     case 'a':
-        dalcs_diode_parse_block(builder, card);
+        if (dalcs_thyristor_is(builder, card)) {
+            dalcs_thyristor_parse(builder, card);
+        } else {
+            dalcs_diode_parse_block(builder, card);
+        }
         return;
     case 'b':
         dalcs_behavioural_parse(builder, card);

@@ -25,6 +25,10 @@ static const struct type *find_type(const char *name) {
         {"switch", DALCS_MODEL_SWITCH, "switch"},
         {"aswitch", DALCS_MODEL_OTHER, "smooth switch"},
         {"sidiode", DALCS_MODEL_DIODE, "diode"},
+        {"thyristor", DALCS_MODEL_THYRISTOR, "thyristor"},
+        {"scr", DALCS_MODEL_THYRISTOR, "thyristor"},
+        {"triac", DALCS_MODEL_THYRISTOR, "triac"},
+        {"gto", DALCS_MODEL_THYRISTOR, "thyristor"},
         {"npn", DALCS_MODEL_OTHER, "transistor"},
         {"pnp", DALCS_MODEL_OTHER, "transistor"},
         {"lpnp", DALCS_MODEL_OTHER, "transistor"},
@@ -149,6 +153,12 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
         circuit->diode_model[model->index].name = name;
         ok = dalcs_diode_parse_model(reader, model->type, &model->diode,
                                      &circuit->diode_model[model->index]);
+    } else if (model->kind == DALCS_MODEL_THYRISTOR) {
+        model->index = circuit->n_diode_models++;
+        circuit->diode_model[model->index].name = name;
+        model->thyristor =
+            dalcs_thyristor_parse_model(reader, model->type, &circuit->diode_model[model->index]);
+        ok = model->thyristor != NULL;
     } else {
         model->index = circuit->n_switch_models++;
         circuit->switch_model[model->index].name = name;

@@ -85,7 +85,8 @@ static void add_current(struct dalcs_builder *builder, int device) {
 /* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
 static bool has_default(const struct dalcs_device *d) {
     const bool is_default = (d->letter != 0 && strchr("vldsweh", d->letter) != NULL) ||
-                            d->kind == DALCS_DIODE || (d->letter == 'b' && d->kind == DALCS_VCVS);
+                            d->kind == DALCS_DIODE || d->kind == DALCS_SWITCH ||
+                            (d->letter == 'b' && d->kind == DALCS_VCVS);
     return is_default && !dalcs_builder_is_inner(d->name);
 }
 
@@ -348,7 +349,7 @@ static void add_formula(struct dalcs_builder *builder, const struct dalcs_token 
     named->kind = DALCS_TOKEN_WORD;
     named->text = name;
     const bool is_known = dalcs_names_find(&builder->signals, name) >= 0;
-    const int node = is_known ? 0 : dalcs_behavioural_add_readout(builder, token, named);
+    const int node = is_known ? 0 : dalcs_behavioural_add_readout(builder, token, "readout", named);
     if (node >= 0) {
         add_signal(
             builder, name,

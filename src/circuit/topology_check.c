@@ -66,7 +66,7 @@ void dalcs_topology_check(struct dalcs_builder *builder) {
             }
         }
         struct reading reading = {touch, k};
-        dalcs_behaviour_visit(device->behaviour, touch_term, &reading);
+        dalcs_behaviour_visit(dalcs_device_written(device), touch_term, &reading);
         if (device->node[0] == device->node[1]) {
             dalcs_builder_warn(builder, builder->device_token[k], NULL,
                                "both ends of '%s' are on node '%s'", device->name,
