@@ -183,6 +183,13 @@ static bool read_rest(struct dalcs_reader *reader, const struct family *family,
     return true;
 }
 
+/* m of it in parallel. */
+static void multiply(struct dalcs_device *device, struct dalcs_parasitics *parasitics, double m) {
+    device->value *= device->kind == DALCS_CAPACITOR ? m : 1 / m;
+    device->initial *= device->kind == DALCS_INDUCTOR ? m : 1;
+    dalcs_parasitic_multiply(parasitics, m);
+}
+
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind) {
     const struct family *family = family_of(kind);
@@ -228,9 +235,7 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
             LTSPICE_RSER / (values.multiplier > 0 ? values.multiplier : 1);
     }
     if (values.multiplier > 0) {
-        device->value *= kind == DALCS_CAPACITOR ? values.multiplier : 1 / values.multiplier;
-        device->initial *= kind == DALCS_INDUCTOR ? values.multiplier : 1;
-        dalcs_parasitic_multiply(&values.parasitics, values.multiplier);
+        multiply(device, &values.parasitics, values.multiplier);
     }
     dalcs_parasitic_expand(builder, card->token, device, &values.parasitics);
     if (device->value == 0 && kind != DALCS_RESISTOR) {
