@@ -101,6 +101,18 @@ enum dalcs_status dalcs_names_add(struct dalcs_names *names, const char *name, i
     return dalcs_names_find_or_add(names, name, value, &found);
 }
 
+enum dalcs_status dalcs_names_set(struct dalcs_names *names, const char *name, int value) {
+    const size_t n = names->n;
+    int found;
+    const enum dalcs_status status = dalcs_names_find_or_add(names, name, value, &found);
+    for (size_t k = 0; status == DALCS_OK && k < n && names->n == n; k++) {
+        if (strcmp(names->entry[k].name, name) == 0) {
+            names->entry[k].value = value;
+        }
+    }
+    return status;
+}
+
 /* ---- Mistyped names ------------------------------------------------------------------------ */
 
 static int least(int a, int b, int c) {

@@ -24,6 +24,10 @@ enum dalcs_status dalcs_names_add(struct dalcs_names *names, const char *name,
 enum dalcs_status dalcs_names_find_or_add(struct dalcs_names *names, const char *name, int value,
                                           int *found) DALCS_MUST_CHECK;
 
+/* Gives a name this value, whether it is in the table or not. */
+enum dalcs_status dalcs_names_set(struct dalcs_names *names, const char *name,
+                                  int value) DALCS_MUST_CHECK;
+
 /* The name most like this one, were it mistyped: a distance of at most 2 edits (insert, delete,
  * change, swap neighbours) and at most a third of the length; NULL when there is none. */
 const char *dalcs_names_nearest(const struct dalcs_names *names, const char *name);

@@ -57,8 +57,11 @@ static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *trans
                            token->text);
         return true;
     }
-    if (dalcs_reader_take_word(reader, "startup") || dalcs_reader_take_word(reader, "steady") ||
-        dalcs_reader_take_word(reader, "step")) {
+    if (dalcs_reader_take_word(reader, "startup")) {
+        builder->startup = token;
+        return true;
+    }
+    if (dalcs_reader_take_word(reader, "steady") || dalcs_reader_take_word(reader, "step")) {
         dalcs_builder_error(builder, token, TRAN_USAGE, "'%s' is not supported yet", token->text);
         return false;
     }

@@ -38,6 +38,25 @@ static bool read_formula(struct dalcs_reader *reader, const struct dalcs_token *
     return true;
 }
 
+/* tc1=, temp= and the like behind a formula: nothing depends on a temperature. */
+static bool skip_temperature(struct dalcs_reader *reader) {
+    static const char *const names[] = {"tc", "tc1", "tc2", "temp", "dtemp", "reciproctc"};
+    const struct dalcs_token *name;
+    while ((name = dalcs_reader_peek(reader, 0)) != NULL &&
+           dalcs_builder_is_one_of(name->text, names, sizeof names / sizeof names[0]) &&
+           dalcs_reader_take_parameter(reader) != NULL) {
+        dalcs_builder_note(reader->builder, name, NULL, "'%s' has no meaning here and is ignored",
+                           name->text);
+        do {
+            if (!dalcs_reader_skip_value(reader)) {
+                return false;
+            }
+            name = dalcs_reader_peek(reader, 0);
+        } while (name != NULL && dalcs_reader_is_number(name));
+    }
+    return true;
+}
+
 /* LTspice has B sources that are no sources. */
 static void refuse(struct dalcs_builder *builder, const struct dalcs_token *what) {
     if (strcmp(what->text, "r") == 0) {
@@ -75,7 +94,8 @@ void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_c
     }
     device->node[0] = node[0];
     device->node[1] = node[1];
-    if (!read_formula(&reader, &token) || !dalcs_reader_end(&reader)) {
+    if (!read_formula(&reader, &token) || !skip_temperature(&reader) ||
+        !dalcs_reader_end(&reader)) {
         return;
     }
     struct dalcs_formula_source *source = add_source(builder, device);
@@ -100,6 +120,19 @@ int dalcs_behavioural_parse_control(struct dalcs_reader *reader,
     }
     device->node[0] = node;
     source->token = token;
+    return node;
+}
+
+int dalcs_behavioural_add_readout(struct dalcs_builder *builder, const struct dalcs_token *formula,
+                                  const char *what, const struct dalcs_token *name) {
+    struct dalcs_device *device = dalcs_builder_add_inner_device(builder, DALCS_VCVS, what, name);
+    const int node = dalcs_builder_inner_node(builder, what, name);
+    struct dalcs_formula_source *source = device != NULL ? add_source(builder, device) : NULL;
+    if (source == NULL || node < 0) {
+        return -1;
+    }
+    device->node[0] = node;
+    source->token = formula;
     return node;
 }
 
@@ -160,7 +193,8 @@ void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_devi
     if (is_table && has_formula) {
         dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
     }
-    if (is_table ? !read_points(reader, &table) : !dalcs_reader_end(reader)) {
+    if (is_table ? !read_points(reader, &table)
+                 : !skip_temperature(reader) || !dalcs_reader_end(reader)) {
         return;
     }
     struct dalcs_formula_source *source = add_source(reader->builder, device);

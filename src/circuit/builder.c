@@ -92,6 +92,13 @@ const char *dalcs_builder_suggest_of(struct dalcs_builder *builder, const char *
     return nearest != NULL ? dalcs_builder_hint(builder, "did you mean '%s'?", nearest) : otherwise;
 }
 
+bool dalcs_builder_is_label(const char *name) {
+    static const char *const labels[] = {"mfg",  "pn",   "type", "pppkg", "tol",
+                                         "pwr",  "v",    "vpk",  "ipk",   "irms",
+                                         "iave", "diss", "vceo", "mtbf",  "icrating"};
+    return dalcs_builder_is_one_of(name, labels, sizeof labels / sizeof labels[0]);
+}
+
 bool dalcs_builder_is_one_of(const char *name, const char *const *list, size_t n) {
     for (size_t k = 0; k < n; k++) {
         if (strcmp(name, list[k]) == 0) {

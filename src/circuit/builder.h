@@ -7,6 +7,7 @@
 #include "circuit.h"
 #include "drivers.h"
 #include "expand.h"
+#include "formula.h"
 #include "names.h"
 #include "netlist.h"
 
@@ -14,6 +15,7 @@ enum dalcs_model_kind {
     DALCS_MODEL_DIODE,
     DALCS_MODEL_SWITCH,
     DALCS_MODEL_CURRENT_SWITCH,
+    DALCS_MODEL_THYRISTOR,
     DALCS_MODEL_PASSIVE, /* of R, L or C, whose card has the value */
     DALCS_MODEL_OTHER,   /* of a device that does not exist here */
     DALCS_MODEL_WRONG    /* had errors: a use of it is no second error */
@@ -34,6 +36,7 @@ struct dalcs_model {
     const struct dalcs_token *name;
     const struct dalcs_token *type;
     struct dalcs_diode_card diode;
+    const struct dalcs_thyristor *thyristor;
     const struct dalcs_token *beyond; /* of R, L or C: what would change values; else NULL */
 };
 
@@ -84,10 +87,11 @@ struct dalcs_builder {
 
     struct dalcs_names models; /* name -> index of model */
     struct dalcs_model *model;
-    int n_models;
+    int n_models, model_capacity;
 
     const struct dalcs_token *tran; /* the first .tran and .op, NULL before */
     const struct dalcs_token *op;
+    const struct dalcs_token *startup;       /* LTspice's word on .tran, or NULL */
     const struct dalcs_token *dc, *ac;       /* the same of these */
     const struct dalcs_token *initial_state; /* the first IC= or .ic i(...), NULL before */
 
@@ -166,6 +170,9 @@ const char *dalcs_builder_suggest_of(struct dalcs_builder *builder, const char *
 
 /* Is name one of list[0..n-1]? */
 bool dalcs_builder_is_one_of(const char *name, const char *const *list, size_t n);
+
+/* A word that people or libraries put on a part, of no effect in any simulator: mfg, tol, ipk, ... */
+bool dalcs_builder_is_label(const char *name);
 
 /* "bridge.cir:3:1", in scratch; never NULL. */
 const char *dalcs_builder_place(struct dalcs_builder *builder, const struct dalcs_token *token);
@@ -267,6 +274,9 @@ bool dalcs_reader_list_number(struct dalcs_reader *reader, enum dalcs_quantity q
 bool dalcs_reader_number_or_infinity(struct dalcs_reader *reader, enum dalcs_quantity quantity,
                                      const char *what, double *value);
 
+/* The value of a parameter that means nothing: one token of any kind. */
+bool dalcs_reader_skip_value(struct dalcs_reader *reader);
+
 /* A name (any word). */
 bool dalcs_reader_name(struct dalcs_reader *reader, const char *what,
                        const struct dalcs_token **name);
@@ -300,6 +310,10 @@ bool dalcs_current_limit_read(struct dalcs_reader *reader, const struct dalcs_to
 void dalcs_current_limit_expand(struct dalcs_builder *builder, const struct dalcs_token *name,
                                 struct dalcs_device *device,
                                 const struct dalcs_current_limits *limits);
+/* Lets a current source take at most its current and never deliver: an ideal diode in series with it and
+ * one across both, two devices. Its current is then that of the first. */
+void dalcs_current_limit_make_load(struct dalcs_builder *builder, const struct dalcs_token *name,
+                                   struct dalcs_device *device);
 /* How many there may be of a card. */
 int dalcs_current_limit_count(const struct dalcs_card *card);
 
@@ -308,6 +322,13 @@ struct dalcs_parasitics {
     double value[5];
     const struct dalcs_token *place[5];
 };
+
+/* m= of the subcircuit calls around a card: parallel.c. 1: none */
+double dalcs_parallel_of(const struct dalcs_card *card);
+/* So many sources of a current in parallel. */
+void dalcs_parallel_scale(struct dalcs_builder *builder, struct dalcs_stimulus *stimulus, double m);
+/* Reports an element that cannot be multiplied; false where it can, or need not. */
+bool dalcs_parallel_is_refused(struct dalcs_builder *builder, const struct dalcs_card *card);
 
 bool dalcs_parasitic_is_name(const char *name);
 /* The value, after `name =`; false when an error was reported. */
@@ -361,6 +382,9 @@ void dalcs_controlled_resolve(struct dalcs_builder *builder);
 void dalcs_behavioural_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* The node whose voltage is the formula that comes next; -1 when an error was reported. */
 int dalcs_behavioural_parse_control(struct dalcs_reader *reader, const struct dalcs_token *element);
+/* The node whose voltage is a formula, of a source what(name). -1: out of memory. */
+int dalcs_behavioural_add_readout(struct dalcs_builder *builder, const struct dalcs_token *formula,
+                                  const char *what, const struct dalcs_token *name);
 bool dalcs_behavioural_is_form(const struct dalcs_token *token);
 void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_device *device);
 /* Compiles all formulas, when all elements are known. */
@@ -371,9 +395,21 @@ void dalcs_diode_parse_block(struct dalcs_builder *builder, const struct dalcs_c
 /* type: d or sidiode */
 bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
                              struct dalcs_diode_card *card, struct dalcs_diode_model *model);
+/* So many exponential diodes in series: one with as many times the voltage. */
+void dalcs_diode_cells(struct dalcs_diode_card *card, double cells);
 /* The lines of an exponential diode: its tangent at a current, for `area` of them in parallel. */
 void dalcs_diode_model_map(const struct dalcs_diode_card *card, double current, double area,
                            struct dalcs_diode_model *model);
+/* The same of a part that the table of diodes knows by this name, with a warning; false: it does not. */
+bool dalcs_diode_take_part(struct dalcs_builder *builder, const struct dalcs_token *name,
+                           struct dalcs_diode_card *card, struct dalcs_diode_model *model);
+/* Thyristors, GTOs and triacs: an A card whose model is one. */
+bool dalcs_thyristor_is(const struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* NULL when an error was reported; the line that it conducts on into *valve. */
+struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
+                                                    const struct dalcs_token *type,
+                                                    struct dalcs_diode_model *valve);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* type: sw, csw, vswitch or iswitch */
 /* Its number; -1 when out of memory. */
@@ -403,6 +439,8 @@ bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_param
 /* The index (in diode_model or switch_model) of a model of this kind; else an error, and -1. */
 int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *name,
                      enum dalcs_model_kind kind);
+/* The same of a switch whose control is a formula, of a voltage or of a current. */
+int dalcs_model_find_switch(struct dalcs_builder *builder, const struct dalcs_token *name);
 /* Takes the name of a model of R, L or C (letter), if one follows: nothing depends on it. False after
  * an error. */
 bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter);

@@ -117,6 +117,15 @@ static void report_unknown(struct dalcs_builder *builder, const struct dalcs_tok
                         "unknown card '%s'", name->text);
 }
 
+/* Formulas on a card that names signals: each may become a source. */
+static size_t count_formulas(const struct dalcs_card *card) {
+    size_t n = 0;
+    for (int k = 1; k < card->n; k++) {
+        n += card->token[k].kind == DALCS_TOKEN_FORMULA ? 1 : 0;
+    }
+    return n;
+}
+
 static enum dalcs_card_class classify_dot(struct dalcs_card_table *table,
                                           const struct dalcs_token *name) {
     struct dalcs_builder *builder = table->builder;
@@ -159,6 +168,16 @@ static size_t count_parasitics(const struct dalcs_card *card) {
     return n > 0 ? n + 1 : 0;
 }
 
+/* I1 a b 50m load */
+static bool is_load(const struct dalcs_card *card) {
+    bool found = false;
+    for (int k = 3; k < card->n && card->letter == 'i'; k++) {
+        found = found || (card->token[k].kind == DALCS_TOKEN_WORD &&
+                          strcmp(card->token[k].text, "load") == 0);
+    }
+    return found;
+}
+
 static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
                                               const struct dalcs_card *card) {
     struct dalcs_builder *builder = table->builder;
@@ -177,6 +196,8 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_stimuli += n_limits;
         }
         table->n_inner += count_parasitics(card);
+        table->n_inner += is_load(card) ? 2 : 0;
+        table->n_inner += letter == 'a' ? 6 : 0; /* what a triac becomes */
         table->n_inner += letter == 'l' &&
                           dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_LTSPICE);
         if (strchr("efgh", letter) != NULL) {
@@ -187,7 +208,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         table->n_inner += letter == 's' && dalcs_formula_find_control(card) < card->n;
         table->n_switches += letter == 's' || letter == 'w';
         table->n_diodes += letter == 'd' || letter == 'a';
-        table->n_scaled += (letter == 'd' || letter == 'a') && card->n > 4;
+        table->n_scaled += (letter == 'd' || letter == 'a') && (card->n > 4 || card->parallel > 0);
         return DALCS_CARD_ELEMENT;
     }
     const char *what = refused_element(letter);
@@ -245,6 +266,7 @@ enum dalcs_card_class dalcs_card_table_classify(struct dalcs_card_table *table,
     }
     table->has_series = table->has_series || is_model_with(card, "lser", "vser");
     table->has_limits = table->has_limits || is_model_with(card, "ilimit", "revilimit");
+    table->n_inner += card->letter == '.' ? count_formulas(card) : 0;
     return card->letter == '.' ? classify_dot(table, name) : classify_element(table, card);
 }
 

@@ -31,16 +31,19 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     struct dalcs_arena *arena = &circuit->arena;
     const size_t n_couplings = count[DALCS_CARD_COUPLING];
     const size_t n_devices = count[DALCS_CARD_ELEMENT] + table.n_inner;
-    const size_t n_models = count[DALCS_CARD_MODEL];
+    const size_t n_cards = count[DALCS_CARD_MODEL];
+    /* and those that diodes name and the table knows, of which there are fewer than this */
+    const size_t n_models = n_cards + (table.n_diodes < 512 ? table.n_diodes : 512);
     builder->n_device_cards = (int)n_devices;
     builder->device_capacity = n_devices;
-    builder->switch_model_capacity = n_models;
+    builder->model_capacity = (int)n_models;
+    builder->switch_model_capacity = n_cards;
     circuit->device = dalcs_arena_alloc(arena, n_devices, sizeof *circuit->device);
     circuit->stimulus = dalcs_arena_alloc(arena, table.n_stimuli, sizeof *circuit->stimulus);
     circuit->coupling = dalcs_arena_alloc(arena, table.n_pairs, sizeof *circuit->coupling);
     circuit->diode_model =
         dalcs_arena_alloc(arena, n_models + 1 + table.n_scaled, sizeof *circuit->diode_model);
-    circuit->switch_model = dalcs_arena_alloc(arena, n_models, sizeof *circuit->switch_model);
+    circuit->switch_model = dalcs_arena_alloc(arena, n_cards, sizeof *circuit->switch_model);
     builder->model = dalcs_arena_alloc(&builder->scratch, n_models, sizeof *builder->model);
     builder->device_token = dalcs_arena_alloc(&builder->scratch, n_devices + n_couplings,
                                               sizeof *builder->device_token);
@@ -62,6 +65,9 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
 }
 
 static void read_element(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    if (card->parallel > 0 && dalcs_parallel_is_refused(builder, card)) {
+        return;
+    }
     switch (card->letter) {
     case 'r':
         dalcs_passive_parse(builder, card, DALCS_RESISTOR);
@@ -94,7 +100,11 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_diode_parse(builder, card);
         return;
     case 'a':
-        dalcs_diode_parse_block(builder, card);
+        if (dalcs_thyristor_is(builder, card)) {
+            dalcs_thyristor_parse(builder, card);
+        } else {
+            dalcs_diode_parse_block(builder, card);
+        }
         return;
     case 'b':
         dalcs_behavioural_parse(builder, card);

@@ -81,11 +81,16 @@ struct dalcs_diode_model {
     double ron, roff, vfwd, vrev, rrev; /* ohm, ohm, V, V, ohm */
 
     /* v = voltage log(1 + i / saturation) + series i, which the line above is the tangent of at the
-     * current `at`; voltage is 0 where the card has lines. */
+     * current `at`; voltage is 0 where the card has lines. In breakdown, at back_at, of
+     * breakdown + back_voltage log(i / breakdown_current) + series i; back_voltage is 0 where there is none. */
     struct dalcs_exponential {
         double saturation, voltage, series, at; /* A, V, ohm, A */
+        double breakdown, back_voltage, breakdown_current, back_at;
     } exponential;
 };
+
+/* Takes the tangents of an exponential diode at these currents, A. */
+void dalcs_exponential_take(struct dalcs_diode_model *model, double at, double back_at);
 
 double dalcs_exponential_voltage(const struct dalcs_exponential *diode, double current);
 
@@ -144,6 +149,7 @@ struct dalcs_circuit {
     struct dalcs_stimulus *stimulus;
     int n_diode_models;
     struct dalcs_diode_model *diode_model;
+    bool has_own_tangents; /* each exponential diode has a model that no other has */
     int n_switch_models;
     struct dalcs_switch_model *switch_model;
     int n_couplings;
@@ -181,6 +187,7 @@ struct dalcs_circuit {
         double fill;             /* 0: not given; INFINITY: none */
         bool lines;              /* curve=lines */
         bool ascii;              /* filetype=ascii */
+        bool has_diode_current;  /* diodecurrent= */
         struct dalcs_location compress_where, fill_where;
     } options;
     struct dalcs_arena arena; /* owns everything above, source text of locations included */

@@ -68,6 +68,7 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
         builder->control_token[device - builder->circuit->device] = source;
     }
     if (dalcs_reader_number(&reader, DALCS_PLAIN, "a gain", &device->value)) {
+        device->value *= kind == DALCS_VCCS ? dalcs_parallel_of(card) : 1;
         dalcs_reader_end(&reader);
     }
 }

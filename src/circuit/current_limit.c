@@ -66,6 +66,24 @@ void dalcs_current_limit_expand(struct dalcs_builder *builder, const struct dalc
     }
 }
 
+void dalcs_current_limit_make_load(struct dalcs_builder *builder, const struct dalcs_token *name,
+                                   struct dalcs_device *device) {
+    const int node = dalcs_builder_inner_node(builder, "inside", name);
+    struct dalcs_device *valve = dalcs_builder_add_inner_device(builder, DALCS_DIODE, "load", name);
+    struct dalcs_device *bypass =
+        dalcs_builder_add_inner_device(builder, DALCS_DIODE, "bypass", name);
+    if (node < 0 || valve == NULL || bypass == NULL) {
+        return;
+    }
+    valve->node[0] = device->node[0];
+    valve->node[1] = bypass->node[1] = node;
+    bypass->node[0] = device->node[1];
+    valve->model = bypass->model = dalcs_diode_ideal_model(builder);
+    device->node[0] = node;
+    builder->current_of[device - builder->circuit->device] =
+        (int)(valve - builder->circuit->device);
+}
+
 static double *limit_of(struct dalcs_current_limits *limits, const char *name) {
     return strcmp(name, "ilimit") == 0      ? &limits->forward
            : strcmp(name, "revilimit") == 0 ? &limits->reverse

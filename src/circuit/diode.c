@@ -1,7 +1,7 @@
 /* diode.c - D elements, and A elements whose model is a sidiode.
  *
- * m= diodes in parallel and n= in series are LTspice's; the area is that of SPICE's exponential
- * diode. A diode with one of these has a model of its own. What limits its current: current_limit.c. */
+ * m= diodes in parallel and n= in series are LTspice's, of exponential ones too (the cells of a solar
+ * panel); the area is that of SPICE's exponential diode. A diode with one of these has a model of its own. What limits its current: current_limit.c. */
 #include "builder.h"
 
 #include <string.h>
@@ -71,20 +71,16 @@ static bool read_rest(struct dalcs_reader *reader, struct scale *scale) {
     return true;
 }
 
-/* A model for a diode that is not as large as its model; false when an error was reported. */
-static bool scale_model(struct dalcs_builder *builder, const struct dalcs_diode_card *card,
+/* A model for a diode that is not as large as its model. */
+static void scale_model(struct dalcs_builder *builder, const struct dalcs_diode_card *card,
                         struct dalcs_device *device, const struct scale *scale) {
     struct dalcs_circuit *circuit = builder->circuit;
     struct dalcs_diode_model *model = &circuit->diode_model[circuit->n_diode_models];
     *model = circuit->diode_model[device->model];
     if (card->is_berkeley) {
-        if (scale->series != 1) {
-            dalcs_builder_error(builder, scale->place, NULL,
-                                "n= counts idealised diodes in series; that of an exponential "
-                                "diode is its model's");
-            return false;
-        }
-        dalcs_diode_model_map(card, builder->diode_current, scale->area * scale->parallel, model);
+        struct dalcs_diode_card cells = *card;
+        dalcs_diode_cells(&cells, scale->series);
+        dalcs_diode_model_map(&cells, builder->diode_current, scale->area * scale->parallel, model);
     } else if (scale->area != 1) {
         dalcs_builder_warn(builder, scale->place, NULL,
                            "the area of a piecewise linear diode is ignored");
@@ -98,7 +94,6 @@ static bool scale_model(struct dalcs_builder *builder, const struct dalcs_diode_
         model->vrev *= scale->series;
     }
     device->model = circuit->n_diode_models++;
-    return true;
 }
 
 /* After the nodes. */
@@ -113,10 +108,14 @@ static void read_model(struct dalcs_reader *reader, struct dalcs_device *device)
     if (!read_rest(reader, &scale) || device->model < 0) {
         return;
     }
+    if (reader->card->parallel > 0) {
+        scale.parallel *= reader->card->parallel;
+        scale.place = scale.place != NULL ? scale.place : name;
+    }
     const struct dalcs_diode_card *card =
         &builder->model[dalcs_names_find(&builder->models, name->text)].diode;
-    if (scale.place != NULL && !scale_model(builder, card, device, &scale)) {
-        return;
+    if (scale.place != NULL) {
+        scale_model(builder, card, device, &scale);
     }
     const struct dalcs_current_limits limits = {.forward = card->ilimit * scale.parallel,
                                                 .reverse = card->revilimit * scale.parallel};

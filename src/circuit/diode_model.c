@@ -8,6 +8,7 @@
  * V = N Vt ln(1 + I/IS) + RS I, Ron is dV/dI and Vfwd what is left of V there. What changes by any of
  * this is said in a note, in numbers. */
 #include "builder.h"
+#include "diode_parts.h"
 
 #include <math.h>
 #include <string.h>
@@ -38,6 +39,9 @@ enum {
     BV,
     IBV,
     NBV,
+    VB,  /* other names: of BV in PSpice and Xyce, */
+    VRB, /* in HSPICE, */
+    IB,  /* and of IBV there */
     N_PARAMETERS
 };
 
@@ -54,10 +58,7 @@ static const char *const IGNORED[] = {
 static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_token *name) {
     static const char *const ours[] = {"ron",  "roff",   "vfwd",      "vrev",
                                        "rrev", "ilimit", "revilimit", "epsilon"};
-    /* Data that libraries keep in a model, of no effect in any simulator. */
-    static const char *const labels[] = {"mfg",  "type", "vpk",  "ipk",     "iave",
-                                         "irms", "diss", "vceo", "icrating"};
-    if (dalcs_builder_is_one_of(name->text, labels, sizeof labels / sizeof labels[0]) ||
+    if (dalcs_builder_is_label(name->text) ||
         dalcs_builder_is_one_of(name->text, IGNORED, sizeof IGNORED / sizeof IGNORED[0])) {
         return false;
     }
@@ -170,33 +171,83 @@ static bool set_ideal(struct dalcs_builder *builder, struct dalcs_parameter *p,
 
 /* ---- The exponential diode ----------------------------------------------------------------- */
 
+void dalcs_diode_cells(struct dalcs_diode_card *card, double cells) {
+    card->emission *= cells;
+    card->resistance *= cells;
+    card->breakdown *= cells;
+    card->back_emission *= cells;
+}
+
 double dalcs_exponential_voltage(const struct dalcs_exponential *diode, double current) {
     return diode->voltage * log1p(current / diode->saturation) + diode->series * current;
+}
+
+void dalcs_exponential_take(struct dalcs_diode_model *model, double at, double back_at) {
+    struct dalcs_exponential *e = &model->exponential;
+    e->at = at;
+    e->back_at = back_at;
+    if (e->voltage > 0) {
+        const double slope = e->voltage / (at + e->saturation);
+        model->ron = e->series + slope;
+        model->vfwd = e->voltage * log1p(at / e->saturation) - slope * at;
+    }
+    if (e->back_voltage > 0) {
+        const double knee =
+            e->breakdown + e->back_voltage * (log(back_at / e->breakdown_current) - 1);
+        model->vrev = knee > 0 ? knee : e->breakdown;
+        model->rrev = e->series + e->back_voltage / back_at;
+    }
 }
 
 void dalcs_diode_model_map(const struct dalcs_diode_card *card, double current, double area,
                            struct dalcs_diode_model *model) {
     const double series = card->resistance / area;
-    const double saturation = card->saturation * area;
-    const double nvt = card->emission * THERMAL_VOLTAGE;
-    const double back_nvt = card->back_emission * THERMAL_VOLTAGE;
+    const bool is_ideal = card->emission <= IDEAL_EMISSION;
+    const bool breaks = isfinite(card->breakdown) && card->back_emission > IDEAL_EMISSION;
     model->roff = INFINITY;
     model->ron = series;
     model->vfwd = 0;
     model->vrev = card->breakdown;
     model->rrev = series;
-    if (card->emission > IDEAL_EMISSION) {
-        const double slope = nvt / (current + saturation);
-        model->exponential = (struct dalcs_exponential){saturation, nvt, series, current};
-        model->ron += slope;
-        model->vfwd = nvt * log1p(current / saturation) - slope * current;
+    model->exponential = (struct dalcs_exponential){
+        .saturation = card->saturation * area,
+        .voltage = is_ideal ? 0 : card->emission * THERMAL_VOLTAGE,
+        .series = series,
+        .breakdown = card->breakdown,
+        .back_voltage = breaks ? card->back_emission * THERMAL_VOLTAGE : 0,
+        .breakdown_current = card->breakdown_current * area};
+    dalcs_exponential_take(model, current, current);
+}
+
+bool dalcs_diode_take_part(struct dalcs_builder *builder, const struct dalcs_token *name,
+                           struct dalcs_diode_card *card, struct dalcs_diode_model *model) {
+    struct dalcs_diode_part part;
+    if (!dalcs_diode_part_find(name->text, &part)) {
+        return false;
     }
-    if (isfinite(card->breakdown) && card->back_emission > IDEAL_EMISSION) {
-        const double knee =
-            card->breakdown + back_nvt * (log(current / (card->breakdown_current * area)) - 1);
-        model->vrev = knee > 0 ? knee : card->breakdown;
-        model->rrev += back_nvt / current;
-    }
+    const double *i = part.i;
+    const double *v = part.v;
+    const double nvt = dalcs_junction_emission(part.junction) * THERMAL_VOLTAGE;
+    const double series = (v[1] - v[0] - nvt * log(i[1] / i[0])) / (i[1] - i[0]);
+    *card = (struct dalcs_diode_card){.ilimit = (double)INFINITY,
+                                      .revilimit = (double)INFINITY,
+                                      .is_berkeley = true,
+                                      .saturation = i[0] / expm1((v[0] - series * i[0]) / nvt),
+                                      .emission = nvt / THERMAL_VOLTAGE,
+                                      .resistance = series,
+                                      .breakdown = part.breakdown,
+                                      .breakdown_current = part.at,
+                                      .back_emission = 1};
+    dalcs_diode_model_map(card, builder->diode_current, 1, model);
+    const bool is_zener = part.junction == DALCS_JUNCTION_ZENER;
+    dalcs_builder_warn(
+        builder, name, dalcs_builder_hint(builder, "add a line: .model %s D(...)", name->text),
+        "model '%s' is not in the netlist: %s as datasheets have it is taken, %g V at %g A and %g "
+        "V at %g A, %s %g V%s",
+        name->text, dalcs_junction_text(part.junction), v[0], i[0], v[1], i[1],
+        is_zener ? "Zener voltage" : "up to", part.breakdown,
+        is_zener ? dalcs_builder_hint(builder, " at %.3g A", part.at) : " in reverse");
+    return true;
 }
 
 static bool check_berkeley(struct dalcs_builder *builder, struct dalcs_parameter *p) {
@@ -227,14 +278,15 @@ static const char *ignored_text(struct dalcs_builder *builder, const struct dalc
                                 const struct dalcs_parameter *p, bool with_berkeley) {
     const char *list = NULL;
     int n = 0;
-    for (int k = 0; k + 1 < card->n && n < MOST_IGNORED; k++) {
+    /* behind .model, its name and its type */
+    for (int k = 3; k + 1 < card->n && n < MOST_IGNORED; k++) {
         const char *name = card->token[k].text;
         bool is_ignored =
             dalcs_builder_is_one_of(name, IGNORED, sizeof IGNORED / sizeof IGNORED[0]);
         for (int j = FIRST_BERKELEY; with_berkeley && j < N_PARAMETERS; j++) {
             is_ignored = is_ignored || p[j].place == &card->token[k];
         }
-        if (is_ignored && card->token[k + 1].kind == DALCS_TOKEN_EQUAL) {
+        if (is_ignored && card->token[k - 1].kind != DALCS_TOKEN_EQUAL) {
             n++;
             list = list == NULL ? dalcs_builder_hint(builder, "%s", name)
                                 : dalcs_builder_hint(builder, "%s, %s", list, name);
@@ -252,8 +304,9 @@ static void note_mapping(struct dalcs_reader *reader, const struct dalcs_token *
                          const char *ignored) {
     struct dalcs_builder *builder = reader->builder;
     const double at = builder->diode_current;
-    const struct dalcs_exponential diode = {card->saturation, card->emission * THERMAL_VOLTAGE,
-                                            card->resistance, at};
+    const struct dalcs_exponential diode = {.saturation = card->saturation,
+                                            .voltage = card->emission * THERMAL_VOLTAGE,
+                                            .series = card->resistance};
     double above[3];
     for (int k = 0; k < 3; k++) {
         const double current = at * (k == 0 ? 0.1 : k == 1 ? 1 : 10);
@@ -270,6 +323,15 @@ static void note_mapping(struct dalcs_reader *reader, const struct dalcs_token *
                            ? dalcs_builder_hint(builder, ", Vrev = %.4g V and Rrev = %.4g ohm",
                                                 model->vrev, model->rrev)
                            : "";
+    if (!builder->circuit->options.has_diode_current) {
+        dalcs_builder_note(builder, place,
+                           ".options diodecurrent=amperes takes it at that current, "
+                           "D(Ron=ohms Vfwd=volts) is another line",
+                           "the exponential diode is its tangent at the current that it carries; "
+                           "at %g A that is Vfwd = %.4g V and Ron = %.4g ohm%s%s",
+                           at, model->vfwd, model->ron, back != NULL ? back : "", ignored);
+        return;
+    }
     dalcs_builder_note(
         builder, place,
         ".options diodecurrent=amperes chooses another point, D(Ron=ohms Vfwd=volts) "
@@ -280,15 +342,27 @@ static void note_mapping(struct dalcs_reader *reader, const struct dalcs_token *
         1e3 * above[2], ignored);
 }
 
+/* What the card calls by another name. */
+static void take_synonym(struct dalcs_parameter *p, int ours, int other) {
+    if (p[ours].place == NULL && p[other].place != NULL) {
+        p[ours].value = p[other].value;
+        p[ours].place = p[other].place;
+    }
+}
+
 static bool set_berkeley(struct dalcs_reader *reader, const struct dalcs_token *place,
                          struct dalcs_parameter *p, struct dalcs_diode_card *card,
                          struct dalcs_diode_model *model) {
     struct dalcs_builder *builder = reader->builder;
+    take_synonym(p, BV, VB);
+    take_synonym(p, BV, VRB);
+    take_synonym(p, IBV, IB);
+    take_synonym(p, IS, JS);
     if (!check_berkeley(builder, p)) {
         return false;
     }
     card->is_berkeley = true;
-    card->saturation = p[IS].place == NULL && p[JS].place != NULL ? p[JS].value : p[IS].value;
+    card->saturation = p[IS].value;
     card->emission = p[N].value;
     card->resistance = p[RS].value;
     card->breakdown = p[BV].value;
@@ -340,6 +414,9 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_tok
         [BV] = {"bv", DALCS_VOLTAGE, true, infinite, NULL},
         [IBV] = {"ibv", DALCS_CURRENT, false, 1e-3, NULL},
         [NBV] = {"nbv", DALCS_PLAIN, false, 1, NULL},
+        [VB] = {"vb", DALCS_VOLTAGE, true, infinite, NULL},
+        [VRB] = {"vrb", DALCS_VOLTAGE, true, infinite, NULL},
+        [IB] = {"ib", DALCS_CURRENT, false, 1e-3, NULL},
     };
     reader->usage = MODEL_USAGE;
     card->ilimit = card->revilimit = infinite;
@@ -349,11 +426,11 @@ bool dalcs_diode_parse_model(struct dalcs_reader *reader, const struct dalcs_tok
     const bool is_block = strcmp(type->text, "sidiode") == 0;
     const bool is_ideal = is_block || has(parameter, RON, REVEPSILON);
     const char *ignored = ignored_text(builder, reader->card, parameter, is_ideal);
-    if (!is_ideal && (has(parameter, FIRST_BERKELEY, NBV) || ignored[0] != '\0')) {
+    if (!is_ideal && (has(parameter, FIRST_BERKELEY, IB) || ignored[0] != '\0')) {
         return set_berkeley(reader, type, parameter, card, model);
     }
     if (!is_block && is_bare(reader->card, type)) {
-        const struct dalcs_exponential spice = {1e-14, THERMAL_VOLTAGE, 0, builder->diode_current};
+        const struct dalcs_exponential spice = {.saturation = 1e-14, .voltage = THERMAL_VOLTAGE};
         dalcs_builder_note(builder, type, "D(IS=1e-14) is SPICE's, D(Ron=0) this one",
                            "a model without parameters is exactly ideal here; SPICE's default "
                            "diode would drop %.4g V at %g A",

@@ -338,6 +338,18 @@ static bool read_place(struct reading *r) {
     return false;
 }
 
+/* `time WHEN v(out)=1` and `v(out)*2 AT=1m`, without FIND, as LTspice has them: no kind, and a place behind it. */
+static bool is_found(const struct reading *r) {
+    const struct dalcs_token *token = dalcs_reader_peek(&r->reader, 0);
+    const struct dalcs_token *next = dalcs_reader_peek(&r->reader, 1);
+    const int end = formula_end(r->card, r->reader.at, false);
+    const bool starts_formula = token->kind == DALCS_TOKEN_EXPRESSION ||
+                                (next != NULL && next->kind == DALCS_TOKEN_OPEN) ||
+                                end == r->reader.at + 1;
+    return starts_formula && end < r->card->n &&
+           (is_word(&r->card->token[end], "when") || is_word(&r->card->token[end], "at"));
+}
+
 static bool read_kind(struct reading *r) {
     struct dalcs_measure_card *m = r->measure;
     const struct dalcs_token *token = dalcs_reader_peek(&r->reader, 0);
@@ -348,6 +360,10 @@ static bool read_kind(struct reading *r) {
     if (token == NULL) {
         dalcs_reader_missing(&r->reader, "what to measure");
         return false;
+    }
+    if (k == N_KINDS && is_found(r)) {
+        m->kind = DALCS_MEASURE_FIND;
+        return true;
     }
     if (k == N_KINDS) {
         const char *name[N_KINDS];
@@ -438,13 +454,6 @@ void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card 
     if (!dalcs_reader_name(&r.reader, "a name", &name)) {
         return;
     }
-    const int first = dalcs_names_find(&builder->measure_names, name->text);
-    if (first >= 0) {
-        dalcs_builder_error(builder, name, "give it another name",
-                            "a second measurement '%s', the first at line %d", name->text,
-                            builder->measure[first].where.line);
-        return;
-    }
     struct dalcs_measure_card measure = {
         .name = dalcs_arena_copy(&builder->circuit->arena, name->text, strlen(name->text)),
         .analysis = analysis,
@@ -465,7 +474,8 @@ void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card 
                            "there is no such analysis: this measurement is left out");
         return;
     }
-    if (dalcs_names_add(&builder->measure_names, measure.name, (int)builder->n_measures) !=
+    /* Of two with one name both are printed, and the second counts for those after it, as in ngspice. */
+    if (dalcs_names_set(&builder->measure_names, measure.name, (int)builder->n_measures) !=
             DALCS_OK ||
         dalcs_grow(&builder->measure, &builder->measure_capacity, builder->n_measures + 1,
                    sizeof *builder->measure) != DALCS_OK) {

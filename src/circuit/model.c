@@ -2,6 +2,7 @@
  *
  * Models are read before the elements, so they may stand anywhere in the netlist. */
 #include "builder.h"
+#include "number.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,8 +22,13 @@ static const struct type *find_type(const char *name) {
         {"vswitch", DALCS_MODEL_SWITCH, "switch"},
         {"csw", DALCS_MODEL_CURRENT_SWITCH, "current controlled switch"},
         {"iswitch", DALCS_MODEL_CURRENT_SWITCH, "current controlled switch"},
+        {"switch", DALCS_MODEL_SWITCH, "switch"},
         {"aswitch", DALCS_MODEL_OTHER, "smooth switch"},
         {"sidiode", DALCS_MODEL_DIODE, "diode"},
+        {"thyristor", DALCS_MODEL_THYRISTOR, "thyristor"},
+        {"scr", DALCS_MODEL_THYRISTOR, "thyristor"},
+        {"triac", DALCS_MODEL_THYRISTOR, "triac"},
+        {"gto", DALCS_MODEL_THYRISTOR, "thyristor"},
         {"npn", DALCS_MODEL_OTHER, "transistor"},
         {"pnp", DALCS_MODEL_OTHER, "transistor"},
         {"lpnp", DALCS_MODEL_OTHER, "transistor"},
@@ -64,16 +70,21 @@ static bool read_known(struct dalcs_reader *reader, struct dalcs_parameter *para
                : dalcs_reader_number(reader, parameter->quantity, "a value", &parameter->value);
 }
 
-/* The value of a parameter that is not known: a word or a number. */
-static bool skip_value(struct dalcs_reader *reader) {
-    const struct dalcs_token *value = dalcs_reader_peek(reader, 0);
-    double ignored;
-    if (value != NULL && (value->kind == DALCS_TOKEN_STRING ||
-                          (value->kind == DALCS_TOKEN_WORD && !dalcs_reader_is_number(value)))) {
-        reader->at++;
-        return true;
+/* `name = value`, or a blank for the equal sign, as in ngspice; NULL, nothing taken, when none follows. */
+static const struct dalcs_token *take_parameter(struct dalcs_reader *reader) {
+    const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 0);
+    const struct dalcs_token *value = dalcs_reader_peek(reader, 1);
+    if (name != NULL || next == NULL || next->kind != DALCS_TOKEN_WORD || value == NULL ||
+        dalcs_reader_is_number(next)) {
+        return name;
     }
-    return dalcs_reader_number(reader, DALCS_PLAIN, "a value", &ignored);
+    const bool is_infinite = value->kind == DALCS_TOKEN_WORD && strcmp(value->text, "inf") == 0;
+    if (!is_infinite && !dalcs_reader_is_number(value)) {
+        return NULL;
+    }
+    reader->at++;
+    return next;
 }
 
 bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_parameter *parameter,
@@ -82,7 +93,7 @@ bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_param
                                                  const struct dalcs_token *name)) {
     bool ok = true;
     const struct dalcs_token *name;
-    while ((name = dalcs_reader_take_parameter(reader)) != NULL) {
+    while ((name = take_parameter(reader)) != NULL) {
         int k = 0;
         while (k < n && strcmp(parameter[k].name, name->text) != 0) {
             k++;
@@ -93,7 +104,7 @@ bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_param
         if (k == n) {
             /* A library's card has a dozen of these: one message is enough. */
             ok = ok && !unknown(reader, name);
-            if (!skip_value(reader)) {
+            if (!dalcs_reader_skip_value(reader)) {
                 return false;
             }
         }
@@ -103,13 +114,23 @@ bool dalcs_model_read_parameters(struct dalcs_reader *reader, struct dalcs_param
 
 /* Of an R, L or C the card has the value; a model's temperature, noise and tolerance change nothing here. */
 static void read_passive(struct dalcs_reader *reader, struct dalcs_model *model) {
-    static const char *const nothing[] = {"tc",    "tc1", "tc2",    "tce",  "tnom", "temp",
-                                          "dtemp", "kf",  "af",     "ef",   "lf",   "wf",
-                                          "dev",   "lot", "bv_max", "level"};
+    static const char *const nothing[] = {
+        "tc",     "tc1",   "tc2",   "tce",          "tnom",        "temp",       "dtemp",
+        "kf",     "af",    "ef",    "lf",           "wf",          "dev",        "lot",
+        "bv_max", "level", "t_abs", "t_rel_global", "t_rel_local", "t_measured", "noise"};
     (void)dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
     const struct dalcs_token *name;
-    while ((name = dalcs_reader_take_parameter(reader)) != NULL && skip_value(reader)) {
-        if (!dalcs_builder_is_one_of(name->text, nothing, sizeof nothing / sizeof nothing[0])) {
+    while ((name = take_parameter(reader)) != NULL && dalcs_reader_skip_value(reader)) {
+        /* PSpice's factor of the value, R, C or L */
+        const struct dalcs_token *value = dalcs_reader_previous(reader);
+        struct dalcs_number number;
+        const bool is_one = strlen(name->text) == 1 && strchr("rcl", name->text[0]) != NULL &&
+                            (value->kind == DALCS_TOKEN_NUMBER
+                                 ? value->value == 1
+                                 : dalcs_number_parse(value->text, &number) == DALCS_NUMBER_OK &&
+                                       number.value == 1);
+        if (!is_one &&
+            !dalcs_builder_is_one_of(name->text, nothing, sizeof nothing / sizeof nothing[0])) {
             model->beyond = model->beyond != NULL ? model->beyond : name;
         }
     }
@@ -132,6 +153,12 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
         circuit->diode_model[model->index].name = name;
         ok = dalcs_diode_parse_model(reader, model->type, &model->diode,
                                      &circuit->diode_model[model->index]);
+    } else if (model->kind == DALCS_MODEL_THYRISTOR) {
+        model->index = circuit->n_diode_models++;
+        circuit->diode_model[model->index].name = name;
+        model->thyristor =
+            dalcs_thyristor_parse_model(reader, model->type, &circuit->diode_model[model->index]);
+        ok = model->thyristor != NULL;
     } else {
         model->index = circuit->n_switch_models++;
         circuit->switch_model[model->index].name = name;
@@ -238,9 +265,44 @@ static const char *wanted_type(enum dalcs_model_kind kind) {
     return kind == DALCS_MODEL_DIODE ? "D" : kind == DALCS_MODEL_SWITCH ? "SW" : "CSW";
 }
 
+/* A model that nothing defines, from the table of diodes; -1: it is not in there. */
+static int add_part(struct dalcs_builder *builder, const struct dalcs_token *name) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    struct dalcs_model *model = &builder->model[builder->n_models];
+    const char *own = dalcs_arena_copy(&circuit->arena, name->text, strlen(name->text));
+    struct dalcs_diode_card diode;
+    struct dalcs_diode_model *lines = &circuit->diode_model[circuit->n_diode_models];
+    if (own == NULL || !dalcs_diode_take_part(builder, name, &diode, lines)) {
+        builder->out_of_memory = builder->out_of_memory || own == NULL;
+        return -1;
+    }
+    *model = (struct dalcs_model){.kind = DALCS_MODEL_DIODE,
+                                  .index = circuit->n_diode_models++,
+                                  .name = name,
+                                  .type = name,
+                                  .diode = diode};
+    lines->name = own;
+    if (dalcs_names_add(&builder->models, own, builder->n_models) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return -1;
+    }
+    return builder->n_models++;
+}
+
+int dalcs_model_find_switch(struct dalcs_builder *builder, const struct dalcs_token *name) {
+    const int index = dalcs_names_find(&builder->models, name->text);
+    const bool by_current = index >= 0 && builder->model[index].kind == DALCS_MODEL_CURRENT_SWITCH;
+    return dalcs_model_find(builder, name,
+                            by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
+}
+
 int dalcs_model_find(struct dalcs_builder *builder, const struct dalcs_token *name,
                      enum dalcs_model_kind kind) {
-    const int index = dalcs_names_find(&builder->models, name->text);
+    int index = dalcs_names_find(&builder->models, name->text);
+    if (index < 0 && kind == DALCS_MODEL_DIODE && builder->n_models < builder->model_capacity &&
+        (builder->hidden & DALCS_HIDDEN_MODELS) == 0) {
+        index = add_part(builder, name);
+    }
     if (index < 0) {
         builder->failed = true;
         if ((builder->hidden & DALCS_HIDDEN_MODELS) == 0) {

@@ -31,10 +31,12 @@ bool dalcs_modulation_set_am(struct dalcs_builder *builder, const double *value,
     const double amplitude = value[0];
     const double modulating = value[2];
     const double carrier = value[3];
+    const double m = value[5] / 360;
+    const double c = value[6] / 360;
     const struct dalcs_tone tone[3] = {
-        {amplitude * value[1], carrier, 0},
-        {amplitude / 2, carrier - modulating, 0.25},
-        {-amplitude / 2, carrier + modulating, 0.25},
+        {amplitude * value[1], carrier, c},
+        {amplitude / 2, carrier - modulating, 0.25 + c - m},
+        {-amplitude / 2, carrier + modulating, 0.25 + c + m},
     };
     s->u.tones.offset = 0;
     s->u.tones.delay = value[4];

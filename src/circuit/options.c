@@ -65,6 +65,11 @@ static bool read_tolerance(struct dalcs_reader *reader, double *value) {
     if (!dalcs_reader_number(reader, DALCS_PLAIN, "a value", value)) {
         return false;
     }
+    if (*value > DALCS_TOLERANCE_MAX && *value < 1) {
+        dalcs_builder_note(reader->builder, dalcs_reader_previous(reader), NULL,
+                           "a tolerance of %g is cut to %g", *value, DALCS_TOLERANCE_MAX);
+        *value = DALCS_TOLERANCE_MAX;
+    }
     if (*value < DALCS_TOLERANCE_MIN || *value > DALCS_TOLERANCE_MAX) {
         dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
                             "reltol must lie between %g and %g", DALCS_TOLERANCE_MIN,
@@ -208,6 +213,7 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
         return read_stages(reader, &options->stages);
     }
     if (strcmp(name, "diodecurrent") == 0) {
+        options->has_diode_current = true;
         return read_positive(reader, DALCS_CURRENT, &reader->builder->diode_current);
     }
     if (strcmp(name, "fill") == 0) {

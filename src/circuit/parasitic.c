@@ -50,12 +50,9 @@ bool dalcs_parasitic_read(struct dalcs_reader *reader, const struct dalcs_token 
     if (!dalcs_reader_number(reader, KINDS[k].quantity, "a value", value)) {
         return false;
     }
-    /* A resistor of 0 ohm in parallel would be a short; in series it is none. */
-    const bool must_be_positive = k == RPAR || k == RLSHUNT;
-    if (*value < 0 || (must_be_positive && *value == 0)) {
-        dalcs_builder_error(builder, name, must_be_positive ? "leave it out for none" : NULL,
-                            must_be_positive ? "'%s' must be positive" : "'%s' cannot be negative",
-                            name->text);
+    /* 0 is none, of what lies across too, as in LTspice: no short. */
+    if (*value < 0) {
+        dalcs_builder_error(builder, name, NULL, "'%s' cannot be negative", name->text);
         return false;
     }
     return true;
@@ -76,7 +73,7 @@ void dalcs_parasitic_expand(struct dalcs_builder *builder, const struct dalcs_to
                             struct dalcs_device *device,
                             const struct dalcs_parasitics *parasitics) {
     const double *value = parasitics->value;
-    if (parasitics->place[RLSHUNT] != NULL && value[LSER] == 0) {
+    if (value[RLSHUNT] > 0 && value[LSER] == 0) {
         dalcs_builder_error(builder, parasitics->place[RLSHUNT], NULL,
                             "'rlshunt' lies across 'lser', which is not there");
         return;

@@ -3,6 +3,7 @@
  * R = 0 is a short. An inductor of 0 H is one too and becomes a resistor of 0 ohm; a capacitor of
  * 0 F is open and becomes a current source of 0 A: neither has a state. */
 #include "builder.h"
+#include "number.h"
 
 #include <string.h>
 
@@ -55,16 +56,34 @@ static bool may_have(enum dalcs_device_kind kind, const char *parasitic) {
            (kind == DALCS_CAPACITOR || (kind == DALCS_INDUCTOR && strchr(parasitic, 'l') == NULL));
 }
 
+static bool is_multiplier(struct dalcs_reader *reader, double m) {
+    if (m <= 0) {
+        dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
+                            "a multiplier must be positive");
+    }
+    return m > 0;
+}
+
 static bool read_multiplier(struct dalcs_reader *reader, double *multiplier) {
     if (!dalcs_reader_number(reader, DALCS_PLAIN, "a number", multiplier)) {
         return false;
     }
-    if (*multiplier <= 0) {
-        dalcs_builder_error(reader->builder, dalcs_reader_previous(reader), NULL,
-                            "a multiplier must be positive");
-        return false;
+    return is_multiplier(reader, *multiplier);
+}
+
+/* `noiseless` and `x2`, which LTspice writes behind a value: two in parallel. *taken: was it one? */
+static bool read_word(struct dalcs_reader *reader, double *multiplier, bool *taken) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    struct dalcs_number number;
+    *taken = dalcs_reader_take_word(reader, "noiseless");
+    if (*taken || token == NULL || token->kind != DALCS_TOKEN_WORD || token->text[0] != 'x' ||
+        dalcs_number_parse(token->text + 1, &number) != DALCS_NUMBER_OK) {
+        return true;
     }
-    return true;
+    *taken = true;
+    reader->at++;
+    *multiplier = number.value;
+    return is_multiplier(reader, number.value);
 }
 
 /* The value of a parameter after the card's value. False ends the card. */
@@ -112,6 +131,9 @@ static bool read_parameter(struct dalcs_reader *reader, const struct family *fam
     if (strcmp(name->text, "m") == 0) {
         return read_multiplier(reader, &values->multiplier);
     }
+    if (dalcs_builder_is_label(name->text)) {
+        return dalcs_reader_skip_value(reader);
+    }
     dalcs_builder_error(builder, name, family->usage, "%s has no parameter '%s'",
                         dalcs_builder_kind_text(device->kind), name->text);
     return false;
@@ -136,6 +158,38 @@ static void replace_zero(struct dalcs_builder *builder, struct dalcs_device *dev
         (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .has_dc = true};
 }
 
+/* What follows the value, or has it. *value: its token. */
+static bool read_rest(struct dalcs_reader *reader, const struct family *family,
+                      struct dalcs_device *device, struct values *values,
+                      const struct dalcs_token **value) {
+    while (!dalcs_reader_at_end(reader)) {
+        const bool had_value = values->has_value;
+        bool taken;
+        if (!read_word(reader, &values->multiplier, &taken)) {
+            return false;
+        }
+        if (taken) {
+            continue;
+        }
+        const struct dalcs_token *name = dalcs_reader_take_parameter(reader);
+        if (name == NULL) {
+            return dalcs_reader_end(reader);
+        }
+        if (!read_parameter(reader, family, name, device, values)) {
+            return false;
+        }
+        *value = values->has_value && !had_value ? dalcs_reader_previous(reader) : *value;
+    }
+    return true;
+}
+
+/* m of it in parallel. */
+static void multiply(struct dalcs_device *device, struct dalcs_parasitics *parasitics, double m) {
+    device->value *= device->kind == DALCS_CAPACITOR ? m : 1 / m;
+    device->initial *= device->kind == DALCS_INDUCTOR ? m : 1;
+    dalcs_parasitic_multiply(parasitics, m);
+}
+
 void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                          enum dalcs_device_kind kind) {
     const struct family *family = family_of(kind);
@@ -149,6 +203,7 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
     if (!dalcs_model_take_passive(&reader, letter)) {
         return;
     }
+    (void)dalcs_reader_take_word(&reader, "noiseless");
     const struct dalcs_token *equal = dalcs_reader_peek(&reader, 1);
     if (equal == NULL || equal->kind != DALCS_TOKEN_EQUAL) {
         if (!dalcs_reader_number(&reader, family->quantity, family->value, &device->value)) {
@@ -160,15 +215,7 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
     if (!dalcs_model_take_passive(&reader, letter)) {
         return;
     }
-    const struct dalcs_token *name;
-    while ((name = dalcs_reader_take_parameter(&reader)) != NULL) {
-        const bool had_value = values.has_value;
-        if (!read_parameter(&reader, family, name, device, &values)) {
-            return;
-        }
-        value = values.has_value && !had_value ? dalcs_reader_previous(&reader) : value;
-    }
-    if (!dalcs_reader_end(&reader)) {
+    if (!read_rest(&reader, family, device, &values, &value)) {
         return;
     }
     if (!values.has_value) {
@@ -179,15 +226,16 @@ void dalcs_passive_parse(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_builder_error(builder, value, NULL, "%s cannot be negative", family->value);
         return;
     }
+    if (card->parallel > 0) {
+        values.multiplier = (values.multiplier > 0 ? values.multiplier : 1) * card->parallel;
+    }
     if (builder->default_rser != NULL && kind == DALCS_INDUCTOR &&
         !dalcs_parasitic_has_rser(&values.parasitics)) {
         builder->default_rser[device - builder->circuit->device] =
             LTSPICE_RSER / (values.multiplier > 0 ? values.multiplier : 1);
     }
     if (values.multiplier > 0) {
-        device->value *= kind == DALCS_CAPACITOR ? values.multiplier : 1 / values.multiplier;
-        device->initial *= kind == DALCS_INDUCTOR ? values.multiplier : 1;
-        dalcs_parasitic_multiply(&values.parasitics, values.multiplier);
+        multiply(device, &values.parasitics, values.multiplier);
     }
     dalcs_parasitic_expand(builder, card->token, device, &values.parasitics);
     if (device->value == 0 && kind != DALCS_RESISTOR) {

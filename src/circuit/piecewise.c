@@ -27,8 +27,16 @@ double dalcs_piecewise_slope(const struct dalcs_piecewise *f, int k) {
 /* The knot at s, or else the first beyond it. */
 static int find(const struct dalcs_piecewise *f, double s, bool *is_there) {
     int k = 0;
-    while (k < f->n && f->knot[k].at < s && !is_near(f->knot[k].at, s)) {
-        k++;
+    for (int end = f->n; k < end;) {
+        const int middle = k + (end - k) / 2;
+        if (f->knot[middle].at < s) {
+            k = middle + 1;
+        } else {
+            end = middle;
+        }
+    }
+    while (k > 0 && is_near(f->knot[k - 1].at, s)) {
+        k--;
     }
     *is_there = k < f->n && is_near(f->knot[k].at, s);
     return k;

@@ -263,7 +263,9 @@ static bool read_group(struct points *p, int depth) {
     if (!read_items(p, depth + 1)) {
         return false;
     }
-    p->is_closed = dalcs_reader_take(reader, DALCS_TOKEN_CLOSE);
+    /* LTspice's own dialog leaves out the bracket behind an ENDREPEAT that ends the card. */
+    p->is_closed = dalcs_reader_take(reader, DALCS_TOKEN_CLOSE) ||
+                   (depth == 0 && p->has_forever && dalcs_reader_at_end(reader));
     if (!p->is_closed && dalcs_reader_at_end(reader)) {
         dalcs_builder_error(reader->builder, open, USAGE, "this parenthesis is never closed");
     } else if (!p->is_closed) {

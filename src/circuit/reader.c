@@ -285,6 +285,17 @@ bool dalcs_reader_number_or_infinity(struct dalcs_reader *reader, enum dalcs_qua
     return dalcs_reader_number(reader, quantity, what, value);
 }
 
+bool dalcs_reader_skip_value(struct dalcs_reader *reader) {
+    const struct dalcs_token *value = dalcs_reader_peek(reader, 0);
+    if (value == NULL || value->kind == DALCS_TOKEN_EQUAL || value->kind == DALCS_TOKEN_OPEN ||
+        value->kind == DALCS_TOKEN_CLOSE) {
+        dalcs_reader_missing(reader, "a value");
+        return false;
+    }
+    reader->at++;
+    return true;
+}
+
 /* ---- Names and nodes ----------------------------------------------------------------------- */
 
 bool dalcs_reader_name(struct dalcs_reader *reader, const char *what,

@@ -172,51 +172,125 @@ static int device_current(const char *t) {
     return n > 1 && strncmp(t + n, "[i]", 3) == 0 ? n + 3 : 0;
 }
 
-static void mask_signals(struct dalcs_signal_compilation *c) {
+/* mag(v(out)) and the like of .ac: the bytes before the signal, 0 when no such function starts at t. */
+static int part_function(const char *t, enum dalcs_signal_part *part) {
+    static const struct {
+        const char *name;
+        enum dalcs_signal_part part;
+    } functions[] = {{"mag", DALCS_PART_MAGNITUDE}, {"abs", DALCS_PART_MAGNITUDE},
+                     {"db", DALCS_PART_DECIBEL},    {"ph", DALCS_PART_PHASE},
+                     {"phase", DALCS_PART_PHASE},   {"re", DALCS_PART_REAL},
+                     {"real", DALCS_PART_REAL},     {"im", DALCS_PART_IMAGINARY},
+                     {"imag", DALCS_PART_IMAGINARY}};
+
+    for (size_t k = 0; k < sizeof functions / sizeof functions[0]; k++) {
+        const size_t n = strlen(functions[k].name);
+        if (strncmp(t, functions[k].name, n) == 0 && t[n + strspn(t + n, " ")] == '(') {
+            const size_t open = n + strspn(t + n, " ") + 1;
+            *part = functions[k].part;
+            return (int)(open + strspn(t + open, " "));
+        }
+    }
+    return 0;
+}
+
+/* A signal in the text. */
+struct found {
+    int begin, end;     /* what stands for it, a function around it included */
+    int name, name_end; /* what its parentheses or its @...[i] hold */
+    int open;           /* the parenthesis, -1: none */
+    bool is_current;
+    enum dalcs_signal_part part;
+};
+
+/* Does a signal start at k? Of one whose parenthesis is never closed `end` is behind the text. */
+static bool find_at(const struct dalcs_signal_compilation *c, int k, struct found *found) {
     const char *text = c->text.text;
+    const bool starts = k == 0 || !is_name_byte(text[k - 1]);
+    *found = (struct found){.begin = k, .part = DALCS_PART_PLAIN};
+    const int prefix = starts ? signal_prefix(text + k, &found->part) : 0;
+    const int device = starts ? device_current(text + k) : 0;
+    if (device > 0) {
+        found->is_current = true;
+        found->open = -1;
+        found->name = k + 1;
+        found->name_end = (int)(strchr(text + k, '[') - text);
+        found->end = k + device;
+        return true;
+    }
+    found->open = k + prefix;
+    found->name = k + prefix + 1;
+    found->is_current = text[k] == 'i';
+    int end = found->name;
+    /* KiCad's names have a pair of parentheses of their own */
+    for (int depth = 1; prefix > 0 && end < c->text.length && depth > 0; end++) {
+        depth += (text[end] == '(') - (text[end] == ')');
+    }
+    found->name_end = end - 1;
+    found->end = text[end - 1] == ')' ? end : c->text.length + 1;
+    return prefix > 0;
+}
+
+/* The same with a function of a complex signal around it, where there are complex signals. */
+static bool find_with_function(const struct dalcs_signal_compilation *c, int k,
+                               struct found *found) {
+    const char *text = c->text.text;
+    const bool may =
+        strcmp(c->rules->variable, "frequency") == 0 && (k == 0 || !is_name_byte(text[k - 1]));
+    enum dalcs_signal_part part;
+    const int n = may ? part_function(text + k, &part) : 0;
+    if (n == 0 || !find_at(c, k + n, found) || found->end > c->text.length ||
+        found->part != DALCS_PART_PLAIN) {
+        return find_at(c, k, found);
+    }
+    const int close = found->end + (int)strspn(text + found->end, " ");
+    if (text[close] != ')') {
+        return find_at(c, k, found);
+    }
+    found->begin = k;
+    found->end = close + 1;
+    found->part = part;
+    return true;
+}
+
+static void mask_signal(struct dalcs_signal_compilation *c, const struct found *found) {
+    const char *text = c->text.text;
+    const int begin = found->begin;
+    const int length = found->end - begin;
+    if (found->end > c->text.length) {
+        report(c, found->open, 1, NULL, "this parenthesis is never closed");
+        return;
+    }
+    if (is_name_byte((char)previous_byte(text, begin)) || previous_byte(text, begin) == ')') {
+        report(c, begin, length, NULL, "an operator is missing before '%.*s'", length,
+               text + begin);
+        return;
+    }
+    if (c->rules->no_signals != NULL) {
+        report(c, begin, length, NULL, "%s", c->rules->no_signals);
+        return;
+    }
+    if (c->n_signals == MOST_SIGNALS) {
+        report(c, begin, length, NULL, "more than %d signals in one formula", MOST_SIGNALS);
+        return;
+    }
+    const int signal = find_signal(c, found->is_current, found->name, found->name_end);
+    if (signal < 0) {
+        c->failed = true;
+        return;
+    }
+    mask(c, begin, found->end);
+    c->signal[c->n_signals] = signal;
+    c->part[c->n_signals++] = found->part;
+}
+
+static void mask_signals(struct dalcs_signal_compilation *c) {
+    struct found found;
     for (int k = 0; k < c->text.length && !c->failed; k++) {
-        enum dalcs_signal_part part = DALCS_PART_PLAIN;
-        const bool starts = k == 0 || !is_name_byte(text[k - 1]);
-        const int open = starts ? signal_prefix(text + k, &part) : 0;
-        const int device = starts ? device_current(text + k) : 0;
-        if (open == 0 && device == 0) {
-            continue;
+        if (find_with_function(c, k, &found)) {
+            mask_signal(c, &found);
+            k = found.end - 1;
         }
-        int end = k + open + 1;
-        if (device > 0) {
-            end = k + device;
-        }
-        /* KiCad's names have a pair of parentheses of their own */
-        for (int depth = 1; open > 0 && end < c->text.length && depth > 0; end++) {
-            depth += (text[end] == '(') - (text[end] == ')');
-        }
-        if (open > 0 && text[end - 1] != ')') {
-            report(c, k + open, 1, NULL, "this parenthesis is never closed");
-            return;
-        }
-        if (is_name_byte((char)previous_byte(text, k)) || previous_byte(text, k) == ')') {
-            report(c, k, end - k, NULL, "an operator is missing before '%.*s'", end - k, text + k);
-            return;
-        }
-        if (c->rules->no_signals != NULL) {
-            report(c, k, end - k, NULL, "%s", c->rules->no_signals);
-            return;
-        }
-        if (c->n_signals == MOST_SIGNALS) {
-            report(c, k, end - k, NULL, "more than %d signals in one formula", MOST_SIGNALS);
-            return;
-        }
-        const int signal = open > 0
-                               ? find_signal(c, text[k] == 'i', k + open + 1, end - 1)
-                               : find_signal(c, true, k + 1, (int)(strchr(text + k, '[') - text));
-        if (signal < 0) {
-            c->failed = true;
-            return;
-        }
-        mask(c, k, end);
-        c->signal[c->n_signals] = signal;
-        c->part[c->n_signals++] = part;
-        k = end - 1;
     }
 }
 

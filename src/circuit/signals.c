@@ -85,7 +85,8 @@ static void add_current(struct dalcs_builder *builder, int device) {
 /* By letter, not by kind: an inductor of 0 H is still an inductor to the one who wrote it. */
 static bool has_default(const struct dalcs_device *d) {
     const bool is_default = (d->letter != 0 && strchr("vldsweh", d->letter) != NULL) ||
-                            d->kind == DALCS_DIODE || (d->letter == 'b' && d->kind == DALCS_VCVS);
+                            d->kind == DALCS_DIODE || d->kind == DALCS_SWITCH ||
+                            (d->letter == 'b' && d->kind == DALCS_VCVS);
     return is_default && !dalcs_builder_is_inner(d->name);
 }
 
@@ -284,15 +285,101 @@ static bool is_formula(const struct dalcs_reader *reader) {
     }
     const bool is_par =
         strcmp(token->text, "par") == 0 && next != NULL && next->kind == DALCS_TOKEN_OPEN;
-    return is_operator || is_par || token->kind == DALCS_TOKEN_EXPRESSION;
+    return is_operator || is_par || token->kind == DALCS_TOKEN_EXPRESSION ||
+           token->kind == DALCS_TOKEN_FORMULA;
 }
 
-/* p(r1), which KiCad writes for every part. */
+/* A sum of signals and numbers with constant factors? */
+static bool is_affine(const struct dalcs_formula *f) {
+    const enum dalcs_operation_code code = f->code;
+    bool all = true;
+    for (int k = 0; k < f->n; k++) {
+        all = all && is_affine(f->argument[k]);
+    }
+    const bool is_first_number = f->n > 0 && f->argument[0]->kind == DALCS_FORMULA_NUMBER;
+    const bool is_last_number = f->n > 0 && f->argument[f->n - 1]->kind == DALCS_FORMULA_NUMBER;
+    switch (f->kind) {
+    case DALCS_FORMULA_NUMBER:
+    case DALCS_FORMULA_VOLTAGE:
+    case DALCS_FORMULA_CURRENT:
+        return true;
+    case DALCS_FORMULA_OPERATION:
+        return all && (code == DALCS_NEGATE || code == DALCS_ADD || code == DALCS_SUBTRACT ||
+                       (code == DALCS_MULTIPLY && (is_first_number || is_last_number)) ||
+                       (code == DALCS_DIVIDE && is_last_number));
+    default:
+        return false;
+    }
+}
+
+/* "{v(a)-v(b)}" without blanks: the name of its signal. */
+static const char *formula_name(struct dalcs_builder *builder, const struct dalcs_formula *f) {
+    const char *text = f->text->text;
+    char *name = dalcs_arena_text(&builder->circuit->arena, strlen(text) + 2);
+    size_t n = 0;
+    if (name == NULL) {
+        return NULL;
+    }
+    name[n++] = '{';
+    for (; *text != '\0'; text++) {
+        if (*text != ' ' && *text != '\t') {
+            name[n++] = *text;
+        }
+    }
+    name[n++] = '}';
+    name[n] = '\0';
+    return name;
+}
+
+/* A formula of signals: one that is affine is the voltage of a source that nothing loads. */
+static void add_formula(struct dalcs_builder *builder, const struct dalcs_token *token) {
+    if (!is_affine(token->formula)) {
+        dalcs_builder_warn(builder, token,
+                           ".meas has other formulas, and B1 x 0 V={formula} makes a node of one",
+                           "this is no sum of signals with constant factors: it is left out");
+        return;
+    }
+    struct dalcs_token *named = dalcs_arena_alloc(&builder->scratch, 1, sizeof *named);
+    const char *name = formula_name(builder, token->formula);
+    if (named == NULL || name == NULL) {
+        builder->out_of_memory = true;
+        return;
+    }
+    *named = *token;
+    named->kind = DALCS_TOKEN_WORD;
+    named->text = name;
+    const bool is_known = dalcs_names_find(&builder->signals, name) >= 0;
+    const int node = is_known ? 0 : dalcs_behavioural_add_readout(builder, token, "readout", named);
+    if (node >= 0) {
+        add_signal(
+            builder, name,
+            (struct dalcs_signal){.kind = DALCS_SIGNAL_VOLTAGE, .node = {node, 0}, .device = -1});
+    }
+}
+
+/* {formula}, par('formula') and name=par('formula'); false: another form. */
+static bool read_formula(struct dalcs_reader *reader) {
+    const int at = reader->at;
+    (void)dalcs_reader_take_parameter(reader);
+    const bool is_par =
+        dalcs_reader_take_word(reader, "par") && dalcs_reader_take(reader, DALCS_TOKEN_OPEN);
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    const bool ok = token != NULL && token->kind == DALCS_TOKEN_FORMULA;
+    reader->at += ok;
+    if (!ok || (is_par && !dalcs_reader_take(reader, DALCS_TOKEN_CLOSE))) {
+        reader->at = at;
+        return false;
+    }
+    add_formula(reader->builder, token);
+    return true;
+}
+
+/* p(r1), which KiCad writes for every part; w(r1) is PSpice's. */
 static void skip_power(struct dalcs_reader *reader) {
     if (!reader->builder->noted_power) {
-        dalcs_builder_note(reader->builder, dalcs_reader_peek(reader, 0),
-                           "a measurement may be of v(a,b)*i(r1)",
-                           "powers are not recorded: p(...) is left out");
+        dalcs_builder_note(
+            reader->builder, dalcs_reader_peek(reader, 0), "a measurement may be of v(a,b)*i(r1)",
+            "powers are not recorded: %s(...) is left out", dalcs_reader_peek(reader, 0)->text);
     }
     reader->builder->noted_power = true;
     int depth = 0;
@@ -309,6 +396,9 @@ static bool read_signal(struct dalcs_reader *reader) {
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
     if (token->kind != DALCS_TOKEN_BAD && is_formula(reader)) {
+        if (read_formula(reader)) {
+            return true;
+        }
         dalcs_builder_error(builder, token,
                             "v(a,b) is v(a)-v(b); .meas has formulas, and B1 x 0 V={formula} makes "
                             "a node of one",
@@ -342,7 +432,7 @@ static bool read_signal(struct dalcs_reader *reader) {
         }
         return token->text[0] == 'v' ? read_voltage(reader) : read_current(reader);
     }
-    if (strcmp(token->text, "p") == 0) {
+    if (strcmp(token->text, "p") == 0 || strcmp(token->text, "w") == 0) {
         skip_power(reader);
         return true;
     }

@@ -76,70 +76,133 @@ static bool takes_limit(struct dalcs_reader *reader, enum dalcs_quantity quantit
            dalcs_reader_take_parameter(reader) != NULL;
 }
 
+/* DISTOF1 and DISTOF2, a magnitude and a phase, which only .disto reads. */
+static bool skips_distortion(struct dalcs_reader *reader) {
+    const bool skips =
+        dalcs_reader_take_word(reader, "distof1") || dalcs_reader_take_word(reader, "distof2");
+    (void)(skips && dalcs_reader_take(reader, DALCS_TOKEN_EQUAL));
+    for (int k = 0; skips && k < 2 && !dalcs_reader_at_end(reader) &&
+                    dalcs_reader_is_number(dalcs_reader_peek(reader, 0));
+         k++) {
+        reader->at++;
+    }
+    return skips;
+}
+
 /* SIN, PULSE, ... */
 static bool is_function(const struct dalcs_token *token) {
     return token != NULL && token->kind == DALCS_TOKEN_WORD &&
            dalcs_waveform_card_is_name(token->text);
 }
 
-static void read_source(struct dalcs_reader *reader, enum dalcs_quantity quantity,
-                        struct dalcs_stimulus *stimulus, struct dalcs_parasitics *parasitics,
-                        struct dalcs_current_limits *limits) {
-    bool has_function = false;
-    bool has_ac = false;
-    const struct dalcs_token *token;
-    while ((token = dalcs_reader_peek(reader, 0)) != NULL) {
-        if (dalcs_reader_take_word(reader, "dc")) {
-            dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
-            if (is_function(dalcs_reader_peek(reader, 0))) {
-                continue; /* DC PWL(...), as ngspice takes it: no value of its own */
-            }
-            if (!read_dc(reader, quantity, stimulus)) {
-                return;
-            }
-        } else if (takes_parasitic(reader, quantity)) {
-            if (!dalcs_parasitic_read(reader, token, parasitics)) {
-                return;
-            }
-        } else if (takes_limit(reader, quantity)) {
-            if (!dalcs_current_limit_read(reader, token, limits)) {
-                return;
-            }
-        } else if (dalcs_reader_take_word(reader, "ac")) {
-            if (!read_ac(reader, quantity, stimulus)) {
-                return;
-            }
-            has_ac = true;
-        } else if (is_function(token)) {
-            if (has_function) {
-                dalcs_builder_error(reader->builder, token, NULL, "a second source function");
-                return;
-            }
-            has_function = true;
-            if (!dalcs_waveform_card_parse(reader, quantity, stimulus)) {
-                return;
-            }
-        } else if (dalcs_reader_is_number(token)) {
-            if (!read_dc(reader, quantity, stimulus)) {
-                return;
-            }
-        } else if (token->kind == DALCS_TOKEN_WORD) {
-            report_word(reader, token);
-            return;
-        } else {
-            dalcs_reader_unexpected(reader);
+/* What a card says besides its nodes. */
+struct source {
+    enum dalcs_quantity quantity;
+    struct dalcs_stimulus *stimulus;
+    struct dalcs_parasitics parasitics;
+    struct dalcs_current_limits limits;
+    bool has_function, has_ac;
+    bool is_load; /* an I that never delivers (LTspice) */
+    int n_open;   /* brackets around a function, as ngspice has them: (PULSE 0 1) (AC 1) */
+};
+
+/* The opening bracket before a function's name, DC or AC, or the closing one. */
+static bool takes_bracket(struct dalcs_reader *reader, struct source *source) {
+    const struct dalcs_token *next = dalcs_reader_peek(reader, 1);
+    const bool is_named =
+        next != NULL && next->kind == DALCS_TOKEN_WORD &&
+        (is_function(next) || strcmp(next->text, "dc") == 0 || strcmp(next->text, "ac") == 0);
+    if (is_named && dalcs_reader_take(reader, DALCS_TOKEN_OPEN)) {
+        source->n_open++;
+        return true;
+    }
+    if (source->n_open > 0 && dalcs_reader_take(reader, DALCS_TOKEN_CLOSE)) {
+        source->n_open--;
+        return true;
+    }
+    return false;
+}
+
+static bool read_function(struct dalcs_reader *reader, struct source *source) {
+    if (source->has_function) {
+        dalcs_builder_error(reader->builder, dalcs_reader_peek(reader, 0), NULL,
+                            "a second source function");
+        return false;
+    }
+    source->has_function = true;
+    return dalcs_waveform_card_parse(reader, source->quantity, source->stimulus);
+}
+
+/* The next of what a card says; false when an error was reported. */
+static bool read_item(struct dalcs_reader *reader, struct source *source) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    const enum dalcs_quantity quantity = source->quantity;
+    if (dalcs_reader_take_word(reader, "dc")) {
+        dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+        /* DC PWL(...), as ngspice takes it: no value of its own */
+        return is_function(dalcs_reader_peek(reader, 0)) ||
+               read_dc(reader, quantity, source->stimulus);
+    }
+    if (takes_parasitic(reader, quantity)) {
+        return dalcs_parasitic_read(reader, token, &source->parasitics);
+    }
+    if (takes_limit(reader, quantity)) {
+        return dalcs_current_limit_read(reader, token, &source->limits);
+    }
+    if (dalcs_reader_take_word(reader, "ac")) {
+        source->has_ac = true;
+        return read_ac(reader, quantity, source->stimulus);
+    }
+    if (quantity == DALCS_CURRENT && dalcs_reader_take_word(reader, "load")) {
+        source->is_load = true;
+        return true;
+    }
+    if (skips_distortion(reader) || takes_bracket(reader, source)) {
+        return true;
+    }
+    if (is_function(token)) {
+        return read_function(reader, source);
+    }
+    if (dalcs_reader_is_number(token)) {
+        return read_dc(reader, quantity, source->stimulus);
+    }
+    if (token->kind == DALCS_TOKEN_WORD) {
+        report_word(reader, token);
+    } else {
+        dalcs_reader_unexpected(reader);
+    }
+    return false;
+}
+
+static void read_source(struct dalcs_reader *reader, struct source *source) {
+    while (!dalcs_reader_at_end(reader)) {
+        if (!read_item(reader, source)) {
             return;
         }
     }
-    if (!stimulus->has_dc && !has_function) {
-        stimulus->has_dc = true;
-        stimulus->is_ac_alone = has_ac;
-        if (has_ac) {
+    if (source->n_open > 0) {
+        dalcs_reader_missing(reader, "')'");
+        return;
+    }
+    if (!source->stimulus->has_dc && !source->has_function) {
+        source->stimulus->has_dc = true;
+        source->stimulus->is_ac_alone = source->has_ac;
+        if (source->has_ac) {
             return; /* a source for .ac: 0 is meant */
         }
         dalcs_builder_warn(reader->builder, reader->card->token, NULL,
                            "source '%s' has no value: it is 0", reader->card->token->text);
     }
+}
+
+/* m sources in parallel. */
+static void multiply(struct dalcs_builder *builder, struct source *source, double m) {
+    if (source->quantity == DALCS_CURRENT) {
+        dalcs_parallel_scale(builder, source->stimulus, m);
+    }
+    dalcs_parasitic_multiply(&source->parasitics, m);
+    source->limits.forward *= m;
+    source->limits.reverse *= m;
 }
 
 void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
@@ -151,12 +214,18 @@ void dalcs_source_parse(struct dalcs_builder *builder, const struct dalcs_card *
         return;
     }
     device->stimulus = circuit->n_stimuli++;
-    struct dalcs_parasitics parasitics = {.place = {NULL}};
-    struct dalcs_current_limits limits = {INFINITY, INFINITY};
-    read_source(&reader, kind == DALCS_VSOURCE ? DALCS_VOLTAGE : DALCS_CURRENT,
-                &circuit->stimulus[device->stimulus], &parasitics, &limits);
-    dalcs_parasitic_expand(builder, card->token, device, &parasitics);
-    dalcs_current_limit_expand(builder, card->token, device, &limits);
+    struct source source = {.quantity = kind == DALCS_VSOURCE ? DALCS_VOLTAGE : DALCS_CURRENT,
+                            .stimulus = &circuit->stimulus[device->stimulus],
+                            .limits = {INFINITY, INFINITY}};
+    read_source(&reader, &source);
+    if (card->parallel > 0) {
+        multiply(builder, &source, card->parallel);
+    }
+    dalcs_parasitic_expand(builder, card->token, device, &source.parasitics);
+    dalcs_current_limit_expand(builder, card->token, device, &source.limits);
+    if (source.is_load) {
+        dalcs_current_limit_make_load(builder, card->token, device);
+    }
 }
 
 /* Edges are told apart to 1e-15 of the time; leave room for a few points in between. */
@@ -199,8 +268,63 @@ void dalcs_stimulus_check(struct dalcs_builder *builder, const struct dalcs_toke
     }
 }
 
+/* Seconds in which LTspice lets sources rise after .tran's `startup`. */
+static const double STARTUP_TIME = 20e-6;
+
+/* A source of a number rises from 0 in a straight line; its operating point for .op stays. */
+static bool raise(struct dalcs_circuit *circuit, struct dalcs_stimulus *s) {
+    double *t = dalcs_arena_alloc(&circuit->arena, 2, sizeof *t);
+    double *v = dalcs_arena_alloc(&circuit->arena, 2, sizeof *v);
+    if (t == NULL || v == NULL) {
+        return false;
+    }
+    t[1] = STARTUP_TIME;
+    v[1] = s->dc;
+    s->kind = DALCS_STIMULUS_PWL;
+    s->u.pwl.n = 2;
+    s->u.pwl.t = t;
+    s->u.pwl.v = v;
+    s->u.pwl.repeats = false;
+    s->u.pwl.repeat_from = 0;
+    return true;
+}
+
+/* LTspice turns all independent sources on in that time, after an operating point without them. One that
+ * has a function starts as it is, which is the same where that is 0 at first. */
+static void start_up(struct dalcs_builder *builder) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    int n_risen = 0;
+    const char *first = NULL;
+    for (int k = 0; k < circuit->n_devices; k++) {
+        const struct dalcs_device *device = &circuit->device[k];
+        if (device->stimulus < 0 || dalcs_builder_is_inner(device->name)) {
+            continue;
+        }
+        struct dalcs_stimulus *s = &circuit->stimulus[device->stimulus];
+        if (s->kind == DALCS_STIMULUS_DC) {
+            n_risen++;
+            builder->out_of_memory = !raise(circuit, s) || builder->out_of_memory;
+        } else if (first == NULL && dalcs_stimulus_value(s, 0, DALCS_LEFT) != 0) {
+            first = device->name;
+        }
+    }
+    dalcs_builder_note(builder, builder->startup, NULL,
+                       "%d source%s of a constant value rise%s from 0 in the first 20 us, as in "
+                       "LTspice; those with a function start as they are",
+                       n_risen, n_risen == 1 ? "" : "s", n_risen == 1 ? "s" : "");
+    if (first != NULL) {
+        dalcs_builder_warn(builder, builder->startup, NULL,
+                           "source '%s' has a function that does not start at 0: LTspice would "
+                           "let it rise too",
+                           first);
+    }
+}
+
 void dalcs_source_check(struct dalcs_builder *builder) {
     const struct dalcs_circuit *circuit = builder->circuit;
+    if (builder->startup != NULL) {
+        start_up(builder);
+    }
     for (int k = 0; k < circuit->n_devices; k++) {
         const struct dalcs_device *device = &circuit->device[k];
         if (device->stimulus >= 0) {

@@ -12,7 +12,7 @@
 #include <string.h>
 
 static const char DC_USAGE[] = ".dc source start stop step [source start stop step]";
-static const char AC_USAGE[] = ".ac dec|oct|lin points fstart fstop";
+static const char AC_USAGE[] = ".ac dec|oct|lin points fstart fstop, or .ac list frequency ...";
 static const char STEP_USAGE[] =
     ".step [lin|dec|oct] item start stop step; .step item list value value ...; .step item "
     "file=name; an item is an "
@@ -315,6 +315,30 @@ void dalcs_sweep_parse_dc(struct dalcs_builder *builder, const struct dalcs_card
     circuit->n_dc = n;
 }
 
+/* .ac list f1 f2 ..., as in LTspice, in any order. */
+static void read_frequencies(struct dalcs_reader *reader, struct dalcs_sweep *f) {
+    dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+    const int first = reader->at;
+    if (dalcs_reader_at_end(reader)) {
+        dalcs_reader_missing(reader, "a frequency");
+        return;
+    }
+    if (!read_list(reader, f)) {
+        f->n = 0;
+        return;
+    }
+    for (int k = 0; k < f->n; k++) {
+        if (!(f->list[k] >= 0.0)) {
+            dalcs_builder_error(reader->builder, &reader->card->token[first + k], AC_USAGE,
+                                "a frequency cannot be negative");
+            f->n = 0;
+            return;
+        }
+    }
+    f->start = f->list[0];
+    f->stop = f->list[f->n - 1];
+}
+
 void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_sweep *f = &builder->circuit->ac;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, AC_USAGE);
@@ -324,8 +348,12 @@ void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card
     f->where = dalcs_builder_keep_location(builder, card->token);
     f->name = f->label = "frequency";
     f->device = -1;
+    if (dalcs_reader_take_word(&reader, "list")) {
+        read_frequencies(&reader, f);
+        return;
+    }
     if (!take_spacing(&reader, &f->spacing)) {
-        dalcs_reader_missing(&reader, "dec, oct or lin");
+        dalcs_reader_missing(&reader, "dec, oct, lin or list");
         return;
     }
     const struct dalcs_token *points = dalcs_reader_peek(&reader, 0);

@@ -45,6 +45,15 @@ static void add_series(struct dalcs_builder *builder, const struct dalcs_token *
     }
 }
 
+/* m switches in parallel have a model of their own. */
+static void multiply(struct dalcs_builder *builder, struct dalcs_device *device, double m) {
+    struct dalcs_switch_model model = builder->circuit->switch_model[device->model];
+    model.ron /= m;
+    model.roff /= m;
+    model.lser /= m;
+    device->model = dalcs_switch_add_model(builder, &model);
+}
+
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
     const bool by_current = card->letter == 'w';
     const bool by_formula = !by_current && dalcs_formula_find_control(card) < card->n;
@@ -66,8 +75,10 @@ void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *
     if (!dalcs_reader_name(&reader, "the name of a model", &model)) {
         return;
     }
-    device->model = dalcs_model_find(builder, model,
-                                     by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
+    device->model =
+        by_formula ? dalcs_model_find_switch(builder, model)
+                   : dalcs_model_find(builder, model,
+                                      by_current ? DALCS_MODEL_CURRENT_SWITCH : DALCS_MODEL_SWITCH);
     device->initially_on = dalcs_reader_take_word(&reader, "on");
     device->has_initial_state = device->initially_on || dalcs_reader_take_word(&reader, "off");
     const struct dalcs_token *control = by_formula ? dalcs_reader_peek(&reader, 0) : NULL;
@@ -80,6 +91,9 @@ void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *
         device->node[2] = node;
     }
     dalcs_reader_end(&reader);
+    if (device->model >= 0 && card->parallel > 0) {
+        multiply(builder, device, card->parallel);
+    }
     if (device->model >= 0) {
         add_series(builder, card->token, device);
     }
@@ -101,7 +115,7 @@ enum {
     N_PARAMETERS
 };
 
-/* The four types: how their parameters are called. */
+/* The types: how their parameters are called. */
 struct form {
     const char *type;
     const char *usage;
@@ -115,16 +129,16 @@ static const struct form *form_of(const char *type) {
     static const struct form forms[] = {
         {"sw",
          "a switch model is: .model name SW [(Ron=ohms Roff=ohms Vt=volts Vh=volts)]",
-         {"ron", "roff", "vt", "vh", "lser", "vser", NULL, NULL, NULL, NULL},
+         {"ron", "roff", "vt", "vh", "lser", "vser", "von", "voff", "vhon", "vhoff"},
          DALCS_VOLTAGE,
          "V",
-         0},
+         1},
         {"csw",
          "a current switch model is: .model name CSW [(Ron=ohms Roff=ohms It=amperes Ih=amperes)]",
-         {"ron", "roff", "it", "ih", "lser", "vser", NULL, NULL, NULL, NULL},
+         {"ron", "roff", "it", "ih", "lser", "vser", "ion", "ioff", "ihon", "ihoff"},
          DALCS_CURRENT,
          "A",
-         0},
+         1e-3},
         {"vswitch",
          "a PSpice switch model is: .model name VSWITCH [(Ron=ohms Roff=ohms Von=volts "
          "Voff=volts)]",
@@ -139,6 +153,12 @@ static const struct form *form_of(const char *type) {
          DALCS_CURRENT,
          "A",
          1e-3},
+        {"switch",
+         "a switch model of Xyce is: .model name SWITCH [(Ron=ohms Roff=ohms On=value Off=value)]",
+         {"ron", "roff", "vt", "vh", "lser", "vser", "on", "off", "hon", "hoff"},
+         DALCS_PLAIN,
+         "of its control",
+         1},
     };
     int k = 0;
     while (strcmp(forms[k].type, type) != 0) {
@@ -148,8 +168,9 @@ static const struct form *form_of(const char *type) {
 }
 
 static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_token *name) {
-    static const char *const ours[] = {"ron",  "roff", "vt",   "vh",   "it",    "ih",   "von",
-                                       "voff", "ion",  "ioff", "vhon", "vhoff", "ihon", "ihoff"};
+    static const char *const ours[] = {"ron",  "roff",  "vt",  "vh",   "it",   "ih",
+                                       "von",  "voff",  "ion", "ioff", "vhon", "vhoff",
+                                       "ihon", "ihoff", "on",  "off",  "hon",  "hoff"};
     static const char *const later[] = {"vton", "vtoff",  "ilimit", "level",
                                         "td",   "oneway", "epsilon"};
     struct dalcs_builder *builder = reader->builder;
@@ -271,6 +292,15 @@ static bool set_hysteresis(struct dalcs_builder *builder, const struct form *for
     return true;
 }
 
+/* The first of PSpice's parameters on a card of SPICE's type. */
+static const struct dalcs_token *first_of(const struct dalcs_parameter *p) {
+    int k = ON;
+    while (k < HYSTERESIS_OFF && p[k].place == NULL) {
+        k++;
+    }
+    return p[k].place;
+}
+
 bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_token *type,
                               struct dalcs_switch_model *model) {
     const struct form *form = form_of(type->text);
@@ -286,13 +316,11 @@ bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_to
         [LSER] = {.quantity = DALCS_HENRY},
         [VSER] = {.quantity = DALCS_VOLTAGE},
     };
-    const bool has_midpoint = form->name[ON] != NULL;
     for (int k = 0; k < N_PARAMETERS; k++) {
         parameter[k].name = form->name[k];
     }
     reader->usage = form->usage;
-    if (!dalcs_model_read_parameters(reader, parameter, has_midpoint ? N_PARAMETERS : ON,
-                                     report_parameter)) {
+    if (!dalcs_model_read_parameters(reader, parameter, N_PARAMETERS, report_parameter)) {
         return false;
     }
     model->ron = parameter[RON].value;
@@ -302,18 +330,25 @@ bool dalcs_switch_parse_model(struct dalcs_reader *reader, const struct dalcs_to
     if (!check_resistances(reader->builder, parameter)) {
         return false;
     }
+    const bool has_ends = parameter[ON].place != NULL || parameter[OFF].place != NULL;
+    const bool is_spice = strcmp(form->type, "sw") == 0 || strcmp(form->type, "csw") == 0;
     const bool has_hysteresis =
         parameter[HYSTERESIS_ON].place != NULL || parameter[HYSTERESIS_OFF].place != NULL;
     const struct dalcs_token *given = parameter[THRESHOLD].place != NULL
                                           ? parameter[THRESHOLD].place
                                           : parameter[HYSTERESIS].place;
-    if (!has_midpoint || (!has_hysteresis && given != NULL && parameter[ON].place == NULL &&
-                          parameter[OFF].place == NULL)) {
+    if (is_spice && (has_ends || has_hysteresis)) {
+        dalcs_builder_warn(reader->builder, first_of(parameter), form->usage,
+                           "'%s' is PSpice's: this %s model is read as its %s; ngspice ignores the "
+                           "parameter",
+                           first_of(parameter)->text, type->text,
+                           form->quantity == DALCS_VOLTAGE ? "VSWITCH" : "ISWITCH");
+    }
+    if (!has_hysteresis && !has_ends && (is_spice || given != NULL)) {
         set_threshold(reader->builder, form, parameter, model);
         return true;
     }
-    if (has_hysteresis && given == NULL && parameter[ON].place == NULL &&
-        parameter[OFF].place == NULL) {
+    if (has_hysteresis && given == NULL && !has_ends) {
         return set_hysteresis(reader->builder, form, parameter, model);
     }
     if (given != NULL || has_hysteresis) {

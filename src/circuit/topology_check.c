@@ -38,7 +38,8 @@ static void check_nodes(struct dalcs_builder *builder, const struct touch *touch
             dalcs_builder_warn(builder, builder->node_token[k], NULL,
                                "node '%s' only controls '%s': nothing sets its voltage",
                                circuit->node_name[k], circuit->device[t->device].name);
-        } else if (t->n_terminals + t->n_controls == 1) {
+        } else if (t->n_terminals + t->n_controls == 1 &&
+                   !dalcs_builder_is_inner(circuit->node_name[k])) {
             dalcs_builder_warn(builder, builder->node_token[k], NULL,
                                "node '%s' has one connection only, '%s'", circuit->node_name[k],
                                circuit->device[t->device].name);
@@ -65,7 +66,7 @@ void dalcs_topology_check(struct dalcs_builder *builder) {
             }
         }
         struct reading reading = {touch, k};
-        dalcs_behaviour_visit(device->behaviour, touch_term, &reading);
+        dalcs_behaviour_visit(dalcs_device_written(device), touch_term, &reading);
         if (device->node[0] == device->node[1]) {
             dalcs_builder_warn(builder, builder->device_token[k], NULL,
                                "both ends of '%s' are on node '%s'", device->name,

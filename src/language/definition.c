@@ -176,6 +176,57 @@ static enum dalcs_status read_function(struct collector *c, const struct dalcs_c
     return add_function(c, card, 1, head, body, card->n);
 }
 
+/* `name value` without an equal sign, as LTspice takes it on .param. */
+static bool is_plain_pair(const struct dalcs_card *card, int k) {
+    if (k + 1 >= card->n || card->token[k].kind != DALCS_TOKEN_WORD) {
+        return false;
+    }
+    const char first = card->token[k].text[0];
+    const enum dalcs_token_kind next = card->token[k + 1].kind;
+    const bool is_name = (first >= 'a' && first <= 'z') || first == '_';
+    const bool ends = k + 2 >= card->n || card->token[k + 2].kind != DALCS_TOKEN_EQUAL;
+    return is_name && ends && (next == DALCS_TOKEN_WORD || next == DALCS_TOKEN_EXPRESSION);
+}
+
+/* Does a .param set the name? Then .csparam name={name}, ngspice's idiom, gives its value to the script alone. */
+static bool is_set_elsewhere(const struct collector *c, const char *name) {
+    const struct dalcs_netlist *netlist = c->language->netlist;
+    for (size_t k = 0; k < netlist->n_cards; k++) {
+        const struct dalcs_card *card = &netlist->card[k];
+        const bool sets = card->letter == '.' && (strcmp(card->token->text, ".param") == 0 ||
+                                                  strcmp(card->token->text, ".params") == 0);
+        for (int i = 1; sets && i < card->n; i++) {
+            if (card->token[i].kind == DALCS_TOKEN_WORD && strcmp(card->token[i].text, name) == 0 &&
+                (dalcs_assignment_starts(card, i) || (i == 1 && is_plain_pair(card, i)))) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* The name that such a parameter of the script has among those of the netlist. */
+static const struct dalcs_token *script_name(struct collector *c, const struct dalcs_token *name) {
+    struct dalcs_token *copy = dalcs_arena_alloc(c->language->arena, 1, sizeof *copy);
+    const char *text = dalcs_language_text(c->language, DALCS_SCRIPT_PARAMETER, name->text);
+    if (copy == NULL || text == NULL) {
+        return NULL;
+    }
+    *copy = *name;
+    copy->text = text;
+    return copy;
+}
+
+/* On a card of parameters. */
+static enum dalcs_status assign_parameter(struct collector *c, const struct dalcs_card *card,
+                                          const struct dalcs_token *name,
+                                          const struct dalcs_token *value, int n) {
+    if (strcmp(card->token->text, ".csparam") == 0 && is_set_elsewhere(c, name->text)) {
+        name = script_name(c, name);
+    }
+    return name != NULL ? assign(c, name, value, n, false) : DALCS_E_NOMEM;
+}
+
 static enum dalcs_status read_assignments(struct collector *c, const struct dalcs_card *card,
                                           int at, bool is_formal) {
     int value;
@@ -190,13 +241,19 @@ static enum dalcs_status read_assignments(struct collector *c, const struct dalc
             at = end;
             continue;
         }
+        if (!is_formal && is_plain_pair(card, at)) {
+            DALCS_TRY(assign_parameter(c, card, &card->token[at], &card->token[at + 1], 1));
+            at += 2;
+            continue;
+        }
         const struct dalcs_token *name =
             dalcs_assignment_next(c->language, NULL, card, &at, &value);
         if (name == NULL) {
             c->language->misses_assignment = c->language->misses_assignment || at < card->n;
             return DALCS_OK;
         }
-        DALCS_TRY(assign(c, name, &card->token[value], at - value, is_formal));
+        DALCS_TRY(is_formal ? assign(c, name, &card->token[value], at - value, true)
+                            : assign_parameter(c, card, name, &card->token[value], at - value));
     }
     return DALCS_OK;
 }

@@ -161,6 +161,21 @@ static int put_formula(struct dalcs_language *language, struct dalcs_scope *scop
     return card->n - n + 1;
 }
 
+/* The name of a model beside or before the value of R, L or C: a word that means nothing else there. */
+static bool is_passive_model(const struct dalcs_scope *scope, const struct dalcs_card *card,
+                             int k) {
+    bool found = false;
+    if (card->letter != 'r' && card->letter != 'l' && card->letter != 'c') {
+        return false;
+    }
+    for (const struct dalcs_scope *s = scope; s != NULL && !found; s = s->enclosing) {
+        found = k >= 3 && card->token[k].kind == DALCS_TOKEN_WORD &&
+                card->token[k - 1].kind != DALCS_TOKEN_EQUAL &&
+                dalcs_names_find(&s->definition->models, card->token[k].text) >= 0;
+    }
+    return found;
+}
+
 /* Cards that steer the run belong to the whole netlist. */
 static bool belongs_outside(const struct dalcs_card *card) {
     static const char *const inside[] = {".model", ".ic",    ".save",   ".print",
@@ -208,11 +223,16 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
             if (card->letter != '.') {
                 rename_token(language, scope, DALCS_ROLE_DEVICE, token);
             }
+        } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] == DALCS_ROLE_SIGNAL) {
+            token[k].formula = dalcs_formula_make(language, scope, &card->token[k], 1);
+            token[k].kind = token[k].formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;
         } else if (token[k].kind == DALCS_TOKEN_EXPRESSION && role[k] != DALCS_ROLE_RAW) {
             evaluate_token(language, scope, item, k, &token[k]);
         } else if (token[k].kind == DALCS_TOKEN_WORD && role[k] != DALCS_ROLE_VALUE) {
             rename_token(language, scope, (enum dalcs_role)role[k], &token[k]);
         } else if (k == 1 && item->kind == DALCS_ITEM_MODEL) {
+            rename_token(language, scope, DALCS_ROLE_MODEL, &token[k]);
+        } else if (is_passive_model(scope, card, k)) {
             rename_token(language, scope, DALCS_ROLE_MODEL, &token[k]);
         } else if (may_be_bare && is_parameter(scope, card, k)) {
             evaluate_token(language, scope, item, k, &token[k]);
@@ -220,7 +240,7 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
     }
     const int n =
         formula < card->n ? put_formula(language, scope, card, token, formula, n_formula) : card->n;
-    const struct dalcs_card copy = {token, n, card->letter};
+    const struct dalcs_card copy = {token, n, card->letter, 0};
     return language->out_of_memory ? DALCS_E_NOMEM : emit(language, &copy);
 }
 
@@ -398,8 +418,17 @@ static bool give_parameters(const struct call *call, struct dalcs_scope *inner) 
     return true;
 }
 
-/* Parameters that the call gives and nothing inside looks at. */
-static void check_use(const struct call *call, const struct dalcs_scope *inner) {
+/* So many of the cards from the first on lie in parallel, with those that were so already. */
+static void multiply(struct dalcs_deck *deck, size_t first, double m) {
+    for (size_t k = first; k < deck->n_cards; k++) {
+        struct dalcs_card *card = &deck->own[k];
+        card->parallel = (card->parallel > 0 ? card->parallel : 1) * m;
+    }
+}
+
+/* Parameters that the call gives and nothing inside looks at; m= is then the number of such subcircuits in
+ * parallel, as in every SPICE. `first`: of its cards. */
+static void check_use(const struct call *call, const struct dalcs_scope *inner, size_t first) {
     struct dalcs_language *language = call->language;
     for (int k = 0; k < inner->n_extra; k++) {
         const struct dalcs_value *extra = &inner->extra[k];
@@ -408,10 +437,11 @@ static void check_use(const struct call *call, const struct dalcs_scope *inner) 
             continue;
         }
         if (strcmp(name, "m") == 0) {
-            if (extra->state == DALCS_VALUE_KNOWN && extra->value != 1) {
-                dalcs_language_report(language, DALCS_ERROR, call->scope, extra->name,
-                                      "write as many calls, with the same nodes",
-                                      "m=%g: a subcircuit is not multiplied", extra->value);
+            if (extra->state == DALCS_VALUE_KNOWN && extra->value <= 0) {
+                dalcs_language_report(language, DALCS_ERROR, call->scope, extra->name, NULL,
+                                      "m=%g: a number in parallel must be positive", extra->value);
+            } else if (extra->state == DALCS_VALUE_KNOWN && extra->value != 1) {
+                multiply(language->deck, first, extra->value);
             }
             continue;
         }
@@ -485,12 +515,13 @@ static enum dalcs_status expand_call(struct dalcs_language *language, struct dal
         language->deck->hides_elements = true;
         return language->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
     }
+    const size_t first = language->deck->n_cards;
     definition->is_open = true;
     language->depth++;
     DALCS_TRY(expand_scope(language, inner));
     language->depth--;
     definition->is_open = false;
-    check_use(&call, inner);
+    check_use(&call, inner, first);
     return DALCS_OK;
 }
 
@@ -597,9 +628,13 @@ const char *dalcs_deck_port(const struct dalcs_deck *deck, const char *name) {
 }
 
 bool dalcs_deck_parameter(const struct dalcs_deck *deck, const char *name, double *value) {
-    struct dalcs_value *found = deck->language != NULL && deck->language->top != NULL
-                                    ? dalcs_scope_find_value(deck->language->top, name)
-                                    : NULL;
+    struct dalcs_scope *top = deck->language != NULL ? deck->language->top : NULL;
+    struct dalcs_value *found = NULL;
+    if (top != NULL) {
+        const char *own = dalcs_language_text(deck->language, DALCS_SCRIPT_PARAMETER, name);
+        found = own != NULL ? dalcs_scope_find_value(top, own) : NULL;
+        found = found != NULL ? found : dalcs_scope_find_value(top, name);
+    }
     if (found == NULL || found->state != DALCS_VALUE_KNOWN) {
         return false;
     }

@@ -91,6 +91,7 @@ struct dalcs_expression_context {
     const struct dalcs_origin *instance; /* for messages, or NULL */
     const struct dalcs_names *arguments; /* name -> index, of a function's body; else NULL */
     bool has_signals;                    /* v(a), v(a,b) and i(x) are signals */
+    bool is_condition;                   /* of .if: = compares too, as in ngspice */
     struct dalcs_dialect dialect;
     bool *noted_caret; /* this and the next: a note about it was made */
     bool *noted_log;

@@ -206,6 +206,7 @@ static bool read_operator(struct parser *p, const char *t) {
         {"^", OPERATOR, DALCS_POWER, 8},
         {"|", OR, DALCS_JUMP_OR, 1},
         {"&", AND, DALCS_JUMP_AND, 2},
+        {"=", OPERATOR, DALCS_EQUAL, 3}, /* in a condition */
         {"!", BANG, DALCS_NOT, 0},
         {"~", BANG, DALCS_NOT, 0},
         {"(", OPEN, 0, 0},
@@ -219,7 +220,8 @@ static bool read_operator(struct parser *p, const char *t) {
 
     for (size_t k = 0; k < sizeof operators / sizeof operators[0]; k++) {
         const size_t n = strlen(operators[k].text);
-        if (strncmp(t, operators[k].text, n) == 0) {
+        const bool is_known = p->context->is_condition || strcmp(operators[k].text, "=") != 0;
+        if (is_known && strncmp(t, operators[k].text, n) == 0) {
             p->symbol = operators[k].symbol;
             p->code = operators[k].code;
             p->level = operators[k].level;

@@ -139,8 +139,60 @@ static void fold(struct work *w, const struct frame *f, const struct dalcs_opera
     push(w, number);
 }
 
+/* Is it 1 or 0, whatever the signals are? */
+static bool is_logic(const struct dalcs_formula *formula) {
+    const enum dalcs_operation_code code = formula->code;
+    if (formula->kind == DALCS_FORMULA_NUMBER) {
+        return formula->number == 0 || formula->number == 1;
+    }
+    return formula->kind == DALCS_FORMULA_OPERATION &&
+           ((code >= DALCS_LESS && code <= DALCS_TO_LOGIC) || code == DALCS_NOT ||
+            code == DALCS_JUMP_AND || code == DALCS_JUMP_OR);
+}
+
+/* One operation more on the topmost n. */
+static void apply_code(struct work *w, const struct frame *f, const struct dalcs_operation *o,
+                       enum dalcs_operation_code code, int n) {
+    const struct dalcs_operation operation = {.code = code, .begin = o->begin, .length = o->length};
+    if (!w->failed) {
+        push_over(w, f, &operation, DALCS_FORMULA_OPERATION, n);
+    }
+}
+
+/* a != b of the two topmost, which are logic: an exclusive or, (a && !b) || (!a && b); a == b is its
+ * opposite. Of a number only one of the two is left. */
+static void differ(struct work *w, const struct frame *f, const struct dalcs_operation *o) {
+    const struct dalcs_formula *a = w->stack[w->n - 2];
+    const struct dalcs_formula *b = w->stack[w->n - 1];
+    const bool is_known = a->kind == DALCS_FORMULA_NUMBER || b->kind == DALCS_FORMULA_NUMBER;
+    bool inverts = o->code == DALCS_EQUAL;
+    w->n -= 2;
+    if (is_known) {
+        const bool first = a->kind == DALCS_FORMULA_NUMBER;
+        inverts = inverts != ((first ? a : b)->number != 0);
+        push(w, first ? b : a);
+    } else {
+        push(w, a);
+        push(w, b);
+        apply_code(w, f, o, DALCS_NOT, 1);
+        apply_code(w, f, o, DALCS_JUMP_AND, 2);
+        push(w, a);
+        apply_code(w, f, o, DALCS_NOT, 1);
+        push(w, b);
+        apply_code(w, f, o, DALCS_JUMP_AND, 2);
+        apply_code(w, f, o, DALCS_JUMP_OR, 2);
+    }
+    if (inverts) {
+        apply_code(w, f, o, DALCS_NOT, 1);
+    }
+}
+
 static void apply(struct work *w, const struct frame *f, const struct dalcs_operation *o, int n) {
-    if (are_numbers(w, n)) {
+    const bool compares = o->code == DALCS_EQUAL || o->code == DALCS_UNEQUAL;
+    if (compares && !are_numbers(w, n) && is_logic(w->stack[w->n - 2]) &&
+        is_logic(w->stack[w->n - 1])) {
+        differ(w, f, o);
+    } else if (are_numbers(w, n)) {
         fold(w, f, o, n);
     } else {
         push_over(w, f, o, DALCS_FORMULA_OPERATION, n);

@@ -130,6 +130,7 @@ struct dalcs_language {
     bool too_large;
     bool misses_assignment; /* an error on a .param or .func: names may be unknown for it */
     bool out_of_memory;
+    bool is_condition; /* what is compiled is that of an .if */
     bool noted_caret;
     bool noted_log;
 
@@ -179,6 +180,9 @@ bool dalcs_assignment_is_params(const struct dalcs_token *token);
 
 /* Does `name =` stand at token k (and not a comparison)? */
 bool dalcs_assignment_starts(const struct dalcs_card *card, int k);
+
+/* The slot of what .csparam gives to the script where .param has the name: no card can spell it. */
+#define DALCS_SCRIPT_PARAMETER ".csparam %s"
 
 /* ---- definition.c: the netlist's cards to definitions ------------------------------------------ */
 
@@ -257,7 +261,8 @@ enum dalcs_role {
     DALCS_ROLE_NODE,
     DALCS_ROLE_DEVICE,
     DALCS_ROLE_MODEL,
-    DALCS_ROLE_RAW
+    DALCS_ROLE_RAW,
+    DALCS_ROLE_SIGNAL /* a formula of signals, compiled on its own */
 };
 
 /* role[card->n] of an element or a card such as .ic, its first token excepted. RAW: an expression of

@@ -21,11 +21,17 @@ static bool is_number(const struct dalcs_token *token) {
     return *text >= '0' && *text <= '9';
 }
 
-/* Where `name =` stands on a card from token `from` on: the token of its value; 0: nowhere. */
+/* Where `name =` stands on a card from token `from` on, or on a model `name` and a number: the token of its
+ * value; 0: nowhere. */
 static int find_assigned(const struct dalcs_card *card, int from, const char *name) {
-    for (int k = from; k + 2 < card->n; k++) {
-        if (is_word(&card->token[k], name) && card->token[k + 1].kind == DALCS_TOKEN_EQUAL) {
+    const bool is_model = card->letter == '.';
+    for (int k = from; k + 1 < card->n; k++) {
+        const bool is_name = is_word(&card->token[k], name);
+        if (is_name && k + 2 < card->n && card->token[k + 1].kind == DALCS_TOKEN_EQUAL) {
             return k + 2;
+        }
+        if (is_name && is_model && is_number(&card->token[k + 1])) {
+            return k + 1;
         }
     }
     return 0;
@@ -95,7 +101,7 @@ static enum dalcs_status edit(struct dalcs_language *language, struct dalcs_card
     for (int k = replaces ? at + 1 : at; k < card->n; k++) {
         token[n++] = card->token[k];
     }
-    *card = (struct dalcs_card){token, n, card->letter};
+    *card = (struct dalcs_card){token, n, card->letter, card->parallel};
     return DALCS_OK;
 }
 

@@ -167,20 +167,22 @@ static void signal_roles(const struct dalcs_card *card, unsigned char *role) {
     }
 }
 
-/* Formulas of measurements, and on cards that name signals, where their reader refuses them. */
-static bool has_formulas(const struct dalcs_card *card) {
-    static const char *const cards[] = {".meas", ".measure", ".save", ".print", ".plot", ".probe"};
+static bool is_one_of(const struct dalcs_token *token, const char *const *list, size_t n) {
     bool found = false;
-    for (size_t k = 0; k < sizeof cards / sizeof cards[0]; k++) {
-        found = found || is_word(card->token, cards[k]);
+    for (size_t k = 0; k < n; k++) {
+        found = found || is_word(token, list[k]);
     }
     return found;
 }
 
+/* Formulas of measurements, whose reader compiles them, and on cards that name signals. */
 static void formula_roles(const struct dalcs_card *card, unsigned char *role) {
-    for (int k = 1; k < card->n; k++) {
+    static const char *const measures[] = {".meas", ".measure"};
+    static const char *const signals[] = {".save", ".print", ".plot", ".probe"};
+    const bool is_measure = is_one_of(card->token, measures, 2);
+    for (int k = 1; k < card->n && (is_measure || is_one_of(card->token, signals, 4)); k++) {
         if (card->token[k].kind == DALCS_TOKEN_EXPRESSION) {
-            role[k] = DALCS_ROLE_RAW;
+            role[k] = is_measure ? DALCS_ROLE_RAW : DALCS_ROLE_SIGNAL;
         }
     }
 }
@@ -202,8 +204,6 @@ void dalcs_roles(const struct dalcs_card *card, unsigned char *role) {
         if (!is_measure) {
             signal_roles(card, role);
         }
-        if (has_formulas(card)) {
-            formula_roles(card, role);
-        }
+        formula_roles(card, role);
     }
 }

@@ -119,6 +119,7 @@ bool dalcs_scope_compile(struct dalcs_language *language, const struct dalcs_sco
                                                              scope != NULL ? scope->origin : NULL,
                                                          .arguments = arguments,
                                                          .has_signals = arguments != NULL,
+                                                         .is_condition = language->is_condition,
                                                          .dialect = language->netlist->dialect,
                                                          .noted_caret = &language->noted_caret,
                                                          .noted_log = &language->noted_log};
@@ -235,10 +236,12 @@ static bool holds(struct dalcs_language *language, struct dalcs_scope *scope,
             return false;
         }
     }
-    if (card->n < 2 || language->out_of_memory ||
-        !dalcs_scope_compile(language, scope, card->token + 1, card->n - 1, NULL,
-                             &item->expression[0]) ||
-        !dalcs_scope_evaluate(language, scope, item->expression[0], &value)) {
+    language->is_condition = true;
+    const bool is_compiled = card->n >= 2 && !language->out_of_memory &&
+                             dalcs_scope_compile(language, scope, card->token + 1, card->n - 1,
+                                                 NULL, &item->expression[0]);
+    language->is_condition = false;
+    if (!is_compiled || !dalcs_scope_evaluate(language, scope, item->expression[0], &value)) {
         /* What would have been chosen is not known. */
         language->deck->hides_all = true;
         return false;

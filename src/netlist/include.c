@@ -85,7 +85,8 @@ static enum dalcs_status make_source(struct dalcs_lexer *lexer, const struct dal
  * installed. */
 static bool is_of_ltspice(const char *path) {
     static const char *const names[] = {"standard.dio", "standard.bjt", "standard.mos",
-                                        "standard.jft"};
+                                        "standard.jft", "standard.cap", "standard.ind",
+                                        "standard.res", "standard.bead"};
     const size_t n = strlen(path);
     bool found = false;
     for (size_t k = 0; k < sizeof names / sizeof names[0] && !found; k++) {
@@ -93,6 +94,20 @@ static bool is_of_ltspice(const char *path) {
         found = n >= length && strcasecmp(path + n - length, names[k]) == 0;
     }
     return found;
+}
+
+/* The rest of the line behind .lib, where it is the path of such a library, whose blanks and brackets LTspice does
+ * not quote; NULL: it is something else. */
+static const char *library_path(struct dalcs_lexer *lexer, const struct dalcs_card *card) {
+    const struct dalcs_token *first = &card->token[1];
+    const struct dalcs_token *last = &card->token[card->n - 1];
+    if (card->n < 2 || first->kind != DALCS_TOKEN_WORD || last->line != first->line) {
+        return NULL;
+    }
+    const size_t end = (size_t)last->offset + last->length;
+    const char *path = dalcs_arena_copy(&lexer->netlist->arena, first->line->text + first->offset,
+                                        end - (size_t)first->offset);
+    return path != NULL && is_of_ltspice(path) ? path : NULL;
 }
 
 static enum dalcs_status include(struct dalcs_lexer *lexer, const struct dalcs_token *token,
@@ -116,12 +131,6 @@ static enum dalcs_status include(struct dalcs_lexer *lexer, const struct dalcs_t
         return DALCS_OK;
     }
     const struct dalcs_location where = dalcs_token_location(token);
-    if (is_of_ltspice(path) && access(path, R_OK) != 0) {
-        dalcs_diag_add(lexer->diag, DALCS_WARNING, &where,
-                       "the models that elements name must stand in the netlist",
-                       "LTspice's library '%s' is not here: it is left out", name);
-        return DALCS_OK;
-    }
     char *text;
     size_t length;
     enum dalcs_status status =
@@ -208,6 +217,14 @@ enum dalcs_status dalcs_include_card(struct dalcs_lexer *lexer, const struct dal
         dalcs_diag_add(lexer->diag, DALCS_ERROR, &where, usage, "the name of a file is missing");
         lexer->netlist->has_errors = true;
         lexer->netlist->misses_file = true;
+        return DALCS_OK;
+    }
+    const char *library = library_path(lexer, card);
+    if (library != NULL && access(library, R_OK) != 0) {
+        const struct dalcs_location where = dalcs_token_span(&token[1], &token[card->n - 1]);
+        dalcs_diag_add(lexer->diag, DALCS_WARNING, &where,
+                       "the models that elements name must stand in the netlist",
+                       "LTspice's library '%s' is not here: it is left out", library);
         return DALCS_OK;
     }
     if (card->n > (is_lib ? 3 : 2)) {

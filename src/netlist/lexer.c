@@ -9,6 +9,7 @@
 #include "lower_case.h"
 
 #include <limits.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -162,6 +163,25 @@ static bool closes_name(const char *raw, size_t *q) {
     return true;
 }
 
+/* .model name D{Ron=1m} and D[Ron=1m], as LTspice also has it: is the token being read the type, which ends at
+ * such a bracket, or the one behind it, which may be one? */
+static bool is_model_word(const struct dalcs_lexer *lexer, size_t index) {
+    return lexer->n_tokens == index + 1 && strcmp(lexer->token[0].text, ".model") == 0;
+}
+
+/* The length of a word at raw[p]. */
+static size_t word_length(const struct dalcs_lexer *lexer, size_t p) {
+    const char *raw = lexer->raw;
+    const bool is_type = is_model_word(lexer, 2);
+    size_t q = p + 1;
+    while (!ends_word(raw[q]) && !(is_type && (raw[q] == '{' || raw[q] == '['))) {
+        q++;
+    }
+    while (raw[q] == '(' && raw[q - 1] == '-' && closes_name(raw, &q)) {
+    }
+    return q - p;
+}
+
 /* The token that starts at raw[p]; the result is the first byte after it. */
 static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
                          struct dalcs_token *token) {
@@ -177,6 +197,13 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
                       : c == '(' ? DALCS_TOKEN_OPEN
                                  : DALCS_TOKEN_CLOSE;
         token->text = c == '=' ? "=" : c == '(' ? "(" : ")";
+        token->length = 1;
+        return q;
+    }
+
+    if ((c == '{' || c == '[') && is_model_word(lexer, 3)) {
+        token->kind = DALCS_TOKEN_OPEN;
+        token->text = c == '{' ? "{" : "[";
         token->length = 1;
         return q;
     }
@@ -209,11 +236,7 @@ static size_t read_token(struct dalcs_lexer *lexer, size_t p, size_t begin,
         token->text = low + p + 1;
     } else {
         token->kind = DALCS_TOKEN_WORD;
-        while (!ends_word(raw[q])) {
-            q++;
-        }
-        while (raw[q] == '(' && raw[q - 1] == '-' && closes_name(raw, &q)) {
-        }
+        q = p + word_length(lexer, p);
         token->text = low + p;
     }
     const bool invalid = lexer->has_invalid && memchr(low + p, INVALID, q - p) != NULL;
@@ -399,11 +422,42 @@ static bool may_have_formula(const struct dalcs_card *card) {
     return may;
 }
 
+/* The brace or bracket that closes a model, which is the end of its last word or a word of its own. */
+static enum dalcs_status close_model(struct dalcs_lexer *lexer) {
+    const bool may = lexer->n_tokens > 4 && strcmp(lexer->token[0].text, ".model") == 0 &&
+                     lexer->token[3].kind == DALCS_TOKEN_OPEN && lexer->token[3].text[0] != '(';
+    struct dalcs_token *last = &lexer->token[lexer->n_tokens - 1];
+    if (!may || last->kind != DALCS_TOKEN_WORD) {
+        return DALCS_OK;
+    }
+    const char close = lexer->token[3].text[0] == '{' ? '}' : ']';
+    const size_t n = strlen(last->text);
+    if (last->text[n - 1] != close) {
+        return DALCS_OK;
+    }
+    struct dalcs_token token = *last;
+    token.kind = DALCS_TOKEN_CLOSE;
+    token.text = ")";
+    token.offset += (int)n - 1;
+    token.length = 1;
+    if (n == 1) {
+        *last = token;
+        return DALCS_OK;
+    }
+    ((char *)(uintptr_t)last->text)[n - 1] = '\0'; /* in `low`, which is the lexer's own */
+    last->length--;
+    DALCS_TRY(
+        dalcs_grow(&lexer->token, &lexer->capacity, lexer->n_tokens + 1, sizeof *lexer->token));
+    lexer->token[lexer->n_tokens++] = token;
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
     struct dalcs_netlist *netlist = lexer->netlist;
     if (lexer->n_tokens == 0) {
         return DALCS_OK;
     }
+    DALCS_TRY(close_model(lexer));
     if (lexer->n_tokens > INT_MAX / 2) {
         return DALCS_E_LIMIT;
     }
@@ -412,7 +466,7 @@ enum dalcs_status dalcs_lexer_flush(struct dalcs_lexer *lexer) {
         return DALCS_E_NOMEM;
     }
     memcpy(token, lexer->token, lexer->n_tokens * sizeof *token);
-    const struct dalcs_card card = {token, (int)lexer->n_tokens, token->text[0]};
+    const struct dalcs_card card = {token, (int)lexer->n_tokens, token->text[0], 0};
     lexer->n_tokens = 0;
     if (card.letter == '.' && dalcs_include_is_card(token->text)) {
         return dalcs_include_card(lexer, &card);

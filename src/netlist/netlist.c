@@ -224,7 +224,7 @@ static enum dalcs_status read_first(struct dalcs_netlist *netlist, const char *n
     }
     DALCS_TRY(dalcs_source_read(netlist, source, text, length, NULL, diag));
     dalcs_dialect_settle(netlist, diag);
-    return DALCS_OK;
+    return dalcs_second_analyses(netlist, diag);
 }
 
 enum dalcs_status dalcs_netlist_read_text(struct dalcs_netlist *netlist, const char *name,

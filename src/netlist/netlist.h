@@ -63,8 +63,9 @@ struct dalcs_token {
 
 struct dalcs_card {
     const struct dalcs_token *token;
-    int n;       /* at least 1 */
-    char letter; /* the first of its first word, before a subcircuit call puts its name there */
+    int n;           /* at least 1 */
+    char letter;     /* the first of its first word, before a subcircuit call puts its name there */
+    double parallel; /* so many of them, by m= of subcircuit calls; 0: one */
 };
 
 /* Zero-initialise, set the first three if wanted, read, then finish. */
@@ -110,6 +111,10 @@ enum dalcs_status dalcs_netlist_read_file(struct dalcs_netlist *netlist, const c
 enum dalcs_status dalcs_netlist_add_card(struct dalcs_netlist *netlist,
                                          const struct dalcs_source_line *line, const char *text,
                                          struct dalcs_diag *diag) DALCS_MUST_CHECK;
+
+/* Once all is read: a second .tran, .op, .dc or .ac becomes a line of the script. */
+enum dalcs_status dalcs_second_analyses(struct dalcs_netlist *netlist,
+                                        struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
 enum { DALCS_MOST_CARDS = 20000000 };
 

@@ -119,6 +119,39 @@ static enum dalcs_status save(struct dalcs_script *script, const struct dalcs_st
 
 /* ---- Other values ---------------------------------------------------------------------------------- */
 
+/* The field of an element that is its value. */
+static bool is_value_field(const char *field) {
+    static const char *const known[] = {"dc",         "r",    "c",     "l",          "resistance",
+                                        "inductance", "gain", "value", "capacitance"};
+    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++) {
+        if (strcmp(known[k], field) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What stands before the value: with an equal sign all before it, else the name and, of a model or where it is one,
+ * the field: "alter r1 2k", "alter v1 dc 5", "altermod d1 ron 1m". */
+static const char *split_left(struct dalcs_script *script, const struct dalcs_statement *s,
+                              const char *text, const char **value) {
+    const char *equal = strchr(text, '=');
+    if (equal != NULL) {
+        *value = equal + 1;
+        return dalcs_arena_copy(&script->arena, text, (size_t)(equal - text));
+    }
+    const char *rest = text;
+    const char *name = dalcs_script_word(script, &rest);
+    const char *behind = rest;
+    const char *field = dalcs_script_word(script, &rest);
+    const bool has_field =
+        field != NULL && (s->kind == DALCS_STATEMENT_ALTER_MODEL ||
+                          (s->kind == DALCS_STATEMENT_ALTER && is_value_field(field)));
+    *value = has_field ? rest : behind;
+    *value += strspn(*value, " \t");
+    return name != NULL ? dalcs_arena_copy(&script->arena, text, (size_t)(*value - text)) : NULL;
+}
+
 /* "name = formula", "name field = formula", "@name[field] = formula". */
 static enum dalcs_status split_alter(struct dalcs_script *script, const struct dalcs_statement *s,
                                      const char **name, const char **field, double *value) {
@@ -127,16 +160,13 @@ static enum dalcs_status split_alter(struct dalcs_script *script, const struct d
     if (status != DALCS_OK) {
         return status;
     }
-    const char *equal = strchr(text, '=');
-    if (equal == NULL) {
+    const char *number;
+    const char *left = split_left(script, s, text, &number);
+    if (left == NULL || *number == '\0') {
         return dalcs_script_refuse(script, s,
                                    "alter r1 = 5k; altermod dmod vfwd = 0.7; "
                                    "alterparam rload = 10",
-                                   "'=' is missing");
-    }
-    const char *left = dalcs_arena_copy(&script->arena, text, (size_t)(equal - text));
-    if (left == NULL) {
-        return DALCS_E_NOMEM;
+                                   "a name and its new value are missing");
     }
     *name = dalcs_script_word(script, &left);
     *field = dalcs_script_word(script, &left);
@@ -149,19 +179,7 @@ static enum dalcs_status split_alter(struct dalcs_script *script, const struct d
     if (*name == NULL) {
         return dalcs_script_refuse(script, s, NULL, "a name before '=' is missing");
     }
-    return dalcs_script_number(script, s, equal + 1, value);
-}
-
-/* The field of an element that is its value. */
-static bool is_value_field(const char *field) {
-    static const char *const known[] = {"dc",         "r",    "c",     "l",          "resistance",
-                                        "inductance", "gain", "value", "capacitance"};
-    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++) {
-        if (strcmp(known[k], field) == 0) {
-            return true;
-        }
-    }
-    return false;
+    return dalcs_script_number(script, s, number, value);
 }
 
 static enum dalcs_status alter(struct dalcs_script *script, const struct dalcs_statement *s) {
@@ -363,6 +381,14 @@ static enum dalcs_status write_file(struct dalcs_script *script, const struct da
 
 /* ---- set and echo ----------------------------------------------------------------------------------- */
 
+/* `set` alone, as ngspice answers it. */
+static void list_variables(const struct dalcs_script *script) {
+    const struct dalcs_variables *all = &script->variables;
+    for (size_t k = 0; k < all->n; k++) {
+        fprintf(script->host->out, "%s\t%s\n", all->variable[k].name, all->variable[k].value);
+    }
+}
+
 /* "name", "name = value", "name = ( a b c )". */
 static enum dalcs_status set(struct dalcs_script *script, const struct dalcs_statement *s) {
     const char *text;
@@ -373,6 +399,10 @@ static enum dalcs_status set(struct dalcs_script *script, const struct dalcs_sta
     const size_t length = strcspn(text, "=");
     const char *left = dalcs_arena_copy(&script->arena, text, length);
     const char *name = left != NULL ? dalcs_script_word(script, &left) : NULL;
+    if (name == NULL && text[length] == '\0') {
+        list_variables(script);
+        return DALCS_OK;
+    }
     if (name == NULL) {
         return dalcs_script_refuse(script, s, "set name=value", "a name is missing");
     }

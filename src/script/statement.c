@@ -82,7 +82,8 @@ static enum dalcs_statement_kind kind_of(const char *word) {
             return WORDS[k].kind;
         }
     }
-    return is_skipped(word) ? DALCS_STATEMENT_SKIPPED : DALCS_STATEMENT_UNKNOWN;
+    /* A card among commands is unknown to ngspice, which says so and goes on. */
+    return word[0] == '.' || is_skipped(word) ? DALCS_STATEMENT_SKIPPED : DALCS_STATEMENT_UNKNOWN;
 }
 
 /* Where the text of a line ends: before a `;` or a `$` between blanks, and without blanks behind. */
@@ -203,8 +204,13 @@ static void warn_of_skipped(struct dalcs_session *session, const struct dalcs_st
             return;
         }
     }
-    snprintf(text, sizeof text, "'%.60s' is not done here and skipped", s->word);
-    say(session, s, DALCS_LEVEL_WARNING, NULL, text);
+    const bool is_card = s->word[0] == '.';
+    snprintf(text, sizeof text,
+             is_card ? "'%.60s' is a card, no command: it is skipped, as ngspice does"
+                     : "'%.60s' is not done here and skipped",
+             s->word);
+    say(session, s, DALCS_LEVEL_WARNING, is_card ? "put it outside of the .control block" : NULL,
+        text);
 }
 
 static bool opens(enum dalcs_statement_kind kind) {

@@ -86,6 +86,24 @@ static void append_number(struct growing *g, double value) {
     append(g, text, strlen(text));
 }
 
+/* All values of a vector, for the list of a foreach. */
+static enum dalcs_status append_vector(struct growing *g, const struct dalcs_statement *s,
+                                       const char *text, size_t n) {
+    struct dalcs_script *script = g->script;
+    char *name = dalcs_arena_copy(&script->arena, text, n);
+    const struct dalcs_vector **vector;
+    size_t n_vectors;
+    if (name == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_script_vectors(script, s, dalcs_lower_text(name), &vector, &n_vectors));
+    for (size_t k = 0; n_vectors == 1 && k < vector[0]->n; k++) {
+        append(g, " ", 1);
+        append_number(g, creal(vector[0]->value[k]));
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status append_formula(struct growing *g, const struct dalcs_statement *s,
                                         const char *text, size_t n) {
     double value;
@@ -132,6 +150,9 @@ static enum dalcs_status append_variable(struct growing *g, const struct dalcs_s
         end++;
     }
     *p = end + (has_brace && *end == '}' ? 1 : 0);
+    if (is_vector && s->kind == DALCS_STATEMENT_FOREACH) {
+        return append_vector(g, s, begin, (size_t)(end - begin));
+    }
     if (is_vector) {
         return append_formula(g, s, begin, (size_t)(end - begin));
     }

@@ -80,6 +80,13 @@ static void note_unused_accuracy(struct dalcs_run *r) {
     }
 }
 
+double dalcs_run_tolerance(const struct dalcs_run_options *options,
+                           const struct dalcs_circuit *circuit) {
+    return options->tolerance > 0.0        ? options->tolerance
+           : circuit->options.reltol > 0.0 ? circuit->options.reltol
+                                           : USUAL_TOLERANCE;
+}
+
 static enum dalcs_status choose_accuracy(struct dalcs_run *r) {
     const struct dalcs_run_options *o = r->options;
     const struct dalcs_circuit_options *netlist = &r->s->circuit.options;
@@ -94,9 +101,7 @@ static enum dalcs_status choose_accuracy(struct dalcs_run *r) {
         return option_error(r->s, "the number of stages must be 1, 3, 5, 7 or 9");
     }
     r->family = r->method == DALCS_METHOD_LOBATTO ? DALCS_LOBATTO_IIIC : DALCS_RADAU_IIA;
-    r->tolerance = o->tolerance > 0.0      ? o->tolerance
-                   : netlist->reltol > 0.0 ? netlist->reltol
-                                           : USUAL_TOLERANCE;
+    r->tolerance = dalcs_run_tolerance(o, &r->s->circuit);
     r->abstol = netlist->abstol;
     r->vntol = netlist->vntol;
     r->stages = o->stages > 0 ? o->stages : netlist->stages;

@@ -415,6 +415,9 @@ static enum dalcs_status run_steps(struct dalcs_session *session,
             struct dalcs_plot step = {0};
             status = dalcs_session_take_step(session, k, &step);
             if (status == DALCS_OK) {
+                status = dalcs_operating_currents(session, options, sink);
+            }
+            if (status == DALCS_OK) {
                 status = run_analyses(session, options, sink, &step, &IN_ORDER[a], 1);
                 add_work(&sum, &session->report);
                 const enum dalcs_status kept = collect_measured(&measured, session, &step);
@@ -430,6 +433,25 @@ static enum dalcs_status run_steps(struct dalcs_session *session,
     return status == DALCS_OK ? told : status;
 }
 
+static struct dalcs_sink completed(const struct dalcs_sink *sink) {
+    return (struct dalcs_sink){
+        .user = sink->user,
+        .begin = sink->begin != NULL ? sink->begin : ignore_begin,
+        .row = sink->row != NULL ? sink->row : ignore_row,
+        .end = sink->end != NULL ? sink->end : ignore_end,
+        .progress = sink->progress != NULL ? sink->progress : ignore_progress,
+        .rows = sink->rows,
+    };
+}
+
+enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,
+                                             const struct dalcs_run_options *options,
+                                             const struct dalcs_sink *sink,
+                                             enum dalcs_analysis analysis) {
+    const struct dalcs_sink complete = completed(sink);
+    return run_analyses(session, options, &complete, NULL, &analysis, 1);
+}
+
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) {
@@ -440,16 +462,10 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
     if (!session->has_network) {
         return DALCS_E_NETLIST;
     }
-    const struct dalcs_sink complete = {
-        .user = sink->user,
-        .begin = sink->begin != NULL ? sink->begin : ignore_begin,
-        .row = sink->row != NULL ? sink->row : ignore_row,
-        .end = sink->end != NULL ? sink->end : ignore_end,
-        .progress = sink->progress != NULL ? sink->progress : ignore_progress,
-        .rows = sink->rows,
-    };
+    const struct dalcs_sink complete = completed(sink);
     if (session->circuit.n_steps > 0) {
         return run_steps(session, options, &complete);
     }
+    DALCS_TRY(dalcs_operating_currents(session, options, &complete));
     return run_analyses(session, options, &complete, NULL, IN_ORDER, N_IN_ORDER);
 }

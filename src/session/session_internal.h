@@ -82,6 +82,21 @@ static inline bool dalcs_run_keeps_ledger(const struct dalcs_run *r) {
 /* Settles what the options of the run and of the netlist leave open; checks them. */
 enum dalcs_status dalcs_run_choose(struct dalcs_run *r) DALCS_MUST_CHECK;
 
+/* Of the run, else of the netlist, else the usual one. */
+double dalcs_run_tolerance(const struct dalcs_run_options *options,
+                           const struct dalcs_circuit *circuit);
+
+/* Takes the tangents of exponential diodes at the currents that they carry. */
+enum dalcs_status dalcs_operating_currents(struct dalcs_session *session,
+                                           const struct dalcs_run_options *options,
+                                           const struct dalcs_sink *sink) DALCS_MUST_CHECK;
+
+/* One analysis of the session's circuit as it is. */
+enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,
+                                             const struct dalcs_run_options *options,
+                                             const struct dalcs_sink *sink,
+                                             enum dalcs_analysis analysis) DALCS_MUST_CHECK;
+
 /* ---- steps.c: one circuit after the other ------------------------------------------------------ */
 
 /* How often .step has everything run; 1 without. */

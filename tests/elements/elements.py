@@ -379,12 +379,12 @@ DIODES = (
     ("D1 a 0 m", f"D({FULL_TEXT} RevIlimit=1.5)", lambda v: max(idealised(v, **FULL), -1.5)),
     ("D1 a 0 m m=2", f"D({FULL_TEXT} Ilimit=20 RevIlimit=1.5)",
      lambda v: 2 * max(min(idealised(v, **FULL), 20), -1.5)),
-    ("D1 a 0 m", "D(IS=1n N=2 RS=0.1)", lambda v: tangent(v, 1e-9, 2, 0.1, 1)),
-    ("D1 a 0 m 3 m=2", "D(IS=1n N=2 RS=0.1)", lambda v: tangent(v, 6e-9, 2, 0.1 / 6, 1)),
+    ("D1 a 0 m", "D(IS=1n N=2 RS=0.1)\n.options diodecurrent=1", lambda v: tangent(v, 1e-9, 2, 0.1, 1)),
+    ("D1 a 0 m 3 m=2", "D(IS=1n N=2 RS=0.1)\n.options diodecurrent=1", lambda v: tangent(v, 6e-9, 2, 0.1 / 6, 1)),
     ("D1 a 0 m", "D(CJO=1p RS=0.1)\n.options diodecurrent=0.2",
      lambda v: tangent(v, 1e-14, 1, 0.1, 0.2)),
     ("D1 a 0 m", "D(N=0.01 RS=0.1)", lambda v: max(0, v) / 0.1),
-    ("D1 a 0 m", "D(RS=0.1 BV=6 IBV=1)",
+    ("D1 a 0 m", "D(RS=0.1 BV=6 IBV=1)\n.options diodecurrent=1",
      lambda v: tangent(v, 1e-14, 1, 0.1, 1) if v > 0
      else min(0.0, v + 6 - VT) / (0.1 + VT)),
 )

@@ -1,0 +1,358 @@
+/* thyristor.c - thyristors, GTOs and triacs: A cards whose model is one.
+ *
+ *     Aname anode cathode gate [reference] model         .model name thyristor(Vgt=0.5 Ih=0 Ron=0 Vfwd=0)
+ *
+ * A thyristor is an ideal diode in series with a switch of the element's name that keeps closed what closed it. Its
+ * control is a sum of which each part is a straight line cut off at both ends, with v of the gate against its
+ * reference, i the current and u the voltage of the whole; the switch closes above 1.5 and opens below -0.5:
+ *     without Ih   1.5 v/Vgt in [0, 2]  +  0.5 u/Voff in [-1, 0]       opens where u has fallen to -Voff
+ *     with Ih      2.5 v/Vgt in [0, 3]  +  i/Ih - 1.5 in [-1, 0]       opens where i has fallen to Ih
+ *     of a GTO     besides 0.5 v/Vgoff in [-3, 0]                      opens where v has fallen to -Vgoff
+ * so that all three limits are exact. In both a gate above Vgt closes it and holds it, whatever the current. A triac is
+ * two of them, the one against the other, whose v is |v|; without Ih the one that carries nothing opens, once the gate
+ * is off, by what the other carries, as u is 0 for both: besides -0.5 i/Ioff in [-1, 0] of the other's i. Formulas that only read are in no loop with what they read:
+ * the circuit stays passive (theory.md, section 10). */
+#include "builder.h"
+
+#include <math.h>
+#include <string.h>
+
+enum kind { THYRISTOR, TRIAC, GTO };
+
+struct dalcs_thyristor {
+    enum kind kind;
+    double trigger, turn_off; /* V of the gate */
+    double holding;           /* A; 0: none */
+    double reversed;          /* V */
+    double other;             /* A in the other half of a triac */
+};
+
+enum { VGT, VGOFF, IH, VOFF, IOFF, RON, VFWD, N_PARAMETERS };
+
+static const char MODEL_USAGE[] =
+    "a thyristor's model is: .model name thyristor|triac|gto [(Vgt=volts Ih=amperes Ron=ohms "
+    "Vfwd=volts)]";
+static const char USAGE[] = "a thyristor is: Aname anode cathode gate [reference] model";
+
+/* ---- The model ------------------------------------------------------------------------------------- */
+
+static bool report_parameter(struct dalcs_reader *reader, const struct dalcs_token *name) {
+    static const char *const ours[] = {"vgt", "vgoff", "ih", "voff", "ioff", "ron", "vfwd"};
+    static const char *const latching[] = {"il", "ilatch", "igt", "tq", "vdrm", "vrrm"};
+    struct dalcs_builder *builder = reader->builder;
+    if (dalcs_builder_is_label(name->text)) {
+        return false;
+    }
+    if (dalcs_builder_is_one_of(name->text, latching, sizeof latching / sizeof latching[0])) {
+        dalcs_builder_error(builder, name, "leave it out: Ih= is the current below which it opens",
+                            "'%s' of an ideal thyristor has no meaning here", name->text);
+        return true;
+    }
+    dalcs_builder_error(builder, name,
+                        dalcs_builder_suggest_of(builder, ours, sizeof ours / sizeof ours[0],
+                                                 name->text, MODEL_USAGE),
+                        "a thyristor's model has no parameter '%s'", name->text);
+    return true;
+}
+
+static bool check(struct dalcs_builder *builder, const struct dalcs_parameter *p) {
+    for (int k = 0; k < N_PARAMETERS; k++) {
+        const bool may_be_zero = k == IH || k == RON || k == VFWD;
+        if (p[k].value < 0 || (p[k].value == 0 && !may_be_zero)) {
+            dalcs_builder_error(builder, p[k].place, MODEL_USAGE,
+                                may_be_zero ? "'%s' cannot be negative" : "'%s' must be positive",
+                                p[k].name);
+            return false;
+        }
+    }
+    return true;
+}
+
+struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
+                                                    const struct dalcs_token *type,
+                                                    struct dalcs_diode_model *valve) {
+    struct dalcs_builder *builder = reader->builder;
+    struct dalcs_parameter p[N_PARAMETERS] = {
+        [VGT] = {"vgt", DALCS_VOLTAGE, false, 0.5, NULL},
+        [VGOFF] = {"vgoff", DALCS_VOLTAGE, false, 0.5, NULL},
+        [IH] = {"ih", DALCS_CURRENT, false, 0, NULL},
+        [VOFF] = {"voff", DALCS_VOLTAGE, false, 1e-3, NULL},
+        [IOFF] = {"ioff", DALCS_CURRENT, false, 1e-6, NULL},
+        [RON] = {"ron", DALCS_OHM, false, 0, NULL},
+        [VFWD] = {"vfwd", DALCS_VOLTAGE, false, 0, NULL},
+    };
+    reader->usage = MODEL_USAGE;
+    if (!dalcs_model_read_parameters(reader, p, N_PARAMETERS, report_parameter) ||
+        !check(builder, p)) {
+        return NULL;
+    }
+    struct dalcs_thyristor *t = dalcs_arena_alloc(&builder->scratch, 1, sizeof *t);
+    if (t == NULL) {
+        builder->out_of_memory = true;
+        return NULL;
+    }
+    *t = (struct dalcs_thyristor){.kind = strcmp(type->text, "triac") == 0 ? TRIAC
+                                          : strcmp(type->text, "gto") == 0 ? GTO
+                                                                           : THYRISTOR,
+                                  .trigger = p[VGT].value,
+                                  .turn_off = p[VGOFF].value,
+                                  .holding = p[IH].value,
+                                  .reversed = p[VOFF].value,
+                                  .other = p[IOFF].value};
+    valve->ron = valve->rrev = p[RON].value;
+    valve->vfwd = p[VFWD].value;
+    valve->roff = valve->vrev = INFINITY;
+    if (p[VGOFF].place != NULL && t->kind != GTO) {
+        dalcs_builder_error(builder, p[VGOFF].place, "make it a gto", "no gate turns a %s off",
+                            type->text);
+        return NULL;
+    }
+    return t;
+}
+
+/* ---- The formula of the control ------------------------------------------------------------------------ */
+
+/* Makes parts of a formula, numbered as they are made: each after what it is made of. */
+struct writer {
+    struct dalcs_builder *builder;
+    const struct dalcs_token *element;
+    const struct dalcs_expression_text *text; /* what messages quote */
+    int n;
+};
+
+static struct dalcs_formula *make(struct writer *w, enum dalcs_formula_kind kind) {
+    struct dalcs_formula *f = dalcs_arena_alloc(&w->builder->scratch, 1, sizeof *f);
+    if (f == NULL) {
+        w->builder->out_of_memory = true;
+        return NULL;
+    }
+    *f = (struct dalcs_formula){.kind = kind,
+                                .where = dalcs_token_location(w->element),
+                                .text = w->text,
+                                .end = w->text->length};
+    return f;
+}
+
+static const struct dalcs_formula *finish(struct writer *w, struct dalcs_formula *f, int n,
+                                          const struct dalcs_formula *const *argument) {
+    const struct dalcs_formula **own =
+        dalcs_arena_alloc(&w->builder->scratch, 3, sizeof(const struct dalcs_formula *));
+    bool ok = f != NULL && own != NULL;
+    for (int k = 0; k < n && ok; k++) {
+        own[k] = argument[k];
+        ok = own[k] != NULL;
+    }
+    if (!ok) {
+        return NULL;
+    }
+    f->n = n;
+    f->argument = own;
+    f->number_of = w->n++;
+    return f;
+}
+
+static const struct dalcs_formula *number(struct writer *w, double value) {
+    struct dalcs_formula *f = make(w, DALCS_FORMULA_NUMBER);
+    if (f != NULL) {
+        f->number = value;
+    }
+    return finish(w, f, 0, NULL);
+}
+
+static const struct dalcs_formula *signal(struct writer *w, enum dalcs_formula_kind kind,
+                                          const struct dalcs_token *a,
+                                          const struct dalcs_token *b) {
+    struct dalcs_formula *f = make(w, kind);
+    if (f != NULL) {
+        f->signal[0] = a;
+        f->signal[1] = b;
+    }
+    return finish(w, f, 0, NULL);
+}
+
+static const struct dalcs_formula *operation(struct writer *w, enum dalcs_operation_code code,
+                                             const struct dalcs_formula *a,
+                                             const struct dalcs_formula *b) {
+    struct dalcs_formula *f = make(w, DALCS_FORMULA_OPERATION);
+    if (f != NULL) {
+        f->code = code;
+    }
+    return finish(w, f, 2, (const struct dalcs_formula *const[]){a, b});
+}
+
+static const struct dalcs_formula *call(struct writer *w, const char *function, int n,
+                                        const struct dalcs_formula *const *argument) {
+    struct dalcs_formula *f = make(w, DALCS_FORMULA_CALL);
+    if (f != NULL) {
+        f->function = function;
+    }
+    return finish(w, f, n, argument);
+}
+
+/* factor x + offset, in [low, high] */
+static const struct dalcs_formula *cut(struct writer *w, double factor,
+                                       const struct dalcs_formula *x, double offset, double low,
+                                       double high) {
+    const struct dalcs_formula *line = operation(w, DALCS_MULTIPLY, number(w, factor), x);
+    line = operation(w, DALCS_ADD, line, number(w, offset));
+    return call(w, "limit", 3,
+                (const struct dalcs_formula *const[]){line, number(w, low), number(w, high)});
+}
+
+/* The names that a control reads. */
+struct places {
+    const struct dalcs_token *anode, *cathode, *gate, *reference;
+    const struct dalcs_token *self, *other; /* of the halves, whose currents are read */
+};
+
+static const struct dalcs_formula *control(struct writer *w, const struct dalcs_thyristor *t,
+                                           const struct places *p) {
+    const struct dalcs_formula *v = signal(w, DALCS_FORMULA_VOLTAGE, p->gate, p->reference);
+    if (t->kind == TRIAC) {
+        v = call(w, "abs", 1, &v);
+    }
+    const bool holds = t->holding > 0;
+    const struct dalcs_formula *sum =
+        cut(w, (holds ? 2.5 : 1.5) / t->trigger, v, 0, 0, holds ? 3 : 2);
+    const struct dalcs_formula *keep =
+        holds ? cut(w, 1 / t->holding, signal(w, DALCS_FORMULA_CURRENT, p->self, NULL), -1.5, -1, 0)
+              : cut(w, 0.5 / t->reversed, signal(w, DALCS_FORMULA_VOLTAGE, p->anode, p->cathode), 0,
+                    -1, 0);
+    sum = operation(w, DALCS_ADD, sum, keep);
+    if (t->kind == TRIAC && !holds) {
+        const struct dalcs_formula *i = signal(w, DALCS_FORMULA_CURRENT, p->other, NULL);
+        sum = operation(w, DALCS_ADD, sum, cut(w, -0.5 / t->other, i, 0, -1, 0));
+    }
+    if (t->kind == GTO) {
+        sum = operation(w, DALCS_ADD, sum, cut(w, 0.5 / t->turn_off, v, 0, -3, 0));
+    }
+    return sum;
+}
+
+/* ---- The element ---------------------------------------------------------------------------------------- */
+
+/* A token that a formula can have: it must outlive the element's card no longer than the builder. */
+static struct dalcs_token *make_token(struct dalcs_builder *builder, const struct dalcs_token *at,
+                                      const char *text) {
+    struct dalcs_token *token = dalcs_arena_alloc(&builder->scratch, 1, sizeof *token);
+    if (token == NULL) {
+        builder->out_of_memory = true;
+        return NULL;
+    }
+    *token = *at;
+    token->text = text;
+    return token;
+}
+
+/* A half: its switch, from `anode` to `cathode` through a diode. */
+static bool expand_half(struct dalcs_builder *builder, const struct dalcs_token *element,
+                        struct dalcs_device *half, const struct dalcs_model *model,
+                        const struct places *places) {
+    const bool is_back = strcmp(half->name, element->text) != 0;
+    const int anode = half->node[0];
+    const int inside =
+        dalcs_builder_inner_node(builder, is_back ? "inside_back" : "inside", element);
+    struct dalcs_device *valve = dalcs_builder_add_inner_device(
+        builder, DALCS_DIODE, is_back ? "back_valve" : "valve", element);
+    const struct dalcs_switch_model latch = {
+        .name = model->name->text, .roff = (double)INFINITY, .vt = 0.5, .vh = 1};
+    half->model = dalcs_switch_add_model(builder, &latch);
+    struct dalcs_expression_text *text = dalcs_arena_alloc(&builder->scratch, 1, sizeof *text);
+    if (inside < 0 || valve == NULL || text == NULL || half->model < 0 ||
+        !dalcs_expression_text(&builder->scratch, element, 1, text)) {
+        return false;
+    }
+    struct writer w = {builder, element, text, 0};
+    struct dalcs_token *formula = make_token(builder, element, element->text);
+    struct dalcs_token *name = make_token(builder, element, half->name);
+    if (formula == NULL || name == NULL) {
+        return false;
+    }
+    struct places own = *places;
+    own.self = name;
+    if (model->thyristor->kind == TRIAC) {
+        const char *other =
+            is_back ? element->text : dalcs_builder_hint(builder, "back(%s)", element->text);
+        own.other = other != NULL ? make_token(builder, element, other) : NULL;
+        if (own.other == NULL) {
+            return false;
+        }
+    }
+    formula->kind = DALCS_TOKEN_FORMULA;
+    formula->formula = control(&w, model->thyristor, &own);
+    const int node = formula->formula != NULL
+                         ? dalcs_behavioural_add_readout(builder, formula, "control", name)
+                         : -1;
+    if (node < 0) {
+        return false;
+    }
+    valve->node[0] = anode;
+    valve->node[1] = half->node[0] = inside;
+    valve->model = model->index;
+    half->node[2] = node;
+    return true;
+}
+
+/* The other half of a triac. */
+static bool expand_back(struct dalcs_builder *builder, const struct dalcs_token *element,
+                        const int *node, const struct dalcs_model *model,
+                        const struct places *places) {
+    struct dalcs_device *back =
+        dalcs_builder_add_inner_device(builder, DALCS_SWITCH, "back", element);
+    if (back == NULL || dalcs_names_add(&builder->devices, back->name,
+                                        (int)(back - builder->circuit->device)) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return false;
+    }
+    back->node[0] = node[1];
+    back->node[1] = node[0];
+    struct places turned = *places;
+    turned.anode = places->cathode;
+    turned.cathode = places->anode;
+    return expand_half(builder, element, back, model, &turned);
+}
+
+bool dalcs_thyristor_is(const struct dalcs_builder *builder, const struct dalcs_card *card) {
+    const int index = dalcs_names_find(&builder->models, card->token[card->n - 1].text);
+    return index >= 0 && builder->model[index].kind == DALCS_MODEL_THYRISTOR;
+}
+
+void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, USAGE);
+    const int n_nodes = card->n - 2;
+    int node[4];
+    if (n_nodes != 3 && n_nodes != 4) {
+        dalcs_builder_error(builder, card->token, USAGE, "a thyristor has 3 or 4 nodes, not %d",
+                            n_nodes);
+        return;
+    }
+    struct dalcs_device *device = dalcs_builder_add_device(builder, DALCS_SWITCH, card->token);
+    if (device == NULL || !dalcs_reader_nodes(&reader, n_nodes, node)) {
+        return;
+    }
+    const struct dalcs_model *model =
+        &builder->model[dalcs_names_find(&builder->models, card->token[card->n - 1].text)];
+    const struct dalcs_token *token = card->token;
+    const struct places places = {
+        &token[1], &token[2], &token[3], n_nodes == 4 ? &token[4] : &token[2], NULL, NULL};
+    const bool is_triac = model->thyristor->kind == TRIAC;
+    int from = node[0];
+    if (is_triac) {
+        /* a short measures the current of both halves */
+        const int inside = dalcs_builder_inner_node(builder, "terminal", token);
+        struct dalcs_device *terminal =
+            dalcs_builder_add_inner_device(builder, DALCS_RESISTOR, "terminal", token);
+        if (inside < 0 || terminal == NULL) {
+            return;
+        }
+        terminal->node[0] = from;
+        terminal->node[1] = from = inside;
+    }
+    device->node[0] = from;
+    device->node[1] = node[1];
+    const int both[2] = {from, node[1]};
+    if (!expand_half(builder, token, device, model, &places) ||
+        (is_triac && !expand_back(builder, token, both, model, &places))) {
+        return;
+    }
+}

@@ -1,0 +1,69 @@
+/* second_analyses.c - more than one .tran, .op, .dc or .ac: a script of the first and the others.
+ *
+ * A circuit has one analysis of each kind. ngspice runs them all: so does the script `run`, `tran ...`, of
+ * which the second is written here, in place of the second card. */
+#include "netlist.h"
+
+#include <string.h>
+
+static int kind_of(const struct dalcs_card *card) {
+    static const char *const kinds[] = {".op", ".dc", ".ac", ".tran"};
+    for (int k = 0; k < 4 && card->letter == '.'; k++) {
+        if (strcmp(card->token[0].text, kinds[k]) == 0) {
+            return k;
+        }
+    }
+    return -1;
+}
+
+static enum dalcs_status add_line(struct dalcs_netlist *netlist, const struct dalcs_token *place,
+                                  const char *text) {
+    DALCS_TRY(dalcs_grow(&netlist->script, &netlist->script_capacity, netlist->n_script_lines + 1,
+                         sizeof *netlist->script));
+    netlist->script[netlist->n_script_lines++] = (struct dalcs_source_line){
+        .source = place->line->source, .text = text, .number = place->line->number};
+    return DALCS_OK;
+}
+
+/* The card as a command: "tran 1m {2*t}". NULL: out of memory. */
+static const char *command_of(struct dalcs_netlist *netlist, const struct dalcs_card *card) {
+    const char *text = card->token[0].text + 1;
+    for (int k = 1; k < card->n && text != NULL; k++) {
+        const struct dalcs_token *t = &card->token[k];
+        const bool is_expression = t->kind == DALCS_TOKEN_EXPRESSION;
+        text =
+            dalcs_arena_printf(&netlist->arena, is_expression ? "%s {%s}" : "%s %s", text, t->text);
+    }
+    return text;
+}
+
+enum dalcs_status dalcs_second_analyses(struct dalcs_netlist *netlist, struct dalcs_diag *diag) {
+    bool has[4] = {false, false, false, false};
+    size_t n = 0;
+    const size_t n_cards = netlist->n_script_lines == 0 ? netlist->n_cards : 0;
+    for (size_t k = 0; k < n_cards; k++) {
+        const struct dalcs_card *card = &netlist->card[k];
+        const int kind = kind_of(card);
+        const bool is_second = kind >= 0 && has[kind];
+        if (kind >= 0) {
+            has[kind] = true;
+        }
+        if (!is_second) {
+            netlist->card[n++] = *card;
+            continue;
+        }
+        const struct dalcs_location where = dalcs_token_location(card->token);
+        const char *text = command_of(netlist, card);
+        dalcs_diag_add(diag, DALCS_NOTE, &where, NULL,
+                       "a second %s: it is run after those before it", card->token[0].text);
+        if (text == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        if (netlist->n_script_lines == 0) {
+            DALCS_TRY(add_line(netlist, card->token, "run"));
+        }
+        DALCS_TRY(add_line(netlist, card->token, text));
+    }
+    netlist->n_cards = n_cards > 0 ? n : netlist->n_cards;
+    return DALCS_OK;
+}

@@ -1,0 +1,492 @@
+#!/usr/bin/env python3
+"""What other simulators spell in another way, each kind in ten ways and more, against the plain spelling.
+
+Each kind has a frame, a line that says it plainly with a value from a closed form, and lines that mean the same.
+
+usage: spellings.py PROGRAM
+"""
+
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker, run  # noqa: E402
+
+EXACT = 1e-8
+
+
+class Kind:
+    def __init__(self, name, frame, plain, signal, value, others, refused=()):
+        self.name, self.frame, self.plain = name, frame, plain
+        self.signal, self.value, self.others, self.refused = signal, value, others, refused
+
+    def netlist(self, line):
+        return f"{self.name}\n{self.frame.strip().replace('@', line)}\n.end\n"
+
+    def last(self, program, line):
+        return run(program, self.netlist(line), method=None, tolerance=1e-10, report=False)
+
+
+def check(checker, program, kind):
+    for line in [kind.plain] + list(kind.others):
+        done = kind.last(program, line)
+        if not checker.check(done.status == 0, f"{kind.name}: '{line}' ends with {done.status}\n"
+                                               f"{done.stderr}"):
+            continue
+        value = done.column(kind.signal)[-1]
+        checker.check(abs(value - kind.value) <= EXACT * max(abs(kind.value), 1e-3),
+                      f"{kind.name}: '{line}' has {kind.signal} = {value!r}, not {kind.value!r}")
+    for line, words in kind.refused:
+        done = kind.last(program, line)
+        checker.check(done.status == 3 and words in done.stderr,
+                      f"{kind.name}: '{line}' ends with {done.status}, without '{words}'\n"
+                      f"{done.stderr}")
+
+
+# ---- Elements ------------------------------------------------------------------------------------
+
+DIVIDER = """
+V1 a 0 10
+@
+R2 b 0 1k
+.op
+"""
+
+RISING = """
+V1 a 0 1
+R1 a b 1
+@
+.tran 1m uic
+"""
+
+ELEMENTS = [
+    Kind("attributes of R", DIVIDER, "R1 a b 1k", "v(b)", 5.0, [
+        "R1 a b 1k tol=1 pwr=0.1",
+        "R1 a b 1k pwr=0.1",
+        "R1 a b 1K TOL=5",
+        'R1 a b 1k mfg="a maker" pn="1234-5"',
+        "R1 a b 1k pn=1234-5 tol=0.1",
+        "R1 a b R=1k tol=1",
+        "R1 a b 1k tc=0 tol=1",
+        "R1 a b {2*500} tol={1}",
+        "R1 a b 1k type=film",
+        "X1 a b s\n.subckt s p q\nR1 p q 1k tol=1 pwr=0.25\n.ends",
+    ], [("R1 a b 1k tolerence=1", "no parameter 'tolerence'")]),
+    Kind("attributes of C", RISING, "C1 b 0 1m", "v(b)", 1 - math.exp(-1), [
+        'C1 b 0 1m V=25 Irms=2.07 mfg="maker" pn="number" type="Al electrolytic" ppPkg=1',
+        "C1 b 0 1m V=25 ",
+        "C1 b 0 1m V=6.3 Rser=0 Lser=0",
+        "C1 b 0 1m mfg=maker",
+        "C1 b 0 1m IC=0 V=25",
+        "C1 b 0 C=1m V=25",
+        "C1 b 0 1m MTBF=5000",
+        "C1 b 0 1m pn=UHE1A182MPD",
+        'C1 b 0 1m pn="C0603 X5R" V=4',
+        "X1 b s\n.subckt s p\nC1 p 0 1m V=25 Irms=1\n.ends",
+    ]),
+    Kind("attributes of L", "V1 a 0 1\n@\nR1 b 0 1\n.tran 1m uic\n", "L1 a b 1m", "v(b)",
+         1 - math.exp(-1), [
+             "L1 a b 1m Ipk=2",
+             'L1 a b 1m Ipk=2 mfg="maker" pn="7447"',
+             "L1 a b 1m Ipk=2 Rser=0",
+             "L1 a b 1m Rser=0 Rpar=0 Cpar=0",
+             "L1 a b 1m Rpar=0",
+             "L1 a b 1m Rser=0.0 Rpar=0.0 Cpar=0.0",
+             "L1 a b 1m ic=0 Rpar=0",
+             "L1 a b {1m} Rpar={0}",
+             "L1 a b L=1m rpar=0 ipk=1",
+             "X1 a b s r=0\n.subckt s p q r=1\nL1 p q 1m Rpar={r}\n.ends",
+         ], [("L1 a b 1m Rpar=-1", "cannot be negative")]),
+    Kind("noiseless", DIVIDER, "R1 a b 1k", "v(b)", 5.0, [
+        "R1 a b 1k noiseless",
+        "R1 a b 1k NOISELESS",
+        "R1 a b noiseless R=1k",
+        "R1 a b R=1k noiseless",
+        "R1 a b 1k noiseless tol=1",
+        "R1 a b 1k tol=1 noiseless",
+        "R1 a b 1k tc=1m noiseless",
+        "R1 a b {1k} noiseless",
+        "R1 a b 2k m=2 noiseless",
+        "X1 a b s\n.subckt s p q\nR1 p q 1k noiseless\n.ends",
+    ]),
+    Kind("so many units", RISING, "C1 b 0 1m", "v(b)", 1 - math.exp(-1), [
+        "C1 b 0 0.5m x2",
+        "C1 b 0 0.5m X2",
+        "C1 b 0 0.25m x4",
+        "C1 b 0 0.1m x10",
+        "C1 b 0 0.5m x2 Rser=0",
+        "C1 b 0 0.5m Rser=0 x2",
+        "C1 b 0 0.5m m=2",
+        "C1 b 0 {0.5m} x2 V=25",
+        "C1 b 0 2m x0.5",
+        "X1 b s\n.subckt s p\nC1 p 0 500u x2\n.ends",
+    ], [("C1 b 0 1m x0", "must be positive"), ("C1 b 0 1m x-2", "must be positive")]),
+    Kind("a model of R", DIVIDER, "R1 a b 1k", "v(b)", 5.0, [
+        "R1 a b rn 1k\n.model rn RES (TCE=0 T_ABS=-273.15)",
+        "R1 a b rn 1k\n.model rn R T_ABS=-273.15",
+        "R1 a b rn 1k\n.model rn RES(T_ABS -273.15)",
+        "R1 a b 1k rn\n.model rn RES(TC1=0 TC2=0)",
+        "R1 a b rn 1k\n.model rn RES(R=1 TC1=0.001)",
+        "R1 a b rn 1k\n.model rn RES R=1",
+        "R1 a b rn 1k tc=0\n.model rn RES {T_ABS=-273.15}",
+        "R1 a b rn 1k\n.model rn RES(NOISE=0)",
+        "R1 a b rn R=1k\n.model rn RES(T_REL_GLOBAL=0)",
+        "X1 a b s\n.subckt s p q\nR1 p q rn 1k\n.model rn RES (TCE=0 T_ABS=-273.15)\n.ends",
+    ], [("R1 a b rn 1k\n.model rn RES(RSH=10)", "not supported"),
+        ("R1 a b rn 1k\n.model rn RES(R=2)", "not supported")]),
+    # A cell takes 1 V = 0.1 V per ampere times 10 A: idealised diodes have n= and m= besides.
+    Kind("cells in series", "I1 0 a 1\n@\n.op\n", "D1 a 0 c\n.model c D(Ron=0.5 Vfwd=2)", "v(a)", 2.5,
+         [
+             "D1 a 0 c n=5\n.model c D(Ron=0.1 Vfwd=0.4)",
+             "D1 a 0 c n=10 m=2\n.model c D(Ron=0.1 Vfwd=0.2)",
+             "D1 a 0 c N=2\n.model c D(Ron=0.25 Vfwd=1)",
+         ]),
+]
+
+# V of an exponential diode at its tangent's current, 1 A, is what the exponential says.
+VT = 300.15 * 1.380649e-23 / 1.602176634e-19
+ONE = VT * math.log1p(1 / 1e-9) + 0.01  # V of IS=1n, RS=10m at 1 A
+CELL = "I1 0 a 1\n@\n.op\n"
+DIODES = [
+    Kind("cells of an exponential diode", CELL, "D1 a 0 c\n.model c D(Is=1n Rs=10m)", "v(a)", ONE, [
+        "D1 a 0 c n=1\n.model c D(Is=1n Rs=10m)",
+        "D1 a b c\nD2 b 0 s\n.model s D(Ron=0)\n.model c D(Is=1n Rs=10m)",
+        "D1 a 0 c m=1\n.model c D(IS=1n RS=10m)",
+    ]),
+    Kind("36 cells", CELL, "D1 a 0 c n=36\n.model c D(Is=1n Rs=10m)", "v(a)", 36 * ONE, [
+        "D1 a 0 c N=36\n.model c D(IS=1n RS=10m)",
+        "D1 a 0 c n={6*6}\n.model c D(IS=1n RS=10m N=1)",
+        "D1 a b c n=18\nD2 b 0 c n=18\n.model c D(IS=1n RS=10m)",
+        "D1 a b c n=35\nD2 b 0 c\n.model c D(IS=1n RS=10m)",
+        "D1 a 0 c area=1 n=36\n.model c D(IS=1n RS=10m)",
+        "D1 a 0 c\n.model c D(IS=1n RS=0.36 N=36)",
+        "D1 a 0 c n=12\n.model c D(IS=1n RS=30m N=3)",
+        "D1 a 0 c n=36\n.model c D(Js=1n Rs=10m)",
+        "D1 a 0 c 0.5 n=36 m=2\n.model c D(IS=1n RS=10m)",
+        "X1 a s k=36\n.subckt s p k=1\nD1 p 0 c n={k}\n.model c D(IS=1n RS=10m)\n.ends",
+    ]),
+    # In breakdown, at 1 A: BV + N Vt ln(1 A / IBV), and RS.
+    Kind("other names of BV", "I1 a 0 1\n@\n.op\n", "D1 a 0 d\n.model d D(IS=1n BV=100 IBV=1m)", "v(a)",
+         -(100 + VT * math.log(1000)), [
+             "D1 a 0 d\n.model d D(IS=1n VB=100 IBV=1m)",
+             "D1 a 0 d\n.model d D(JS=1n VB=100)",
+             "D1 a 0 d\n.model d D(is=1n vb=100 ibv=1m n=1)",
+             "D1 a 0 d\n.model d D(IS=1n VRB=100)",
+             "D1 a 0 d\n.model d D(IS=1n VB=100 IB=1m)",
+             "D1 a 0 d\n.model d D IS=1n VB=100",
+             "D1 a 0 d\n.model d D IS 1n VB 100",
+             "D1 a 0 d\n.model d D(VB={10*10} IS=1n)",
+             "D1 a 0 d n=1\n.model d D(VB=100 IS=1n)",
+             "D1 a 0 d n=2\n.model d D(VB=50 IS=1n N=0.5)",
+             "X1 a s\n.subckt s p\nD1 p 0 d\n.model d D(VB=100 IS=1n)\n.ends",
+         ]),
+]
+
+# ---- Models --------------------------------------------------------------------------------------
+
+MODEL_D = "V1 a 0 10\nD1 a b d\nR1 b 0 1k\n@\n.op\n"
+ON = (10 - 0.5) * 1000 / 1500
+SWITCHED = """
+V1 a 0 10
+V2 g 0 PULSE(0 1 1m 0 0 1m 4m)
+@
+R1 b 0 1k
+.tran 10u 1.5m
+"""
+RON = 10 * 1000 / 1010
+MODELS = [
+    Kind("brackets of a model", MODEL_D, ".model d D(Ron=500 Vfwd=0.5)", "v(b)", ON, [
+        ".model d D {Ron=500 Vfwd=0.5}",
+        ".model d D{Ron=500 Vfwd=0.5}",
+        ".model d D { Ron=500 Vfwd=0.5 }",
+        ".model d D [Ron=500 Vfwd=0.5]",
+        ".model d D[Ron=500 Vfwd=0.5]",
+        ".model d D {Ron = 500 Vfwd = 0.5}",
+        ".model d D {Ron={5*100} Vfwd=0.5}",
+        ".model d D {Vfwd=0.5 Ron={5*100}}",
+        ".model d D {Ron=500\n+ Vfwd=0.5}",
+        ".model d D {Ron=500, Vfwd=0.5 }",
+        ".MODEL D d{ROFF=inf RON=500 VFWD=0.5}",
+    ], [(".model d D {Ron=500 Vfwd=0.5", "never closed")]),
+    Kind("blanks of a model", MODEL_D, ".model d D(Ron=500 Vfwd=0.5)", "v(b)", ON, [
+        ".model d D( RON 500 VFWD 0.5 )",
+        ".model d D(Ron 500 Vfwd 0.5)",
+        ".model d D Ron 500 Vfwd 0.5",
+        ".model d D(Ron 500, Vfwd 0.5)",
+        ".model d D(Ron 500 Vfwd=0.5)",
+        ".model d D(Ron=500 Vfwd 0.5)",
+        ".model d D(Ron {500} Vfwd {1/2})",
+        ".model d D(Ron 500 Roff inf Vfwd 0.5)",
+        ".model d D {Ron 500 Vfwd 0.5}",
+        ".model d D(Ron 500\n+ Vfwd 0.5)",
+    ], [(".model d D(Ron 500 Vfwd)", "'vfwd' is not of the form")]),
+    Kind("blanks of a switch's model", SWITCHED, "S1 a b g 0 s\n.model s SW(Ron=10 Vt=0.5)", "v(b)",
+         RON, [
+             "S1 a b g 0 s\n.model s SW( RON 10 VT 0.5 )",
+             "S1 a b g 0 s\n.model s SW RON 10 VT 0.5",
+             "S1 a b g 0 s\n.model s SW {RON=10 VT=0.5}",
+             "S1 a b g 0 s\n.model s SW(ron 10 vt 0.5 vh 0.1)",
+             "S1 a b g 0 s\n.model s SW(ron 10 roff inf vt 0.5)",
+             "S1 a b g 0 s\n.model s SW(ron {2*5} vt {0.5})",
+         ]),
+    Kind("PSpice's ends in SW", SWITCHED, "S1 a b g 0 s\n.model s VSWITCH(Ron=10 Roff=inf Von=0.6 "
+         "Voff=0.4)", "v(b)", RON, [
+             "S1 a b g 0 s\n.model s SW(Ron=10 Von=0.6 Voff=0.4)",
+             "S1 a b g 0 s\n.model s SW(RON 10 VON 0.6 VOFF 0.4)",
+             "S1 a b g 0 s\n.model s SW(Ron=10 VHon=0.6 VHoff=0.4)",
+             "S1 a b g 0 s\n.model s SW(Ron=10 Von=0.9 Voff=0.1)",
+             "S1 a b g 0 s off\n.model s SW(Ron=10 Von=1)",
+             "S1 a b 0 g s\n.model s SW(Ron=10 Von=-0.6 Voff=-0.4)",
+             "W1 a b Vg s\nG1 0 h g 0 1\nVg h 0\n.model s CSW(Ron=10 Ion=0.6 Ioff=0.4)",
+             "W1 a b Vg s\nG1 0 h g 0 1\nVg h 0\n.model s CSW(Ron=10 IHon=0.6 IHoff=0.4)",
+             "W1 a b Vg s\nG1 0 h g 0 1\nVg h 0\n.model s ISWITCH(Ron=10 Ion=0.6 Ioff=0.4)",
+             "X1 a b g q\n.subckt q p n c\nS1 p n c 0 s\n.model s SW(Ron=10 Von=0.6 Voff=0.4)\n.ends",
+         ], [("S1 a b g 0 s\n.model s SW(Ron=10 Von=1 Vt=0.5)", "either")]),
+    Kind("CONTROL and its models", SWITCHED, "S1 a b s CONTROL={v(g)}\n.model s SW(Ron=10 Vt=0.5)",
+         "v(b)", RON, [
+             "S1 a b s CONTROL={v(g)}\n.model s SWITCH(ON=0.6 OFF=0.4 RON=10 ROFF=inf)",
+             "S1 a b s CONTROL={v(g)}\n.model s SWITCH(ON=0.5 OFF=0.3 RON=10)",
+             "S1 a b s CONTROL={v(g)}\n.model s VSWITCH(VON=0.6 VOFF=0.4 RON=10)",
+             "S1 a b s CONTROL={v(g)}\n.model s ISWITCH(ION=0.6 IOFF=0.4 RON=10)",
+             "S1 a b s CONTROL={v(g)}\n.model s CSW(IT=0.5 RON=10)",
+             "S1 a b s OFF CONTROL={v(g)}\n.model s SWITCH(ON=0.6 OFF=0.4 RON=10)",
+             "S1 a b s CONTROL={2*v(g)}\n.model s SWITCH(ON=1 OFF=0 RON=10)",
+             "S1 a b s CONTROL={-v(g)}\n.model s SWITCH(ON=-0.6 OFF=-0.4 RON=10)",
+             "S1 a b s CONTROL={i(rg)}\nRg g 0 1k\n.model s ISWITCH(ION=0.6m IOFF=0.4m RON=10)",
+             "S1 a b s CONTROL={i(rg)}\nRg g 0 1k\n.model s SWITCH(ON=0.6m OFF=0.4m RON=10)",
+             "X1 a b g q\n.subckt q p n c\nS1 p n s CONTROL={v(c)}\n"
+             ".model s SWITCH(ON=0.6 OFF=0.4 RON=10)\n.ends",
+         ]),
+]
+
+# ---- Sources -------------------------------------------------------------------------------------
+
+SOURCE = "@\nR1 a 0 50\n.tran 0.1n 90.3n\n"
+LOADED = "V1 s 0 {v}\nR1 s o 10\n@\n.op\n"
+MODULATED = "@\nR1 a 0 1\n.tran 1u 2.3333m\n"
+T = 2.3333e-3
+
+
+def modulated(m, c):
+    """A (o + sin m) sin c after a delay of 1 ms."""
+    t = T - 1e-3
+    return 0.5 * (2 + math.sin(2 * math.pi * 180 * t + math.radians(m))) * math.sin(
+        2 * math.pi * 3e3 * t + math.radians(c))
+
+
+SOURCES = [
+    Kind("a function in brackets of its own", SOURCE, "V1 a 0 PULSE(1 -1 0 0 0 20n 40n)", "v(a)", -1.0, [
+        "V1 a 0 0.0v (PULSE 1.0V -1.0V 0 0 0 20n 40n) (AC 1v)",
+        "V1 a 0 (PULSE 1 -1 0 0 0 20n 40n)",
+        "V1 a 0 (PULSE(1 -1 0 0 0 20n 40n))",
+        "V1 a 0 (DC 3) (PULSE 1 -1 0 0 0 20n 40n)",
+        "V1 a 0 (AC 1) (PULSE 1 -1 0 0 0 20n 40n)",
+        "V1 a 0 DC 3 AC 1 0 (PULSE(1 -1 0 0 0 20n 40n))",
+        "V1 a 0 (AC 1 90) PULSE(1 -1 0 0 0 20n 40n)",
+        "V1 a 0 ( PULSE 1 -1 0 0 0 20n 40n )",
+        "V1 a 0 (pulse {1} {-1} 0 0 0 20n 40n)",
+        "X1 a s\n.subckt s p\nV1 p 0 0 (PULSE 1 -1 0 0 0 20n 40n) (AC 1)\n.ends",
+    ], [("V1 a 0 (PULSE 1 -1 0 0 0 20n 40n", "is missing")]),
+    Kind("DISTOF", SOURCE, "V1 a 0 PULSE(1 -1 0 0 0 20n 40n)", "v(a)", -1.0, [
+        "V1 a 0 DC 0 AC 1 PULSE(1 -1 0 0 0 20n 40n) DISTOF1 0 DISTOF2 0",
+        "V1 a 0 DISTOF1 PULSE(1 -1 0 0 0 20n 40n)",
+        "V1 a 0 DISTOF1 1 PULSE(1 -1 0 0 0 20n 40n)",
+        "V1 a 0 DISTOF1 1 90 DISTOF2 1 90 PULSE(1 -1 0 0 0 20n 40n)",
+        "V1 a 0 PULSE(1 -1 0 0 0 20n 40n) DISTOF2 1",
+        "V1 a 0 PULSE(1 -1 0 0 0 20n 40n) distof1 0.1 -90",
+        "V1 a 0 DC 0 DISTOF1 = 1 PULSE(1 -1 0 0 0 20n 40n)",
+        "V1 a 0 DISTOF1 {1} {2} PULSE(1 -1 0 0 0 20n 40n)",
+        "I1 0 a PULSE(20m -20m 0 0 0 20n 40n) DISTOF1 0 DISTOF2 0",
+        "X1 a s\n.subckt s p\nV1 p 0 PULSE(1 -1 0 0 0 20n 40n) DISTOF1 1\n.ends",
+    ]),
+    Kind("a load", LOADED.format(v=5), "I1 o 0 50m", "v(o)", 4.5, [
+        "I1 o 0 50m load",
+        "I1 o 0 50m LOAD",
+        "I1 o 0 DC 50m load",
+        "I1 o 0 load 50m",
+        "I1 o 0 {50m} load",
+        "I1 o 0 25m load\nI2 o 0 25m load",
+        "X1 o s\n.subckt s p\nI1 p 0 50m load\n.ends",
+        "X1 o s m=2\n.subckt s p\nI1 p 0 25m load\n.ends",
+    ]),
+    # 0.3 V through 10 ohm are 30 mA: a load of 50 mA takes those and no more, at 0 V.
+    Kind("a load on a weak source", LOADED.format(v=0.3), "R2 o 0 0", "v(o)", 0.0, [
+        "I1 o 0 50m load",
+        "I1 o 0 PWL(0 50m) load",
+    ]),
+    Kind("a load the wrong way round", LOADED.format(v=-3), "R2 o 0 1t", "v(o)", -3.0, [
+        "I1 o 0 50m load",
+        "X1 o s\n.subckt s p\nI1 p 0 50m load\n.ends",
+    ]),
+    Kind("AM with phases", MODULATED, "V1 a 0 AM(0.5 2 180 3k 1m)", "v(a)", modulated(0, 0), [
+        "V1 a 0 AM(0.5 2 180 3k 1m 0 0)",
+        "V1 a 0 AM(0.5 2 180 3k 1m 0)",
+        "V1 a 0 AM 0.5 2 180 3k 1m 0 0",
+        "V1 a 0 AM(0.5, 2, 180, 3k, 1m, 360, 0)",
+        "V1 a 0 AM(0.5 2 180 3k 1m 0 360)",
+    ]),
+    Kind("AM with a phase of the carrier", MODULATED, "V1 a 0 AM(0.5 2 180 3k 1m 0 90)", "v(a)",
+         modulated(0, 90), ["V1 a 0 AM(0.5 2 180 3k 1m 360 450)"]),
+    Kind("AM with a phase of the signal", MODULATED, "V1 a 0 AM(0.5 2 180 3k 1m 90)", "v(a)",
+         modulated(90, 0), ["V1 a 0 AM(0.5 2 180 3k 1m -270 0)"]),
+    Kind("the bracket behind ENDREPEAT", "@\nR1 a 0 1k\n.tran 1.21m\n",
+         "V1 a 0 PWL(0 0 0.2m 0 REPEAT FOREVER (0 2 0.5m 2 0.5m -2 1m -2) ENDREPEAT)", "v(a)",
+         2.0, [
+             "V1 a 0 PWL(0 0 0.2m 0 REPEAT FOREVER (0 2 0.5m 2 0.5m -2 1m -2) ENDREPEAT",
+             "V1 a 0 PWL(0 0 0.2m 0 REPEAT FOREVER 0 2 0.5m 2 0.5m -2 1m -2 ENDREPEAT",
+             "V1 a 0 PWL(0 0 0.2m 0 repeat forever (0 2 0.5m 2 0.5m -2 1m -2) endrepeat",
+             "V1 a 0 PWL 0 0 0.2m 0 REPEAT FOREVER (0 2 0.5m 2 0.5m -2 1m -2) ENDREPEAT",
+             "V1 a 0 PWL(0 0 +0.2m 0 REPEAT FOREVER (0 2 +0.5m 2 0.5m -2 1m -2) ENDREPEAT",
+             "V1 a 0 PWL((0 0) (0.2m 0) REPEAT FOREVER (0 2 0.5m 2 0.5m -2 1m -2) ENDREPEAT",
+             "V1 a 0 DC 0 PWL(0 0 0.2m 0 REPEAT FOREVER (0 2 0.5m 2 0.5m -2 1m -2) ENDREPEAT",
+             "V1 a 0 PWL(0 0 0.2m 0\n+ REPEAT FOREVER (0 2 0.5m 2 0.5m -2 1m -2) ENDREPEAT",
+             "I1 0 a PWL(0 0 0.2m 0 REPEAT FOREVER (0 2m 0.5m 2m 0.5m -2m 1m -2m) ENDREPEAT",
+             "X1 a s\n.subckt s p\n"
+             "V1 p 0 PWL(0 0 0.2m 0 REPEAT FOREVER (0 2 0.5m 2 0.5m -2 1m -2) ENDREPEAT\n.ends",
+         ], [("V1 a 0 PWL(0 0 0.2m 0", "never closed"),
+             ("V1 a 0 PWL(0 0 REPEAT FOR 2 (0 2 0.5m 2) ENDREPEAT", "never closed")]),
+    Kind("tc1 behind a formula", "V1 a 0 1\n@\nR1 b 0 1k\n.op\n", "B1 b 0 V=2*v(a)", "v(b)", 2.0, [
+        "B1 b 0 V = 2*v(a) tc1=0.001",
+        "B1 b 0 V={2*v(a)} tc1=0.001 tc2=0",
+        "B1 b 0 V=2*v(a) temp=50",
+        "B1 b 0 V=2*v(a) dtemp=1 tc1=1m",
+        "B1 b 0 V=2*v(a) tc=1m,0",
+        "B1 0 b I=2m*v(a) tc1=0.001",
+        "B1 b 0 V=2*v(a) TC1={1m}",
+        "E1 b 0 VALUE={2*v(a)} tc1=0.001",
+        "G1 0 b VALUE={2m*v(a)} tc1=0.001",
+        "X1 a b s\n.subckt s p q\nB1 q 0 V=2*v(p) tc1=0.001 tc2=1u\n.ends",
+    ], [("B1 b 0 V=2*v(a) gain=1", "did not expect")]),
+]
+
+# ---- Parameters, conditions, formulas --------------------------------------------------------------
+
+CHOSEN = "V1 a 0 10\n@\nR9 a b 1k\n.op\n"
+LOGIC = "V1 a 0 {x}\nV2 b 0 {y}\n@\nR1 x 0 1k\n.op\n"
+PARAMETERS = [
+    Kind(".param without an equal sign", "@\nR1 a 0 1\n.op\n", ".param v=5\nV1 a 0 {v}", "v(a)", 5.0, [
+        ".param v 5\nV1 a 0 {v}",
+        ".PARAM V 5\nV1 a 0 {v}",
+        ".param v {5}\nV1 a 0 {v}",
+        ".param v '2+3'\nV1 a 0 {v}",
+        ".param v 5 w 3\nV1 a 0 {v*w/3}",
+        ".param w 3 v=5\nV1 a 0 {v*w/3}",
+        ".param v w+2\n.param w 3\nV1 a 0 {v}",
+        ".param v -w\n.param w -5\nV1 a 0 {v}",
+        ".param v 5V\nV1 a 0 {v}",
+        ".params v 5000m\nV1 a 0 v",
+        "X1 a s\n.subckt s p\n.param v 5\nV1 p 0 {v}\n.ends",
+    ], [(".param v\nV1 a 0 5", "expected name=value"), (".param 5 v\nV1 a 0 5", "expected name=value")]),
+    Kind("= in a condition", CHOSEN, ".param n=2\n.if (n == 2)\nR1 b 0 1k\n.else\nR1 b 0 3k\n.endif",
+         "v(b)", 5.0, [
+             ".param n=2\n.if (n = 2)\nR1 b 0 1k\n.else\nR1 b 0 3k\n.endif",
+             ".param n=2\n.if (n=2)\nR1 b 0 1k\n.else\nR1 b 0 3k\n.endif",
+             ".param n=2\n.if n = 2\nR1 b 0 1k\n.else\nR1 b 0 3k\n.endif",
+             ".param n=2\n.if (n = 1)\nR1 b 0 3k\n.elseif (n = 2)\nR1 b 0 1k\n.endif",
+             ".param n=2 m=3\n.if (n = 2 && m = 3)\nR1 b 0 1k\n.else\nR1 b 0 3k\n.endif",
+             ".param n=2 m=3\n.if ((n = 1) || (m = 3))\nR1 b 0 1k\n.else\nR1 b 0 3k\n.endif",
+             ".param n=2\n.if (n+1 = 3)\nR1 b 0 1k\n.else\nR1 b 0 3k\n.endif",
+             ".param n=2\n.if (3 = n)\nR1 b 0 3k\n.elseif (2 = n)\nR1 b 0 1k\n.endif",
+             ".param n=2\n.if (n <= 2)\n.if (n = 2)\nR1 b 0 1k\n.endif\n.endif",
+             ".param n=2\n.if (!(n = 3))\nR1 b 0 1k\n.else\nR1 b 0 3k\n.endif",
+             "X1 b s n=2\n.subckt s p n=1\n.if (n = 2)\nR1 p 0 1k\n.else\nR1 p 0 3k\n.endif\n.ends",
+         ], [(".param n={1=1}\nR1 b 0 1k", "a comparison is written ==")]),
+    Kind("m= of a subcircuit", "V1 a 0 10\n@\nR9 a b 1k\n.op\n", "R1 b 0 1k", "v(b)", 5.0, [
+        "X1 b 0 s m=2\n.subckt s p q\nR1 p x 1k\nR2 x q 1k\n.ends",
+        "X1 b 0 s M=4\n.subckt s p q\nR1 p q 4k\n.ends",
+        "X1 b 0 s m=0.5\n.subckt s p q\nR1 p q 500\n.ends",
+        "X1 b 0 s r=2k m=2\n.subckt s p q r=1\nR1 p q {r}\n.ends",
+        "X1 b 0 s m={1+1}\n.subckt s p q\nR1 p q 2k\n.ends",
+        "X1 b 0 t m=2\n.subckt t p q\nX2 p q s m=2\n.ends\n.subckt s p q\nR1 p q 4k\n.ends",
+        "X1 b 0 t\n.subckt t p q\nX2 p q s m=2\n.ends\n.subckt s p q\nR1 p q 4k m=2\n.ends",
+        "X1 b 0 s m=5\n.subckt s p q\nI1 p q 1m\n.ends",
+        "X1 b 0 s m=2\n.subckt s p q\nG1 p q p q 0.5m\n.ends",
+        "X1 b 0 s m=10\n.subckt s p q\nD1 p q d\n.model d D(Ron=10k)\n.ends",
+        "X1 b 0 s m=2\n.subckt s p q\nV1 g 0 1\nS1 p q g 0 w\n.model w SW(Ron=2k Vt=0.5)\n.ends",
+        "X1 b 0 s m=2\n.subckt s p q\nE1 x 0 p 0 0.5\nR1 p x 1k\n.ends",
+        "X1 b 0 s m=2\n.subckt s p q m=1\nR1 p q {1k*m/2}\n.ends",
+    ], [("X1 b 0 s m=2\n.subckt s p q\nV1 p x 0\nF1 x q V1 1\nR1 x q 1k\n.ends", "'x1.f1' reads a current"),
+        ("X1 b 0 s m=-2\n.subckt s p q\nR1 p q 1k\n.ends", "must be positive")]),
+]
+for x, y in ((0, 0), (0, 5), (5, 0), (5, 5)):
+    XOR = float(5 * ((x > 2.5) != (y > 2.5)))
+    PARAMETERS.append(
+        Kind(f"comparisons that differ, {x} and {y}", LOGIC.format(x=x, y=y),
+             "B1 x 0 V=((v(a) > 2.5) && !(v(b) > 2.5)) || (!(v(a) > 2.5) && (v(b) > 2.5)) ? 5 : 0",
+             "v(x)", XOR, [
+                 "B1 x 0 V = ((v(a) > 2.5) != (v(b) > 2.5)) ? 5 : 0",
+                 "B1 x 0 V = ((v(a) > 2.5) <> (v(b) > 2.5)) ? 5 : 0",
+                 "B1 x 0 V = ((v(a) > 2.5) == (v(b) > 2.5)) ? 0 : 5",
+                 "B1 x 0 V = 5*((v(a) > 2.5) != (v(b) > 2.5))",
+                 "B1 x 0 V = if((v(a) < 2.5) != (v(b) < 2.5), 5, 0)",
+                 "B1 x 0 V = ((v(a) > 2.5) == (v(b) < 2.5)) ? 5 : 0",
+                 "B1 x 0 V = ((v(a) > 2.5) != ((v(b) > 2.5) == 1)) ? 5 : 0",
+                 "B1 x 0 V = (!(v(a) > 2.5) == (v(b) > 2.5)) ? 5 : 0",
+                 "B1 x 0 V = (((v(a) > 2.5) != (v(b) > 2.5)) != 0) ? 5 : 0",
+                 "E1 x 0 VALUE={((v(a) > 2.5) != (v(b) > 2.5)) ? 5 : 0}",
+                 "X1 a b x s\n.subckt s p q r\nB1 r 0 V=((v(p)>2.5) != (v(q)>2.5)) ? 5 : 0\n.ends",
+             ], [("B1 x 0 V = (v(a) != v(b)) ? 5 : 0", "single points")]))
+
+# ---- Analyses --------------------------------------------------------------------------------------
+
+SLOW = "V1 a 0 10\nR1 a b 1k\nC1 b 0 1u\n@\n"
+# Through a ramp of 20 us and then for 480 us: v = 10 - 10 tau/T (e^(T/tau) - 1) e^(-t/tau).
+RAISED = 10 - 10 * (1e-3 / 20e-6) * math.expm1(20e-6 / 1e-3) * math.exp(-0.5)
+ANALYSES = [
+    Kind("startup", SLOW, ".tran 0.5m startup", "v(b)", RAISED, [
+        ".tran 0 0.5m startup",
+        ".tran 0 0.5m 0 startup",
+        ".tran 0.5m STARTUP",
+        ".tran 1u 0.5m 0 1u startup",
+        ".tran 0.5m startup nodiscard",
+        ".tran 0.5m startup uic",
+        ".tran {0.5m} startup",
+    ], [(".tran 0.5m steady", "not supported")]),
+]
+
+NOTED = [
+    ("reltol", "V1 a 0 1\nR1 a 0 1\n.options reltol=0.2\n.op\n", "a tolerance of 0.2 is cut to 0.1"),
+    ("reltol", "V1 a 0 1\nR1 a 0 1\n.options abstol=0.2 reltol=0.5\n.op\n", "is cut to 0.1"),
+    ("a power", "V1 a 0 1\nR1 a 0 1\n.print op v(a) P(r1) W(r1)\n.op\n", "p(...) is left out"),
+    ("a power", "V1 a 0 1\nR1 a 0 1\n.print op v(a) W(r1)\n.op\n", "w(...) is left out"),
+    ("startup", "V1 a 0 SIN(1 1 50)\nR1 a 0 1\n.tran 1m startup\n", "does not start at 0"),
+    ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n"
+     ".lib C:\\Program Files (x86)\\LTC\\LTspiceIV\\lib\\cmp\\standard.dio\n", "is left out"),
+    ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n.lib C:\\a b\\lib\\cmp\\standard.mos\n", "is left out"),
+    ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n.lib /home/me/my lib (2)/cmp/Standard.BJT\n", "is left out"),
+    ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n.lib standard.cap\n", "is left out"),
+    ("a library", "V1 a 0 1\nR1 a 0 1\n.op\n.include C:\\LTC\\cmp\\standard.jft\n", "is left out"),
+]
+
+
+def check_notes(checker, program):
+    for name, body, words in NOTED:
+        done = run(program, f"{name}\n{body}.end\n", method=None, report=False, quiet=False)
+        checker.check(done.status == 0 and words in done.stderr,
+                      f"{name}: ends with {done.status}, without '{words}'\n{done.stderr}")
+
+
+def check_table(checker, program):
+    """A table of time with thousands of points is a triangle at each."""
+    for n in (600, 5000):
+        points = "".join(f"+ ,{k / 10:.1f}u,{k % 2}\n" for k in range(n))
+        done = run(program, f"table\nB1 a 0 V={{table(time\n{points}+ )}}\nR1 a 0 1\n"
+                   f".tran 1u {n / 10 - 0.15:.2f}u\n.end\n", method=None, report=False)
+        checker.check(done.status == 0, done.stderr)
+        if done.rows:
+            checker.close(done.column("v(a)")[-1], 0.5, 1e-6, f"{n} points: the last value")
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    checker = Checker("spellings")
+    for kind in ELEMENTS + DIODES + MODELS + SOURCES + PARAMETERS + ANALYSES:
+        check(checker, program, kind)
+    check_notes(checker, program)
+    check_table(checker, program)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,200 @@
+#!/usr/bin/env python3
+"""Thyristors, GTOs and triacs as elements: converters against closed forms, and each of their limits.
+
+The means are those of Mohan, Undeland and Robbins, Power Electronics, chapter 6.
+
+usage: thyristors.py PROGRAM
+"""
+
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker, run  # noqa: E402
+
+EXACT = 1e-7
+
+
+def gate(name, angle, width, f, high=1):
+    return f"v{name} {name} 0 pulse(0 {high} {angle / 360 / f!r} 0 0 {width / 360 / f!r} {1 / f!r})"
+
+
+def half_wave(v, f, alpha, r):
+    cards = [f"v1 a 0 sin(0 {v} {f})", gate("g", alpha, 20, f), "a1 a o g 0 th", f"r1 o 0 {r}"]
+    return cards, "v(o)", v / (2 * math.pi) * (1 + math.cos(math.radians(alpha)))
+
+
+def half_wave_inductive(v, f, alpha, r):
+    """To the angle of extinction, where v/z (sin(t - phi) - sin(alpha - phi) exp(...)) is 0 again."""
+    w, x = 2 * math.pi * f, r
+    phi, a = math.atan2(x, r), math.radians(alpha)
+    low, high = math.pi, 2 * math.pi
+    for _ in range(200):
+        b = (low + high) / 2
+        i = math.sin(b - phi) - math.sin(a - phi) * math.exp(-(b - a) * r / x)
+        low, high = (b, high) if i > 0 else (low, b)
+    cards = [f"v1 a 0 sin(0 {v} {f})", gate("g", alpha, 20, f), "a1 a p g 0 th", f"l1 p o {x / w!r} ic=0",
+             f"r1 o 0 {r}"]
+    return cards, "v(o)", v / (2 * math.pi) * (math.cos(a) - math.cos(b))
+
+
+def regulator(v, f, alpha, r):
+    """Two of them, the one against the other; the mean is of the magnitude."""
+    a = math.radians(alpha)
+    cards = [f"v1 a 0 sin(0 {v} {f})", gate("g1", alpha, 20, f), gate("g2", alpha + 180, 20, f), "a1 a o g1 0 th",
+             "a2 o a g2 0 th", f"r1 o 0 {r}"]
+    return cards, "abs(v(o))", v / math.pi * (1 + math.cos(a))
+
+
+def triac_regulator(v, f, alpha, r):
+    """The same with one triac, which pulses of either sign turn on."""
+    a = math.radians(alpha)
+    cards = [f"v1 a 0 sin(0 {v} {f})", gate("g1", alpha, 20, f), gate("g2", alpha + 180, 20, f, -1),
+             "e1 g 0 value={v(g1)+v(g2)}", "a1 a o g 0 tr", f"r1 o 0 {r}"]
+    return cards, "abs(v(o))", v / math.pi * (1 + math.cos(a))
+
+
+def triac_inductive(v, f, alpha, r):
+    """With a coil each half wave ends behind the zero of the voltage."""
+    cards, _, mean = half_wave_inductive(v, f, alpha, r)
+    w = 2 * math.pi * f
+    cards = [f"v1 a 0 sin(0 {v} {f})", gate("g1", alpha, 20, f), gate("g2", alpha + 180, 20, f),
+             "e1 g 0 value={v(g1)+v(g2)}", "a1 a p g 0 tr", f"l1 p o {r / w!r} ic=0", f"r1 o 0 {r}"]
+    return cards, "abs(v(o))", 2 * mean
+
+
+def bridge(v, f, alpha, r):
+    """With a current that never ends: 2 v/pi cos(alpha)."""
+    cards = [f"v1 a b sin(0 {v} {f})", "r9 b 0 1", gate("g1", alpha, 120, f), gate("g2", alpha + 180, 120, f),
+             "a1 a p g1 0 th", "a2 n b g1 0 th", "a3 b p g2 0 th", "a4 n a g2 0 th",
+             f"l1 p o {20 * r / (2 * math.pi * f)!r} ic=0", f"r1 o n {r}"]
+    return cards, "v(p,n)", 2 * v / math.pi * math.cos(math.radians(alpha))
+
+
+def half_controlled(v, f, alpha, r):
+    cards = [f"v1 a b sin(0 {v} {f})", gate("g1", alpha, 20, f), gate("g2", alpha + 180, 20, f), "a1 a p g1 0 th",
+             "a2 b p g2 0 th", "d1 0 a di", "d2 0 b di", f"r1 p 0 {r}", ".model di d(ron=0)"]
+    return cards, "v(p)", v / math.pi * (1 + math.cos(math.radians(alpha)))
+
+
+def three_pulse(v, f, alpha, r):
+    cards = [f"v{k} {n} 0 sin(0 {v} {f} 0 0 {-120 * k})" for k, n in enumerate("abc")]
+    cards += [gate(f"g{k}", 30 + alpha + 120 * k, 100, f) for k in range(3)]
+    cards += [f"a{k} {n} p g{k} 0 th" for k, n in enumerate("abc")]
+    cards += [f"l1 p o {20 * r / (2 * math.pi * f)!r} ic=0", f"r1 o 0 {r}"]
+    return cards, "v(p)", 3 * math.sqrt(3) * v / (2 * math.pi) * math.cos(math.radians(alpha))
+
+
+def six_pulse(v, f, alpha, r):
+    cards = [f"v{k} {n} 0 sin(0 {v} {f} 0 0 {-120 * k})" for k, n in enumerate("abc")]
+    cards += [gate(f"g{k}", 30 + alpha + 120 * k, 100, f) for k in range(3)]
+    cards += [gate(f"h{k}", (210 + alpha + 120 * k) % 360, 100, f) for k in range(3)]
+    cards += [f"a{k} {n} p g{k} 0 th" for k, n in enumerate("abc")]
+    cards += [f"a{k + 3} n {n} h{k} 0 th" for k, n in enumerate("abc")]
+    cards += [f"l1 p o {20 * r / (2 * math.pi * f)!r} ic=0", f"r1 o n {r}"]
+    return cards, "v(p,n)", 3 * math.sqrt(3) * v / math.pi * math.cos(math.radians(alpha))
+
+
+# converter, volts, hertz, degrees, ohms, periods until the coil has its current
+CONVERTERS = (
+    (half_wave, 325, 50, 60, 10, 2), (half_wave, 0.5, 1e6, 100, 1e3, 2), (half_wave, 2e4, 0.01, 30, 0.5, 2),
+    (half_wave_inductive, 170, 60, 45, 5, 3), (half_wave_inductive, 1e3, 400, 100, 100, 3),
+    (regulator, 325, 50, 90, 10, 2), (regulator, 10, 1e3, 40, 1e4, 2),
+    (triac_regulator, 325, 50, 90, 10, 2), (triac_regulator, 10, 1e3, 40, 1e4, 2),
+    (triac_inductive, 325, 50, 100, 10, 3), (triac_inductive, 24, 400, 120, 1, 3),
+    (bridge, 325, 50, 40, 10, 40), (half_controlled, 325, 50, 75, 8, 2),
+    (three_pulse, 100, 50, 20, 5, 40), (six_pulse, 325, 50, 30, 10, 40), (six_pulse, 5e3, 16.7, 55, 2, 40),
+)
+MODELS = ".model th thyristor(Vgt=0.5{more})\n.model tr triac(Vgt=0.5{more})"
+
+
+def converters(checker, program):
+    for converter, v, f, alpha, r, periods in CONVERTERS:
+        cards, output, mean = converter(v, f, alpha, r)
+        stop, period = periods / f, 1 / f
+        for more in ("", f" Voff={1e-9 * v!r}", f" Vfwd={1e-6 * v!r}"):
+            what = f"{converter.__name__} at {v} V and {f} Hz{more}"
+            done = run(program, "\n".join([what, MODELS.format(more=more), *cards,
+                                           f".tran {period / 200!r} {stop!r} uic",
+                                           f".meas tran m avg {output} from={stop - period!r} to={stop!r}", ".end", ""]),
+                       method=None)
+            if checker.check(done.status == 0, f"{what}: {done.stderr}"):
+                got = done.report["measurements"][0]["value"]
+                checker.close(got, mean, (1e-6 if not more.startswith(" Vfwd") else 4e-6) * v + 2e-3 * 1e-3,
+                              f"{what}: the mean")
+                checker.check("connection" not in done.stderr, f"{what}: {done.stderr}")
+
+
+def run_at(program, text):
+    return run(program, text, method=None, tolerance=1e-10)
+
+
+def limits(checker, program):
+    """The gate's voltage that closes, the current and the voltages that open: each at its time."""
+    ramp = "a ramp at the gate\nv1 a 0 {v}\nvg g 0 PWL(0 0 1m 1)\na1 a o g 0 th\nr1 o 0 10\n.tran 10u 1m\n" \
+           ".meas tran t when v(o)=1 rise=1\n.model th {model}\n.end\n"
+    for model, vgt in (("thyristor", 0.5), ("thyristor(Vgt=0.2)", 0.2), ("scr(Vgt=0.8 Ih=10m)", 0.8),
+                       ("gto(Vgt=0.3)", 0.3), ("thyristor(Vgt=0.7 Ih=0.1)", 0.7)):
+        done = run_at(program, ramp.format(v=10, model=model))
+        checker.check(done.status == 0, done.stderr)
+        checker.close(done.report["measurements"][0]["value"], vgt * 1e-3, 1e-12, f"{model} closes")
+    for v, model in ((-10, "thyristor"), (-10, "gto(Ih=1m)")):
+        done = run_at(program, ramp.format(v=v, model=model).replace(".meas tran t when v(o)=1 rise=1",
+                                                                     ".meas tran t max abs(i(a1))"))
+        checker.close(done.report["measurements"][0]["value"], 0.0, 0.0, f"{model} blocks backwards")
+    fade = "a current that fades\ni1 0 a PWL(0 2 1m 0)\nr9 a 0 1k\nvg g 0 PULSE(1 0 0.1m)\na1 a o g 0 th\nr1 o 0 {r}\n" \
+           ".tran 1u 1m\n.meas tran t when i(a1)=1u fall=last\n.model th {model}\n.end\n"
+    for model, r, holding in (("thyristor(Ih=0.5)", 0, 0.5), ("thyristor(Ih=50m)", 0, 0.05), ("gto(Ih=1)", 0, 1),
+                              ("triac(Ih=0.25)", 0, 0.25), ("thyristor(Ih=0.5)", 10, 0.5)):
+        share = 1000 / (1000 + r)
+        done = run_at(program, fade.format(model=model, r=r))
+        checker.check(done.status == 0, done.stderr)
+        checker.close(done.report["measurements"][0]["value"], (1 - holding / share / 2) * 1e-3, 1e-9,
+                      f"{model} into {r} ohm opens")
+    off = "a gate that turns off\nv1 a 0 10\nvg g 0 PWL(0 1 1m -1)\na1 a o g 0 th\nr1 o 0 10\n.tran 1u 1m\n" \
+          ".meas tran t when v(o)=1 fall=1\n.model th {model}\n.end\n"
+    for model, volts in (("gto(Vgoff=0.5)", 0.5), ("gto(Vgoff=0.25 Ih=1m)", 0.25), ("gto", 0.5)):
+        done = run_at(program, off.format(model=model))
+        checker.check(done.status == 0, done.stderr)
+        checker.close(done.report["measurements"][0]["value"], (1 + volts) / 2 * 1e-3, 1e-9, f"{model} opens")
+    done = run_at(program, off.format(model="thyristor").replace("when v(o)=1 fall=1", "min v(o)"))
+    checker.close(done.report["measurements"][0]["value"], 10.0, 1e-9, "no gate turns a thyristor off")
+
+
+def names(checker, program):
+    """One element in results and events; in subcircuits; with a line of its own; wrong cards."""
+    cards = "{0}\nv1 a 0 SIN(0 10 50)\nvg g 0 PULSE(0 1 5m 0 0 1m 20m)\n{1}\nr1 o 0 10\n.tran 0.1m 20m\n.end\n"
+    for line, current in (
+            ("a1 a o g 0 th\n.model th thyristor", "i(a1)"),
+            ("a1 a o g o th\nrg g 0 1g\n.model th triac", "i(a1)"),
+            ("x1 a o g s\n.subckt s p q c\na1 p q c 0 th\n.model th thyristor\n.ends", "i(x1.a1)"),
+            ("x1 a o g s v=0.3\n.subckt s p q c v=1\na1 p q c 0 th\n.model th thyristor(Vgt={v})\n.ends", "i(x1.a1)")):
+        done = run_at(program, cards.format(line.replace("\n", "; "), line))
+        checker.check(done.status == 0 and current in done.names, f"{line}: {done.names} {done.stderr}")
+        if line.startswith("a1 a o g 0"):
+            events = [(e["element"], e["state"]) for e in done.report["events"]]
+            checker.check(("a1", "on") in events, f"{events}")
+            checker.check([n for n in done.names if "(" in n[2:]] == [], f"{done.names}")
+    done = run_at(program, "a line\nv1 a 0 10\na1 a o a 0 th\nr1 o 0 1\n.op\n.model th thyristor(Ron=0.25 Vfwd=1.25)\n.end\n")
+    checker.close(done.column("i(a1)")[0], 8.75 / 1.25, 1e-9, "Ron and Vfwd")
+    for line, words in (("a1 a o th\n.model th thyristor", "3 or 4 nodes"), ("a1 a o g 0 th\n.model th thyristor(Il=1)", "no meaning"),
+                        ("a1 a o g 0 th\n.model th thyristor(Vgt=0)", "must be positive"),
+                        ("a1 a o g 0 th\n.model th thyristor(Ih=-1)", "cannot be negative"),
+                        ("a1 a o g 0 th\n.model th triac(Vgoff=1)", "make it a gto"),
+                        ("a1 a o g 0 th\n.model th thyristor(Vgtt=1)", "did you mean 'vgt'"),
+                        ("d1 a o th\n.model th thyristor", "here D is wanted"), ("a1 a o g 0 th", "not supported yet")):
+        done = run_at(program, cards.format("wrong", line))
+        checker.check(done.status == 3 and words in done.stderr, f"{line}: {done.status} {done.stderr}")
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    checker = Checker("thyristors")
+    for part in (converters, limits, names):
+        part(checker, program)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
