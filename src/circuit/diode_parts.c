@@ -1,8 +1,9 @@
 /* diode_parts.c - a table of diodes.
  *
- * Typical values at 25 degrees, read off the curves of makers' datasheets to two digits, and the rated reverse voltage; of
- * families that differ in that alone one line each. Zeners have their nominal voltage, at the current that the
- * datasheets test it at. */
+ * Typical values at 25 degrees to two digits, as datasheets of such parts have them, and the rated reverse voltage; of
+ * families that differ in that alone one line each. They are the usual figures, checked against no single maker's sheet:
+ * where the second digit matters, a card of one's own says what it is. Zeners have their nominal voltage, at the current
+ * that the datasheets test it at. */
 #include "diode_parts.h"
 
 #include <stddef.h>
