@@ -41,7 +41,7 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double
         if (status == DALCS_OK && dalcs_certificate_holds(p, sources_clash)) {
             return DALCS_OK;
         }
-        struct dalcs_mode_entry *entry;
+        struct dalcs_mode_entry *entry = NULL;
         if (status >= DALCS_OK) {
             status = dalcs_modes_get(p, DALCS_PLAIN, &entry);
         }
