@@ -351,8 +351,7 @@ void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_car
     device->node[0] = from;
     device->node[1] = node[1];
     const int both[2] = {from, node[1]};
-    if (!expand_half(builder, token, device, model, &places) ||
-        (is_triac && !expand_back(builder, token, both, model, &places))) {
-        return;
+    if (expand_half(builder, token, device, model, &places) && is_triac) {
+        (void)expand_back(builder, token, both, model, &places); /* it has said what is wrong */
     }
 }

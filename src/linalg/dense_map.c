@@ -10,11 +10,11 @@
 double *dalcs_dense_map_alloc(int rows, int columns) {
     size_t bytes = (size_t)rows * (size_t)(columns > 0 ? columns : 1) * sizeof(double);
     bytes = (bytes + 63) / 64 * 64;
-    char *map = aligned_alloc(64, bytes + DALCS_DENSE_MAP_SPARE * sizeof(double));
+    double *map = aligned_alloc(64, bytes + DALCS_DENSE_MAP_SPARE * sizeof(*map));
     if (map != NULL) {
-        memset(map + bytes, 0, DALCS_DENSE_MAP_SPARE * sizeof(double));
+        memset(map + bytes / sizeof(*map), 0, DALCS_DENSE_MAP_SPARE * sizeof(*map));
     }
-    return (double *)(void *)map;
+    return map;
 }
 
 enum { MOST_QUADS = 8 };

@@ -37,21 +37,11 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u, double
             dalcs_osnsp_flip(p, diode[bit]);
         }
         bool sources_clash;
-        enum dalcs_status status = dalcs_osnsp_try_mode(p, u, y, &sources_clash);
-        if (status == DALCS_OK && dalcs_certificate_holds(p, sources_clash)) {
-            return DALCS_OK;
-        }
-        struct dalcs_mode_entry *entry = NULL;
-        if (status >= DALCS_OK) {
-            status = dalcs_modes_get(p, DALCS_PLAIN, &entry);
-        }
-        if (status == DALCS_OK && entry->singular) {
+        enum dalcs_status status = dalcs_exact_try_mode(p, u, y, &sources_clash);
+        if (status == DALCS_OK && !dalcs_certificate_holds(p, sources_clash)) {
             status = dalcs_open_mode_solve(p, u, y);
-            if (status == DALCS_OK) {
-                return DALCS_OK;
-            }
         }
-        if (status < DALCS_OK) {
+        if (status <= DALCS_OK) {
             return status;
         }
         p->counters.pivots++;

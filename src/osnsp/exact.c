@@ -55,8 +55,8 @@ static enum dalcs_status try_whole(struct dalcs_osnsp *p, struct dalcs_mode_entr
     return DALCS_OK;
 }
 
-static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double *y,
-                                  bool *sources_clash) {
+enum dalcs_status dalcs_exact_try_mode(struct dalcs_osnsp *p, const double *u, double *y,
+                                       bool *sources_clash) {
     struct dalcs_mode_entry *entry;
     DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &entry));
     enum dalcs_status status = dalcs_osnsp_try_mode(p, u, y, sources_clash);
@@ -71,7 +71,7 @@ static enum dalcs_status try_mode(struct dalcs_osnsp *p, const double *u, double
 enum dalcs_status dalcs_exact_pivot(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
     for (int round = 0; round <= limit; round++) {
         bool sources_clash;
-        DALCS_TRY(try_mode(p, u, y, &sources_clash));
+        DALCS_TRY(dalcs_exact_try_mode(p, u, y, &sources_clash));
         if (dalcs_certificate_holds(p, sources_clash)) {
             return DALCS_OK;
         }

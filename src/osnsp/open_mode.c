@@ -14,7 +14,7 @@
 
 struct open_mode {
     const struct dalcs_osnsp *p;
-    struct dalcs_whole whole;
+    const struct dalcs_whole *whole;
     size_t n_columns, n_pairs, n_parts; /* parts: of pairs, then of references */
     int n;                              /* directions that these see */
     double *direction;                  /* [n_choices][n_columns] */
@@ -66,10 +66,10 @@ static double size_of(const struct open_mode *m, const double *direction) {
 
 /* Gram and Schmidt; a direction of which only rounding is left says nothing new to the parts. */
 static void find_directions(struct open_mode *m) {
-    for (int k = 0; k < m->whole.n_choices; k++) {
+    for (int k = 0; k < m->whole->n_choices; k++) {
         double *direction = m->direction + (size_t)m->n * m->n_columns;
         double *part = m->part + (size_t)m->n * m->n_parts;
-        dalcs_whole_direction(&m->whole, k, direction);
+        dalcs_whole_direction(m->whole, k, direction);
         look_at_parts(m, direction, false, part);
         double before = size_of(m, direction);
         for (int j = 0; j < m->n; j++) {
@@ -128,7 +128,7 @@ static enum dalcs_status move(struct open_mode *m, double *y) {
 }
 
 static enum dalcs_status allocate(struct open_mode *m) {
-    size_t n_choices = (size_t)m->whole.n_choices;
+    size_t n_choices = (size_t)m->whole->n_choices;
     m->n_columns = (size_t)dalcs_system_n_columns(m->p->system);
     m->n_pairs = (size_t)m->p->system->n_pairs;
     m->n_parts = m->n_pairs + (size_t)m->p->n_references;
@@ -139,21 +139,23 @@ static enum dalcs_status allocate(struct open_mode *m) {
 }
 
 enum dalcs_status dalcs_open_mode_solve(struct dalcs_osnsp *p, const double *u, double *y) {
-    struct open_mode m = {.p = p};
-    bool sources_clash;
-    DALCS_TRY(dalcs_whole_factor(&m.whole, p, NULL));
+    struct dalcs_mode_entry *entry;
+    DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &entry));
+    if (!entry->singular || entry->whole == NULL) {
+        return DALCS_NOT_CONVERGED;
+    }
+    struct open_mode m = {.p = p, .whole = entry->whole};
     enum dalcs_status status = allocate(&m);
     if (status == DALCS_OK) {
-        dalcs_exact_evaluate(p, &m.whole, u, y, &sources_clash);
         look_at_parts(&m, y, true, m.sign);
         find_directions(&m);
         status = move(&m, y);
     }
-    dalcs_whole_finish(&m.whole);
     dalcs_arena_finish(&m.arena);
     if (status != DALCS_OK) {
         return status;
     }
+    bool sources_clash;
     dalcs_certificate_evaluate_with_states(p, u, y, &sources_clash);
     p->least_norm = true;
     return dalcs_certificate_holds(p, sources_clash) ? DALCS_OK : DALCS_NOT_CONVERGED;

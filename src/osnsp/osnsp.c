@@ -423,7 +423,7 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
         status = dalcs_basis_prefer(p, u, y);
     }
     p->looks_around =
-        false; /* what is certified by whole chains is so in every mode of that vertex */
+        false; /* not before: what whole chains certify they do in each mode of a vertex */
     p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;
     return status;
 }

@@ -164,7 +164,8 @@ enum dalcs_status dalcs_enumerate(struct dalcs_osnsp *p, const double *u,
 
 /* ---- open_mode.c --------------------------------------------------------------------------- */
 
-/* In p->mode, which is singular. DALCS_OK: certified; DALCS_NOT_CONVERGED: no answer of it has the right signs. */
+/* From y, the answer of p->mode that was evaluated last: where the mode is singular, that of least norm. DALCS_OK:
+ * certified; DALCS_NOT_CONVERGED: no answer of the mode has the right signs. */
 enum dalcs_status dalcs_open_mode_solve(struct dalcs_osnsp *p, const double *u,
                                         double *y) DALCS_MUST_CHECK;
 
@@ -173,6 +174,10 @@ enum dalcs_status dalcs_open_mode_solve(struct dalcs_osnsp *p, const double *u,
 /* Solves and evaluates in the mode of `whole`. */
 void dalcs_exact_evaluate(struct dalcs_osnsp *p, const struct dalcs_whole *whole, const double *u,
                           double *y, bool *sources_clash);
+
+/* In p->mode, singular or not, evaluated. DALCS_SINGULAR: it leaves too much open. */
+enum dalcs_status dalcs_exact_try_mode(struct dalcs_osnsp *p, const double *u, double *y,
+                                       bool *sources_clash) DALCS_MUST_CHECK;
 
 /* From p->mode on by block principal pivoting, at most `limit` changes, each mode answered with all the
  * digits that it has and, where it is singular, with the least norm. DALCS_OK: certified; DALCS_SINGULAR: a mode leaves

@@ -147,13 +147,9 @@ double dalcs_scales_row_terms(const struct dalcs_osnsp *p, const double *u, cons
 /* Roundings of the whole, over n: those of Arioli, Demmel and Duff. */
 static const double roundings = 1000.0;
 
-/* A row's terms over its norm, at most: what is recovered as a difference is counted with three. */
-static const double most_terms = 3.0;
-
 double dalcs_scales_own(const struct dalcs_osnsp *p, double terms, double norm) {
     double rounding = roundings * dalcs_system_n_columns(p->system) * DBL_EPSILON;
-    double own =
-        fmin(terms, most_terms * norm); /* an answer that runs away is bounded by the norm */
+    double own = fmin(terms, norm); /* an answer that runs away is bounded by the norm */
     return own > rounding * norm ? own : own + norm;
 }
 
