@@ -192,6 +192,8 @@ enum dalcs_status dalcs_micro_pair(struct dalcs_radau *r, struct dalcs_radau_par
     DALCS_TRY(dalcs_radau_implicit_step(r, part, h, tau, part->x, part->work.y1));
     memcpy(part->work.w1, c->osnsp.w, (size_t)c->system->n_pairs * sizeof(double));
     DALCS_TRY(dalcs_radau_implicit_step(r, part, h, 2.0 * tau, part->work.y1, part->work.y2));
+    /* What jumps at the instant has jumped in y2: increments of the next step over it are small, and their rounding is. */
+    dalcs_stages_stay_near(&part->stages, c->osnsp.mode, part->work.y2);
     return DALCS_OK;
 }
 

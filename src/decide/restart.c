@@ -127,16 +127,54 @@ static enum dalcs_status take_jump(struct dalcs_radau *r, struct dalcs_radau_par
     return DALCS_OK;
 }
 
-/* A jump that no problem without time tells is what micro-steps of length h see of it with the sources as they are just
- * behind it: where they fall at once, the state would follow them for a while only. */
-static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                        double h) {
+/* part->work.after becomes the limit of what micro-steps of length h and h/2 see, `whole` of the former; *is_near: what is
+ * left of it is of second order, and so the square of what they differ by over its scale: no more than the tolerance. */
+static void extrapolate_lengths(const struct dalcs_radau_part *part, const double *whole,
+                                bool *is_near) {
+    double *after = part->work.after;
+    *is_near = true;
+    for (int x = 0; x < part->component->system->n_x; x++) {
+        double scale = fmax(dalcs_step_scale(part, x, part->scales.unit),
+                            fmax(fabs(part->x[x]), fabs(after[x])));
+        double differ = after[x] - whole[x];
+        *is_near = *is_near && differ * differ <= part->inner_tolerance * scale * scale;
+        after[x] += differ;
+    }
+}
+
+/* Of micro-steps of length h and h/2, with the sources as they are just behind the instant. */
+static enum dalcs_status see_jump(struct dalcs_radau *r, struct dalcs_radau_part *part, double h,
+                                  bool *is_seen, bool *is_near) {
+    double *whole = r->base->after;
     bool noticeable;
     double closer;
-    enum dalcs_status status = dalcs_micro_pair(r, part, h, 0.0);
-    if (status == DALCS_OK &&
-        dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer)) {
-        DALCS_TRY(find_jump(r, part, h));
+    DALCS_TRY(dalcs_micro_pair(r, part, h, 0.0));
+    (void)dalcs_micro_extrapolate(part, whole, &noticeable, &closer);
+    DALCS_TRY(dalcs_micro_pair(r, part, 0.5 * h, 0.0));
+    *is_seen = dalcs_micro_extrapolate(part, part->work.after, &noticeable, &closer);
+    extrapolate_lengths(part, whole, is_near);
+    return DALCS_OK;
+}
+
+/* A jump that no problem without time tells is the limit of vanishing micro-steps (Heemels, Schumacher and Weiland 1999,
+ * thm 4.1), with the sources as they are just behind it: where they fall at once, the state would follow them for a
+ * while only. They get shorter until they tell it, or have no certificate. */
+static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                        double h) {
+    bool is_seen;
+    bool is_near;
+    double last = h;
+    enum dalcs_status status = see_jump(r, part, h, &is_seen, &is_near);
+    while (status == DALCS_OK && !is_near && dalcs_micro_shorter * last >= 64.0 * r->resolution) {
+        last *= dalcs_micro_shorter;
+        status = see_jump(r, part, last, &is_seen, &is_near);
+    }
+    if (status > DALCS_OK && last < h) {
+        last /= dalcs_micro_shorter;
+        status = see_jump(r, part, last, &is_seen, &is_near);
+    }
+    if (status == DALCS_OK && is_seen) {
+        DALCS_TRY(find_jump(r, part, 0.5 * last));
     }
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
     DALCS_TRY(dalcs_micro_steps(r, part, h)); /* for the mode */

@@ -74,6 +74,20 @@ def readers(nodes, source):
         yield "H and F", f"hz z1 0 {source} 5\nrz z1 0 1k\nfz 0 z2 {source} 2\nry z2 0 1k"
 
 
+def detectors(nodes, source, stop):
+    """Readers that drive states, which jump where what is read jumps."""
+    first, second = nodes
+    farads = stop * 1e-5  # with 1 kohm a hundredth of the run
+    yield "a peak detector", f"ez z1 0 {first} {second} 1\ndz z1 z2 d\ncz z2 0 {farads!r} ic=0\nrz z2 0 1k"
+    yield "a cell that doubles", (f"ez z1 0 {second} 0 -1\ncy z1 z2 {farads!r} ic=0\ndy 0 z2 d\ndz z2 z3 d\n"
+                                  f"cz z3 0 {farads / 3!r} ic=0\nrz z3 0 5k")
+    yield "a cable of diodes", f"ez zz 0 {first} 0 1\n" + "\n".join(
+        f"dz{k} {a} z{k} d\nrz{k} {a} z{k} 1k\ncz{k} z{k} 0 {farads / 10!r} ic=0"
+        for k, a in enumerate(["zz", *(f"z{k}" for k in range(11))])) + "\nrz z11 0 30"
+    if source:
+        yield "a peak of a current", f"hz z1 0 {source} 5\ndz z1 z2 d\ncz z2 0 {farads!r} ic=0\nrz z2 0 1k"
+
+
 def cards_of(cards, stop, extra):
     lines = [line + " d" if line.startswith("d") and len(line.split()) == 3 else line for line in cards.split("\n")]
     return "\n".join(["readers", *lines, MODELS, *extra, f".tran {float_of(stop) / 200!r} {stop} uic", ".end", ""])
@@ -117,7 +131,7 @@ def main():
         plain = run(sys.argv[1], cards_of(cards, stop, []), method=None)
         if not checker.check(plain.status == 0, f"{name}: {plain.stderr}"):
             continue
-        for kind, extra in readers(nodes, source):
+        for kind, extra in [*readers(nodes, source), *detectors(nodes, source, float_of(stop))]:
             what = f"{name}, with {kind}"
             read = run(sys.argv[1], cards_of(cards, stop, [extra]), method=None)
             if checker.check(read.status == 0, f"{what}: {read.stderr}"):

@@ -2,6 +2,7 @@
 
 import pathlib
 import random
+import re
 
 from agreement import Reference
 from circuits import write
@@ -38,9 +39,13 @@ def difference(program, name, circuit, change_name, function):
 
 
 def kind(found):
-    """Two differences are of one kind if they begin alike: the same exit, or waveforms or events."""
+    """Two differences are of one kind if they begin alike: the same exit and law, or waveforms or events."""
     words = found.split()
-    return words[:2] if words[0] == "exit" else ["steps"] if "implicit Euler" in found else []
+    if words[0] == "exit":
+        law = re.search(r"the audit finds (.*) broken", found)
+        return words[:2] + [law and law[1]]
+    signs = ("implicit Euler", "measurement", " off from ", " on from ", "times what is allowed")
+    return [sign for sign in signs if sign in found][:1]
 
 
 def shrunk(program, name, circuit, change_name, function, found):
