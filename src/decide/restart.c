@@ -156,24 +156,46 @@ static enum dalcs_status see_jump(struct dalcs_radau *r, struct dalcs_radau_part
     return DALCS_OK;
 }
 
+/* The same from ever shorter ones, until they tell the jump or have no certificate: the last length that has is *h. */
+static enum dalcs_status find_limit(struct dalcs_radau *r, struct dalcs_radau_part *part, double *h,
+                                    bool *is_seen) {
+    bool is_near;
+    const double longest = *h;
+    enum dalcs_status status = see_jump(r, part, *h, is_seen, &is_near);
+    while (status == DALCS_OK && !is_near && dalcs_micro_shorter * *h >= 64.0 * r->resolution) {
+        *h *= dalcs_micro_shorter;
+        status = see_jump(r, part, *h, is_seen, &is_near);
+    }
+    if (status > DALCS_OK && *h < longest) {
+        *h /= dalcs_micro_shorter;
+        status = see_jump(r, part, *h, is_seen, &is_near);
+    }
+    return status;
+}
+
+/* Puts states that nothing which reads acts on where they jump to, as far as that is known. */
+static void move_first(const struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    const struct dalcs_euler *e = r->base;
+    const bool *is_driven = e->jumps.is_driven[part->index];
+    for (int x = 0; e->jump.is_first && x < part->component->system->n_x; x++) {
+        part->x[x] = is_driven[x] ? part->x[x] : e->jump.after[x];
+    }
+}
+
 /* A jump that no problem without time tells is the limit of vanishing micro-steps (Heemels, Schumacher and Weiland 1999,
  * thm 4.1), with the sources as they are just behind it: where they fall at once, the state would follow them for a
- * while only. They get shorter until they tell it, or have no certificate. */
+ * while only. Where sources that read act on states the others are where they jump to before: currents of these that
+ * are read are finite then. */
 static enum dalcs_status take_seen_jump(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                         double h) {
+    const size_t bytes = (size_t)part->component->system->n_x * sizeof(double);
     bool is_seen;
-    bool is_near;
     double last = h;
-    enum dalcs_status status = see_jump(r, part, h, &is_seen, &is_near);
-    while (status == DALCS_OK && !is_near && dalcs_micro_shorter * last >= 64.0 * r->resolution) {
-        last *= dalcs_micro_shorter;
-        status = see_jump(r, part, last, &is_seen, &is_near);
-    }
-    if (status > DALCS_OK && last < h) {
-        last /= dalcs_micro_shorter;
-        status = see_jump(r, part, last, &is_seen, &is_near);
-    }
-    if (status == DALCS_OK && is_seen) {
+    memcpy(part->work.before, part->x, bytes);
+    move_first(r, part);
+    enum dalcs_status status = find_limit(r, part, &last, &is_seen);
+    memcpy(part->x, part->work.before, bytes);
+    if (status == DALCS_OK && (is_seen || r->base->jump.is_first)) {
         DALCS_TRY(find_jump(r, part, 0.5 * last));
     }
     DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);

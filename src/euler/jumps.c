@@ -20,10 +20,11 @@ struct dalcs_jump_part {
     int owner; /* system of the circuit */
     int next;  /* part of the same owner, -1: last */
     struct dalcs_osnsp osnsp;
-    double *u, *y; /* [n_x + n_inputs], [n_columns] */
-    int *state;    /* [n_x] the owner's column */
-    int *pair;     /* [n_pairs] the owner's pair */
-    int *input;    /* [n_inputs] the owner's; 0 for the constant 1 */
+    double *u, *y;  /* [n_x + n_inputs], [n_columns] */
+    bool is_driven; /* sources that read act on one of its states: it is no problem of its own */
+    int *state;     /* [n_x] the owner's column */
+    int *pair;      /* [n_pairs] the owner's pair */
+    int *input;     /* [n_inputs] the owner's; 0 for the constant 1 */
     int n_sources;
 
     struct source {
@@ -151,6 +152,13 @@ static enum dalcs_status leave_out_dependent_coils(struct dalcs_jumps *j,
     return DALCS_OK;
 }
 
+static void mark_driven(const struct dalcs_jumps *j, struct dalcs_jump_part *part) {
+    const bool *is_driven = j->is_driven[part->owner];
+    for (int x = 0; x < part->osnsp.system->n_x && is_driven != NULL; x++) {
+        part->is_driven = part->is_driven || is_driven[part->state[x]];
+    }
+}
+
 /* The systems with states of one of the two networks. */
 static enum dalcs_status add_parts(struct dalcs_jumps *j, enum dalcs_impulse_kind kind,
                                    const struct places *places,
@@ -165,6 +173,9 @@ static enum dalcs_status add_parts(struct dalcs_jumps *j, enum dalcs_impulse_kin
             part_of[k] = j->n_parts++;
             part->kind = kind;
             status = part_setup(part, network, k, places, options);
+            if (status == DALCS_OK) {
+                mark_driven(j, part);
+            }
             part->next = j->first_part[part->owner];
             j->first_part[part->owner] = part_of[k];
         }
@@ -183,18 +194,27 @@ static enum dalcs_status add_parts(struct dalcs_jumps *j, enum dalcs_impulse_kin
     return status;
 }
 
-/* Sources that only read, and act on no state, take no part in a jump. */
-static enum dalcs_status find_whether_covered(const struct dalcs_network *network, int k,
-                                              bool *is_covered) {
+/* Sources that only read, and act on no state, take no part in a jump; states that they act on come behind the others. */
+static enum dalcs_status find_whether_covered(struct dalcs_jumps *j,
+                                              const struct dalcs_network *network, int k) {
     if (network->jumps_are_covered != NULL) {
-        *is_covered = network->jumps_are_covered[k];
+        j->is_covered[k] = network->jumps_are_covered[k];
         return DALCS_OK;
     }
+    const size_t n_x = (size_t)network->system[k].n_x;
     struct dalcs_partition p;
     DALCS_TRY(dalcs_partition_find(&p, &network->system[k]));
-    *is_covered = p.all_monotone && p.jumps_as_usual;
+    j->is_covered[k] = p.all_monotone && p.jumps_as_usual;
+    enum dalcs_status status = DALCS_OK;
+    if (p.all_monotone && !p.jumps_as_usual) {
+        j->is_driven[k] = dalcs_alloc(n_x, sizeof(bool));
+        status = j->is_driven[k] == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    }
+    for (size_t x = 0; status == DALCS_OK && j->is_driven[k] != NULL && x < n_x; x++) {
+        j->is_driven[k][x] = p.is_driven[x];
+    }
     dalcs_partition_finish(&p);
-    return DALCS_OK;
+    return status;
 }
 
 static enum dalcs_status find_parts(struct dalcs_jumps *j, const struct dalcs_circuit *circuit,
@@ -209,14 +229,15 @@ static enum dalcs_status find_parts(struct dalcs_jumps *j, const struct dalcs_ci
     j->part = dalcs_alloc(n, sizeof(*j->part));
     j->first_part = dalcs_alloc((size_t)j->n_systems, sizeof(int));
     j->is_covered = dalcs_alloc((size_t)j->n_systems, sizeof(bool));
-    if (j->part == NULL || j->first_part == NULL || j->is_covered == NULL) {
+    j->is_driven = dalcs_alloc((size_t)j->n_systems, sizeof(*j->is_driven));
+    if (j->part == NULL || j->first_part == NULL || j->is_covered == NULL || j->is_driven == NULL) {
         return DALCS_E_NOMEM;
     }
     enum dalcs_status status = find_places(&places, network);
     if (status == DALCS_OK) {
         for (int k = 0; k < j->n_systems && status == DALCS_OK; k++) {
             j->first_part[k] = -1;
-            status = find_whether_covered(network, k, &j->is_covered[k]);
+            status = find_whether_covered(j, network, k);
         }
     }
     if (status == DALCS_OK) {
@@ -308,6 +329,24 @@ static void read_answer(const struct dalcs_jump_part *part, const double *inputs
     answer->source_work += source_work(part, inputs);
 }
 
+static enum dalcs_status solve_part(struct dalcs_jump_part *part, const uint64_t *mode,
+                                    const double *x, const double *inputs,
+                                    struct dalcs_jump_answer *answer) {
+    const struct dalcs_system *of = part->osnsp.system;
+    for (int i = 0; i < of->n_x; i++) {
+        part->u[i] = is_its_own(part, i) ? x[part->state[i]] : 0.0;
+    }
+    for (int i = 0; i < of->n_inputs; i++) {
+        part->u[of->n_x + i] = inputs[part->input[i]];
+    }
+    command(part, mode);
+    enum dalcs_status status = dalcs_osnsp_solve(&part->osnsp, 1.0, part->u, part->y);
+    if (status == DALCS_OK) {
+        read_answer(part, inputs, answer);
+    }
+    return status;
+}
+
 enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *j, const struct dalcs_circuit *circuit,
                                     const struct dalcs_network *network,
                                     const struct dalcs_osnsp_options *options, int k,
@@ -317,37 +356,32 @@ enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *j, const struct dalcs_ci
         DALCS_TRY(dalcs_jumps_build(j, circuit, network, options));
     }
     const struct dalcs_system *s = &network->system[k];
+    const bool *is_driven = j->is_driven[k];
     answer->is_covered = j->is_covered[k];
     answer->is_known = answer->is_covered;
+    answer->is_first = is_driven != NULL;
     answer->moves = false;
     answer->source_work = 0.0;
-    if (!answer->is_known) {
+    if (!answer->is_known && !answer->is_first) {
         return DALCS_OK;
     }
-    memcpy(answer->after, x, (size_t)s->n_x * sizeof(double));
-    memset(answer->charge, 0, (size_t)s->n_pairs * sizeof(double));
-    memset(answer->flux, 0, (size_t)s->n_pairs * sizeof(double));
-    for (int p = j->first_part[k]; p >= 0; p = j->part[p].next) {
-        struct dalcs_jump_part *part = &j->part[p];
-        const struct dalcs_system *of = part->osnsp.system;
-        for (int i = 0; i < of->n_x; i++) {
-            part->u[i] = is_its_own(part, i) ? x[part->state[i]] : 0.0;
-        }
-        for (int i = 0; i < of->n_inputs; i++) {
-            part->u[of->n_x + i] = inputs[part->input[i]];
-        }
-        command(part, mode);
-        enum dalcs_status status = dalcs_osnsp_solve(&part->osnsp, 1.0, part->u, part->y);
-        if (status < DALCS_OK) {
-            return status;
-        }
-        if (status > DALCS_OK) {
-            answer->is_known = false;
-            return DALCS_OK;
-        }
-        read_answer(part, inputs, answer);
+    for (int i = 0; i < s->n_x; i++) {
+        answer->after[i] = answer->is_known || !is_driven[i] ? x[i] : answer->after[i];
     }
-    return DALCS_OK;
+    if (answer->is_known) {
+        memset(answer->charge, 0, (size_t)s->n_pairs * sizeof(double));
+        memset(answer->flux, 0, (size_t)s->n_pairs * sizeof(double));
+    }
+    enum dalcs_status status = DALCS_OK;
+    for (int p = j->first_part[k]; p >= 0 && status == DALCS_OK; p = j->part[p].next) {
+        if (!j->part[p].is_driven) {
+            status = solve_part(&j->part[p], mode, x, inputs, answer);
+        }
+    }
+    if (status > DALCS_OK) {
+        answer->is_known = answer->is_first = false;
+    }
+    return status < DALCS_OK ? status : DALCS_OK;
 }
 
 bool dalcs_jumps_agree(const struct dalcs_system *s, const double *x, const double *limit,
@@ -384,6 +418,10 @@ void dalcs_jumps_finish(struct dalcs_jumps *j) {
     free(j->part);
     free(j->first_part);
     free(j->is_covered);
+    for (int k = 0; j->is_driven != NULL && k < j->n_systems; k++) {
+        free(j->is_driven[k]);
+    }
+    free(j->is_driven);
     for (int kind = 0; kind < DALCS_N_IMPULSES; kind++) {
         dalcs_impulse_network_finish(&j->impulse[kind]);
     }

@@ -19,6 +19,8 @@ struct dalcs_jumps {
     int n_systems;
     int *first_part;  /* [n_systems] of the circuit's network: its first part, -1 without */
     bool *is_covered; /* [n_systems] passive, and with no dependent coils but transformers */
+    bool **
+        is_driven; /* [n_systems][n_x] states that sources which read act on; NULL: none is, or it is not passive */
 };
 
 /* All owned by the caller. */
@@ -28,8 +30,10 @@ struct dalcs_jump_answer {
     double *flux;       /* [n_pairs] Wb across it */
     double source_work; /* J, delivered by the sources */
     bool is_covered;    /* jumps of this component are problems that can be put */
-    bool is_known;      /* and solved; false: nothing else is filled */
-    bool moves;         /* some state jumps by more than rounding */
+    bool is_known;      /* and solved; false: only what says so is filled */
+    bool
+        is_first; /* not known, but for the states that nothing which reads acts on, and their pairs */
+    bool moves; /* some state jumps by more than rounding */
 };
 
 /* Builds what is_covered tells of; dalcs_jumps_solve does so when needed. */
@@ -38,7 +42,9 @@ enum dalcs_status dalcs_jumps_build(struct dalcs_jumps *jumps, const struct dalc
                                     const struct dalcs_osnsp_options *options) DALCS_MUST_CHECK;
 
 /* The jump of system k of `network` from x[n_x] with inputs[n_inputs] just after it; mode[(n_pairs +
- * 63) / 64] commands the switches and is a first guess for the diodes. */
+ * 63) / 64] commands the switches and is a first guess for the diodes. Where sources that read act on states the rest
+ * of the component, which is passive, jumps as if they were not there: answer->is_first, and what the answer has of driven
+ * states and of other pairs stays as it was. */
 enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *jumps, const struct dalcs_circuit *circuit,
                                     const struct dalcs_network *network,
                                     const struct dalcs_osnsp_options *options, int k,

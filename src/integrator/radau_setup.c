@@ -102,6 +102,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
         dalcs_arena_alloc(&part->arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
     part->work.w1 = dalcs_arena_alloc(&part->arena, (size_t)s->n_pairs, sizeof(double));
     part->work.after = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
+    part->work.before = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
     part->used_input = dalcs_arena_alloc(&part->arena, (size_t)s->n_inputs, sizeof(int));
     int most_levered = part->stages.n_levered > s->n_pairs ? part->stages.n_levered : s->n_pairs;
     part->scales.current_drift =
@@ -114,7 +115,8 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
                     part->work.out_tried != NULL && part->guards.armed != NULL &&
                     part->guards.crossed != NULL && part->guards.tied != NULL &&
                     part->work.u != NULL && part->work.y1 != NULL && part->work.y2 != NULL &&
-                    part->work.w1 != NULL && part->work.after != NULL && part->used_input != NULL &&
+                    part->work.w1 != NULL && part->work.after != NULL &&
+                    part->work.before != NULL && part->used_input != NULL &&
                     part->scales.current_drift != NULL && part->scales.current_parts != NULL &&
                     part->scales.pair_parts != NULL;
     return complete && (dalcs_stages_have_maps(&part->stages) || allocate_probe(part))

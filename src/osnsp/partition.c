@@ -196,8 +196,10 @@ static enum dalcs_status partition(struct dalcs_partition *p, struct search *t,
     struct part *part = dalcs_arena_alloc(work, (size_t)t->n_parts, sizeof(*part));
     p->block_of = dalcs_arena_alloc(&p->arena, (size_t)n_columns, sizeof(*p->block_of));
     p->is_monotone = dalcs_arena_alloc(&p->arena, (size_t)t->n_parts, sizeof(bool));
+    p->is_driven = dalcs_arena_alloc(&p->arena, (size_t)n_columns, sizeof(bool));
     double *margin = dalcs_arena_alloc(work, (size_t)s->n_pairs, sizeof(*margin));
-    if (part == NULL || margin == NULL || p->block_of == NULL || p->is_monotone == NULL) {
+    if (part == NULL || margin == NULL || p->block_of == NULL || p->is_monotone == NULL ||
+        p->is_driven == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int k = 0; k < t->n_parts; k++) {
@@ -210,6 +212,7 @@ static enum dalcs_status partition(struct dalcs_partition *p, struct search *t,
     join_parts(p, t->n_parts, part);
     for (int c = 0; c < n_columns; c++) {
         p->block_of[c] = part[t->part_of[c]].block;
+        p->is_driven[c] = part[t->part_of[c]].is_driven;
     }
     return DALCS_OK;
 }

@@ -15,6 +15,7 @@ struct dalcs_partition {
     bool *is_monotone;   /* [n_blocks] its part of the OSNSP is monotone: solvable iff feasible */
     bool all_monotone;   /* each of them */
     bool jumps_as_usual; /* nothing that reads acts on a state */
+    bool *is_driven;     /* [n_columns] something that reads acts on it; NULL: on none */
     struct dalcs_arena arena;
 };
 
