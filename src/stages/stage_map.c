@@ -2,18 +2,12 @@
  * of the few solutions that the workshop has for unit states and unit inputs. */
 #include "dense_map.h"
 #include "extremes.h"
-#include "partition.h"
 #include "stage_workshop.h"
 #include "wide_vectors.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* What a null vector does to a diode, beside its largest entry, is rounding up to this: currents around a
- * loop of sources are nothing to diodes. */
-static const double null_rounding = 1e-10;
 
 /* Adds factor times a row of lanes. */
 static inline void add_lanes(double *to, double factor, const double *from) {
@@ -59,115 +53,6 @@ DALCS_TWICE(void, find_guards,
     for (int k = 0; k < b->entry->n_on; k++) {
         memcpy(b->guard + b->entry->on[k] * DALCS_LANES, lambda + k * DALCS_LANES,
                DALCS_LANES * sizeof(double));
-    }
-}
-
-/* The guards of the null vectors, each over its largest entry, which become unscaled. */
-static void find_null_guards(struct dalcs_stage_workshop *b, double *guards) {
-    int n_pairs = b->system->n_pairs;
-    const double no_share[DALCS_LANES] = {0.0};
-    memset(b->lanes, 0, (size_t)(b->n * DALCS_LANES) * sizeof(double));
-    for (int k = 0; k < b->nullity; k++) {
-        double largest = 0.0;
-        for (int i = 0; i < b->n; i++) {
-            b->right[k * b->n + i] *= b->column_scale[i];
-            largest = fmax(largest, fabs(b->right[k * b->n + i]));
-        }
-        for (int i = 0; i < b->n; i++) {
-            b->right[k * b->n + i] /= largest;
-        }
-        for (int i = 0; i < b->n; i++) {
-            b->lanes[i * DALCS_LANES] = b->right[k * b->n + i];
-        }
-        find_guards(b, -1, no_share);
-        for (int d = 0; d < n_pairs; d++) {
-            double guard = b->guard[d * DALCS_LANES];
-            guards[k * n_pairs + d] = fabs(guard) > null_rounding ? guard : 0.0;
-        }
-        dalcs_partition_keep_first(b->stages->block_of, b->system, guards + k * n_pairs);
-    }
-}
-
-/* Of a single vector: over its square. */
-static void choose_along(int n, const double *guards, double *choice) {
-    double square = 0.0;
-    for (int d = 0; d < n; d++) {
-        square += guards[d] * guards[d];
-    }
-    for (int d = 0; d < n; d++) {
-        choice[d] = square > 0.0 ? -guards[d] / square : 0.0;
-    }
-}
-
-/* Of several, which `guards` is not afterwards. */
-static enum dalcs_status choose_among(struct dalcs_stage_workshop *b, double *guards) {
-    int n_pairs = b->system->n_pairs;
-    int rows = n_pairs > b->nullity ? n_pairs : b->nullity;
-    double *identity = dalcs_stage_workshop_reals(&b->arena, rows * n_pairs);
-    double *singular = dalcs_stage_workshop_reals(&b->arena, b->nullity + n_pairs);
-    if (identity == NULL || singular == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    for (int d = 0; d < n_pairs; d++) {
-        identity[d * rows + d] = 1.0;
-    }
-    lapack_int rank;
-    if (LAPACKE_dgelss(LAPACK_COL_MAJOR, n_pairs, b->nullity, n_pairs, guards, n_pairs, identity,
-                       rows, singular, 1e-10, &rank) != 0) {
-        return DALCS_E_NOMEM;
-    }
-    for (int d = 0; d < n_pairs; d++) {
-        for (int k = 0; k < b->nullity; k++) {
-            b->choice[k * n_pairs + d] = -identity[d * rows + k];
-        }
-    }
-    return DALCS_OK;
-}
-
-/* choice = - pseudoinverse of the guards of the null vectors: adding choice * guards of them makes the
- * diodes' lambda, and the voltages of open ones, as small as possible. Diodes only: a switch's current is a
- * wire's. */
-static enum dalcs_status prepare_choice(struct dalcs_stage_workshop *b) {
-    int n_pairs = b->system->n_pairs;
-    if (b->nullity == 0 || n_pairs == 0 || b->choice != NULL) {
-        return DALCS_OK;
-    }
-    double *guards = dalcs_stage_workshop_reals(&b->arena, n_pairs * b->nullity);
-    b->choice = dalcs_stage_workshop_reals(&b->arena, b->nullity * n_pairs);
-    if (guards == NULL || b->choice == NULL) {
-        return DALCS_E_NOMEM;
-    }
-    find_null_guards(b, guards);
-    if (b->nullity ==
-        1) { /* as in most circuits that have any, where LAPACK takes longer than a map */
-        choose_along(n_pairs, guards, b->choice);
-        return DALCS_OK;
-    }
-    return choose_among(b, guards);
-}
-
-/* From reverse voltages to those that are to be small: knees are the constant sources' share. */
-static void take_knees_off(const struct dalcs_stage_workshop *b, const double *share) {
-    for (int d = 0; d < b->system->n_pairs; d++) {
-        double knee = dalcs_stage_is_on(b->entry, d) ? 0.0 : dalcs_system_knee(b->system, d);
-        if (knee != 0.0) {
-            add_lanes(b->guard + d * DALCS_LANES, -knee, share);
-        }
-    }
-}
-
-/* Adds what is to be added of the null vectors at the nodes. */
-static void choose(const struct dalcs_stage_workshop *b) {
-    int n_pairs = b->system->n_pairs;
-    for (int k = 0; k < b->nullity && b->choice != NULL; k++) {
-        double amount[DALCS_LANES] = {0.0};
-        for (int d = 0; d < n_pairs; d++) {
-            add_lanes(amount, b->choice[k * n_pairs + d], b->guard + d * DALCS_LANES);
-        }
-        amount[DALCS_RIPPLE_LANE] = 0.0;
-        for (int i = 0; i < b->n; i++) {
-            add_lanes(b->lanes + i * DALCS_LANES, b->right[k * b->n + i], amount);
-        }
     }
 }
 
@@ -327,13 +212,6 @@ static void fill_column(struct dalcs_stage_workshop *b, int column, int rhs_colu
     fill_stages(b, column, rhs_column, drive);
     fill_start(b, column, rhs_column, share);
     find_guards(b, rhs_column, share);
-    if (b->nullity > 0) {
-        if (rhs_column == b->n_x) {
-            take_knees_off(b, share);
-        }
-        choose(b);
-        find_guards(b, rhs_column, share);
-    }
     for (int k = 0; k <= m->n_stages; k++) {
         double *columns = out + k * l->stride;
         put_columns(b, k, columns);
@@ -465,7 +343,6 @@ enum dalcs_status dalcs_stage_map_build(struct dalcs_stages *stages,
         return DALCS_E_NOMEM;
     }
     DALCS_TRY(dalcs_stage_workshop_solve(b, entry));
-    DALCS_TRY(prepare_choice(b));
     entry->n_clashes = b->nullity * stages->method->s;
     entry->rows = dalcs_dense_map_rows(stages->layout.n_fixed + entry->n_clashes);
     entry->current_rows = dalcs_dense_map_rows(stages->n_levered);

@@ -2,7 +2,7 @@
 #include "stage_workshop.h"
 
 #include "extended.h"
-#include "null_space.h"
+#include "stage_choice.h"
 #include "stage_matrix.h"
 #include "wide_vectors.h"
 
@@ -277,61 +277,12 @@ static void balance(struct dalcs_stage_workshop *b) {
     }
 }
 
-/* The null vectors of the columns, or else of the rows, of what has no memory: *vector[*nullity][n], over
- * the scales of all unknowns and of length 1, with 0 in the places of states. */
-static enum dalcs_status find_null_vectors(struct dalcs_stage_workshop *b, bool of_columns,
-                                           int *nullity, double **vector) {
-    int n = b->n;
-    int n_x = b->n_x;
-    const double *scale = of_columns ? b->column_scale : b->row_scale;
-    struct dalcs_triplets t = {0};
-    struct dalcs_null_space space;
-    enum dalcs_status status = DALCS_OK;
-    for (int i = 0; i < n; i++) {
-        for (int j = n_x; j < n && status == DALCS_OK; j++) {
-            double a = of_columns ? b->plain_base[j * n + i] : b->plain_base[i * n + j];
-            status = a != 0.0 ? dalcs_triplets_add(&t, i, j - n_x, a) : DALCS_OK;
-        }
-    }
-    if (status == DALCS_OK) {
-        status = dalcs_null_space_find(&space, n, n - n_x, &t);
-    }
-    dalcs_triplets_finish(&t);
-    DALCS_TRY(status);
-    *nullity = space.n_free;
-    *vector = dalcs_stage_workshop_reals(&b->arena, n * *nullity);
-    for (int k = 0; k < *nullity && *vector != NULL; k++) {
-        double *v = *vector + k * n;
-        double square = 0.0;
-        dalcs_null_space_vector(&space, k, v + n_x);
-        for (int i = n_x; i < n; i++) {
-            v[i] /= scale[i];
-            square += v[i] * v[i];
-        }
-        for (int i = n_x; i < n; i++) {
-            v[i] /= sqrt(square);
-        }
-    }
-    dalcs_null_space_finish(&space);
-    return *vector != NULL ? DALCS_OK : DALCS_E_NOMEM;
-}
-
-/* Is the mode singular, whatever the step length? In a passive circuit null vectors of S have then no state
- * in them: they are those of its columns, and of its rows, of what has no memory. These know no step length,
- * beside the shortest of which coils would be next to open. */
-static enum dalcs_status find_null_space(struct dalcs_stage_workshop *b) {
-    int n_of_rows;
-    DALCS_TRY(find_null_vectors(b, true, &b->nullity, &b->right));
-    DALCS_TRY(find_null_vectors(b, false, &n_of_rows, &b->left));
-    return n_of_rows == b->nullity ? DALCS_OK : DALCS_SINGULAR;
-}
-
-/* With left right^T added, S is regular and its solutions, where there are any, are those of S that
- * have nothing of the null vectors. */
-static double border(const struct dalcs_stage_workshop *b, int i, int j) {
+/* What the conditions of a singular mode add to S, and to its right-hand sides: stage_choice.h. */
+static double border(const struct dalcs_stage_workshop *b, int i, const double *of_choice, int n,
+                     int j) {
     double sum = 0.0;
     for (int k = 0; k < b->nullity; k++) {
-        sum += b->left[k * b->n + i] * b->right[k * b->n + j];
+        sum += b->left[k * b->n + i] * of_choice[k * n + j];
     }
     return sum;
 }
@@ -347,10 +298,11 @@ static void fill_whole(struct dalcs_stage_workshop *b) {
             row[j] = b->base[j * n + i];
         }
         for (int j = 0; j < n && b->nullity > 0; j++) {
-            row[j] += border(b, i, j);
+            row[j] += border(b, i, b->choice, n, j);
         }
         for (int j = 0; j < b->n_rhs; j++) {
             row[n + j] = b->rhs[j * n + i];
+            row[n + j] += b->nullity > 0 ? border(b, i, b->chosen, b->n_rhs, j) : 0.0;
         }
     }
 }
@@ -572,7 +524,7 @@ static enum dalcs_status solve_real(struct dalcs_stage_workshop *b, bool *is_los
     long double pivot = solve_kept(b);
     if (pivot < doubtful_pivot && b->nullity == 0) {
         b->is_known = false;
-        DALCS_TRY(find_null_space(b));
+        DALCS_TRY(dalcs_stage_choice_find(b));
         if (b->nullity > 0) {
             fill_whole(b);
             eliminate_followers(b);
@@ -620,7 +572,6 @@ static void recall(struct dalcs_stage_workshop *b) {
     }
     b->n = b->entry->n;
     b->nullity = 0;
-    b->choice = NULL;
     dalcs_arena_finish(&b->arena);
     memcpy(b->mode, b->entry->mode, (size_t)b->stages->n_words * sizeof(*b->mode));
     fill(b);

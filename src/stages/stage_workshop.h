@@ -60,8 +60,9 @@ struct dalcs_stage_workshop {
     double *in;         /* [n_in] of such a map */
     struct dalcs_stage_functions functions;
     int nullity;
-    double *left, *right; /* [nullity][n] null vectors, balanced */
-    double *choice;       /* [nullity][n_pairs] what the other sides of pairs add of them */
+    double *left;   /* [nullity][n] null vectors of the rows, balanced */
+    double *choice; /* [nullity][n] balanced: what is asked instead, and */
+    double *chosen; /* [nullity][n_rhs] what of the right-hand sides it is */
     struct dalcs_arena arena;
     void *storage; /* of all of these but for those in the arena */
 };

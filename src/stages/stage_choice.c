@@ -1,0 +1,223 @@
+/* stage_choice.c - of a small system in a singular mode: which rows follow from others, and what is asked instead of
+ * them. */
+#include "stage_choice.h"
+
+#include "null_space.h"
+#include "partition.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+/* What a null vector does to a diode, beside its largest entry, is rounding up to this: currents around a
+ * loop of sources are nothing to diodes. */
+static const double null_rounding = 1e-10;
+
+static int column_of(const struct dalcs_stage_workshop *b, int unknown) {
+    int n_equations = dalcs_system_n_equations(b->system);
+    return unknown < n_equations ? unknown : n_equations + b->entry->on[unknown - n_equations];
+}
+
+/* Are row and unknown of one block? What a block reads of others is given there: it leaves nothing open. */
+static bool is_within_block(const struct dalcs_stage_workshop *b, int row, int unknown) {
+    const int *block = b->stages->block_of;
+    int n_equations = dalcs_system_n_equations(b->system);
+    int own = row < n_equations ? b->system->dual[row] : column_of(b, row);
+    return block == NULL || block[own] == block[column_of(b, unknown)];
+}
+
+/* The null vectors of the columns, or else of the rows, of what has no memory: *vector[*nullity][n], over
+ * the scales of all unknowns and of length 1, with 0 in the places of states. */
+static enum dalcs_status find_null_vectors(struct dalcs_stage_workshop *b, bool of_columns,
+                                           int *nullity, double **vector) {
+    int n = b->n;
+    int n_x = b->n_x;
+    const double *scale = of_columns ? b->column_scale : b->row_scale;
+    struct dalcs_triplets t = {0};
+    struct dalcs_null_space space;
+    enum dalcs_status status = DALCS_OK;
+    for (int i = 0; i < n; i++) {
+        for (int j = n_x; j < n && status == DALCS_OK; j++) {
+            double a = of_columns ? b->plain_base[j * n + i] : b->plain_base[i * n + j];
+            bool is_own = a != 0.0 && is_within_block(b, of_columns ? i : j, of_columns ? j : i);
+            status = is_own ? dalcs_triplets_add(&t, i, j - n_x, a) : DALCS_OK;
+        }
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_null_space_find(&space, n, n - n_x, &t);
+    }
+    dalcs_triplets_finish(&t);
+    DALCS_TRY(status);
+    *nullity = space.n_free;
+    *vector = dalcs_stage_workshop_reals(&b->arena, n * *nullity);
+    for (int k = 0; k < *nullity && *vector != NULL; k++) {
+        double *v = *vector + k * n;
+        double square = 0.0;
+        dalcs_null_space_vector(&space, k, v + n_x);
+        for (int i = n_x; i < n; i++) {
+            v[i] /= scale[i];
+            square += v[i] * v[i];
+        }
+        for (int i = n_x; i < n; i++) {
+            v[i] /= sqrt(square);
+        }
+    }
+    dalcs_null_space_finish(&space);
+    return *vector != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* The other sides of the pairs in a null vector, over its largest entry: lambda of closed ones, w of open diodes. */
+static void find_other_sides(const struct dalcs_stage_workshop *b, const double *vector,
+                             double *of_pair) {
+    const struct dalcs_csr *C = &b->system->C;
+    int n_equations = dalcs_system_n_equations(b->system);
+    double largest = 0.0;
+    for (int i = 0; i < b->n; i++) {
+        largest = fmax(largest, fabs(vector[i] * b->column_scale[i]));
+    }
+    for (int d = 0; d < b->system->n_pairs; d++) {
+        int closed = b->place[n_equations + d];
+        double side = closed >= 0 ? vector[closed] * b->column_scale[closed] : 0.0;
+        bool is_open = closed < 0 && b->system->pair[d].kind == DALCS_PAIR_DIODE;
+        for (int k = C->p[d]; is_open && k < C->p[d + 1]; k++) {
+            int c = b->place[C->j[k]];
+            side += c >= 0 ? C->x[k] * vector[c] * b->column_scale[c] : 0.0;
+        }
+        of_pair[d] = fabs(side) > null_rounding * largest ? side : 0.0;
+    }
+    dalcs_partition_keep_first(b->stages->block_of, b->system, of_pair);
+}
+
+/* Row k: the sum of weight[n_pairs] times the other sides of the pairs is 0, with reverse voltages over their knees. */
+static void choose_in_pairs(const struct dalcs_stage_workshop *b, int k, const double *weight) {
+    const struct dalcs_system *s = b->system;
+    const double *constant = b->stages->excitation->constant;
+    int n_equations = dalcs_system_n_equations(s);
+    double *row = b->choice + k * b->n;
+    double *chosen = b->chosen + k * b->n_rhs;
+    for (int d = 0; d < s->n_pairs; d++) {
+        int closed = b->place[n_equations + d];
+        if (weight[d] == 0.0 || closed >= 0) {
+            row[closed >= 0 ? closed : 0] += weight[d];
+            continue;
+        }
+        for (int e = s->C.p[d]; e < s->C.p[d + 1]; e++) {
+            int c = b->place[s->C.j[e]];
+            if (c >= 0) {
+                row[c] += weight[d] * s->C.x[e];
+            }
+            if (c >= 0 && c < b->n_x) { /* unknowns are increments of states */
+                chosen[c] -= weight[d] * s->C.x[e];
+            }
+        }
+        for (int e = s->F.p[d]; e < s->F.p[d + 1]; e++) {
+            int wave = b->wave_column[s->F.j[e]];
+            chosen[wave >= 0 ? wave : b->n_x] -=
+                weight[d] * s->F.x[e] * (wave >= 0 ? 1.0 : constant[s->F.j[e]]);
+        }
+        chosen[b->n_x] += weight[d] * dalcs_system_knee(s, d);
+    }
+}
+
+/* Balances row k and makes it of length 1, as null vectors are. */
+static void balance_choice(const struct dalcs_stage_workshop *b, int k) {
+    double *row = b->choice + k * b->n;
+    double *chosen = b->chosen + k * b->n_rhs;
+    double square = 0.0;
+    for (int i = 0; i < b->n; i++) {
+        row[i] *= b->column_scale[i];
+        square += row[i] * row[i];
+    }
+    for (int i = 0; i < b->n; i++) {
+        row[i] /= sqrt(square);
+    }
+    for (int j = 0; j < b->n_rhs; j++) {
+        chosen[j] /= sqrt(square);
+    }
+}
+
+/* Combinations of the null vectors whose other sides of pairs, side[nullity][n_pairs], are orthogonal and of length 1:
+ * the first *rank of them; the others do nothing to pairs. */
+static enum dalcs_status make_orthogonal(const struct dalcs_stage_workshop *b, double *side,
+                                         double *combination, int *rank) {
+    int n_pairs = b->system->n_pairs;
+    int n = b->nullity;
+    double *length = dalcs_alloc((size_t)n + 1, sizeof(double));
+    double *work = dalcs_alloc((size_t)(n + n_pairs) + 1, sizeof(double));
+    double *left = dalcs_alloc((size_t)n * (size_t)n + 1, sizeof(double));
+    bool has_memory = length != NULL && work != NULL && left != NULL;
+    /* side' = U S V': rows of `side`, by columns n_pairs x n, are null vectors */
+    bool is_done = has_memory && LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'O', 'A', n_pairs, n, side,
+                                                n_pairs, length, NULL, 1, left, n, work) == 0;
+    *rank = 0;
+    for (int k = 0; is_done && k < n && k < n_pairs; k++) {
+        *rank += length[k] > null_rounding * length[0] ? 1 : 0;
+    }
+    for (int k = 0; is_done && k < n; k++) {
+        for (int i = 0; i < n; i++) {
+            combination[k * n + i] = left[i * n + k];
+        }
+    }
+    free(length);
+    free(work);
+    free(left);
+    return is_done ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* Row k is the combination of the null vectors itself: the least of all unknowns. */
+static void choose_in_all(const struct dalcs_stage_workshop *b, int k, const double *combination,
+                          const double *null_vectors) {
+    double *row = b->choice + k * b->n;
+    for (int i = 0; i < b->n; i++) {
+        for (int v = 0; v < b->nullity; v++) {
+            row[i] += combination[v] * null_vectors[v * b->n + i] / b->column_scale[i];
+        }
+    }
+}
+
+static enum dalcs_status choose(struct dalcs_stage_workshop *b, const double *null_vectors) {
+    int n_pairs = b->system->n_pairs;
+    int n = b->nullity;
+    int rows = n_pairs > n ? n_pairs : n;
+    double *side = dalcs_stage_workshop_reals(&b->arena, n * rows);
+    double *combination = dalcs_stage_workshop_reals(&b->arena, n * n);
+    b->choice = dalcs_stage_workshop_reals(&b->arena, n * b->n);
+    b->chosen = dalcs_stage_workshop_reals(&b->arena, n * b->n_rhs);
+    if (side == NULL || combination == NULL || b->choice == NULL || b->chosen == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    double largest = 0.0;
+    for (int k = 0; k < n; k++) {
+        find_other_sides(b, null_vectors + k * b->n, side + k * n_pairs);
+        combination[k * n + k] = 1.0;
+        for (int d = 0; d < n_pairs; d++) {
+            largest = fmax(largest, fabs(side[k * n_pairs + d]));
+        }
+    }
+    int rank = largest > 0.0 ? 1 : 0;
+    if (n > 1 &&
+        largest >
+            0.0) { /* in most modes that leave anything open it is one, where LAPACK would take long */
+        DALCS_TRY(make_orthogonal(b, side, combination, &rank));
+    }
+    for (int k = 0; k < n; k++) {
+        if (k < rank) {
+            choose_in_pairs(b, k, side + k * n_pairs);
+        } else {
+            choose_in_all(b, k, combination + k * n, null_vectors);
+        }
+        balance_choice(b, k);
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_stage_choice_find(struct dalcs_stage_workshop *b) {
+    int n_of_rows;
+    double *null_vectors;
+    DALCS_TRY(find_null_vectors(b, true, &b->nullity, &null_vectors));
+    DALCS_TRY(find_null_vectors(b, false, &n_of_rows, &b->left));
+    if (n_of_rows != b->nullity) {
+        return DALCS_SINGULAR;
+    }
+    return b->nullity > 0 ? choose(b, null_vectors) : DALCS_OK;
+}

@@ -1,0 +1,18 @@
+/* stage_choice.h - a small system in a mode that is singular, whatever the step length.
+ *
+ * In a passive circuit null vectors of S have no state in them: they are those of its columns, and of its rows, of what
+ * has no memory, and as many. So are those of the blocks that follow each other where sources only read (partition.h):
+ * what a block reads is open in another one, if at all, and follows. With the null vectors l of the rows and as many
+ * conditions c y = g, S + l c' is regular, and what it makes of the right-hand sides and l g is the solution of S with
+ * these conditions, states that read what is open included. The conditions are those of the least norm of the currents
+ * of closed and of the voltages of open diodes: the limit of equal small on-resistances and equal small leaks. What is
+ * open and no diode's has the least norm of all unknowns. */
+#ifndef DALCS_STAGE_CHOICE_H
+#define DALCS_STAGE_CHOICE_H
+
+#include "stage_workshop.h"
+
+/* b->nullity, b->left, b->choice and b->chosen of the workshop's mode, in its present scales. */
+enum dalcs_status dalcs_stage_choice_find(struct dalcs_stage_workshop *b) DALCS_MUST_CHECK;
+
+#endif
