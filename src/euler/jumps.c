@@ -316,10 +316,12 @@ static void read_answer(const struct dalcs_jump_part *part, const double *inputs
         }
     }
     for (int x = 0; x < s->n_x; x++) {
-        if (is_its_own(part, x) && fabs(part->y[x] - part->u[x]) > rounding * largest) {
+        bool moves = fabs(part->y[x] - part->u[x]) > rounding * largest;
+        /* what reads the voltage of a coil that is cut off reads what is left of its current over no time */
+        if (is_its_own(part, x) && (moves || answer->is_first)) {
             answer->after[part->state[x]] =
                 fabs(part->y[x]) > rounding * largest ? part->y[x] : 0.0;
-            answer->moves = true;
+            answer->moves = answer->moves || moves;
         }
     }
     double *impulse = part->kind == DALCS_IMPULSE_CHARGE ? answer->charge : answer->flux;
