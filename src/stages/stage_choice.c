@@ -18,7 +18,8 @@ static int column_of(const struct dalcs_stage_workshop *b, int unknown) {
     return unknown < n_equations ? unknown : n_equations + b->entry->on[unknown - n_equations];
 }
 
-/* Are row and unknown of one block? What a block reads of others is given there: it leaves nothing open. */
+/* Are row and unknown of one block? What a block reads of others is given there: it leaves nothing open. That a row follows
+ * from others is so of all columns, or it is not so. */
 static bool is_within_block(const struct dalcs_stage_workshop *b, int row, int unknown) {
     const int *block = b->stages->block_of;
     int n_equations = dalcs_system_n_equations(b->system);
@@ -39,8 +40,8 @@ static enum dalcs_status find_null_vectors(struct dalcs_stage_workshop *b, bool 
     for (int i = 0; i < n; i++) {
         for (int j = n_x; j < n && status == DALCS_OK; j++) {
             double a = of_columns ? b->plain_base[j * n + i] : b->plain_base[i * n + j];
-            bool is_own = a != 0.0 && is_within_block(b, of_columns ? i : j, of_columns ? j : i);
-            status = is_own ? dalcs_triplets_add(&t, i, j - n_x, a) : DALCS_OK;
+            bool counts = a != 0.0 && (!of_columns || is_within_block(b, i, j));
+            status = counts ? dalcs_triplets_add(&t, i, j - n_x, a) : DALCS_OK;
         }
     }
     if (status == DALCS_OK) {

@@ -1,8 +1,8 @@
 /* stage_choice.h - a small system in a mode that is singular, whatever the step length.
  *
  * In a passive circuit null vectors of S have no state in them: they are those of its columns, and of its rows, of what
- * has no memory, and as many. So are those of the blocks that follow each other where sources only read (partition.h):
- * what a block reads is open in another one, if at all, and follows. With the null vectors l of the rows and as many
+ * has no memory, and as many. Where sources only read, blocks follow each other (partition.h). What one reads of another
+ * follows, states included, and so the null vectors of the columns are those of the blocks by themselves. With the null vectors l of the rows and as many
  * conditions c y = g, S + l c' is regular, and what it makes of the right-hand sides and l g is the solution of S with
  * these conditions, states that read what is open included. The conditions are those of the least norm of the currents
  * of closed and of the voltages of open diodes: the limit of equal small on-resistances and equal small leaks. What is

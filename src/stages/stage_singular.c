@@ -52,15 +52,16 @@ static int place_of(const struct search *s, int c, int first) {
     return pair < 0 ? c - first : c - pair - first + s->closed[pair];
 }
 
-/* Adds row `from` of a, its columns from `first` on. What a block reads of others is given there: it leaves nothing open,
- * and of null vectors it has none of (stage_choice.h). */
+/* Adds row `from` of a, its columns from `first` on. Of columns: what a block reads of others is given there, it leaves
+ * nothing open (stage_choice.h). */
 static enum dalcs_status add_row(const struct search *s, const struct dalcs_csr *a, int from,
                                  int first, int row, struct dalcs_triplets *t) {
     const int *block = s->plan->stages->block_of;
     int own = from < dalcs_system_n_equations(s->system) ? s->system->dual[from] : from;
     for (int k = a->p[from]; k < a->p[from + 1]; k++) {
         int column = place_of(s, a->j[k], first);
-        if (column >= 0 && (block == NULL || block[own] == block[a->j[k]])) {
+        bool is_own = block == NULL || first == 0 || block[own] == block[a->j[k]];
+        if (column >= 0 && is_own) {
             DALCS_TRY(dalcs_triplets_add(t, row, column, a->x[k]));
         }
     }
