@@ -23,7 +23,7 @@ struct dalcs_osnsp_options {
     double certificate_tolerance; /* accepted residual over its physical scale */
     double proximal_weight;       /* eps of regularised problems */
     double rcond_min;             /* below this a balanced mode matrix counts as singular */
-    int max_outer;                /* proximal iterations per rung */
+    int max_outer;                /* proximal iterations */
     int max_pivots;               /* mode changes per solve, on top of twice the number of pairs */
     size_t cache_bytes;           /* factors and maps kept */
     int dense_limit;              /* unknowns up to which recurring modes use a dense map */
