@@ -319,9 +319,9 @@ struct dalcs_run_options {
 
     /* Tolerances of the certificate and of the OSNSP; see doc/methods.md. All dimensionless. */
     double certificate_tolerance; /* residual over its physical scale, 2e-13 */
-    double proximal_weight[3];    /* the eps ladder 1e-8, 1e-7, 1e-6 */
+    double proximal_weight;       /* eps of regularised problems, 1e-8 */
     double rcond_min;   /* a mode whose 1/condition is estimated smaller is singular, 1e-14 */
-    int max_outer;      /* proximal iterations per rung, 40 */
+    int max_outer;      /* proximal iterations, 40 */
     int max_pivots;     /* per solve, on top of twice the number of pairs, 200 */
     size_t cache_bytes; /* bound on factorisations kept over all components, 256 MiB */
     int dense_limit;    /* components up to this many unknowns use dense step maps, 64 (radau:

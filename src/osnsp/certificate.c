@@ -61,14 +61,7 @@ static void check_equations(struct dalcs_osnsp *p, const double *u, const double
             continue;
         }
         double norm = dalcs_scales_norm(f, scale, f->checked[i]);
-        double terms = dalcs_scales_row_terms(p, u, y, i);
-        if (residual <= worst * dalcs_scales_own(p, terms, norm) && residual < INFINITY) {
-            continue;
-        }
-        if (p->looks_around && dalcs_scales_is_bare(p, f->checked[i])) {
-            norm = fmax(norm, dalcs_scales_norm_around(p, scale, f->checked[i]));
-        }
-        double size = dalcs_scales_own(p, terms, norm);
+        double size = dalcs_scales_own(p, dalcs_scales_row_terms(p, u, y, i), norm);
         if (!(residual <= worst * size && residual < INFINITY)) {
             /* A NaN must stay the worst: it compares with nothing that follows. */
             worst = size > 0.0 && residual < INFINITY ? residual / size : INFINITY;

@@ -28,7 +28,7 @@ static const double boundary_part = 0.995;
 
 struct interior {
     struct dalcs_osnsp *p;
-    int rung;
+    enum dalcs_weights weights;
     int n, n_pairs;
     klu_symbolic *symbolic;
     klu_numeric *kept;
@@ -74,9 +74,10 @@ static void fill_pattern(struct interior *m) {
     }
 }
 
-static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p, int rung) {
+static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p,
+                               enum dalcs_weights weights) {
     const struct dalcs_step_form *f = p->form[0];
-    *m = (struct interior){.p = p, .rung = rung, .n = f->n, .n_pairs = f->n_pairs};
+    *m = (struct interior){.p = p, .weights = weights, .n = f->n, .n_pairs = f->n_pairs};
     size_t n_pairs = (size_t)f->n_pairs;
     size_t order = (size_t)(f->n + f->n_pairs);
     size_t capacity = (size_t)f->K.p[order] + order;
@@ -96,7 +97,7 @@ static enum dalcs_status setup(struct interior *m, struct dalcs_osnsp *p, int ru
     m->dy = m->y + order;
     m->rest = m->dy + order;
     for (int d = 0; d < f->n_pairs; d++) {
-        dalcs_proximal_weights(p, d, rung, &m->on[d], &m->off[d]);
+        dalcs_proximal_weights(p, d, weights, &m->on[d], &m->off[d]);
     }
     fill_pattern(m);
     dalcs_lu_keep_diagonal(&p->klu, true);
@@ -116,7 +117,7 @@ static bool is_diode(const struct interior *m, int d) {
 /* Factors the equations with the rows a w + b lambda of the pairs. */
 static enum dalcs_status factor(struct interior *m) {
     const struct dalcs_csr *K = &m->p->form[0]->K;
-    double unknown_weight = dalcs_proximal_unknown_weight(m->p, m->rung);
+    double unknown_weight = dalcs_proximal_unknown_weight(m->p);
     for (int c = 0; c < m->n + m->n_pairs; c++) {
         double diagonal = c < m->n ? unknown_weight : m->b[c - m->n];
         int out = m->start[c];
@@ -150,7 +151,7 @@ static double voltage_of(const struct interior *m, int d, const double *y) {
 static double find_rests(struct interior *m) {
     const struct dalcs_osnsp *p = m->p;
     const struct dalcs_csr *K = &p->form[0]->K;
-    double unknown_weight = dalcs_proximal_unknown_weight(p, m->rung);
+    double unknown_weight = dalcs_proximal_unknown_weight(p);
     double size = 0.0;
     double worst = 0.0;
     for (int i = 0; i < m->n; i++) {
@@ -324,9 +325,9 @@ static enum dalcs_status follow_path(struct interior *m) {
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p, int rung) {
+enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p, enum dalcs_weights weights) {
     struct interior m;
-    DALCS_TRY(setup(&m, p, rung));
+    DALCS_TRY(setup(&m, p, weights));
     enum dalcs_status status = follow_path(&m);
     for (int d = 0; d < m.n_pairs && status == DALCS_OK; d++) {
         if (is_diode(&m, d)) {

@@ -13,9 +13,8 @@ enum { PATIENCE = 10 };
 enum { MAX_REFINEMENTS = 3 };
 
 struct dalcs_osnsp_options dalcs_osnsp_options_of(const struct dalcs_run_options *run) {
-    const double *weight = run->proximal_weight;
     return (struct dalcs_osnsp_options){.certificate_tolerance = run->certificate_tolerance,
-                                        .proximal_weight = {weight[0], weight[1], weight[2]},
+                                        .proximal_weight = run->proximal_weight,
                                         .rcond_min = run->rcond_min,
                                         .max_outer = run->max_outer,
                                         .max_pivots = run->max_pivots,
@@ -352,19 +351,20 @@ static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, con
     if (*is_done) {
         return status;
     }
+    memcpy(p->regularised_mode, p->mode, bytes);
     memcpy(p->mode, p->tied_mode, bytes);
     if (p->blocks == NULL) {
         status = dalcs_in_order_build(p);
         p->partition.n_blocks = status == DALCS_NOT_CONVERGED ? 1 : p->partition.n_blocks;
-        if (status != DALCS_OK) {
-            *is_done = status < DALCS_OK;
-            return status;
-        }
     }
-    status = dalcs_in_order_solve(p, sigma, u, y);
-    *is_done = status <= DALCS_OK || (status == DALCS_INFEASIBLE && dalcs_osnsp_is_monotone(p));
-    if (!*is_done) {
-        memcpy(p->mode, p->tied_mode, bytes);
+    if (p->partition.n_blocks > 1 && status >= DALCS_OK) {
+        status = dalcs_in_order_solve(p, sigma, u, y);
+    }
+    *is_done = status < DALCS_OK ||
+               (p->partition.n_blocks > 1 &&
+                (status == DALCS_OK || (status == DALCS_INFEASIBLE && dalcs_osnsp_is_monotone(p))));
+    if (!*is_done) { /* pivoting goes on where it ended */
+        memcpy(p->mode, p->regularised_mode, bytes);
     }
     return status;
 }
@@ -402,10 +402,6 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
         return status;
     }
     status = solve_somehow(p, u, y);
-    if (is_undecided(status)) {
-        p->looks_around = true;
-        status = solve_somehow(p, u, y);
-    }
     if (is_undecided(status) || (status == DALCS_INFEASIBLE && !is_proof(p))) {
         enum dalcs_status otherwise = dalcs_scattering_solve(p, u, y);
         status = otherwise <= DALCS_OK ? otherwise : status;
@@ -422,8 +418,6 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
     if (status == DALCS_OK && p->least_norm && p->n_tied > 0) {
         status = dalcs_basis_prefer(p, u, y);
     }
-    p->looks_around =
-        false; /* not before: what whole chains certify they do in each mode of a vertex */
     p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;
     return status;
 }

@@ -21,9 +21,9 @@
 
 struct dalcs_osnsp_options {
     double certificate_tolerance; /* accepted residual over its physical scale */
-    double proximal_weight[3];    /* the eps ladder */
+    double proximal_weight;       /* eps of regularised problems */
     double rcond_min;             /* below this a balanced mode matrix counts as singular */
-    int max_outer;                /* proximal iterations per rung */
+    int max_outer;                /* proximal iterations */
     int max_pivots;               /* mode changes per solve, on top of twice the number of pairs */
     size_t cache_bytes;           /* factors and maps kept */
     int dense_limit;              /* unknowns up to which recurring modes use a dense map */
@@ -84,7 +84,6 @@ struct dalcs_osnsp {
                         in the least time; steps of implicit Euler go on with the digits of KLU's order */
     bool
         keeps_states; /* states that more than voltages of nodes gives are as in the answer, not recovered */
-    bool looks_around; /* nothing was certified: currents are measured against whole chains */
 
     struct dalcs_step_form **form; /* most recently used first */
     int n_forms;

@@ -10,10 +10,10 @@
 #define HASH_NONFATAL_OOM 1
 #include <uthash.h>
 
-enum { DALCS_PLAIN = 0 }; /* kind of an entry; 1 + rung for the proximal matrices */
+enum { DALCS_PLAIN = 0 }; /* kind of an entry; 1 + weights for the proximal matrices */
 
-/* Rungs of the ladder: every eps with equal diodes, then every eps with balanced ones. */
-enum { DALCS_N_WEIGHTS = 3, DALCS_N_RUNGS = 2 * DALCS_N_WEIGHTS };
+/* Of pairs in regularised problems: those of equal diodes, or such as suit what is around each. */
+enum dalcs_weights { DALCS_EQUAL_WEIGHTS, DALCS_BALANCED_WEIGHTS };
 
 /* A mode at a step size: its factors, and for a small recurring one the map from u to y. */
 struct dalcs_mode_entry {
@@ -112,44 +112,47 @@ void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u);
 
 /* Factors the regularised matrix of p->mode; the columns are all n + n_pairs. */
 enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
-                                        int rung) DALCS_MUST_CHECK;
+                                        enum dalcs_weights weights) DALCS_MUST_CHECK;
 
 /* Solves one regularised problem around (centre, centre_w) in the mode of entry, into p->scaled. */
-void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry, int rung);
+void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
+                         enum dalcs_weights weights);
 
 /* The same from p->mode on by block pivoting over regularised modes. */
-enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u, int rung,
+enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u,
+                                       enum dalcs_weights weights,
                                        bool *mode_changed) DALCS_MUST_CHECK;
 
-/* The weights of a rung: eps/G of a closed pair and eps G of an open one, and of an unknown, in
+/* Of these weights: eps/G of a closed pair and eps G of an open one, and of an unknown, in
  * balanced units. */
-void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, int rung, double *on,
-                            double *off);
-double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p, int rung);
+void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights,
+                            double *on, double *off);
+double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p);
 
-/* 1/G of a pair on a rung, ohm: what eps is times of where it is closed. */
-double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair, int rung);
+/* 1/G of a pair with these weights, ohm: what eps is times of where it is closed. */
+double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights);
 
 /* w of a pair in balanced units, from p->scaled and p->right. */
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair);
 
 /* The least push of a centre, in balanced units, that a sign tells beside the largest unknown of p->scaled. */
-double dalcs_proximal_least_push(const struct dalcs_osnsp *p, int rung);
+double dalcs_proximal_least_push(const struct dalcs_osnsp *p);
 
 /* ---- interior.c ---------------------------------------------------------------------------- */
 
 /* The same as dalcs_scattering_mode of monotone systems, in sparse factors and for any number of pairs, but near the
  * mode rather than it. DALCS_SINGULAR: a factorisation failed, the mode is as it was. */
-enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p, int rung) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_interior_mode(struct dalcs_osnsp *p,
+                                      enum dalcs_weights weights) DALCS_MUST_CHECK;
 
 /* ---- scattering.c -------------------------------------------------------------------------- */
 
-/* p->mode becomes that of the regularised problem around (centre, centre_w) with pairs weighted as in `rung` times
+/* p->mode becomes that of the regularised problem around (centre, centre_w) with pairs weighted as in `weights` times
  * eps: all diodes are decided at once, from no mode in particular. DALCS_NOT_CONVERGED: one where the search ended;
  * DALCS_SINGULAR: there was none, or there are too many
  * pairs, and the mode is as it was. */
-enum dalcs_status dalcs_scattering_mode(struct dalcs_osnsp *p, const double *u, int rung,
-                                        double eps) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_scattering_mode(struct dalcs_osnsp *p, const double *u,
+                                        enum dalcs_weights weights, double eps) DALCS_MUST_CHECK;
 
 /* Any answer, not the one of least norm, where pivoting ends without one: from the mode that Lemke's method finds with
  * weights that are no more than rounding. */

@@ -33,49 +33,41 @@ static const double ray_part = 1e-2;
 /* Rounds without fewer wrong signs before block pivoting has stalled. */
 enum { PATIENCE = 10 };
 
-/* Rounds that free the unknowns from their own weights: each gains three digits. */
-enum { UNKNOWN_ROUNDS = 3 };
-
-static const double unknown_tolerance = 1e-9;
-
 /* Mode changes allowed from a regularised answer to a regular mode's. */
 enum { REGULAR_ATTEMPTS = 8 };
 
-/* Equal diodes on the first rungs, so that the answer is the least-norm one in amperes and volts; with
- * very different conductances around them, weights that suit each one's surroundings solve more. */
-static double ratio_of(const struct dalcs_osnsp *p, int pair, int rung) {
+/* Equal diodes where the answer has to be the least-norm one in amperes and volts; with very different conductances
+ * around them, weights that suit each one's surroundings solve more. */
+static double ratio_of(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights) {
     const struct dalcs_step_form *f = p->form[0];
     double g = f->scale[f->n + pair] * f->row_scale[f->n + pair]; /* A over V, balanced */
-    return rung < DALCS_N_WEIGHTS
+    return weights == DALCS_EQUAL_WEIGHTS
                ? fmin(fmax(g / f->pair_conductance, 1.0 / weight_spread), weight_spread)
                : 1.0;
 }
 
-static double eps_of(const struct dalcs_osnsp *p, int rung) {
-    return p->options.proximal_weight[rung % DALCS_N_WEIGHTS];
+static double on_weight(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights) {
+    return p->options.proximal_weight * ratio_of(p, pair, weights);
 }
 
-static double on_weight(const struct dalcs_osnsp *p, int pair, int rung) {
-    return eps_of(p, rung) * ratio_of(p, pair, rung);
+static double off_weight(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights) {
+    return p->options.proximal_weight / ratio_of(p, pair, weights);
 }
 
-static double off_weight(const struct dalcs_osnsp *p, int pair, int rung) {
-    return eps_of(p, rung) / ratio_of(p, pair, rung);
+void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, enum dalcs_weights weights,
+                            double *on, double *off) {
+    *on = on_weight(p, pair, weights);
+    *off = off_weight(p, pair, weights);
 }
 
-void dalcs_proximal_weights(const struct dalcs_osnsp *p, int pair, int rung, double *on,
-                            double *off) {
-    *on = on_weight(p, pair, rung);
-    *off = off_weight(p, pair, rung);
+double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p) {
+    return node_weight * p->options.proximal_weight;
 }
 
-double dalcs_proximal_unknown_weight(const struct dalcs_osnsp *p, int rung) {
-    return node_weight * eps_of(p, rung);
-}
-
-double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair, int rung) {
+double dalcs_proximal_resistance(const struct dalcs_osnsp *p, int pair,
+                                 enum dalcs_weights weights) {
     const struct dalcs_step_form *f = p->form[0];
-    return ratio_of(p, pair, rung) / (f->scale[f->n + pair] * f->row_scale[f->n + pair]);
+    return ratio_of(p, pair, weights) / (f->scale[f->n + pair] * f->row_scale[f->n + pair]);
 }
 
 double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair) {
@@ -88,24 +80,24 @@ double dalcs_proximal_scaled_w(const struct dalcs_osnsp *p, int pair) {
 }
 
 enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
-                                        int rung) {
+                                        enum dalcs_weights weights) {
     const struct dalcs_step_form *f = p->form[0];
     int n = f->n + f->n_pairs;
     struct dalcs_columns a;
     DALCS_TRY(dalcs_columns_alloc(&a, n, (size_t)f->K.p[n] + (size_t)n));
     int out = 0;
     for (int c = 0; c < n; c++) {
-        double diagonal = node_weight * eps_of(p, rung);
+        double diagonal = node_weight * p->options.proximal_weight;
         if (c >= f->n) {
             int d = c - f->n;
-            diagonal = dalcs_osnsp_is_on(p, d) ? on_weight(p, d, rung) : 1.0;
+            diagonal = dalcs_osnsp_is_on(p, d) ? on_weight(p, d, weights) : 1.0;
         }
         bool seen = false;
         for (int k = f->K.p[c]; k < f->K.p[c + 1]; k++) {
             int r = f->K.j[k];
             double value = f->K.x[k];
             if (r >= f->n && !dalcs_osnsp_is_on(p, r - f->n)) {
-                value *= off_weight(p, r - f->n, rung);
+                value *= off_weight(p, r - f->n, weights);
             }
             seen = seen || r == c;
             a.i[out] = r;
@@ -128,16 +120,17 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
     return status;
 }
 
-void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry, int rung) {
+void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
+                         enum dalcs_weights weights) {
     const struct dalcs_step_form *f = p->form[0];
     for (int i = 0; i < f->n; i++) {
-        p->scaled[i] = p->right[i] + node_weight * eps_of(p, rung) * p->centre[i];
+        p->scaled[i] = p->right[i] + node_weight * p->options.proximal_weight * p->centre[i];
     }
     for (int d = 0; d < f->n_pairs; d++) {
         double right = p->right[f->n + d];
         p->scaled[f->n + d] = dalcs_osnsp_is_on(p, d)
-                                  ? right + on_weight(p, d, rung) * p->centre[f->n + d]
-                                  : off_weight(p, d, rung) * (right + p->centre_w[d]);
+                                  ? right + on_weight(p, d, weights) * p->centre[f->n + d]
+                                  : off_weight(p, d, weights) * (right + p->centre_w[d]);
     }
     dalcs_lu_solve(&entry->lu, p->scaled);
 }
@@ -151,13 +144,13 @@ static double largest_unknown(const struct dalcs_osnsp *p) {
     return largest;
 }
 
-double dalcs_proximal_least_push(const struct dalcs_osnsp *p, int rung) {
-    return beyond_tolerance * sign_tolerance * largest_unknown(p) / eps_of(p, rung);
+double dalcs_proximal_least_push(const struct dalcs_osnsp *p) {
+    return beyond_tolerance * sign_tolerance * largest_unknown(p) / p->options.proximal_weight;
 }
 
 /* The pairs whose regularised sign is wrong: closed with lambda + eps G (w - w') < 0, open with
  * w + eps/G (lambda - lambda') < 0. */
-static void find_violations(struct dalcs_osnsp *p, int rung) {
+static void find_violations(struct dalcs_osnsp *p, enum dalcs_weights weights) {
     const struct dalcs_step_form *f = p->form[0];
     double largest = largest_unknown(p);
     p->n_violating = 0;
@@ -168,8 +161,8 @@ static void find_violations(struct dalcs_osnsp *p, int rung) {
         double w = dalcs_proximal_scaled_w(p, d);
         double lambda = p->scaled[f->n + d];
         double sign = dalcs_osnsp_is_on(p, d)
-                          ? lambda + off_weight(p, d, rung) * (w - p->centre_w[d])
-                          : w + on_weight(p, d, rung) * (lambda - p->centre[f->n + d]);
+                          ? lambda + off_weight(p, d, weights) * (w - p->centre_w[d])
+                          : w + on_weight(p, d, weights) * (lambda - p->centre[f->n + d]);
         if (sign < -sign_tolerance * largest) {
             p->violating[p->n_violating++] = d;
         }
@@ -178,8 +171,8 @@ static void find_violations(struct dalcs_osnsp *p, int rung) {
 
 /* Block pivoting of one regularised problem from p->mode; single pivots where that gets nowhere, if
  * it may. *stalled: it got nowhere, and may not. */
-static enum dalcs_status pivot(struct dalcs_osnsp *p, int rung, bool singly, bool *mode_changed,
-                               bool *stalled) {
+static enum dalcs_status pivot(struct dalcs_osnsp *p, enum dalcs_weights weights, bool singly,
+                               bool *mode_changed, bool *stalled) {
     int fewest = p->system->n_pairs + 1;
     int patience = PATIENCE;
     int limit = p->options.max_pivots + 2 * p->system->n_pairs;
@@ -187,12 +180,12 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, int rung, bool singly, boo
     *stalled = false;
     for (int round = 0; round <= limit; round++) {
         struct dalcs_mode_entry *e;
-        DALCS_TRY(dalcs_modes_get(p, 1 + rung, &e));
+        DALCS_TRY(dalcs_modes_get(p, 1 + weights, &e));
         if (e->singular) {
             return DALCS_NOT_CONVERGED;
         }
-        dalcs_proximal_step(p, e, rung);
-        find_violations(p, rung);
+        dalcs_proximal_step(p, e, weights);
+        find_violations(p, weights);
         if (p->n_violating == 0) {
             return DALCS_OK;
         }
@@ -220,19 +213,19 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, int rung, bool singly, boo
 /* One regularised problem around the centre, from p->mode. Its matrix is a P-matrix when the system is
  * monotone: it has one solution, and the least-index fallback ends it. Before that, where block
  * pivoting stalls, Lemke's method finds its mode, of many pairs an interior-point method. */
-enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u, int rung,
-                                       bool *mode_changed) {
+enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u,
+                                       enum dalcs_weights weights, bool *mode_changed) {
     bool stalled;
     *mode_changed = false;
-    DALCS_TRY(pivot(p, rung, !p->system->monotone, mode_changed, &stalled));
+    DALCS_TRY(pivot(p, weights, !p->system->monotone, mode_changed, &stalled));
     if (!stalled) {
         return DALCS_OK;
     }
-    enum dalcs_status status = dalcs_scattering_mode(p, u, rung, eps_of(p, rung));
+    enum dalcs_status status = dalcs_scattering_mode(p, u, weights, p->options.proximal_weight);
     if (status == DALCS_SINGULAR) {
-        status = dalcs_interior_mode(p, rung);
+        status = dalcs_interior_mode(p, weights);
     }
-    return status < DALCS_OK ? status : pivot(p, rung, true, mode_changed, &stalled);
+    return status < DALCS_OK ? status : pivot(p, weights, true, mode_changed, &stalled);
 }
 
 /* Moves the centre to the answer; returns the size of the displacement, how much it differs from the
@@ -270,27 +263,6 @@ static enum dalcs_status try_exactly(struct dalcs_osnsp *p, const double *u, dou
     return status;
 }
 
-/* The weights of unknowns pull a node between two blocking diodes towards 0: their centre alone is
- * moved until it no longer matters, so that only the diodes decide. */
-static enum dalcs_status free_unknowns(struct dalcs_osnsp *p, const double *u, int rung) {
-    const struct dalcs_step_form *f = p->form[0];
-    for (int k = 0; k <= UNKNOWN_ROUNDS; k++) {
-        double size = 0.0;
-        double moved = 0.0;
-        for (int i = 0; i < f->n; i++) {
-            size = fmax(size, fabs(p->scaled[i]));
-            moved = fmax(moved, fabs(p->scaled[i] - p->centre[i]));
-            p->centre[i] = p->scaled[i];
-        }
-        if (moved <= unknown_tolerance * size || k == UNKNOWN_ROUNDS) {
-            break;
-        }
-        bool mode_changed;
-        DALCS_TRY(dalcs_proximal_pivot(p, u, rung, &mode_changed));
-    }
-    return DALCS_OK;
-}
-
 /* Evaluates p->scaled as the answer y; true: it is certified. *sources_clash: the reference of a floating island would
  * have to carry current. */
 static bool is_certified(struct dalcs_osnsp *p, const double *u, double *y, bool *sources_clash) {
@@ -319,12 +291,13 @@ void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u) {
 
 /* A mode that leaves more open than exact.c chooses among is answered by the iterates, as is one whose digits do not
  * do for a certificate; not by those that are still running. */
-static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const double *u, double *y) {
+enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, double *y) {
+    const enum dalcs_weights weights = DALCS_EQUAL_WEIGHTS;
     bool is_open = false;
     dalcs_proximal_begin(p, u);
     for (int outer = 0; outer < p->options.max_outer; outer++) {
         bool mode_changed;
-        DALCS_TRY(dalcs_proximal_pivot(p, u, rung, &mode_changed));
+        DALCS_TRY(dalcs_proximal_pivot(p, u, weights, &mode_changed));
         if (outer == 0 || mode_changed) {
             struct dalcs_mode_entry *plain;
             DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &plain));
@@ -335,11 +308,8 @@ static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const doubl
             is_open = status == DALCS_SINGULAR;
             dalcs_csr_multiply(&p->form[0]->R, u, p->right);
             struct dalcs_mode_entry *e;
-            DALCS_TRY(dalcs_modes_get(p, 1 + rung, &e));
-            dalcs_proximal_step(p, e, rung);
-        }
-        if (outer == 0 && is_open) {
-            DALCS_TRY(free_unknowns(p, u, rung));
+            DALCS_TRY(dalcs_modes_get(p, 1 + weights, &e));
+            dalcs_proximal_step(p, e, weights);
         }
         bool sources_clash;
         double change;
@@ -359,12 +329,4 @@ static enum dalcs_status climb_rung(struct dalcs_osnsp *p, int rung, const doubl
         }
     }
     return DALCS_NOT_CONVERGED;
-}
-
-enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, double *y) {
-    enum dalcs_status status = DALCS_NOT_CONVERGED;
-    for (int rung = 0; rung < DALCS_N_RUNGS && status == DALCS_NOT_CONVERGED; rung++) {
-        status = climb_rung(p, rung, u, y);
-    }
-    return status;
 }

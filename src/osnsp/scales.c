@@ -66,44 +66,6 @@ struct dalcs_scales dalcs_scales_physical(const struct dalcs_osnsp *p, struct da
                                  largest[1] > ampere ? largest[1] : ampere};
 }
 
-/* So many nodes of a chain are looked at. */
-enum { MOST_AROUND = 32 };
-
-static bool is_among(const int *list, int n, int i) {
-    for (int k = 0; k < n; k++) {
-        if (list[k] == i) {
-            return true;
-        }
-    }
-    return false;
-}
-
-bool dalcs_scales_is_bare(const struct dalcs_osnsp *p, int row) {
-    return p->system->row_is_current[row] && p->form[0]->row_volts[row] == 0.0;
-}
-
-double dalcs_scales_norm_around(const struct dalcs_osnsp *p, struct dalcs_scales scale, int row) {
-    const struct dalcs_system *s = p->system;
-    int reached[MOST_AROUND] = {row};
-    int n = 1;
-    double size = 0.0;
-    for (int i = 0; i < n; i++) {
-        size += dalcs_scales_norm(p->form[0], scale, reached[i]);
-        for (int k = s->A.p[reached[i]]; k < s->A.p[reached[i] + 1]; k++) {
-            int d = s->A.j[k] - dalcs_system_n_equations(s);
-            if (d < 0 || !(dalcs_scales_is_bare(p, reached[i]) || dalcs_osnsp_is_on(p, d))) {
-                continue;
-            }
-            for (int e = p->pair_rows_p[d]; e < p->pair_rows_p[d + 1]; e++) {
-                if (n < MOST_AROUND && !is_among(reached, n, p->pair_rows[e])) {
-                    reached[n++] = p->pair_rows[e];
-                }
-            }
-        }
-    }
-    return size;
-}
-
 /* V or A: a state that is recovered is known as well as what it is recovered from. */
 static double state_size(const struct dalcs_osnsp *p, const double *u, const double *y, int x) {
     const struct dalcs_step_form *f = p->form[0];
@@ -157,8 +119,7 @@ double dalcs_scales_current_norm(const struct dalcs_osnsp *p, int pair, struct d
     double size = scale.ampere;
     for (int k = p->pair_rows_p[pair]; k < p->pair_rows_p[pair + 1]; k++) {
         int r = p->pair_rows[k];
-        size = fmax(size, p->looks_around ? dalcs_scales_norm_around(p, scale, r)
-                                          : dalcs_scales_norm(p->form[0], scale, r));
+        size = fmax(size, dalcs_scales_norm(p->form[0], scale, r));
     }
     return size;
 }

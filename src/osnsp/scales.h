@@ -28,13 +28,6 @@ static inline double dalcs_scales_norm(const struct dalcs_step_form *f, struct d
     return f->row_volts[r] * scale.volt + f->row_amperes[r] * scale.ampere;
 }
 
-/* A KCL that only pairs and branches enter. */
-bool dalcs_scales_is_bare(const struct dalcs_osnsp *p, int row);
-
-/* Of the KCL that closed pairs tie to that of this row, and any pairs to those that are bare, together: their rounding
- * flows along the chain. */
-double dalcs_scales_norm_around(const struct dalcs_osnsp *p, struct dalcs_scales scale, int row);
-
 /* What the terms of row i of `check` add up to; y is the answer. */
 double dalcs_scales_row_terms(const struct dalcs_osnsp *p, const double *u, const double *y, int i);
 

@@ -40,7 +40,8 @@ static void finish(struct scattering *s) {
     dalcs_arena_finish(&s->arena);
 }
 
-static enum dalcs_status setup(struct scattering *s, struct dalcs_osnsp *p, int rung) {
+static enum dalcs_status setup(struct scattering *s, struct dalcs_osnsp *p,
+                               enum dalcs_weights weights) {
     const struct dalcs_step_form *f = p->form[0];
     *s = (struct scattering){.p = p, .n = f->n_pairs};
     size_t n = (size_t)s->n;
@@ -54,7 +55,7 @@ static enum dalcs_status setup(struct scattering *s, struct dalcs_osnsp *p, int 
         return DALCS_E_NOMEM;
     }
     for (int d = 0; d < s->n; d++) {
-        s->resistance[d] = dalcs_proximal_resistance(p, d, rung);
+        s->resistance[d] = dalcs_proximal_resistance(p, d, weights);
         s->root[d] = sqrt(s->resistance[d]);
     }
     DALCS_TRY(dalcs_whole_factor(&s->whole, p, s->resistance));
@@ -99,13 +100,13 @@ static void fill(struct scattering *s, const double *u, double eps) {
     }
 }
 
-enum dalcs_status dalcs_scattering_mode(struct dalcs_osnsp *p, const double *u, int rung,
-                                        double eps) {
+enum dalcs_status dalcs_scattering_mode(struct dalcs_osnsp *p, const double *u,
+                                        enum dalcs_weights weights, double eps) {
     struct scattering s;
     if (p->system->n_pairs > MOST_PAIRS) {
         return DALCS_SINGULAR;
     }
-    enum dalcs_status status = setup(&s, p, rung);
+    enum dalcs_status status = setup(&s, p, weights);
     if (status == DALCS_OK) {
         fill(&s, u, eps);
         status = dalcs_lemke_solve(&s.lemke, p->options.max_pivots + 2 * s.n);
@@ -121,9 +122,9 @@ enum dalcs_status dalcs_scattering_mode(struct dalcs_osnsp *p, const double *u, 
 
 enum dalcs_status dalcs_scattering_solve(struct dalcs_osnsp *p, const double *u, double *y) {
     enum dalcs_status status = DALCS_NOT_CONVERGED;
-    for (int rung = 0; rung < DALCS_N_RUNGS && status > DALCS_OK; rung += DALCS_N_WEIGHTS) {
+    for (int k = DALCS_EQUAL_WEIGHTS; k <= DALCS_BALANCED_WEIGHTS && status > DALCS_OK; k++) {
         dalcs_proximal_begin(p, u);
-        status = dalcs_scattering_mode(p, u, rung, DBL_EPSILON);
+        status = dalcs_scattering_mode(p, u, (enum dalcs_weights)k, DBL_EPSILON);
         if (status == DALCS_OK || status == DALCS_NOT_CONVERGED) {
             status = dalcs_exact_pivot(p, u, y, MOST_CHANGES);
         }

@@ -86,14 +86,14 @@ static enum dalcs_status look_for_choice(struct dalcs_osnsp *p, const double *u,
         push_w = fmax(push_w, push_part * fmax(fabs(p->centre_w[d]), fabs(v)));
     }
     if (p->is_passing && push > 0.0) {
-        push = fmax(push, dalcs_proximal_least_push(p, DALCS_N_WEIGHTS));
+        push = fmax(push, dalcs_proximal_least_push(p));
     }
     for (int d = 0; d < f->n_pairs; d++) {
         p->centre[f->n + d] += p->tied[d] ? push : 0.0;
         p->centre_w[d] += p->tied[d] ? push_w : 0.0;
     }
     bool mode_changed;
-    enum dalcs_status status = dalcs_proximal_pivot(p, u, DALCS_N_WEIGHTS, &mode_changed);
+    enum dalcs_status status = dalcs_proximal_pivot(p, u, DALCS_BALANCED_WEIGHTS, &mode_changed);
     *has_choice = false;
     for (int d = 0; status == DALCS_OK && d < f->n_pairs && !*has_choice; d++) {
         bool moves = (push > 0.0 && p->scaled[f->n + d] > moved_part * push) ||

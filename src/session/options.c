@@ -17,7 +17,7 @@ static const double LEAST_FILL = 1e-6;
 
 struct dalcs_run_options dalcs_run_options_default(void) {
     return (struct dalcs_run_options){.certificate_tolerance = 2e-13,
-                                      .proximal_weight = {1e-8, 1e-7, 1e-6},
+                                      .proximal_weight = 1e-8,
                                       .rcond_min = 1e-14,
                                       .max_outer = 40,
                                       .max_pivots = 200,
@@ -184,9 +184,7 @@ static enum dalcs_status choose_filling(struct dalcs_run *r) {
 static enum dalcs_status check_tolerances(struct dalcs_session *s,
                                           const struct dalcs_run_options *o) {
     bool positive = o->certificate_tolerance > 0.0 && o->max_outer > 0 && o->max_pivots > 0;
-    for (int k = 0; k < 3; k++) {
-        positive = positive && o->proximal_weight[k] > 0.0 && o->proximal_weight[k] < 1.0;
-    }
+    positive = positive && o->proximal_weight > 0.0 && o->proximal_weight < 1.0;
     if (!positive || !(o->certificate_tolerance < 1.0) || !(o->rcond_min >= 0.0) ||
         !(o->rcond_min < 1.0) || o->dense_limit < 0) {
         return option_error(s, "tolerances and limits must be positive, tolerances less than 1");

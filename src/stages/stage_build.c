@@ -264,8 +264,6 @@ static enum dalcs_status factor_doubtful(struct dalcs_stages *stages,
             return status;
         }
         drop_systems(f);
-    } else {
-        entry->frees_states = dalcs_stage_freedom_of_mode(stages->plan, entry);
     }
     *largest = largest_of_doubtful;
     return factor_all(stages, entry, f, m, stages->rcond_min * stages->rcond_min);
@@ -299,7 +297,6 @@ static enum dalcs_status build(struct dalcs_stages *stages, struct dalcs_stage_e
     double largest = largest_residual;
     if (status == DALCS_OK) {
         remember_pivots(plan, m, f);
-        entry->frees_states = dalcs_stage_freedom_of_mode(plan, entry);
     } else if (status == DALCS_SINGULAR && s->n_pairs > 0 && !plan->rest.any) {
         DALCS_TRY(factor_doubtful(stages, entry, f, m, &largest));
     } else {

@@ -159,8 +159,7 @@ static enum dalcs_status setup(struct dalcs_stage_plan *plan, const struct dalcs
     DALCS_TRY(fill_P(plan, s));
     DALCS_TRY(fill_drive(plan, plan->n_rows, &plan->drive));
     DALCS_TRY(fill_drive(plan, s->n_x, &plan->drive_of_states));
-    DALCS_TRY(dalcs_stage_rest_setup(plan));
-    return dalcs_stage_freedom_setup(plan);
+    return dalcs_stage_rest_setup(plan);
 }
 
 enum dalcs_status dalcs_stage_plan_get(struct dalcs_stages *stages) {
@@ -207,7 +206,6 @@ void dalcs_stage_plan_destroy(struct dalcs_stages *stages) {
     dalcs_stage_plan_forget(stages);
     stages->plan = NULL;
     dalcs_stage_rest_finish(&plan->rest);
-    dalcs_stage_freedom_finish(&plan->freedom);
     dalcs_stage_join_finish(&plan->join);
     dalcs_csr_finish(&plan->base);
     dalcs_csr_finish(&plan->P);

@@ -10,7 +10,6 @@
 #ifndef DALCS_STAGE_PLAN_H
 #define DALCS_STAGE_PLAN_H
 
-#include "stage_freedom.h"
 #include "stage_join.h"
 #include "stage_rest.h"
 #include "stages.h"
@@ -65,7 +64,6 @@ struct dalcs_stage_plan {
     int *match; /* [n_rows] */
 
     struct dalcs_stage_rest rest;
-    struct dalcs_stage_freedom freedom;
 
     int n_analyses, most_analyses, most_kept;
     struct dalcs_stage_analysis *analysis; /* newest first */

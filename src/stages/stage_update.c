@@ -287,11 +287,6 @@ enum dalcs_status dalcs_stage_update_build(struct dalcs_stages *stages,
         status = place_pairs(entry, f);
     }
     entry->residual = base->residual;
-    entry->frees_states = good && base->frees_states;
-    for (int i = 0; i < u->n_changes && entry->frees_states; i++) {
-        entry->frees_states =
-            dalcs_stage_freedom_of_change(stages->plan, entry, u->change[i]->pair);
-    }
     stages->update_trust += good ? SERVED : REFUSED;
     stages->update_trust = stages->update_trust < MOST_TRUST ? stages->update_trust : MOST_TRUST;
     if (status != DALCS_OK || !good) {

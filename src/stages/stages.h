@@ -139,7 +139,7 @@ bool dalcs_stages_is_awake(const struct dalcs_stages *stages, int pair);
 /* How much more of the answer is rounding than in one from a dense map: 1 for those. */
 double dalcs_stage_rounding(const struct dalcs_stage_entry *entry);
 
-/* May every state be what it likes in this mode? false: not, or not known. */
+/* May every state be what it likes in this mode? false: not, or not known, as on factors. */
 bool dalcs_stage_frees_states(const struct dalcs_stage_entry *entry);
 
 /* [2 n_equations] units in which the columns are in balance with each other, then their inverses. */

@@ -121,7 +121,7 @@ static void check_system(const struct dalcs_system *s) {
 
 /* Every outcome of a step is fine, but none may take long: pivots are few. */
 static const struct dalcs_osnsp_options options = {.certificate_tolerance = 2e-13,
-                                                   .proximal_weight = {1e-8, 1e-7, 1e-6},
+                                                   .proximal_weight = 1e-8,
                                                    .rcond_min = 1e-14,
                                                    .max_outer = 5,
                                                    .max_pivots = 5,

@@ -69,7 +69,7 @@ static void check_rows(const struct dalcs_system *s, double sigma, const double 
 static void solve(const struct dalcs_system_file *file) {
     const struct dalcs_system *s = &file->system;
     const struct dalcs_osnsp_options options = {.certificate_tolerance = 2e-13,
-                                                .proximal_weight = {1e-8, 1e-7, 1e-6},
+                                                .proximal_weight = 1e-8,
                                                 .rcond_min = 1e-14,
                                                 .max_outer = 10,
                                                 .max_pivots = 20,

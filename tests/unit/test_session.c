@@ -150,8 +150,8 @@ START_TEST(test_wrong_options) {
     wrong[n++].step = 1e-14;
     wrong[n++].certificate_tolerance = NAN;
     wrong[n++].certificate_tolerance = INFINITY;
-    wrong[n++].proximal_weight[1] = 0.0;
-    wrong[n++].proximal_weight[2] = NAN;
+    wrong[n++].proximal_weight = 0.0;
+    wrong[n++].proximal_weight = NAN;
     wrong[n++].rcond_min = NAN;
     wrong[n++].max_outer = 0;
     ck_assert_uint_eq(n, sizeof(wrong) / sizeof(*wrong));
