@@ -137,6 +137,13 @@ struct dalcs_transient {
     struct dalcs_location where;
 };
 
+/* What .pss asks for; times in s. */
+struct dalcs_periodic_card {
+    bool present;
+    double period, step;         /* 0: it follows from the sources; rows every period/1000 */
+    bool use_initial_conditions; /* uic */
+};
+
 enum { DALCS_MOST_DC = 2 };
 
 struct dalcs_circuit {
@@ -166,6 +173,7 @@ struct dalcs_circuit {
     int n_fouriers;
     struct dalcs_fourier_card *fourier; /* .four, one for each signal */
     struct dalcs_transient transient;
+    struct dalcs_periodic_card periodic;
     bool operating_point; /* .op */
     int n_prints;
     struct dalcs_print_card *print; /* .print and .plot, in their order */

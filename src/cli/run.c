@@ -9,6 +9,7 @@
 #include "progress.h"
 #include "quantity.h"
 #include "script.h"
+#include "steady_lines.h"
 #include "summary.h"
 #include "times.h"
 #include "verb.h"
@@ -94,7 +95,8 @@ static enum dalcs_status check_interrupt(const struct run *run) {
 
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct run *run = user;
-    run->progress.counts = plot->analysis != DALCS_TRANSIENT;
+    run->progress.counts =
+        plot->analysis != DALCS_TRANSIENT && plot->analysis != DALCS_PERIODIC;
     enum dalcs_status status = dalcs_print_table_begin(&run->printed, run->session, plot);
     return status != DALCS_OK ? status : dalcs_outputs_begin(&run->outputs, plot);
 }
@@ -143,7 +145,8 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
         const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
-        if (option[i].given && (is_plot ? !request->transient : main != DALCS_TRANSIENT)) {
+        if (option[i].given && (is_plot ? !request->transient
+                                        : main != DALCS_TRANSIENT && main != DALCS_PERIODIC)) {
             fprintf(cli->err, "dalcs: warning: the netlist has no .tran: %s has no effect\n",
                     option[i].name);
         }
@@ -151,8 +154,10 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
 }
 
 /* The one that a file with room for one result holds. */
-static enum dalcs_analysis main_analysis(const struct dalcs_request *request) {
-    return request->transient  ? DALCS_TRANSIENT
+static enum dalcs_analysis main_analysis(const struct dalcs_request *request, bool steady) {
+    return steady              ? DALCS_PERIODIC
+           : request->transient ? DALCS_TRANSIENT
+           : request->periodic ? DALCS_PERIODIC
            : request->ac       ? DALCS_AC
            : request->dc_sweep ? DALCS_DC_SWEEP
                                : DALCS_OPERATING_POINT;
@@ -167,6 +172,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
         return;
     }
     dalcs_summary_write_run(out, report);
+    dalcs_steady_lines_write(out, report);
     if (status != DALCS_OK) {
         char text[DALCS_QUANTITY_SIZE];
         fprintf(out, "  stopped   at %s: %s\n", dalcs_quantity_write(text, run->time, "s", 6),
@@ -175,7 +181,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
     dalcs_summary_write_sides(out, report);
 
     static const enum dalcs_analysis shown[] = {DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_AC,
-                                                DALCS_TRANSIENT};
+                                                DALCS_PERIODIC, DALCS_TRANSIENT};
 
     for (size_t i = 0; i < DALCS_N_ANALYSES; i++) {
         const struct dalcs_plot *plot = run->outputs.measure[shown[i]].plot;
@@ -231,6 +237,8 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
         options.max_events = SHOWN_EVENTS;
     }
     options.audit = arguments->audit;
+    options.steady = arguments->steady;
+    options.period = arguments->period;
     options.energy = arguments->report || arguments->energy;
     const struct dalcs_sink sink = {
         .user = run, .begin = begin, .row = row, .end = end, .progress = progress, .rows = rows};
@@ -277,7 +285,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         return status;
     }
     const struct dalcs_request request = dalcs_session_request(session);
-    enum dalcs_analysis main = main_analysis(&request);
+    enum dalcs_analysis main = main_analysis(&request, arguments->steady);
     struct run run = {.cli = cli};
     status = dalcs_script_look(session, &run.has_script, &main);
     if (status != DALCS_OK) {
@@ -331,7 +339,7 @@ enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv
         return dalcs_cli_exit(status);
     }
     if (arguments.help) {
-        fputs(help, cli->out);
+        fputs(arguments.steady ? dalcs_steady_help : help, cli->out);
     } else {
         status = dalcs_paths_check(cli, &arguments);
     }

@@ -1,0 +1,149 @@
+/* steady.c - the search: bursts of Newton's method from points of a run, ever farther on.
+ *
+ * Newton's method is local: as events come and go with the states, pieces of the map follow each other. A
+ * burst starts where a run has come to, so that the worst case is a run, of twice as many periods as it
+ * takes; and a step that does not help is followed by a plain period, which takes the state back to where
+ * the circuit can be. Where a controller is saturated, a quantity grows by as much each period and nothing
+ * else happens: the search leaps along it, as far as the same events follow each other. */
+#include "steady.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST_STEPS = 10, MOST_WITHOUT_HALVING = 4, MOST_LEAPS = 24 };
+
+/* Periods of runs between bursts, in all. */
+static const long most_periods = 4096;
+
+/* Residuals: with the first it is done; the second is good enough where a further step makes it no smaller. */
+static const double converged = 1e-11, good = 1e-10;
+
+/* Farther away than at first by this factor, twice, and a burst is over. */
+static const double far = 10.0;
+
+/* Has every switch that remembers come back to where it was? */
+static bool switches_return(const struct dalcs_steady *st) {
+    bool do_ = true;
+    for (int k = 0; k < st->layout.n_systems; k++) {
+        const struct dalcs_system *s = &st->run->s->network.system[k];
+        for (int d = 0; d < s->n_pairs; d++) {
+            int i = st->layout.first_pair[k] + d;
+            do_ = do_ && !(s->pair[d].kind == DALCS_PAIR_SWITCH && dalcs_pair_remembers(&s->pair[d]) &&
+                           st->at.closed[i] != st->then.closed[i]);
+        }
+    }
+    return do_;
+}
+
+static void go_by(struct dalcs_steady *st, const double *from, const double *step, double factor) {
+    for (int x = 0; x < st->layout.n_x; x++) {
+        st->at.x[x] = from[x] + factor * step[x];
+    }
+    memcpy(st->at.closed, st->then.closed, (size_t)st->layout.n_pairs * sizeof(bool));
+}
+
+/* Is the last pass an answer, and no further step better? `before`: the residual before it. */
+static bool is_done(const struct dalcs_steady *st, double before) {
+    bool is = st->residual <= converged || (st->residual <= good && st->residual >= before);
+    return is && switches_return(st);
+}
+
+struct burst {
+    double first, best; /* residuals */
+    int waited;         /* steps since `best` has halved */
+    int far;
+    bool done;
+};
+
+/* One step, and a plain period where it did not help. */
+static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
+    const double before = st->residual;
+    go_by(st, st->at.x, st->step, 1.0);
+    st->n.newton++;
+    enum dalcs_status status = dalcs_steady_pass(st, 1, true);
+    DALCS_TRY(status);
+    b->done = is_done(st, before);
+    if (!b->done && !(st->residual <= 0.5 * before)) {
+        dalcs_steady_take(st);
+        DALCS_TRY(dalcs_steady_pass(st, 1, true));
+        b->done = is_done(st, INFINITY);
+    }
+    b->far += st->residual > far * b->first ? 1 : 0;
+    b->waited = st->residual <= 0.5 * b->best ? 0 : b->waited + 1;
+    b->best = fmin(b->best, st->residual);
+    return DALCS_OK;
+}
+
+/* From st->at. A run that fails on the way ends the burst, not the search. */
+static enum dalcs_status run_burst(struct dalcs_steady *st, bool *done) {
+    DALCS_TRY(dalcs_steady_pass(st, 1, true));
+    struct burst b = {.first = st->residual, .best = st->residual, .done = is_done(st, 0.0)};
+    st->n.bursts++;
+    for (int k = 0; k < MOST_STEPS && !b.done && b.far < 2 && b.waited < MOST_WITHOUT_HALVING;
+         k++) {
+        enum dalcs_status status = dalcs_steady_newton(st);
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+        if (status != DALCS_OK || (st->is_stuck && k == 0)) {
+            break;
+        }
+        status = try_step(st, &b);
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+        if (status != DALCS_OK) {
+            break;
+        }
+    }
+    *done = b.done;
+    return DALCS_OK;
+}
+
+/* Along what grows, from where the last pass has come to, as far as the same modes follow each other. *endless: that
+ * is as far as it was tried. */
+static enum dalcs_status leap(struct dalcs_steady *st, double *from, bool *endless) {
+    const size_t bytes = (size_t)st->layout.n_x * sizeof(double);
+    const uint64_t signature = st->signature;
+    memcpy(from, st->then.x, bytes);
+    for (int x = 0; x < st->layout.n_x; x++) {
+        st->drift[x] = st->then.x[x] - st->at.x[x];
+    }
+    bool same = true;
+    int k = 0;
+    for (; k < MOST_LEAPS && same; k++) {
+        go_by(st, from, st->drift, ldexp(1.0, k));
+        enum dalcs_status status = dalcs_steady_pass(st, 1, true);
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+        same = status == DALCS_OK && st->signature == signature;
+    }
+    *endless = same;
+    st->n.leaps++;
+    go_by(st, from, st->drift, ldexp(1.0, k - (same ? 1 : 2)));
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool *endless) {
+    const size_t n = (size_t)st->layout.n_x + 1;
+    double *from = dalcs_arena_alloc(&st->arena, n, sizeof(double));
+    struct dalcs_orbit_point run = {dalcs_arena_alloc(&st->arena, n, sizeof(double)),
+                                    dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_pairs + 1,
+                                                      sizeof(bool))};
+    if (from == NULL || run.x == NULL || run.closed == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    *found = *endless = false;
+    for (long wait = 1, total = 0; !*found && !*endless && total <= most_periods;) {
+        DALCS_TRY(dalcs_steady_pass(st, wait, false));
+        dalcs_steady_take(st);
+        total += wait;
+        memcpy(run.x, st->at.x, (size_t)st->layout.n_x * sizeof(double));
+        memcpy(run.closed, st->at.closed, (size_t)st->layout.n_pairs * sizeof(bool));
+        DALCS_TRY(run_burst(st, found));
+        wait = total;
+        if (!*found && st->is_stuck) {
+            DALCS_TRY(leap(st, from, endless));
+            wait = 1;
+        } else if (!*found) {
+            memcpy(st->at.x, run.x, (size_t)st->layout.n_x * sizeof(double));
+            memcpy(st->at.closed, run.closed, (size_t)st->layout.n_pairs * sizeof(bool));
+        }
+    }
+    return DALCS_OK;
+}

@@ -1,0 +1,197 @@
+/* steady_run.c - .pss: the period, the search, then one period as the .tran that it is. */
+#include "steady.h"
+
+#include "quantity.h"
+#include "thinning.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rows in a period, where nobody asks for another distance. */
+static const double rows_in_a_period = 1000.0;
+
+/* What comes back after one more period may be off by so much, over the scale of a state: no more than what the search
+ * has called good. */
+static const double most_defect = 1e-10;
+
+/* What the circuit and the run are while a period of it is run. */
+struct kept {
+    struct dalcs_transient transient;
+    struct dalcs_stimulus *stimulus; /* [n_stimuli] */
+    double h, max_step;
+};
+
+static enum dalcs_status refuse(struct dalcs_run *r, const char *hint, const char *text) {
+    dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, hint, "%s", text);
+    return DALCS_E_OPTION;
+}
+
+/* ---- Failures in words --------------------------------------------------------------------------- */
+
+static const char *unit_of(const struct dalcs_steady *st, int state) {
+    int k = 0;
+    while (state >= st->layout.first[k + 1]) {
+        k++;
+    }
+    return st->run->s->network.system[k].column_is_current[state - st->layout.first[k]] ? "A" : "V";
+}
+
+/* "v(c2) rises by 3.33 mV and v(c1) falls by 3.33 mV": the states that move most, of the last pass. */
+static const char *moves_text(struct dalcs_steady *st) {
+    struct dalcs_arena *arena = &st->run->s->arena;
+    const char *text = "";
+    double most = INFINITY;
+    for (int told = 0; told < 2 && text != NULL; told++) {
+        int state = -1;
+        double next = 0.0;
+        for (int x = 0; x < st->layout.n_x; x++) {
+            double moves = fabs(st->step[x]) / (st->scale[x] > 0.0 ? st->scale[x] : 1.0);
+            bool is_next = moves > next && (moves < most || (moves == most && told > 0));
+            state = is_next ? x : state;
+            next = is_next ? moves : next;
+        }
+        if (state < 0 || (told > 0 && next < 1e-3 * most)) {
+            break;
+        }
+        char by[DALCS_QUANTITY_SIZE];
+        text = dalcs_arena_printf(
+            arena, "%s%s%s %s by %s", text, told > 0 ? " and " : "", dalcs_steady_name(st, state),
+            st->step[state] > 0.0 ? "rises" : "falls",
+            dalcs_quantity_write(by, fabs(st->step[state]), unit_of(st, state), 6));
+        st->step[state] = 0.0;
+        most = told == 0 ? next : most;
+    }
+    return text == NULL ? "" : text;
+}
+
+static enum dalcs_status tell_failure(struct dalcs_steady *st, bool endless) {
+    struct dalcs_session *s = st->run->s;
+    for (int x = 0; x < st->layout.n_x; x++) {
+        st->step[x] = st->then.x[x] - st->at.x[x];
+    }
+    if (endless) {
+        for (int x = 0; x < st->layout.n_x; x++) {
+            st->step[x] = st->drift[x];
+        }
+        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
+                       "a source fills what nothing empties: give it a way out",
+                       "there is no periodic steady state: each period %s, whatever they are",
+                       moves_text(st));
+        return DALCS_NOT_CONVERGED;
+    }
+    dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
+                   "look at it with .tran; a switch that follows the circuit may have a clock of "
+                   "its own",
+                   "no periodic steady state was found in %ld periods; in the last one %s",
+                   st->n.periods, moves_text(st));
+    return DALCS_NOT_CONVERGED;
+}
+
+/* ---- The period ---------------------------------------------------------------------------------- */
+
+/* How far the run that has just ended is from where it began. */
+static enum dalcs_status find_defect(struct dalcs_steady *st) {
+    struct dalcs_session *s = st->run->s;
+    const struct dalcs_network *n = &s->network;
+    double defect = 0.0;
+    for (int i = 0; i < n->n_states; i++) {
+        const struct dalcs_probe *p = &n->state[i].probe;
+        for (int k = 0; k < p->n_terms && p->system >= 0; k++) {
+            int x = st->layout.first[p->system] + p->term[k].index;
+            bool is_state = p->n_terms == 1 && p->n_inputs == 0 && p->term[k].coefficient == 1.0 &&
+                            p->term[k].index < n->system[p->system].n_x;
+            double off = is_state ? fabs(s->final[i] - st->at.x[x]) : 0.0;
+            defect = off > 0.0 ? fmax(defect, off / st->scale[x]) : defect;
+        }
+    }
+    s->report.steady.defect = defect;
+    if (!(defect <= most_defect)) {
+        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "a smaller --tol",
+                       "one more period does not come back: its states are off by %.3g", defect);
+        return DALCS_NOT_CONVERGED;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status run_period(struct dalcs_steady *st) {
+    struct dalcs_run *r = st->run;
+    struct dalcs_thinning thinning;
+    const struct dalcs_sink *sink = r->sink;
+    r->orbit = &st->at;
+    if (r->compress > 0.0) {
+        DALCS_TRY(dalcs_thinning_setup(&thinning, sink, (size_t)r->s->circuit.n_shown, r->compress));
+        r->sink = &thinning.sink;
+    }
+    enum dalcs_status status = dalcs_transient_run(r);
+    if (r->compress > 0.0) {
+        enum dalcs_status flushed = dalcs_thinning_flush(&thinning);
+        status = status == DALCS_OK ? flushed : status;
+        dalcs_thinning_finish(&thinning);
+    }
+    r->sink = sink;
+    r->orbit = NULL;
+    return status == DALCS_OK ? find_defect(st) : status;
+}
+
+static enum dalcs_status find_orbit(struct dalcs_run *r, double period) {
+    struct dalcs_steady st;
+    bool found;
+    bool endless;
+    DALCS_TRY(dalcs_steady_setup(&st, r, period));
+    enum dalcs_status status = dalcs_steady_search(&st, &found, &endless);
+    if (status == DALCS_OK && !found) {
+        status = tell_failure(&st, endless);
+    }
+    if (status == DALCS_OK) {
+        status = dalcs_steady_newton(&st); /* how far it may be off, and what is conserved */
+        status = status == DALCS_OK ? dalcs_steady_report(&st) : status;
+    }
+    status = status == DALCS_OK ? run_period(&st) : status;
+    dalcs_steady_finish(&st);
+    return status;
+}
+
+/* ---- All of it ----------------------------------------------------------------------------------- */
+
+static enum dalcs_status search(struct dalcs_run *r, struct kept *kept) {
+    struct dalcs_circuit *c = &r->s->circuit;
+    double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
+    DALCS_TRY(dalcs_steady_find_period(r, period, &period));
+    const bool uic = kept->transient.use_initial_conditions || c->periodic.use_initial_conditions;
+    const double step =
+        c->periodic.step > 0.0 ? c->periodic.step : period / rows_in_a_period;
+    c->transient = (struct dalcs_transient){.present = true,
+                                            .step = step,
+                                            .stop = period,
+                                            .use_initial_conditions = uic,
+                                            .where = kept->transient.where};
+    r->h = period / rows_in_a_period;
+    r->max_step = r->options->step;
+    return find_orbit(r, period);
+}
+
+enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
+    struct dalcs_circuit *c = &r->s->circuit;
+    if (r->method == DALCS_METHOD_EULER || r->fixed_step > 0.0) {
+        return refuse(r, "leave the method, or the step, to the program",
+                      "a steady state needs steps whose error is controlled");
+    }
+    struct kept kept = {.transient = c->transient, .h = r->h, .max_step = r->max_step};
+    kept.stimulus = dalcs_alloc((size_t)c->n_stimuli, sizeof(*kept.stimulus));
+    if (kept.stimulus == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int i = 0; i < c->n_stimuli; i++) {
+        kept.stimulus[i] = c->stimulus[i];
+    }
+    enum dalcs_status status = search(r, &kept);
+    for (int i = 0; i < c->n_stimuli; i++) {
+        c->stimulus[i] = kept.stimulus[i];
+    }
+    c->transient = kept.transient;
+    r->h = kept.h;
+    r->max_step = kept.max_step;
+    free(kept.stimulus);
+    return status;
+}
