@@ -333,7 +333,7 @@ struct dalcs_run_options {
     enum dalcs_audit_mode audit; /* of .tran; a defect above the tolerance is DALCS_NOT_CONVERGED */
     const char *dump_path;       /* where to write an OSNSP that failed; NULL: nowhere */
 
-    bool steady;   /* the periodic steady state and nothing else, as if .pss were the only analysis */
+    bool steady; /* the periodic steady state and nothing else, as if .pss were the only analysis */
     double period; /* s, of it; 0: that of .pss, else it follows from the sources */
 };
 
@@ -591,15 +591,23 @@ struct dalcs_report {
         bool exact;      /* the multipliers are: no step of implicit Euler, nothing slides */
         bool stable;
         const char *verdict;
-        size_t n_multipliers; /* the largest first; those of states that last no period are left out */
+        size_t
+            n_multipliers; /* the largest first; those of states that last no period are left out */
 
         const struct dalcs_floquet {
             double re, im;
             const char *state; /* "v(c1)" which has most of it */
         } * multiplier;
 
-        size_t n_conserved; /* quantities with a multiplier of 1, "v(c2) - 0.5 v(c1)" */
+        const double *state; /* [n_states] at its beginning, before any edge there */
+        size_t n_conserved;  /* quantities with a multiplier of 1, "v(c2) - 0.5 v(c1)" */
         const char *const *conserved;
+        size_t n_signals;
+
+        const struct dalcs_steady_signal {
+            const char *name; /* "v(out)" */
+            double average, rms;
+        } * signal; /* [n_signals] over the period, exact */
     } steady;
 };
 

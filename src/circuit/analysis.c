@@ -2,7 +2,7 @@
 #include "builder.h"
 
 static const char PSS_USAGE[] = ".pss [period] [step=tstep] [uic]";
-static const char TRAN_USAGE[] = ".tran tstep tstop [tstart [tmax]] [uic]";
+static const char TRAN_USAGE[] = ".tran tstep tstop [tstart [tmax]] [uic|uic=steady]";
 
 enum { TSTEP, TSTOP, TSTART, TMAX, N_TIMES };
 
@@ -51,6 +51,13 @@ static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *trans
     /* noop is Xyce's word for it */
     if (dalcs_reader_take_word(reader, "uic") || dalcs_reader_take_word(reader, "noop")) {
         transient->use_initial_conditions = true;
+        if (dalcs_reader_take(reader, DALCS_TOKEN_EQUAL)) {
+            transient->starts_steady = dalcs_reader_take_word(reader, "steady");
+            if (!transient->starts_steady) {
+                dalcs_reader_unexpected(reader);
+            }
+            return transient->starts_steady;
+        }
         return true;
     }
     if (dalcs_reader_take_word(reader, "nodiscard")) {

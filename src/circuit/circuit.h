@@ -134,6 +134,7 @@ struct dalcs_transient {
     double step, stop, start, max_step; /* step 0: rows every stop/1000; max_step 0: not given */
     double first_step;                  /* Xyce's, which other simulators may want; else 0 */
     bool use_initial_conditions;        /* uic */
+    bool starts_steady;                 /* uic=steady */
     struct dalcs_location where;
 };
 

@@ -24,14 +24,15 @@ const char dalcs_steady_help[] =
     "  dalcs steady buck.cir -o period.csv --report buck.json\n"
     "  dalcs steady buck.cir --period 20u\n"
     "\n"
-    "exit status: 0 ok, 1 there is no steady state or none was found, 2 usage or no common period,\n"
+    "exit status: 0 ok, 1 there is no steady state or none was found, 2 usage or no common "
+    "period,\n"
     "3 error in the netlist, 4 input/output\n";
 
 static void write_counts(FILE *out, const struct dalcs_report *report) {
     char period[DALCS_QUANTITY_SIZE];
     fprintf(out, "  steady    period %s, %d Newton step%s, %ld period%s",
-            dalcs_quantity_write(period, report->steady.period, "s", DIGITS),
-            report->steady.newton, report->steady.newton == 1 ? "" : "s", report->steady.periods,
+            dalcs_quantity_write(period, report->steady.period, "s", DIGITS), report->steady.newton,
+            report->steady.newton == 1 ? "" : "s", report->steady.periods,
             report->steady.periods == 1 ? "" : "s");
     if (report->steady.leaps > 0) {
         fprintf(out, ", %d leap%s", report->steady.leaps, report->steady.leaps == 1 ? "" : "s");

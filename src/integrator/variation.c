@@ -95,8 +95,7 @@ static enum dalcs_status pass_segment(struct dalcs_variation_part *v, int row) {
     struct dalcs_stages *stages = &part->stages;
     struct dalcs_stage_entry *entry;
     double weight[DALCS_MAX_NODES];
-    DALCS_TRY(
-        dalcs_stages_get(stages, part->component->osnsp.mode, part->segment.h, &entry));
+    DALCS_TRY(dalcs_stages_get(stages, part->component->osnsp.mode, part->segment.h, &entry));
     dalcs_collocation_weights(stages->method, part->segment.end, weight);
     memset(v->in, 0, (size_t)stages->n_in * sizeof(double));
     for (int k = 0; k < v->n_x; k++) {
@@ -235,9 +234,8 @@ static enum dalcs_status factor_P(struct dalcs_variation_part *v, const struct d
             v->P[s->P.j[k] * s->n_x + r] += s->P.x[k];
         }
     }
-    int failed = s->n_x == 0
-                     ? 0
-                     : LAPACKE_dgetrf(LAPACK_COL_MAJOR, s->n_x, s->n_x, v->P, s->n_x, v->pivot);
+    int failed =
+        s->n_x == 0 ? 0 : LAPACKE_dgetrf(LAPACK_COL_MAJOR, s->n_x, s->n_x, v->P, s->n_x, v->pivot);
     return failed == 0 ? DALCS_OK : DALCS_SINGULAR;
 }
 

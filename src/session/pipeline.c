@@ -161,9 +161,11 @@ static enum dalcs_status run_operating_point(struct dalcs_run *r) {
     return status;
 }
 
-/* The same with fewer rows. */
-static enum dalcs_status run_thinned(struct dalcs_run *r) {
+enum dalcs_status dalcs_transient_run_thinned(struct dalcs_run *r) {
     struct dalcs_thinning thinning;
+    if (!(r->compress > 0.0)) {
+        return dalcs_transient_run(r);
+    }
     const struct dalcs_sink *sink = r->sink;
     DALCS_TRY(dalcs_thinning_setup(&thinning, sink, (size_t)r->s->circuit.n_shown, r->compress));
     r->sink = &thinning.sink;
@@ -262,7 +264,10 @@ static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis a
         if (!circuit->transient.present) {
             return DALCS_OK;
         }
-        return r->compress > 0.0 ? run_thinned(r) : dalcs_transient_run(r);
+        if (circuit->transient.starts_steady) {
+            return dalcs_steady_leave(r);
+        }
+        return dalcs_transient_run_thinned(r);
     }
 }
 
@@ -475,7 +480,6 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
     }
     DALCS_TRY(dalcs_operating_currents(session, options, &complete));
     static const enum dalcs_analysis STEADY = DALCS_PERIODIC;
-    return options->steady
-               ? run_analyses(session, options, &complete, NULL, &STEADY, 1)
-               : run_analyses(session, options, &complete, NULL, IN_ORDER, N_IN_ORDER);
+    return options->steady ? run_analyses(session, options, &complete, NULL, &STEADY, 1)
+                           : run_analyses(session, options, &complete, NULL, IN_ORDER, N_IN_ORDER);
 }

@@ -135,6 +135,9 @@ enum dalcs_status dalcs_dc_sweep_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 /* Runs .ac into r->sink. */
 enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
+/* dalcs_transient_run with fewer rows, if that is asked for. */
+enum dalcs_status dalcs_transient_run_thinned(struct dalcs_run *r) DALCS_MUST_CHECK;
+
 /* Frees what the last run left. */
 void dalcs_session_forget_run(struct dalcs_session *session);
 
@@ -147,6 +150,9 @@ struct dalcs_radau_options dalcs_transient_options(const struct dalcs_run *r, do
 
 /* Runs .pss into r->sink. */
 enum dalcs_status dalcs_steady_run(struct dalcs_run *r) DALCS_MUST_CHECK;
+
+/* Runs the .tran that starts on such an orbit. */
+enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) DALCS_MUST_CHECK;
 
 /* Runs .tran into r->sink. */
 enum dalcs_status dalcs_transient_run(struct dalcs_run *r) DALCS_MUST_CHECK;

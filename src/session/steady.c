@@ -28,8 +28,9 @@ static bool switches_return(const struct dalcs_steady *st) {
         const struct dalcs_system *s = &st->run->s->network.system[k];
         for (int d = 0; d < s->n_pairs; d++) {
             int i = st->layout.first_pair[k] + d;
-            do_ = do_ && !(s->pair[d].kind == DALCS_PAIR_SWITCH && dalcs_pair_remembers(&s->pair[d]) &&
-                           st->at.closed[i] != st->then.closed[i]);
+            do_ = do_ &&
+                  !(s->pair[d].kind == DALCS_PAIR_SWITCH && dalcs_pair_remembers(&s->pair[d]) &&
+                    st->at.closed[i] != st->then.closed[i]);
         }
     }
     return do_;
@@ -60,12 +61,12 @@ static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     const double before = st->residual;
     go_by(st, st->at.x, st->step, 1.0);
     st->n.newton++;
-    enum dalcs_status status = dalcs_steady_pass(st, 1, true);
+    enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
     DALCS_TRY(status);
     b->done = is_done(st, before);
     if (!b->done && !(st->residual <= 0.5 * before)) {
         dalcs_steady_take(st);
-        DALCS_TRY(dalcs_steady_pass(st, 1, true));
+        DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
         b->done = is_done(st, INFINITY);
     }
     b->far += st->residual > far * b->first ? 1 : 0;
@@ -76,7 +77,7 @@ static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
 
 /* From st->at. A run that fails on the way ends the burst, not the search. */
 static enum dalcs_status run_burst(struct dalcs_steady *st, bool *done) {
-    DALCS_TRY(dalcs_steady_pass(st, 1, true));
+    DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
     struct burst b = {.first = st->residual, .best = st->residual, .done = is_done(st, 0.0)};
     st->n.bursts++;
     for (int k = 0; k < MOST_STEPS && !b.done && b.far < 2 && b.waited < MOST_WITHOUT_HALVING;
@@ -96,20 +97,17 @@ static enum dalcs_status run_burst(struct dalcs_steady *st, bool *done) {
     return DALCS_OK;
 }
 
-/* Along what grows, from where the last pass has come to, as far as the same modes follow each other. *endless: that
+/* Along st->drift from where the last pass has come to, as far as the same modes follow each other. *endless: that
  * is as far as it was tried. */
 static enum dalcs_status leap(struct dalcs_steady *st, double *from, bool *endless) {
     const size_t bytes = (size_t)st->layout.n_x * sizeof(double);
     const uint64_t signature = st->signature;
     memcpy(from, st->then.x, bytes);
-    for (int x = 0; x < st->layout.n_x; x++) {
-        st->drift[x] = st->then.x[x] - st->at.x[x];
-    }
     bool same = true;
     int k = 0;
     for (; k < MOST_LEAPS && same; k++) {
         go_by(st, from, st->drift, ldexp(1.0, k));
-        enum dalcs_status status = dalcs_steady_pass(st, 1, true);
+        enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
         same = status == DALCS_OK && st->signature == signature;
     }
@@ -122,15 +120,15 @@ static enum dalcs_status leap(struct dalcs_steady *st, double *from, bool *endle
 enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool *endless) {
     const size_t n = (size_t)st->layout.n_x + 1;
     double *from = dalcs_arena_alloc(&st->arena, n, sizeof(double));
-    struct dalcs_orbit_point run = {dalcs_arena_alloc(&st->arena, n, sizeof(double)),
-                                    dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_pairs + 1,
-                                                      sizeof(bool))};
+    struct dalcs_orbit_point run = {
+        dalcs_arena_alloc(&st->arena, n, sizeof(double)),
+        dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_pairs + 1, sizeof(bool))};
     if (from == NULL || run.x == NULL || run.closed == NULL) {
         return DALCS_E_NOMEM;
     }
     *found = *endless = false;
     for (long wait = 1, total = 0; !*found && !*endless && total <= most_periods;) {
-        DALCS_TRY(dalcs_steady_pass(st, wait, false));
+        DALCS_TRY(dalcs_steady_pass(st, wait, DALCS_STEADY_PLAIN));
         dalcs_steady_take(st);
         total += wait;
         memcpy(run.x, st->at.x, (size_t)st->layout.n_x * sizeof(double));

@@ -11,10 +11,10 @@
 /* Where the states of the systems lie side by side. */
 struct dalcs_steady_layout {
     int n_systems;
-    int n_x, n_pairs;    /* of all */
-    int *first;          /* [n_systems + 1] state of each */
-    int *first_pair;     /* [n_systems + 1] */
-    size_t *first_of_M;  /* [n_systems + 1] of its [n][n] in M, column after column */
+    int n_x, n_pairs;   /* of all */
+    int *first;         /* [n_systems + 1] state of each */
+    int *first_pair;    /* [n_systems + 1] */
+    size_t *first_of_M; /* [n_systems + 1] of its [n][n] in M, column after column */
 };
 
 /* States and the positions of switches. */
@@ -26,26 +26,32 @@ struct dalcs_orbit_point {
 struct dalcs_steady {
     struct dalcs_run *run;
     struct dalcs_steady_layout layout;
-    double period;                      /* s */
-    struct dalcs_orbit_point at, then;  /* now, and after the pass */
-    double *M;                          /* of the last pass with one */
-    double *scale;                      /* [n_x] of each state on the way */
-    double *step;                       /* [n_x] the last one of Newton's method */
-    double *drift;                      /* [n_x] what is_stuck leaps along */
-    uint64_t signature;                 /* of the modes that followed each other */
-    bool has_point;                     /* `at` is known; else the run starts as any does */
-    bool is_exact;                      /* M is */
-    bool is_stuck;                      /* a conserved quantity grows by `drift` */
+    double period;                     /* s */
+    struct dalcs_orbit_point at, then; /* now, and after the pass */
+    double *M;                         /* of the last pass with one */
+    double *scale;                     /* [n_x] of each state on the way */
+    double *step;                      /* [n_x] the last one of Newton's method */
+    double *drift;                     /* [n_x] what grows by as much each period */
+    uint64_t signature;                /* of the modes that followed each other */
+    double *average, *rms;             /* [n_outputs] of the last pass with them */
+    double *state;  /* [n_states] of the network, where that ended; the session's */
+    bool has_point; /* `at` is known; else the run starts as any does */
+    bool is_exact;  /* M is */
+    bool is_stuck;  /* a conserved quantity grows by `drift` */
+
     struct dalcs_steady_count {
         int newton, bursts, leaps;
         long periods;
     } n;
+
     double residual; /* of the last pass, over the scales */
     double distance; /* how far the orbit is from there, likewise */
+
     struct dalcs_steady_conserved {
         int system;
         double *weight; /* [n] of the system's states */
     } * conserved;      /* [n_conserved] */
+
     int n_conserved;
     struct dalcs_arena arena;
 };
@@ -57,15 +63,24 @@ void dalcs_steady_finish(struct dalcs_steady *st);
 /* ---- steady_period.c --------------------------------------------------------------------------- */
 
 /* The period of all sources, s: the smallest common one, or `asked` (0: none is) if that is one. The circuit's stimuli
- * become what they are from a multiple of it on behind all delays. DALCS_E_OPTION: there is none, and a message says
+ * become what they are from a multiple of it on behind all delays; those that do not repeat, what they come to, or
+ * at_start what they are at t = 0. DALCS_E_OPTION: there is none, and a message says
  * why. */
-enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked,
+enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bool at_start,
                                            double *period) DALCS_MUST_CHECK;
 
 /* ---- steady_pass.c ----------------------------------------------------------------------------- */
 
-/* n periods on from st->at to st->then; with M, of all of them, if asked for. */
-enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n, bool with_M) DALCS_MUST_CHECK;
+/* What a pass is asked for besides. */
+enum dalcs_steady_asked {
+    DALCS_STEADY_PLAIN,
+    DALCS_STEADY_M,    /* of all its periods */
+    DALCS_STEADY_MEANS /* of the signals; not M */
+};
+
+/* n periods on from st->at to st->then. */
+enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
+                                    enum dalcs_steady_asked asked) DALCS_MUST_CHECK;
 
 /* Goes on from there. */
 void dalcs_steady_take(struct dalcs_steady *st);

@@ -8,7 +8,6 @@
 
 #include <lapacke.h>
 #include <math.h>
-#include <string.h>
 
 /* Singular values of 1 - M below this part of the largest are rounding: of M, with states in units in which
  * energies are alike, and of the tolerance that its run was held to. */
@@ -24,7 +23,8 @@ struct newton {
     double *A, *U, *Vt; /* 1 - M = U s Vt */
     double *s, *superb;
     double *F, *d;
-    double *c; /* [n + n^2] work */
+    double *rest; /* of F without what grows each period */
+    double *c;    /* [n + n^2] work */
     int *pivot;
 };
 
@@ -38,10 +38,12 @@ static bool make_room(struct newton *w, struct dalcs_arena *arena) {
     w->superb = dalcs_arena_alloc(arena, n, sizeof(double));
     w->F = dalcs_arena_alloc(arena, n, sizeof(double));
     w->d = dalcs_arena_alloc(arena, n, sizeof(double));
+    w->rest = dalcs_arena_alloc(arena, n, sizeof(double));
     w->c = dalcs_arena_alloc(arena, n + n * n, sizeof(double));
     w->pivot = dalcs_arena_alloc(arena, n, sizeof(int));
     return w->unit != NULL && w->A != NULL && w->U != NULL && w->Vt != NULL && w->s != NULL &&
-           w->superb != NULL && w->F != NULL && w->d != NULL && w->c != NULL && w->pivot != NULL;
+           w->superb != NULL && w->F != NULL && w->d != NULL && w->rest != NULL && w->c != NULL &&
+           w->pivot != NULL;
 }
 
 /* The square root of what a state stores; of what stores nothing, over its scale. */
@@ -61,14 +63,15 @@ static double dot(const double *a, const double *b, int n) {
     return sum;
 }
 
-/* d += sum of the last m right vectors such that the last m left vectors have no part of it. */
-static void keep_conserved(struct newton *w, int m) {
+/* vector -= sum of the last m right vectors, such that the last m left vectors have no part of the rest. Returns
+ * whether that can be. */
+static bool part_conserved(struct newton *w, int m, double *vector) {
     const int first = w->n - m;
     double *c = w->c;
     double *G = w->c + w->n;
     for (int i = 0; i < m; i++) {
         const double *left = w->U + (size_t)(first + i) * (size_t)w->n;
-        c[i] = -dot(left, w->d, w->n);
+        c[i] = dot(left, vector, w->n);
         for (int j = 0; j < m; j++) {
             G[j * m + i] = 0.0;
             for (int x = 0; x < w->n; x++) {
@@ -77,13 +80,14 @@ static void keep_conserved(struct newton *w, int m) {
         }
     }
     if (m == 0 || LAPACKE_dgesv(LAPACK_COL_MAJOR, m, 1, G, m, w->pivot, c, m) != 0) {
-        return;
+        return m == 0;
     }
     for (int j = 0; j < m; j++) {
         for (int x = 0; x < w->n; x++) {
-            w->d[x] += c[j] * w->Vt[x * w->n + first + j];
+            vector[x] -= c[j] * w->Vt[x * w->n + first + j];
         }
     }
+    return true;
 }
 
 static enum dalcs_status note_conserved(struct dalcs_steady *st, int system, const struct newton *w,
@@ -121,12 +125,15 @@ static enum dalcs_status solve(struct dalcs_steady *st, int system, struct newto
             w->d[x] += w->Vt[x * n + k] * part / w->s[k];
         }
     }
-    keep_conserved(w, m);
+    (void)part_conserved(w, m, w->d);
+    for (int x = 0; x < n; x++) {
+        w->rest[x] = w->F[x];
+    }
+    (void)part_conserved(w, m, w->rest);
     return DALCS_OK;
 }
 
-static enum dalcs_status newton_of(struct dalcs_steady *st, int system,
-                                   struct dalcs_arena *arena) {
+static enum dalcs_status newton_of(struct dalcs_steady *st, int system, struct dalcs_arena *arena) {
     const struct dalcs_system *s = &st->run->s->network.system[system];
     const int first = st->layout.first[system];
     const double *M = st->M + st->layout.first_of_M[system];
@@ -149,6 +156,7 @@ static enum dalcs_status newton_of(struct dalcs_steady *st, int system,
     DALCS_TRY(solve(st, system, &w));
     for (int x = 0; x < w.n; x++) {
         st->step[first + x] = w.d[x] / w.unit[x];
+        st->drift[first + x] = (w.F[x] - w.rest[x]) / w.unit[x];
     }
     return DALCS_OK;
 }

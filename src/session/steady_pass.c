@@ -2,6 +2,7 @@
 #include "steady.h"
 
 #include "radau.h"
+#include "steady_means.h"
 #include "variation.h"
 
 #include <math.h>
@@ -34,13 +35,18 @@ enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, stru
     return status;
 }
 
-static enum dalcs_status go(struct dalcs_radau *radau, const struct dalcs_run *r) {
+static enum dalcs_status go(struct dalcs_radau *radau, const struct dalcs_run *r,
+                            struct dalcs_steady_means *means) {
     double t = 0.0;
     long n = 0;
     while (t < radau->options.stop) {
         bool happens;
         t = fmin(dalcs_radau_next_stop(radau, &happens), radau->options.stop);
         radau->base->t = t;
+        DALCS_TRY(means != NULL ? dalcs_steady_means_reach(means, t) : DALCS_OK);
+        if (means != NULL && t >= radau->options.stop) {
+            DALCS_TRY(dalcs_radau_evaluate(radau, t, DALCS_LEFT));
+        }
         DALCS_TRY(dalcs_radau_pass(radau, t));
         if (++n % 4096 == 0) {
             DALCS_TRY(r->sink->progress(r->sink->user, t, radau->options.stop));
@@ -85,8 +91,25 @@ static void read_M(struct dalcs_steady *st, const struct dalcs_variation *variat
     }
 }
 
+/* All periods once the run has started. */
+static enum dalcs_status go_with_means(struct dalcs_steady *st, struct dalcs_radau *radau) {
+    const struct dalcs_session *s = st->run->s;
+    struct dalcs_steady_means means;
+    DALCS_TRY(dalcs_steady_means_setup(&means, &s->circuit, &s->network, radau));
+    enum dalcs_status status = go(radau, st->run, &means);
+    const double duration = radau->options.stop;
+    for (int k = 0; k < s->network.n_outputs; k++) {
+        st->average[k] = means.sum[k] / duration;
+        st->rms[k] = sqrt(means.square[k] / duration);
+    }
+    dalcs_steady_means_finish(&means);
+    dalcs_recorder_states(&s->network, radau->base, st->state);
+    return status;
+}
+
 static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler *e,
-                                     struct dalcs_radau *radau, bool with_M) {
+                                     struct dalcs_radau *radau, enum dalcs_steady_asked asked) {
+    const bool with_M = asked == DALCS_STEADY_M;
     struct dalcs_variation variation = {0};
     struct dalcs_observer observer;
     if (with_M) {
@@ -96,7 +119,9 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler
     }
     enum dalcs_status status = st->has_point ? dalcs_steady_start(&st->at, e, radau)
                                              : dalcs_transient_start(st->run, e, radau, false);
-    status = status == DALCS_OK ? go(radau, st->run) : status;
+    if (status == DALCS_OK) {
+        status = asked == DALCS_STEADY_MEANS ? go_with_means(st, radau) : go(radau, st->run, NULL);
+    }
     if (status == DALCS_OK) {
         read_point(st, radau);
     }
@@ -117,7 +142,8 @@ static void find_residual(struct dalcs_steady *st) {
     }
 }
 
-enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n, bool with_M) {
+enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
+                                    enum dalcs_steady_asked asked) {
     struct dalcs_run *r = st->run;
     const double stop = (double)n * st->period;
     struct dalcs_euler e;
@@ -126,11 +152,11 @@ enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n, bool with_M
     DALCS_TRY(dalcs_euler_setup(&e, &r->s->circuit, &r->s->network, &r->osnsp, r->h, stop));
     enum dalcs_status status = dalcs_radau_setup(&radau, &e, &options, &r->osnsp);
     if (status == DALCS_OK) {
-        status = run_periods(st, &e, &radau, with_M);
+        status = run_periods(st, &e, &radau, asked);
         st->n.periods += n;
         r->s->report.work.steps += radau.steps;
     }
-    status = with_M ? status : dalcs_explain_failure(r, &e, status);
+    status = asked == DALCS_STEADY_M ? status : dalcs_explain_failure(r, &e, status);
     dalcs_radau_finish(&radau);
     dalcs_euler_finish(&e);
     if (status == DALCS_OK && st->has_point) {
@@ -179,9 +205,14 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
         st->scale = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->step = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->drift = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
+        st->state = dalcs_arena_alloc(&r->s->arena, (size_t)network->n_states + 1, sizeof(double));
+        st->average = dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
+        st->rms = dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
         st->conserved = dalcs_arena_alloc(&st->arena, n_x, sizeof(*st->conserved));
         complete = make_point(&st->arena, l, &st->at) && make_point(&st->arena, l, &st->then) &&
-                   st->M != NULL && st->scale != NULL && st->step != NULL && st->drift != NULL && st->conserved != NULL;
+                   st->M != NULL && st->scale != NULL && st->step != NULL && st->drift != NULL &&
+                   st->state != NULL && st->average != NULL && st->rms != NULL &&
+                   st->conserved != NULL;
     }
     if (!complete) {
         dalcs_steady_finish(st);

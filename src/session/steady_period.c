@@ -28,6 +28,7 @@ struct clock {
 
 struct clocks {
     struct dalcs_run *run;
+    bool at_start;
     int n;
     struct clock *clock;
 };
@@ -150,13 +151,14 @@ static enum dalcs_status look_at(struct clocks *c, int stimulus) {
     if (period > 0.0) {
         return add_clock(c, s, name, period);
     }
-    if (s->kind == DALCS_STIMULUS_SIN && s->u.sine.damping < 0.0) {
+    if (s->kind == DALCS_STIMULUS_SIN && s->u.sine.damping < 0.0 && !c->at_start) {
         return refuse(c->run, NULL, NULL, "a sine that grows without end has no steady state");
     }
-    double level = last_level(s);
+    double level = c->at_start ? dalcs_stimulus_value(s, 0.0, DALCS_LEFT) : last_level(s);
     char text[DALCS_QUANTITY_SIZE];
     dalcs_diag_add(&c->run->s->diag, DALCS_NOTE, NULL, NULL,
-                   "'%s' does not repeat: in the steady state it is what it comes to, %s", name,
+                   "'%s' does not repeat: in the steady state it is what it %s, %s", name,
+                   c->at_start ? "is at t = 0" : "comes to",
                    dalcs_quantity_write(text, level, "", 9));
     *s = (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .dc = level, .has_dc = true};
     return DALCS_OK;
@@ -206,9 +208,9 @@ static enum dalcs_status no_common(const struct clocks *c, const struct clock *a
     snprintf(text, sizeof text, "'%s' (%s) and '%s' (%s) have no common period%s", a->name,
              dalcs_quantity_write(first, a->period, "s", 7), b->name,
              dalcs_quantity_write(second, b->period, "s", 7), why);
-    return refuse(c->run, NULL,
-                  "make their ratio one of small whole numbers, or run .tran for as long as it takes",
-                  text);
+    return refuse(
+        c->run, NULL,
+        "make their ratio one of small whole numbers, or run .tran for as long as it takes", text);
 }
 
 /* The least common one, s; 0: no source repeats. */
@@ -277,17 +279,19 @@ static enum dalcs_status settle(const struct clocks *c, const struct clock *k, d
         s->u.pulse.delay = rest > 0.0 ? rest - s->u.pulse.period : rest;
     } else if (delay != 0.0 || is_off) {
         char text[256];
-        snprintf(text, sizeof text, "'%s' repeats from %g s on, or not exactly as often as others: "
-                                    "that is not supported yet",
+        snprintf(text, sizeof text,
+                 "'%s' repeats from %g s on, or not exactly as often as others: "
+                 "that is not supported yet",
                  k->name, delay);
         return refuse(c->run, NULL, "let it repeat from 0 on, without a delay", text);
     }
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, double *period) {
+enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bool at_start,
+                                           double *period) {
     const struct dalcs_circuit *circuit = &r->s->circuit;
-    struct clocks c = {.run = r};
+    struct clocks c = {.run = r, .at_start = at_start};
     size_t most = 0;
     for (int i = 0; i < circuit->n_stimuli; i++) {
         const struct dalcs_stimulus *s = &circuit->stimulus[i];

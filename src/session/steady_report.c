@@ -82,8 +82,8 @@ static enum dalcs_status multipliers_of(struct dalcs_steady *st, int system,
         int state = im == 0.0  ? largest_entry(st, first, n, v, NULL)
                     : im > 0.0 ? largest_entry(st, first, n, v, v + n)
                                : largest_entry(st, first, n, v - n, v);
-        multiplier[(*n_all)++] = (struct dalcs_floquet){
-            .re = value[k], .im = im, .state = dalcs_steady_name(st, state)};
+        multiplier[(*n_all)++] =
+            (struct dalcs_floquet){.re = value[k], .im = im, .state = dalcs_steady_name(st, state)};
     }
     return DALCS_OK;
 }
@@ -104,14 +104,11 @@ static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floque
     const double size = n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
     char text[DALCS_QUANTITY_SIZE];
     if (size > 1.0 + near_one && m[0].im != 0.0) {
-        return dalcs_arena_printf(arena,
-                                  "unstable: an oscillation of %s at %s grows by %.4g each period",
-                                  m[0].state,
-                                  dalcs_quantity_write(text,
-                                                       fabs(carg(m[0].re + I * m[0].im)) /
-                                                           (2.0 * acos(-1.0) * st->period),
-                                                       "Hz", 4),
-                                  size);
+        return dalcs_arena_printf(
+            arena, "unstable: an oscillation of %s at %s grows by %.4g each period", m[0].state,
+            dalcs_quantity_write(
+                text, fabs(carg(m[0].re + I * m[0].im)) / (2.0 * acos(-1.0) * st->period), "Hz", 4),
+            size);
     }
     if (size > 1.0 + near_one && m[0].re < 0.0) {
         return dalcs_arena_printf(
@@ -130,7 +127,7 @@ static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floque
     return size < 1.0 - near_one ? "stable" : "at the border of stability";
 }
 
-/* "9 uC of v(c2) - v(c1)": the terms of a conserved quantity, the largest as 1. */
+/* "v(c2) - 0.5 v(c1)": the terms of a conserved quantity, the largest as 1. */
 static const char *conserved_text(struct dalcs_steady *st, const struct dalcs_steady_conserved *c) {
     const int first = st->layout.first[c->system];
     const int n = st->layout.first[c->system + 1] - first;
@@ -143,11 +140,14 @@ static const char *conserved_text(struct dalcs_steady *st, const struct dalcs_st
     for (int x = 0; x < n && text != NULL; x++) {
         double part = c->weight[x] / largest;
         if (fabs(part) > near_one) {
-            text = dalcs_arena_printf(arena, "%s%s%.6g %s", text,
-                                      text[0] == '\0' ? part < 0.0 ? "-" : ""
-                                      : part < 0.0    ? " - "
-                                                      : " + ",
-                                      fabs(part), dalcs_steady_name(st, first + x));
+            char factor[32] = "";
+            if (fabs(fabs(part) - 1.0) > near_one) {
+                snprintf(factor, sizeof factor, "%.6g ", fabs(part));
+            }
+            const char *sign = part < 0.0 ? " - " : " + ";
+            sign = text[0] != '\0' ? sign : part < 0.0 ? "-" : "";
+            text = dalcs_arena_printf(arena, "%s%s%s%s", text, sign, factor,
+                                      dalcs_steady_name(st, first + x));
         }
     }
     return text;
@@ -174,11 +174,26 @@ static enum dalcs_status tell_conserved(struct dalcs_steady *st) {
     return DALCS_OK;
 }
 
+static enum dalcs_status tell_signals(struct dalcs_steady *st) {
+    struct dalcs_session *s = st->run->s;
+    const size_t n = (size_t)s->circuit.n_shown;
+    struct dalcs_steady_signal *signal = dalcs_arena_alloc(&s->arena, n + 1, sizeof(*signal));
+    if (signal == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k < n; k++) {
+        signal[k] = (struct dalcs_steady_signal){st->run->name[k], st->average[k], st->rms[k]};
+    }
+    s->report.steady.signal = signal;
+    s->report.steady.state = st->state;
+    s->report.steady.n_signals = n;
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
     struct dalcs_session *s = st->run->s;
     struct dalcs_arena work = {0};
-    struct dalcs_floquet *m =
-        dalcs_arena_alloc(&s->arena, (size_t)st->layout.n_x + 1, sizeof(*m));
+    struct dalcs_floquet *m = dalcs_arena_alloc(&s->arena, (size_t)st->layout.n_x + 1, sizeof(*m));
     size_t n = 0;
     enum dalcs_status status = m != NULL ? DALCS_OK : DALCS_E_NOMEM;
     for (int k = 0; k < st->layout.n_systems && status == DALCS_OK; k++) {
@@ -203,5 +218,5 @@ enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
         st->n_conserved == 0 && (n == 0 || hypot(m[0].re, m[0].im) < 1.0 - near_one);
     s->report.steady.verdict = verdict_of(st, m, n);
     DALCS_TRY(tell_conserved(st));
-    return s->report.steady.verdict != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    return s->report.steady.verdict != NULL ? tell_signals(st) : DALCS_E_NOMEM;
 }

@@ -2,11 +2,9 @@
 #include "steady.h"
 
 #include "quantity.h"
-#include "thinning.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Rows in a period, where nobody asks for another distance. */
 static const double rows_in_a_period = 1000.0;
@@ -74,10 +72,9 @@ static enum dalcs_status tell_failure(struct dalcs_steady *st, bool endless) {
         for (int x = 0; x < st->layout.n_x; x++) {
             st->step[x] = st->drift[x];
         }
-        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
-                       "a source fills what nothing empties: give it a way out",
-                       "there is no periodic steady state: each period %s, whatever they are",
-                       moves_text(st));
+        dalcs_diag_add(
+            &s->diag, DALCS_ERROR, NULL, "a source fills what nothing empties: give it a way out",
+            "there is no periodic steady state: each period %s, whatever they are", moves_text(st));
         return DALCS_NOT_CONVERGED;
     }
     dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
@@ -116,82 +113,101 @@ static enum dalcs_status find_defect(struct dalcs_steady *st) {
 
 static enum dalcs_status run_period(struct dalcs_steady *st) {
     struct dalcs_run *r = st->run;
-    struct dalcs_thinning thinning;
-    const struct dalcs_sink *sink = r->sink;
     r->orbit = &st->at;
-    if (r->compress > 0.0) {
-        DALCS_TRY(dalcs_thinning_setup(&thinning, sink, (size_t)r->s->circuit.n_shown, r->compress));
-        r->sink = &thinning.sink;
-    }
-    enum dalcs_status status = dalcs_transient_run(r);
-    if (r->compress > 0.0) {
-        enum dalcs_status flushed = dalcs_thinning_flush(&thinning);
-        status = status == DALCS_OK ? flushed : status;
-        dalcs_thinning_finish(&thinning);
-    }
-    r->sink = sink;
+    enum dalcs_status status = dalcs_transient_run_thinned(r);
     r->orbit = NULL;
     return status == DALCS_OK ? find_defect(st) : status;
 }
 
-static enum dalcs_status find_orbit(struct dalcs_run *r, double period) {
-    struct dalcs_steady st;
-    bool found;
-    bool endless;
-    DALCS_TRY(dalcs_steady_setup(&st, r, period));
-    enum dalcs_status status = dalcs_steady_search(&st, &found, &endless);
-    if (status == DALCS_OK && !found) {
-        status = tell_failure(&st, endless);
+/* ---- What the circuit is meanwhile --------------------------------------------------------------- */
+
+static enum dalcs_status keep(struct dalcs_run *r, struct kept *kept) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    *kept = (struct kept){.transient = c->transient, .h = r->h, .max_step = r->max_step};
+    kept->stimulus = dalcs_alloc((size_t)c->n_stimuli, sizeof(*kept->stimulus));
+    for (int i = 0; i < c->n_stimuli && kept->stimulus != NULL; i++) {
+        kept->stimulus[i] = c->stimulus[i];
     }
-    if (status == DALCS_OK) {
-        status = dalcs_steady_newton(&st); /* how far it may be off, and what is conserved */
-        status = status == DALCS_OK ? dalcs_steady_report(&st) : status;
-    }
-    status = status == DALCS_OK ? run_period(&st) : status;
-    dalcs_steady_finish(&st);
-    return status;
+    return kept->stimulus != NULL ? DALCS_OK : DALCS_E_NOMEM;
 }
 
-/* ---- All of it ----------------------------------------------------------------------------------- */
-
-static enum dalcs_status search(struct dalcs_run *r, struct kept *kept) {
+/* all: else the sources that repeat stay what they are behind their delays. */
+static void put_back(struct dalcs_run *r, const struct kept *kept, bool all) {
     struct dalcs_circuit *c = &r->s->circuit;
-    double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
-    DALCS_TRY(dalcs_steady_find_period(r, period, &period));
-    const bool uic = kept->transient.use_initial_conditions || c->periodic.use_initial_conditions;
-    const double step =
-        c->periodic.step > 0.0 ? c->periodic.step : period / rows_in_a_period;
+    for (int i = 0; i < c->n_stimuli; i++) {
+        if (all || c->stimulus[i].kind != kept->stimulus[i].kind) {
+            c->stimulus[i] = kept->stimulus[i];
+        }
+    }
+    c->transient = kept->transient;
+    r->h = kept->h;
+    r->max_step = kept->max_step;
+}
+
+static void take_period(struct dalcs_run *r, double period, bool uic) {
+    struct dalcs_circuit *c = &r->s->circuit;
+    const double step = c->periodic.step > 0.0 ? c->periodic.step : period / rows_in_a_period;
     c->transient = (struct dalcs_transient){.present = true,
                                             .step = step,
                                             .stop = period,
                                             .use_initial_conditions = uic,
-                                            .where = kept->transient.where};
+                                            .where = c->transient.where};
     r->h = period / rows_in_a_period;
     r->max_step = r->options->step;
-    return find_orbit(r, period);
 }
 
-enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
-    struct dalcs_circuit *c = &r->s->circuit;
+/* ---- All of it ----------------------------------------------------------------------------------- */
+
+/* st: set up from here on, to be finished by the caller. */
+static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dalcs_steady *st) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
+    bool found;
+    bool endless;
     if (r->method == DALCS_METHOD_EULER || r->fixed_step > 0.0) {
         return refuse(r, "leave the method, or the step, to the program",
                       "a steady state needs steps whose error is controlled");
     }
-    struct kept kept = {.transient = c->transient, .h = r->h, .max_step = r->max_step};
-    kept.stimulus = dalcs_alloc((size_t)c->n_stimuli, sizeof(*kept.stimulus));
-    if (kept.stimulus == NULL) {
-        return DALCS_E_NOMEM;
+    DALCS_TRY(dalcs_steady_find_period(r, period, leaves, &period));
+    take_period(r, period,
+                c->transient.use_initial_conditions || c->periodic.use_initial_conditions);
+    DALCS_TRY(dalcs_steady_setup(st, r, period));
+    DALCS_TRY(dalcs_steady_search(st, &found, &endless));
+    if (!found) {
+        return tell_failure(st, endless);
     }
-    for (int i = 0; i < c->n_stimuli; i++) {
-        kept.stimulus[i] = c->stimulus[i];
-    }
-    enum dalcs_status status = search(r, &kept);
-    for (int i = 0; i < c->n_stimuli; i++) {
-        c->stimulus[i] = kept.stimulus[i];
-    }
-    c->transient = kept.transient;
-    r->h = kept.h;
-    r->max_step = kept.max_step;
+    DALCS_TRY(dalcs_steady_newton(st)); /* how far it may be off, and what is conserved */
+    DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_MEANS));
+    return dalcs_steady_report(st);
+}
+
+enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
+    struct dalcs_steady st = {0};
+    struct kept kept;
+    DALCS_TRY(keep(r, &kept));
+    enum dalcs_status status = find_orbit(r, false, &st);
+    status = status == DALCS_OK ? run_period(&st) : status;
+    put_back(r, &kept, true);
     free(kept.stimulus);
+    dalcs_steady_finish(&st);
+    return status;
+}
+
+enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) {
+    struct dalcs_steady st = {0};
+    struct kept kept;
+    DALCS_TRY(keep(r, &kept));
+    enum dalcs_status status = find_orbit(r, true, &st);
+    put_back(r, &kept, false);
+    if (status == DALCS_OK) {
+        r->orbit = &st.at;
+        r->leaves_orbit = true;
+        status = dalcs_transient_run_thinned(r);
+        r->orbit = NULL;
+        r->leaves_orbit = false;
+    }
+    put_back(r, &kept, true);
+    free(kept.stimulus);
+    dalcs_steady_finish(&st);
     return status;
 }
