@@ -7,6 +7,7 @@
 #include "step_error.h"
 
 #include <lapacke.h>
+#include <math.h>
 #include <string.h>
 
 /* ---- Derivatives --------------------------------------------------------------------------------- */
@@ -42,19 +43,21 @@ static void find_derivative(struct dalcs_variation_part *v, double *y, double ta
 
 /* ---- Segments ------------------------------------------------------------------------------------ */
 
-/* The modes that follow each other tell two runs apart. */
-static void sign_mode(struct dalcs_variation_part *v) {
+/* The modes that follow each other tell two runs apart. Returns whether this is another one than before. */
+static bool sign_mode(struct dalcs_variation_part *v) {
     const struct dalcs_osnsp *p = &v->part->component->osnsp;
     uint64_t mode = 0;
     for (int k = 0; k < p->n_words; k++) {
         mode = (mode ^ p->mode[k]) * 0x9e3779b97f4a7c15u;
         mode ^= mode >> 29;
     }
-    if (mode != v->last_mode) {
+    bool is_new = mode != v->last_mode;
+    if (is_new) {
         v->signature = (v->signature ^ mode) * 0xff51afd7ed558ccdu;
         v->signature ^= v->signature >> 31;
         v->last_mode = mode;
     }
+    return is_new;
 }
 
 /* What the event before has done, now that f+ is known: V += (f- - f+) dt. */
@@ -89,8 +92,31 @@ static double weigh(const struct dalcs_stage_layout *l, const double *weight, co
     return sum;
 }
 
+static double size_of(const struct dalcs_variation_part *v, const double *x, const double *less) {
+    double size = 0.0;
+    for (int i = 0; i < v->n_x; i++) {
+        double at = v->unit[i] * (x[i] - (less != NULL ? less[i] : 0.0));
+        size += at * at;
+    }
+    return sqrt(size);
+}
+
+/* What a new mode does not allow the column to be is taken out of it: where the polynomial through the stages starts,
+ * which do not see that part. Of an allowed one it differs by the step's error, which leaves the column as it is. */
+static bool project(struct dalcs_variation_part *v, double *column) {
+    const struct dalcs_collocation *c = v->part->stages.method;
+    const int stride = v->part->stages.layout.stride;
+    for (int x = 0; x < v->n_x; x++) {
+        v->in[x] = 0.0;
+        for (int i = 0; i < c->s; i++) {
+            v->in[x] += c->back[i] * v->out[(i + 1) * stride + x];
+        }
+    }
+    return size_of(v, v->in, column) > sqrt(v->part->tolerance) * size_of(v, column, NULL);
+}
+
 /* V at the end of the segment; v->guard = how the guard `row` (-1: none) moves there. */
-static enum dalcs_status pass_segment(struct dalcs_variation_part *v, int row) {
+static enum dalcs_status pass_segment(struct dalcs_variation_part *v, int row, bool is_new) {
     struct dalcs_radau_part *part = v->part;
     struct dalcs_stages *stages = &part->stages;
     struct dalcs_stage_entry *entry;
@@ -102,6 +128,9 @@ static enum dalcs_status pass_segment(struct dalcs_variation_part *v, int row) {
         double *column = v->v + k * v->n_x;
         memcpy(v->in, column, (size_t)v->n_x * sizeof(double));
         DALCS_TRY(dalcs_stages_apply(stages, entry, v->in, v->out));
+        if (is_new && project(v, column)) {
+            DALCS_TRY(dalcs_stages_apply(stages, entry, v->in, v->out));
+        }
         for (int x = 0; x < v->n_x; x++) {
             column[x] = weigh(&stages->layout, weight, v->out, x);
         }
@@ -132,7 +161,7 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
     struct dalcs_variation *variation = user;
     struct dalcs_variation_part *v = &variation->part[present->index];
     (void)start;
-    sign_mode(v);
+    bool is_new = sign_mode(v);
     if (v->n_x == 0 || variation->status < DALCS_OK) {
         return;
     }
@@ -142,7 +171,7 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
     int row = ends_at_event ? row_of(present, g->crossed[0]) : -1;
     v->is_exact = v->is_exact && !present->segment.by_euler;
     pass_event(v);
-    enum dalcs_status status = pass_segment(v, row);
+    enum dalcs_status status = pass_segment(v, row, is_new);
     if (status != DALCS_OK) {
         v->is_exact = false;
         variation->status = status < DALCS_OK ? status : variation->status;
@@ -228,10 +257,18 @@ struct dalcs_observer dalcs_variation_observer(struct dalcs_variation *variation
 
 /* ---- Set up -------------------------------------------------------------------------------------- */
 
+/* And in which units energies are alike. */
 static enum dalcs_status factor_P(struct dalcs_variation_part *v, const struct dalcs_system *s) {
     for (int r = 0; r < s->n_x; r++) {
         for (int k = s->P.p[r]; k < s->P.p[r + 1]; k++) {
             v->P[s->P.j[k] * s->n_x + r] += s->P.x[k];
+        }
+    }
+    for (int x = 0; x < s->n_x; x++) {
+        v->unit[x] = 1.0;
+        for (int k = s->storage.p[x]; k < s->storage.p[x + 1]; k++) {
+            bool stores = s->storage.j[k] == x && s->storage.x[k] > 0.0;
+            v->unit[x] = stores ? sqrt(s->storage.x[k]) : v->unit[x];
         }
     }
     int failed =
@@ -254,14 +291,15 @@ static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_vari
     v->pivot = dalcs_arena_alloc(arena, n, sizeof(int));
     v->in = dalcs_arena_alloc(arena, (size_t)part->stages.n_in, sizeof(double));
     v->out = dalcs_arena_alloc(arena, n_out, sizeof(double));
+    v->unit = dalcs_arena_alloc(arena, n, sizeof(double));
     v->guard = dalcs_arena_alloc(arena, n, sizeof(double));
     v->before = dalcs_arena_alloc(arena, n, sizeof(double));
     v->after = dalcs_arena_alloc(arena, n, sizeof(double));
     v->inputs = dalcs_arena_alloc(arena, (size_t)s->n_inputs, sizeof(double));
     v->y = dalcs_arena_alloc(arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
     if (v->v == NULL || v->P == NULL || v->pivot == NULL || v->in == NULL || v->out == NULL ||
-        v->guard == NULL || v->before == NULL || v->after == NULL || v->inputs == NULL ||
-        v->y == NULL) {
+        v->guard == NULL || v->unit == NULL || v->before == NULL || v->after == NULL ||
+        v->inputs == NULL || v->y == NULL) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n; k++) {

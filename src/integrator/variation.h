@@ -17,6 +17,7 @@ struct dalcs_variation_part {
     double *in, *out, *guard; /* of one column; [n_x] of a guard, then dt */
     double *P;                /* [n_x][n_x] factored */
     int *pivot;
+    double *unit;                  /* [n_x] square roots of what states store */
     double *before, *after;        /* [n_x] f- and f+ */
     double *inputs, *y;            /* work */
     bool pending;                  /* an event has just been passed */
