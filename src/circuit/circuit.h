@@ -231,6 +231,11 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
 
 void dalcs_circuit_finish(struct dalcs_circuit *circuit);
 
+/* Does an analysis have waveforms of time? */
+static inline bool dalcs_circuit_has_waves(const struct dalcs_circuit *circuit) {
+    return circuit->transient.present || circuit->periodic.present;
+}
+
 /* A resistor of 0 ohm: its two nodes are one, unless a signal asks for its current. */
 static inline bool dalcs_device_is_short(const struct dalcs_device *device) {
     return device->kind == DALCS_RESISTOR && device->value == 0.0;

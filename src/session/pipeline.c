@@ -475,6 +475,10 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
         return DALCS_E_NETLIST;
     }
     const struct dalcs_sink complete = completed(sink);
+    if (options->steady) {
+        session->circuit.periodic.present = true; /* as if there were a .pss */
+        DALCS_TRY(dalcs_steady_prepare(session));
+    }
     if (session->circuit.n_steps > 0) {
         return run_steps(session, options, &complete);
     }

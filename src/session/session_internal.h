@@ -148,6 +148,9 @@ enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler 
 /* As dalcs_run_choose has chosen them. */
 struct dalcs_radau_options dalcs_transient_options(const struct dalcs_run *r, double stop);
 
+/* For a netlist that has asked for no waveforms: its network with what an audit reads. */
+enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) DALCS_MUST_CHECK;
+
 /* Runs .pss into r->sink. */
 enum dalcs_status dalcs_steady_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 

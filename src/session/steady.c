@@ -51,22 +51,39 @@ static bool is_done(const struct dalcs_steady *st, double before) {
 
 struct burst {
     double first, best; /* residuals */
+    long plain;         /* periods that are run besides where the next step does not help */
     int waited;         /* steps since `best` has halved */
     int far;
     bool done;
 };
 
-/* One step, and a plain period where it did not help. */
+static void copy_point(const struct dalcs_steady *st, struct dalcs_orbit_point *to,
+                       const struct dalcs_orbit_point *from) {
+    memcpy(to->x, from->x, (size_t)st->layout.n_x * sizeof(double));
+    memcpy(to->closed, from->closed, (size_t)st->layout.n_pairs * sizeof(bool));
+}
+
+/* Plain periods from the end of the last pass: the more, the more often steps have not helped. They lead to where the
+ * circuit can be, and to modes that follow each other in the steady state. */
+static enum dalcs_status go_on(struct dalcs_steady *st, struct burst *b) {
+    dalcs_steady_take(st);
+    if (b->plain > 0) {
+        DALCS_TRY(dalcs_steady_pass(st, b->plain, DALCS_STEADY_PLAIN));
+        dalcs_steady_take(st);
+    }
+    b->plain = 2 * b->plain + 1;
+    return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+}
+
+/* One step, and plain periods where it did not help. */
 static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     const double before = st->residual;
     go_by(st, st->at.x, st->step, 1.0);
     st->n.newton++;
-    enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
-    DALCS_TRY(status);
+    DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
     b->done = is_done(st, before);
     if (!b->done && !(st->residual <= 0.5 * before)) {
-        dalcs_steady_take(st);
-        DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
+        DALCS_TRY(go_on(st, b));
         b->done = is_done(st, INFINITY);
     }
     b->far += st->residual > far * b->first ? 1 : 0;
@@ -77,7 +94,10 @@ static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
 
 /* From st->at. A run that fails on the way ends the burst, not the search. */
 static enum dalcs_status run_burst(struct dalcs_steady *st, bool *done) {
-    DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
+    enum dalcs_status first = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+    if (first != DALCS_OK) {
+        return first < DALCS_OK ? first : DALCS_OK;
+    }
     struct burst b = {.first = st->residual, .best = st->residual, .done = is_done(st, 0.0)};
     st->n.bursts++;
     for (int k = 0; k < MOST_STEPS && !b.done && b.far < 2 && b.waited < MOST_WITHOUT_HALVING;
@@ -117,13 +137,16 @@ static enum dalcs_status leap(struct dalcs_steady *st, double *from, bool *endle
     return DALCS_OK;
 }
 
+static bool make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point) {
+    point->x = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_x + 1, sizeof(double));
+    point->closed = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_pairs + 1, sizeof(bool));
+    return point->x != NULL && point->closed != NULL;
+}
+
 enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool *endless) {
-    const size_t n = (size_t)st->layout.n_x + 1;
-    double *from = dalcs_arena_alloc(&st->arena, n, sizeof(double));
-    struct dalcs_orbit_point run = {
-        dalcs_arena_alloc(&st->arena, n, sizeof(double)),
-        dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_pairs + 1, sizeof(bool))};
-    if (from == NULL || run.x == NULL || run.closed == NULL) {
+    struct dalcs_orbit_point run;
+    struct dalcs_orbit_point from;
+    if (!make_point(st, &run) || !make_point(st, &from)) {
         return DALCS_E_NOMEM;
     }
     *found = *endless = false;
@@ -131,16 +154,15 @@ enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool
         DALCS_TRY(dalcs_steady_pass(st, wait, DALCS_STEADY_PLAIN));
         dalcs_steady_take(st);
         total += wait;
-        memcpy(run.x, st->at.x, (size_t)st->layout.n_x * sizeof(double));
-        memcpy(run.closed, st->at.closed, (size_t)st->layout.n_pairs * sizeof(bool));
+        copy_point(st, &run, &st->at);
+        st->is_stuck = false;
         DALCS_TRY(run_burst(st, found));
         wait = total;
         if (!*found && st->is_stuck) {
-            DALCS_TRY(leap(st, from, endless));
+            DALCS_TRY(leap(st, from.x, endless));
             wait = 1;
         } else if (!*found) {
-            memcpy(st->at.x, run.x, (size_t)st->layout.n_x * sizeof(double));
-            memcpy(st->at.closed, run.closed, (size_t)st->layout.n_pairs * sizeof(bool));
+            copy_point(st, &st->at, &run);
         }
     }
     return DALCS_OK;

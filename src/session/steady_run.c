@@ -181,6 +181,18 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     return dalcs_steady_report(st);
 }
 
+enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) {
+    const struct dalcs_network_options options = {.silent = true, .with_readout = true};
+    if (session->network.readout != NULL || session->circuit.n_devices == 0) {
+        return DALCS_OK;
+    }
+    dalcs_network_finish(&session->network);
+    enum dalcs_status status =
+        dalcs_network_build(&session->network, &session->circuit, &options, &session->diag);
+    session->has_network = status == DALCS_OK;
+    return status;
+}
+
 enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
     struct dalcs_steady st = {0};
     struct kept kept;

@@ -429,7 +429,7 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct
     DALCS_TRY(dalcs_undetermined_several(&r->undetermined, e, s->circuit.transient.stop));
     dalcs_recorder_states(&s->network, e, s->start);
     DALCS_TRY(dalcs_run_begin_plot(r, r->orbit != NULL && !r->leaves_orbit ? DALCS_PERIODIC
-                                                                       : DALCS_TRANSIENT));
+                                                                           : DALCS_TRANSIENT));
     DALCS_TRY(dalcs_recorder_start(&s->recorder, e));
     DALCS_TRY(dalcs_measures_start(measures, r, e, radau));
     enum dalcs_status status =
