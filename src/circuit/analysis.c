@@ -157,7 +157,7 @@ void dalcs_analysis_parse_pss(struct dalcs_builder *builder, const struct dalcs_
         return;
     }
     bool ok = true;
-    if (dalcs_reader_is_number(dalcs_reader_peek(&reader, 0))) {
+    if (!dalcs_reader_at_end(&reader) && dalcs_reader_is_number(dalcs_reader_peek(&reader, 0))) {
         ok = dalcs_reader_list_number(&reader, DALCS_SECOND, "a period", &periodic->period);
     }
     while (ok && !dalcs_reader_at_end(&reader)) {

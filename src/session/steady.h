@@ -69,6 +69,12 @@ void dalcs_steady_finish(struct dalcs_steady *st);
 enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bool at_start,
                                            double *period) DALCS_MUST_CHECK;
 
+/* ---- steady_settle.c --------------------------------------------------------------------------- */
+
+/* One that repeats T-periodically becomes what it is from a multiple of T on. */
+enum dalcs_status dalcs_steady_settle(struct dalcs_run *r, struct dalcs_stimulus *s,
+                                      const char *name, double T) DALCS_MUST_CHECK;
+
 /* ---- steady_pass.c ----------------------------------------------------------------------------- */
 
 /* What a pass is asked for besides. */

@@ -9,7 +9,7 @@
 #include <lapacke.h>
 #include <math.h>
 
-/* Singular values of 1 - M below this part of the largest are rounding: of M, with states in units in which
+/* Singular values of 1 - M below this part of the largest, or of 1, are rounding: of M, with states in units in which
  * energies are alike, and of the tolerance that its run was held to. */
 static const double is_singular = 1e-9;
 
@@ -115,7 +115,7 @@ static enum dalcs_status solve(struct dalcs_steady *st, int system, struct newto
     const double size = sqrt(dot(w->F, w->F, n));
     for (int k = 0; k < n; k++) {
         double part = dot(w->U + (size_t)k * (size_t)n, w->F, n);
-        if (!(w->s[k] > is_singular * w->s[0])) {
+        if (!(w->s[k] > is_singular * fmax(1.0, w->s[0]))) {
             m++;
             st->is_stuck = st->is_stuck || fabs(part) > grows * size;
             DALCS_TRY(note_conserved(st, system, w, k));

@@ -74,14 +74,6 @@ static double own_period(const struct dalcs_stimulus *s) {
     }
 }
 
-static double delay_of(const struct dalcs_stimulus *s) {
-    return s->kind == DALCS_STIMULUS_SIN     ? s->u.sine.delay
-           : s->kind == DALCS_STIMULUS_PULSE ? s->u.pulse.delay
-           : s->kind == DALCS_STIMULUS_PWL   ? s->u.pwl.repeat_from
-           : s->kind == DALCS_STIMULUS_TONES ? s->u.tones.delay
-                                             : 0.0;
-}
-
 /* It comes to this in the end. */
 static double last_level(const struct dalcs_stimulus *s) {
     if (s->kind == DALCS_STIMULUS_EXP) {
@@ -259,35 +251,6 @@ static enum dalcs_status take_asked(const struct clocks *c, double asked, double
     return DALCS_OK;
 }
 
-/* ---- What they are in a steady state ------------------------------------------------------------- */
-
-/* As from a multiple of T on behind all delays, with an n-th of T as its period. */
-static enum dalcs_status settle(const struct clocks *c, const struct clock *k, double T) {
-    struct dalcs_stimulus *s = k->stimulus;
-    const double delay = delay_of(s);
-    const double period = T / rint(T / k->period);
-    const bool is_off = fabs(period - k->period) > 4.0 * DBL_EPSILON * period;
-    if (s->kind == DALCS_STIMULUS_SIN) {
-        s->u.sine.frequency = is_off ? 1.0 / period : s->u.sine.frequency;
-        if (delay != 0.0) {
-            s->u.sine.phase -= 360.0 * fmod(delay / period, 1.0);
-            s->u.sine.delay = 0.0;
-        }
-    } else if (s->kind == DALCS_STIMULUS_PULSE) {
-        s->u.pulse.period = is_off ? period : s->u.pulse.period;
-        double rest = fmod(delay, s->u.pulse.period);
-        s->u.pulse.delay = rest > 0.0 ? rest - s->u.pulse.period : rest;
-    } else if (delay != 0.0 || is_off) {
-        char text[256];
-        snprintf(text, sizeof text,
-                 "'%s' repeats from %g s on, or not exactly as often as others: "
-                 "that is not supported yet",
-                 k->name, delay);
-        return refuse(c->run, NULL, "let it repeat from 0 on, without a delay", text);
-    }
-    return DALCS_OK;
-}
-
 enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bool at_start,
                                            double *period) {
     const struct dalcs_circuit *circuit = &r->s->circuit;
@@ -311,7 +274,7 @@ enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bo
                         "no source repeats: there is no period to look for");
     }
     for (int k = 0; k < c.n && status == DALCS_OK; k++) {
-        status = settle(&c, &c.clock[k], *period);
+        status = dalcs_steady_settle(r, c.clock[k].stimulus, c.clock[k].name, *period);
     }
     free(c.clock);
     return status;

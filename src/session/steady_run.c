@@ -164,7 +164,8 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
     bool found;
     bool endless;
-    if (r->method == DALCS_METHOD_EULER || r->fixed_step > 0.0) {
+    bool is_fixed = r->method != DALCS_METHOD_AUTO && r->options->step > 0.0;
+    if (r->method == DALCS_METHOD_EULER || r->fixed_step > 0.0 || is_fixed) {
         return refuse(r, "leave the method, or the step, to the program",
                       "a steady state needs steps whose error is controlled");
     }
