@@ -2,7 +2,7 @@
 #include "builder.h"
 
 static const char PSS_USAGE[] = ".pss [period] [step=tstep] [uic]";
-static const char TRAN_USAGE[] = ".tran tstep tstop [tstart [tmax]] [uic|uic=steady]";
+static const char TRAN_USAGE[] = ".tran tstep tstop [tstart [tmax]] [uic]";
 
 enum { TSTEP, TSTOP, TSTART, TMAX, N_TIMES };
 

@@ -21,7 +21,7 @@ static const double most_periods = 1e5;
 
 /* One source that repeats. */
 struct clock {
-    struct dalcs_stimulus *stimulus;
+    struct dalcs_stimulus *stimulus; /* NULL: of a formula */
     const char *name;
     double period; /* s */
 };
@@ -36,9 +36,15 @@ struct clocks {
 /* ---- One source ---------------------------------------------------------------------------------- */
 
 static const char *name_of(const struct dalcs_circuit *c, int stimulus) {
-    const char *name = "a source";
+    const char *name = "a formula";
     for (int i = 0; i < c->n_devices; i++) {
+        const struct dalcs_behaviour *b = c->device[i].behaviour;
         name = c->device[i].stimulus == stimulus ? c->device[i].name : name;
+        for (int k = 0; b != NULL && k < b->output.n; k++) {
+            const struct dalcs_affine_term *term = &b->output.term[k];
+            bool is = term->kind == DALCS_QUANTITY_STIMULUS && term->index == stimulus;
+            name = is ? c->device[i].name : name;
+        }
     }
     return name;
 }
@@ -72,6 +78,13 @@ static double own_period(const struct dalcs_stimulus *s) {
     default:
         return 0.0;
     }
+}
+
+static double delay_of(const struct dalcs_stimulus *s) {
+    return s->kind == DALCS_STIMULUS_SIN     ? s->u.sine.delay
+           : s->kind == DALCS_STIMULUS_PULSE ? s->u.pulse.delay
+           : s->kind == DALCS_STIMULUS_PWL   ? s->u.pwl.repeat_from
+                                             : 0.0;
 }
 
 /* It comes to this in the end. */
@@ -110,20 +123,41 @@ static enum dalcs_status add_tones(struct clocks *c, struct dalcs_stimulus *s, c
     return DALCS_OK;
 }
 
-/* Sums of stimuli of the circuit, which are clocks themselves, and of some that are not. */
-static enum dalcs_status look_into(struct clocks *c, struct dalcs_stimulus *s, const char *name) {
+/* What a formula of sources is made of may be no source of its own: then it stays as it is. */
+static enum dalcs_status look_into(struct clocks *c, const struct dalcs_stimulus *s,
+                                   const char *name) {
     const struct dalcs_circuit *circuit = &c->run->s->circuit;
     for (int k = 0; k < s->u.formula.argument.n; k++) {
         const struct dalcs_stimulus *of = s->u.formula.argument.part[k].of;
         bool is_listed = of >= circuit->stimulus && of < circuit->stimulus + circuit->n_stimuli;
-        if (!is_listed && !is_level(of)) {
+        double period = own_period(of);
+        if (is_listed || is_level(of)) {
+            continue;
+        }
+        if (of->kind == DALCS_STIMULUS_FORMULA) {
+            DALCS_TRY(look_into(c, of, name));
+        } else if (period > 0.0 && delay_of(of) == 0.0) {
+            DALCS_TRY(add_clock(c, NULL, name, period));
+        } else {
             char text[256];
-            snprintf(text, sizeof text, "whether '%s', a formula of the time, repeats is not known",
+            snprintf(text, sizeof text, "whether '%s', a formula of sources, repeats is not known",
                      name);
-            return refuse(c->run, NULL, "write it as PULSE, SIN or PWL", text);
+            return refuse(c->run, NULL, "write it as PULSE, SIN or PWL, without a delay", text);
         }
     }
     return DALCS_OK;
+}
+
+static int count_clocks(const struct dalcs_stimulus *s) {
+    int n = 1;
+    if (s->kind == DALCS_STIMULUS_TONES) {
+        n = s->u.tones.n;
+    } else if (s->kind == DALCS_STIMULUS_FORMULA) {
+        for (int k = 0; k < s->u.formula.argument.n; k++) {
+            n += count_clocks(s->u.formula.argument.part[k].of);
+        }
+    }
+    return n;
 }
 
 static enum dalcs_status look_at(struct clocks *c, int stimulus) {
@@ -257,8 +291,7 @@ enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bo
     struct clocks c = {.run = r, .at_start = at_start};
     size_t most = 0;
     for (int i = 0; i < circuit->n_stimuli; i++) {
-        const struct dalcs_stimulus *s = &circuit->stimulus[i];
-        most += s->kind == DALCS_STIMULUS_TONES ? (size_t)s->u.tones.n : 1;
+        most += (size_t)count_clocks(&circuit->stimulus[i]);
     }
     c.clock = dalcs_alloc(most, sizeof(*c.clock));
     enum dalcs_status status = c.clock != NULL ? DALCS_OK : DALCS_E_NOMEM;
@@ -274,7 +307,9 @@ enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bo
                         "no source repeats: there is no period to look for");
     }
     for (int k = 0; k < c.n && status == DALCS_OK; k++) {
-        status = dalcs_steady_settle(r, c.clock[k].stimulus, c.clock[k].name, *period);
+        status = c.clock[k].stimulus == NULL
+                     ? DALCS_OK
+                     : dalcs_steady_settle(r, c.clock[k].stimulus, c.clock[k].name, *period);
     }
     free(c.clock);
     return status;

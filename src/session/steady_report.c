@@ -114,8 +114,8 @@ static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floque
         return dalcs_arena_printf(
             arena,
             "unstable: what %s is off by changes its sign and grows by %.4g each period; a run "
-            "goes to an orbit of two periods or more, try period=%s",
-            m[0].state, size, dalcs_quantity_write(text, 2.0 * st->period, "", 15));
+            "goes to an orbit of two periods or more: ask for one of %s",
+            m[0].state, size, dalcs_quantity_write(text, 2.0 * st->period, "s", 12));
     }
     if (size > 1.0 + near_one) {
         return dalcs_arena_printf(arena, "unstable: what %s is off by grows by %.4g each period",
