@@ -132,7 +132,7 @@ def doubled(checker, program, folder):
 
 
 def main():
-    program = sys.argv[1]
+    program = pathlib.Path(sys.argv[1]).resolve()
     checker = dalcs_program.Checker("cases")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)

@@ -144,7 +144,7 @@ def leaving(case):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        case = Case(sys.argv[1], folder)
+        case = Case(pathlib.Path(sys.argv[1]).resolve(), folder)
         refused(case)
         periods(case)
         one_period(case)

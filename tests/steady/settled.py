@@ -66,7 +66,7 @@ def look_at(program, folder, checker, name, body):
 
 
 def main():
-    program, kind = sys.argv[1:]
+    program, kind = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
     checker = dalcs_program.Checker(kind)
     with tempfile.TemporaryDirectory() as folder:
         for name, body in kinds.KINDS[kind]():
