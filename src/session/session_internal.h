@@ -66,6 +66,7 @@ struct dalcs_run {
     double max_step;   /* s; of radau with error control; 0: no bound */
 
     const struct dalcs_orbit_point *orbit; /* where .tran starts; NULL: as the netlist says */
+    struct dalcs_orbit_point *orbit_end;   /* becomes where such a run ends; NULL: nobody asks */
     bool leaves_orbit;                     /* that is a .tran of its own; else a period of .pss */
 
     struct dalcs_measurement *measurement; /* [n_measures] of the report; NULL: none yet */

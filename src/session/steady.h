@@ -88,12 +88,18 @@ enum dalcs_steady_asked {
 enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
                                     enum dalcs_steady_asked asked) DALCS_MUST_CHECK;
 
+/* st->residual of that. */
+void dalcs_steady_find_residual(struct dalcs_steady *st);
+
 /* Goes on from there. */
 void dalcs_steady_take(struct dalcs_steady *st);
 
 /* The start of a run at such a point. */
 enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, struct dalcs_euler *e,
                                      struct dalcs_radau *radau) DALCS_MUST_CHECK;
+
+/* Where the components are that have been evaluated. */
+void dalcs_steady_read(const struct dalcs_euler *e, struct dalcs_orbit_point *point);
 
 /* ---- steady_newton.c --------------------------------------------------------------------------- */
 

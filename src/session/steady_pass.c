@@ -35,6 +35,20 @@ enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, stru
     return status;
 }
 
+void dalcs_steady_read(const struct dalcs_euler *e, struct dalcs_orbit_point *point) {
+    double *x = point->x;
+    bool *closed = point->closed;
+    for (int k = 0; k < e->n_components; k++) {
+        const struct dalcs_component *c = &e->component[k];
+        memcpy(x, c->y, (size_t)c->system->n_x * sizeof(double));
+        for (int i = 0; i < c->n_switches; i++) {
+            closed[c->switch_pair[i]] = dalcs_osnsp_is_on(&c->osnsp, c->switch_pair[i]);
+        }
+        x += c->system->n_x;
+        closed += c->system->n_pairs;
+    }
+}
+
 static enum dalcs_status go(struct dalcs_radau *radau, const struct dalcs_run *r,
                             struct dalcs_steady_means *means) {
     double t = 0.0;
@@ -134,7 +148,7 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler
     return status;
 }
 
-static void find_residual(struct dalcs_steady *st) {
+void dalcs_steady_find_residual(struct dalcs_steady *st) {
     st->residual = 0.0;
     for (int x = 0; x < st->layout.n_x; x++) {
         double off = fabs(st->then.x[x] - st->at.x[x]);
@@ -160,7 +174,7 @@ enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
     dalcs_radau_finish(&radau);
     dalcs_euler_finish(&e);
     if (status == DALCS_OK && st->has_point) {
-        find_residual(st);
+        dalcs_steady_find_residual(st);
     }
     return status;
 }

@@ -87,35 +87,33 @@ static enum dalcs_status tell_failure(struct dalcs_steady *st, bool endless) {
 
 /* ---- The period ---------------------------------------------------------------------------------- */
 
-/* How far the run that has just ended is from where it began. */
+/* Is the run that has just ended, in st->then, where it began? */
 static enum dalcs_status find_defect(struct dalcs_steady *st) {
     struct dalcs_session *s = st->run->s;
-    const struct dalcs_network *n = &s->network;
-    double defect = 0.0;
-    for (int i = 0; i < n->n_states; i++) {
-        const struct dalcs_probe *p = &n->state[i].probe;
-        for (int k = 0; k < p->n_terms && p->system >= 0; k++) {
-            int x = st->layout.first[p->system] + p->term[k].index;
-            bool is_state = p->n_terms == 1 && p->n_inputs == 0 && p->term[k].coefficient == 1.0 &&
-                            p->term[k].index < n->system[p->system].n_x;
-            double off = is_state ? fabs(s->final[i] - st->at.x[x]) : 0.0;
-            defect = off > 0.0 ? fmax(defect, off / st->scale[x]) : defect;
-        }
-    }
-    s->report.steady.defect = defect;
-    if (!(defect <= most_defect)) {
+    dalcs_steady_find_residual(st);
+    s->report.steady.defect = st->residual;
+    if (!(st->residual <= most_defect)) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "a smaller --tol",
-                       "one more period does not come back: its states are off by %.3g", defect);
+                       "one more period does not come back: its states are off by %.3g",
+                       st->residual);
         return DALCS_NOT_CONVERGED;
     }
     return DALCS_OK;
 }
 
+/* One period is short: every segment of it is audited, unless none is to be. */
 static enum dalcs_status run_period(struct dalcs_steady *st) {
     struct dalcs_run *r = st->run;
+    const struct dalcs_run_options *options = r->options;
+    struct dalcs_run_options all = *options;
+    all.audit = options->audit == DALCS_AUDIT_OFF ? DALCS_AUDIT_OFF : DALCS_AUDIT_FULL;
+    r->options = &all;
     r->orbit = &st->at;
+    r->orbit_end = &st->then;
     enum dalcs_status status = dalcs_transient_run_thinned(r);
     r->orbit = NULL;
+    r->orbit_end = NULL;
+    r->options = options;
     return status == DALCS_OK ? find_defect(st) : status;
 }
 

@@ -438,6 +438,9 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct
         status = dalcs_radau_evaluate(radau, radau->options.stop, DALCS_LEFT);
     }
     dalcs_recorder_states(&s->network, e, s->final);
+    if (r->orbit_end != NULL) {
+        dalcs_steady_read(e, r->orbit_end);
+    }
     DALCS_TRY(status);
     if (dalcs_audit_run_fails(audit)) {
         return DALCS_NOT_CONVERGED; /* the rows stay what they are: partial */
