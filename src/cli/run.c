@@ -8,6 +8,7 @@
 #include "print_table.h"
 #include "progress.h"
 #include "quantity.h"
+#include "run_help.h"
 #include "script.h"
 #include "steady_lines.h"
 #include "summary.h"
@@ -38,44 +39,7 @@ static const char help[] =
     "ideal unless the netlist says otherwise. FILE may also be a system given by its matrices: "
     "'dalcs\n"
     "equations --help'.\n"
-    "\n"
-    "  -o, --output FILE   write waveforms; the format is that of the name, .csv or .raw (may be\n"
-    "                      repeated; without it FILE's name with .raw, in the current folder)\n"
-    "      --method auto|radau|lobatto|euler\n"
-    "                      how to integrate: radau is Radau IIA, lobatto Lobatto IIIC, euler\n"
-    "                      implicit Euler with a fixed step; auto chooses for each part (default:\n"
-    "                      the netlist's, else auto)\n"
-    "      --tol X         how far a waveform may be wrong, over its largest value; 1e-13 to 0.1\n"
-    "                      (default: .options reltol, else 1e-6); small circuits do better\n"
-    "      --stages 1|3|5|7|9\n"
-    "                      stages of radau and, but for 1, lobatto (default: by size and\n"
-    "                      tolerance)\n"
-    "      --step H        time step in s, SPICE suffixes allowed: 1u. The largest one with auto,\n"
-    "                      fixed with radau, lobatto and euler (default: from .tran)\n"
-    "      --fill X|none   add rows where those of .tran are too far apart, until curves through "
-    "all\n"
-    "                      rows are as near to the waveform, over its largest value (default:\n"
-    "                      .options fill, else the tolerance, but 1e-6 where that is smaller)\n"
-    "      --curve cubics|lines\n"
-    "                      which curves: cubics, and lines beside events (default), or lines\n"
-    "      --compress X    leave out rows that straight lines between others give, up to X times\n"
-    "                      a signal's largest value\n"
-    "      --at FILE       print at exactly the times in FILE, one a line\n"
-    "      --report FILE   write what the run did as JSON\n"
-    "      --plot FILE     draw the waveforms with gnuplot, .svg, .png or .pdf\n"
-    "      --dump FILE     where to leave a one-step problem that could not be solved (default:\n"
-    "                      beside the output, out.failed.dalcs for out.csv)\n"
-    "      --all-signals   print the measurements of all signals, not of the first 24\n"
-    "      --audit HOW     check the waveform against the netlist's devices: sample (default;\n"
-    "                      each segment at one instant, some closely), full or off\n"
-    "      --energy        print where the energy came from and where it went\n"
-    "      --ascii         write raw files as text (default: .options filetype, else binary)\n"
-    "      --dialect ngspice|ltspice|xyce\n"
-    "                      for which simulator the netlist was written (default: what it shows)\n"
-    "      --split-steps   in a raw file, make each step of .step a plot of its own\n"
-    "  -q, --quiet         print nothing but warnings and errors\n"
-    "  -h, --help          this text\n"
-    "\n"
+    "\n" DALCS_RUN_OPTIONS "\n"
     "Ctrl-C, SIGTERM and a full disk end a run early: its rows so far are then in out.partial.csv\n"
     "(for -o out.csv), and an out.csv of an earlier run stays as it is.\n"
     "\n"
@@ -95,8 +59,7 @@ static enum dalcs_status check_interrupt(const struct run *run) {
 
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct run *run = user;
-    run->progress.counts =
-        plot->analysis != DALCS_TRANSIENT && plot->analysis != DALCS_PERIODIC;
+    run->progress.counts = plot->analysis != DALCS_TRANSIENT && plot->analysis != DALCS_PERIODIC;
     enum dalcs_status status = dalcs_print_table_begin(&run->printed, run->session, plot);
     return status != DALCS_OK ? status : dalcs_outputs_begin(&run->outputs, plot);
 }
@@ -145,8 +108,13 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
         const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
-        if (option[i].given && (is_plot ? !request->transient
-                                        : main != DALCS_TRANSIENT && main != DALCS_PERIODIC)) {
+        if (is_plot && arguments->steady) {
+            fprintf(cli->err,
+                    "dalcs: warning: --plot has no effect: write a file with -o, and draw "
+                    "that with 'dalcs plot'\n");
+        } else if (option[i].given &&
+                   (is_plot ? !request->transient
+                            : main != DALCS_TRANSIENT && main != DALCS_PERIODIC)) {
             fprintf(cli->err, "dalcs: warning: the netlist has no .tran: %s has no effect\n",
                     option[i].name);
         }
@@ -155,12 +123,12 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
 
 /* The one that a file with room for one result holds. */
 static enum dalcs_analysis main_analysis(const struct dalcs_request *request, bool steady) {
-    return steady              ? DALCS_PERIODIC
+    return steady               ? DALCS_PERIODIC
            : request->transient ? DALCS_TRANSIENT
-           : request->periodic ? DALCS_PERIODIC
-           : request->ac       ? DALCS_AC
-           : request->dc_sweep ? DALCS_DC_SWEEP
-                               : DALCS_OPERATING_POINT;
+           : request->periodic  ? DALCS_PERIODIC
+           : request->ac        ? DALCS_AC
+           : request->dc_sweep  ? DALCS_DC_SWEEP
+                                : DALCS_OPERATING_POINT;
 }
 
 /* ---- The run -------------------------------------------------------------------------------- */

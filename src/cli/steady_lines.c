@@ -2,6 +2,7 @@
 #include "steady_lines.h"
 
 #include "quantity.h"
+#include "run_help.h"
 
 #include <math.h>
 
@@ -15,18 +16,13 @@ const char dalcs_steady_help[] =
     "is stable, with its Floquet multipliers. What the netlist asks for besides is left out.\n"
     "\n"
     "      --period T      the period in s, a multiple of that of each source (default: the\n"
-    "                      smallest common one)\n"
-    "\n"
-    "The other options are those of 'dalcs run', such as -o, --report, --tol, --audit, -q.\n"
-    "\n"
+    "                      smallest common one)\n" DALCS_RUN_OPTIONS "\n"
     "examples:\n"
     "  dalcs steady buck.cir\n"
     "  dalcs steady buck.cir -o period.csv --report buck.json\n"
     "  dalcs steady buck.cir --period 20u\n"
     "\n"
-    "exit status: 0 ok, 1 there is no steady state or none was found, 2 usage or no common "
-    "period,\n"
-    "3 error in the netlist, 4 input/output\n";
+    "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n";
 
 static void write_counts(FILE *out, const struct dalcs_report *report) {
     char period[DALCS_QUANTITY_SIZE];

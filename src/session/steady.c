@@ -137,6 +137,28 @@ static enum dalcs_status leap(struct dalcs_steady *st, double *from, bool *endle
     return DALCS_OK;
 }
 
+/* Where a multiplier is near to 1 a small residual leaves the states far from the steady state: further steps, as long
+ * as they help. `best` is work. */
+static enum dalcs_status refine(struct dalcs_steady *st, struct dalcs_orbit_point *best) {
+    for (int k = 0; k < MOST_STEPS; k++) {
+        const double before = st->residual;
+        enum dalcs_status status = dalcs_steady_newton(st);
+        if (status != DALCS_OK || !(st->distance > good)) {
+            return status < DALCS_OK ? status : DALCS_OK;
+        }
+        copy_point(st, best, &st->at);
+        go_by(st, st->at.x, st->step, 1.0);
+        st->n.newton++;
+        status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+        if (status != DALCS_OK || !(st->residual <= 0.5 * before) || !switches_return(st)) {
+            copy_point(st, &st->at, best);
+            return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+        }
+    }
+    return DALCS_OK;
+}
+
 static bool make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point) {
     point->x = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_x + 1, sizeof(double));
     point->closed = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_pairs + 1, sizeof(bool));
@@ -165,5 +187,5 @@ enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool
             copy_point(st, &st->at, &run);
         }
     }
-    return DALCS_OK;
+    return *found ? refine(st, &run) : DALCS_OK;
 }

@@ -131,6 +131,19 @@ def doubled(checker, program, folder):
     checker.check(off < 1e-8, f"i(l1) is off by {off:.2g} from where a run settles")
 
 
+def slow(checker, program, folder):
+    """The bridge with 100 F: a multiplier of 1 - 6e-6, where a residual of 1e-11 would leave 2e-6."""
+    netlist = (CASES / "bridge.cir").read_text().replace("10m", "100")
+    done, report = steady(program, folder, netlist)
+    if checker.check(done.returncode == 0, f"slow: {done.stderr}"):
+        found = report["steady"]
+        checker.check(found["distance"] <= 1e-9, f"slow: within {found['distance']:.2g}")
+        checker.check(found["newton"] <= MOST_STEPS, f"slow: {found['newton']} Newton steps")
+        mean = found["signals"]["v(out)"]["average"]
+        # the mean hardly depends on the ripple, which is of 10 mF in the reference
+        checker.check(abs(mean - 15.36008) < 1e-3, f"slow: v(out) is {mean}")
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = dalcs_program.Checker("cases")
@@ -142,6 +155,7 @@ def main():
                     json.loads((CASES / f"{case}.json").read_text()))
         slopes(checker, program, folder)
         doubled(checker, program, folder)
+        slow(checker, program, folder)
     return checker.finish()
 
 

@@ -188,10 +188,23 @@ def hard_edges():
                f"C2 out 0 {store * between(1, 30, k, 4)!r}\nR1 out 0 {ohms!r}\n" + SWITCH)
 
 
+def interleaved():
+    """Phases of a buck converter on one output: too many unknowns for dense maps."""
+    for k, (phases, loaded) in enumerate([(14, 1), (20, 1), (16, 0.05), (24, 0.05)]):
+        period, volts, ohms = clock(k), between(5, 50, k, 2), between(0.05, 5, k, 3)
+        duty = 0.2 + 0.5 * part(k, 1)
+        text = f"Vin in 0 {volts!r}\nC1 out 0 {3 * period / ohms!r}\nR1 out 0 {ohms / loaded!r}\n"
+        for n in range(phases):
+            text += (f"Vg{n} g{n} 0 PULSE(0 1 {n * period / phases!r} 0 0 {duty * period!r} "
+                     f"{period!r})\nS{n} in w{n} g{n} 0 sm\nD{n} 0 w{n}\n"
+                     f"L{n} w{n} x{n} {ohms * period * phases!r}\nR{n}0 x{n} out {ohms / 10!r}\n")
+        yield f"interleaved_{k}", text + SWITCH
+
+
 KINDS = {
     "buck_ccm": lambda: buck(True), "buck_dcm": lambda: buck(False),
     "boost_ccm": lambda: boost(True), "boost_dcm": lambda: boost(False),
     "flyback_ccm": lambda: flyback(True), "flyback_dcm": lambda: flyback(False),
     "slow_rectifier": slow_rectifier, "six_pulse": six_pulse, "coupled": coupled, "llc": llc,
-    "tank": tank, "multiplier": multiplier, "scales": scales, "hard_edges": hard_edges,
+    "tank": tank, "multiplier": multiplier, "scales": scales, "hard_edges": hard_edges, "interleaved": interleaved,
 }
