@@ -107,9 +107,10 @@ static enum dalcs_status note_conserved(struct dalcs_steady *st, int system, con
 
 static enum dalcs_status solve(struct dalcs_steady *st, int system, struct newton *w) {
     const int n = w->n;
-    if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'A', n, n, w->A, n, w->s, w->U, n, w->Vt, n,
-                       w->superb) != 0) {
-        return DALCS_SINGULAR;
+    const int failed = LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'A', n, n, w->A, n, w->s, w->U, n,
+                                      w->Vt, n, w->superb);
+    if (failed != 0) {
+        return failed == LAPACK_WORK_MEMORY_ERROR ? DALCS_E_NOMEM : DALCS_SINGULAR;
     }
     int m = 0;
     const double size = sqrt(dot(w->F, w->F, n));

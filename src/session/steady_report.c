@@ -72,9 +72,13 @@ static enum dalcs_status multipliers_of(struct dalcs_steady *st, int system,
         return DALCS_E_NOMEM;
     }
     memcpy(A, st->M + st->layout.first_of_M[system], square * sizeof(double));
-    if (n == 0 || LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', n, A, n, value, value + n, NULL, 1,
-                                vector, n) != 0) {
+    if (n == 0) {
         return DALCS_OK;
+    }
+    const int failed =
+        LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', n, A, n, value, value + n, NULL, 1, vector, n);
+    if (failed != 0) {
+        return failed == LAPACK_WORK_MEMORY_ERROR ? DALCS_E_NOMEM : DALCS_NOT_CONVERGED;
     }
     for (int k = 0; k < n; k++) {
         const double *v = vector + (size_t)k * (size_t)n;
