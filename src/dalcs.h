@@ -110,6 +110,7 @@ struct dalcs_request {
     double step, stop, start, max_step;
     size_t n_prints; /* .print and .plot cards */
     bool ascii;      /* .options filetype=ascii: raw files as text */
+    bool periodic;   /* .pss */
 };
 struct dalcs_request dalcs_session_request(const struct dalcs_session *session);
 
@@ -217,6 +218,7 @@ enum dalcs_analysis {
     DALCS_TRANSIENT,
     DALCS_DC_SWEEP,
     DALCS_AC,
+    DALCS_PERIODIC, /* one period of a steady state */
     DALCS_N_ANALYSES
 };
 
@@ -248,7 +250,7 @@ struct dalcs_plot {
 };
 
 /* Receives results while they are made: for each analysis begin, rows, end, in this order: .op, .dc,
- * .ac, .tran; with .step all steps of an analysis before the next analysis. Any
+ * .ac, .pss, .tran; with .step all steps of an analysis before the next analysis. Any
  * callback may be NULL, or return a status other than DALCS_OK, which ends the run with that
  * status; end is then not called. */
 struct dalcs_sink {
@@ -330,6 +332,9 @@ struct dalcs_run_options {
     size_t max_events;  /* events and jumps kept when recording, 1e6 */
     enum dalcs_audit_mode audit; /* of .tran; a defect above the tolerance is DALCS_NOT_CONVERGED */
     const char *dump_path;       /* where to write an OSNSP that failed; NULL: nowhere */
+
+    bool steady; /* the periodic steady state and nothing else, as if .pss were the only analysis */
+    double period; /* s, of it; 0: that of .pss, else it follows from the sources */
 };
 
 /* The values named above, all else 0. Owns nothing. */
@@ -573,6 +578,37 @@ struct dalcs_report {
         const char *const *element; /* a loop's in its order, from the source that drives on */
         const char *because;        /* the sentence of the message */
     } infeasible;
+
+    /* Of .pss (doc/steady.md). */
+    struct {
+        bool present;
+        double period; /* s */
+        int newton, bursts, leaps;
+        long periods;    /* that the search has run */
+        double residual; /* by how much a period misses where it began, over each state's scale */
+        double distance; /* how far the steady state is from there, by one more Newton step */
+        double defect;   /* the same as residual of the period that was written */
+        bool exact;      /* the multipliers are: no step of implicit Euler, nothing slides */
+        bool stable;
+        const char *verdict;
+        size_t
+            n_multipliers; /* the largest first; those of states that last no period are left out */
+
+        const struct dalcs_floquet {
+            double re, im;
+            const char *state; /* "v(c1)" which has most of it */
+        } * multiplier;
+
+        const double *state; /* [n_states] at its beginning, before any edge there */
+        size_t n_conserved;  /* quantities with a multiplier of 1, "v(c2) - 0.5 v(c1)" */
+        const char *const *conserved;
+        size_t n_signals;
+
+        const struct dalcs_steady_signal {
+            const char *name; /* "v(out)" */
+            double average, rms;
+        } * signal; /* [n_signals] over the period, exact */
+    } steady;
 };
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */

@@ -1,6 +1,7 @@
 /* analysis.c - .tran and .op: what is to be computed. */
 #include "builder.h"
 
+static const char PSS_USAGE[] = ".pss [period] [step=tstep] [uic]";
 static const char TRAN_USAGE[] = ".tran tstep tstop [tstart [tmax]] [uic]";
 
 enum { TSTEP, TSTOP, TSTART, TMAX, N_TIMES };
@@ -50,6 +51,13 @@ static bool read_word(struct dalcs_reader *reader, struct dalcs_transient *trans
     /* noop is Xyce's word for it */
     if (dalcs_reader_take_word(reader, "uic") || dalcs_reader_take_word(reader, "noop")) {
         transient->use_initial_conditions = true;
+        if (dalcs_reader_take(reader, DALCS_TOKEN_EQUAL)) {
+            transient->starts_steady = dalcs_reader_take_word(reader, "steady");
+            if (!transient->starts_steady) {
+                dalcs_reader_unexpected(reader);
+            }
+            return transient->starts_steady;
+        }
         return true;
     }
     if (dalcs_reader_take_word(reader, "nodiscard")) {
@@ -121,6 +129,45 @@ void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs
         transient->first_step = transient->step;
         transient->step = 0;
     }
+}
+
+static bool read_pss_word(struct dalcs_reader *reader, struct dalcs_periodic_card *card) {
+    if (dalcs_reader_take_word(reader, "uic")) {
+        card->use_initial_conditions = true;
+        return true;
+    }
+    double *value = dalcs_reader_take_word(reader, "period") ? &card->period
+                    : dalcs_reader_take_word(reader, "step") ? &card->step
+                                                             : NULL;
+    if (value == NULL) {
+        dalcs_reader_unexpected(reader);
+        return false;
+    }
+    if (!dalcs_reader_take(reader, DALCS_TOKEN_EQUAL)) {
+        dalcs_reader_missing(reader, "'='");
+        return false;
+    }
+    return dalcs_reader_list_number(reader, DALCS_SECOND, "a time", value);
+}
+
+void dalcs_analysis_parse_pss(struct dalcs_builder *builder, const struct dalcs_card *card) {
+    struct dalcs_periodic_card *periodic = &builder->circuit->periodic;
+    struct dalcs_reader reader = dalcs_reader_start(builder, card, PSS_USAGE);
+    if (!dalcs_analysis_is_first(builder, card, &builder->pss)) {
+        return;
+    }
+    bool ok = true;
+    if (!dalcs_reader_at_end(&reader) && dalcs_reader_is_number(dalcs_reader_peek(&reader, 0))) {
+        ok = dalcs_reader_list_number(&reader, DALCS_SECOND, "a period", &periodic->period);
+    }
+    while (ok && !dalcs_reader_at_end(&reader)) {
+        ok = read_pss_word(&reader, periodic);
+    }
+    if (ok && (periodic->period < 0.0 || periodic->step < 0.0)) {
+        dalcs_builder_error(builder, card->token, PSS_USAGE, "times must be positive");
+        ok = false;
+    }
+    periodic->present = ok;
 }
 
 void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card) {

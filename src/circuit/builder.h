@@ -89,6 +89,7 @@ struct dalcs_builder {
     struct dalcs_model *model;
     int n_models, model_capacity;
 
+    const struct dalcs_token *pss;  /* so with .pss */
     const struct dalcs_token *tran; /* the first .tran and .op, NULL before */
     const struct dalcs_token *op;
     const struct dalcs_token *startup;       /* LTspice's word on .tran, or NULL */
@@ -444,6 +445,7 @@ int dalcs_model_find_switch(struct dalcs_builder *builder, const struct dalcs_to
 /* Takes the name of a model of R, L or C (letter), if one follows: nothing depends on it. False after
  * an error. */
 bool dalcs_model_take_passive(struct dalcs_reader *reader, char letter);
+void dalcs_analysis_parse_pss(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_analysis_parse_tran(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_analysis_parse_op(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* A second card of an analysis is an error. */

@@ -31,6 +31,7 @@ enum {
 static const struct dot_card DOT_CARDS[] = {
     {".model", DALCS_CARD_MODEL, NULL, NULL, NOTHING, NULL},
     {".tran", DALCS_CARD_TRAN, NULL, NULL, NOTHING, NULL},
+    {".pss", DALCS_CARD_PSS, NULL, NULL, NOTHING, NULL},
     {".op", DALCS_CARD_OP, NULL, NULL, NOTHING, NULL},
     {".dc", DALCS_CARD_DC, NULL, NULL, NOTHING, NULL},
     {".ac", DALCS_CARD_AC, NULL, NULL, NOTHING, NULL},
@@ -65,7 +66,7 @@ static const char *const IGNORED[] = {".temp", ".width", ".prot", ".unprot", ".p
 
 /* Analyses that this simulator will not have. */
 static const char *const NEVER[] = {".noise", ".pz",      ".disto", ".tf",     ".sens",
-                                    ".sp",    ".pss",     ".hb",    ".net",    ".mc",
+                                    ".sp",    ".hb",    ".net",    ".mc",
                                     ".wcase", ".machine", ".stab",  ".ferret", ".sampling"};
 
 /* Elements by letter that are not supported. */

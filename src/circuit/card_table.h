@@ -10,6 +10,7 @@ enum dalcs_card_class {
     DALCS_CARD_COUPLING,
     DALCS_CARD_MODEL,
     DALCS_CARD_TRAN,
+    DALCS_CARD_PSS,
     DALCS_CARD_OP,
     DALCS_CARD_DC,
     DALCS_CARD_AC,

@@ -126,6 +126,7 @@ static const struct {
     [DALCS_CARD_OPTIONS] = {OPTIONS, dalcs_options_parse},
     [DALCS_CARD_MODEL] = {MODELS, dalcs_model_parse},
     [DALCS_CARD_TRAN] = {MODELS, dalcs_analysis_parse_tran},
+    [DALCS_CARD_PSS] = {MODELS, dalcs_analysis_parse_pss},
     [DALCS_CARD_OP] = {MODELS, dalcs_analysis_parse_op},
     [DALCS_CARD_ELEMENT] = {ELEMENTS, read_element},
     [DALCS_CARD_COUPLING] = {REFERENCES, dalcs_coupling_parse},
@@ -169,7 +170,7 @@ static void check_presence(struct dalcs_builder *builder) {
                                "the netlist has no elements");
     }
     const bool asks = builder->tran != NULL || builder->op != NULL || builder->dc != NULL ||
-                      builder->ac != NULL || builder->netlist->n_script_lines > 0;
+                      builder->ac != NULL || builder->pss != NULL || builder->netlist->n_script_lines > 0;
     if (!asks && (builder->hidden & DALCS_HIDDEN_ANALYSES) == 0) {
         dalcs_builder_error_at(builder, &where, "add a line such as: .tran 10u 20m",
                                "the netlist asks for nothing: no .tran, .op, .dc or .ac");

@@ -134,7 +134,15 @@ struct dalcs_transient {
     double step, stop, start, max_step; /* step 0: rows every stop/1000; max_step 0: not given */
     double first_step;                  /* Xyce's, which other simulators may want; else 0 */
     bool use_initial_conditions;        /* uic */
+    bool starts_steady;                 /* uic=steady */
     struct dalcs_location where;
+};
+
+/* What .pss asks for; times in s. */
+struct dalcs_periodic_card {
+    bool present;
+    double period, step;         /* 0: it follows from the sources; rows every period/1000 */
+    bool use_initial_conditions; /* uic */
 };
 
 enum { DALCS_MOST_DC = 2 };
@@ -166,6 +174,7 @@ struct dalcs_circuit {
     int n_fouriers;
     struct dalcs_fourier_card *fourier; /* .four, one for each signal */
     struct dalcs_transient transient;
+    struct dalcs_periodic_card periodic;
     bool operating_point; /* .op */
     int n_prints;
     struct dalcs_print_card *print; /* .print and .plot, in their order */
@@ -221,6 +230,11 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
                                            struct dalcs_diag *diag) DALCS_MUST_CHECK;
 
 void dalcs_circuit_finish(struct dalcs_circuit *circuit);
+
+/* Does an analysis have waveforms of time? */
+static inline bool dalcs_circuit_has_waves(const struct dalcs_circuit *circuit) {
+    return circuit->transient.present || circuit->periodic.present;
+}
 
 /* A resistor of 0 ohm: its two nodes are one, unless a signal asks for its current. */
 static inline bool dalcs_device_is_short(const struct dalcs_device *device) {

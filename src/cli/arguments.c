@@ -28,7 +28,8 @@ enum {
     ENERGY,
     ASCII,
     SPLIT_STEPS,
-    AUDIT
+    AUDIT,
+    PERIOD
 };
 
 static const struct option option[] = {
@@ -50,6 +51,7 @@ static const struct option option[] = {
     {"audit", required_argument, NULL, AUDIT},
     {"ascii", no_argument, NULL, ASCII},
     {"split-steps", no_argument, NULL, SPLIT_STEPS},
+    {"period", required_argument, NULL, PERIOD},
     {"quiet", no_argument, NULL, 'q'},
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
@@ -167,6 +169,15 @@ static enum dalcs_status parse_audit(struct dalcs_arguments *arguments, const st
     return DALCS_E_OPTION;
 }
 
+static enum dalcs_status parse_period(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *text) {
+    if (!arguments->steady) {
+        dalcs_cli_error(cli, "--period is one of 'dalcs steady'");
+        return DALCS_E_OPTION;
+    }
+    return dalcs_verb_take_positive(cli, "--period", text, &arguments->period);
+}
+
 static enum dalcs_status take(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                               int code, char **argv) {
     switch (code) {
@@ -213,6 +224,8 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return DALCS_OK;
     case AUDIT:
         return parse_audit(arguments, cli, optarg);
+    case PERIOD:
+        return parse_period(arguments, cli, optarg);
     case ASCII:
         arguments->ascii = true;
         return DALCS_OK;
@@ -226,7 +239,7 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         arguments->help = true;
         return DALCS_OK;
     default:
-        return dalcs_verb_refuse(cli, "run", option, code, argv);
+        return dalcs_verb_refuse(cli, arguments->steady ? "steady" : "run", option, code, argv);
     }
 }
 
@@ -268,7 +281,7 @@ static enum dalcs_status add_defaults(struct dalcs_arguments *arguments,
 
 enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, int argc, char **argv) {
-    *arguments = (struct dalcs_arguments){0};
+    *arguments = (struct dalcs_arguments){.steady = strcmp(argv[0], "steady") == 0};
     arguments->output = dalcs_alloc((size_t)argc, sizeof *arguments->output);
     if (!arguments->output) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
@@ -291,7 +304,7 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
         status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && !arguments->help) {
-        status = dalcs_verb_take_netlist(cli, "run", argc, argv, &arguments->netlist);
+        status = dalcs_verb_take_netlist(cli, arguments->steady ? "steady" : "run", argc, argv, &arguments->netlist);
         status = status == DALCS_OK ? add_defaults(arguments, cli) : status;
     }
     if (status != DALCS_OK) {

@@ -26,6 +26,8 @@ struct dalcs_arguments {
     bool batch; /* as ngspice -b: outputs are raw files whatever their names, tables are printed
                         when there is none */
     const char *log;  /* of -b: where what is printed goes, or NULL */
+    bool steady;      /* the verb is `steady` */
+    double period;    /* s, of it; 0: it follows from the sources */
     bool split_steps; /* of .step into several plots of a raw file */
     bool help;        /* asked for: nothing else is set */
 };

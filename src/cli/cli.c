@@ -13,6 +13,7 @@ static const struct {
     enum dalcs_exit (*function)(const struct dalcs_cli *cli, int argc, char **argv);
 } verb[] = {
     {"run", "simulate a netlist and write its waveforms", dalcs_cli_run},
+    {"steady", "the periodic steady state of a netlist and its stability", dalcs_cli_run},
     {"equations", "write the complementarity system of a netlist", dalcs_cli_equations},
     {"check", "what theory says of a netlist before it runs", dalcs_cli_check},
     {"audit", "which laws of a netlist a file of waveforms breaks", dalcs_cli_audit},

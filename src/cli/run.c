@@ -8,7 +8,9 @@
 #include "print_table.h"
 #include "progress.h"
 #include "quantity.h"
+#include "run_help.h"
 #include "script.h"
+#include "steady_lines.h"
 #include "summary.h"
 #include "times.h"
 #include "verb.h"
@@ -37,44 +39,7 @@ static const char help[] =
     "ideal unless the netlist says otherwise. FILE may also be a system given by its matrices: "
     "'dalcs\n"
     "equations --help'.\n"
-    "\n"
-    "  -o, --output FILE   write waveforms; the format is that of the name, .csv or .raw (may be\n"
-    "                      repeated; without it FILE's name with .raw, in the current folder)\n"
-    "      --method auto|radau|lobatto|euler\n"
-    "                      how to integrate: radau is Radau IIA, lobatto Lobatto IIIC, euler\n"
-    "                      implicit Euler with a fixed step; auto chooses for each part (default:\n"
-    "                      the netlist's, else auto)\n"
-    "      --tol X         how far a waveform may be wrong, over its largest value; 1e-13 to 0.1\n"
-    "                      (default: .options reltol, else 1e-6); small circuits do better\n"
-    "      --stages 1|3|5|7|9\n"
-    "                      stages of radau and, but for 1, lobatto (default: by size and\n"
-    "                      tolerance)\n"
-    "      --step H        time step in s, SPICE suffixes allowed: 1u. The largest one with auto,\n"
-    "                      fixed with radau, lobatto and euler (default: from .tran)\n"
-    "      --fill X|none   add rows where those of .tran are too far apart, until curves through "
-    "all\n"
-    "                      rows are as near to the waveform, over its largest value (default:\n"
-    "                      .options fill, else the tolerance, but 1e-6 where that is smaller)\n"
-    "      --curve cubics|lines\n"
-    "                      which curves: cubics, and lines beside events (default), or lines\n"
-    "      --compress X    leave out rows that straight lines between others give, up to X times\n"
-    "                      a signal's largest value\n"
-    "      --at FILE       print at exactly the times in FILE, one a line\n"
-    "      --report FILE   write what the run did as JSON\n"
-    "      --plot FILE     draw the waveforms with gnuplot, .svg, .png or .pdf\n"
-    "      --dump FILE     where to leave a one-step problem that could not be solved (default:\n"
-    "                      beside the output, out.failed.dalcs for out.csv)\n"
-    "      --all-signals   print the measurements of all signals, not of the first 24\n"
-    "      --audit HOW     check the waveform against the netlist's devices: sample (default;\n"
-    "                      each segment at one instant, some closely), full or off\n"
-    "      --energy        print where the energy came from and where it went\n"
-    "      --ascii         write raw files as text (default: .options filetype, else binary)\n"
-    "      --dialect ngspice|ltspice|xyce\n"
-    "                      for which simulator the netlist was written (default: what it shows)\n"
-    "      --split-steps   in a raw file, make each step of .step a plot of its own\n"
-    "  -q, --quiet         print nothing but warnings and errors\n"
-    "  -h, --help          this text\n"
-    "\n"
+    "\n" DALCS_RUN_OPTIONS "\n"
     "Ctrl-C, SIGTERM and a full disk end a run early: its rows so far are then in out.partial.csv\n"
     "(for -o out.csv), and an out.csv of an earlier run stays as it is.\n"
     "\n"
@@ -94,7 +59,7 @@ static enum dalcs_status check_interrupt(const struct run *run) {
 
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct run *run = user;
-    run->progress.counts = plot->analysis != DALCS_TRANSIENT;
+    run->progress.counts = plot->analysis != DALCS_TRANSIENT && plot->analysis != DALCS_PERIODIC;
     enum dalcs_status status = dalcs_print_table_begin(&run->printed, run->session, plot);
     return status != DALCS_OK ? status : dalcs_outputs_begin(&run->outputs, plot);
 }
@@ -143,7 +108,13 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
         const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
-        if (option[i].given && (is_plot ? !request->transient : main != DALCS_TRANSIENT)) {
+        if (is_plot && arguments->steady) {
+            fprintf(cli->err,
+                    "dalcs: warning: --plot has no effect: write a file with -o, and draw "
+                    "that with 'dalcs plot'\n");
+        } else if (option[i].given &&
+                   (is_plot ? !request->transient
+                            : main != DALCS_TRANSIENT && main != DALCS_PERIODIC)) {
             fprintf(cli->err, "dalcs: warning: the netlist has no .tran: %s has no effect\n",
                     option[i].name);
         }
@@ -151,11 +122,13 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
 }
 
 /* The one that a file with room for one result holds. */
-static enum dalcs_analysis main_analysis(const struct dalcs_request *request) {
-    return request->transient  ? DALCS_TRANSIENT
-           : request->ac       ? DALCS_AC
-           : request->dc_sweep ? DALCS_DC_SWEEP
-                               : DALCS_OPERATING_POINT;
+static enum dalcs_analysis main_analysis(const struct dalcs_request *request, bool steady) {
+    return steady               ? DALCS_PERIODIC
+           : request->transient ? DALCS_TRANSIENT
+           : request->periodic  ? DALCS_PERIODIC
+           : request->ac        ? DALCS_AC
+           : request->dc_sweep  ? DALCS_DC_SWEEP
+                                : DALCS_OPERATING_POINT;
 }
 
 /* ---- The run -------------------------------------------------------------------------------- */
@@ -167,6 +140,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
         return;
     }
     dalcs_summary_write_run(out, report);
+    dalcs_steady_lines_write(out, report);
     if (status != DALCS_OK) {
         char text[DALCS_QUANTITY_SIZE];
         fprintf(out, "  stopped   at %s: %s\n", dalcs_quantity_write(text, run->time, "s", 6),
@@ -175,7 +149,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
     dalcs_summary_write_sides(out, report);
 
     static const enum dalcs_analysis shown[] = {DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_AC,
-                                                DALCS_TRANSIENT};
+                                                DALCS_PERIODIC, DALCS_TRANSIENT};
 
     for (size_t i = 0; i < DALCS_N_ANALYSES; i++) {
         const struct dalcs_plot *plot = run->outputs.measure[shown[i]].plot;
@@ -231,6 +205,8 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
         options.max_events = SHOWN_EVENTS;
     }
     options.audit = arguments->audit;
+    options.steady = arguments->steady;
+    options.period = arguments->period;
     options.energy = arguments->report || arguments->energy;
     const struct dalcs_sink sink = {
         .user = run, .begin = begin, .row = row, .end = end, .progress = progress, .rows = rows};
@@ -277,7 +253,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         return status;
     }
     const struct dalcs_request request = dalcs_session_request(session);
-    enum dalcs_analysis main = main_analysis(&request);
+    enum dalcs_analysis main = main_analysis(&request, arguments->steady);
     struct run run = {.cli = cli};
     status = dalcs_script_look(session, &run.has_script, &main);
     if (status != DALCS_OK) {
@@ -331,7 +307,7 @@ enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv
         return dalcs_cli_exit(status);
     }
     if (arguments.help) {
-        fputs(help, cli->out);
+        fputs(arguments.steady ? dalcs_steady_help : help, cli->out);
     } else {
         status = dalcs_paths_check(cli, &arguments);
     }

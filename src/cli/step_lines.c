@@ -31,7 +31,8 @@ enum dalcs_status dalcs_step_lines_add(struct dalcs_step_lines *lines,
         line->parameter[i] = plot->parameter_value[i];
     }
     for (size_t i = 0; i < least(plot->n_signals, DALCS_STEP_SIGNALS); i++) {
-        line->value[i] = plot->analysis == DALCS_TRANSIENT ? dalcs_measure_average(measure, i)
+        const bool is_wave = plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC;
+        line->value[i] = is_wave ? dalcs_measure_average(measure, i)
                          : plot->analysis == DALCS_AC      ? measure->signal[i].max
                                                            : measure->signal[i].final;
     }
@@ -64,6 +65,7 @@ void dalcs_step_lines_write(FILE *out, const struct dalcs_step_lines *lines,
                             enum dalcs_analysis analysis) {
     static const char *const what[] = {[DALCS_OPERATING_POINT] = "operating point",
                                        [DALCS_TRANSIENT] = "average over .tran",
+                                       [DALCS_PERIODIC] = "average over a period",
                                        [DALCS_DC_SWEEP] = "last value of .dc",
                                        [DALCS_AC] = "largest magnitude of .ac"};
     const struct dalcs_plot *plot = lines->plot[analysis];

@@ -200,10 +200,14 @@ static void write_head(FILE *out, const struct dalcs_plot *plot, int width) {
     static const char *const head[] = {
         [DALCS_OPERATING_POINT] = "         op",
         [DALCS_TRANSIENT] = "        min         max     average         rms       final",
+        [DALCS_PERIODIC] = "        min         max     average         rms       final",
         [DALCS_DC_SWEEP] = "        min         max       final",
         [DALCS_AC] = "      |min|       |max|     |final|"};
     if (plot->analysis == DALCS_DC_SWEEP || plot->analysis == DALCS_AC) {
         fprintf(out, "\n  %s over %s", plot->analysis == DALCS_AC ? ".ac" : ".dc", plot->scale);
+    }
+    if (plot->analysis == DALCS_PERIODIC) {
+        fputs("\n  one period", out);
     }
     fprintf(out, "\n  %-*s %s\n", width, "signal", head[plot->analysis]);
 }
@@ -215,7 +219,7 @@ static void write_cells(FILE *out, const struct dalcs_measure *measure, size_t i
         write_cell(out, signal, signal->min, plot->unit[i]);
         write_cell(out, signal, signal->max, plot->unit[i]);
     }
-    if (plot->analysis == DALCS_TRANSIENT) {
+    if (plot->analysis == DALCS_TRANSIENT || plot->analysis == DALCS_PERIODIC) {
         write_cell(out, signal, dalcs_measure_average(measure, i), plot->unit[i]);
         write_cell(out, signal, dalcs_measure_rms(measure, i), plot->unit[i]);
     }

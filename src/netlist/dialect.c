@@ -101,7 +101,9 @@ static void keep_first(const struct dalcs_token **first, const struct dalcs_toke
 static void look_at_words(const struct dalcs_card *card, const char *const *words,
                           const struct dalcs_token **first) {
     for (int k = 1; k < card->n; k++) {
-        if (card->token[k].kind == DALCS_TOKEN_WORD && is_one_of(card->token[k].text, words)) {
+        bool is_value = is_equal_sign(card, k - 1);
+        if (!is_value && card->token[k].kind == DALCS_TOKEN_WORD &&
+            is_one_of(card->token[k].text, words)) {
             keep_first(first, &card->token[k]);
         }
     }

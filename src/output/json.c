@@ -90,6 +90,11 @@ void dalcs_json_integer(struct dalcs_json *json, const char *key, long value) {
     fprintf(json->stream, "%ld", value);
 }
 
+void dalcs_json_boolean(struct dalcs_json *json, const char *key, bool value) {
+    start_value(json, key);
+    fputs(value ? "true" : "false", json->stream);
+}
+
 void dalcs_json_string(struct dalcs_json *json, const char *key, const char *text) {
     start_value(json, key);
     if (text) {

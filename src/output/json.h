@@ -27,6 +27,8 @@ void dalcs_json_close(struct dalcs_json *json, char close);
 void dalcs_json_number(struct dalcs_json *json, const char *key, double value);
 void dalcs_json_integer(struct dalcs_json *json, const char *key, long value);
 
+void dalcs_json_boolean(struct dalcs_json *json, const char *key, bool value);
+
 /* NULL becomes null. Bytes that are not UTF-8 become U+FFFD. */
 void dalcs_json_string(struct dalcs_json *json, const char *key, const char *text);
 

@@ -83,6 +83,7 @@ static const char *scale_name(const struct dalcs_plot *plot) {
 static void write_header(struct raw *raw, FILE *stream, const struct dalcs_plot *plot) {
     static const char *const name[] = {[DALCS_OPERATING_POINT] = "Operating Point",
                                        [DALCS_TRANSIENT] = "Transient Analysis",
+                                       [DALCS_PERIODIC] = "Periodic Steady State",
                                        [DALCS_DC_SWEEP] = "DC transfer characteristic",
                                        [DALCS_AC] = "AC Analysis"};
     raw->plot_at = ftello(stream);

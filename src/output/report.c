@@ -188,6 +188,51 @@ static void write_energy(struct dalcs_json *json, const struct dalcs_report *rep
     dalcs_json_close(json, '}');
 }
 
+/* "states": just before the edges at the beginning of the period. */
+static void write_steady(struct dalcs_json *json, const struct dalcs_report *report) {
+    if (!report->steady.present) {
+        return;
+    }
+    dalcs_json_open(json, "steady", '{', false);
+    dalcs_json_number(json, "period", report->steady.period);
+    dalcs_json_integer(json, "newton", report->steady.newton);
+    dalcs_json_integer(json, "bursts", report->steady.bursts);
+    dalcs_json_integer(json, "leaps", report->steady.leaps);
+    dalcs_json_integer(json, "periods", report->steady.periods);
+    dalcs_json_number(json, "residual", report->steady.residual);
+    dalcs_json_number(json, "distance", report->steady.distance);
+    dalcs_json_number(json, "defect", report->steady.defect);
+    dalcs_json_boolean(json, "exact", report->steady.exact);
+    dalcs_json_boolean(json, "stable", report->steady.stable);
+    dalcs_json_string(json, "verdict", report->steady.verdict);
+    dalcs_json_open(json, "multipliers", '[', false);
+    for (size_t i = 0; i < report->steady.n_multipliers; i++) {
+        const struct dalcs_floquet *m = &report->steady.multiplier[i];
+        dalcs_json_open(json, NULL, '{', true);
+        dalcs_json_number(json, "re", m->re);
+        dalcs_json_number(json, "im", m->im);
+        dalcs_json_string(json, "state", m->state);
+        dalcs_json_close(json, '}');
+    }
+    dalcs_json_close(json, ']');
+    dalcs_json_open(json, "conserved", '[', false);
+    for (size_t i = 0; i < report->steady.n_conserved; i++) {
+        dalcs_json_string(json, NULL, report->steady.conserved[i]);
+    }
+    dalcs_json_close(json, ']');
+    write_states(json, "states", report, report->steady.state);
+    dalcs_json_open(json, "signals", '{', false);
+    for (size_t i = 0; i < report->steady.n_signals; i++) {
+        const struct dalcs_steady_signal *signal = &report->steady.signal[i];
+        dalcs_json_open(json, signal->name, '{', true);
+        dalcs_json_number(json, "average", signal->average);
+        dalcs_json_number(json, "rms", signal->rms);
+        dalcs_json_close(json, '}');
+    }
+    dalcs_json_close(json, '}');
+    dalcs_json_close(json, '}');
+}
+
 static void write_infeasible(struct dalcs_json *json, const struct dalcs_report *report) {
     if (!report->infeasible.present) {
         return;
@@ -287,6 +332,7 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     write_measurements(&json, report);
     write_fourier(&json, report);
     write_energy(&json, report);
+    write_steady(&json, report);
     write_infeasible(&json, report);
     dalcs_json_close(&json, '}');
 }

@@ -78,7 +78,8 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
     const struct dalcs_circuit *c = &r->s->circuit;
     measures->next_edge = INFINITY;
     measures->begin = INFINITY;
-    if (!dalcs_measuring_is_wanted(c, DALCS_MEASURED_TRAN)) {
+    bool is_period = r->orbit != NULL && !r->leaves_orbit; /* .meas tran is of another run */
+    if (is_period || !dalcs_measuring_is_wanted(c, DALCS_MEASURED_TRAN)) {
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_measuring_setup(&measures->measuring, c, DALCS_MEASURED_TRAN,

@@ -161,9 +161,11 @@ static enum dalcs_status run_operating_point(struct dalcs_run *r) {
     return status;
 }
 
-/* The same with fewer rows. */
-static enum dalcs_status run_thinned(struct dalcs_run *r) {
+enum dalcs_status dalcs_transient_run_thinned(struct dalcs_run *r) {
     struct dalcs_thinning thinning;
+    if (!(r->compress > 0.0)) {
+        return dalcs_transient_run(r);
+    }
     const struct dalcs_sink *sink = r->sink;
     DALCS_TRY(dalcs_thinning_setup(&thinning, sink, (size_t)r->s->circuit.n_shown, r->compress));
     r->sink = &thinning.sink;
@@ -256,11 +258,16 @@ static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis a
         return circuit->n_dc > 0 ? dalcs_dc_sweep_run(r) : DALCS_OK;
     case DALCS_AC:
         return circuit->ac.n > 0 ? dalcs_small_signal_run(r) : DALCS_OK;
+    case DALCS_PERIODIC:
+        return circuit->periodic.present || r->options->steady ? dalcs_steady_run(r) : DALCS_OK;
     default:
         if (!circuit->transient.present) {
             return DALCS_OK;
         }
-        return r->compress > 0.0 ? run_thinned(r) : dalcs_transient_run(r);
+        if (circuit->transient.starts_steady) {
+            return dalcs_steady_leave(r);
+        }
+        return dalcs_transient_run_thinned(r);
     }
 }
 
@@ -300,15 +307,20 @@ static enum dalcs_status run_analyses(struct dalcs_session *session,
 }
 
 static const enum dalcs_analysis IN_ORDER[] = {DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_AC,
-                                               DALCS_TRANSIENT};
+                                               DALCS_PERIODIC, DALCS_TRANSIENT};
 
 enum { N_IN_ORDER = sizeof IN_ORDER / sizeof IN_ORDER[0] };
 
-static bool is_asked(const struct dalcs_circuit *circuit, enum dalcs_analysis analysis) {
+static bool is_asked(const struct dalcs_circuit *circuit, const struct dalcs_run_options *options,
+                     enum dalcs_analysis analysis) {
+    if (options->steady) {
+        return analysis == DALCS_PERIODIC;
+    }
     const bool asked[] = {[DALCS_OPERATING_POINT] = circuit->operating_point,
                           [DALCS_TRANSIENT] = circuit->transient.present,
                           [DALCS_DC_SWEEP] = circuit->n_dc > 0,
-                          [DALCS_AC] = circuit->ac.n > 0};
+                          [DALCS_AC] = circuit->ac.n > 0,
+                          [DALCS_PERIODIC] = circuit->periodic.present};
     return asked[analysis];
 }
 
@@ -407,7 +419,7 @@ static enum dalcs_status run_steps(struct dalcs_session *session,
     const size_t n_steps = dalcs_steps_count(&session->circuit);
     bool asked[N_IN_ORDER];
     for (size_t a = 0; a < N_IN_ORDER; a++) {
-        asked[a] = is_asked(&session->circuit, IN_ORDER[a]);
+        asked[a] = is_asked(&session->circuit, options, IN_ORDER[a]);
     }
     enum dalcs_status status = DALCS_OK;
     for (size_t a = 0; a < N_IN_ORDER && status == DALCS_OK; a++) {
@@ -463,9 +475,15 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
         return DALCS_E_NETLIST;
     }
     const struct dalcs_sink complete = completed(sink);
+    if (options->steady) {
+        session->circuit.periodic.present = true; /* as if there were a .pss */
+        DALCS_TRY(dalcs_steady_prepare(session));
+    }
     if (session->circuit.n_steps > 0) {
         return run_steps(session, options, &complete);
     }
     DALCS_TRY(dalcs_operating_currents(session, options, &complete));
-    return run_analyses(session, options, &complete, NULL, IN_ORDER, N_IN_ORDER);
+    static const enum dalcs_analysis STEADY = DALCS_PERIODIC;
+    return options->steady ? run_analyses(session, options, &complete, NULL, &STEADY, 1)
+                           : run_analyses(session, options, &complete, NULL, IN_ORDER, N_IN_ORDER);
 }

@@ -107,7 +107,7 @@ static enum dalcs_status build(struct dalcs_session *s, struct dalcs_netlist *ne
     if (status == DALCS_OK) {
         status = dalcs_network_build(
             &s->network, &s->circuit,
-            &(struct dalcs_network_options){.with_readout = s->circuit.transient.present},
+            &(struct dalcs_network_options){.with_readout = dalcs_circuit_has_waves(&s->circuit)},
             &s->diag);
         s->has_network = status == DALCS_OK;
     }
@@ -188,7 +188,8 @@ struct dalcs_request dalcs_session_request(const struct dalcs_session *session) 
                                   .start = t->start,
                                   .max_step = t->max_step,
                                   .n_prints = (size_t)session->circuit.n_prints,
-                                  .ascii = session->circuit.options.ascii};
+                                  .ascii = session->circuit.options.ascii,
+                                  .periodic = session->circuit.periodic.present};
 }
 
 bool dalcs_session_print(const struct dalcs_session *session, size_t card, int analysis,
@@ -196,7 +197,8 @@ bool dalcs_session_print(const struct dalcs_session *session, size_t card, int a
     static const int measured[] = {[DALCS_OPERATING_POINT] = DALCS_MEASURED_OP,
                                    [DALCS_TRANSIENT] = DALCS_MEASURED_TRAN,
                                    [DALCS_DC_SWEEP] = DALCS_MEASURED_DC,
-                                   [DALCS_AC] = DALCS_MEASURED_AC};
+                                   [DALCS_AC] = DALCS_MEASURED_AC,
+                                   [DALCS_PERIODIC] = DALCS_MEASURED_TRAN};
 
     static const enum dalcs_print_part part[] = {
         [DALCS_PART_PLAIN] = DALCS_PRINT_PLAIN,     [DALCS_PART_MAGNITUDE] = DALCS_PRINT_MAGNITUDE,

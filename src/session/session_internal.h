@@ -9,6 +9,10 @@
 #include "spice.h"
 #include "undetermined.h"
 
+struct dalcs_orbit_point;
+struct dalcs_radau;
+struct dalcs_radau_options;
+
 struct dalcs_session {
     char *name;
     struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
@@ -60,6 +64,10 @@ struct dalcs_run {
     double h;          /* s; the step of euler */
     double fixed_step; /* s; of radau without error control; 0: with it */
     double max_step;   /* s; of radau with error control; 0: no bound */
+
+    const struct dalcs_orbit_point *orbit; /* where .tran starts; NULL: as the netlist says */
+    struct dalcs_orbit_point *orbit_end;   /* becomes where such a run ends; NULL: nobody asks */
+    bool leaves_orbit;                     /* that is a .tran of its own; else a period of .pss */
 
     struct dalcs_measurement *measurement; /* [n_measures] of the report; NULL: none yet */
     double *result;                        /* [n_measures] NAN: could not be measured */
@@ -128,8 +136,27 @@ enum dalcs_status dalcs_dc_sweep_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 /* Runs .ac into r->sink. */
 enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
+/* dalcs_transient_run with fewer rows, if that is asked for. */
+enum dalcs_status dalcs_transient_run_thinned(struct dalcs_run *r) DALCS_MUST_CHECK;
+
 /* Frees what the last run left. */
 void dalcs_session_forget_run(struct dalcs_session *session);
+
+/* Starts a .tran; radau is NULL with implicit Euler. `records`: the recorder is to know of what was before. */
+enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler *e,
+                                        struct dalcs_radau *radau, bool records) DALCS_MUST_CHECK;
+
+/* As dalcs_run_choose has chosen them. */
+struct dalcs_radau_options dalcs_transient_options(const struct dalcs_run *r, double stop);
+
+/* For a netlist that has asked for no waveforms: its network with what an audit reads. */
+enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) DALCS_MUST_CHECK;
+
+/* Runs .pss into r->sink. */
+enum dalcs_status dalcs_steady_run(struct dalcs_run *r) DALCS_MUST_CHECK;
+
+/* Runs the .tran that starts on such an orbit. */
+enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) DALCS_MUST_CHECK;
 
 /* Runs .tran into r->sink. */
 enum dalcs_status dalcs_transient_run(struct dalcs_run *r) DALCS_MUST_CHECK;

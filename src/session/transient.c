@@ -5,6 +5,7 @@
 #include "measures.h"
 
 #include "audit_run.h"
+#include "steady.h"
 
 #include "cycle.h"
 #include "energy.h"
@@ -141,9 +142,12 @@ static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_eul
     return status;
 }
 
-static enum dalcs_status start_transient(struct dalcs_run *r, struct dalcs_euler *e,
-                                         struct dalcs_radau *radau) {
+enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler *e,
+                                        struct dalcs_radau *radau, bool records) {
     const struct dalcs_circuit *c = &r->s->circuit;
+    if (r->orbit != NULL) {
+        return dalcs_steady_start(r->orbit, e, radau);
+    }
     if (c->transient.use_initial_conditions) {
         return start_at(e, radau, r->s->network.initial);
     }
@@ -154,7 +158,7 @@ static enum dalcs_status start_transient(struct dalcs_run *r, struct dalcs_euler
         return start_from_clamps(r, e, radau);
     }
     DALCS_TRY(dalcs_euler_operating_point(e, true));
-    if (sources_jump(c, 0.0)) {
+    if (records && sources_jump(c, 0.0)) {
         DALCS_TRY(dalcs_recorder_before_start(&r->s->recorder, e));
     }
     return start_at(e, radau, NULL);
@@ -418,13 +422,14 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct
                               struct dalcs_measures *measures, struct dalcs_audit_run *audit) {
     struct dalcs_session *s = r->s;
     DALCS_TRY(report_methods(r, radau));
-    DALCS_TRY(start_transient(r, e, radau));
+    DALCS_TRY(dalcs_transient_start(r, e, radau, true));
     if (radau != NULL) {
         DALCS_TRY(dalcs_radau_evaluate(radau, 0.0, DALCS_RIGHT));
     }
     DALCS_TRY(dalcs_undetermined_several(&r->undetermined, e, s->circuit.transient.stop));
     dalcs_recorder_states(&s->network, e, s->start);
-    DALCS_TRY(dalcs_run_begin_plot(r, DALCS_TRANSIENT));
+    DALCS_TRY(dalcs_run_begin_plot(r, r->orbit != NULL && !r->leaves_orbit ? DALCS_PERIODIC
+                                                                           : DALCS_TRANSIENT));
     DALCS_TRY(dalcs_recorder_start(&s->recorder, e));
     DALCS_TRY(dalcs_measures_start(measures, r, e, radau));
     enum dalcs_status status =
@@ -433,6 +438,9 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct
         status = dalcs_radau_evaluate(radau, radau->options.stop, DALCS_LEFT);
     }
     dalcs_recorder_states(&s->network, e, s->final);
+    if (r->orbit_end != NULL) {
+        dalcs_steady_read(e, r->orbit_end);
+    }
     DALCS_TRY(status);
     if (dalcs_audit_run_fails(audit)) {
         return DALCS_NOT_CONVERGED; /* the rows stay what they are: partial */
@@ -533,6 +541,17 @@ static enum dalcs_status close_ledger(struct dalcs_run *r, struct dalcs_energy *
     return DALCS_E_INTERNAL;
 }
 
+struct dalcs_radau_options dalcs_transient_options(const struct dalcs_run *r, double stop) {
+    return (struct dalcs_radau_options){.tolerance = r->tolerance,
+                                        .abstol = r->abstol,
+                                        .vntol = r->vntol,
+                                        .family = r->family,
+                                        .stages = r->stages,
+                                        .fixed_step = r->fixed_step,
+                                        .max_step = r->max_step,
+                                        .stop = stop};
+}
+
 enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     struct dalcs_session *s = r->s;
     const double stop = s->circuit.transient.stop;
@@ -558,14 +577,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     s->report.stop = stop;
     enum dalcs_status status = DALCS_OK;
     if (!is_euler) {
-        const struct dalcs_radau_options options = {.tolerance = r->tolerance,
-                                                    .abstol = r->abstol,
-                                                    .vntol = r->vntol,
-                                                    .family = r->family,
-                                                    .stages = r->stages,
-                                                    .fixed_step = r->fixed_step,
-                                                    .max_step = r->max_step,
-                                                    .stop = stop};
+        const struct dalcs_radau_options options = dalcs_transient_options(r, stop);
         status = dalcs_radau_setup(&radau, &e, &options, &r->osnsp);
     }
     if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {

@@ -238,6 +238,14 @@ I2 f 0 1
 .tran 100u 200u uic
 .end
 """, 0),
+    "steady": ("""A steady state of a source that repeats later, and of a charge that stays
+V1 g 0 PWL(0 0 3u 0 3u 1 6u 1 6u 0 13u 0) R=3u
+R1 g a 10
+C2 a m 1u
+C3 m 0 1u
+.pss step=1u uic
+.end
+""", 0),
     "refused": ("""A diode across a source
 V1 1 0 PWL(0 -1 1m 1)
 D1 1 0

@@ -1,0 +1,67 @@
+/* steady_lines.c - an orbit in a few lines. */
+#include "steady_lines.h"
+
+#include "quantity.h"
+#include "run_help.h"
+
+#include <math.h>
+
+enum { MOST_MULTIPLIERS = 6, DIGITS = 10 };
+
+const char dalcs_steady_help[] =
+    "usage: dalcs steady FILE [options]\n"
+    "\n"
+    "Finds the periodic steady state of a netlist, by Newton's method on the map of one period,\n"
+    "and writes one period as waveforms, without a run of all that comes before. Says whether it\n"
+    "is stable, with its Floquet multipliers. What the netlist asks for besides is left out.\n"
+    "\n"
+    "      --period T      the period in s, a multiple of that of each source (default: the\n"
+    "                      smallest common one)\n" DALCS_RUN_OPTIONS "\n"
+    "examples:\n"
+    "  dalcs steady buck.cir\n"
+    "  dalcs steady buck.cir -o period.csv --report buck.json\n"
+    "  dalcs steady buck.cir --period 20u\n"
+    "\n"
+    "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n";
+
+static void write_counts(FILE *out, const struct dalcs_report *report) {
+    char period[DALCS_QUANTITY_SIZE];
+    fprintf(out, "  steady    period %s, %d Newton step%s, %ld period%s",
+            dalcs_quantity_write(period, report->steady.period, "s", DIGITS), report->steady.newton,
+            report->steady.newton == 1 ? "" : "s", report->steady.periods,
+            report->steady.periods == 1 ? "" : "s");
+    if (report->steady.leaps > 0) {
+        fprintf(out, ", %d leap%s", report->steady.leaps, report->steady.leaps == 1 ? "" : "s");
+    }
+    fprintf(out, "; after one more off by %.2g, within %.2g of it\n", report->steady.defect,
+            report->steady.distance);
+}
+
+static void write_multipliers(FILE *out, const struct dalcs_report *report) {
+    const size_t n = report->steady.n_multipliers;
+    fprintf(out, "  factors   ");
+    for (size_t k = 0; k < n && k < MOST_MULTIPLIERS; k++) {
+        const struct dalcs_floquet *m = &report->steady.multiplier[k];
+        if (m->im < 0.0) { /* with its conjugate */
+            continue;
+        }
+        fprintf(out, "%s%.9g", k > 0 ? ", " : "", m->re);
+        if (m->im > 0.0) {
+            fprintf(out, " +- %.9gj", m->im);
+        }
+    }
+    fputs(n == 0                 ? "0: nothing is remembered for a period"
+          : n > MOST_MULTIPLIERS ? ", ..."
+                                 : "",
+          out);
+    fputs(report->steady.exact ? "\n" : " (nearly: the mode is not known all the time)\n", out);
+}
+
+void dalcs_steady_lines_write(FILE *out, const struct dalcs_report *report) {
+    if (!report->steady.present) {
+        return;
+    }
+    write_counts(out, report);
+    fprintf(out, "  verdict   %s\n", report->steady.verdict);
+    write_multipliers(out, report);
+}

@@ -1,0 +1,45 @@
+/* variation.h - how the states of a run depend on those that it starts from: V = dx(t) / dx(0).
+ *
+ * In a mode a segment is linear in its states, so that V passes through the same stage equations as they
+ * do; what a mode projects away there is projected out of V. An event of the circuit's own comes earlier
+ * or later with its guard g: with dt = -dg / g' and the derivatives f of the states before and after,
+ * V grows by (f- - f+) dt (Aizerman and Gantmakher 1958; Hiskens and Pai 2000). Edges and commands of
+ * sources come when they come. */
+#ifndef DALCS_VARIATION_H
+#define DALCS_VARIATION_H
+
+#include "radau_state.h"
+
+struct dalcs_variation_part {
+    struct dalcs_radau_part *part;
+    int n_x;
+    double *v;                /* [n_x][n_x] column after column */
+    double *in, *out, *guard; /* of one column; [n_x] of a guard, then dt */
+    double *P;                /* [n_x][n_x] factored */
+    int *pivot;
+    double *unit;                  /* [n_x] square roots of what states store */
+    double *before, *after;        /* [n_x] f- and f+ */
+    double *inputs, *y;            /* work */
+    bool pending;                  /* an event has just been passed */
+    bool is_exact;                 /* no step of implicit Euler, nothing that slides */
+    uint64_t signature, last_mode; /* of the modes that followed each other */
+};
+
+struct dalcs_variation {
+    struct dalcs_radau *radau;
+    enum dalcs_status status; /* of what could not be told while the run went on */
+    int n_parts;
+    struct dalcs_variation_part *part; /* [n_parts] */
+    struct dalcs_arena arena;
+};
+
+/* V = 1. The run is to tell it of its segments (dalcs_variation_observer). */
+enum dalcs_status dalcs_variation_setup(struct dalcs_variation *variation,
+                                        struct dalcs_radau *radau) DALCS_MUST_CHECK;
+
+void dalcs_variation_finish(struct dalcs_variation *variation);
+
+/* For radau->base->observer; user is the variation. */
+struct dalcs_observer dalcs_variation_observer(struct dalcs_variation *variation);
+
+#endif

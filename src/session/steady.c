@@ -1,0 +1,191 @@
+/* steady.c - the search: bursts of Newton's method from points of a run, ever farther on.
+ *
+ * Newton's method is local: as events come and go with the states, pieces of the map follow each other. A
+ * burst starts where a run has come to, so that the worst case is a run, of twice as many periods as it
+ * takes; and a step that does not help is followed by a plain period, which takes the state back to where
+ * the circuit can be. Where a controller is saturated, a quantity grows by as much each period and nothing
+ * else happens: the search leaps along it, as far as the same events follow each other. */
+#include "steady.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST_STEPS = 10, MOST_WITHOUT_HALVING = 4, MOST_LEAPS = 24 };
+
+/* Periods of runs between bursts, in all. */
+static const long most_periods = 4096;
+
+/* Residuals: with the first it is done; the second is good enough where a further step makes it no smaller. */
+static const double converged = 1e-11, good = 1e-10;
+
+/* Farther away than at first by this factor, twice, and a burst is over. */
+static const double far = 10.0;
+
+/* Has every switch that remembers come back to where it was? */
+static bool switches_return(const struct dalcs_steady *st) {
+    bool do_ = true;
+    for (int k = 0; k < st->layout.n_systems; k++) {
+        const struct dalcs_system *s = &st->run->s->network.system[k];
+        for (int d = 0; d < s->n_pairs; d++) {
+            int i = st->layout.first_pair[k] + d;
+            do_ = do_ &&
+                  !(s->pair[d].kind == DALCS_PAIR_SWITCH && dalcs_pair_remembers(&s->pair[d]) &&
+                    st->at.closed[i] != st->then.closed[i]);
+        }
+    }
+    return do_;
+}
+
+static void go_by(struct dalcs_steady *st, const double *from, const double *step, double factor) {
+    for (int x = 0; x < st->layout.n_x; x++) {
+        st->at.x[x] = from[x] + factor * step[x];
+    }
+    memcpy(st->at.closed, st->then.closed, (size_t)st->layout.n_pairs * sizeof(bool));
+}
+
+/* Is the last pass an answer, and no further step better? `before`: the residual before it. */
+static bool is_done(const struct dalcs_steady *st, double before) {
+    bool is = st->residual <= converged || (st->residual <= good && st->residual >= before);
+    return is && switches_return(st);
+}
+
+struct burst {
+    double first, best; /* residuals */
+    long plain;         /* periods that are run besides where the next step does not help */
+    int waited;         /* steps since `best` has halved */
+    int far;
+    bool done;
+};
+
+static void copy_point(const struct dalcs_steady *st, struct dalcs_orbit_point *to,
+                       const struct dalcs_orbit_point *from) {
+    memcpy(to->x, from->x, (size_t)st->layout.n_x * sizeof(double));
+    memcpy(to->closed, from->closed, (size_t)st->layout.n_pairs * sizeof(bool));
+}
+
+/* Plain periods from the end of the last pass: the more, the more often steps have not helped. They lead to where the
+ * circuit can be, and to modes that follow each other in the steady state. */
+static enum dalcs_status go_on(struct dalcs_steady *st, struct burst *b) {
+    dalcs_steady_take(st);
+    if (b->plain > 0) {
+        DALCS_TRY(dalcs_steady_pass(st, b->plain, DALCS_STEADY_PLAIN));
+        dalcs_steady_take(st);
+    }
+    b->plain = 2 * b->plain + 1;
+    return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+}
+
+/* One step, and plain periods where it did not help. */
+static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
+    const double before = st->residual;
+    go_by(st, st->at.x, st->step, 1.0);
+    st->n.newton++;
+    DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_M));
+    b->done = is_done(st, before);
+    if (!b->done && !(st->residual <= 0.5 * before)) {
+        DALCS_TRY(go_on(st, b));
+        b->done = is_done(st, INFINITY);
+    }
+    b->far += st->residual > far * b->first ? 1 : 0;
+    b->waited = st->residual <= 0.5 * b->best ? 0 : b->waited + 1;
+    b->best = fmin(b->best, st->residual);
+    return DALCS_OK;
+}
+
+/* From st->at. A run that fails on the way ends the burst, not the search. */
+static enum dalcs_status run_burst(struct dalcs_steady *st, bool *done) {
+    enum dalcs_status first = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+    if (first != DALCS_OK) {
+        return first < DALCS_OK ? first : DALCS_OK;
+    }
+    struct burst b = {.first = st->residual, .best = st->residual, .done = is_done(st, 0.0)};
+    st->n.bursts++;
+    for (int k = 0; k < MOST_STEPS && !b.done && b.far < 2 && b.waited < MOST_WITHOUT_HALVING;
+         k++) {
+        enum dalcs_status status = dalcs_steady_newton(st);
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+        if (status != DALCS_OK || (st->is_stuck && k == 0)) {
+            break;
+        }
+        status = try_step(st, &b);
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+        if (status != DALCS_OK) {
+            break;
+        }
+    }
+    *done = b.done;
+    return DALCS_OK;
+}
+
+/* Along st->drift from where the last pass has come to, as far as the same modes follow each other. *endless: that
+ * is as far as it was tried. */
+static enum dalcs_status leap(struct dalcs_steady *st, double *from, bool *endless) {
+    const size_t bytes = (size_t)st->layout.n_x * sizeof(double);
+    const uint64_t signature = st->signature;
+    memcpy(from, st->then.x, bytes);
+    bool same = true;
+    int k = 0;
+    for (; k < MOST_LEAPS && same; k++) {
+        go_by(st, from, st->drift, ldexp(1.0, k));
+        enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+        same = status == DALCS_OK && st->signature == signature;
+    }
+    *endless = same;
+    st->n.leaps++;
+    go_by(st, from, st->drift, ldexp(1.0, k - (same ? 1 : 2)));
+    return DALCS_OK;
+}
+
+/* Where a multiplier is near to 1 a small residual leaves the states far from the steady state: further steps, as long
+ * as they help. `best` is work. */
+static enum dalcs_status refine(struct dalcs_steady *st, struct dalcs_orbit_point *best) {
+    for (int k = 0; k < MOST_STEPS; k++) {
+        const double before = st->residual;
+        enum dalcs_status status = dalcs_steady_newton(st);
+        if (status != DALCS_OK || !(st->distance > good)) {
+            return status < DALCS_OK ? status : DALCS_OK;
+        }
+        copy_point(st, best, &st->at);
+        go_by(st, st->at.x, st->step, 1.0);
+        st->n.newton++;
+        status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+        DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);
+        if (status != DALCS_OK || !(st->residual <= 0.5 * before) || !switches_return(st)) {
+            copy_point(st, &st->at, best);
+            return dalcs_steady_pass(st, 1, DALCS_STEADY_M);
+        }
+    }
+    return DALCS_OK;
+}
+
+static bool make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point) {
+    point->x = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_x + 1, sizeof(double));
+    point->closed = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_pairs + 1, sizeof(bool));
+    return point->x != NULL && point->closed != NULL;
+}
+
+enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool *endless) {
+    struct dalcs_orbit_point run;
+    struct dalcs_orbit_point from;
+    if (!make_point(st, &run) || !make_point(st, &from)) {
+        return DALCS_E_NOMEM;
+    }
+    *found = *endless = false;
+    for (long wait = 1, total = 0; !*found && !*endless && total <= most_periods;) {
+        DALCS_TRY(dalcs_steady_pass(st, wait, DALCS_STEADY_PLAIN));
+        dalcs_steady_take(st);
+        total += wait;
+        copy_point(st, &run, &st->at);
+        st->is_stuck = false;
+        DALCS_TRY(run_burst(st, found));
+        wait = total;
+        if (!*found && st->is_stuck) {
+            DALCS_TRY(leap(st, from.x, endless));
+            wait = 1;
+        } else if (!*found) {
+            copy_point(st, &st->at, &run);
+        }
+    }
+    return *found ? refine(st, &run) : DALCS_OK;
+}

@@ -1,0 +1,125 @@
+/* steady.h - the periodic steady state: Newton's method on the map of a period.
+ *
+ * The map Phi takes the states just before the edges at t = 0 to those just before the edges at t = T, by
+ * the run that any .tran is; M = dPhi/dx comes with it (variation.h). What the search proposes is worth
+ * nothing by itself: the answer is a run of one more period, audited as any other, that comes back. */
+#ifndef DALCS_STEADY_H
+#define DALCS_STEADY_H
+
+#include "session_internal.h"
+
+/* Where the states of the systems lie side by side. */
+struct dalcs_steady_layout {
+    int n_systems;
+    int n_x, n_pairs;   /* of all */
+    int *first;         /* [n_systems + 1] state of each */
+    int *first_pair;    /* [n_systems + 1] */
+    size_t *first_of_M; /* [n_systems + 1] of its [n][n] in M, column after column */
+};
+
+/* States and the positions of switches. */
+struct dalcs_orbit_point {
+    double *x;    /* [n_x] V, A */
+    bool *closed; /* [n_pairs] switches */
+};
+
+struct dalcs_steady {
+    struct dalcs_run *run;
+    struct dalcs_steady_layout layout;
+    double period;                     /* s */
+    struct dalcs_orbit_point at, then; /* now, and after the pass */
+    double *M;                         /* of the last pass with one */
+    double *scale;                     /* [n_x] of each state on the way */
+    double *step;                      /* [n_x] the last one of Newton's method */
+    double *drift;                     /* [n_x] what grows by as much each period */
+    uint64_t signature;                /* of the modes that followed each other */
+    double *average, *rms;             /* [n_outputs] of the last pass with them */
+    double *state;  /* [n_states] of the network, where that ended; the session's */
+    bool has_point; /* `at` is known; else the run starts as any does */
+    bool is_exact;  /* M is */
+    bool is_stuck;  /* a conserved quantity grows by `drift` */
+
+    struct dalcs_steady_count {
+        int newton, bursts, leaps;
+        long periods;
+    } n;
+
+    double residual; /* of the last pass, over the scales */
+    double distance; /* how far the orbit is from there, likewise */
+
+    struct dalcs_steady_conserved {
+        int system;
+        double *weight; /* [n] of the system's states */
+    } * conserved;      /* [n_conserved] */
+
+    int n_conserved;
+    struct dalcs_arena arena;
+};
+
+enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *r,
+                                     double period) DALCS_MUST_CHECK;
+void dalcs_steady_finish(struct dalcs_steady *st);
+
+/* ---- steady_period.c --------------------------------------------------------------------------- */
+
+/* The period of all sources, s: the smallest common one, or `asked` (0: none is) if that is one. The circuit's stimuli
+ * become what they are from a multiple of it on behind all delays; those that do not repeat, what they come to, or
+ * at_start what they are at t = 0. DALCS_E_OPTION: there is none, and a message says
+ * why. */
+enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bool at_start,
+                                           double *period) DALCS_MUST_CHECK;
+
+/* ---- steady_settle.c --------------------------------------------------------------------------- */
+
+/* One that repeats T-periodically becomes what it is from a multiple of T on. */
+enum dalcs_status dalcs_steady_settle(struct dalcs_run *r, struct dalcs_stimulus *s,
+                                      const char *name, double T) DALCS_MUST_CHECK;
+
+/* ---- steady_pass.c ----------------------------------------------------------------------------- */
+
+/* What a pass is asked for besides. */
+enum dalcs_steady_asked {
+    DALCS_STEADY_PLAIN,
+    DALCS_STEADY_M,    /* of all its periods */
+    DALCS_STEADY_MEANS /* of the signals; not M */
+};
+
+/* n periods on from st->at to st->then. */
+enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
+                                    enum dalcs_steady_asked asked) DALCS_MUST_CHECK;
+
+/* st->residual of that. */
+void dalcs_steady_find_residual(struct dalcs_steady *st);
+
+/* Goes on from there. */
+void dalcs_steady_take(struct dalcs_steady *st);
+
+/* The start of a run at such a point. */
+enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, struct dalcs_euler *e,
+                                     struct dalcs_radau *radau) DALCS_MUST_CHECK;
+
+/* Where the components are that have been evaluated. */
+void dalcs_steady_read(const struct dalcs_euler *e, struct dalcs_orbit_point *point);
+
+/* ---- steady_newton.c --------------------------------------------------------------------------- */
+
+/* st->step of Newton's method from the last pass, and st->distance. Where M has a multiplier of 1 whose quantity is
+ * conserved, it keeps that quantity; where that grows, st->is_stuck. */
+enum dalcs_status dalcs_steady_newton(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
+/* ---- steady.c ---------------------------------------------------------------------------------- */
+
+/* From where any run starts to *found: st->at comes back, and the last pass is from there. *endless: there is none, as
+ * st->drift goes on and on. */
+enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found,
+                                      bool *endless) DALCS_MUST_CHECK;
+
+/* ---- steady_report.c --------------------------------------------------------------------------- */
+
+/* Multipliers, verdict and messages into the report. */
+enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
+/* "v(c1)", "i(l1)": a state by its number; NULL when out of memory. */
+const char *dalcs_steady_name(struct dalcs_steady *st, int state);
+
+#endif

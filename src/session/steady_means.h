@@ -1,0 +1,25 @@
+/* steady_means.h - averages and rms of all signals of the network over a run, exact on its polynomials. */
+#ifndef DALCS_STEADY_MEANS_H
+#define DALCS_STEADY_MEANS_H
+
+#include "rows.h"
+#include "stretch.h"
+
+struct dalcs_steady_means {
+    const struct dalcs_circuit *circuit;
+    struct dalcs_rows rows;
+    struct dalcs_stretch_rule rule;
+    double t, longest, next_edge; /* s */
+    double *sum, *square;         /* [n_outputs] integrals over the time from 0 to t */
+};
+
+enum dalcs_status dalcs_steady_means_setup(struct dalcs_steady_means *m,
+                                           const struct dalcs_circuit *circuit,
+                                           const struct dalcs_network *network,
+                                           struct dalcs_radau *radau) DALCS_MUST_CHECK;
+void dalcs_steady_means_finish(struct dalcs_steady_means *m);
+
+/* Up to t, where the present segments may end but none before. */
+enum dalcs_status dalcs_steady_means_reach(struct dalcs_steady_means *m, double t) DALCS_MUST_CHECK;
+
+#endif

@@ -1,0 +1,226 @@
+/* steady_report.c - multipliers of an orbit, what they say, and what is told when there is none. */
+#include "steady.h"
+
+#include "quantity.h"
+
+#include <complex.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A multiplier is 1 within what rounding and the tolerance make of it. */
+static const double near_one = 1e-9;
+
+/* Smaller than this beside 1 is none: nothing of it is left after one period. */
+static const double vanishes = 1e-12;
+
+const char *dalcs_steady_name(struct dalcs_steady *st, int state) {
+    const struct dalcs_network *n = &st->run->s->network;
+    int k = 0;
+    while (state >= st->layout.first[k + 1]) {
+        k++;
+    }
+    const struct dalcs_system *s = &n->system[k];
+    const int x = state - st->layout.first[k];
+    for (int i = 0; i < n->n_states; i++) { /* a capacitor or coil, whose state it is */
+        const struct dalcs_probe *p = &n->state[i].probe;
+        if (p->system == k && p->n_terms == 1 && p->n_inputs == 0 && p->term[0].index == x) {
+            return dalcs_arena_printf(&st->run->s->arena, "%s(%s)",
+                                      n->state[i].is_current ? "i" : "v", n->state[i].element);
+        }
+    }
+    return s->column[x].element;
+}
+
+/* ---- Multipliers --------------------------------------------------------------------------------- */
+
+static int compare_size(const void *one, const void *other) {
+    const struct dalcs_floquet *a = one;
+    const struct dalcs_floquet *b = other;
+    double difference = hypot(b->re, b->im) - hypot(a->re, a->im);
+    if (fabs(difference) <= near_one) { /* conjugates stay together */
+        difference = b->im - a->im;
+    }
+    return difference > 0.0 ? 1 : difference < 0.0 ? -1 : 0;
+}
+
+/* The state that has most of an eigenvector, by its energy. */
+static int largest_entry(const struct dalcs_steady *st, int first, int n, const double *re,
+                         const double *im) {
+    int largest = 0;
+    double most = -1.0;
+    for (int x = 0; x < n; x++) {
+        double size = hypot(re[x], im != NULL ? im[x] : 0.0) /
+                      (st->scale[first + x] > 0.0 ? st->scale[first + x] : 1.0);
+        largest = size > most ? x : largest;
+        most = fmax(most, size);
+    }
+    return first + largest;
+}
+
+static enum dalcs_status multipliers_of(struct dalcs_steady *st, int system,
+                                        struct dalcs_floquet *multiplier, size_t *n_all,
+                                        struct dalcs_arena *arena) {
+    const int first = st->layout.first[system];
+    const int n = st->layout.first[system + 1] - first;
+    const size_t square = (size_t)n * (size_t)n;
+    double *A = dalcs_arena_alloc(arena, square, sizeof(double));
+    double *vector = dalcs_arena_alloc(arena, square, sizeof(double));
+    double *value = dalcs_arena_alloc(arena, 2 * (size_t)n, sizeof(double));
+    if (A == NULL || vector == NULL || value == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    memcpy(A, st->M + st->layout.first_of_M[system], square * sizeof(double));
+    if (n == 0) {
+        return DALCS_OK;
+    }
+    const int failed =
+        LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', n, A, n, value, value + n, NULL, 1, vector, n);
+    if (failed != 0) {
+        return failed == LAPACK_WORK_MEMORY_ERROR ? DALCS_E_NOMEM : DALCS_NOT_CONVERGED;
+    }
+    for (int k = 0; k < n; k++) {
+        const double *v = vector + (size_t)k * (size_t)n;
+        const double im = value[n + k];
+        int state = im == 0.0  ? largest_entry(st, first, n, v, NULL)
+                    : im > 0.0 ? largest_entry(st, first, n, v, v + n)
+                               : largest_entry(st, first, n, v - n, v);
+        multiplier[(*n_all)++] =
+            (struct dalcs_floquet){.re = value[k], .im = im, .state = dalcs_steady_name(st, state)};
+    }
+    return DALCS_OK;
+}
+
+/* What is left out: of states that nothing remembers for a period. */
+static size_t count_lasting(const struct dalcs_floquet *m, size_t n) {
+    size_t lasting = 0;
+    while (lasting < n && hypot(m[lasting].re, m[lasting].im) > vanishes) {
+        lasting++;
+    }
+    return lasting;
+}
+
+/* ---- Verdict ------------------------------------------------------------------------------------- */
+
+static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floquet *m, size_t n) {
+    struct dalcs_arena *arena = &st->run->s->arena;
+    const double size = n > 0 ? hypot(m[0].re, m[0].im) : 0.0;
+    char text[DALCS_QUANTITY_SIZE];
+    if (size > 1.0 + near_one && m[0].im != 0.0) {
+        return dalcs_arena_printf(
+            arena, "unstable: an oscillation of %s at %s grows by %.4g each period", m[0].state,
+            dalcs_quantity_write(
+                text, fabs(carg(m[0].re + I * m[0].im)) / (2.0 * acos(-1.0) * st->period), "Hz", 4),
+            size);
+    }
+    if (size > 1.0 + near_one && m[0].re < 0.0) {
+        return dalcs_arena_printf(
+            arena,
+            "unstable: what %s is off by changes its sign and grows by %.4g each period; a run "
+            "goes to an orbit of two periods or more: ask for one of %s",
+            m[0].state, size, dalcs_quantity_write(text, 2.0 * st->period, "s", 12));
+    }
+    if (size > 1.0 + near_one) {
+        return dalcs_arena_printf(arena, "unstable: what %s is off by grows by %.4g each period",
+                                  m[0].state, size);
+    }
+    if (st->n_conserved > 0) {
+        return "not the only one: what is conserved stays what it is at the start";
+    }
+    return size < 1.0 - near_one ? "stable" : "at the border of stability";
+}
+
+/* "v(c2) - 0.5 v(c1)": the terms of a conserved quantity, the largest as 1. */
+static const char *conserved_text(struct dalcs_steady *st, const struct dalcs_steady_conserved *c) {
+    const int first = st->layout.first[c->system];
+    const int n = st->layout.first[c->system + 1] - first;
+    struct dalcs_arena *arena = &st->run->s->arena;
+    double largest = 0.0;
+    for (int x = 0; x < n; x++) {
+        largest = fabs(c->weight[x]) > fabs(largest) ? c->weight[x] : largest;
+    }
+    const char *text = "";
+    for (int x = 0; x < n && text != NULL; x++) {
+        double part = c->weight[x] / largest;
+        if (fabs(part) > near_one) {
+            char factor[32] = "";
+            if (fabs(fabs(part) - 1.0) > near_one) {
+                snprintf(factor, sizeof factor, "%.6g ", fabs(part));
+            }
+            const char *sign = part < 0.0 ? " - " : " + ";
+            sign = text[0] != '\0' ? sign : part < 0.0 ? "-" : "";
+            text = dalcs_arena_printf(arena, "%s%s%s%s", text, sign, factor,
+                                      dalcs_steady_name(st, first + x));
+        }
+    }
+    return text;
+}
+
+static enum dalcs_status tell_conserved(struct dalcs_steady *st) {
+    struct dalcs_session *s = st->run->s;
+    const char **conserved =
+        dalcs_arena_alloc(&s->arena, (size_t)st->n_conserved + 1, sizeof(*conserved));
+    if (conserved == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < st->n_conserved; k++) {
+        conserved[k] = conserved_text(st, &st->conserved[k]);
+        if (conserved[k] == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        dalcs_diag_add(&s->diag, DALCS_WARNING, NULL, "IC= or .ic with uic choose another one",
+                       "the steady state is not the only one: %s stays what it is at the start",
+                       conserved[k]);
+    }
+    s->report.steady.conserved = conserved;
+    s->report.steady.n_conserved = (size_t)st->n_conserved;
+    return DALCS_OK;
+}
+
+static enum dalcs_status tell_signals(struct dalcs_steady *st) {
+    struct dalcs_session *s = st->run->s;
+    const size_t n = (size_t)s->circuit.n_shown;
+    struct dalcs_steady_signal *signal = dalcs_arena_alloc(&s->arena, n + 1, sizeof(*signal));
+    if (signal == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k < n; k++) {
+        signal[k] = (struct dalcs_steady_signal){st->run->name[k], st->average[k], st->rms[k]};
+    }
+    s->report.steady.signal = signal;
+    s->report.steady.state = st->state;
+    s->report.steady.n_signals = n;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) {
+    struct dalcs_session *s = st->run->s;
+    struct dalcs_arena work = {0};
+    struct dalcs_floquet *m = dalcs_arena_alloc(&s->arena, (size_t)st->layout.n_x + 1, sizeof(*m));
+    size_t n = 0;
+    enum dalcs_status status = m != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    for (int k = 0; k < st->layout.n_systems && status == DALCS_OK; k++) {
+        status = multipliers_of(st, k, m, &n, &work);
+    }
+    dalcs_arena_finish(&work);
+    DALCS_TRY(status);
+    qsort(m, n, sizeof(*m), compare_size);
+    n = count_lasting(m, n);
+    s->report.steady.present = true;
+    s->report.steady.period = st->period;
+    s->report.steady.newton = st->n.newton;
+    s->report.steady.bursts = st->n.bursts;
+    s->report.steady.leaps = st->n.leaps;
+    s->report.steady.periods = st->n.periods;
+    s->report.steady.residual = st->residual;
+    s->report.steady.distance = st->distance;
+    s->report.steady.exact = st->is_exact;
+    s->report.steady.multiplier = m;
+    s->report.steady.n_multipliers = n;
+    s->report.steady.stable =
+        st->n_conserved == 0 && (n == 0 || hypot(m[0].re, m[0].im) < 1.0 - near_one);
+    s->report.steady.verdict = verdict_of(st, m, n);
+    DALCS_TRY(tell_conserved(st));
+    return s->report.steady.verdict != NULL ? tell_signals(st) : DALCS_E_NOMEM;
+}

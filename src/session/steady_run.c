@@ -1,0 +1,224 @@
+/* steady_run.c - .pss: the period, the search, then one period as the .tran that it is. */
+#include "steady.h"
+
+#include "quantity.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Rows in a period, where nobody asks for another distance. */
+static const double rows_in_a_period = 1000.0;
+
+/* What comes back after one more period may be off by so much, over the scale of a state: no more than what the search
+ * has called good. */
+static const double most_defect = 1e-10;
+
+/* What the circuit and the run are while a period of it is run. */
+struct kept {
+    struct dalcs_transient transient;
+    struct dalcs_stimulus *stimulus; /* [n_stimuli] */
+    double h, max_step;
+};
+
+static enum dalcs_status refuse(struct dalcs_run *r, const char *hint, const char *text) {
+    dalcs_diag_add(&r->s->diag, DALCS_ERROR, NULL, hint, "%s", text);
+    return DALCS_E_OPTION;
+}
+
+/* ---- Failures in words --------------------------------------------------------------------------- */
+
+static const char *unit_of(const struct dalcs_steady *st, int state) {
+    int k = 0;
+    while (state >= st->layout.first[k + 1]) {
+        k++;
+    }
+    return st->run->s->network.system[k].column_is_current[state - st->layout.first[k]] ? "A" : "V";
+}
+
+/* "v(c2) rises by 3.33 mV and v(c1) falls by 3.33 mV": the states that move most, of the last pass. */
+static const char *moves_text(struct dalcs_steady *st) {
+    struct dalcs_arena *arena = &st->run->s->arena;
+    const char *text = "";
+    double most = INFINITY;
+    for (int told = 0; told < 2 && text != NULL; told++) {
+        int state = -1;
+        double next = 0.0;
+        for (int x = 0; x < st->layout.n_x; x++) {
+            double moves = fabs(st->step[x]) / (st->scale[x] > 0.0 ? st->scale[x] : 1.0);
+            bool is_next = moves > next && (moves < most || (moves == most && told > 0));
+            state = is_next ? x : state;
+            next = is_next ? moves : next;
+        }
+        if (state < 0 || (told > 0 && next < 1e-3 * most)) {
+            break;
+        }
+        char by[DALCS_QUANTITY_SIZE];
+        text = dalcs_arena_printf(
+            arena, "%s%s%s %s by %s", text, told > 0 ? " and " : "", dalcs_steady_name(st, state),
+            st->step[state] > 0.0 ? "rises" : "falls",
+            dalcs_quantity_write(by, fabs(st->step[state]), unit_of(st, state), 6));
+        st->step[state] = 0.0;
+        most = told == 0 ? next : most;
+    }
+    return text == NULL ? "" : text;
+}
+
+static enum dalcs_status tell_failure(struct dalcs_steady *st, bool endless) {
+    struct dalcs_session *s = st->run->s;
+    for (int x = 0; x < st->layout.n_x; x++) {
+        st->step[x] = st->then.x[x] - st->at.x[x];
+    }
+    if (endless) {
+        for (int x = 0; x < st->layout.n_x; x++) {
+            st->step[x] = st->drift[x];
+        }
+        dalcs_diag_add(
+            &s->diag, DALCS_ERROR, NULL, "a source fills what nothing empties: give it a way out",
+            "there is no periodic steady state: each period %s, whatever they are", moves_text(st));
+        return DALCS_NOT_CONVERGED;
+    }
+    dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
+                   "look at it with .tran; a switch that follows the circuit may have a clock of "
+                   "its own",
+                   "no periodic steady state was found in %ld periods; in the last one %s",
+                   st->n.periods, moves_text(st));
+    return DALCS_NOT_CONVERGED;
+}
+
+/* ---- The period ---------------------------------------------------------------------------------- */
+
+/* Is the run that has just ended, in st->then, where it began? */
+static enum dalcs_status find_defect(struct dalcs_steady *st) {
+    struct dalcs_session *s = st->run->s;
+    dalcs_steady_find_residual(st);
+    s->report.steady.defect = st->residual;
+    if (!(st->residual <= most_defect)) {
+        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, "a smaller --tol",
+                       "one more period does not come back: its states are off by %.3g",
+                       st->residual);
+        return DALCS_NOT_CONVERGED;
+    }
+    return DALCS_OK;
+}
+
+/* One period is short: every segment of it is audited, unless none is to be. */
+static enum dalcs_status run_period(struct dalcs_steady *st) {
+    struct dalcs_run *r = st->run;
+    const struct dalcs_run_options *options = r->options;
+    struct dalcs_run_options all = *options;
+    all.audit = options->audit == DALCS_AUDIT_OFF ? DALCS_AUDIT_OFF : DALCS_AUDIT_FULL;
+    r->options = &all;
+    r->orbit = &st->at;
+    r->orbit_end = &st->then;
+    enum dalcs_status status = dalcs_transient_run_thinned(r);
+    r->orbit = NULL;
+    r->orbit_end = NULL;
+    r->options = options;
+    return status == DALCS_OK ? find_defect(st) : status;
+}
+
+/* ---- What the circuit is meanwhile --------------------------------------------------------------- */
+
+static enum dalcs_status keep(struct dalcs_run *r, struct kept *kept) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    *kept = (struct kept){.transient = c->transient, .h = r->h, .max_step = r->max_step};
+    kept->stimulus = dalcs_alloc((size_t)c->n_stimuli, sizeof(*kept->stimulus));
+    for (int i = 0; i < c->n_stimuli && kept->stimulus != NULL; i++) {
+        kept->stimulus[i] = c->stimulus[i];
+    }
+    return kept->stimulus != NULL ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* all: else the sources that repeat stay what they are behind their delays. */
+static void put_back(struct dalcs_run *r, const struct kept *kept, bool all) {
+    struct dalcs_circuit *c = &r->s->circuit;
+    for (int i = 0; i < c->n_stimuli; i++) {
+        if (all || c->stimulus[i].kind != kept->stimulus[i].kind) {
+            c->stimulus[i] = kept->stimulus[i];
+        }
+    }
+    c->transient = kept->transient;
+    r->h = kept->h;
+    r->max_step = kept->max_step;
+}
+
+static void take_period(struct dalcs_run *r, double period, bool uic) {
+    struct dalcs_circuit *c = &r->s->circuit;
+    const double step = c->periodic.step > 0.0 ? c->periodic.step : period / rows_in_a_period;
+    c->transient = (struct dalcs_transient){.present = true,
+                                            .step = step,
+                                            .stop = period,
+                                            .use_initial_conditions = uic,
+                                            .where = c->transient.where};
+    r->h = period / rows_in_a_period;
+    r->max_step = r->options->step;
+}
+
+/* ---- All of it ----------------------------------------------------------------------------------- */
+
+/* st: set up from here on, to be finished by the caller. */
+static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dalcs_steady *st) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    double period = r->options->period > 0.0 ? r->options->period : c->periodic.period;
+    bool found;
+    bool endless;
+    bool is_fixed = r->method != DALCS_METHOD_AUTO && r->options->step > 0.0;
+    if (r->method == DALCS_METHOD_EULER || r->fixed_step > 0.0 || is_fixed) {
+        return refuse(r, "leave the method, or the step, to the program",
+                      "a steady state needs steps whose error is controlled");
+    }
+    DALCS_TRY(dalcs_steady_find_period(r, period, leaves, &period));
+    take_period(r, period,
+                c->transient.use_initial_conditions || c->periodic.use_initial_conditions);
+    DALCS_TRY(dalcs_steady_setup(st, r, period));
+    DALCS_TRY(dalcs_steady_search(st, &found, &endless));
+    if (!found) {
+        return tell_failure(st, endless);
+    }
+    DALCS_TRY(dalcs_steady_newton(st)); /* how far it may be off, and what is conserved */
+    DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_MEANS));
+    return dalcs_steady_report(st);
+}
+
+enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) {
+    const struct dalcs_network_options options = {.silent = true, .with_readout = true};
+    if (session->network.readout != NULL || session->circuit.n_devices == 0) {
+        return DALCS_OK;
+    }
+    dalcs_network_finish(&session->network);
+    enum dalcs_status status =
+        dalcs_network_build(&session->network, &session->circuit, &options, &session->diag);
+    session->has_network = status == DALCS_OK;
+    return status;
+}
+
+enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
+    struct dalcs_steady st = {0};
+    struct kept kept;
+    DALCS_TRY(keep(r, &kept));
+    enum dalcs_status status = find_orbit(r, false, &st);
+    status = status == DALCS_OK ? run_period(&st) : status;
+    put_back(r, &kept, true);
+    free(kept.stimulus);
+    dalcs_steady_finish(&st);
+    return status;
+}
+
+enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) {
+    struct dalcs_steady st = {0};
+    struct kept kept;
+    DALCS_TRY(keep(r, &kept));
+    enum dalcs_status status = find_orbit(r, true, &st);
+    put_back(r, &kept, false);
+    if (status == DALCS_OK) {
+        r->orbit = &st.at;
+        r->leaves_orbit = true;
+        status = dalcs_transient_run_thinned(r);
+        r->orbit = NULL;
+        r->leaves_orbit = false;
+    }
+    put_back(r, &kept, true);
+    free(kept.stimulus);
+    dalcs_steady_finish(&st);
+    return status;
+}

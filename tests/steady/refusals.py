@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""What `dalcs steady` refuses, and why it says so; periods, delays and sources that do not repeat.
+
+usage: refusals.py PROGRAM
+"""
+
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import dalcs_program  # pylint: disable=wrong-import-position,import-error
+
+CASES = pathlib.Path(__file__).resolve().parent / "cases"
+
+BUCK = """Vin in 0 12
+S1 in sw g 0 sm
+D1 0 sw
+L1 sw out 50u
+C1 out 0 20u
+R1 out 0 2
+.model sm SW(Ron=0 Vt=0.5)
+"""
+CLOCK = "Vg g 0 PULSE(0 1 0 0 0 4u 10u)\n"
+MEAN = 4.8  # V, D Vin
+
+
+class Case:
+    """One netlist after the other in one folder."""
+
+    def __init__(self, program, folder):
+        self.program, self.folder = program, pathlib.Path(folder)
+        self.checker = dalcs_program.Checker("refusals")
+
+    def run(self, netlist, *options, verb="steady"):
+        (self.folder / "c.cir").write_text(netlist)
+        (self.folder / "c.json").unlink(missing_ok=True)
+        done = subprocess.run([self.program, verb, "c.cir", "-o", "c.csv", "--report", "c.json",
+                               *options], cwd=self.folder, capture_output=True, text=True,
+                              check=False)
+        path = self.folder / "c.json"
+        return done, json.loads(path.read_text()) if path.exists() else {}
+
+    def refuses(self, netlist, status, *words, options=()):
+        done, report = self.run(netlist, *options)
+        said = done.stderr
+        self.checker.check(done.returncode == status, f"{netlist}: status {done.returncode}, {said}")
+        self.checker.check("steady" not in report, f"{netlist}: it has an answer")
+        for word in words:
+            self.checker.check(word in said, f"{netlist}: nothing of {word!r} in {said!r}")
+
+    def finds(self, netlist, period, *words, options=(), mean=None):
+        done, report = self.run(netlist, *options)
+        said = done.stderr + done.stdout
+        if not self.checker.check(done.returncode == 0, f"{netlist}: {said}"):
+            return None
+        found = report["steady"]["period"]
+        self.checker.check(abs(found - period) <= 1e-13 * period, f"{netlist}: period {found!r}")
+        for word in words:
+            self.checker.check(word in said, f"{netlist}: nothing of {word!r} in {said!r}")
+        if mean is not None:
+            off = abs(report["steady"]["signals"]["v(out)"]["average"] - mean)
+            self.checker.check(off < 1e-9, f"{netlist}: the mean of v(out) is off by {off:.2g}")
+        return report
+
+
+def refused(case):
+    case.refuses((CASES / "two_clocks.cir").read_text(), 2, "'v1' (10 us)", "'v2' (31.8",
+                 "no common period")
+    case.refuses((CASES / "drift.cir").read_text(), 1, "no periodic steady state",
+                 "v(c1) falls by 3.33333 mV", "v(c2) rises by 3.33333 mV")
+    case.refuses((CASES / "buck_hyst.cir").read_text(), 2, "no source repeats")
+    case.refuses("* 100001 of the faster\nV1 a 0 SIN(0 1 1k)\nV2 b 0 SIN(0 1 1000.01)\nR1 a c 1k\n"
+                 "R2 b c 1k\nC1 c 0 1u\n.pss uic\n", 2, "no common period of less than 100000")
+    case.refuses("* no multiple\n" + CLOCK + BUCK + ".pss 15u uic\n", 2,
+                 "15 us is no multiple of that of 'vg', which is 10 us")
+    case.refuses("* no multiple\n" + CLOCK + BUCK + ".pss uic\n", 2, "no multiple of that of 'vg'",
+                 options=("--period", "5u"))
+    case.refuses("* euler\n" + CLOCK + BUCK + ".options method=euler\n.pss uic\n", 2,
+                 "error is controlled")
+    case.refuses("* fixed\n" + CLOCK + BUCK + ".pss uic\n", 2, "error is controlled",
+                 options=("--method", "radau", "--step", "10n"))
+    case.refuses("* a word\n" + CLOCK + BUCK + ".pss 10u sometimes\n", 3, "sometimes")
+    case.refuses("* ngspice's\n" + CLOCK + BUCK + ".pss 100k 1m out 128 8 50\n", 3, ".pss [period]")
+    case.refuses("* a second\n" + CLOCK + BUCK + ".pss\n.pss\n", 3, "a second .pss")
+    # i1 fills c1 by 1 mA * 10 us / 1 uF each period, and nothing empties it
+    case.refuses("* fills\nV1 a 0 PULSE(0 1 0 0 0 4u 10u)\nR1 a b 1k\nC2 b 0 1n\nI1 0 c 1m\nC1 c 0 1u\n"
+                 "Rb b 0 1k\n.pss uic\n", 1, "v(c1) rises by 10 mV")
+
+
+def periods(case):
+    case.finds("* plain\n" + CLOCK + BUCK + ".pss\n", 10e-6, "stable", mean=MEAN)
+    case.finds("* .tran alone\n" + CLOCK + BUCK + ".tran 1u 1m uic\n", 10e-6, mean=MEAN)
+    case.finds("* .op alone\n" + CLOCK + BUCK + ".op\n", 10e-6, "audited", mean=MEAN)
+    case.finds("* delayed\nVg g 0 PULSE(0 1 33u 0 0 4u 10u)\n" + BUCK + ".pss uic\n", 10e-6,
+               mean=MEAN)
+    case.finds("* PWL\nVg g 0 PWL(0 1 4u 1 4u 0 10u 0) R=0\n" + BUCK + ".pss uic\n", 10e-6,
+               mean=MEAN)
+    case.finds("* PWL later\nVg g 0 PWL(0 0 3u 0 3u 1 7u 1 7u 0 13u 0) R=3u\n" + BUCK +
+               ".pss uic\n", 10e-6, mean=MEAN)
+    case.finds("* twice\n" + CLOCK + BUCK + ".pss 20u uic\n", 20e-6, mean=MEAN)
+    case.finds("* 3 : 10\n" + CLOCK + BUCK + "Il out 0 SIN(0 0.1 30k)\n.pss uic\n", 100e-6)
+    case.finds("* 15 digits\n" + CLOCK + BUCK + "Il out 0 SIN(0 0.1 33.3333333333333k)\n"
+               ".pss uic\n", 30e-6)
+    case.finds("* AM\n" + CLOCK + BUCK + "Il out 0 AM(0.1 0.5 1k 20k)\n.pss uic\n", 1e-3)
+    case.finds("* once\n" + CLOCK + BUCK + "Il out 0 PWL(0 0 100u 0 100u 1)\n.pss uic\n", 10e-6,
+               "'il' does not repeat", mean=MEAN)
+    done, report = case.run("* quiet\nV1 a 0 PULSE(0 1 0 0 0 4u 10u)\nR1 a 0 1k\n.pss\n")
+    case.checker.check(done.returncode == 0 and report["steady"]["multipliers"] == [],
+                       f"without states: {done.stderr}")
+
+
+def one_period(case):
+    """The waveforms: from 0 to T, as those of a .tran from there."""
+    report = case.finds("* rows\n" + CLOCK + BUCK + ".pss uic\n", 10e-6)
+    with open(case.folder / "c.csv", encoding="ascii") as file:
+        rows = list(csv.DictReader(file))
+    times = [float(row["time"]) for row in rows]
+    case.checker.check(times[0] == 0.0 and abs(times[-1] - 10e-6) < 1e-20, "rows of one period")
+    off = abs(float(rows[0]["v(out)"]) - float(rows[-1]["v(out)"]))
+    case.checker.check(off < 1e-12, f"v(out) comes back but for {off:.2g}")
+    case.checker.check(report["steady"]["exact"] is True, "the derivative is exact")
+
+
+def leaving(case):
+    """.tran uic=steady: nothing moves from period to period until a load is stepped."""
+    netlist = ("* leave\n" + CLOCK + BUCK + "Il out 0 PWL(0 0 100u 0 100u 1)\n"
+               ".meas tran before avg v(out) from=0 to=100u\n"
+               ".meas tran after min v(out) from=100u to=300u\n.tran 1u 300u uic=steady\n")
+    done, report = case.run(netlist, verb="run")
+    if not case.checker.check(done.returncode == 0, f"uic=steady: {done.stderr}"):
+        return
+    value = {m["name"]: m["value"] for m in report["measurements"]}
+    case.checker.check(abs(value["before"] - MEAN) < 1e-9, f"before the step {value['before']}")
+    case.checker.check(value["after"] < 4.5, f"after the step {value['after']}")
+    case.checker.check("ltspice" not in done.stderr.lower(), "it is nobody's dialect")
+    done, report = case.run("* both\n" + CLOCK + BUCK + ".pss uic\n.tran 1u 100u uic\n", verb="run")
+    case.checker.check(done.returncode == 0 and "steady" in report and report["stop"] == 100e-6,
+                       f".pss and .tran: {done.stderr}")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        case = Case(pathlib.Path(sys.argv[1]).resolve(), folder)
+        refused(case)
+        periods(case)
+        one_period(case)
+        leaving(case)
+    return case.checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

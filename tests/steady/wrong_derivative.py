@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""A derivative of the period map that is wrong on purpose costs steps, and no answer becomes wrong by it.
+
+usage: wrong_derivative.py BUILD SOURCE
+"""
+
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve()
+sys.path.insert(0, str(HERE.parents[1] / "support"))
+sys.path.insert(0, str(HERE.parents[1] / "mutations"))
+import dalcs_program  # pylint: disable=wrong-import-position,import-error
+import kinds  # pylint: disable=import-error
+import mutations  # pylint: disable=wrong-import-position,import-error
+
+SKIPPED = 77
+NEAR = 1e-9
+
+MUTATIONS = {
+    "events move nothing": ("integrator/variation.c", "    v->pending = true;\n",
+                            "    v->pending = false;\n"),
+    "events move states the other way": ("integrator/variation.c", "v->guard[k] *= -1.0 / rate;",
+                                         "v->guard[k] *= 1.0 / rate;"),
+    "the derivative is too large by 1 %": ("session/steady_pass.c", "    st->is_exact = true;\n",
+                                           "    st->is_exact = true;\n    double wrong = 1.01;\n"
+                                           "    for (int k = 0; k < variation->n_parts; k++) {\n"
+                                           "        int n = variation->part[k].n_x;\n"
+                                           "        for (int i = 0; i < n * n; i++) {\n"
+                                           "            variation->part[k].v[i] *= wrong;\n"
+                                           "        }\n    }\n"),
+    "half of each step is taken": ("session/steady_newton.c", "st->step[first + x] = w.d[x]",
+                                   "st->step[first + x] = 0.5 * w.d[x]"),
+}
+
+
+def steady(program, where, netlist):
+    """(exit status, the report's steady)"""
+    (where / "c.cir").write_text(netlist)
+    done = subprocess.run([str(program), "steady", "c.cir", "-q", "-o", "c.csv", "--report",
+                           "c.json"], cwd=where, capture_output=True, text=True, check=False,
+                          timeout=60)
+    return done.returncode, json.loads((where / "c.json").read_text()).get("steady")
+
+
+def circuits():
+    for kind in ("buck_dcm", "slow_rectifier", "llc"):
+        for name, body in list(kinds.KINDS[kind]())[:3]:
+            yield name, f"* {name}\n{body}.pss uic\n.end\n"
+
+
+def main():
+    build, source = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
+    if shutil.which("ninja") is None:
+        return SKIPPED
+    checker = dalcs_program.Checker("wrong_derivative")
+    with tempfile.TemporaryDirectory() as folder:
+        where = pathlib.Path(folder)
+        sound = {name: steady(build / "dalcs", where, netlist)[1] for name, netlist in circuits()}
+        for title, (file, old, new) in MUTATIONS.items():
+            broken = mutations.mutant(build, source, file, old, new, where)
+            more = 0
+            for name, netlist in circuits():
+                status, answer = steady(broken, where, netlist)
+                if status == 1:  # an answer that it could not confirm is none
+                    more += 1
+                    continue
+                right = sound[name]
+                if not checker.check(status == 0 and answer, f"{title}, {name}: status {status}"):
+                    continue
+                more += answer["periods"] > right["periods"]
+                scale = max(abs(x) for x in right["states"].values())
+                off = max(abs(answer["states"][c] - x) for c, x in right["states"].items()) / scale
+                checker.check(off <= NEAR, f"{title}, {name}: off by {off:.2g}")
+            checker.check(more > 0, f"{title}: it costs nothing")
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
