@@ -30,7 +30,6 @@ enum {
     MOST_SHORTENED = 2,
     STUCK = 3,         /* smaller steps without a smaller error */
     LEVERED_STUCK = 2, /* of levered voltages alone */
-    VERY_STUCK = 8,
     MOST_RESTARTS = 4,
     TIED_RESTARTS = 3, /* longer each time: at the event itself everything may be tied */
     MOST_FLIPS = 12,
@@ -139,8 +138,8 @@ enum dalcs_status dalcs_search_go_on_trying(struct dalcs_radau_part *part,
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_search_tie_crossed(struct dalcs_radau_part *part,
-                                           struct dalcs_search *search) {
+/* Those that have crossed cannot: they go back to the side they were on, and the others are tried without them. */
+static enum dalcs_status tie_crossed(struct dalcs_radau_part *part, struct dalcs_search *search) {
     struct dalcs_osnsp *p = &part->component->osnsp;
     bool found = false;
     for (int k = 0; k < part->guards.n_crossed; k++) {
@@ -205,15 +204,12 @@ static bool is_nearly_right(const struct dalcs_radau *r, const struct dalcs_rada
            dalcs_radau_ladder(part, part->length.level) >= 8.0 * r->resolution;
 }
 
-/* No shorter step mends the error, and it is small or over in no time: is it let pass from now on? */
-static bool lets_pass(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
-                      struct dalcs_search *search, const struct dalcs_step_quality *quality) {
+/* No shorter step mends the error, and it is rounding's: is it let pass from now on? */
+static bool lets_pass(const struct dalcs_radau_part *part, struct dalcs_search *search,
+                      const struct dalcs_step_quality *quality) {
     bool is_rounding =
         search->stuck >= STUCK && quality->of_unit < most_tolerated * part->segment.rounding;
-    bool is_very_stuck =
-        search->stuck >= VERY_STUCK || (search->stuck >= STUCK && is_shortest(r, part));
-    bool is_small = is_very_stuck && quality->of_unit < part->inner_tolerance;
-    if ((is_rounding || is_small) && isfinite(quality->ratio) && search->tolerated == 1.0) {
+    if (is_rounding && isfinite(quality->ratio) && search->tolerated == 1.0) {
         search->tolerated = 4.0 * quality->ratio;
         return true;
     }
@@ -228,10 +224,7 @@ static bool lets_pass(const struct dalcs_radau *r, const struct dalcs_radau_part
 enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                        struct dalcs_search *search,
                                        const struct dalcs_step_quality *quality, bool *done) {
-    /* The step that suits a front is not remembered: it may have to be shorter. */
-    bool may_shorten =
-        search->front && !search->fixed && search->stuck == 0 && quality->own < most_projected;
-    if (search->guessed && !may_shorten) {
+    if (search->guessed) {
         return dalcs_search_refuse(part, search);
     }
     if (search->opened) {
@@ -252,13 +245,13 @@ enum dalcs_status dalcs_search_recover(struct dalcs_radau *r, struct dalcs_radau
     }
     r->rejected++;
     /* An error that does not shrink with the step is what the state is off by: a smaller step would
-     * not mend it, and rounding is all it is, or small beside the largest signal of its unit. */
+     * not mend it, and rounding is all it is. */
     search->stuck = quality->ratio > 0.3 * search->ratio_before ? search->stuck + 1 : 0;
     search->ratio_before = quality->ratio;
     if (search->stuck == 0) {
         search->level_before_stuck = part->length.level;
     }
-    if (lets_pass(r, part, search, quality)) {
+    if (lets_pass(part, search, quality)) {
         part->length.level = search->level_before_stuck;
         return DALCS_OK;
     }
@@ -392,7 +385,7 @@ enum dalcs_status dalcs_search_change_mode(struct dalcs_radau *r, struct dalcs_r
         return dalcs_search_refuse(part, search);
     }
     if (search->opened) {
-        return dalcs_search_tie_crossed(part, search);
+        return tie_crossed(part, search);
     }
     if (are_switches_that_remember(part)) {
         return turn_switches(r, part, search);

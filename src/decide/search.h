@@ -86,10 +86,6 @@ enum dalcs_status dalcs_search_tie_again(struct dalcs_radau_part *part,
 enum dalcs_status dalcs_search_go_on_trying(struct dalcs_radau_part *part,
                                             struct dalcs_search *search) DALCS_MUST_CHECK;
 
-/* Those that have crossed cannot: they go back to the side they were on, and the others are tried without them. */
-enum dalcs_status dalcs_search_tie_crossed(struct dalcs_radau_part *part,
-                                           struct dalcs_search *search) DALCS_MUST_CHECK;
-
 /* Implicit Euler instead, for `most` at first: where a step has been accurate, it is as short. It is certified and
  * takes every event and jump that the step covers. In a row its steps double, up to a part of the ladder's: sliding
  * and accumulating events pass in few. */

@@ -223,10 +223,6 @@ static inline enum dalcs_status look_at_signs(struct dalcs_radau *r, struct dalc
     }
     bool at_once;
     double theta = dalcs_guards_first_fall(r, part, end, q->unit, &at_once);
-    if (at_once && end < 1.0) { /* wrong, or only small beside what the segment ends with? */
-        dalcs_step_reach(part, end, q->unit);
-        theta = dalcs_guards_first_fall(r, part, end, q->unit, &at_once);
-    }
     *next = dalcs_smaller(theta, end);
     if (part->guards.slips && search->guessed && !search->front) {
         return dalcs_search_refuse(part, search);

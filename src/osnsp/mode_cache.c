@@ -136,8 +136,10 @@ enum dalcs_status dalcs_columns_alloc(struct dalcs_columns *a, int n, size_t n_e
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_modes_matrix(const struct dalcs_osnsp *p, const struct dalcs_mode_entry *e,
-                                     struct dalcs_columns *a) {
+/* The plain matrix of the entry's mode in p->form[0]: equations and the w rows of closed pairs. */
+static enum dalcs_status fill_plain_matrix(const struct dalcs_osnsp *p,
+                                           const struct dalcs_mode_entry *e,
+                                           struct dalcs_columns *a) {
     const struct dalcs_step_form *f = p->form[0];
     *a = (struct dalcs_columns){.n = f->n + e->n_on};
     int *slot = dalcs_alloc((size_t)(f->n + f->n_pairs), sizeof(*slot));
@@ -257,7 +259,7 @@ static enum dalcs_status factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *
 
 static enum dalcs_status factor_plain(struct dalcs_osnsp *p, struct dalcs_mode_entry *e) {
     struct dalcs_columns a;
-    DALCS_TRY(dalcs_modes_matrix(p, e, &a));
+    DALCS_TRY(fill_plain_matrix(p, e, &a));
     enum dalcs_status status = factor(p, e, &a);
     dalcs_columns_finish(&a);
     return status == DALCS_OK ? order_rows(p, e) : status;

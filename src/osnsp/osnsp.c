@@ -6,9 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rounds without fewer wrong signs before pivots become single (Judice and Pires 1994). */
-enum { PATIENCE = 10 };
-
 /* Iterative refinements of an answer whose residual is too large. */
 enum { MAX_REFINEMENTS = 3 };
 
@@ -305,10 +302,10 @@ enum dalcs_status dalcs_osnsp_try_mode(struct dalcs_osnsp *p, const double *u, d
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
-    int fewest = p->system->n_pairs + 1;
-    int patience = PATIENCE;
-    int n_single = 0;
+/* From p->mode by block principal pivoting over regular modes, at most `limit` changes. DALCS_SINGULAR
+ * or DALCS_NOT_CONVERGED: try otherwise. */
+static enum dalcs_status pivot(struct dalcs_osnsp *p, const double *u, double *y, int limit) {
+    struct dalcs_pivoting pivoting = dalcs_pivoting_begin(p);
     for (int round = 0; round <= limit; round++) {
         bool sources_clash;
         DALCS_TRY(dalcs_osnsp_try_mode(p, u, y, &sources_clash));
@@ -320,18 +317,11 @@ enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, doub
             return p->certificate.worst <= p->options.certificate_tolerance ? DALCS_OK
                                                                             : DALCS_NOT_CONVERGED;
         }
-        p->counters.pivots++;
-        if (p->n_violating < fewest) {
-            fewest = p->n_violating;
-            patience = PATIENCE;
-            n_single = 0;
-        } else {
-            patience--;
-        }
-        if (patience <= 0 && dalcs_osnsp_goes_round(p, ++n_single)) {
+        bool stalls = dalcs_pivoting_stalls(p, &pivoting);
+        if (stalls && dalcs_osnsp_goes_round(p, ++pivoting.n_single)) {
             break;
         }
-        dalcs_osnsp_flip_violating(p, patience > 0);
+        dalcs_osnsp_flip_violating(p, !stalls);
     }
     return DALCS_NOT_CONVERGED;
 }
@@ -346,7 +336,7 @@ static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, con
         return DALCS_OK;
     }
     memcpy(p->tied_mode, p->mode, bytes);
-    enum dalcs_status status = dalcs_osnsp_pivot(p, u, y, p->system->n_pairs);
+    enum dalcs_status status = pivot(p, u, y, p->system->n_pairs);
     *is_done = status < DALCS_OK || (status == DALCS_OK && p->n_tied == 0);
     if (*is_done) {
         return status;
@@ -371,7 +361,7 @@ static enum dalcs_status solve_in_order(struct dalcs_osnsp *p, double sigma, con
 
 static enum dalcs_status solve_somehow(struct dalcs_osnsp *p, const double *u, double *y) {
     int limit = p->options.max_pivots + 2 * p->system->n_pairs;
-    enum dalcs_status status = dalcs_osnsp_pivot(p, u, y, limit);
+    enum dalcs_status status = pivot(p, u, y, limit);
     if (status == DALCS_OK && p->n_tied > 0 && p->system->monotone && !p->least_norm) {
         return dalcs_ties_settle(p, u, y);
     }

@@ -67,11 +67,6 @@ struct dalcs_columns {
 enum dalcs_status dalcs_columns_alloc(struct dalcs_columns *a, int n,
                                       size_t n_entries) DALCS_MUST_CHECK;
 
-/* The plain matrix of the entry's mode in p->form[0]: equations and the w rows of closed pairs. */
-enum dalcs_status dalcs_modes_matrix(const struct dalcs_osnsp *p,
-                                     const struct dalcs_mode_entry *entry,
-                                     struct dalcs_columns *a) DALCS_MUST_CHECK;
-
 void dalcs_columns_finish(struct dalcs_columns *a);
 
 /* Counts the bytes of a map that was just added to the entry. */
@@ -113,10 +108,6 @@ void dalcs_proximal_begin(struct dalcs_osnsp *p, const double *u);
 /* Factors the regularised matrix of p->mode; the columns are all n + n_pairs. */
 enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry,
                                         enum dalcs_weights weights) DALCS_MUST_CHECK;
-
-/* Solves one regularised problem around (centre, centre_w) in the mode of entry, into p->scaled. */
-void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
-                         enum dalcs_weights weights);
 
 /* The same from p->mode on by block pivoting over regularised modes. */
 enum dalcs_status dalcs_proximal_pivot(struct dalcs_osnsp *p, const double *u,
@@ -269,10 +260,29 @@ static inline bool dalcs_osnsp_goes_round(struct dalcs_osnsp *p, int n_single) {
     return is_met;
 }
 
-/* From p->mode by block principal pivoting over regular modes, at most `limit` changes. DALCS_SINGULAR
- * or DALCS_NOT_CONVERGED: try otherwise. */
-enum dalcs_status dalcs_osnsp_pivot(struct dalcs_osnsp *p, const double *u, double *y,
-                                    int limit) DALCS_MUST_CHECK;
+/* Of one block pivoting. */
+struct dalcs_pivoting {
+    int fewest; /* wrong signs so far */
+    int patience, n_single;
+};
+
+/* Rounds without fewer wrong signs before pivots become single (Judice and Pires 1994). */
+enum { DALCS_PATIENCE = 10 };
+
+static inline struct dalcs_pivoting dalcs_pivoting_begin(const struct dalcs_osnsp *p) {
+    return (struct dalcs_pivoting){.fewest = p->system->n_pairs + 1, .patience = DALCS_PATIENCE};
+}
+
+/* Counts one change of the mode. true: it is to be a single one. */
+static inline bool dalcs_pivoting_stalls(struct dalcs_osnsp *p, struct dalcs_pivoting *pivoting) {
+    p->counters.pivots++;
+    if (p->n_violating < pivoting->fewest) {
+        *pivoting = (struct dalcs_pivoting){.fewest = p->n_violating, .patience = DALCS_PATIENCE};
+    } else {
+        pivoting->patience--;
+    }
+    return pivoting->patience <= 0;
+}
 
 /* p->scaled to y's z and lambda. */
 void dalcs_osnsp_unscale(const struct dalcs_osnsp *p, double *y);

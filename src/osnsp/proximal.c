@@ -30,9 +30,6 @@ static const double weight_spread = 1e3;
 static const double ray_tolerance = 1e-3;
 static const double ray_part = 1e-2;
 
-/* Rounds without fewer wrong signs before block pivoting has stalled. */
-enum { PATIENCE = 10 };
-
 /* Mode changes allowed from a regularised answer to a regular mode's. */
 enum { REGULAR_ATTEMPTS = 8 };
 
@@ -120,7 +117,8 @@ enum dalcs_status dalcs_proximal_factor(struct dalcs_osnsp *p, struct dalcs_mode
     return status;
 }
 
-void dalcs_proximal_step(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
+/* Solves one regularised problem around (centre, centre_w) in the mode of entry, into p->scaled. */
+static void step_in_mode(struct dalcs_osnsp *p, const struct dalcs_mode_entry *entry,
                          enum dalcs_weights weights) {
     const struct dalcs_step_form *f = p->form[0];
     for (int i = 0; i < f->n; i++) {
@@ -173,10 +171,8 @@ static void find_violations(struct dalcs_osnsp *p, enum dalcs_weights weights) {
  * it may. *stalled: it got nowhere, and may not. */
 static enum dalcs_status pivot(struct dalcs_osnsp *p, enum dalcs_weights weights, bool singly,
                                bool *mode_changed, bool *stalled) {
-    int fewest = p->system->n_pairs + 1;
-    int patience = PATIENCE;
+    struct dalcs_pivoting pivoting = dalcs_pivoting_begin(p);
     int limit = p->options.max_pivots + 2 * p->system->n_pairs;
-    int n_single = 0;
     *stalled = false;
     for (int round = 0; round <= limit; round++) {
         struct dalcs_mode_entry *e;
@@ -184,28 +180,21 @@ static enum dalcs_status pivot(struct dalcs_osnsp *p, enum dalcs_weights weights
         if (e->singular) {
             return DALCS_NOT_CONVERGED;
         }
-        dalcs_proximal_step(p, e, weights);
+        step_in_mode(p, e, weights);
         find_violations(p, weights);
         if (p->n_violating == 0) {
             return DALCS_OK;
         }
         *mode_changed = true;
-        p->counters.pivots++;
-        if (p->n_violating < fewest) {
-            fewest = p->n_violating;
-            patience = PATIENCE;
-            n_single = 0;
-        } else {
-            patience--;
-        }
-        if (patience <= 0 && !singly) {
+        bool stalls = dalcs_pivoting_stalls(p, &pivoting);
+        if (stalls && !singly) {
             *stalled = true;
             return DALCS_OK;
         }
-        if (patience <= 0 && dalcs_osnsp_goes_round(p, ++n_single)) {
+        if (stalls && dalcs_osnsp_goes_round(p, ++pivoting.n_single)) {
             break;
         }
-        dalcs_osnsp_flip_violating(p, patience > 0);
+        dalcs_osnsp_flip_violating(p, !stalls);
     }
     return DALCS_NOT_CONVERGED;
 }
@@ -309,7 +298,7 @@ enum dalcs_status dalcs_proximal_solve(struct dalcs_osnsp *p, const double *u, d
             dalcs_csr_multiply(&p->form[0]->R, u, p->right);
             struct dalcs_mode_entry *e;
             DALCS_TRY(dalcs_modes_get(p, 1 + weights, &e));
-            dalcs_proximal_step(p, e, weights);
+            step_in_mode(p, e, weights);
         }
         bool sources_clash;
         double change;

@@ -11,16 +11,18 @@ static const double largest_residual = 1e-6;
 /* And one that pivots next to 0 spoke against has not, if it is no worse than this: rounding. */
 static const double largest_of_doubtful = 1e-13;
 
-void dalcs_stage_factors_eigenvalue(const struct dalcs_stages *stages, double h, int system,
-                                    double *re, double *im) {
+/* mu / h of a system. */
+static void find_eigenvalue(const struct dalcs_stages *stages, double h, int system, double *re,
+                            double *im) {
     const struct dalcs_collocation *m = stages->method;
     *re = (system == 0 ? m->lambda : creal(m->mu[system - 1])) / h;
     *im = (system == 0 ? 0.0 : cimag(m->mu[system - 1])) / h;
 }
 
-enum dalcs_status dalcs_stage_factors_order(const struct dalcs_stage_plan *plan,
-                                            const struct dalcs_stage_matrix *m,
-                                            struct dalcs_stage_factors *f, int system) {
+/* Lists where lu[system] has the rows and unknowns of m. */
+static enum dalcs_status list_order(const struct dalcs_stage_plan *plan,
+                                    const struct dalcs_stage_matrix *m,
+                                    struct dalcs_stage_factors *f, int system) {
     const struct dalcs_lu *lu = &f->lu[system];
     struct dalcs_stage_order *o = &f->order[system];
     size_t n = (size_t)m->n;
@@ -94,12 +96,12 @@ static enum dalcs_status factor_all(struct dalcs_stages *stages, struct dalcs_st
     for (int q = 0; q < f->n_systems; q++) {
         double re;
         double im;
-        dalcs_stage_factors_eigenvalue(stages, entry->h, q, &re, &im);
+        find_eigenvalue(stages, entry->h, q, &re, &im);
         dalcs_stage_matrix_at(m, re, im, q > 0);
         DALCS_TRY(dalcs_lu_factor_analyzed(&f->lu[q], q > 0 ? &stages->klu_complex : &stages->klu,
                                            a->symbolic, &a->numeric[q], q > 0, m->p, m->i,
                                            m->values, rcond_min));
-        DALCS_TRY(dalcs_stage_factors_order(stages->plan, m, f, q));
+        DALCS_TRY(list_order(stages->plan, m, f, q));
     }
     return DALCS_OK;
 }

@@ -92,8 +92,10 @@ static void load_choice(const struct dalcs_stage_plan *plan, const struct dalcs_
     }
 }
 
-void dalcs_stage_factors_load(const struct dalcs_stage_plan *plan,
-                              const struct dalcs_stage_factors *f, int system, int share) {
+/* lu[system].work = the balanced right-hand side in its order, plan->rhs and a
+ * share of the waves. */
+static void load(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
+                 int system, int share) {
     const struct dalcs_stage_order *o = &f->order[system];
     double *restrict work = f->lu[system].work;
     int stride = system > 0 ? 2 : 1;
@@ -122,7 +124,7 @@ void dalcs_stage_factors_load(const struct dalcs_stage_plan *plan,
 /* Of plan->rhs and a share of the waves: the unknowns of a system, balanced, to lu.work. */
 static void solve(const struct dalcs_stage_plan *plan, const struct dalcs_stage_factors *f,
                   int system, int share) {
-    dalcs_stage_factors_load(plan, f, system, share);
+    load(plan, f, system, share);
     if (f->update != NULL) {
         dalcs_stage_update_solve(plan, f, system, share);
     } else if (system == 0) {

@@ -32,16 +32,6 @@ struct dalcs_stage_factors {
     struct dalcs_stage_change **change;   /* [pairs of the system] NULL: none is known */
 };
 
-/* stage_build.c: mu / h of a system. */
-void dalcs_stage_factors_eigenvalue(const struct dalcs_stages *stages, double h, int system,
-                                    double *re, double *im);
-
-/* Lists where lu[system] has the rows and unknowns of m. */
-enum dalcs_status dalcs_stage_factors_order(const struct dalcs_stage_plan *plan,
-                                            const struct dalcs_stage_matrix *m,
-                                            struct dalcs_stage_factors *f,
-                                            int system) DALCS_MUST_CHECK;
-
 /* stage_build.c: what row r of M without derivatives misses at y, an answer at a node, and the sum of
  * its terms. */
 double dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
@@ -53,10 +43,5 @@ double dalcs_stage_factors_miss_of_row(const struct dalcs_stages *stages,
 double dalcs_stage_factors_miss(const struct dalcs_stages *stages,
                                 const struct dalcs_stage_entry *entry, const double *in,
                                 const double *out);
-
-/* stage_factors.c: lu[system].work = the balanced right-hand side in its order, plan->rhs and a
- * share of the waves. */
-void dalcs_stage_factors_load(const struct dalcs_stage_plan *plan,
-                              const struct dalcs_stage_factors *f, int system, int share);
 
 #endif

@@ -181,15 +181,6 @@ void dalcs_stage_matrix_at(struct dalcs_stage_matrix *m, double re, double im, b
     }
 }
 
-size_t dalcs_stage_matrix_bytes(const struct dalcs_stage_matrix *m) {
-    if (m->p == NULL) {
-        return 0;
-    }
-    size_t n = (size_t)m->n;
-    size_t per_entry = sizeof(int) + 4 * sizeof(double);
-    return (size_t)m->p[m->n] * per_entry + n * (3 * sizeof(int) + 2 * sizeof(double));
-}
-
 void dalcs_stage_matrix_finish(struct dalcs_stage_matrix *m) {
     free(m->row);
     free(m->column);

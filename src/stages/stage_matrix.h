@@ -33,8 +33,6 @@ void dalcs_stage_matrix_at(struct dalcs_stage_matrix *m, double re, double im, b
 /* The scale of a row or column whose largest entry is in 2^e [1/2, 1): 2^-e, or 1 if it is empty. */
 double dalcs_stage_matrix_scale(double largest);
 
-size_t dalcs_stage_matrix_bytes(const struct dalcs_stage_matrix *m);
-
 void dalcs_stage_matrix_finish(struct dalcs_stage_matrix *m);
 
 #endif

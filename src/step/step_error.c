@@ -108,36 +108,6 @@ static void find_kinds(const struct dalcs_radau_part *part) {
     }
 }
 
-/* The largest |y[begin..end-1]|: two running maxima, one alone would wait for itself. */
-static double largest_of(const double *y, int begin, int end, double largest) {
-    double other = 0.0;
-    int c = begin;
-    for (; c + 2 <= end; c += 2) {
-        double a = fabs(y[c]);
-        double b = fabs(y[c + 1]);
-        largest = a > largest ? a : largest;
-        other = b > other ? b : other;
-    }
-    if (c < end) {
-        largest = dalcs_larger(largest, fabs(y[c]));
-    }
-    return dalcs_larger(largest, other);
-}
-
-static void raise_units(const struct dalcs_radau_part *part, const double *y, double *unit) {
-    const struct dalcs_osnsp *p = &part->component->osnsp;
-    int n_equations = dalcs_system_n_equations(p->system);
-    for (int k = 0; k < p->n_runs && p->run[k].begin < n_equations; k++) {
-        int end = p->run[k].end < n_equations ? p->run[k].end : n_equations;
-        int of = p->run[k].is_current;
-        unit[of] = largest_of(y, p->run[k].begin, end, unit[of]);
-    }
-    for (int d = 0; d < p->system->n_pairs; d++) {
-        int of = is_on(part, d);
-        unit[of] = dalcs_larger(unit[of], fabs(y[n_equations + d]));
-    }
-}
-
 /* Each unit vouches a little for the other. */
 static void cross_units(const struct dalcs_radau_part *part, double *unit) {
     double volt = unit[0];
@@ -388,12 +358,6 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
         q->ratio = dalcs_larger(q->own, e.of_voltages);
         q->of_unit = e.of_unit;
     }
-}
-
-void dalcs_step_reach(struct dalcs_radau_part *part, double end, double *unit) {
-    dalcs_step_values(part, end, part->work.y2);
-    raise_units(part, part->work.y2, unit);
-    cross_units(part, unit);
 }
 
 /* Those of n columns, but of a current only since its pair closed. */

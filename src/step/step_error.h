@@ -39,9 +39,6 @@ void dalcs_step_judge(const struct dalcs_radau *r, struct dalcs_radau_part *part
 double dalcs_step_rounding(const struct dalcs_radau_part *part,
                            const struct dalcs_stage_entry *entry);
 
-/* Raises unit[2] to the values at the end of the segment, which may lie between the nodes. */
-void dalcs_step_reach(struct dalcs_radau_part *part, double end, double *unit);
-
 /* What the errors of a column are held to, without its tolerance: its own scale, or a part of its unit's. 0 of an
  * open pair, which has no current. */
 double dalcs_step_scale(const struct dalcs_radau_part *part, int column, const double *unit);
