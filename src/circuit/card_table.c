@@ -65,9 +65,9 @@ static const struct dot_card DOT_CARDS[] = {
 static const char *const IGNORED[] = {".temp", ".width", ".prot", ".unprot", ".preprocess"};
 
 /* Analyses that this simulator will not have. */
-static const char *const NEVER[] = {".noise", ".pz",      ".disto", ".tf",     ".sens",
-                                    ".sp",    ".hb",    ".net",    ".mc",
-                                    ".wcase", ".machine", ".stab",  ".ferret", ".sampling"};
+static const char *const NEVER[] = {".noise",   ".pz",   ".disto",  ".tf",      ".sens",
+                                    ".sp",      ".hb",   ".net",    ".mc",      ".wcase",
+                                    ".machine", ".stab", ".ferret", ".sampling"};
 
 /* Elements by letter that are not supported. */
 static const char *refused_element(char letter) {

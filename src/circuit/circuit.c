@@ -170,7 +170,8 @@ static void check_presence(struct dalcs_builder *builder) {
                                "the netlist has no elements");
     }
     const bool asks = builder->tran != NULL || builder->op != NULL || builder->dc != NULL ||
-                      builder->ac != NULL || builder->pss != NULL || builder->netlist->n_script_lines > 0;
+                      builder->ac != NULL || builder->pss != NULL ||
+                      builder->netlist->n_script_lines > 0;
     if (!asks && (builder->hidden & DALCS_HIDDEN_ANALYSES) == 0) {
         dalcs_builder_error_at(builder, &where, "add a line such as: .tran 10u 20m",
                                "the netlist asks for nothing: no .tran, .op, .dc or .ac");

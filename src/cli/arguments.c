@@ -304,7 +304,8 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
         status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && !arguments->help) {
-        status = dalcs_verb_take_netlist(cli, arguments->steady ? "steady" : "run", argc, argv, &arguments->netlist);
+        status = dalcs_verb_take_netlist(cli, arguments->steady ? "steady" : "run", argc, argv,
+                                         &arguments->netlist);
         status = status == DALCS_OK ? add_defaults(arguments, cli) : status;
     }
     if (status != DALCS_OK) {

@@ -94,7 +94,7 @@ static void print_heading(const struct dalcs_print_table *print,
                           const struct dalcs_print_card_table *table) {
     static const char *const analysis[] = {[DALCS_OPERATING_POINT] = "Operating Point",
                                            [DALCS_TRANSIENT] = "Transient Analysis",
-                                       [DALCS_PERIODIC] = "Periodic Steady State",
+                                           [DALCS_PERIODIC] = "Periodic Steady State",
                                            [DALCS_DC_SWEEP] = "DC transfer characteristic",
                                            [DALCS_AC] = "AC Analysis"};
     const struct dalcs_plot *plot = print->plot;

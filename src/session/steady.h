@@ -33,8 +33,12 @@ struct dalcs_steady {
     double *step;                      /* [n_x] the last one of Newton's method */
     double *drift;                     /* [n_x] what grows by as much each period */
     uint64_t signature;                /* of the modes that followed each other */
-    double *average, *rms;             /* [n_outputs] of the last pass with them */
-    double *state;  /* [n_states] of the network, where that ended; the session's */
+
+    struct dalcs_steady_found { /* by the last pass with means */
+        double *average, *rms;  /* [n_outputs] */
+        double *state;          /* [n_states] of the network, where it ended; the session's */
+    } found;
+
     bool has_point; /* `at` is known; else the run starts as any does */
     bool is_exact;  /* M is */
     bool is_stuck;  /* a conserved quantity grows by `drift` */

@@ -113,11 +113,11 @@ static enum dalcs_status go_with_means(struct dalcs_steady *st, struct dalcs_rad
     enum dalcs_status status = go(radau, st->run, &means);
     const double duration = radau->options.stop;
     for (int k = 0; k < s->network.n_outputs; k++) {
-        st->average[k] = means.sum[k] / duration;
-        st->rms[k] = sqrt(means.square[k] / duration);
+        st->found.average[k] = means.sum[k] / duration;
+        st->found.rms[k] = sqrt(means.square[k] / duration);
     }
     dalcs_steady_means_finish(&means);
-    dalcs_recorder_states(&s->network, radau->base, st->state);
+    dalcs_recorder_states(&s->network, radau->base, st->found.state);
     return status;
 }
 
@@ -219,13 +219,16 @@ enum dalcs_status dalcs_steady_setup(struct dalcs_steady *st, struct dalcs_run *
         st->scale = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->step = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
         st->drift = dalcs_arena_alloc(&st->arena, n_x, sizeof(double));
-        st->state = dalcs_arena_alloc(&r->s->arena, (size_t)network->n_states + 1, sizeof(double));
-        st->average = dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
-        st->rms = dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
+        st->found.state =
+            dalcs_arena_alloc(&r->s->arena, (size_t)network->n_states + 1, sizeof(double));
+        st->found.average =
+            dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
+        st->found.rms =
+            dalcs_arena_alloc(&st->arena, (size_t)network->n_outputs + 1, sizeof(double));
         st->conserved = dalcs_arena_alloc(&st->arena, n_x, sizeof(*st->conserved));
         complete = make_point(&st->arena, l, &st->at) && make_point(&st->arena, l, &st->then) &&
                    st->M != NULL && st->scale != NULL && st->step != NULL && st->drift != NULL &&
-                   st->state != NULL && st->average != NULL && st->rms != NULL &&
+                   st->found.state != NULL && st->found.average != NULL && st->found.rms != NULL &&
                    st->conserved != NULL;
     }
     if (!complete) {

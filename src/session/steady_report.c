@@ -186,10 +186,11 @@ static enum dalcs_status tell_signals(struct dalcs_steady *st) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n; k++) {
-        signal[k] = (struct dalcs_steady_signal){st->run->name[k], st->average[k], st->rms[k]};
+        signal[k] =
+            (struct dalcs_steady_signal){st->run->name[k], st->found.average[k], st->found.rms[k]};
     }
     s->report.steady.signal = signal;
-    s->report.steady.state = st->state;
+    s->report.steady.state = st->found.state;
     s->report.steady.n_signals = n;
     return DALCS_OK;
 }
