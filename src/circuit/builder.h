@@ -206,7 +206,12 @@ struct dalcs_device *dalcs_builder_add_inner_device(struct dalcs_builder *builde
 int dalcs_builder_inner_node(struct dalcs_builder *builder, const char *what,
                              const struct dalcs_token *element);
 
-/* Was this name made by one of the two? */
+/* Puts a short "terminal(c1)" before node[0] of a device, which becomes an inner one: the current of the element
+ * is that of the short, which no unknown is spent on where no one asks. False when out of memory. */
+bool dalcs_builder_add_terminal(struct dalcs_builder *builder, const struct dalcs_token *element,
+                                struct dalcs_device *device);
+
+/* Was this name made by one of these? */
 bool dalcs_builder_is_inner(const char *name);
 /* The first letter of an element's name in its own subcircuit, lower case. */
 char dalcs_builder_letter(const struct dalcs_token *name);
