@@ -289,7 +289,8 @@ static void settle(struct dalcs_builder *builder, const struct links *links,
     } else if (t->high != 0) {
         at = dalcs_builder_hint(builder, " at %g V", t->high);
     }
-    if (drive.is_decided && drive.gate.high <= model->vt && !is_bipolar) {
+    if (drive.is_decided && drive.gate.low < drive.gate.high && drive.gate.high <= model->vt &&
+        !is_bipolar) { /* one that rests is meant to be off */
         dalcs_builder_warn(builder, use->name, NULL,
                            "the gate of '%s' is never above %g V, and it is off below %g V",
                            use->name->text, drive.gate.high, model->vt);
