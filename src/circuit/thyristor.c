@@ -152,6 +152,7 @@ static const struct dalcs_formula *finish(struct writer *w, struct dalcs_formula
         ok = own[k] != NULL;
     }
     if (!ok) {
+        w->builder->out_of_memory = true;
         return NULL;
     }
     f->n = n;
@@ -277,6 +278,7 @@ static bool expand_half(struct dalcs_builder *builder, const struct dalcs_token 
     struct dalcs_expression_text *text = dalcs_arena_alloc(&builder->scratch, 1, sizeof *text);
     if (inside < 0 || valve == NULL || text == NULL || half->model < 0 ||
         !dalcs_expression_text(&builder->scratch, element, 1, text)) {
+        builder->out_of_memory = true;
         return false;
     }
     struct writer w = {builder, element, text, 0};
