@@ -122,6 +122,8 @@ struct dalcs_audit {
         bool *is_fed;      /* [n_nodes] ground, or a source without a jump at 0 holds it */
         bool *is_held;     /* [n_nodes] likewise, whatever it does */
         int *first_lambda; /* [n_devices] */
+        bool *
+            is_merged; /* [n_devices] a short whose two nodes are one: no formula reads its current */
     } net;
 
     struct audit_part *part;

@@ -158,7 +158,7 @@ double audit_current(const struct dalcs_audit *audit, const struct dalcs_audit_s
     }
     switch (d->kind) {
     case DALCS_RESISTOR:
-        return d->value != 0.0 ? audit_voltage(s, d) / d->value : 0.0;
+        return d->value != 0.0 ? audit_voltage(s, d) / d->value : s->i[device];
     case DALCS_ISOURCE:
         return dalcs_stimulus_value(&audit->circuit->stimulus[d->stimulus], s->t, s->side);
     case DALCS_VCCS:
@@ -214,6 +214,12 @@ void audit_check_branch(struct dalcs_audit *audit, struct audit_part *part,
     case DALCS_SWITCH:
         check_switch(audit, part, s, device);
         return;
+    case DALCS_RESISTOR:
+        if (d->value != 0.0) {
+            return;
+        }
+        wanted = 0.0;
+        break;
     default: /* R, C, L, I, F, G: their currents are in Kirchhoff's law */
         return;
     }

@@ -9,7 +9,7 @@ static void count_members(struct dalcs_audit *audit, int *part_of_node) {
     const struct dalcs_circuit *c = audit->circuit;
     for (int i = 0; i < c->n_devices; i++) {
         const int k = audit->options.device_part[i];
-        if (k < 0 || dalcs_device_is_short(&c->device[i])) {
+        if (k < 0 || audit->net.is_merged[i]) {
             continue;
         }
         audit->part[k].n_devices++;
@@ -44,7 +44,7 @@ static void list_members(struct dalcs_audit *audit, const int *part_of_node) {
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
         const int k = audit->options.device_part[i];
-        if (k < 0 || dalcs_device_is_short(d)) {
+        if (k < 0 || audit->net.is_merged[i]) {
             continue;
         }
         struct audit_part *part = &audit->part[k];
@@ -108,11 +108,25 @@ static enum dalcs_status make_parts(struct dalcs_audit *audit) {
     return DALCS_OK;
 }
 
+static void note_read(void *to, const struct dalcs_affine_term *term) {
+    bool *is_merged = to;
+    if (term->kind == DALCS_QUANTITY_CURRENT) {
+        is_merged[term->index] = false;
+    }
+}
+
+/* A current that a formula reads is an unknown, with Kirchhoff's law at both ends, also that of a short. */
 static void merge_shorts(struct dalcs_audit *audit) {
     const struct dalcs_circuit *c = audit->circuit;
     dalcs_union_reset(audit->net.node_of, c->n_nodes);
     for (int i = 0; i < c->n_devices; i++) {
-        if (dalcs_device_is_short(&c->device[i])) {
+        audit->net.is_merged[i] = dalcs_device_is_short(&c->device[i]);
+    }
+    for (int i = 0; i < c->n_devices; i++) {
+        dalcs_behaviour_visit(c->device[i].behaviour, note_read, audit->net.is_merged);
+    }
+    for (int i = 0; i < c->n_devices; i++) {
+        if (audit->net.is_merged[i]) {
             dalcs_union_join(audit->net.node_of, c->device[i].node[0], c->device[i].node[1]);
         }
     }
@@ -207,8 +221,10 @@ enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
     audit->net.has_charge = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
     audit->net.is_fed = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
     audit->net.is_held = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
-    if (audit->net.is_held == NULL || audit->net.node_of == NULL || audit->net.has_charge == NULL ||
-        audit->net.is_fed == NULL) {
+    audit->net.is_merged =
+        dalcs_arena_alloc(&audit->arena, (size_t)audit->circuit->n_devices, sizeof(bool));
+    if (audit->net.is_merged == NULL || audit->net.is_held == NULL || audit->net.node_of == NULL ||
+        audit->net.has_charge == NULL || audit->net.is_fed == NULL) {
         return DALCS_E_NOMEM;
     }
     find_fed(audit);

@@ -211,6 +211,12 @@ void audit_fill_branch(struct audit_filling *f, int device) {
         audit_add_voltage(f, audit_row_now(f), d, 0, factor);
         audit_add_read_current(f, audit_row_now(f), d->control, -factor * d->value);
         break;
+    case DALCS_RESISTOR:
+        if (d->value == 0.0) {
+            factor = audit_over(f, tolerance * scale + f->audit->options.vntol);
+            audit_add_voltage(f, audit_row_now(f), d, 0, factor);
+        }
+        break;
     case DALCS_DIODE:
         fill_diode(f, device);
         break;

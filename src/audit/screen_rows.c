@@ -36,7 +36,11 @@ static void add_current(const struct audit_filling *f, struct dalcs_audit_row *r
     }
     switch (d->kind) {
     case DALCS_RESISTOR:
-        audit_add_voltage(f, row, d, 0, d->value != 0.0 ? factor / d->value : 0.0);
+        if (d->value != 0.0) {
+            audit_add_voltage(f, row, d, 0, factor / d->value);
+        } else {
+            audit_add_read_current(f, row, device, factor);
+        }
         break;
     case DALCS_ISOURCE:
         dalcs_audit_row_add_stimulus(row, d->stimulus, factor);

@@ -362,6 +362,21 @@ struct dalcs_device *dalcs_builder_add_inner_device(struct dalcs_builder *builde
                       element);
 }
 
+bool dalcs_builder_add_terminal(struct dalcs_builder *builder, const struct dalcs_token *element,
+                                struct dalcs_device *device) {
+    const int inside = dalcs_builder_inner_node(builder, "terminal", element);
+    struct dalcs_device *terminal =
+        dalcs_builder_add_inner_device(builder, DALCS_RESISTOR, "terminal", element);
+    if (inside < 0 || terminal == NULL) {
+        return false;
+    }
+    terminal->node[0] = device->node[0];
+    terminal->node[1] = device->node[0] = inside;
+    builder->current_of[device - builder->circuit->device] =
+        (int)(terminal - builder->circuit->device);
+    return true;
+}
+
 const char *dalcs_builder_kind_text(enum dalcs_device_kind kind) {
     switch (kind) {
     case DALCS_RESISTOR:

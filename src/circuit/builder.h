@@ -16,6 +16,7 @@ enum dalcs_model_kind {
     DALCS_MODEL_SWITCH,
     DALCS_MODEL_CURRENT_SWITCH,
     DALCS_MODEL_THYRISTOR,
+    DALCS_MODEL_TRANSISTOR,
     DALCS_MODEL_PASSIVE, /* of R, L or C, whose card has the value */
     DALCS_MODEL_OTHER,   /* of a device that does not exist here */
     DALCS_MODEL_WRONG    /* had errors: a use of it is no second error */
@@ -37,6 +38,7 @@ struct dalcs_model {
     const struct dalcs_token *type;
     struct dalcs_diode_card diode;
     const struct dalcs_thyristor *thyristor;
+    struct dalcs_transistor *transistor;
     const struct dalcs_token *beyond; /* of R, L or C: what would change values; else NULL */
 };
 
@@ -76,7 +78,9 @@ struct dalcs_builder {
     int n_couplings_seen;     /* K cards so far, right or wrong */
     struct dalcs_names pairs; /* "3 7": coils 3 and 7 are coupled, by the place of the card */
     int ideal_diode;          /* the model of diodes without one, -1 before the first */
-    double diode_current;     /* A, where an exponential diode and its tangent touch */
+    bool bipolar_is_switch;   /* .options bjt=switch */
+    struct dalcs_transistor_use *transistor; /* the last one, NULL: there is none */
+    double diode_current; /* A, where an exponential diode and its tangent touch */
 
     struct dalcs_formula_source *formula; /* heap: the sources whose formula is compiled when all
                                              elements are known */
@@ -207,7 +211,12 @@ struct dalcs_device *dalcs_builder_add_inner_device(struct dalcs_builder *builde
 int dalcs_builder_inner_node(struct dalcs_builder *builder, const char *what,
                              const struct dalcs_token *element);
 
-/* Was this name made by one of the two? */
+/* Puts a short "terminal(c1)" before node[0] of a device, which becomes an inner one: the current of the element
+ * is that of the short, which no unknown is spent on where no one asks. False when out of memory. */
+bool dalcs_builder_add_terminal(struct dalcs_builder *builder, const struct dalcs_token *element,
+                                struct dalcs_device *device);
+
+/* Was this name made by one of these? */
 bool dalcs_builder_is_inner(const char *name);
 /* The first letter of an element's name in its own subcircuit, lower case. */
 char dalcs_builder_letter(const struct dalcs_token *name);
@@ -411,6 +420,14 @@ void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_car
 struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
                                                     const struct dalcs_token *type,
                                                     struct dalcs_diode_model *valve);
+/* M, Z and Q elements. */
+void dalcs_transistor_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* type: nmos, pmos, vdmos, nigbt, npn or pnp; NULL when an error was reported */
+struct dalcs_transistor *dalcs_transistor_parse_model(struct dalcs_reader *reader,
+                                                      const struct dalcs_token *name,
+                                                      const struct dalcs_token *type);
+/* Their resistances, when all elements are known; refuses those that are no switches. */
+void dalcs_transistor_resolve(struct dalcs_builder *builder);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* type: sw, csw, vswitch or iswitch */
 /* Its number; -1 when out of memory. */

@@ -73,9 +73,6 @@ static const char *const NEVER[] = {".noise",   ".pz",   ".disto",  ".tf",      
 static const char *refused_element(char letter) {
     switch (letter) {
     case 'j':
-    case 'm':
-    case 'q':
-    case 'z':
         return "transistors";
     case 'n':
         return "compiled models";
@@ -93,9 +90,6 @@ static const char *refused_element(char letter) {
 static const char *hint_of_element(char letter) {
     switch (letter) {
     case 'j':
-    case 'm':
-    case 'q':
-    case 'z':
         return "write an ideal switch S, with a diode D across it for a body diode";
     case 't':
         return "write sections of L and C";
@@ -189,7 +183,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         table->n_pairs += n_coils * (n_coils - 1) / 2;
         return DALCS_CARD_COUPLING;
     }
-    if (strchr("rlcviefghdswab", letter) != NULL) {
+    if (strchr("rlcviefghdswabmzq", letter) != NULL) {
         table->n_stimuli += strchr("vic", letter) != NULL;
         if (letter == 'v') {
             const size_t n_limits = (size_t)dalcs_current_limit_count(card);
@@ -209,6 +203,12 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         table->n_inner += letter == 's' && dalcs_formula_find_control(card) < card->n;
         table->n_switches += letter == 's' || letter == 'w';
         table->n_diodes += letter == 'd' || letter == 'a';
+        if (strchr("mzq", letter) !=
+            NULL) { /* terminal, diode, knee; two have lines of their own */
+            table->n_inner += 3;
+            table->n_scaled += 2;
+            table->n_diodes++;
+        }
         table->n_scaled += (letter == 'd' || letter == 'a') && (card->n > 4 || card->parallel > 0);
         return DALCS_CARD_ELEMENT;
     }

@@ -106,6 +106,11 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
             dalcs_diode_parse_block(builder, card);
         }
         return;
+    case 'm':
+    case 'z':
+    case 'q':
+        dalcs_transistor_parse(builder, card);
+        return;
     case 'b':
         dalcs_behavioural_parse(builder, card);
         return;
@@ -244,6 +249,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     DALCS_TRY(read_cards(builder, class_of));
     dalcs_passive_add_default_rser(builder);
     dalcs_controlled_resolve(builder);
+    dalcs_transistor_resolve(builder);
     dalcs_behavioural_resolve(builder);
     dalcs_model_check(builder);
     check_presence(builder);

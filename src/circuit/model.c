@@ -29,14 +29,15 @@ static const struct type *find_type(const char *name) {
         {"scr", DALCS_MODEL_THYRISTOR, "thyristor"},
         {"triac", DALCS_MODEL_THYRISTOR, "triac"},
         {"gto", DALCS_MODEL_THYRISTOR, "thyristor"},
-        {"npn", DALCS_MODEL_OTHER, "transistor"},
-        {"pnp", DALCS_MODEL_OTHER, "transistor"},
+        {"npn", DALCS_MODEL_TRANSISTOR, "transistor"},
+        {"pnp", DALCS_MODEL_TRANSISTOR, "transistor"},
         {"lpnp", DALCS_MODEL_OTHER, "transistor"},
         {"njf", DALCS_MODEL_OTHER, "transistor"},
         {"pjf", DALCS_MODEL_OTHER, "transistor"},
-        {"nmos", DALCS_MODEL_OTHER, "transistor"},
-        {"pmos", DALCS_MODEL_OTHER, "transistor"},
-        {"vdmos", DALCS_MODEL_OTHER, "transistor"},
+        {"nmos", DALCS_MODEL_TRANSISTOR, "transistor"},
+        {"pmos", DALCS_MODEL_TRANSISTOR, "transistor"},
+        {"vdmos", DALCS_MODEL_TRANSISTOR, "transistor"},
+        {"nigbt", DALCS_MODEL_TRANSISTOR, "transistor"},
         {"nmf", DALCS_MODEL_OTHER, "transistor"},
         {"pmf", DALCS_MODEL_OTHER, "transistor"},
         {"r", DALCS_MODEL_PASSIVE, "resistor"},
@@ -159,6 +160,9 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
         model->thyristor =
             dalcs_thyristor_parse_model(reader, model->type, &circuit->diode_model[model->index]);
         ok = model->thyristor != NULL;
+    } else if (model->kind == DALCS_MODEL_TRANSISTOR) {
+        model->transistor = dalcs_transistor_parse_model(reader, model->name, model->type);
+        ok = model->transistor != NULL;
     } else {
         model->index = circuit->n_switch_models++;
         circuit->switch_model[model->index].name = name;

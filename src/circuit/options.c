@@ -10,9 +10,10 @@
 #include <string.h>
 
 /* Known here. */
-static const char *const OURS[] = {
-    "reltol", "abstol",   "vntol",        "method",   "step",    "stages", "fill",
-    "curve",  "compress", "diodecurrent", "filetype", "dialect", "interp", "initial_interval"};
+static const char *const OURS[] = {"reltol",   "abstol",           "vntol",    "method",
+                                   "step",     "stages",           "fill",     "curve",
+                                   "compress", "diodecurrent",     "filetype", "dialect",
+                                   "interp",   "initial_interval", "bjt"};
 
 static const char *const FOREIGN[] = {
     "itl1",          "itl2",        "itl3",         "itl4",        "itl5",         "itl6",
@@ -215,6 +216,9 @@ static bool read_ours(struct dalcs_reader *reader, const struct dalcs_token *tok
     if (strcmp(name, "diodecurrent") == 0) {
         options->has_diode_current = true;
         return read_positive(reader, DALCS_CURRENT, &reader->builder->diode_current);
+    }
+    if (strcmp(name, "bjt") == 0) {
+        return read_either(reader, name, "switch", "refuse", &reader->builder->bipolar_is_switch);
     }
     if (strcmp(name, "fill") == 0) {
         return read_fill(reader, options);

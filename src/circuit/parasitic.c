@@ -80,17 +80,10 @@ void dalcs_parasitic_expand(struct dalcs_builder *builder, const struct dalcs_to
     }
     int from = device->node[0];
     if (value[RPAR] > 0 || value[CPAR] > 0) {
-        const int inside = dalcs_builder_inner_node(builder, "terminal", element);
-        struct dalcs_device *terminal =
-            dalcs_builder_add_inner_device(builder, DALCS_RESISTOR, "terminal", element);
-        if (inside < 0 || terminal == NULL) {
+        if (!dalcs_builder_add_terminal(builder, element, device)) {
             return;
         }
-        terminal->node[0] = from;
-        terminal->node[1] = inside;
-        builder->current_of[device - builder->circuit->device] =
-            (int)(terminal - builder->circuit->device);
-        from = inside;
+        from = device->node[0];
         for (int k = RPAR; k <= CPAR; k++) {
             if (value[k] > 0) {
                 add(builder, element, k, value[k], from, device->node[1]);

@@ -155,23 +155,6 @@ static bool add_parts(struct poly *p, bool in_series) {
     return true;
 }
 
-/* The currents of all parts together. */
-static bool add_terminal(struct poly *p) {
-    struct dalcs_builder *builder = p->reader->builder;
-    const struct dalcs_token *name = p->reader->card->token;
-    const int inside = dalcs_builder_inner_node(builder, "terminal", name);
-    struct dalcs_device *terminal =
-        dalcs_builder_add_inner_device(builder, DALCS_RESISTOR, "terminal", name);
-    if (inside < 0 || terminal == NULL) {
-        return false;
-    }
-    terminal->node[0] = p->device->node[0];
-    terminal->node[1] = p->device->node[0] = inside;
-    builder->current_of[p->device - builder->circuit->device] =
-        (int)(terminal - builder->circuit->device);
-    return true;
-}
-
 void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device) {
     struct poly p = {.reader = reader, .device = device};
     if (!read_count(&p) || !allocate(&p) || !read_controls(&p) || !read_coefficients(&p)) {
@@ -182,7 +165,7 @@ void dalcs_poly_parse(struct dalcs_reader *reader, struct dalcs_device *device) 
     if (p.n == 1 && p.coefficient[0] == 0) {
         return;
     }
-    if (in_series || add_terminal(&p)) {
+    if (in_series || dalcs_builder_add_terminal(reader->builder, reader->card->token, device)) {
         (void)add_parts(&p, in_series);
     }
 }

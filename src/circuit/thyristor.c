@@ -8,10 +8,17 @@
  *     without Ih   1.5 v/Vgt in [0, 2]  +  0.5 u/Voff in [-1, 0]       opens where u has fallen to -Voff
  *     with Ih      2.5 v/Vgt in [0, 3]  +  i/Ih - 1.5 in [-1, 0]       opens where i has fallen to Ih
  *     of a GTO     besides 0.5 v/Vgoff in [-3, 0]                      opens where v has fallen to -Vgoff
- * so that all three limits are exact. In both a gate above Vgt closes it and holds it, whatever the current. A triac is
- * two of them, the one against the other, whose v is |v|; without Ih the one that carries nothing opens, once the gate
- * is off, by what the other carries, as u is 0 for both: besides -0.5 i/Ioff in [-1, 0] of the other's i. Formulas that only read are in no loop with what they read:
- * the circuit stays passive (theory.md, section 10). */
+ * so that all three limits are exact. In both a gate above Vgt closes it and holds it, whatever the current.
+ *
+ * A triac is two of them, the one against the other, whose v is |v| and whose i is that of the terminal, in the
+ * direction of each: how two ideal diodes against each other share a current is not determined, what both together
+ * carry is. Without Ih its control is
+ *     4 where v > Vgt, else 0   +   0.5 u/Voff in [-1, 0]   +   0.5 i/Ioff in [-1, 0],
+ * the last only where Vfwd < Voff, as u stays at 0 then while the other half carries: once the gate is off a half opens
+ * by what the other carries. The gate jumps, so that it closes both at Vgt whatever flows: a half that waited for the
+ * current of the other to fall to Ioff would close where that is a millionth of what it was, and there no sign can be
+ * told from rounding. Formulas that only read are in no loop with what they read: the circuit stays passive
+ * (theory.md, section 10). */
 #include "builder.h"
 
 #include <math.h>
@@ -25,6 +32,7 @@ struct dalcs_thyristor {
     double holding;           /* A; 0: none */
     double reversed;          /* V */
     double other;             /* A in the other half of a triac */
+    double drop;              /* V when it conducts, at least */
 };
 
 enum { VGT, VGOFF, IH, VOFF, IOFF, RON, VFWD, N_PARAMETERS };
@@ -98,7 +106,8 @@ struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
                                   .turn_off = p[VGOFF].value,
                                   .holding = p[IH].value,
                                   .reversed = p[VOFF].value,
-                                  .other = p[IOFF].value};
+                                  .other = p[IOFF].value,
+                                  .drop = p[VFWD].value};
     valve->ron = valve->rrev = p[RON].value;
     valve->vfwd = p[VFWD].value;
     valve->roff = valve->vrev = INFINITY;
@@ -143,6 +152,7 @@ static const struct dalcs_formula *finish(struct writer *w, struct dalcs_formula
         ok = own[k] != NULL;
     }
     if (!ok) {
+        w->builder->out_of_memory = true;
         return NULL;
     }
     f->n = n;
@@ -202,7 +212,8 @@ static const struct dalcs_formula *cut(struct writer *w, double factor,
 /* The names that a control reads. */
 struct places {
     const struct dalcs_token *anode, *cathode, *gate, *reference;
-    const struct dalcs_token *self, *other; /* of the halves, whose currents are read */
+    const struct dalcs_token *self;
+    double direction; /* of the half: 1, or -1 where it is the back of a triac */
 };
 
 static const struct dalcs_formula *control(struct writer *w, const struct dalcs_thyristor *t,
@@ -212,17 +223,24 @@ static const struct dalcs_formula *control(struct writer *w, const struct dalcs_
         v = call(w, "abs", 1, &v);
     }
     const bool holds = t->holding > 0;
+    const struct dalcs_formula *i = signal(w, DALCS_FORMULA_CURRENT, p->self, NULL);
+    const struct dalcs_formula *u = signal(w, DALCS_FORMULA_VOLTAGE, p->anode, p->cathode);
+    if (t->kind == TRIAC && !holds) {
+        const struct dalcs_formula *above = operation(w, DALCS_SUBTRACT, v, number(w, t->trigger));
+        const struct dalcs_formula *gate =
+            operation(w, DALCS_MULTIPLY, number(w, 4), call(w, "u", 1, &above));
+        const struct dalcs_formula *both =
+            operation(w, DALCS_ADD, gate, cut(w, 0.5 / t->reversed, u, 0, -1, 0));
+        return t->drop >= t->reversed
+                   ? both
+                   : operation(w, DALCS_ADD, both,
+                               cut(w, 0.5 * p->direction / t->other, i, 0, -1, 0));
+    }
     const struct dalcs_formula *sum =
         cut(w, (holds ? 2.5 : 1.5) / t->trigger, v, 0, 0, holds ? 3 : 2);
-    const struct dalcs_formula *keep =
-        holds ? cut(w, 1 / t->holding, signal(w, DALCS_FORMULA_CURRENT, p->self, NULL), -1.5, -1, 0)
-              : cut(w, 0.5 / t->reversed, signal(w, DALCS_FORMULA_VOLTAGE, p->anode, p->cathode), 0,
-                    -1, 0);
+    const struct dalcs_formula *keep = holds ? cut(w, p->direction / t->holding, i, -1.5, -1, 0)
+                                             : cut(w, 0.5 / t->reversed, u, 0, -1, 0);
     sum = operation(w, DALCS_ADD, sum, keep);
-    if (t->kind == TRIAC && !holds) {
-        const struct dalcs_formula *i = signal(w, DALCS_FORMULA_CURRENT, p->other, NULL);
-        sum = operation(w, DALCS_ADD, sum, cut(w, -0.5 / t->other, i, 0, -1, 0));
-    }
     if (t->kind == GTO) {
         sum = operation(w, DALCS_ADD, sum, cut(w, 0.5 / t->turn_off, v, 0, -3, 0));
     }
@@ -260,6 +278,7 @@ static bool expand_half(struct dalcs_builder *builder, const struct dalcs_token 
     struct dalcs_expression_text *text = dalcs_arena_alloc(&builder->scratch, 1, sizeof *text);
     if (inside < 0 || valve == NULL || text == NULL || half->model < 0 ||
         !dalcs_expression_text(&builder->scratch, element, 1, text)) {
+        builder->out_of_memory = true;
         return false;
     }
     struct writer w = {builder, element, text, 0};
@@ -268,18 +287,8 @@ static bool expand_half(struct dalcs_builder *builder, const struct dalcs_token 
     if (formula == NULL || name == NULL) {
         return false;
     }
-    struct places own = *places;
-    own.self = name;
-    if (model->thyristor->kind == TRIAC) {
-        const char *other =
-            is_back ? element->text : dalcs_builder_hint(builder, "back(%s)", element->text);
-        own.other = other != NULL ? make_token(builder, element, other) : NULL;
-        if (own.other == NULL) {
-            return false;
-        }
-    }
     formula->kind = DALCS_TOKEN_FORMULA;
-    formula->formula = control(&w, model->thyristor, &own);
+    formula->formula = control(&w, model->thyristor, places);
     const int node = formula->formula != NULL
                          ? dalcs_behavioural_add_readout(builder, formula, "control", name)
                          : -1;
@@ -299,9 +308,7 @@ static bool expand_back(struct dalcs_builder *builder, const struct dalcs_token 
                         const struct places *places) {
     struct dalcs_device *back =
         dalcs_builder_add_inner_device(builder, DALCS_SWITCH, "back", element);
-    if (back == NULL || dalcs_names_add(&builder->devices, back->name,
-                                        (int)(back - builder->circuit->device)) != DALCS_OK) {
-        builder->out_of_memory = true;
+    if (back == NULL) {
         return false;
     }
     back->node[0] = node[1];
@@ -309,6 +316,7 @@ static bool expand_back(struct dalcs_builder *builder, const struct dalcs_token 
     struct places turned = *places;
     turned.anode = places->cathode;
     turned.cathode = places->anode;
+    turned.direction = -1;
     return expand_half(builder, element, back, model, &turned);
 }
 
@@ -334,23 +342,14 @@ void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_car
         &builder->model[dalcs_names_find(&builder->models, card->token[card->n - 1].text)];
     const struct dalcs_token *token = card->token;
     const struct places places = {
-        &token[1], &token[2], &token[3], n_nodes == 4 ? &token[4] : &token[2], NULL, NULL};
+        &token[1], &token[2], &token[3], n_nodes == 4 ? &token[4] : &token[2], token, 1};
     const bool is_triac = model->thyristor->kind == TRIAC;
-    int from = node[0];
-    if (is_triac) {
-        /* a short measures the current of both halves */
-        const int inside = dalcs_builder_inner_node(builder, "terminal", token);
-        struct dalcs_device *terminal =
-            dalcs_builder_add_inner_device(builder, DALCS_RESISTOR, "terminal", token);
-        if (inside < 0 || terminal == NULL) {
-            return;
-        }
-        terminal->node[0] = from;
-        terminal->node[1] = from = inside;
-    }
-    device->node[0] = from;
+    device->node[0] = node[0];
     device->node[1] = node[1];
-    const int both[2] = {from, node[1]};
+    if (is_triac && !dalcs_builder_add_terminal(builder, token, device)) {
+        return;
+    }
+    const int both[2] = {device->node[0], node[1]};
     if (expand_half(builder, token, device, model, &places) && is_triac) {
         (void)expand_back(builder, token, both, model, &places); /* it has said what is wrong */
     }

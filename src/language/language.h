@@ -269,4 +269,8 @@ enum dalcs_role {
  * voltages, which is not a number. */
 void dalcs_roles(const struct dalcs_card *card, unsigned char *role);
 
+/* The nodes of a transistor's card: the words before its model, which is the last one before parameters that is no
+ * number. */
+int dalcs_roles_count_terminals(const struct dalcs_card *card);
+
 #endif

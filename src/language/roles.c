@@ -95,6 +95,20 @@ static void block_roles(const struct dalcs_card *card, unsigned char *role) {
     role[last] = DALCS_ROLE_MODEL;
 }
 
+int dalcs_roles_count_terminals(const struct dalcs_card *card) {
+    int last = 0;
+    for (int k = 1; k < card->n && card->token[k].kind == DALCS_TOKEN_WORD; k++) {
+        const bool is_parameter = k + 1 < card->n && card->token[k + 1].kind == DALCS_TOKEN_EQUAL;
+        if (is_parameter || (k > 4 && is_word(&card->token[k], "off"))) {
+            break;
+        }
+        const char *text = card->token[k].text; /* an area, not 2n7002 */
+        const bool is_number = starts_number(text) && text[strspn(text, "0123456789.+-e")] == '\0';
+        last = k <= 3 || !is_number ? k : last;
+    }
+    return last - 1;
+}
+
 static void element_roles(const struct dalcs_card *card, const struct shape *shape,
                           unsigned char *role) {
     const struct dalcs_token *token = card->token;
@@ -103,6 +117,9 @@ static void element_roles(const struct dalcs_card *card, const struct shape *sha
     bool has_model = shape->has_model;
     if (shape->letter == 's' && dalcs_formula_find_control(card) < card->n) {
         n_nodes = 2; /* its control is a formula */
+    }
+    if (strchr("mqz", shape->letter) != NULL) {
+        n_nodes = dalcs_roles_count_terminals(card);
     }
     for (int k = 1; k < card->n; k++) {
         if (token[k].kind != DALCS_TOKEN_WORD) {

@@ -140,6 +140,25 @@ Vh i 0 0
 .save v(d) i(l1) i(g1) i(d1) i(v1)
 .end
 """, 0),
+    "transistors": ("""What commands transistors, and what they become
+V1 b 0 1
+R1 b d 10
+M1 d switched 0 irf540n
+M2 d switched 0 0 channel W=1m
+Z1 d switched 0 gated
+Q1 d base 0 bipolar
+A1 d 0 switched both
+R2 switched base 1k
+V2 switched 0 PULSE(0 10 1u 0 0 1u 4u)
+.options bjt=switch
+.model channel NMOS(Vto=2 Kp=1)
+.model gated NIGBT(Vdiode=1)
+.model bipolar NPN
+.model both triac
+.tran 2u 2u uic
+.save v(d) i(m1) i(a1)
+.end
+""", 0),
     "dialect": ("""A netlist told to be LTspice's, and what its and Xyce's switches have
 .options dialect=ltspice gmin=1n itl4=10
 V1 a 0 SIN(0 4k7 1)

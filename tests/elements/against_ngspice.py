@@ -75,6 +75,48 @@ R1 out 0 {load}
 """
 
 
+# Of transistors the channel's straight line at small voltages and the body diode's tangent: 3 in 100 of the scale.
+LOW_SIDE = """a coil behind a MOSFET of level 1
+V1 in 0 12
+R1 in x 2
+L1 x d 20u
+D1 d in DX
+VG g 0 PULSE(0 10 1u 10n 10n 12u 25u)
+M1 d g 0 0 MX
+.model MX NMOS(Level=1 Vto=3 Kp=20u W=0.7 L=1u Rd=20m Rs=10m)
+.model DX D(IS=1e-14)
+.tran 0.1u 100u 0 10n
+.end
+"""
+
+HIGH_SIDE = """a PMOS that feeds a filter
+V1 in 0 24
+VG g 0 PULSE(24 12 1u 20n 20n 10u 25u)
+M1 s g in in MP
+D1 0 s DX
+L1 s out 100u
+C1 out 0 10u
+R1 out 0 5
+.model MP PMOS(Level=1 Vto=-3 Kp=20u W=0.5 L=1u)
+.model DX D(IS=1e-14)
+.tran 0.1u 1m 0 20n
+.end
+"""
+
+HALF_BRIDGE = """two VDMOS with dead times
+V1 in 0 48
+VH gh s PULSE(0 12 1u 20n 20n 4u 10u)
+VL gl 0 PULSE(0 12 5.5u 20n 20n 4.5u 10u)
+M1 in gh s MX
+M2 s gl 0 MX
+L1 s x 50u
+R1 x 0 4
+.model MX VDMOS(Vto=4 Kp=25 Rd=20m Rs=5m Rb=10m)
+.tran 0.1u 100u 0 10n
+.end
+"""
+
+
 def at(times, values, t):
     """Between two points."""
     k = min(max(bisect.bisect_left(times, t), 1), len(times) - 1)
@@ -113,6 +155,9 @@ def main():
             for load, current in ((5, 1), (0.5, 9)):
                 netlist = DIODE.format(model=model, load=load, current=current)
                 compare(checker, program, netlist, ["v(out)"], 2e-3, 4e-3)
+        compare(checker, program, LOW_SIDE, ["v(d)", "i(l1)"], 100e-6, 0.03)
+        compare(checker, program, HIGH_SIDE, ["v(out)", "i(l1)"], 1e-3, 0.03)
+        compare(checker, program, HALF_BRIDGE, ["v(x)", "i(l1)"], 100e-6, 0.03)
     except ngspice_batch.NoNgspice:
         print("ngspice is not installed")
         return SKIPPED

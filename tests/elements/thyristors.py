@@ -113,7 +113,9 @@ def converters(checker, program):
     for converter, v, f, alpha, r, periods in CONVERTERS:
         cards, output, mean = converter(v, f, alpha, r)
         stop, period = periods / f, 1 / f
-        for more in ("", f" Voff={1e-9 * v!r}", f" Vfwd={1e-6 * v!r}"):
+        # both halves of a triac read a sine that is right to 1e-9: less than a hundred times that is in its rounding
+        least = 1e-7 if converter.__name__.startswith("triac") else 1e-9
+        for more in ("", f" Voff={least * v!r}", f" Vfwd={1e-6 * v!r}"):
             what = f"{converter.__name__} at {v} V and {f} Hz{more}"
             done = run(program, "\n".join([what, MODELS.format(more=more), *cards,
                                            f".tran {period / 200!r} {stop!r} uic",
@@ -162,6 +164,45 @@ def limits(checker, program):
     checker.close(done.report["measurements"][0]["value"], 10.0, 1e-9, "no gate turns a thyristor off")
 
 
+def terminals(checker, program):
+    """The current of a triac is that of both halves; gates that last through the zeros of it, at any height."""
+    text = "a triac\nv1 in 0 sin(0 {v} {f})\nvg g b pulse(0 {high} {start!r} {edge!r} {edge!r} {width!r} {period!r})\n" \
+           "a1 in b g b tm\nr1 b 0 {r}\n.model tm triac{model}\n.tran {step!r} {stop!r}\n.save i(a1) i(r1)\n" \
+           ".meas tran both max abs(i(a1)-i(r1))\n.meas tran m avg i(r1)\n.meas tran rms rms i(r1)\n.end\n"
+    for v, f, r in ((10, 50, 10), (325, 60, 1e3), (0.1, 1e5, 50), (1e4, 16.7, 2)):
+        period = 1 / f
+        for high, width, model in ((1, 0.85, ""), (0.6, 0.85, ""), (2, 0.95, ""), (-1, 0.95, ""), (0.51, 0.9, ""),
+                                   (1, 0.85, f"(Ih={1e-2 * v / r!r})"), (1, 0.3, "")):
+            done = run_at(program, text.format(v=v, f=f, r=r, high=high, start=0.1 * period, edge=1e-7 * period,
+                                               width=width * period, period=period, step=period / 100,
+                                               stop=2 * period, model=model))
+            what = f"{v} V {f} Hz, gate {high} V for {width} periods{model}"
+            if not checker.check(done.status == 0, f"{what}: {done.stderr}"):
+                continue
+            got = {m["name"]: m["value"] for m in done.report["measurements"]}
+            checker.close(got["both"], 0, 1e-9 * v / r, f"{what}: i(a1) is i(r1)")
+            # to the zero behind the gate's end; from 0.9 periods on that is in the next one, which goes on from there
+            end = 0.5 if width < 0.4 else 1.0
+            two = [(0.1, 2.0)] if width >= 0.9 else [(0.1, end), (1.1, 1 + end)]
+            peak, tau = v / r, 2 * math.pi
+            mean = sum(peak * (math.cos(tau * a) - math.cos(tau * b)) / tau for a, b in two) / 2
+            if "Ih" not in model:
+                checker.close(got["m"], mean, 3e-6 * peak, f"{what}: the mean")
+
+
+def shorts(checker, program):
+    """The current of a short that a formula reads: of one that measures, of a terminal."""
+    for card, read in (("r0 a b 0", "i(r0)"), ("c0 a b 1u rpar=1k ic=0", "i(c0)"), ("r0 b a 0", "-i(r0)")):
+        for formula, value in (("{i}", 1), ("limit(1e5*{i},-1,1)", None), ("abs(2*{i})", 2), ("1e3*{i}", 1e3)):
+            text = f"a short\nv1 a 0 sin(0 10 50)\n{card}\nr1 b 0 10\nb1 c 0 V={formula.format(i=read)}\nr2 c 0 1\n" \
+                   ".tran 1m 40m uic\n.save v(c) i(r1)\n.meas tran m max v(c)\n.meas tran i max i(r1)\n.end\n"
+            done = run_at(program, text)
+            if checker.check(done.status == 0, f"{card} {formula}: {done.stderr}"):
+                got = {m["name"]: m["value"] for m in done.report["measurements"]}
+                wanted = 1 if value is None else value * got["i"]
+                checker.close(got["m"], wanted, 1e-6 * wanted, f"{card} {formula}")
+
+
 def names(checker, program):
     """One element in results and events; in subcircuits; with a line of its own; wrong cards."""
     cards = "{0}\nv1 a 0 SIN(0 10 50)\nvg g 0 PULSE(0 1 5m 0 0 1m 20m)\n{1}\nr1 o 0 10\n.tran 0.1m 20m\n.end\n"
@@ -191,7 +232,7 @@ def names(checker, program):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("thyristors")
-    for part in (converters, limits, names):
+    for part in (converters, limits, terminals, shorts, names):
         part(checker, program)
     return checker.finish()
 

@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+"""MOSFETs, IGBTs and bipolar transistors as switches, against closed forms: what a card means, circuits, refusals.
+
+usage: transistors.py PROGRAM
+"""
+
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker, run  # noqa: E402
+
+# kT/q at 27 degrees, and the line that touches an exponential body diode of 1e-14 A at 1 A
+KT_Q = 300.15 * 1.380649e-23 / 1.602176634e-19
+BODY_OHM = KT_Q / (1 + 1e-14)
+BODY_VOLT = KT_Q * math.log1p(1e14) - BODY_OHM
+
+
+def run_at(program, text, quiet=True):
+    return run(program, text, method=None, tolerance=1e-10, quiet=quiet)
+
+
+def value_of(done, name):
+    return {m["name"]: m["value"] for m in done.report["measurements"]}[name]
+
+
+def pulse(low, high, delay, width, period):
+    return f"pulse({low!r} {high!r} {delay!r} 0 0 {width!r} {period!r})"
+
+
+# A model card, its element's parameters, the gate's high level, its resistance by hand.
+CARDS = (
+    (".model x NMOS(Vto=3 Kp=2)", "", 10, 1 / (2 * 7)),
+    (".model x NMOS(Vto=1 Kp=20u W=1m L=2u Rd=0.1 Rs=0.2)", "", 5, 1 / (20e-6 * 500 * 4) + 0.3),
+    (".model x NMOS Vto=1 Kp=20u", "W=1m L=2u", 5, 1 / (20e-6 * 500 * 4)),
+    (".model x NMOS (LEVEL=3 VTO=3.1 KP=20.71u W=0.94 L=2u RD=22m RS=20m RDS=444K TOX=100n CGDO=1n)", "", 10,
+     1 / (20.71e-6 * 0.94 / 2e-6 * 6.9) + 0.042),
+    (".model x NMOS(Level=1 Vto=2 Tox=50n Uo=650 W=10m L=1u)", "", 12,
+     1 / (650e-4 * 3.9 * 8.8541878128e-12 / 50e-9 * 1e4 * 10)),
+    (".model x VDMOS(Rg=3 Vto=4 Rd=30m Rs=10m Rb=20m Kp=25 lambda=.03 Cgdmax=1n mfg=IR Vds=100 Ron=77m Qg=72n)", "", 12,
+     1 / (25 * 8) + 0.04),
+    (".model x VDMOS nchan (Vto=2 Kp=10 mtriode=0.5)", "", 8, 1 / (10 * 0.5 * 6)),
+    (".model x VDMOS(Vto=2 Ron=33m)", "", 8, 0.033),
+    (".model x NMOS(Vto=2 Ron=33m Kp=5)", "", 8, 0.033),
+    (".model x VDMOS(Vto=2 Kp=10 Vgon=6)", "", 8, 1 / (10 * 4)),
+    (".model x NMOS(Vto=3 Kp=2)", "M=4", 10, 1 / (2 * 7) / 4),
+    ("* irf540n of the table", "", 10, 0.044),
+)
+
+
+def cards(checker, program):
+    """The resistance of a closed switch from a divider, at several scales of voltage."""
+    for card, parameters, high, ohms in CARDS:
+        for volts in (0.05, 12, 800):
+            name = "irf540n" if card[0] == "*" else "x"
+            text = f"a card\nv1 in 0 {volts}\nr1 in d 10\nvg g 0 {pulse(0, high, 1e-6, 5e-6, 1e-5)}\n" \
+                   f"m1 d g 0 0 {name} {parameters}\n{card}\n.tran 0.1u 20u\n.meas tran v find v(d) at=3u\n" \
+                   ".meas tran i find i(m1) at=3u\n.end\n"
+            done = run_at(program, text, quiet=False)
+            if checker.check(done.status == 0, f"{card}: {done.stderr}"):
+                on = volts * ohms / (10 + ohms)
+                checker.close(value_of(done, "v"), on, 1e-8 * volts, f"{card} at {volts} V")
+                checker.close(value_of(done, "i"), on / ohms, 1e-8 * volts, f"{card} at {volts} V: i")
+                checker.check("is a switch, on above v(gs)" in done.stderr, done.stderr)
+                checker.check(done.stderr.count("is a switch") == 1, done.stderr)
+
+
+def low_side(volts, r, ron):
+    on = volts / (r + ron)
+    return [f"v1 in 0 {volts}", f"r1 in d {r}", "m1 d g 0 n", f"vg g 0 {pulse(0, 10, 2e-6, 4e-6, 1e-5)}"], \
+        "avg i(m1)", 0.4 * on
+
+
+def high_side_nmos(volts, r, ron):
+    """The gate against the source, as a bootstrapped driver has it."""
+    return [f"v1 in 0 {volts}", f"r1 s 0 {r}", "m1 in g s n", f"vg g s {pulse(0, 10, 2e-6, 4e-6, 1e-5)}"], \
+        "avg v(s)", 0.4 * volts * r / (r + ron)
+
+
+def high_side_pmos(volts, r, ron):
+    low = volts - 10
+    return [f"v1 in 0 {volts}", f"r1 d 0 {r}", "m1 d g in in p", f"vg g 0 {pulse(volts, low, 2e-6, 4e-6, 1e-5)}"], \
+        "avg v(d)", 0.4 * volts * r / (r + ron)
+
+
+def body_diode(volts, r, ron):
+    """Backwards, with the gate off: the line of the body diode."""
+    i = max(0.0, (volts - BODY_VOLT) / (r + BODY_OHM))
+    return [f"v1 in 0 {-volts}", f"r1 in d {r}", "m1 d g 0 0 n", "vg g 0 0"], "avg i(m1)", -i
+
+
+def synchronous(volts, r, ron):
+    """Backwards with the gate on: channel and body diode share the current."""
+    i = volts / (r + ron)
+    if i * ron > BODY_VOLT:  # a knee: node voltage by the two branches in parallel
+        g = 1 / ron + 1 / BODY_OHM
+        v = (volts / r + BODY_VOLT / BODY_OHM) / (1 / r + g)
+        i = (volts - v) / r
+    return [f"v1 in 0 {-volts}", f"r1 in d {r}", "m1 d g 0 0 n", "vg g 0 10"], "avg i(m1)", -i
+
+
+def series_string(volts, r, ron):
+    return [f"v1 in 0 {volts}", f"r1 in d {r}", "m1 d g1 m n", "m2 m g2 0 n", f"vg1 g1 m {pulse(0, 10, 2e-6, 4e-6, 1e-5)}",
+            f"vg2 g2 0 {pulse(0, 10, 3e-6, 4e-6, 1e-5)}", f"r2 d m {1e6 * r}", f"r3 m 0 {1e6 * r}"], \
+        "find i(r1) at=4.5u", volts / (r + 2 * ron / (1 + ron / (1e6 * r)))
+
+
+def parallel(volts, r, ron):
+    return [f"v1 in 0 {volts}", f"r1 in d {r}", "m1 d g 0 n", "m2 d g 0 n m=2",
+            f"vg g 0 {pulse(0, 10, 2e-6, 4e-6, 1e-5)}"], "find i(m2) at=4u", volts / (r + ron / 3) * 2 / 3
+
+
+def h_bridge(volts, r, ron):
+    """The diagonals in turn, without a dead time: a square wave."""
+    first, second = pulse(0, 10, 0.0, 5e-6, 1e-5), pulse(10, 0, 0.0, 5e-6, 1e-5)
+    return [f"v1 in 0 {volts}", "m1 in g1 a n", "m2 a g2 0 n", "m3 in g3 b n", "m4 b g4 0 n", f"r1 a b {r}",
+            f"vg1 g1 a {first}", f"vg4 g4 0 {first}", f"vg3 g3 b {second}", f"vg2 g2 0 {second}"], \
+        "avg abs(i(r1))", volts / (r + 2 * ron)
+
+
+def freewheeling(volts, r, ron):
+    """A coil between the supply and the drain; an ideal diode takes its current: L/R is long, the mean 0.4 v/r."""
+    return [f"v1 in 0 {volts}", f"r1 in x {r}", f"l1 x d {r * 1e-5!r} ic=0", "d1 d in ideal", "m1 d g 0 n",
+            ".model ideal d(ron=0)", f"vg g 0 {pulse(0, 10, 0.0, 1e-3, 2e-3)}"], "find i(l1) at=8u", \
+        volts / (r + ron) * (1 - math.exp(-8e-6 * (r + ron) / (r * 1e-5)))
+
+
+def half_bridge(volts, r, ron):
+    """A dead time after the upper one: the current goes on through the lower one's body diode."""
+    coil, t = r * 1e-5, 4e-6
+    i0 = volts / (r + ron) * (1 - math.exp(-t * (r + ron) / coil))
+    end = -BODY_VOLT / (r + BODY_OHM)
+    tau = coil / (r + BODY_OHM)
+    i1 = max(0.0, end + (i0 - end) * math.exp(-1e-6 / tau))
+    return [f"v1 in 0 {volts}", "m1 in gh s n", "m2 s gl 0 n", f"l1 s x {coil!r} ic=0", f"r1 x 0 {r}",
+            f"vh gh s {pulse(0, 10, 0.0, t, 1e-3)}", f"vl gl 0 {pulse(0, 10, 5e-6, t, 1e-3)}"], "find i(l1) at=4.999999999u", i1
+
+
+def subcircuit(volts, r, ron):
+    return [f"v1 in 0 {volts}", f"r1 in d {r}", "x1 d g 0 half", f"vg g 0 {pulse(0, 10, 2e-6, 4e-6, 1e-5)}",
+            ".subckt half d g s", "m1 d g s s n", ".ends"], "avg i(x1.m1)", 0.4 * volts / (r + ron)
+
+
+def ramp(volts, r, ron):
+    """It closes where the gate passes its threshold, 2 V."""
+    return [f"v1 in 0 {volts}", f"r1 in d {r}", "m1 d g 0 n", "vg g 0 pwl(0 0 10u 10)"], \
+        f"when v(d)={volts / 2!r} fall=1", 2e-6
+
+
+CIRCUITS = (low_side, high_side_nmos, high_side_pmos, body_diode, synchronous, series_string, parallel, h_bridge,
+            freewheeling, half_bridge, subcircuit, ramp)
+
+
+def circuits(checker, program):
+    for circuit in CIRCUITS:
+        for volts, r, ron in ((12, 10, 0.05), (0.02, 1e3, 1), (400, 20, 0.3), (5e3, 500, 2), (48, 0.5, 2e-3)):
+            lines, what, wanted = circuit(volts, r, ron)
+            text = "\n".join([circuit.__name__, *lines, f".model n VDMOS(Vto=2 Ron={ron!r})",
+                              f".model p PMOS(Vto=-2 Ron={ron!r})", ".tran 0.1u 10u uic", f".meas tran m {what}", ".end", ""])
+            done = run_at(program, text)
+            case = f"{circuit.__name__} at {volts} V, {r} and {ron} ohm"
+            if checker.check(done.status == 0, f"{case}: {done.stderr}"):
+                checker.close(value_of(done, "m"), wanted, 3e-8 * abs(wanted) + 1e-12, case)
+
+
+def igbts(checker, program):
+    """A knee and a resistance; backwards only by the diode that the card has."""
+    chopper = "a chopper\nv1 in 0 {v}\nr1 in c {r}\nz1 c g 0 ig\nvg g 0 {gate}\n{card}\n.tran 0.1u 10u\n" \
+              ".meas tran m avg i(z1)\n.end\n"
+    for volts, r in ((600, 10), (24, 1), (3, 100), (5e3, 50), (0.5, 10)):
+        for card, knee, ron in ((".model ig NIGBT(Vt=5 Kp=2 Vce0=1.2)", 1.2, 1 / 20), (".model ig NIGBT", 0.8, 1 / (0.38 * 10.3)),
+                                (".model ig NIGBT(Vt=5 Vce0=1 Ron=20m Tau=1u Area=1e-5)", 1, 0.02)):
+            on = max(0.0, (volts - knee) / (r + ron))
+            done = run_at(program, chopper.format(v=volts, r=r, gate=pulse(0, 15, 2e-6, 4e-6, 1e-5), card=card))
+            if checker.check(done.status == 0, f"{card}: {done.stderr}"):
+                checker.close(value_of(done, "m"), 0.4 * on, 1e-8 * (volts / r), f"{card} at {volts} V")
+        for card, back in ((".model ig NIGBT(Vt=5 Vdiode=1.5 Rdiode=10m)", max(0.0, (volts - 1.5) / (r + 0.01))),
+                           (".model ig NIGBT(Vt=5)", 0.0)):
+            done = run_at(program, chopper.format(v=-volts, r=r, gate=pulse(0, 15, 2e-6, 4e-6, 1e-5), card=card))
+            if checker.check(done.status == 0, f"{card}: {done.stderr}"):
+                checker.close(value_of(done, "m"), -back, 1e-8 * (volts / r), f"{card} at {-volts} V")
+
+
+def bipolars(checker, program):
+    """A relay's driver: the base takes current, the collector is on; its coil's current goes into a diode."""
+    vt, at = KT_Q, 1e-3
+    vbe = vt * math.log1p(at / 1e-14) - vt * at / (at + 1e-14)
+    rbe = vt / (at + 1e-14)
+    for volts, r, rb in ((12, 100, 1e3), (5, 1e3, 1e4), (24, 50, 470), (1, 10, 100), (100, 1e3, 2.2e3)):
+        text = f"a relay\n.options bjt=switch\nv1 in 0 {volts}\nr1 in x {r}\nl1 x c {r * 1e-5!r} ic=0\nd1 c in ideal\n" \
+               f".model ideal d(ron=0)\nq1 c b 0 t\nrb g b {rb}\nvg g 0 {pulse(0, 5, 0.0, 8e-6, 1e-3)}\n" \
+               ".model t NPN(Bf=200 Is=1e-14 Rc=0.5 Re=0.1 Vaf=100)\n.tran 0.1u 20u uic\n.meas tran on find i(q1) at=7u\n" \
+               ".meas tran base find i(rb) at=7u\n.meas tran off find i(l1) at=15u\n.end\n"
+        pnp = text.replace("v1 in 0", "v1 0 in").replace("d1 c in", "d1 in c").replace("NPN", "PNP").replace("vg g 0", "vg 0 g")
+        for sign, cards_ in ((1, text), (-1, pnp)):
+            done = run_at(program, cards_)
+            if not checker.check(done.status == 0, f"{volts} V: {done.stderr}"):
+                continue
+            tau = r * 1e-5 / (r + 0.6)
+            on = volts / (r + 0.6) * (1 - math.exp(-7e-6 / tau))
+            peak = volts / (r + 0.6) * (1 - math.exp(-8e-6 / tau))
+            checker.close(value_of(done, "on"), sign * on, 1e-7 * on, f"{sign * volts} V: the collector")
+            checker.close(value_of(done, "base"), sign * (5 - vbe) / (rb + rbe), 1e-10, f"{sign * volts} V: the base")
+            checker.close(value_of(done, "off"), sign * peak * math.exp(-7e-6 / 1e-5), 1e-7 * on, f"{sign * volts} V: the diode")
+
+
+REFUSED = (
+    ("m1 d g 0 0 nothing", "there is no model 'nothing'"),
+    ("m1 d g nx", "has 3 or 4 nodes"),
+    ("m1 d g 0 x y nx", "has 3 or 4 nodes"),
+    ("m1 d g 0 in nx", "bulk of 'm1' is not on its source"),
+    ("m1 d d 0 0 nx", "gate of 'm1' is its drain"),
+    ("m1 d g 0 0 nx\nvs g 0 sin(5 0.1 1k)", "it is an amplifier, no switch"),
+    ("m1 d g 0 0 nx\nvs g 0 pulse(5 8 0 1u 1u 5u 10u)", "it is an amplifier, no switch"),
+    ("m1 in g d nx\nvs g 0 pulse(0 10 0 0 0 5u 10u)", "is a follower, no switch"),
+    ("m1 d g 0 0 px\nvs g 0 sin(-5 0.1 1k)", "it is an amplifier, no switch"),
+    ("m1 d g 0 0 nx foo=1\nvs g 0 1", "has no parameter 'foo'"),
+    ("m1 d g 0 0 nx m=0\nvs g 0 1", "must be positive"),
+    ("m1 d g 0 0 bs\n.model bs NMOS(level=14)", "is of integrated circuits"),
+    ("m1 d g 0 0 bs\n.model bs NMOS(Kp=0)", "'kp' must be positive"),
+    ("m1 d g 0 0 bs\n.model bs NMOS(Rd=-1)", "'rd' cannot be negative"),
+    ("m1 d g 0 0 dx\n.model dx D", "here NMOS, PMOS or VDMOS is wanted"),
+    ("z1 d g 0 mf\n.model mf NMF(Vto=-2)", "MESFET"),
+    ("z1 d g 0 nx", "here NIGBT is wanted"),
+    ("q1 d g 0 qx\n.model qx NPN", "need not be a switch"),
+    ("j1 d g 0 jx\n.model jx NJF", "not supported yet"),
+)
+
+
+def refusals(checker, program):
+    for lines, words in REFUSED:
+        done = run_at(program, f"refused\nv1 in 0 12\nr1 in d 10\nr2 g 0 1k\nr3 d 0 1meg\n{lines}\n.model nx NMOS(Vto=2 Kp=1)\n"
+                               ".model px PMOS(Vto=-2 Kp=1)\n.tran 1u 20u\n.end\n")
+        checker.check(done.status == 3 and words in done.stderr, f"{lines}: {done.status} {done.stderr}")
+    drive = "b1 g 0 V=u(sin(2*pi*1e5*time))*12"
+    done = run_at(program, f"unknown\nv1 in 0 12\nr1 in d 10\n{drive}\nm1 d g 0 nx\n.model nx NMOS(Vto=2 Kp=1)\n.tran 1u 20u\n.end\n", quiet=False)
+    checker.check(done.status == 0 and "at 10 V, as no source says" in done.stderr, done.stderr)
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    checker = Checker("transistors")
+    for part in (cards, circuits, igbts, bipolars, refusals):
+        part(checker, program)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
