@@ -26,6 +26,7 @@ enum {
     DUMP,
     ALL_SIGNALS,
     ENERGY,
+    LOSSES,
     ASCII,
     SPLIT_STEPS,
     AUDIT
@@ -47,6 +48,7 @@ static const struct option option[] = {
     {"dump", required_argument, NULL, DUMP},
     {"all-signals", no_argument, NULL, ALL_SIGNALS},
     {"energy", no_argument, NULL, ENERGY},
+    {"losses", optional_argument, NULL, LOSSES},
     {"audit", required_argument, NULL, AUDIT},
     {"ascii", no_argument, NULL, ASCII},
     {"split-steps", no_argument, NULL, SPLIT_STEPS},
@@ -167,6 +169,37 @@ static enum dalcs_status parse_audit(struct dalcs_arguments *arguments, const st
     return DALCS_E_OPTION;
 }
 
+/* FROM:TO, either of which may be left out; NULL: the netlist's window. */
+static enum dalcs_status parse_losses(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *text) {
+    arguments->losses = true;
+    arguments->losses_from = text == NULL ? (double)NAN : 0.0;
+    arguments->losses_to = INFINITY;
+    if (text == NULL) {
+        return DALCS_OK;
+    }
+    const char *colon = strchr(text, ':');
+    char from[64];
+    if (colon == NULL || (size_t)(colon - text) >= sizeof from) {
+        dalcs_cli_error(cli, "--losses: '%s' is not FROM:TO; write 10m:20m", text);
+        return DALCS_E_OPTION;
+    }
+    memcpy(from, text, (size_t)(colon - text));
+    from[colon - text] = '\0';
+    if (from[0] != '\0') {
+        DALCS_TRY(parse_number(cli, "--losses", from, &arguments->losses_from));
+    }
+    if (colon[1] != '\0') {
+        DALCS_TRY(parse_number(cli, "--losses", colon + 1, &arguments->losses_to));
+    }
+    if (!(arguments->losses_from >= 0.0 && arguments->losses_from < arguments->losses_to)) {
+        dalcs_cli_error(cli, "--losses: '%s' does not begin at 0 or later and before it ends",
+                        text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status take(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                               int code, char **argv) {
     switch (code) {
@@ -211,6 +244,8 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     case ENERGY:
         arguments->energy = true;
         return DALCS_OK;
+    case LOSSES:
+        return parse_losses(arguments, cli, optarg);
     case AUDIT:
         return parse_audit(arguments, cli, optarg);
     case ASCII:

@@ -2,6 +2,7 @@
 #include "run.h"
 
 #include "arguments.h"
+#include "losses_text.h"
 #include "measurements.h"
 #include "outputs.h"
 #include "paths.h"
@@ -68,6 +69,12 @@ static const char help[] =
     "      --audit HOW     check the waveform against the netlist's devices: sample (default;\n"
     "                      each segment at one instant, some closely), full or off\n"
     "      --energy        print where the energy came from and where it went\n"
+    "      --losses[=FROM:TO]\n"
+    "                      print what each element takes on average from one time to another, "
+    "the\n"
+    "                      efficiency, power factors and THD (default: the window of .losses, "
+    "else\n"
+    "                      all of the run)\n"
     "      --ascii         write raw files as text (default: .options filetype, else binary)\n"
     "      --dialect ngspice|ltspice|xyce\n"
     "                      for which simulator the netlist was written (default: what it shows)\n"
@@ -139,7 +146,7 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
                   {"--step", arguments->step > 0.0},     {"--compress", arguments->compress > 0.0},
                   {"--fill", arguments->fill > 0.0},     {"--curve", arguments->curve != NULL},
                   {"--at", arguments->at != NULL},       {"--plot", arguments->plot != NULL},
-                  {"--energy", arguments->energy}};
+                  {"--energy", arguments->energy},       {"--losses", arguments->losses}};
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
         const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
@@ -189,6 +196,9 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
     dalcs_summary_write_jumps(out, report);
     if (arguments->energy) {
         dalcs_summary_write_energy(out, report);
+    }
+    for (size_t k = 0; k < report->n_losses; k++) {
+        dalcs_losses_text_write(out, &report->losses[k]);
     }
     if (!run->has_script) {
         dalcs_measurements_write(out, report);
@@ -268,7 +278,12 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
                                      const struct dalcs_arguments *arguments,
                                      struct dalcs_session *session) {
     size_t n_written = 0;
-    enum dalcs_status status = dalcs_verb_read(session, arguments->netlist, arguments->dialect);
+    enum dalcs_status status = DALCS_OK;
+    if (arguments->losses) {
+        status = dalcs_session_ask_losses(session, arguments->losses_from, arguments->losses_to);
+    }
+    status = status != DALCS_OK ? status
+                                : dalcs_verb_read(session, arguments->netlist, arguments->dialect);
     dalcs_cli_write_messages(cli, session, &n_written, arguments->quiet);
     if (status != DALCS_OK) {
         if (n_written == 0) {

@@ -10,6 +10,7 @@
 #include "energy.h"
 #include "extremes.h"
 #include "filling.h"
+#include "losses_run.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -156,6 +157,9 @@ static enum dalcs_status start_transient(struct dalcs_run *r, struct dalcs_euler
     DALCS_TRY(dalcs_euler_operating_point(e, true));
     if (sources_jump(c, 0.0)) {
         DALCS_TRY(dalcs_recorder_before_start(&r->s->recorder, e));
+        if (r->losses != NULL) {
+            dalcs_losses_run_before_start(r->losses);
+        }
     }
     return start_at(e, radau, NULL);
 }
@@ -541,6 +545,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     struct dalcs_radau radau = {0};
     struct dalcs_energy energy = {0};
     struct dalcs_measures measures = {0};
+    struct dalcs_losses_run losses = {0};
     struct dalcs_audit_run audit = {0};
     struct dalcs_schedule schedule = choose_schedule(r);
     warn_of_coarse_rows(r, &schedule, isinf(r->fill) ? schedule.start : INFINITY);
@@ -549,7 +554,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     s->recorder.n_shown = s->circuit.n_shown;
     DALCS_TRY(dalcs_tangents_watch(r));
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, r->h, stop));
-    e.detect_jumps = r->options->record || dalcs_run_keeps_ledger(r);
+    e.detect_jumps = r->options->record || dalcs_run_keeps_ledger(r) || dalcs_run_wants_losses(r);
     e.jump_user = r;
     e.on_jump = dalcs_note_jump;
     e.open_user = &r->undetermined;
@@ -568,6 +573,10 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
                                                     .stop = stop};
         status = dalcs_radau_setup(&radau, &e, &options, &r->osnsp);
     }
+    if (status == DALCS_OK && dalcs_run_wants_losses(r)) {
+        status =
+            dalcs_losses_run_start(&losses, r, &e, is_euler, is_euler ? 0.0 : radau.resolution);
+    }
     if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {
         status = dalcs_energy_setup(&energy, &e, is_euler ? NULL : &radau);
     }
@@ -578,6 +587,9 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
         status = walk(r, &e, is_euler ? NULL : &radau, &measures, &audit);
         enum dalcs_status reported = dalcs_measures_report(&measures, r, status);
         status = status == DALCS_OK ? reported : status;
+    }
+    if (status == DALCS_OK && losses.wanted) {
+        status = dalcs_losses_run_report(&losses, r);
     }
     if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {
         status = close_ledger(r, &energy, &e, is_euler ? NULL : &radau);
@@ -595,6 +607,8 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     add_radau_work(r, &radau);
     dalcs_audit_run_finish(&audit);
     dalcs_measures_finish(&measures);
+    dalcs_losses_run_finish(&losses);
+    r->losses = NULL;
     dalcs_energy_finish(&energy);
     dalcs_radau_finish(&radau);
     dalcs_euler_finish(&e);
