@@ -127,7 +127,8 @@ struct dalcs_builder {
     size_t n_fouriers;
     size_t fourier_capacity;
     size_t n_switchlosses;
-    bool noted_caret, noted_log; /* in a formula */
+    const struct dalcs_token *switchloss; /* the first .switchloss, NULL before */
+    bool noted_caret, noted_log;          /* in a formula */
 
     const struct dalcs_source_line *kept_line; /* the last line copied by keep_location */
     const char *kept_text;

@@ -168,7 +168,15 @@ static int measure(struct dalcs_builder *builder, struct dalcs_signal signal, co
 
 void dalcs_losses_collect(struct dalcs_builder *builder) {
     struct dalcs_circuit *circuit = builder->circuit;
-    if (!take_request(builder) || circuit->losses == NULL || !circuit->losses->present) {
+    if (!take_request(builder)) {
+        return;
+    }
+    if (circuit->losses == NULL || !circuit->losses->present) {
+        if (builder->switchloss != NULL) {
+            dalcs_builder_note(builder, builder->switchloss,
+                               "add a line .losses, or run with --losses",
+                               "nobody asks for losses: this is left out");
+        }
         return;
     }
     struct dalcs_loss_device *device =

@@ -178,6 +178,6 @@ void dalcs_switchloss_collect(struct dalcs_builder *builder) {
 }
 
 void dalcs_switchloss_count(struct dalcs_builder *builder, const struct dalcs_card *card) {
-    (void)card;
+    builder->switchloss = builder->switchloss == NULL ? card->token : builder->switchloss;
     builder->n_switchlosses++;
 }

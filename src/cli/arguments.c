@@ -27,6 +27,7 @@ enum {
     ALL_SIGNALS,
     ENERGY,
     LOSSES,
+    LOSSES_PLOT,
     ASCII,
     SPLIT_STEPS,
     AUDIT
@@ -49,6 +50,7 @@ static const struct option option[] = {
     {"all-signals", no_argument, NULL, ALL_SIGNALS},
     {"energy", no_argument, NULL, ENERGY},
     {"losses", optional_argument, NULL, LOSSES},
+    {"losses-plot", required_argument, NULL, LOSSES_PLOT},
     {"audit", required_argument, NULL, AUDIT},
     {"ascii", no_argument, NULL, ASCII},
     {"split-steps", no_argument, NULL, SPLIT_STEPS},
@@ -200,6 +202,17 @@ static enum dalcs_status parse_losses(struct dalcs_arguments *arguments,
     return DALCS_OK;
 }
 
+static enum dalcs_status parse_losses_plot(struct dalcs_arguments *arguments,
+                                           const struct dalcs_cli *cli, const char *path) {
+    arguments->losses_plot = path;
+    if (!dalcs_figure_can_write(path)) {
+        dalcs_cli_error(
+            cli, "--losses-plot: cannot tell the format of '%s': name it .svg, .png or .pdf", path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status take(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                               int code, char **argv) {
     switch (code) {
@@ -246,6 +259,8 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return DALCS_OK;
     case LOSSES:
         return parse_losses(arguments, cli, optarg);
+    case LOSSES_PLOT:
+        return parse_losses_plot(arguments, cli, optarg);
     case AUDIT:
         return parse_audit(arguments, cli, optarg);
     case ASCII:
@@ -303,7 +318,7 @@ static enum dalcs_status add_defaults(struct dalcs_arguments *arguments,
 
 enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, int argc, char **argv) {
-    *arguments = (struct dalcs_arguments){0};
+    *arguments = (struct dalcs_arguments){.losses_from = NAN, .losses_to = INFINITY};
     arguments->output = dalcs_alloc((size_t)argc, sizeof *arguments->output);
     if (!arguments->output) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));

@@ -22,6 +22,7 @@ struct dalcs_arguments {
     char *default_output, *default_dump; /* NULL: not needed */
     bool quiet, all_signals, energy;
     bool losses;
+    const char *losses_plot;       /* NULL: none */
     double losses_from, losses_to; /* s; the first NAN: the netlist's window */
     enum dalcs_audit_mode audit;
     bool ascii; /* raw files as text */

@@ -2,6 +2,7 @@
 #include "run.h"
 
 #include "arguments.h"
+#include "losses_chart.h"
 #include "losses_text.h"
 #include "measurements.h"
 #include "outputs.h"
@@ -75,6 +76,8 @@ static const char help[] =
     "                      efficiency, power factors and THD (default: the window of .losses, "
     "else\n"
     "                      all of the run)\n"
+    "      --losses-plot FILE\n"
+    "                      draw what each element loses as bars, .svg, .png or .pdf\n"
     "      --ascii         write raw files as text (default: .options filetype, else binary)\n"
     "      --dialect ngspice|ltspice|xyce\n"
     "                      for which simulator the netlist was written (default: what it shows)\n"
@@ -221,6 +224,24 @@ static double fill_of(const struct dalcs_arguments *arguments) {
     return prints_tables ? (double)INFINITY : arguments->fill;
 }
 
+/* Of the first run that has any. */
+static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
+                                     const struct dalcs_arguments *arguments,
+                                     const struct dalcs_report *report) {
+    char message[DALCS_GNUPLOT_MESSAGE] = "there is no .tran";
+    enum dalcs_status status = DALCS_E_IO;
+    if (report->n_losses > 0) {
+        status = dalcs_losses_chart_draw(&report->losses[0], report->title, arguments->losses_plot,
+                                         message);
+    }
+    if (status != DALCS_OK) {
+        dalcs_cli_error(cli, "cannot draw '%s': %s", arguments->losses_plot, message);
+    } else if (!arguments->quiet) {
+        fprintf(cli->out, "  wrote     %s\n", arguments->losses_plot);
+    }
+    return status;
+}
+
 /* Runs a session that has read its netlist and ends all files. */
 static enum dalcs_status run_session(struct run *run, struct dalcs_session *session,
                                      const struct dalcs_arguments *arguments,
@@ -271,6 +292,9 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     write_summary(run, arguments, report, status);
     enum dalcs_status files = dalcs_outputs_close(
         &run->outputs, run->cli, arguments->quiet ? NULL : run->cli->out, report, status);
+    if (status == DALCS_OK && arguments->losses_plot != NULL) {
+        status = draw_losses(run->cli, arguments, report);
+    }
     return status == DALCS_OK ? files : status;
 }
 
@@ -279,7 +303,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
                                      struct dalcs_session *session) {
     size_t n_written = 0;
     enum dalcs_status status = DALCS_OK;
-    if (arguments->losses) {
+    if (arguments->losses || arguments->losses_plot != NULL) {
         status = dalcs_session_ask_losses(session, arguments->losses_from, arguments->losses_to);
     }
     status = status != DALCS_OK ? status

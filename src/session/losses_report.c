@@ -132,6 +132,11 @@ static bool is_named(const int *list, int n, int device) {
     return found;
 }
 
+/* No part of another element, such as rpar(l1). */
+static bool is_resistor_card(const struct dalcs_device *d) {
+    return d->kind == DALCS_RESISTOR && strchr(d->name, '(') == NULL;
+}
+
 /* W of what is named, or else of what gives (in) or, resistors and sources, takes (out). */
 static enum dalcs_status add_side(struct account *a, bool is_out, double *power,
                                   const char **names) {
@@ -147,10 +152,10 @@ static enum dalcs_status add_side(struct account *a, bool is_out, double *power,
         }
         const struct dalcs_element_losses *element = &a->element[e++];
         const bool is_source = strcmp(element->kind, "source") == 0;
-        const bool may = n > 0
-                             ? is_named(list, n, k)
-                             : (is_source || (is_out && strcmp(element->kind, "resistor") == 0)) &&
-                                   sign * element->power > 0.0;
+        const bool may =
+            n > 0 ? is_named(list, n, k)
+                  : (is_source || (is_out && is_resistor_card(&a->sum->circuit->device[k]))) &&
+                        sign * element->power > 0.0;
         if (may) {
             *power += sign * element->power;
             *names = dalcs_arena_printf(&a->r->s->arena, "%s%s%s", *names,

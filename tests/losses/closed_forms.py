@@ -6,7 +6,9 @@ usage: closed_forms.py PROGRAM
 
 import math
 import pathlib
+import shutil
 import sys
+import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import dalcs_program  # pylint: disable=wrong-import-position,import-error
@@ -422,11 +424,26 @@ R1 a 0 2
     checker.check((r.sum["from"], r.sum["to"]) == (0.02, 0.04), f"window: {r.sum['from']}")
 
 
+def chart(program, checker):
+    """Bars, the largest loss on top; loads are none. A name that says no format is refused."""
+    if shutil.which("gnuplot") is None:
+        return
+    netlist = BUCK.replace("{FROM}", "10u").replace("{TO}", "100u")
+    with tempfile.TemporaryDirectory() as folder:
+        picture = pathlib.Path(folder) / "losses.svg"
+        r = Losses(program, checker, netlist, options=("--losses-plot", str(picture)))
+        text = picture.read_text() if picture.exists() else ""
+        checker.check("<svg" in text and ">s1<" in text and ">d1<" in text and ">i1<" not in text,
+                      f"chart: {r.run.stderr} {text[:200]}")
+    run = dalcs_program.run(program, netlist, options=("--losses-plot", "losses.txt"))
+    checker.check(run.status == 2 and ".svg, .png or .pdf" in run.stderr, f"chart: {run.stderr}")
+
+
 def main():
     checker = dalcs_program.Checker("losses")
     for case in (divider, sine_on_resistor, sine_on_coil, half_wave, six_pulse, square_wave, buck,
                  windows, rc_part, not_whole, coupled, winding, charge_jump, source_jump, flux_jump,
-                 at_start, euler, asked_outside):
+                 at_start, euler, asked_outside, chart):
         case(sys.argv[1], checker)
     return checker.finish()
 
