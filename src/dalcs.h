@@ -82,6 +82,12 @@ const char *dalcs_dialect_name(size_t index);
 enum dalcs_status dalcs_session_set_dialect(struct dalcs_session *session,
                                             const char *name) DALCS_MUST_CHECK;
 
+/* Asks, before a netlist is read, for the losses of its .tran from one time to another (s; `to` may be
+ * INFINITY, the end of the run), or, where `from` is not a number, over the window of its .losses card, else
+ * over all of the run. */
+enum dalcs_status dalcs_session_ask_losses(struct dalcs_session *session, double from,
+                                           double to) DALCS_MUST_CHECK;
+
 /* Reads a netlist from a file, or from text[0..length-1] that messages call `name`. A session reads
  * one netlist, once: a second call is DALCS_E_OPTION. Files that it includes are read too, relative to
  * the folder of `path` or `name`. Errors in the netlist: DALCS_E_NETLIST, all
@@ -465,6 +471,45 @@ struct dalcs_fourier {
     const double *phase;     /* [n_harmonics] degrees */
 };
 
+/* What an element took over a window of the run, by voltage from its first node to its second and the current
+ * that flows so inside it. */
+struct dalcs_element_losses {
+    const char *element;
+    const char
+        *kind; /* "source", "resistor", "winding" (Rser of a coil), "diode", "switch", "coil",
+                         "capacitor" */
+    double v_average, v_rms, i_average, i_rms; /* V, A */
+    double power;         /* W, the mean of what it takes; what a source delivers is negative */
+    double jumps;         /* J of that, at instants when states jumped */
+    double stored_change; /* J, of coils and capacitors */
+    double switching;     /* J by the tables of .switchloss: the circuit knows nothing of them */
+    long n_on, n_off;     /* of diodes and switches: how often they turned on and off */
+    long n_clamped;       /* of these, those outside their table, at its edge */
+    double frequency;     /* Hz, of a source with a period; else 0 */
+    double
+        power_factor; /* of a source over whole periods, else not a number; so with the next two */
+    double displacement; /* the cosine between the fundamentals of voltage and current */
+    double thd; /* rms of what is neither constant nor fundamental, over the fundamental's */
+};
+
+/* Where the power of a .tran went, between two times. */
+struct dalcs_losses {
+    const char *step; /* as of a measurement */
+    double from, to;  /* s */
+    size_t n_elements;
+    const struct dalcs_element_losses *element;
+    double sources, resistors, windings, diodes, switches; /* J; the first delivered */
+    double jumps;         /* J lost in jumps that no switch or diode carried */
+    double stored_change; /* J */
+    double balance;       /* J: the sources less all the others */
+    double turnover;      /* J: the sum of all that was moved, whatever its sign */
+    double switching;     /* J, by tables */
+    double input, output; /* W */
+    double efficiency;    /* output over input and what switching takes; not a number where neither
+                             has a meaning */
+    const char *inputs, *outputs; /* which elements these are of */
+};
+
 /* What a run did. Strings and arrays are borrowed from the session and live until its next run. */
 struct dalcs_report {
     const char *netlist; /* path or name */
@@ -546,6 +591,8 @@ struct dalcs_report {
     const struct dalcs_measurement *measurement;
     size_t n_fourier;
     const struct dalcs_fourier *fourier;
+    size_t n_losses; /* one for each .tran that was asked for its losses */
+    const struct dalcs_losses *losses;
 
     /* J, over .tran: sources = resistors + diodes + jumps + stored_change + method + balance */
     struct {

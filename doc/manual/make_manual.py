@@ -25,12 +25,13 @@ import sys
 import textwrap
 
 ITEM = re.compile(r"^( {2,6})(\S.*?)(?:  +(\S.*))?$")
-OPTION = re.compile(r"^(?:(-\w)(?:, )?)?(--[\w-]+)?(?:[ =](\S.*))?$")
+OPTION = re.compile(r"^(?:(-\w)(?:, )?)?(--[\w-]+)?(?:(?:[ =]|(?=\[=))(\S.*))?$")
 
 
 class Option:
     def __init__(self, left, text):
-        self.short, self.long, self.value = OPTION.match(left).groups()
+        self.short, self.long, self.shown = OPTION.match(left).groups()
+        self.value = None if (self.shown or "").startswith("[") else self.shown  # of --x[=Y] none needs to follow
         self.text = text
 
     @property
@@ -107,7 +108,7 @@ def sentences(text):
 def option_head(left):
     option = Option(left, "")
     names = " , ".join("Fl " + roff(name[1:]) for name in option.names)
-    return names + (" Ar " + roff(option.value) if option.value else "")
+    return names + (" Ar " + roff(option.shown) if option.shown else "")
 
 
 def page_body(page):

@@ -131,7 +131,9 @@ struct dalcs_builder {
     struct dalcs_fourier_card *fourier; /* heap */
     size_t n_fouriers;
     size_t fourier_capacity;
-    bool noted_caret, noted_log; /* in a formula */
+    size_t n_switchlosses;
+    const struct dalcs_token *switchloss; /* the first .switchloss, NULL before */
+    bool noted_caret, noted_log;          /* in a formula */
 
     const struct dalcs_source_line *kept_line; /* the last line copied by keep_location */
     const char *kept_text;
@@ -502,6 +504,11 @@ bool dalcs_signal_formula_difference(struct dalcs_builder *builder,
                                      const struct dalcs_signal_formula *right,
                                      struct dalcs_signal_formula *difference);
 void dalcs_measure_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_losses_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+void dalcs_switchloss_count(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* What .losses or the command line asks of all devices, once these are known. */
+void dalcs_losses_collect(struct dalcs_builder *builder);
+void dalcs_switchloss_collect(struct dalcs_builder *builder);
 void dalcs_fourier_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* What formulas name: a signal that is recorded anyway, or one more behind those. */
 enum dalcs_status dalcs_measured_collect(struct dalcs_builder *builder) DALCS_MUST_CHECK;

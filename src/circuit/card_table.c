@@ -51,6 +51,8 @@ static const struct dot_card DOT_CARDS[] = {
     {".measure", DALCS_CARD_MEASURE, NULL, NULL, NOTHING, NULL},
     {".four", DALCS_CARD_FOURIER, NULL, NULL, NOTHING, NULL},
     {".fourier", DALCS_CARD_FOURIER, NULL, NULL, NOTHING, NULL},
+    {".losses", DALCS_CARD_LOSSES, NULL, NULL, NOTHING, NULL},
+    {".switchloss", DALCS_CARD_SWITCHLOSS, NULL, NULL, NOTHING, NULL},
     {".backanno", DALCS_CARD_NONE, NULL, NULL, NOTHING, NULL},
 
     {".data", DALCS_CARD_NONE, "tables of parameters",

@@ -143,6 +143,8 @@ static const struct {
     [DALCS_CARD_STEP] = {REFERENCES, dalcs_sweep_parse_step},
     [DALCS_CARD_MEASURE] = {MEASURES, dalcs_measure_parse},
     [DALCS_CARD_FOURIER] = {MEASURES, dalcs_fourier_parse},
+    [DALCS_CARD_LOSSES] = {MEASURES, dalcs_losses_parse},
+    [DALCS_CARD_SWITCHLOSS] = {MEASURES, dalcs_switchloss_count},
 };
 
 static enum dalcs_status read_cards(struct dalcs_builder *builder, const unsigned char *class_of) {
@@ -256,6 +258,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     if (builder->n_signals == 0) {
         dalcs_signals_add_default(builder);
     }
+    dalcs_losses_collect(builder);
     if (builder->out_of_memory) {
         return DALCS_E_NOMEM;
     }

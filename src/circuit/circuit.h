@@ -6,6 +6,7 @@
 #define DALCS_CIRCUIT_H
 
 #include "diag.h"
+#include "losses.h"
 #include "measurement.h"
 #include "stimulus.h"
 #include "sweep.h"
@@ -173,6 +174,7 @@ struct dalcs_circuit {
     struct dalcs_measure_card *measure; /* .meas, in their order */
     int n_fouriers;
     struct dalcs_fourier_card *fourier; /* .four, one for each signal */
+    struct dalcs_losses_card *losses;   /* NULL: not asked for */
     struct dalcs_transient transient;
     struct dalcs_periodic_card periodic;
     bool operating_point; /* .op */

@@ -26,6 +26,8 @@ enum {
     DUMP,
     ALL_SIGNALS,
     ENERGY,
+    LOSSES,
+    LOSSES_PLOT,
     ASCII,
     SPLIT_STEPS,
     AUDIT,
@@ -48,6 +50,8 @@ static const struct option option[] = {
     {"dump", required_argument, NULL, DUMP},
     {"all-signals", no_argument, NULL, ALL_SIGNALS},
     {"energy", no_argument, NULL, ENERGY},
+    {"losses", optional_argument, NULL, LOSSES},
+    {"losses-plot", required_argument, NULL, LOSSES_PLOT},
     {"audit", required_argument, NULL, AUDIT},
     {"ascii", no_argument, NULL, ASCII},
     {"split-steps", no_argument, NULL, SPLIT_STEPS},
@@ -178,6 +182,56 @@ static enum dalcs_status parse_period(struct dalcs_arguments *arguments,
     return dalcs_verb_take_positive(cli, "--period", text, &arguments->period);
 }
 
+/* FROM:TO, either of which may be left out; NULL: the netlist's window. */
+static enum dalcs_status parse_losses(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *text) {
+    if (arguments->steady) {
+        dalcs_cli_error(cli, "--losses is one of 'dalcs run'");
+        return DALCS_E_OPTION;
+    }
+    arguments->losses = true;
+    arguments->losses_from = text == NULL ? (double)NAN : 0.0;
+    arguments->losses_to = INFINITY;
+    if (text == NULL) {
+        return DALCS_OK;
+    }
+    const char *colon = strchr(text, ':');
+    char from[64];
+    if (colon == NULL || (size_t)(colon - text) >= sizeof from) {
+        dalcs_cli_error(cli, "--losses: '%s' is not FROM:TO; write 10m:20m", text);
+        return DALCS_E_OPTION;
+    }
+    memcpy(from, text, (size_t)(colon - text));
+    from[colon - text] = '\0';
+    if (from[0] != '\0') {
+        DALCS_TRY(parse_number(cli, "--losses", from, &arguments->losses_from));
+    }
+    if (colon[1] != '\0') {
+        DALCS_TRY(parse_number(cli, "--losses", colon + 1, &arguments->losses_to));
+    }
+    if (!(arguments->losses_from >= 0.0 && arguments->losses_from < arguments->losses_to)) {
+        dalcs_cli_error(cli, "--losses: '%s' does not begin at 0 or later and before it ends",
+                        text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status parse_losses_plot(struct dalcs_arguments *arguments,
+                                           const struct dalcs_cli *cli, const char *path) {
+    if (arguments->steady) {
+        dalcs_cli_error(cli, "--losses-plot is one of 'dalcs run'");
+        return DALCS_E_OPTION;
+    }
+    arguments->losses_plot = path;
+    if (!dalcs_figure_can_write(path)) {
+        dalcs_cli_error(
+            cli, "--losses-plot: cannot tell the format of '%s': name it .svg, .png or .pdf", path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status take(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                               int code, char **argv) {
     switch (code) {
@@ -222,6 +276,10 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
     case ENERGY:
         arguments->energy = true;
         return DALCS_OK;
+    case LOSSES:
+        return parse_losses(arguments, cli, optarg);
+    case LOSSES_PLOT:
+        return parse_losses_plot(arguments, cli, optarg);
     case AUDIT:
         return parse_audit(arguments, cli, optarg);
     case PERIOD:
@@ -281,7 +339,8 @@ static enum dalcs_status add_defaults(struct dalcs_arguments *arguments,
 
 enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, int argc, char **argv) {
-    *arguments = (struct dalcs_arguments){.steady = strcmp(argv[0], "steady") == 0};
+    *arguments = (struct dalcs_arguments){
+        .steady = strcmp(argv[0], "steady") == 0, .losses_from = NAN, .losses_to = INFINITY};
     arguments->output = dalcs_alloc((size_t)argc, sizeof *arguments->output);
     if (!arguments->output) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));

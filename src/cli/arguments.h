@@ -21,6 +21,9 @@ struct dalcs_arguments {
     const char *dump;
     char *default_output, *default_dump; /* NULL: not needed */
     bool quiet, all_signals, energy;
+    bool losses;
+    const char *losses_plot;       /* NULL: none */
+    double losses_from, losses_to; /* s; the first NAN: the netlist's window */
     enum dalcs_audit_mode audit;
     bool ascii; /* raw files as text */
     bool batch; /* as ngspice -b: outputs are raw files whatever their names, tables are printed

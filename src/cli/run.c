@@ -2,6 +2,8 @@
 #include "run.h"
 
 #include "arguments.h"
+#include "losses_chart.h"
+#include "losses_text.h"
 #include "measurements.h"
 #include "outputs.h"
 #include "paths.h"
@@ -39,7 +41,15 @@ static const char help[] =
     "ideal unless the netlist says otherwise. FILE may also be a system given by its matrices: "
     "'dalcs\n"
     "equations --help'.\n"
-    "\n" DALCS_RUN_OPTIONS "\n"
+    "\n" DALCS_RUN_OPTIONS "      --losses[=FROM:TO]\n"
+    "                      print what each element takes on average from one time to another, "
+    "the\n"
+    "                      efficiency, power factors and THD (default: the window of .losses, "
+    "else\n"
+    "                      all of the run)\n"
+    "      --losses-plot FILE\n"
+    "                      draw what each element loses as bars, .svg, .png or .pdf\n"
+    "\n"
     "Ctrl-C, SIGTERM and a full disk end a run early: its rows so far are then in out.partial.csv\n"
     "(for -o out.csv), and an out.csv of an earlier run stays as it is.\n"
     "\n"
@@ -104,7 +114,7 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
                   {"--step", arguments->step > 0.0},     {"--compress", arguments->compress > 0.0},
                   {"--fill", arguments->fill > 0.0},     {"--curve", arguments->curve != NULL},
                   {"--at", arguments->at != NULL},       {"--plot", arguments->plot != NULL},
-                  {"--energy", arguments->energy}};
+                  {"--energy", arguments->energy},       {"--losses", arguments->losses}};
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
         const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
@@ -164,6 +174,9 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
     if (arguments->energy) {
         dalcs_summary_write_energy(out, report);
     }
+    for (size_t k = 0; k < report->n_losses; k++) {
+        dalcs_losses_text_write(out, &report->losses[k]);
+    }
     if (!run->has_script) {
         dalcs_measurements_write(out, report);
     }
@@ -183,6 +196,24 @@ static void tell_measured(void *user, struct dalcs_session *session, enum dalcs_
 static double fill_of(const struct dalcs_arguments *arguments) {
     bool prints_tables = arguments->batch && arguments->n_outputs == 0;
     return prints_tables ? (double)INFINITY : arguments->fill;
+}
+
+/* Of the first run that has any. */
+static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
+                                     const struct dalcs_arguments *arguments,
+                                     const struct dalcs_report *report) {
+    char message[DALCS_GNUPLOT_MESSAGE] = "there is no .tran";
+    enum dalcs_status status = DALCS_E_IO;
+    if (report->n_losses > 0) {
+        status = dalcs_losses_chart_draw(&report->losses[0], report->title, arguments->losses_plot,
+                                         message);
+    }
+    if (status != DALCS_OK) {
+        dalcs_cli_error(cli, "cannot draw '%s': %s", arguments->losses_plot, message);
+    } else if (!arguments->quiet) {
+        fprintf(cli->out, "  wrote     %s\n", arguments->losses_plot);
+    }
+    return status;
 }
 
 /* Runs a session that has read its netlist and ends all files. */
@@ -237,6 +268,9 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     write_summary(run, arguments, report, status);
     enum dalcs_status files = dalcs_outputs_close(
         &run->outputs, run->cli, arguments->quiet ? NULL : run->cli->out, report, status);
+    if (status == DALCS_OK && arguments->losses_plot != NULL) {
+        status = draw_losses(run->cli, arguments, report);
+    }
     return status == DALCS_OK ? files : status;
 }
 
@@ -244,7 +278,12 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
                                      const struct dalcs_arguments *arguments,
                                      struct dalcs_session *session) {
     size_t n_written = 0;
-    enum dalcs_status status = dalcs_verb_read(session, arguments->netlist, arguments->dialect);
+    enum dalcs_status status = DALCS_OK;
+    if (arguments->losses || arguments->losses_plot != NULL) {
+        status = dalcs_session_ask_losses(session, arguments->losses_from, arguments->losses_to);
+    }
+    status = status != DALCS_OK ? status
+                                : dalcs_verb_read(session, arguments->netlist, arguments->dialect);
     dalcs_cli_write_messages(cli, session, &n_written, arguments->quiet);
     if (status != DALCS_OK) {
         if (n_written == 0) {

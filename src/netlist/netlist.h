@@ -68,11 +68,18 @@ struct dalcs_card {
     double parallel; /* so many of them, by m= of subcircuit calls; 0: one */
 };
 
-/* Zero-initialise, set the first three if wanted, read, then finish. */
+/* The losses that a command line asks for, beside the netlist (circuit/losses.h). */
+struct dalcs_losses_request {
+    bool is_asked, has_window;
+    double from, to; /* s; INFINITY: the end of the run */
+};
+
+/* Zero-initialise, set the first four if wanted, read, then finish. */
 struct dalcs_netlist {
     bool no_includes;             /* refuse .include and .lib: no other file is read */
     size_t most_cards;            /* that subcircuit calls may expand to; 0: DALCS_MOST_CARDS */
     struct dalcs_dialect dialect; /* once it is read: what it is written in */
+    struct dalcs_losses_request losses;
 
     const char *name; /* the file's path, or what read_text was told */
     const char *title;

@@ -46,8 +46,8 @@ static int run(int input, int output, int errors) {
 }
 
 /* The last line that says something. */
-static void explain(struct dalcs_figure *figure, FILE *errors) {
-    char line[sizeof figure->message - 32], last[sizeof line] = "no reason given";
+static void explain(char message[DALCS_GNUPLOT_MESSAGE], FILE *errors) {
+    char line[DALCS_GNUPLOT_MESSAGE - 32], last[sizeof line] = "no reason given";
     rewind(errors);
     while (fgets(line, sizeof line, errors)) {
         line[strcspn(line, "\n")] = '\0';
@@ -55,42 +55,49 @@ static void explain(struct dalcs_figure *figure, FILE *errors) {
             memcpy(last, line, sizeof last);
         }
     }
-    snprintf(figure->message, sizeof figure->message, "gnuplot failed: %s", last);
+    snprintf(message, DALCS_GNUPLOT_MESSAGE, "gnuplot failed: %s", last);
 }
 
-enum dalcs_status dalcs_gnuplot_draw(struct dalcs_figure *figure) {
-    FILE *script = tmpfile(), *errors = tmpfile();
+enum dalcs_status dalcs_gnuplot_run(FILE *script, struct dalcs_atomic_file *file,
+                                    char message[DALCS_GNUPLOT_MESSAGE]) {
+    FILE *errors = tmpfile();
     enum dalcs_status status = DALCS_E_IO;
-    if (!script || !errors) {
-        figure->file.error = errno;
-        goto done;
+    if (!errors) {
+        file->error = errno;
+        return DALCS_E_IO;
     }
-    dalcs_gnuplot_write(script, figure);
     if (fflush(script) != 0 || ferror(script) || fseek(script, 0, SEEK_SET) != 0) {
-        snprintf(figure->message, sizeof figure->message, "cannot write a temporary file: %s",
+        snprintf(message, DALCS_GNUPLOT_MESSAGE, "cannot write a temporary file: %s",
                  strerror(errno));
-        goto done;
+        fclose(errors);
+        return DALCS_E_IO;
     }
-    int result = run(fileno(script), fileno(figure->file.stream), fileno(errors));
+    int result = run(fileno(script), fileno(file->stream), fileno(errors));
     struct stat picture;
     if (result < 0 || result == 127) {
         bool missing = result == 127 || errno == ENOENT;
-        snprintf(figure->message, sizeof figure->message, "%s",
+        snprintf(message, DALCS_GNUPLOT_MESSAGE, "%s",
                  missing ? "gnuplot is not installed (on Debian: apt-get install gnuplot-nox)"
                          : strerror(errno));
     } else if (result != 0) {
-        explain(figure, errors);
-    } else if (fstat(fileno(figure->file.stream), &picture) != 0 || picture.st_size == 0) {
-        snprintf(figure->message, sizeof figure->message, "gnuplot wrote nothing");
+        explain(message, errors);
+    } else if (fstat(fileno(file->stream), &picture) != 0 || picture.st_size == 0) {
+        snprintf(message, DALCS_GNUPLOT_MESSAGE, "gnuplot wrote nothing");
     } else {
         status = DALCS_OK;
     }
-done:
-    if (script) {
-        fclose(script);
+    fclose(errors);
+    return status;
+}
+
+enum dalcs_status dalcs_gnuplot_draw(struct dalcs_figure *figure) {
+    FILE *script = tmpfile();
+    if (!script) {
+        figure->file.error = errno;
+        return DALCS_E_IO;
     }
-    if (errors) {
-        fclose(errors);
-    }
+    dalcs_gnuplot_write(script, figure);
+    enum dalcs_status status = dalcs_gnuplot_run(script, &figure->file, figure->message);
+    fclose(script);
     return status;
 }

@@ -3,6 +3,7 @@
 #include "report.h"
 
 #include "json.h"
+#include "losses_json.h"
 #include "method_text.h"
 
 #include <math.h>
@@ -309,6 +310,17 @@ static void write_fourier(struct dalcs_json *json, const struct dalcs_report *re
     dalcs_json_close(json, ']');
 }
 
+static void write_losses(struct dalcs_json *json, const struct dalcs_report *report) {
+    if (report->n_losses == 0) {
+        return;
+    }
+    dalcs_json_open(json, "losses", '[', false);
+    for (size_t i = 0; i < report->n_losses; i++) {
+        dalcs_losses_json_write(json, &report->losses[i]);
+    }
+    dalcs_json_close(json, ']');
+}
+
 void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum dalcs_status status) {
     struct dalcs_json json;
     dalcs_json_init(&json, stream);
@@ -331,6 +343,7 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     write_nonunique(&json, report);
     write_measurements(&json, report);
     write_fourier(&json, report);
+    write_losses(&json, report);
     write_energy(&json, report);
     write_steady(&json, report);
     write_infeasible(&json, report);

@@ -1,4 +1,5 @@
 /* command.c - statements that are no blocks. */
+#include "drawing.h"
 #include "names.h"
 #include "script_internal.h"
 
@@ -217,6 +218,37 @@ static enum dalcs_status alter(struct dalcs_script *script, const struct dalcs_s
 
 /* ---- Vectors ---------------------------------------------------------------------------------------- */
 
+/* `name[index] = formula`; behind: from the equal sign on. */
+static enum dalcs_status let_element(struct dalcs_script *script, const struct dalcs_statement *s,
+                                     const char *left, const char *behind) {
+    const size_t n = strcspn(left, " \t[");
+    const char *open = strchr(left, '[');
+    const char *close = strrchr(left, ']');
+    if (close == NULL || close[1 + strspn(close + 1, " \t")] != '\0' || behind[0] != '=') {
+        return dalcs_script_refuse(script, s, "let name[index] = formula",
+                                   "an index, ']' and '=' are missing");
+    }
+    const char *name = dalcs_arena_copy(&script->arena, left, n);
+    const char *inside = dalcs_arena_copy(&script->arena, open + 1, (size_t)(close - open - 1));
+    double k;
+    double value;
+    if (name == NULL || inside == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_script_number(script, s, inside, &k));
+    DALCS_TRY(dalcs_script_number(script, s, behind + 1, &value));
+    const struct dalcs_vector *v = dalcs_vectors_find_exactly(&script->vectors, name);
+    if (v == NULL) {
+        return dalcs_script_refuse(script, s, "let name = vector(n) makes one",
+                                   "there is no vector '%s'", name);
+    }
+    if (!(k >= 0.0 && k < (double)v->n)) {
+        return dalcs_script_refuse(script, s, NULL, "index %g of a vector of length %zu", k, v->n);
+    }
+    v->value[(size_t)k] = value;
+    return DALCS_OK;
+}
+
 static enum dalcs_status let(struct dalcs_script *script, const struct dalcs_statement *s) {
     const char *text;
     enum dalcs_status status = dalcs_script_expand_low(script, s, &text);
@@ -230,7 +262,10 @@ static enum dalcs_status let(struct dalcs_script *script, const struct dalcs_sta
     }
     const char *rest = name;
     const char *first = dalcs_script_word(script, &rest);
-    if (text[length] == '\0' || first == NULL || strpbrk(first, "[(") != NULL ||
+    if (first != NULL && strchr(name, '[') != NULL) {
+        return let_element(script, s, name, text + length);
+    }
+    if (text[length] == '\0' || first == NULL || strchr(first, '(') != NULL ||
         dalcs_script_word(script, &rest) != NULL) {
         return dalcs_script_refuse(script, s, "let name = formula", "a name and '=' are missing");
     }
@@ -339,6 +374,44 @@ static size_t length_of_vectors(const char *text) {
         p += n;
     }
     return strlen(text);
+}
+
+/* `plot formula ...` on the terminal, `hardcopy file.svg formula ...`; what shapes a picture is left out. */
+static enum dalcs_status draw(struct dalcs_script *script, const struct dalcs_statement *s) {
+    const bool is_file = s->word[0] == 'h';
+    const struct dalcs_vector **vector;
+    const char *text;
+    size_t n;
+    char message[DALCS_DRAWING_MESSAGE];
+    DALCS_TRY(dalcs_script_expand(script, s, &text));
+    const char *name = is_file ? dalcs_script_word(script, &text) : NULL;
+    if (is_file && (name == NULL || !dalcs_drawing_can_write(name))) {
+        return dalcs_script_refuse(script, s, "hardcopy picture.svg v(out) i(l1)",
+                                   "a file named .svg, .png or .pdf is missing");
+    }
+    struct dalcs_statement rest = *s;
+    rest.rest = text;
+    DALCS_TRY(dalcs_script_expand_low(script, &rest, &text));
+    text = dalcs_arena_copy(&script->arena, text, length_of_vectors(text));
+    if (text == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(dalcs_script_vectors(script, s, text, &vector, &n));
+    const struct dalcs_vector *scale = dalcs_vectors_scale(&script->vectors);
+    if (scale == NULL || n == 0 || scale->n < 2) {
+        return dalcs_script_refuse(script, s, "tran, dc, ac or run must come before",
+                                   "there is nothing to draw");
+    }
+    const struct dalcs_drawing drawing = {.title = script->vectors.plot.title,
+                                          .is_logarithmic = scale->unit == DALCS_UNIT_HERTZ &&
+                                                            creal(scale->value[0]) > 0.0,
+                                          .scale = scale,
+                                          .vector = vector,
+                                          .n = n};
+    const enum dalcs_status status = dalcs_drawing_draw(&drawing, name, script->host->out, message);
+    return status == DALCS_E_IO && name != NULL
+               ? dalcs_script_refuse(script, s, NULL, "cannot draw '%s': %s", name, message)
+               : status;
 }
 
 static enum dalcs_status write_file(struct dalcs_script *script, const struct dalcs_statement *s) {
@@ -473,6 +546,8 @@ enum dalcs_status dalcs_script_command(struct dalcs_script *script, size_t index
         return DALCS_OK;
     case DALCS_STATEMENT_SAVE:
         return save(script, s);
+    case DALCS_STATEMENT_DRAW:
+        return draw(script, s);
     case DALCS_STATEMENT_WRDATA:
     case DALCS_STATEMENT_WRITE:
         return write_file(script, s);

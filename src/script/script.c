@@ -81,8 +81,8 @@ static enum dalcs_status holds(struct dalcs_script *script, const struct dalcs_s
 static enum dalcs_status execute_while(struct dalcs_script *script, size_t loop) {
     const struct dalcs_statement *s = &script->statements.statement[loop];
     bool stops = false;
-    bool yes;
-    enum dalcs_status status = holds(script, s, &yes);
+    bool yes = true;
+    enum dalcs_status status = s->kind == DALCS_STATEMENT_WHILE ? holds(script, s, &yes) : DALCS_OK;
     for (long k = 0; status == DALCS_OK && yes && !stops; k++) {
         status = k < MOST_ROUNDS ? execute_body(script, loop, &stops) : refuse_endless(script, s);
         if (status == DALCS_OK && !stops) {
@@ -130,6 +130,7 @@ static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size
             k = all->statement[k].end;
             break;
         case DALCS_STATEMENT_WHILE:
+        case DALCS_STATEMENT_DOWHILE:
             status = execute_while(script, k);
             k = all->statement[k].end;
             break;
@@ -157,11 +158,12 @@ static bool keeps_all(const struct dalcs_statements *all) {
     for (size_t k = 0; k < all->n && !found; k++) {
         const struct dalcs_statement *s = &all->statement[k];
         const char *rest = s->rest;
-        const bool writes = s->kind == DALCS_STATEMENT_WRITE || s->kind == DALCS_STATEMENT_WRDATA;
+        const bool writes = s->kind == DALCS_STATEMENT_WRITE || s->kind == DALCS_STATEMENT_WRDATA ||
+                            strcmp(s->word, "hardcopy") == 0;
         rest += writes ? strcspn(rest, " \t") : 0;
         rest += strspn(rest, " \t");
         const size_t n = strlen(rest);
-        found = (writes || s->kind == DALCS_STATEMENT_PRINT) &&
+        found = (writes || s->kind == DALCS_STATEMENT_PRINT || s->kind == DALCS_STATEMENT_DRAW) &&
                 (n == 0 || (n >= 3 && strcmp(rest + n - 3, "all") == 0));
     }
     return found;

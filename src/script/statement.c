@@ -35,9 +35,12 @@ static const struct {
     {"options", DALCS_STATEMENT_SAVE},
     {"wrdata", DALCS_STATEMENT_WRDATA},
     {"write", DALCS_STATEMENT_WRITE},
+    {"plot", DALCS_STATEMENT_DRAW},
+    {"hardcopy", DALCS_STATEMENT_DRAW},
     {"foreach", DALCS_STATEMENT_FOREACH},
     {"repeat", DALCS_STATEMENT_REPEAT},
     {"while", DALCS_STATEMENT_WHILE},
+    {"dowhile", DALCS_STATEMENT_DOWHILE},
     {"if", DALCS_STATEMENT_IF},
     {"else", DALCS_STATEMENT_ELSE},
     {"end", DALCS_STATEMENT_END},
@@ -51,21 +54,20 @@ enum { N_WORDS = sizeof WORDS / sizeof WORDS[0] };
 
 /* Of ngspice; they show, ask or compute what dalcs does elsewhere or not at all. */
 static const char *const SKIPPED[] = {
-    "plot",       "display",  "setplot",   "gnuplot", "hardcopy", "asciiplot", "iplot",
-    "rusage",     "settype",  "setscale",  "destroy", "remcirc",  "source",    "listing",
-    "linearize",  "fourier",  "fft",       "psd",     "spec",     "noise",     "pz",
-    "sens",       "tf",       "disto",     "sp",      "pss",      "status",    "show",
-    "showmod",    "version",  "shell",     "history", "help",     "alias",     "unalias",
-    "define",     "undefine", "unlet",     "load",    "edit",     "resume",    "step",
-    "stop",       "trace",    "iplot",     "where",   "delete",   "bug",       "cd",
-    "circbyline", "compose",  "cross",     "deftype", "diff",     "dump",      "eprint",
-    "eprvcd",     "fopen",    "fread",     "fclose",  "getcwd",   "inventory", "jobs",
-    "mc_source",  "mdump",    "mrdump",    "optran",  "rehash",   "reshape",   "rspice",
-    "setcirc",    "setcs",    "setseed",   "shift",   "snload",   "snsave",    "state",
-    "strcmp",     "strslice", "strstr",    "sysinfo", "tutorial", "wrnodev",   "wrs2p",
-    "xgraph",     "aspice",   "codemodel", "devhelp", "unset",    "bltplot",   "pause",
-    "dowhile",    "label",    "goto",      "wrspice", "esave",    "cutout",    "pre_osdi",
-    "cdump"};
+    "display",   "setplot", "gnuplot",  "asciiplot", "iplot",   "rusage",     "settype",
+    "setscale",  "destroy", "remcirc",  "source",    "listing", "linearize",  "fourier",
+    "fft",       "psd",     "spec",     "noise",     "pz",      "sens",       "tf",
+    "disto",     "sp",      "pss",      "status",    "show",    "showmod",    "version",
+    "shell",     "history", "help",     "alias",     "unalias", "define",     "undefine",
+    "unlet",     "load",    "edit",     "resume",    "step",    "stop",       "trace",
+    "iplot",     "where",   "delete",   "bug",       "cd",      "circbyline", "compose",
+    "cross",     "deftype", "diff",     "dump",      "eprint",  "eprvcd",     "fopen",
+    "fread",     "fclose",  "getcwd",   "inventory", "jobs",    "mc_source",  "mdump",
+    "mrdump",    "optran",  "rehash",   "reshape",   "rspice",  "setcirc",    "setcs",
+    "setseed",   "shift",   "snload",   "snsave",    "state",   "strcmp",     "strslice",
+    "strstr",    "sysinfo", "tutorial", "wrnodev",   "wrs2p",   "xgraph",     "aspice",
+    "codemodel", "devhelp", "unset",    "bltplot",   "pause",   "label",      "goto",
+    "wrspice",   "esave",   "cutout",   "pre_osdi",  "cdump"};
 
 static bool is_skipped(const char *word) {
     for (size_t k = 0; k < sizeof SKIPPED / sizeof SKIPPED[0]; k++) {
@@ -215,7 +217,8 @@ static void warn_of_skipped(struct dalcs_session *session, const struct dalcs_st
 
 static bool opens(enum dalcs_statement_kind kind) {
     return kind == DALCS_STATEMENT_FOREACH || kind == DALCS_STATEMENT_REPEAT ||
-           kind == DALCS_STATEMENT_WHILE || kind == DALCS_STATEMENT_IF;
+           kind == DALCS_STATEMENT_WHILE || kind == DALCS_STATEMENT_DOWHILE ||
+           kind == DALCS_STATEMENT_IF;
 }
 
 enum dalcs_status dalcs_statements_check(struct dalcs_statements *all,
@@ -263,7 +266,8 @@ enum dalcs_status dalcs_statements_check(struct dalcs_statements *all,
 bool dalcs_statement_may_be_left_out(const struct dalcs_statement *s) {
     return s->kind == DALCS_STATEMENT_LET || s->kind == DALCS_STATEMENT_PRINT ||
            s->kind == DALCS_STATEMENT_ECHO || s->kind == DALCS_STATEMENT_MEASURE ||
-           s->kind == DALCS_STATEMENT_WRDATA || s->kind == DALCS_STATEMENT_WRITE;
+           s->kind == DALCS_STATEMENT_WRDATA || s->kind == DALCS_STATEMENT_WRITE ||
+           s->kind == DALCS_STATEMENT_DRAW;
 }
 
 void dalcs_statements_finish(struct dalcs_statements *s) {

@@ -22,9 +22,11 @@ enum dalcs_statement_kind {
     DALCS_STATEMENT_SAVE, /* save, option: cards of all later runs */
     DALCS_STATEMENT_WRDATA,
     DALCS_STATEMENT_WRITE,
+    DALCS_STATEMENT_DRAW, /* plot, hardcopy */
     DALCS_STATEMENT_FOREACH,
     DALCS_STATEMENT_REPEAT,
     DALCS_STATEMENT_WHILE,
+    DALCS_STATEMENT_DOWHILE, /* once whatever its formula says */
     DALCS_STATEMENT_IF,
     DALCS_STATEMENT_ELSE,
     DALCS_STATEMENT_END,

@@ -2,6 +2,8 @@
  * everything that happens, of the straight lines of implicit Euler, of the rows of a sweep. */
 #include "measures.h"
 
+#include "losses_run.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,6 +88,10 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
                                     c->transient.start, c->transient.stop));
     measures->wanted = true;
     measures->begin = dalcs_measuring_begin(&measures->measuring);
+    measures->losses = r->losses;
+    if (r->losses != NULL) {
+        measures->begin = fmin(measures->begin, dalcs_losses_run_begin(r->losses));
+    }
     DALCS_TRY(allocate(measures, c, &r->s->network));
     const struct dalcs_recorder *recorder = &r->s->recorder;
     if (recorder->starts_on_edge) {
@@ -93,9 +99,15 @@ enum dalcs_status dalcs_measures_start(struct dalcs_measures *measures, struct d
             measures->before[k] = recorder->before[c->measured[k]];
         }
         dalcs_measuring_before_start(&measures->measuring, measures->before);
+        if (measures->losses != NULL) {
+            dalcs_losses_sum_before_start(&measures->losses->sum, measures->before);
+        }
     }
     if (radau == NULL) {
         read_signals(measures, e, measures->now);
+        if (measures->losses != NULL && !measures->losses->sum.has_last) {
+            dalcs_losses_sum_before_start(&measures->losses->sum, measures->now);
+        }
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_rows_setup(&measures->rows, radau, c->measured, c->n_measured));
@@ -160,6 +172,9 @@ static enum dalcs_status hand_over(struct dalcs_measures *measures, double from,
         }
     }
     dalcs_measuring_stretch(m, from, to);
+    if (measures->losses != NULL) {
+        dalcs_losses_run_stretch(measures->losses, &m->stretch);
+    }
     return DALCS_OK;
 }
 
@@ -198,6 +213,18 @@ void dalcs_measures_skip(struct dalcs_measures *measures, double t) {
 
 /* ---- Implicit Euler and rows ------------------------------------------------------------------- */
 
+/* What a step of implicit Euler gives and takes is by its end: so its energies add up to the ledger's. */
+static void add_constant_stretch(struct dalcs_measures *measures) {
+    struct dalcs_measuring *m = &measures->measuring;
+    for (int k = 0; k < m->stretch.n_signals; k++) {
+        for (int i = 0; i < DALCS_STRETCH_NODES; i++) {
+            m->stretch.value[k][i] = measures->now[k];
+        }
+        dalcs_stretch_expand(&m->rule, m->stretch.value[k], m->stretch.coefficient[k]);
+    }
+    dalcs_losses_run_stretch(measures->losses, &m->stretch);
+}
+
 void dalcs_measures_step(struct dalcs_measures *measures, const struct dalcs_euler *e) {
     struct dalcs_measuring *m = &measures->measuring;
     if (!measures->wanted) {
@@ -215,6 +242,9 @@ void dalcs_measures_step(struct dalcs_measures *measures, const struct dalcs_eul
         }
     }
     dalcs_measuring_stretch(m, e->t_before, e->t);
+    if (measures->losses != NULL) {
+        add_constant_stretch(measures);
+    }
 }
 
 void dalcs_measures_cross(struct dalcs_measures *measures, const struct dalcs_euler *e) {

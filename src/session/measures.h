@@ -19,6 +19,7 @@ struct dalcs_measures {
     double t;                               /* s, measured so far */
     double begin;                           /* s, before which nothing is; INFINITY without .meas */
     double next_edge;                       /* s, of the stimuli; INFINITY without .meas */
+    struct dalcs_losses_run *losses;        /* NULL: not asked for */
     double *before, *now; /* [n_measured] of euler, at the ends of a step; or of a row */
 };
 

@@ -138,6 +138,7 @@ static enum dalcs_status make_shadow(struct dalcs_session *s, int n, struct dalc
         }
     }
     c->n_shown = c->n_signals;
+    c->losses = NULL;
     c->n_measured = c->n_measures = c->n_fouriers = c->n_prints = c->n_steps = 0;
     c->operating_point = true;
     c->options.compress = c->options.fill = 0;

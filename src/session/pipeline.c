@@ -363,12 +363,14 @@ struct measured {
     size_t n, capacity, n_fourier, fourier_capacity;
     struct dalcs_measurement *measurement;
     struct dalcs_fourier *fourier;
+    size_t n_losses, losses_capacity;
+    struct dalcs_losses *losses;
 };
 
 static enum dalcs_status collect_measured(struct measured *all, struct dalcs_session *s,
                                           const struct dalcs_plot *step) {
     const struct dalcs_report *one = &s->report;
-    if (one->n_measurements + one->n_fourier == 0) {
+    if (one->n_measurements + one->n_fourier + one->n_losses == 0) {
         return DALCS_OK;
     }
     const char *text = step_text(s, step);
@@ -379,6 +381,8 @@ static enum dalcs_status collect_measured(struct measured *all, struct dalcs_ses
                          sizeof *all->measurement));
     DALCS_TRY(dalcs_grow(&all->fourier, &all->fourier_capacity, all->n_fourier + one->n_fourier,
                          sizeof *all->fourier));
+    DALCS_TRY(dalcs_grow(&all->losses, &all->losses_capacity, all->n_losses + one->n_losses,
+                         sizeof *all->losses));
     for (size_t k = 0; k < one->n_measurements; k++) {
         all->measurement[all->n] = one->measurement[k];
         all->measurement[all->n++].step = text;
@@ -387,6 +391,10 @@ static enum dalcs_status collect_measured(struct measured *all, struct dalcs_ses
         all->fourier[all->n_fourier] = one->fourier[k];
         all->fourier[all->n_fourier++].step = text;
     }
+    for (size_t k = 0; k < one->n_losses; k++) {
+        all->losses[all->n_losses] = one->losses[k];
+        all->losses[all->n_losses++].step = text;
+    }
     return DALCS_OK;
 }
 
@@ -394,7 +402,11 @@ static enum dalcs_status collect_measured(struct measured *all, struct dalcs_ses
 static enum dalcs_status report_measured(struct measured *all, struct dalcs_session *s) {
     struct dalcs_measurement *m = dalcs_arena_alloc(&s->arena, all->n + 1, sizeof *m);
     struct dalcs_fourier *f = dalcs_arena_alloc(&s->arena, all->n_fourier + 1, sizeof *f);
-    enum dalcs_status status = m == NULL || f == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    struct dalcs_losses *l = dalcs_arena_alloc(&s->arena, all->n_losses + 1, sizeof *l);
+    enum dalcs_status status = m == NULL || f == NULL || l == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    for (size_t k = 0; k < all->n_losses && status == DALCS_OK; k++) {
+        l[k] = all->losses[k];
+    }
     for (size_t k = 0; k < all->n && status == DALCS_OK; k++) {
         m[k] = all->measurement[k];
     }
@@ -405,8 +417,11 @@ static enum dalcs_status report_measured(struct measured *all, struct dalcs_sess
     s->report.n_measurements = status == DALCS_OK ? all->n : 0;
     s->report.fourier = f;
     s->report.n_fourier = status == DALCS_OK ? all->n_fourier : 0;
+    s->report.losses = l;
+    s->report.n_losses = status == DALCS_OK ? all->n_losses : 0;
     free(all->measurement);
     free(all->fourier);
+    free(all->losses);
     return status;
 }
 

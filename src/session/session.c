@@ -8,6 +8,7 @@
 #include "text_file.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -128,12 +129,20 @@ enum dalcs_status dalcs_session_set_dialect(struct dalcs_session *session, const
     return DALCS_OK;
 }
 
+enum dalcs_status dalcs_session_ask_losses(struct dalcs_session *session, double from, double to) {
+    if (session->name != NULL) {
+        return DALCS_E_OPTION; /* it is read */
+    }
+    session->losses = (struct dalcs_losses_request){true, !isnan(from), from, to};
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_session_read_file(struct dalcs_session *session, const char *path) {
     char *text;
     size_t length;
     DALCS_TRY(take_name(session, path));
     DALCS_TRY(dalcs_text_file_read(path, INT_MAX, &text, &length, NULL, &session->diag));
-    struct dalcs_netlist netlist = {.dialect = session->dialect};
+    struct dalcs_netlist netlist = {.dialect = session->dialect, .losses = session->losses};
     const bool is_system = dalcs_description_is_text(text, length);
     const enum dalcs_status status =
         is_system ? read_system(session, path, text, length)
@@ -148,7 +157,7 @@ enum dalcs_status dalcs_session_read_text(struct dalcs_session *session, const c
     if (dalcs_description_is_text(text, length)) {
         return read_system(session, name, text, length);
     }
-    struct dalcs_netlist netlist = {.dialect = session->dialect};
+    struct dalcs_netlist netlist = {.dialect = session->dialect, .losses = session->losses};
     return build(session, &netlist,
                  dalcs_netlist_read_text(&netlist, name, text, length, &session->diag));
 }

@@ -9,6 +9,7 @@
 #include "spice.h"
 #include "undetermined.h"
 
+struct dalcs_losses_run;
 struct dalcs_orbit_point;
 struct dalcs_radau;
 struct dalcs_radau_options;
@@ -16,6 +17,7 @@ struct dalcs_radau_options;
 struct dalcs_session {
     char *name;
     struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
+    struct dalcs_losses_request losses;
     struct dalcs_diag diag;
     struct dalcs_circuit circuit;
     bool has_circuit;
@@ -76,6 +78,7 @@ struct dalcs_run {
         *name; /* [n_outputs] of the network: rows have the first n_shown, messages may name any */
     enum dalcs_unit *unit;
     struct dalcs_names interrupting; /* switches that a warning has named */
+    struct dalcs_losses_run *losses; /* of the transient that runs; NULL: none */
     struct dalcs_undetermined undetermined;
     int n_told[DALCS_FINDING_KINDS];    /* messages of what is not determined */
     long n_untold[DALCS_FINDING_KINDS]; /* signals of which there is no message */

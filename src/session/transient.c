@@ -11,6 +11,7 @@
 #include "energy.h"
 #include "extremes.h"
 #include "filling.h"
+#include "losses_run.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -160,6 +161,9 @@ enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler 
     DALCS_TRY(dalcs_euler_operating_point(e, true));
     if (records && sources_jump(c, 0.0)) {
         DALCS_TRY(dalcs_recorder_before_start(&r->s->recorder, e));
+        if (r->losses != NULL) {
+            dalcs_losses_run_before_start(r->losses);
+        }
     }
     return start_at(e, radau, NULL);
 }
@@ -560,6 +564,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     struct dalcs_radau radau = {0};
     struct dalcs_energy energy = {0};
     struct dalcs_measures measures = {0};
+    struct dalcs_losses_run losses = {0};
     struct dalcs_audit_run audit = {0};
     struct dalcs_schedule schedule = choose_schedule(r);
     warn_of_coarse_rows(r, &schedule, isinf(r->fill) ? schedule.start : INFINITY);
@@ -568,7 +573,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     s->recorder.n_shown = s->circuit.n_shown;
     DALCS_TRY(dalcs_tangents_watch(r));
     DALCS_TRY(dalcs_euler_setup(&e, &s->circuit, &s->network, &r->osnsp, r->h, stop));
-    e.detect_jumps = r->options->record || dalcs_run_keeps_ledger(r);
+    e.detect_jumps = r->options->record || dalcs_run_keeps_ledger(r) || dalcs_run_wants_losses(r);
     e.jump_user = r;
     e.on_jump = dalcs_note_jump;
     e.open_user = &r->undetermined;
@@ -580,6 +585,10 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
         const struct dalcs_radau_options options = dalcs_transient_options(r, stop);
         status = dalcs_radau_setup(&radau, &e, &options, &r->osnsp);
     }
+    if (status == DALCS_OK && dalcs_run_wants_losses(r)) {
+        status =
+            dalcs_losses_run_start(&losses, r, &e, is_euler, is_euler ? 0.0 : radau.resolution);
+    }
     if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {
         status = dalcs_energy_setup(&energy, &e, is_euler ? NULL : &radau);
     }
@@ -590,6 +599,9 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
         status = walk(r, &e, is_euler ? NULL : &radau, &measures, &audit);
         enum dalcs_status reported = dalcs_measures_report(&measures, r, status);
         status = status == DALCS_OK ? reported : status;
+    }
+    if (status == DALCS_OK && losses.wanted) {
+        status = dalcs_losses_run_report(&losses, r);
     }
     if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {
         status = close_ledger(r, &energy, &e, is_euler ? NULL : &radau);
@@ -607,6 +619,8 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     add_radau_work(r, &radau);
     dalcs_audit_run_finish(&audit);
     dalcs_measures_finish(&measures);
+    dalcs_losses_run_finish(&losses);
+    r->losses = NULL;
     dalcs_energy_finish(&energy);
     dalcs_radau_finish(&radau);
     dalcs_euler_finish(&e);

@@ -17,7 +17,9 @@ static const double rounding = 1e-14, same = 4e-15;
 
 bool dalcs_measuring_is_wanted(const struct dalcs_circuit *circuit,
                                enum dalcs_measured_analysis analysis) {
-    bool wanted = analysis == DALCS_MEASURED_TRAN && circuit->n_fouriers > 0;
+    bool wanted =
+        analysis == DALCS_MEASURED_TRAN &&
+        (circuit->n_fouriers > 0 || (circuit->losses != NULL && circuit->losses->present));
     for (int k = 0; k < circuit->n_measures && !wanted; k++) {
         wanted = circuit->measure[k].analysis == analysis;
     }

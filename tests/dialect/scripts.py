@@ -7,6 +7,7 @@ usage: scripts.py PROGRAM
 import math
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -215,9 +216,91 @@ def printed_formulas(c):
     c.check(more[0].startswith(plain[0]) and more[1].startswith(plain[1]), f"{plain} {more}")
 
 
+def dowhiles(c):
+    for line, wanted in [
+            ("let k = 0\ndowhile k < 3\nlet k = k+1\nend\nprint k", [3]),
+            ("let k = 9\ndowhile k < 3\nlet k = k+1\nend\nprint k", [10]),  # once in any case
+            ("let k = 9\nwhile k < 3\nlet k = k+1\nend\nprint k", [9]),
+            ("let k = 0\ndowhile k < 5\nlet k = k+1\nif k = 2\nbreak\nend\nend\nprint k", [2]),
+            ("let k = 0\nlet n = 0\ndowhile k < 5\nlet k = k+1\nif k = 2\ncontinue\nend\n"
+             "let n = n+k\nend\nprint n", [13]),
+            ("let k = 0\nlet n = 0\ndowhile k < 2\nlet k = k+1\nlet j = 0\ndowhile j < 3\n"
+             "let j = j+1\nlet n = n+1\nend\nend\nprint n", [6]),
+            ("let k = 1e-9\ndowhile k < 5e-9\nlet k = 2*k\nend\nprint k", [8e-9]),
+            ("let k = 0\ndowhile 0\nlet k = k+1\nend\nprint k", [1]),
+            ("let k = 0\ndowhile 0\nquit\nend\nprint k", []),
+            ("set n = 1\ndowhile v(b) > 0.3\nlet j = $n+1\nset n = $&j\nalterparam k = $n\nop\nend\n"
+             "print v(b)", [0.25])]:
+        c.prints("dowhile", DIVIDER + f".control\nop\n{line}\n.endc\n", wanted)
+
+
+def elements(c):
+    for line, wanted in [
+            ("let x = vector(3)\nlet x[1] = 7\nprint x[0] x[1] x[2]", [0, 7, 2]),
+            ("let x = unitvec(2)\nlet x[0] = x[1]+4\nprint x[0]", [5]),
+            ("let x = vector(4)\nlet k = 3\nlet x[k] = 1e-9\nprint x[3]", [1e-9]),
+            ("let x = vector(4)\nlet k = 1\nlet x[2*k+1] = -k\nprint x[3]", [-1]),
+            ("let x = vector(4)\nlet x[ 2 ] = 5\nprint x[2]", [5]),
+            ("let x = 3\nlet x[0] = 8\nprint x", [8]),
+            ("let x = vector(3)\nlet k = 0\nwhile k < 3\nlet x[k] = k*k\nlet k = k+1\nend\n"
+             "print mean(x)", [5 / 3]),
+            ("let x = vector(2)\nforeach r 1k 3k\nalterparam k = $r\nop\nlet x[($r-1k)/2k] = $r\nend\n"
+             "print x[0] x[1]", [1000, 3000]),
+            ("let x = vector(3)\nlet x[x[2]] = 6\nprint x[2]", [6]),
+            ("let x = vector(3)\nlet y = x\nlet x[0] = 6\nprint y[0]", [0])]:
+        # before the first run, so that all later ones can see it
+        c.prints("element", DIVIDER + f".control\n{line}\n.endc\n", wanted)
+    for line, message in [
+            ("let x = vector(3)\nlet x[3] = 1", "index 3 of a vector of length 3"),
+            ("let x = vector(3)\nlet x[-1] = 1", "index -1 of a vector"),
+            ("let y[0] = 1", "there is no vector 'y'"),
+            ("let x = vector(3)\nlet x[1 = 1", "an index, ']' and '=' are missing"),
+            ("let x = vector(3)\nlet x[1]", "an index, ']' and '=' are missing"),
+            ("let x = vector(3)\nlet x[] = 1", "formula is missing")]:
+        err = c.prints("no element", DIVIDER + f".control\n{line}\n.endc\n", [])
+        c.check(message in err, f"{line}: {err}")
+
+
+def drawings(c):
+    """plot on the terminal, hardcopy into files; what cannot be drawn is a warning."""
+    circuit = "V1 a 0 SIN(0 5 50) AC 1\nR1 a b 1k\nC1 b 0 1u\n"
+    for analysis, line, names in [
+            ("tran 1m 40m", "plot v(a) v(b)", ["v(a)", "v(b)"]),
+            ("tran 1m 40m", "plot v(a)-v(b)", ["v(a)-v(b)"]),
+            ("tran 1m 40m", "plot i(v1) title current", ["i(v1)"]),
+            ("tran 1m 40m", "let p = v(a)*i(v1)\nplot p v(a) xlimit 0 20m", ["p", "v(a)"]),
+            ("tran 1m 40m", "plot all", ["v(a)", "v(b)", "i(v1)"]),
+            ("ac dec 3 1 1k", "plot v(b)", ["v(b)", "Hz"]),
+            ("ac dec 3 1 1k", "plot db(v(b)) ph(v(b))", ["db(v(b))", "ph(v(b))"]),
+            ("ac lin 9 1 1k", "plot vdb(b)", ["vdb(b)"]),
+            ("dc v1 0 5 1", "plot v(b)", ["v(b)"]),
+            ("dc r1 1k 5k 1k", "plot v(b) i(v1)", ["v(b)", "i(v1)"])]:
+        text = f"plot\n{circuit}.control\n{analysis}\n{line}\n.endc\n.end\n"
+        status, out, err, _ = run(c.program, text)
+        c.check(status == 0 and "warning" not in err and all(n in out for n in names),
+                f"{analysis}: {line}: {status}\n{out}{err}")
+    if shutil.which("gnuplot") is not None:
+        with tempfile.TemporaryDirectory() as folder:
+            for ending, begins in ((".svg", b"<?xml"), (".png", b"\x89PNG"), (".pdf", b"%PDF")):
+                picture = pathlib.Path(folder) / ("Of_Case" + ending)
+                text = (f"hardcopy\n{circuit}.control\ntran 1m 40m\nhardcopy {picture} v(a) i(v1)\n"
+                        ".endc\n.end\n")
+                status, _, err, _ = run(c.program, text)
+                c.check(status == 0 and picture.exists() and picture.read_bytes().startswith(begins),
+                        f"hardcopy {ending}: {status} {err}")
+    for line, message in [("hardcopy x.ps v(a)", "named .svg, .png or .pdf"),
+                          ("hardcopy", "named .svg, .png or .pdf"),
+                          ("plot nothing", "there is no vector 'nothing'"),
+                          ("op\nplot v(a)", "there is nothing to draw"),
+                          ("hardcopy /nowhere/at/all.svg v(a)", "cannot draw")]:
+        text = f"bad plot\n{circuit}.control\ntran 1m 40m\n{line}\n.endc\n.end\n"
+        status, _, err, _ = run(c.program, text)
+        c.check(status == 0 and message in err, f"{line}: {status} {err}")
+
+
 def main():
     checks = Checks(pathlib.Path(sys.argv[1]).resolve())
-    for part in (alters, loops, measurements, frequencies, second_analyses, printed_formulas):
+    for part in (alters, loops, dowhiles, elements, drawings, measurements, frequencies, second_analyses, printed_formulas):
         part(checks)
     return checks.finish()
 

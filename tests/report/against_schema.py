@@ -6,7 +6,7 @@ nothing to do.
 usage: against_schema.py PROGRAM SOURCE_ROOT
 
 The schema allows no key that it does not describe, and no word where a number belongs: a NaN in a
-report fails. What src/output/report.c writes must be all that the schema has, and nothing else.
+report fails. What src/output/report.c and losses_json.c write must be all that the schema has, and nothing else.
 """
 
 import json
@@ -38,6 +38,10 @@ MADE = {
               "I3 0 c 1\nL3 c 0 1m\nR3 c 0 1\n.tran 10u 1m uic\n.end\n", 0, None),
     "charge": ("a charge and a flux\nC1 a 0 1u ic=10\nD1 a b\nC2 b 0 3u\nL1 c 0 1m ic=1\nD2 c 0\n"
                ".tran 10u 1m uic\n.end\n", 0, None),
+    "losses": ("steps of losses, a table that is too small\n.param c=1\nV1 a 0 SIN(0 1 1k)\nS1 a b c 0 m\n"
+               "R1 b 0 {r}\nVc c 0 PULSE(0 1 0 0 0 0.1m 0.3m)\n.model m SW(Vt=0.5)\n.param r=1\n"
+               ".step param r list 1 2\n.tran 10u 1m\n.losses out=r1\n"
+               ".switchloss m eon v=(0 0.1) i=(0 0.1) e=(0 0 0 1n)\n.end\n", 0, None),
     "equal": ("what is not unique\nI1 0 a 1\nD1 a 0\nD2 a 0\nD3 0 m\nD4 m n\nV1 n 0 1\n.op\n.end\n",
               0, None),
 }
@@ -172,7 +176,8 @@ def main():
     program, root = (pathlib.Path(name).resolve() for name in sys.argv[1:])
     schema = json.loads((root / "doc" / "report.schema.json").read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
-    source = (root / "src" / "output" / "report.c").read_text(encoding="utf-8")
+    source = "".join((root / "src" / "output" / name).read_text(encoding="utf-8")
+                     for name in ("report.c", "losses_json.c"))
     netlists = sorted((root / "netlists").glob("**/*.cir")) + sorted(
         (root / "tests" / "reference").glob("*.cir"))
     with tempfile.TemporaryDirectory() as name:

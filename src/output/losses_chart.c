@@ -1,0 +1,152 @@
+/* losses_chart.c - one bar for each element that loses something and is no load, the largest on top:
+ * conduction, then jumps, then switching by tables. */
+#include "losses_chart.h"
+
+#include "gnuplot_page.h"
+#include "memory.h"
+#include "quantity.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { MOST_BARS = 24, MOST_NAME = 40, ROW = 26, AROUND = 130, WIDTH = 900, INCH = 100 };
+
+struct bar {
+    const char *element;
+    double part[3]; /* W: conduction, jumps, switching */
+};
+
+static double height(const struct bar *bar) {
+    return bar->part[0] + bar->part[1] + bar->part[2];
+}
+
+static int compare_bars(const void *a, const void *b) {
+    double p = height(a);
+    double q = height(b);
+    return (p < q) - (p > q);
+}
+
+/* Is it among "r1, r2"? */
+static bool is_load(const struct dalcs_losses *l, const char *element) {
+    const size_t n = strlen(element);
+    const char *at = l->outputs;
+    while (*at != '\0' && (strncmp(at, element, n) != 0 || (at[n] != ',' && at[n] != '\0'))) {
+        at += strcspn(at, ",");
+        at += strspn(at, ", ");
+    }
+    return *at != '\0';
+}
+
+static size_t list_bars(const struct dalcs_losses *l, struct bar *bar) {
+    const double length = l->to - l->from;
+    size_t n = 0;
+    for (size_t k = 0; k < l->n_elements; k++) {
+        const struct dalcs_element_losses *e = &l->element[k];
+        const bool stores = strcmp(e->kind, "coil") == 0 || strcmp(e->kind, "capacitor") == 0;
+        if (strcmp(e->kind, "source") != 0 && !stores && !is_load(l, e->element)) {
+            bar[n++] = (struct bar){
+                e->element,
+                {e->power - e->jumps / length, e->jumps / length, e->switching / length}};
+        }
+    }
+    if (n > 0) {
+        qsort(bar, n, sizeof *bar, compare_bars);
+    }
+    return n;
+}
+
+static void write_terminal(FILE *script, const char *path, int tall) {
+    const char *dot = strrchr(path, '.');
+    const char *looks = "font 'DejaVu Sans,12' noenhanced rounded background";
+    const char *background = dalcs_theme_light.background;
+    if (strcasecmp(dot, ".pdf") == 0) {
+        fprintf(script, "set terminal pdfcairo size %gin,%gin %s '%s'\n", (double)WIDTH / INCH,
+                (double)tall / INCH, looks, background);
+    } else {
+        fprintf(script, "set terminal %s size %d,%d %s '%s'\n",
+                strcasecmp(dot, ".svg") == 0 ? "svg" : "pngcairo", WIDTH, tall, looks, background);
+    }
+}
+
+static void write_boxes(FILE *script, const struct bar *bar, size_t n, double scale) {
+    for (int part = 0; part < 3; part++) {
+        fprintf(script, "$part%d << end_of_data\n", part);
+        for (size_t k = 0; k < n; k++) {
+            double from = 0.0;
+            for (int before = 0; before < part; before++) {
+                from += bar[k].part[before] / scale;
+            }
+            const double to = from + bar[k].part[part] / scale;
+            const double y = (double)(n - k);
+            fprintf(script, "%.9g %g %.9g %.9g %g %g\n", to, y, from, to, y - 0.32, y + 0.32);
+        }
+        fputs("end_of_data\n", script);
+    }
+}
+
+static void write_script(FILE *script, const char *title, const char *path, const struct bar *bar,
+                         size_t n_all) {
+    const struct dalcs_theme *theme = &dalcs_theme_light;
+    const size_t n = n_all < MOST_BARS ? n_all : MOST_BARS;
+    const double scale = dalcs_quantity_scale(height(&bar[0]));
+    const char *prefix = dalcs_quantity_prefix(scale);
+    fputs("set encoding utf8\n", script);
+    write_terminal(script, path, AROUND + ROW * (int)n);
+    fputs("set title ", script);
+    dalcs_gnuplot_write_quoted(script, title + strspn(title, "* "), 2 * MOST_NAME);
+    fprintf(script,
+            " textcolor rgb '%s'\nset border 3 lc rgb '%s'\nset grid xtics lc rgb '%s' lt 1\n"
+            "set tics nomirror out scale 0.5 textcolor rgb '%s'\nset xzeroaxis lc rgb '%s' lt 1\n"
+            "set key outside right top\nset yrange [0.4:%zu.6]\n"
+            "set xlabel 'losses (%sW)%s' textcolor rgb '%s'\nset ytics (",
+            theme->text, theme->border, theme->grid, theme->text, theme->mark, n,
+            strcmp(prefix, "u") == 0 ? "\302\265" : prefix, n < n_all ? ", the largest" : "",
+            theme->text);
+    for (size_t k = 0; k < n; k++) {
+        fputs(k > 0 ? ", " : "", script);
+        dalcs_gnuplot_write_quoted(script, bar[k].element, MOST_NAME);
+        fprintf(script, " %zu", n - k);
+    }
+    fputs(")\n", script);
+    write_boxes(script, bar, n, scale);
+    fputs("plot ", script);
+    static const char *const name[] = {"conduction", "jumps", "switching"};
+    for (int part = 0; part < 3; part++) {
+        fprintf(
+            script,
+            "%s$part%d using 1:2:3:4:5:6 with boxxyerror fs solid noborder lc rgb '%s' title '%s'",
+            part > 0 ? ", " : "", part, theme->curve[part], name[part]);
+    }
+    fputc('\n', script);
+}
+
+enum dalcs_status dalcs_losses_chart_draw(const struct dalcs_losses *losses, const char *title,
+                                          const char *path, char message[DALCS_GNUPLOT_MESSAGE]) {
+    struct dalcs_atomic_file file = {0};
+    struct bar *bar = dalcs_alloc(losses->n_elements, sizeof *bar);
+    FILE *script = tmpfile();
+    enum dalcs_status status = bar == NULL ? DALCS_E_NOMEM : DALCS_E_IO;
+    message[0] = '\0';
+    const size_t n = bar != NULL ? list_bars(losses, bar) : 0;
+    if (bar != NULL && n == 0) {
+        snprintf(message, DALCS_GNUPLOT_MESSAGE, "no element but loads takes anything");
+    } else if (bar != NULL && script != NULL) {
+        write_script(script, title, path, bar, n);
+        status = dalcs_atomic_file_open(&file, path);
+        status = status == DALCS_OK ? dalcs_gnuplot_run(script, &file, message) : status;
+        status = status == DALCS_OK ? dalcs_atomic_file_commit(&file) : status;
+    }
+    if (status != DALCS_OK && message[0] == '\0') {
+        const int error = file.error != 0 ? file.error : errno;
+        snprintf(message, DALCS_GNUPLOT_MESSAGE, "%s", strerror(error));
+    }
+    dalcs_atomic_file_discard(&file);
+    if (script != NULL) {
+        fclose(script);
+    }
+    free(bar);
+    return status;
+}

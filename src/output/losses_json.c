@@ -1,0 +1,66 @@
+/* losses_json.c - the same as an entry of the report. */
+#include "losses_json.h"
+
+#include <math.h>
+
+/* null where it is not a number */
+static void write_number(struct dalcs_json *json, const char *name, double value) {
+    if (isfinite(value)) {
+        dalcs_json_number(json, name, value);
+    } else {
+        dalcs_json_string(json, name, NULL);
+    }
+}
+
+static void write_element(struct dalcs_json *json, const struct dalcs_element_losses *e) {
+    dalcs_json_open(json, NULL, '{', true);
+    dalcs_json_string(json, "element", e->element);
+    dalcs_json_string(json, "kind", e->kind);
+    dalcs_json_number(json, "v_average", e->v_average);
+    dalcs_json_number(json, "v_rms", e->v_rms);
+    dalcs_json_number(json, "i_average", e->i_average);
+    dalcs_json_number(json, "i_rms", e->i_rms);
+    dalcs_json_number(json, "power", e->power);
+    dalcs_json_number(json, "jumps", e->jumps);
+    dalcs_json_number(json, "stored_change", e->stored_change);
+    dalcs_json_number(json, "switching", e->switching);
+    dalcs_json_number(json, "turned_on", (double)e->n_on);
+    dalcs_json_number(json, "turned_off", (double)e->n_off);
+    dalcs_json_number(json, "clamped", (double)e->n_clamped);
+    if (e->frequency > 0.0) {
+        dalcs_json_number(json, "frequency", e->frequency);
+        write_number(json, "power_factor", e->power_factor);
+        write_number(json, "displacement", e->displacement);
+        write_number(json, "thd", e->thd);
+    }
+    dalcs_json_close(json, '}');
+}
+
+void dalcs_losses_json_write(struct dalcs_json *json, const struct dalcs_losses *l) {
+    dalcs_json_open(json, NULL, '{', false);
+    if (l->step != NULL) {
+        dalcs_json_string(json, "step", l->step);
+    }
+    dalcs_json_number(json, "from", l->from);
+    dalcs_json_number(json, "to", l->to);
+    dalcs_json_number(json, "sources", l->sources);
+    dalcs_json_number(json, "resistors", l->resistors);
+    dalcs_json_number(json, "windings", l->windings);
+    dalcs_json_number(json, "diodes", l->diodes);
+    dalcs_json_number(json, "switches", l->switches);
+    dalcs_json_number(json, "jumps", l->jumps);
+    dalcs_json_number(json, "stored_change", l->stored_change);
+    dalcs_json_number(json, "balance", l->balance);
+    dalcs_json_number(json, "switching", l->switching);
+    dalcs_json_number(json, "input", l->input);
+    dalcs_json_string(json, "inputs", l->inputs);
+    dalcs_json_number(json, "output", l->output);
+    dalcs_json_string(json, "outputs", l->outputs);
+    write_number(json, "efficiency", l->efficiency);
+    dalcs_json_open(json, "elements", '[', false);
+    for (size_t k = 0; k < l->n_elements; k++) {
+        write_element(json, &l->element[k]);
+    }
+    dalcs_json_close(json, ']');
+    dalcs_json_close(json, '}');
+}

@@ -1,0 +1,232 @@
+/* losses_report.c - sums of losses as mean powers, energies and figures of merit, in the report. */
+#include "losses_run.h"
+
+#include "quantity.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What a run's losses are made into. */
+struct account {
+    struct dalcs_run *r;
+    const struct dalcs_losses_sum *sum;
+    struct dalcs_losses *losses;
+    struct dalcs_element_losses *element;
+    double length; /* s */
+};
+
+static const char *kind_of(const struct dalcs_device *d) {
+    switch (d->kind) {
+    case DALCS_RESISTOR:
+        return strncmp(d->name, "rser(l", 6) == 0 ? "winding" : "resistor";
+    case DALCS_INDUCTOR:
+        return "coil";
+    case DALCS_CAPACITOR:
+        return "capacitor";
+    case DALCS_DIODE:
+        return "diode";
+    case DALCS_SWITCH:
+        return "switch";
+    default:
+        return d->is_limit ? "diode" : "source";
+    }
+}
+
+/* J in a coil, half of what it shares with others, or in a capacitor. at: 0 begin, 1 end. */
+static double stored(const struct account *a, int k, bool at_end) {
+    const struct dalcs_circuit *c = a->sum->circuit;
+    const struct dalcs_device *d = &c->device[k];
+    const struct dalcs_loss *l = &a->sum->device[k];
+    const double *own = at_end ? l->end : l->begin;
+    if (d->kind == DALCS_CAPACITOR) {
+        return 0.5 * d->value * own[0] * own[0];
+    }
+    double flux = d->value * own[1];
+    for (int j = 0; j < c->n_couplings; j++) {
+        const struct dalcs_coupling *m = &c->coupling[j];
+        if (m->inductor[0] == k || m->inductor[1] == k) {
+            int other = m->inductor[m->inductor[0] == k ? 1 : 0];
+            const struct dalcs_loss *o = &a->sum->device[other];
+            flux +=
+                m->k * sqrt(d->value * c->device[other].value) * (at_end ? o->end : o->begin)[1];
+        }
+    }
+    return 0.5 * flux * own[1];
+}
+
+/* Means over a part of a period more than these miss are off by such a part of the waveform: the tolerance
+ * to which that is known is what may be missed. */
+static bool has_whole_periods(const struct account *a, double frequency) {
+    double n = a->length * frequency;
+    double tolerance = a->r->tolerance;
+    return rint(n) >= 1.0 && fabs(n - rint(n)) <= tolerance;
+}
+
+/* Power factor and THD against the fundamental of the source. */
+static void judge_source(const struct account *a, const struct dalcs_loss *l,
+                         struct dalcs_element_losses *e) {
+    e->frequency = l->frequency;
+    if (!(l->frequency > 0.0) || !has_whole_periods(a, l->frequency)) {
+        return;
+    }
+    double volt = hypot(l->c[0], l->s[0]) * 2.0 / a->length;
+    double ampere = hypot(l->c[1], l->s[1]) * 2.0 / a->length;
+    double along = -(l->c[0] * l->c[1] + l->s[0] * l->s[1]) * 4.0 / (a->length * a->length);
+    double rest = e->i_rms * e->i_rms - e->i_average * e->i_average - 0.5 * ampere * ampere;
+    e->power_factor = -e->power / (e->v_rms * e->i_rms);
+    e->displacement = along / (volt * ampere);
+    e->thd = sqrt(fmax(rest, 0.0)) / (sqrt(0.5) * ampere);
+}
+
+static enum dalcs_status add_element(struct account *a, int k) {
+    const struct dalcs_device *d = &a->sum->circuit->device[k];
+    const struct dalcs_loss *l = &a->sum->device[k];
+    struct dalcs_losses *sum = a->losses;
+    struct dalcs_element_losses *e = &a->element[sum->n_elements++];
+    const double energy = l->energy + l->jump;
+    const bool stores = d->kind == DALCS_INDUCTOR || d->kind == DALCS_CAPACITOR;
+    *e = (struct dalcs_element_losses){
+        .element = dalcs_arena_copy(&a->r->s->arena, d->name, strlen(d->name)),
+        .kind = kind_of(d),
+        .v_average = l->v / a->length,
+        .v_rms = sqrt(l->v_square / a->length),
+        .i_average = l->i / a->length,
+        .i_rms = sqrt(l->i_square / a->length),
+        .power = energy / a->length,
+        .jumps = l->jump,
+        .stored_change = stores ? stored(a, k, true) - stored(a, k, false) : 0.0,
+        .switching = l->switching,
+        .n_on = l->n_on,
+        .n_off = l->n_off,
+        .n_clamped = l->n_clamped,
+        .power_factor = NAN,
+        .displacement = NAN,
+        .thd = NAN};
+    if (stores) {
+        e->power = e->stored_change / a->length;
+        sum->stored_change += e->stored_change;
+        sum->turnover += fabs(e->stored_change);
+        return e->element == NULL ? DALCS_E_NOMEM : DALCS_OK;
+    }
+    double *account = strcmp(e->kind, "source") == 0     ? &sum->sources
+                      : strcmp(e->kind, "resistor") == 0 ? &sum->resistors
+                      : strcmp(e->kind, "winding") == 0  ? &sum->windings
+                      : strcmp(e->kind, "diode") == 0    ? &sum->diodes
+                                                         : &sum->switches;
+    *account += account == &sum->sources ? -energy : energy;
+    sum->turnover += fabs(energy);
+    sum->switching += l->switching;
+    if (account == &sum->sources) {
+        judge_source(a, l, e);
+    }
+    return e->element == NULL ? DALCS_E_NOMEM : DALCS_OK;
+}
+
+/* ---- Efficiency -------------------------------------------------------------------------------- */
+
+static bool is_named(const int *list, int n, int device) {
+    bool found = false;
+    for (int k = 0; k < n && !found; k++) {
+        found = list[k] == device;
+    }
+    return found;
+}
+
+/* No part of another element, such as rpar(l1). */
+static bool is_resistor_card(const struct dalcs_device *d) {
+    return d->kind == DALCS_RESISTOR && strchr(d->name, '(') == NULL;
+}
+
+/* W of what is named, or else of what gives (in) or, resistors and sources, takes (out). */
+static enum dalcs_status add_side(struct account *a, bool is_out, double *power,
+                                  const char **names) {
+    const struct dalcs_losses_card *card = a->sum->circuit->losses;
+    const int *list = is_out ? card->out : card->in;
+    const int n = is_out ? card->n_out : card->n_in;
+    const double sign = is_out ? 1.0 : -1.0;
+    size_t e = 0;
+    *names = "";
+    for (int k = 0; k < a->sum->circuit->n_devices; k++) {
+        if (card->device[k].voltage < 0) {
+            continue;
+        }
+        const struct dalcs_element_losses *element = &a->element[e++];
+        const bool is_source = strcmp(element->kind, "source") == 0;
+        const bool may =
+            n > 0 ? is_named(list, n, k)
+                  : (is_source || (is_out && is_resistor_card(&a->sum->circuit->device[k]))) &&
+                        sign * element->power > 0.0;
+        if (may) {
+            *power += sign * element->power;
+            *names = dalcs_arena_printf(&a->r->s->arena, "%s%s%s", *names,
+                                        **names != '\0' ? ", " : "", element->element);
+            if (*names == NULL) {
+                return DALCS_E_NOMEM;
+            }
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status judge_efficiency(struct account *a) {
+    struct dalcs_losses *l = a->losses;
+    DALCS_TRY(add_side(a, false, &l->input, &l->inputs));
+    DALCS_TRY(add_side(a, true, &l->output, &l->outputs));
+    const double all = l->input + l->switching / a->length;
+    l->efficiency = all > 0.0 && l->output >= 0.0 ? l->output / all : (double)NAN;
+    return DALCS_OK;
+}
+
+/* ---- Messages ---------------------------------------------------------------------------------- */
+
+static void note_periods(const struct account *a, const struct dalcs_element_losses *e) {
+    char text[2][DALCS_QUANTITY_SIZE];
+    const double n = a->length * e->frequency;
+    if (e->frequency > 0.0 && isnan(e->thd) && !has_whole_periods(a, e->frequency)) {
+        dalcs_diag_add(&a->r->s->diag, DALCS_NOTE, NULL, NULL,
+                       "losses: the window of %s is %.6g periods of '%s' (%s), not a whole number: "
+                       "no power factor or THD",
+                       dalcs_quantity_write(text[0], a->length, "s", 6), n, e->element,
+                       dalcs_quantity_write(text[1], 1.0 / e->frequency, "s", 6));
+    }
+}
+
+static void tell(const struct account *a) {
+    for (size_t k = 0; k < a->losses->n_elements; k++) {
+        const struct dalcs_element_losses *e = &a->element[k];
+        note_periods(a, e);
+        if (e->n_clamped > 0) {
+            dalcs_diag_add(&a->r->s->diag, DALCS_WARNING, NULL,
+                           "make the table of .switchloss larger",
+                           "'%s' switched %ld time%s outside its table: the energy at its edge was "
+                           "taken",
+                           e->element, e->n_clamped, e->n_clamped == 1 ? "" : "s");
+        }
+    }
+}
+
+enum dalcs_status dalcs_losses_run_report(struct dalcs_losses_run *losses, struct dalcs_run *r) {
+    const struct dalcs_losses_sum *sum = &losses->sum;
+    const struct dalcs_circuit *c = sum->circuit;
+    struct dalcs_losses *l = dalcs_arena_alloc(&r->s->arena, 1, sizeof(*l));
+    struct account a = {.r = r, .sum = sum, .losses = l, .length = sum->to - sum->from};
+    a.element = dalcs_arena_alloc(&r->s->arena, (size_t)c->n_devices, sizeof(*a.element));
+    if (l == NULL || a.element == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    *l = (struct dalcs_losses){.from = sum->from, .to = sum->to, .element = a.element};
+    for (int k = 0; k < c->n_devices; k++) {
+        if (c->losses->device[k].voltage >= 0) {
+            DALCS_TRY(add_element(&a, k));
+        }
+    }
+    l->jumps = sum->loops;
+    l->turnover += fabs(sum->loops);
+    l->balance = l->sources - l->resistors - l->windings - l->diodes - l->switches - l->jumps -
+                 l->stored_change;
+    DALCS_TRY(judge_efficiency(&a));
+    tell(&a);
+    r->s->report.losses = l;
+    r->s->report.n_losses = 1;
+    return DALCS_OK;
+}

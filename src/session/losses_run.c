@@ -1,0 +1,143 @@
+/* losses_run.c - what the engine tells while it runs, for the sums of losses. */
+#include "losses_run.h"
+
+#include <stdlib.h>
+
+static enum dalcs_status find_pairs(struct dalcs_losses_run *losses, const struct dalcs_run *r) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    const struct dalcs_network *n = &r->s->network;
+    struct dalcs_names names = {0};
+    enum dalcs_status status = DALCS_OK;
+    for (int k = 0; k < c->n_devices && status == DALCS_OK; k++) {
+        losses->forward[k] = (struct dalcs_loss_pair){-1, -1};
+        status = dalcs_names_add(&names, c->device[k].name, k);
+    }
+    for (int i = 0; i < n->n_states && status == DALCS_OK; i++) {
+        losses->state_device[i] = dalcs_names_find(&names, n->state[i].element);
+    }
+    for (int s = 0; s < n->n_systems && status == DALCS_OK; s++) {
+        const struct dalcs_system *system = &n->system[s];
+        losses->device_of[s] = dalcs_alloc((size_t)system->n_pairs, sizeof(int));
+        status = losses->device_of[s] == NULL ? DALCS_E_NOMEM : DALCS_OK;
+        for (int d = 0; d < system->n_pairs && status == DALCS_OK; d++) {
+            const struct dalcs_pair *pair = &system->pair[d];
+            int k = pair->is_formula ? -1 : dalcs_names_find(&names, pair->element);
+            losses->device_of[s][d] = k;
+            if (k >= 0 && !pair->is_breakdown) {
+                losses->forward[k] = (struct dalcs_loss_pair){s, d};
+            }
+        }
+    }
+    dalcs_names_finish(&names);
+    return status;
+}
+
+enum dalcs_status dalcs_losses_run_start(struct dalcs_losses_run *losses, struct dalcs_run *r,
+                                         const struct dalcs_euler *e, bool is_euler, double near) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    if (!dalcs_run_wants_losses(r)) {
+        return DALCS_OK;
+    }
+    losses->wanted = true;
+    r->losses = losses;
+    losses->engine = e;
+    losses->is_euler = is_euler;
+    DALCS_TRY(dalcs_losses_sum_setup(&losses->sum, c, c->transient.stop, near));
+    losses->forward = dalcs_alloc((size_t)c->n_devices, sizeof(*losses->forward));
+    losses->device_of = dalcs_alloc((size_t)r->s->network.n_systems, sizeof(*losses->device_of));
+    losses->on = dalcs_alloc((size_t)c->n_devices, sizeof(bool));
+    losses->network = &r->s->network;
+    losses->state_device = dalcs_alloc((size_t)r->s->network.n_states, sizeof(int));
+    if (losses->forward == NULL || losses->device_of == NULL || losses->on == NULL ||
+        losses->state_device == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    return find_pairs(losses, r);
+}
+
+double dalcs_losses_run_begin(const struct dalcs_losses_run *losses) {
+    return losses->sum.from - 4.0 * losses->sum.near;
+}
+
+void dalcs_losses_run_finish(struct dalcs_losses_run *losses) {
+    for (int s = 0; losses->device_of != NULL && s < losses->engine->n_components; s++) {
+        free(losses->device_of[s]);
+    }
+    free(losses->device_of);
+    free(losses->forward);
+    free(losses->on);
+    free(losses->state_device);
+    dalcs_losses_sum_finish(&losses->sum);
+    *losses = (struct dalcs_losses_run){0};
+}
+
+static void take_sides(struct dalcs_losses_run *losses) {
+    for (int k = 0; k < losses->sum.circuit->n_devices; k++) {
+        const struct dalcs_loss_pair *p = &losses->forward[k];
+        losses->on[k] = p->system >= 0 &&
+                        dalcs_osnsp_is_on(&losses->engine->component[p->system].osnsp, p->pair);
+    }
+}
+
+void dalcs_losses_run_before_start(struct dalcs_losses_run *losses) {
+    take_sides(losses);
+    for (int k = 0; k < losses->sum.circuit->n_devices; k++) {
+        losses->sum.device[k].is_on = losses->on[k];
+    }
+    losses->sum.knows_sides = true;
+}
+
+/* What was stored before a jump at the start. */
+static void note_first(struct dalcs_losses_run *losses, const struct dalcs_euler_jump *j) {
+    static const double no_inputs[1] = {1.0}; /* states are columns only */
+    for (int i = 0; i < losses->network->n_states; i++) {
+        const struct dalcs_state *x = &losses->network->state[i];
+        if (x->probe.system == j->system && losses->state_device[i] >= 0 &&
+            dalcs_probe_is_known(&x->probe, j->n_known)) {
+            losses->sum.device[losses->state_device[i]].first =
+                dalcs_probe_value(&x->probe, j->before, no_inputs);
+        }
+    }
+}
+
+enum dalcs_status dalcs_losses_run_jump(struct dalcs_losses_run *losses,
+                                        const struct dalcs_euler_jump *j) {
+    const struct dalcs_circuit *c = losses->sum.circuit;
+    if (!losses->wanted) {
+        return DALCS_OK;
+    }
+    const struct dalcs_system *s = losses->engine->component[j->system].system;
+    struct dalcs_loss_jump *jump = dalcs_losses_sum_jump(&losses->sum, s->n_pairs);
+    if (jump == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    if (!losses->sum.has_last) {
+        note_first(losses, j);
+    }
+    jump->time = j->time;
+    jump->energy_lost = j->energy_lost;
+    jump->is_in_steps = losses->is_euler;
+    for (int d = 0; d < s->n_pairs; d++) {
+        const int k = losses->device_of[j->system][d];
+        if (k < 0) {
+            continue;
+        }
+        struct dalcs_loss_impulse *i = &jump->impulse[jump->n++];
+        const bool back = s->pair[d].is_breakdown;
+        *i = (struct dalcs_loss_impulse){.device = k, .charge = j->charge[d]};
+        if (c->device[k].kind == DALCS_DIODE) {
+            const struct dalcs_diode_model *m = &c->diode_model[c->device[k].model];
+            i->in_thresholds =
+                j->charge[d] == 0.0 ? 0.0 : (back ? m->vrev : m->vfwd) * j->charge[d];
+        }
+        i->charge = back ? -i->charge : i->charge;
+        i->flux = back ? 0.0 : -j->flux[d]; /* w is a voltage in reverse */
+    }
+    return DALCS_OK;
+}
+
+void dalcs_losses_run_stretch(struct dalcs_losses_run *losses,
+                              const struct dalcs_stretch *stretch) {
+    take_sides(losses);
+    dalcs_losses_sum_stretch(&losses->sum, stretch, losses->on);
+}

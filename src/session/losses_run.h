@@ -1,0 +1,52 @@
+/* losses_run.h - the losses of a transient while it runs, and into the report. */
+#ifndef DALCS_SESSION_LOSSES_H
+#define DALCS_SESSION_LOSSES_H
+
+#include "losses_sum.h"
+#include "session_internal.h"
+
+/* Zero-initialise; without a start nothing is summed and nothing costs anything. */
+struct dalcs_losses_run {
+    bool wanted;
+    struct dalcs_losses_sum sum;
+    const struct dalcs_euler *engine;
+
+    struct dalcs_loss_pair {
+        int system, pair;
+    } * forward; /* [n_devices] the pair of a switch or diode; system -1: none */
+
+    int **device_of; /* [n_systems][n_pairs] -1: of no device */
+    const struct dalcs_network *network;
+    int *state_device; /* [n_states] */
+    bool *on;          /* [n_devices] */
+    bool is_euler;
+};
+
+static inline bool dalcs_run_wants_losses(const struct dalcs_run *r) {
+    return r->s->circuit.losses != NULL && r->s->circuit.losses->present;
+}
+
+/* Before the start of a transient; `near`: s, times that are the same. */
+enum dalcs_status dalcs_losses_run_start(struct dalcs_losses_run *losses, struct dalcs_run *r,
+                                         const struct dalcs_euler *e, bool is_euler,
+                                         double near) DALCS_MUST_CHECK;
+/* s: stretches are wanted from here on, so that one ends where the window begins. */
+double dalcs_losses_run_begin(const struct dalcs_losses_run *losses);
+
+void dalcs_losses_run_finish(struct dalcs_losses_run *losses);
+
+/* Before an edge at the start: the sides of all there. */
+void dalcs_losses_run_before_start(struct dalcs_losses_run *losses);
+
+/* A jump that is told of. */
+enum dalcs_status dalcs_losses_run_jump(struct dalcs_losses_run *losses,
+                                        const struct dalcs_euler_jump *jump) DALCS_MUST_CHECK;
+
+/* The stretch is filled and expanded; the engine is in the mode of it. */
+void dalcs_losses_run_stretch(struct dalcs_losses_run *losses, const struct dalcs_stretch *stretch);
+
+/* After a run that came to its end. */
+enum dalcs_status dalcs_losses_run_report(struct dalcs_losses_run *losses,
+                                          struct dalcs_run *r) DALCS_MUST_CHECK;
+
+#endif
