@@ -92,6 +92,10 @@ struct dalcs_builder {
     struct dalcs_names models; /* name -> index of model */
     struct dalcs_model *model;
     int n_models, model_capacity;
+    size_t gate_capacity;
+    bool *read_by_gates; /* [n_nodes_of_gates] nodes whose bit another gate reads */
+    size_t n_nodes_of_gates;
+    const struct dalcs_logic_card *gate_card; /* the last of all, each points to the one before */
 
     const struct dalcs_token *pss;  /* so with .pss */
     const struct dalcs_token *tran; /* the first .tran and .op, NULL before */
@@ -430,6 +434,10 @@ struct dalcs_transistor *dalcs_transistor_parse_model(struct dalcs_reader *reade
                                                       const struct dalcs_token *type);
 /* Their resistances, when all elements are known; refuses those that are no switches. */
 void dalcs_transistor_resolve(struct dalcs_builder *builder);
+/* LTspice's gates and flip-flops, logic.c. */
+void dalcs_logic_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* What their inputs read, when all outputs are known. */
+void dalcs_logic_resolve(struct dalcs_builder *builder);
 void dalcs_switch_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* type: sw, csw, vswitch or iswitch */
 /* Its number; -1 when out of memory. */

@@ -194,7 +194,13 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         }
         table->n_inner += count_parasitics(card);
         table->n_inner += is_load(card) ? 2 : 0;
-        table->n_inner += letter == 'a' ? 6 : 0; /* what a triac becomes */
+        if (dalcs_card_is_logic(card)) {
+            table->n_gates++;
+            table->n_stimuli += 2;
+            table->n_inner += DALCS_GATE_DEVICES;
+        } else {
+            table->n_inner += letter == 'a' ? 6 : 0; /* what a triac becomes */
+        }
         table->n_inner += letter == 'l' &&
                           dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_LTSPICE);
         if (strchr("efgh", letter) != NULL) {

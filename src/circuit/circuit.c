@@ -33,6 +33,7 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     const size_t n_devices = count[DALCS_CARD_ELEMENT] + table.n_inner;
     const size_t n_cards = count[DALCS_CARD_MODEL];
     /* and those that diodes name and the table knows, of which there are fewer than this */
+    builder->gate_capacity = table.n_gates;
     const size_t n_models = n_cards + (table.n_diodes < 512 ? table.n_diodes : 512);
     builder->n_device_cards = (int)n_devices;
     builder->device_capacity = n_devices;
@@ -100,7 +101,9 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
         dalcs_diode_parse(builder, card);
         return;
     case 'a':
-        if (dalcs_thyristor_is(builder, card)) {
+        if (dalcs_card_is_logic(card)) {
+            dalcs_logic_parse(builder, card);
+        } else if (dalcs_thyristor_is(builder, card)) {
             dalcs_thyristor_parse(builder, card);
         } else {
             dalcs_diode_parse_block(builder, card);
@@ -253,6 +256,7 @@ static enum dalcs_status build(struct dalcs_builder *builder) {
     dalcs_controlled_resolve(builder);
     dalcs_transistor_resolve(builder);
     dalcs_behavioural_resolve(builder);
+    dalcs_logic_resolve(builder);
     dalcs_model_check(builder);
     check_presence(builder);
     if (builder->n_signals == 0) {
@@ -337,4 +341,22 @@ void dalcs_circuit_finish(struct dalcs_circuit *circuit) {
     struct dalcs_arena arena = circuit->arena;
     *circuit = (struct dalcs_circuit){0};
     dalcs_arena_finish(&arena);
+}
+
+static bool depends(const struct dalcs_circuit *circuit, const struct dalcs_stimulus *s,
+                    const bool *changed) {
+    const struct dalcs_stimulus *first = circuit->stimulus;
+    if (s >= first && s < first + circuit->n_stimuli && changed[s - first]) {
+        return true;
+    }
+    bool does = false;
+    for (int k = 0; s->kind == DALCS_STIMULUS_FORMULA && k < s->u.formula.argument.n && !does;
+         k++) {
+        does = depends(circuit, s->u.formula.argument.part[k].of, changed);
+    }
+    return does;
+}
+
+bool dalcs_stimulus_depends(const struct dalcs_circuit *circuit, int k, const bool *changed) {
+    return k >= 0 && depends(circuit, &circuit->stimulus[k], changed);
 }

@@ -6,6 +6,7 @@
 #define DALCS_CIRCUIT_H
 
 #include "diag.h"
+#include "logic.h"
 #include "losses.h"
 #include "measurement.h"
 #include "stimulus.h"
@@ -165,7 +166,11 @@ struct dalcs_circuit {
     struct dalcs_coupling *coupling;
     int n_initial_conditions;
     struct dalcs_initial_condition *initial_condition;
-    int n_signals; /* default: every node voltage, then currents of V, L, D, S, W, E, H */
+    int n_gates;
+    struct dalcs_logic_gate *gate;
+    int n_comparators;
+    int *comparator; /* [n_comparators] switches that nothing flows in: what gates read */
+    int n_signals;   /* default: every node voltage, then currents of V, L, D, S, W, E, H */
     struct dalcs_signal *signal;
     int n_shown; /* the first of them, which results have; the others are there to be measured */
     int n_measured;
@@ -269,6 +274,9 @@ dalcs_behaviour_visit(const struct dalcs_behaviour *behaviour,
         }
     }
 }
+
+/* Is the k-th stimulus one of changed[n_stimuli], or a formula of such? k < 0, the constant, is not. */
+bool dalcs_stimulus_depends(const struct dalcs_circuit *circuit, int k, const bool *changed);
 
 static inline void dalcs_mark_wanted_term(void *wanted, const struct dalcs_affine_term *term) {
     if (term->kind == DALCS_QUANTITY_CURRENT) {

@@ -73,6 +73,9 @@ void dalcs_topology_check(struct dalcs_builder *builder) {
                                circuit->node_name[device->node[0]]);
         }
     }
+    for (size_t k = 0; k < builder->n_nodes_of_gates; k++) {
+        touch[k].n_controls += builder->read_by_gates[k];
+    }
     check_nodes(builder, touch);
     free(touch);
 }

@@ -95,6 +95,18 @@ void dalcs_component_sample(struct dalcs_component *c, double t, enum dalcs_side
     }
 }
 
+void dalcs_component_disturb(struct dalcs_component *c, double t) {
+    for (int i = 0; i < c->n_varying && t > 0.0; i++) {
+        struct dalcs_input_piece *piece = &c->piece[i];
+        if (piece->is_linear) { /* it ends at t, and is taken anew there */
+            const int k = c->system->stimulus[c->varying[i]];
+            piece->last = dalcs_stimulus_value(&c->circuit->stimulus[k], t, DALCS_LEFT);
+            piece->first = piece->last;
+            piece->from = piece->to = t;
+        }
+    }
+}
+
 void dalcs_component_look_ahead(const struct dalcs_component *c, double t, double *u) {
     const struct dalcs_system *s = c->system;
     for (int i = 0; i < c->n_varying; i++) {

@@ -54,6 +54,9 @@ void dalcs_component_sample(struct dalcs_component *c, double t, enum dalcs_side
 /* The same at a time t that the next samples may lie before. */
 void dalcs_component_look_ahead(const struct dalcs_component *c, double t, double *u);
 
+/* Its sources are others from t on. */
+void dalcs_component_disturb(struct dalcs_component *c, double t);
+
 /* Does a source jump at t = 0? An operating point lies before that. */
 bool dalcs_component_jumps_at_start(const struct dalcs_component *c);
 

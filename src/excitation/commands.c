@@ -205,6 +205,24 @@ bool dalcs_commands_obey(struct dalcs_commands *commands, double t) {
     return moved;
 }
 
+void dalcs_commands_disturb(struct dalcs_commands *commands, double t, const bool *changed) {
+    const struct dalcs_csr *a = &commands->system->direct_control;
+    for (int k = 0; k < commands->n; k++) {
+        struct dalcs_command *m = &commands->command[k];
+        bool is = false;
+        for (int i = a->p[m->pair]; i < a->p[m->pair + 1] && !is; i++) {
+            is = dalcs_stimulus_depends(commands->control.circuit,
+                                        commands->system->stimulus[a->j[i]], changed);
+        }
+        if (is) {
+            m->searched = t;
+            m->on_ramp = false;
+            search(commands, m);
+        }
+    }
+    find_earliest(commands);
+}
+
 void dalcs_commands_look(struct dalcs_commands *commands, double until) {
     for (int k = 0; k < commands->n; k++) {
         struct dalcs_command *m = &commands->command[k];

@@ -49,6 +49,9 @@ void dalcs_commands_start(struct dalcs_commands *commands);
 /* Moves what is due at t, and looks for the next. Returns whether anything moved. */
 bool dalcs_commands_obey(struct dalcs_commands *commands, double t);
 
+/* Stimuli (changed[n_stimuli of the circuit]) are others from t on: switches that they control are looked at anew. */
+void dalcs_commands_disturb(struct dalcs_commands *commands, double t, const bool *changed);
+
 /* Goes on with searches that have found nothing so far, up to a time. */
 void dalcs_commands_look(struct dalcs_commands *commands, double until);
 

@@ -207,3 +207,49 @@ enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) {
     }
     return opens ? dalcs_radau_tell_open(r) : DALCS_OK;
 }
+
+bool dalcs_radau_is_disturbed(const struct dalcs_radau_part *part, const bool *changed) {
+    const struct dalcs_component *c = part->component;
+    bool is = false;
+    for (int k = 1; k < c->system->n_inputs && !is; k++) {
+        is = dalcs_stimulus_depends(c->circuit, c->system->stimulus[k], changed);
+    }
+    return is;
+}
+
+/* Its segment has begun at t, as if nothing had changed. */
+static enum dalcs_status begin_again(struct dalcs_radau *r, struct dalcs_radau_part *part) {
+    dalcs_excitation_enter(&part->excitation, part->segment.t);
+    if (dalcs_commands_obey(&part->commands, part->segment.t)) {
+        obey_commands(part);
+        part->guards.flipped = true;
+    }
+    part->guards.fresh = true;
+    part->guards.n_crossed = 0;
+    part->segment.late = NULL;
+    part->segment.brief = NULL;
+    return dalcs_segment_begin(r, part);
+}
+
+void dalcs_radau_cut(struct dalcs_radau_part *part, double t) {
+    dalcs_recurrence_complete(part);
+    part->segment.brief = NULL;
+    part->segment.end = (t - part->segment.t) / part->segment.h;
+    part->segment.t_end = t;
+    part->segment.why = DALCS_END_AT_EDGE;
+    part->guards.n_crossed = 0;
+}
+
+enum dalcs_status dalcs_radau_disturb(struct dalcs_radau *r, struct dalcs_radau_part *part,
+                                      double t, const bool *changed) {
+    dalcs_component_disturb(part->component, t);
+    if (part->kind == DALCS_PART_ALGEBRAIC) {
+        return DALCS_OK;
+    }
+    dalcs_commands_disturb(&part->commands, t, changed);
+    if (part->segment.t >= t) {
+        return begin_again(r, part);
+    }
+    part->excitation.next_edge = t; /* so that it is entered */
+    return pass(r, part);
+}

@@ -180,7 +180,9 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->length.rung = fit_rung(promising);
     part->length.level = -ilogb(fmin(first, promising) / part->length.rung);
     part->length.patience = 32;
-    DALCS_TRY(dalcs_periodic_setup(r, part));
+    if (r->base->circuit->n_gates == 0) { /* what gates do is not known to recur */
+        DALCS_TRY(dalcs_periodic_setup(r, part));
+    }
     if (dalcs_stages_have_maps(&part->stages)) {
         part->segment.rounding = 1.0; /* before there is a step, too */
     }
@@ -204,7 +206,8 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
         r->part[k].index = k;
         status = part_setup(r, &r->part[k], osnsp);
     }
-    status = status == DALCS_OK ? dalcs_cycle_setup(r) : status;
+    const bool may_leap = base->circuit->n_gates == 0;
+    status = status == DALCS_OK && may_leap ? dalcs_cycle_setup(r) : status;
     if (status != DALCS_OK) {
         dalcs_radau_finish(r);
     }

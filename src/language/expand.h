@@ -57,4 +57,9 @@ bool dalcs_deck_function(const struct dalcs_deck *deck, const char *name, int *n
 
 void dalcs_deck_finish(struct dalcs_deck *deck);
 
+/* LTspice's gates and flip-flops: eight nodes, then the function, then parameters. */
+enum { DALCS_LOGIC_MODEL = 9 };
+
+bool dalcs_card_is_logic(const struct dalcs_card *card);
+
 #endif

@@ -83,8 +83,24 @@ static void poly_roles(const struct dalcs_card *card, int poly, unsigned char *r
     }
 }
 
+bool dalcs_card_is_logic(const struct dalcs_card *card) {
+    static const char *const words[] = {
+        "and",      "or",    "xor",         "inv",          "buf",          "schmitt", "schmtbuf",
+        "schmtinv", "dflop", "diffschmitt", "diffschmtbuf", "diffschmtinv", "srflop"};
+    bool is = false;
+    for (size_t k = 0; k < sizeof words / sizeof words[0] && card->n > DALCS_LOGIC_MODEL; k++) {
+        is = is || is_word(&card->token[DALCS_LOGIC_MODEL], words[k]);
+    }
+    return is && card->letter == 'a';
+}
+
 /* XSPICE: nodes, types such as %v, parentheses and brackets; the last word is the model. */
 static void block_roles(const struct dalcs_card *card, unsigned char *role) {
+    if (dalcs_card_is_logic(card)) {
+        memset(role + 1, DALCS_ROLE_NODE, DALCS_LOGIC_MODEL - 1);
+        role[DALCS_LOGIC_MODEL] = DALCS_ROLE_RAW;
+        return;
+    }
     int last = 0;
     for (int k = 1; k < card->n; k++) {
         if (card->token[k].kind == DALCS_TOKEN_WORD && card->token[k].text[0] != '%') {

@@ -169,6 +169,14 @@ void dalcs_audit_run_leave(struct dalcs_audit_run *a, double t) {
     a->has_rows = false;
 }
 
+void dalcs_audit_run_cut(struct dalcs_audit_run *a, int part, double t) {
+    if (a->audit != NULL && a->radau->part[part].kind == DALCS_PART_STEPPED &&
+        !a->part[part].was_left) {
+        a->part[part].was_left = true;
+        leave(a, part, t);
+    }
+}
+
 void dalcs_audit_run_enter_now(struct dalcs_audit_run *a) {
     if (a->tried_time < INFINITY) {
         dalcs_audit_leaps_compare(a);

@@ -71,4 +71,7 @@ enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) DALCS_MUST_C
 /* Is there a defect that is more than is allowed, and does it end the run? */
 bool dalcs_audit_run_fails(const struct dalcs_audit_run *a);
 
+/* Between leave and enter: a part's segment ends at t, before its time. */
+void dalcs_audit_run_cut(struct dalcs_audit_run *a, int part, double t);
+
 #endif

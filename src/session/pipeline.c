@@ -1,6 +1,7 @@
 /* pipeline.c - running: DALCS -> one OSNSP per step -> certified rows.
  *
  * dalcs_session_run at the end is the table of contents. */
+#include "gates.h"
 #include "measures.h"
 
 #include "thinning.h"
@@ -251,6 +252,7 @@ static enum dalcs_status ignore_progress(void *user, double time, double stop) {
 
 static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis analysis) {
     const struct dalcs_circuit *circuit = &r->s->circuit;
+    DALCS_TRY(dalcs_check_gates(r, analysis));
     switch (analysis) {
     case DALCS_OPERATING_POINT:
         return circuit->operating_point ? run_operating_point(r) : DALCS_OK;

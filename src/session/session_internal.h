@@ -9,6 +9,7 @@
 #include "spice.h"
 #include "undetermined.h"
 
+struct dalcs_logic_run;
 struct dalcs_losses_run;
 struct dalcs_orbit_point;
 struct dalcs_radau;
@@ -145,9 +146,11 @@ enum dalcs_status dalcs_transient_run_thinned(struct dalcs_run *r) DALCS_MUST_CH
 /* Frees what the last run left. */
 void dalcs_session_forget_run(struct dalcs_session *session);
 
-/* Starts a .tran; radau is NULL with implicit Euler. `records`: the recorder is to know of what was before. */
+/* Starts a .tran; radau is NULL with implicit Euler. logic: its gates, if there are any; NULL: it is a period of a search
+ * for a steady state, of which the recorder is to know nothing. */
 enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler *e,
-                                        struct dalcs_radau *radau, bool records) DALCS_MUST_CHECK;
+                                        struct dalcs_radau *radau,
+                                        struct dalcs_logic_run *logic) DALCS_MUST_CHECK;
 
 /* As dalcs_run_choose has chosen them. */
 struct dalcs_radau_options dalcs_transient_options(const struct dalcs_run *r, double stop);

@@ -132,7 +132,7 @@ static enum dalcs_status run_periods(struct dalcs_steady *st, struct dalcs_euler
         e->observer = &observer;
     }
     enum dalcs_status status = st->has_point ? dalcs_steady_start(&st->at, e, radau)
-                                             : dalcs_transient_start(st->run, e, radau, false);
+                                             : dalcs_transient_start(st->run, e, radau, NULL);
     if (status == DALCS_OK) {
         status = asked == DALCS_STEADY_MEANS ? go_with_means(st, radau) : go(radau, st->run, NULL);
     }

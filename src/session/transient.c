@@ -11,6 +11,7 @@
 #include "energy.h"
 #include "extremes.h"
 #include "filling.h"
+#include "gates.h"
 #include "losses_run.h"
 
 #include <math.h>
@@ -143,11 +144,25 @@ static enum dalcs_status start_from_clamps(struct dalcs_run *r, struct dalcs_eul
     return status;
 }
 
+/* With logic at rest, if it has one: a change of an output may move what others read. NULL: it has none. */
+static enum dalcs_status operating_point(struct dalcs_euler *e, struct dalcs_logic_run *logic) {
+    bool changed = logic != NULL;
+    for (int round = 0; changed && round <= logic->network.n; round++) {
+        DALCS_TRY(dalcs_euler_operating_point(e, true));
+        DALCS_TRY(dalcs_logic_run_rest(logic, &changed));
+    }
+    return changed || logic == NULL ? dalcs_euler_operating_point(e, true) : DALCS_OK;
+}
+
 enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler *e,
-                                        struct dalcs_radau *radau, bool records) {
+                                        struct dalcs_radau *radau, struct dalcs_logic_run *logic) {
     const struct dalcs_circuit *c = &r->s->circuit;
     if (r->orbit != NULL) {
         return dalcs_steady_start(r->orbit, e, radau);
+    }
+    if (logic != NULL) {
+        bool changed;
+        DALCS_TRY(dalcs_logic_run_rest(logic, &changed));
     }
     if (c->transient.use_initial_conditions) {
         return start_at(e, radau, r->s->network.initial);
@@ -158,8 +173,8 @@ enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler 
     if (c->n_initial_conditions > 0) {
         return start_from_clamps(r, e, radau);
     }
-    DALCS_TRY(dalcs_euler_operating_point(e, true));
-    if (records && sources_jump(c, 0.0)) {
+    DALCS_TRY(operating_point(e, logic));
+    if (logic != NULL && sources_jump(c, 0.0)) {
         DALCS_TRY(dalcs_recorder_before_start(&r->s->recorder, e));
         if (r->losses != NULL) {
             dalcs_losses_run_before_start(r->losses);
@@ -207,6 +222,7 @@ struct transient {
     struct dalcs_radau *radau;
     struct dalcs_measures *measures;
     struct dalcs_audit_run *audit;
+    struct dalcs_logic_run *logic;
     struct dalcs_rows rows;
     struct dalcs_filling filling;
     double t;
@@ -219,7 +235,7 @@ struct transient {
 /* Of any source; before the first row nobody asks. */
 static double edge_after(const struct transient *c, double t) {
     const struct dalcs_circuit *circuit = &c->run->s->circuit;
-    double edge = INFINITY;
+    double edge = dalcs_logic_run_next(c->logic);
     t = dalcs_larger(t, c->recorder->schedule.start * (1.0 - before_start));
     for (int i = 0; i < circuit->n_stimuli && dalcs_recorder_wants_sides(c->recorder, INFINITY);
          i++) {
@@ -297,6 +313,16 @@ static enum dalcs_status leap(struct transient *c) {
     return tell_progress(c, leap->n_steps);
 }
 
+static void tell_cut(void *user, int part, double t) {
+    dalcs_audit_run_cut(user, part, t);
+}
+
+/* Gates at t. */
+static enum dalcs_status decide(struct transient *c, double t) {
+    const enum dalcs_status status = dalcs_logic_run_at(c->logic, t);
+    return status == DALCS_NOT_CONVERGED ? dalcs_refuse_gates(c->run, c->logic, t) : status;
+}
+
 /* To the next time at which there is something to do, with the rows up to there. */
 static enum dalcs_status advance(struct transient *c) {
     struct dalcs_radau *radau = c->radau;
@@ -334,22 +360,23 @@ static enum dalcs_status advance(struct transient *c) {
         DALCS_TRY(row(c, DALCS_LEFT, is_due));
         dalcs_filling_row(&c->filling, t, edge || (ends && happens));
     }
-    if (ends || t >= stop - near) {
+    if (ends || t >= stop - near || (edge && c->logic->circuit != NULL)) {
         dalcs_audit_run_leave(c->audit, t >= stop - near ? stop : t);
     }
     if (t >= stop - near) {
         c->t = stop;
         return DALCS_OK;
     }
-    if (ends) {
+    if (ends || (edge && c->logic->circuit != NULL)) {
         radau->base->t = t;
         DALCS_TRY(dalcs_radau_pass(radau, t));
+        DALCS_TRY(decide(c, t));
         dalcs_audit_run_enter(c->audit);
         radau->base->t = t;
         DALCS_TRY(dalcs_recorder_events(c->recorder, radau->base));
     }
     bool jumps = edge && sources_jump(&c->run->s->circuit, c->t);
-    if (edge) {
+    if (edge || c->logic->circuit != NULL) {
         c->next_edge = edge_after(c, t);
     }
     if (sides && ((ends && happens) || jumps)) {
@@ -371,12 +398,16 @@ static void note_end_of_filling(struct dalcs_run *r, const struct dalcs_filling 
 
 static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau *radau,
                                         struct dalcs_measures *measures,
-                                        struct dalcs_audit_run *audit) {
+                                        struct dalcs_audit_run *audit,
+                                        struct dalcs_logic_run *logic) {
     struct transient c = {.run = r,
                           .recorder = &r->s->recorder,
                           .radau = radau,
                           .measures = measures,
-                          .audit = audit};
+                          .audit = audit,
+                          .logic = logic};
+    logic->cut_user = audit;
+    logic->on_cut = tell_cut;
     c.next_row = dalcs_recorder_due(c.recorder);
     c.next_edge = edge_after(&c, 0.0);
     c.interval = c.to_go = progress_interval(&r->s->network);
@@ -423,10 +454,13 @@ static enum dalcs_status report_methods(struct dalcs_run *r, const struct dalcs_
 }
 
 static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct dalcs_radau *radau,
-                              struct dalcs_measures *measures, struct dalcs_audit_run *audit) {
+                              struct dalcs_measures *measures, struct dalcs_audit_run *audit,
+                              struct dalcs_logic_run *logic) {
     struct dalcs_session *s = r->s;
     DALCS_TRY(report_methods(r, radau));
-    DALCS_TRY(dalcs_transient_start(r, e, radau, true));
+    DALCS_TRY(dalcs_transient_start(r, e, radau, logic));
+    enum dalcs_status decided = dalcs_logic_run_at(logic, 0.0);
+    DALCS_TRY(decided == DALCS_NOT_CONVERGED ? dalcs_refuse_gates(r, logic, 0.0) : decided);
     if (radau != NULL) {
         DALCS_TRY(dalcs_radau_evaluate(radau, 0.0, DALCS_RIGHT));
     }
@@ -436,8 +470,8 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct
                                                                            : DALCS_TRANSIENT));
     DALCS_TRY(dalcs_recorder_start(&s->recorder, e));
     DALCS_TRY(dalcs_measures_start(measures, r, e, radau));
-    enum dalcs_status status =
-        radau != NULL ? run_to_the_end(r, radau, measures, audit) : step_to_the_end(r, e, measures);
+    enum dalcs_status status = radau != NULL ? run_to_the_end(r, radau, measures, audit, logic)
+                                             : step_to_the_end(r, e, measures);
     if (status == DALCS_OK && radau != NULL) {
         status = dalcs_radau_evaluate(radau, radau->options.stop, DALCS_LEFT);
     }
@@ -566,6 +600,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     struct dalcs_measures measures = {0};
     struct dalcs_losses_run losses = {0};
     struct dalcs_audit_run audit = {0};
+    struct dalcs_logic_run logic = {0};
     struct dalcs_schedule schedule = choose_schedule(r);
     warn_of_coarse_rows(r, &schedule, isinf(r->fill) ? schedule.start : INFINITY);
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
@@ -585,10 +620,8 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
         const struct dalcs_radau_options options = dalcs_transient_options(r, stop);
         status = dalcs_radau_setup(&radau, &e, &options, &r->osnsp);
     }
-    if (status == DALCS_OK && dalcs_run_wants_losses(r)) {
-        status =
-            dalcs_losses_run_start(&losses, r, &e, is_euler, is_euler ? 0.0 : radau.resolution);
-    }
+    status = status == DALCS_OK && !is_euler ? dalcs_logic_run_setup(&logic, &s->circuit, &radau)
+                                             : status;
     if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {
         status = dalcs_energy_setup(&energy, &e, is_euler ? NULL : &radau);
     }
@@ -596,7 +629,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
         status = is_euler ? DALCS_OK : dalcs_audit_run_start(&audit, r, &e, &radau);
     }
     if (status == DALCS_OK) {
-        status = walk(r, &e, is_euler ? NULL : &radau, &measures, &audit);
+        status = walk(r, &e, is_euler ? NULL : &radau, &measures, &audit, &logic);
         enum dalcs_status reported = dalcs_measures_report(&measures, r, status);
         status = status == DALCS_OK ? reported : status;
     }
@@ -618,6 +651,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     dalcs_run_add_work(r, &e);
     add_radau_work(r, &radau);
     dalcs_audit_run_finish(&audit);
+    dalcs_logic_run_finish(&logic);
     dalcs_measures_finish(&measures);
     dalcs_losses_run_finish(&losses);
     r->losses = NULL;

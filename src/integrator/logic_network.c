@@ -1,0 +1,147 @@
+/* logic_network.c - what gates and flip-flops decide.
+ *
+ * In a round each one decides from what all showed before it, as in the delta cycles of hardware languages: flip-flops
+ * of one clock take what stood before the edge. What a round makes is a function of the state alone, so that a network
+ * that does not settle comes back to a state, and one that comes back does not settle: Brent's way finds that without a
+ * bound to choose. */
+#include "logic_network.h"
+
+#include <string.h>
+
+static bool read(const struct dalcs_logic_network *l, const struct dalcs_logic_input *input) {
+    bool bit = input->from == DALCS_GATE_COMPARATOR ? l->bit[input->index]
+               : input->from == DALCS_GATE_GATE     ? l->state[input->index].seen
+                                                    : false;
+    return bit != input->is_inverted;
+}
+
+static bool of_inputs(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g) {
+    bool all = true;
+    bool any = false;
+    bool odd = false;
+    for (int k = 0; k < DALCS_GATE_INPUTS; k++) {
+        if (g->input[k].from != DALCS_GATE_OPEN) {
+            const bool bit = read(l, &g->input[k]);
+            all = all && bit;
+            any = any || bit;
+            odd = odd != bit;
+        }
+    }
+    return g->kind == DALCS_GATE_AND ? all : g->kind == DALCS_GATE_XOR ? odd : any;
+}
+
+static bool of_latch(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g,
+                     bool q) {
+    const bool set = read(l, &g->input[0]);
+    const bool reset = read(l, &g->input[1]);
+    return !reset && (set || q);
+}
+
+static bool of_flip_flop(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g,
+                         const struct dalcs_logic_state *state) {
+    if (read(l, &g->input[DALCS_GATE_CLEAR])) {
+        return false;
+    }
+    if (read(l, &g->input[DALCS_GATE_PRESET])) {
+        return true;
+    }
+    const bool rises = read(l, &g->input[DALCS_GATE_CLOCK]) && !state->clock && !l->rests;
+    return rises ? read(l, &g->input[DALCS_GATE_DATA]) : state->q;
+}
+
+static struct dalcs_logic_state decide(const struct dalcs_logic_network *l, int k) {
+    const struct dalcs_logic_gate *g = &l->gate[k];
+    struct dalcs_logic_state state = l->state[k];
+    if (g->kind == DALCS_GATE_LATCH) {
+        state.q = of_latch(l, g, state.q);
+    } else if (g->kind == DALCS_GATE_FLIP_FLOP) {
+        state.q = of_flip_flop(l, g, &state);
+        state.clock = read(l, &g->input[DALCS_GATE_CLOCK]);
+    } else {
+        state.q = of_inputs(l, g);
+    }
+    state.seen = g->delay > 0 ? state.seen : state.q;
+    return state;
+}
+
+static bool is_same(const struct dalcs_logic_state *a, const struct dalcs_logic_state *b) {
+    return a->q == b->q && a->seen == b->seen && a->clock == b->clock;
+}
+
+/* One round; does anything change? */
+static bool change(struct dalcs_logic_network *l, void *user,
+                   void (*on_q)(void *user, int gate, bool q)) {
+    bool any = false;
+    for (int k = 0; k < l->n; k++) {
+        l->next[k] = decide(l, k);
+    }
+    for (int k = 0; k < l->n; k++) {
+        if (l->next[k].q != l->state[k].q) {
+            on_q(user, k, l->next[k].q);
+        }
+        any = any || !is_same(&l->next[k], &l->state[k]);
+    }
+    struct dalcs_logic_state *before = l->state;
+    l->state = l->next;
+    l->next = before;
+    return any;
+}
+
+void dalcs_logic_rest(struct dalcs_logic_network *l) {
+    bool any = true;
+    l->rests = true;
+    for (int pass = 0; pass <= l->n && any; pass++) {
+        any = false;
+        for (int k = 0; k < l->n; k++) {
+            struct dalcs_logic_state state = decide(l, k);
+            any = any || state.q != l->state[k].q;
+            state.seen = state.q;
+            l->state[k] = state;
+        }
+    }
+    for (int k = 0; k < l->n; k++) { /* what is still to come, for those with a delay */
+        l->state[k].q = l->gate[k].delay > 0 ? decide(l, k).q : l->state[k].q;
+    }
+    l->rests = false;
+}
+
+static bool is_at_mark(const struct dalcs_logic_network *l) {
+    bool is = true;
+    for (int k = 0; k < l->n && is; k++) {
+        is = is_same(&l->state[k], &l->mark[k]);
+    }
+    return is;
+}
+
+static void ignore(void *user, int gate, bool q) {
+    (void)user;
+    (void)gate;
+    (void)q;
+}
+
+/* Once round. */
+static void find_loop(struct dalcs_logic_network *l) {
+    memset(l->moves, 0, (size_t)l->n * sizeof(bool));
+    do {
+        (void)change(l, NULL, ignore);
+        for (int k = 0; k < l->n; k++) {
+            l->moves[k] = l->moves[k] || !is_same(&l->state[k], &l->mark[k]);
+        }
+    } while (!is_at_mark(l));
+}
+
+bool dalcs_logic_settle(struct dalcs_logic_network *l, void *user,
+                        void (*on_q)(void *user, int gate, bool q)) {
+    const size_t bytes = (size_t)l->n * sizeof(*l->state);
+    memcpy(l->mark, l->state, bytes);
+    for (long round = 1; change(l, user, on_q); round++) {
+        if (is_at_mark(l)) {
+            find_loop(l);
+            return false;
+        }
+        if ((round & (round - 1)) == 0) {
+            memcpy(l->mark, l->state, bytes);
+        }
+    }
+    return true;
+}

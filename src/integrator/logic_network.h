@@ -1,0 +1,32 @@
+/* logic_network.h - gates and flip-flops at one instant: from bits to bits, by rounds in which all decide at once. */
+#ifndef DALCS_LOGIC_NETWORK_H
+#define DALCS_LOGIC_NETWORK_H
+
+#include "circuit.h"
+
+struct dalcs_logic_state {
+    bool q;     /* what the inputs make of it */
+    bool seen;  /* q a delay ago: what others read and the output shows */
+    bool clock; /* the level of a flip-flop's clock */
+};
+
+struct dalcs_logic_network {
+    int n;
+    const struct dalcs_logic_gate *gate;   /* [n] */
+    const bool *bit;                       /* of comparators */
+    struct dalcs_logic_state *state;       /* [n] */
+    struct dalcs_logic_state *next, *mark; /* [n] work */
+    bool rests;                            /* a clock that stands high has not risen */
+    bool *moves; /* [n] after a failure: in the loop that does not settle */
+};
+
+/* The states at rest as the bits have them, one gate after the other, with no delay. What has no rest goes on from there:
+ * where gates in a ring differ, one does, as of a ring oscillator that runs. */
+void dalcs_logic_rest(struct dalcs_logic_network *network);
+
+/* Until nothing changes, without time passing: gates with a delay change q alone. False: it goes round for ever, for a
+ * state comes back. on_q is told of each change of a q. */
+bool dalcs_logic_settle(struct dalcs_logic_network *network, void *user,
+                        void (*on_q)(void *user, int gate, bool q));
+
+#endif

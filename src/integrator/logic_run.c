@@ -1,0 +1,309 @@
+/* logic_run.c - the queue of logic, what its outputs show, and where that acts. */
+#include "logic_run.h"
+
+#include "radau.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Set up ------------------------------------------------------------------------------------------- */
+
+static bool find_comparator(struct dalcs_logic_run *l, int k) {
+    const char *name = l->circuit->device[l->circuit->comparator[k]].name;
+    for (int part = 0; part < l->radau->n_parts; part++) {
+        const struct dalcs_system *s = l->radau->part[part].component->system;
+        for (int d = 0; d < s->n_pairs; d++) {
+            if (s->pair[d].kind == DALCS_PAIR_SWITCH && strcmp(s->pair[d].element, name) == 0) {
+                l->place[k] = (struct dalcs_logic_place){part, d};
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static enum dalcs_status allocate(struct dalcs_logic_run *l) {
+    const size_t n = (size_t)l->circuit->n_gates;
+    const size_t n_comparators = (size_t)l->circuit->n_comparators;
+    const size_t n_stimuli = (size_t)l->circuit->n_stimuli;
+    struct dalcs_logic_network *w = &l->network;
+    l->bit = dalcs_alloc(n_comparators + 1, sizeof(*l->bit));
+    l->place = dalcs_alloc(n_comparators + 1, sizeof(*l->place));
+    l->output = dalcs_alloc(n, sizeof(*l->output));
+    l->changed = dalcs_alloc(n_stimuli, sizeof(*l->changed));
+    l->as_built = dalcs_alloc(n_stimuli, sizeof(*l->as_built));
+    w->state = dalcs_alloc(n, sizeof(*w->state));
+    w->next = dalcs_alloc(n, sizeof(*w->next));
+    w->mark = dalcs_alloc(n, sizeof(*w->mark));
+    w->moves = dalcs_alloc(n, sizeof(*w->moves));
+    bool complete = l->bit != NULL && l->place != NULL && l->output != NULL && l->changed != NULL &&
+                    l->as_built != NULL && w->state != NULL && w->next != NULL && w->mark != NULL &&
+                    w->moves != NULL;
+    if (complete) {
+        memcpy(l->as_built, l->circuit->stimulus, n_stimuli * sizeof(*l->as_built));
+    }
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_circuit *circuit,
+                                        struct dalcs_radau *radau) {
+    *l = (struct dalcs_logic_run){.radau = radau};
+    if (circuit->n_gates == 0) {
+        return DALCS_OK;
+    }
+    l->circuit = circuit;
+    l->n_comparators = circuit->n_comparators;
+    l->network.n = circuit->n_gates;
+    l->network.gate = circuit->gate;
+    enum dalcs_status status = allocate(l);
+    l->network.bit = l->bit;
+    for (int k = 0; k < l->n_comparators && status == DALCS_OK; k++) {
+        status = find_comparator(l, k) ? DALCS_OK : DALCS_E_INTERNAL;
+    }
+    for (int k = 0; k < l->network.n && status == DALCS_OK; k++) {
+        struct dalcs_logic_state *state = &l->network.state[k];
+        state->q = state->seen = circuit->gate[k].initial;
+    }
+    if (status != DALCS_OK) {
+        dalcs_logic_run_finish(l);
+    }
+    return status;
+}
+
+void dalcs_logic_run_finish(struct dalcs_logic_run *l) {
+    for (int k = 0; l->output != NULL && k < l->network.n; k++) {
+        struct dalcs_logic_output *o = &l->output[k];
+        free(o->time);
+        free(o->value);
+        free(o->time_bar);
+        free(o->value_bar);
+        free(o->due);
+    }
+    if (l->as_built != NULL) {
+        memcpy(l->circuit->stimulus, l->as_built,
+               (size_t)l->circuit->n_stimuli * sizeof(*l->as_built));
+    }
+    free(l->bit);
+    free(l->place);
+    free(l->output);
+    free(l->changed);
+    free(l->as_built);
+    free(l->network.state);
+    free(l->network.next);
+    free(l->network.mark);
+    free(l->network.moves);
+    *l = (struct dalcs_logic_run){0};
+}
+
+/* ---- What outputs show ---------------------------------------------------------------------------------- */
+
+/* A pin goes to a level from t on. What was to come, of a ramp not yet over, does not. */
+static enum dalcs_status write(struct dalcs_stimulus *s, double **time, double **value,
+                               size_t *capacity, double t, double level, double duration,
+                               double swing) {
+    int n = s->u.pwl.n;
+    const double now = dalcs_stimulus_value(s, t, DALCS_RIGHT);
+    DALCS_TRY(dalcs_grow(time, &capacity[0], (size_t)n + 2, sizeof(**time)));
+    DALCS_TRY(dalcs_grow(value, &capacity[1], (size_t)n + 2, sizeof(**value)));
+    const double near = 4.0 * DBL_EPSILON * t;
+    while (n > 1 && (*time)[n - 1] > t + near) {
+        n--;
+    }
+    const bool is_twice = n > 1 && (*time)[n - 1] >= t - near && (*time)[n - 2] >= t - near;
+    if (is_twice && duration == 0.0) {
+        (*value)[n - 1] = level; /* nothing in between has lasted */
+    } else {
+        if ((*time)[n - 1] < t - near || (*value)[n - 1] != now) {
+            (*time)[n] = t;
+            (*value)[n++] = now;
+        }
+        (*time)[n] = duration > 0.0 ? t + duration * fabs(level - now) / swing : t;
+        (*value)[n++] = level;
+    }
+    s->u.pwl.n = n;
+    s->u.pwl.t = *time;
+    s->u.pwl.v = *value;
+    return DALCS_OK;
+}
+
+/* A pin is at a level at the start. *changed: it was at another one before. */
+static enum dalcs_status start(struct dalcs_stimulus *s, double **time, double **value,
+                               size_t *capacity, double level, bool *changed) {
+    *changed = *changed || s->u.pwl.v[0] != level;
+    DALCS_TRY(dalcs_grow(time, &capacity[0], 1, sizeof(**time)));
+    DALCS_TRY(dalcs_grow(value, &capacity[1], 1, sizeof(**value)));
+    (*time)[0] = 0.0;
+    (*value)[0] = level;
+    s->u.pwl.n = 1;
+    s->u.pwl.t = *time;
+    s->u.pwl.v = *value;
+    return DALCS_OK;
+}
+
+static double level_of(const struct dalcs_logic_gate *g, int pin, bool q) {
+    return q == (pin == 0) ? g->high : g->low;
+}
+
+static enum dalcs_status show(struct dalcs_logic_run *l, int k, double t) {
+    const struct dalcs_logic_gate *g = &l->network.gate[k];
+    struct dalcs_logic_output *o = &l->output[k];
+    for (int pin = 0; pin < 2; pin++) {
+        if (g->output[pin] >= 0) {
+            const double level = level_of(g, pin, l->network.state[k].seen);
+            l->changed[g->output[pin]] = true;
+            DALCS_TRY(write(&l->circuit->stimulus[g->output[pin]],
+                            pin == 0 ? &o->time : &o->time_bar,
+                            pin == 0 ? &o->value : &o->value_bar, &o->capacity[2 * pin], t, level,
+                            level == g->high ? g->rise : g->fall, g->high - g->low));
+        }
+    }
+    o->shown = l->network.state[k].seen;
+    return DALCS_OK;
+}
+
+/* ---- The queue -------------------------------------------------------------------------------------------- */
+
+static void queue(void *user, int gate, bool q) {
+    (void)q;
+    struct dalcs_logic_run *l = user;
+    struct dalcs_logic_output *o = &l->output[gate];
+    const double due = l->now + l->network.gate[gate].delay;
+    if (l->network.gate[gate].delay <= 0.0) {
+        return;
+    }
+    if (o->n_due > 0 && o->due[o->first_due + o->n_due - 1] == due) {
+        o->n_due--; /* there and back in no time */
+        return;
+    }
+    if (o->first_due > 0 && o->first_due >= o->n_due) {
+        memmove(o->due, o->due + o->first_due, o->n_due * sizeof(*o->due));
+        o->first_due = 0;
+    }
+    const size_t end = o->first_due + o->n_due;
+    if (dalcs_grow(&o->due, &o->due_capacity, end + 1, sizeof(*o->due)) != DALCS_OK) {
+        l->out_of_memory = true;
+        return;
+    }
+    o->due[end] = due;
+    o->n_due++;
+}
+
+double dalcs_logic_run_next(const struct dalcs_logic_run *l) {
+    double next = INFINITY;
+    for (int k = 0; l->circuit != NULL && k < l->network.n; k++) {
+        const struct dalcs_logic_output *o = &l->output[k];
+        next = o->n_due > 0 ? fmin(next, o->due[o->first_due]) : next;
+    }
+    return next;
+}
+
+static void release(struct dalcs_logic_run *l, double t) {
+    for (int k = 0; k < l->network.n; k++) {
+        struct dalcs_logic_output *o = &l->output[k];
+        while (o->n_due > 0 && o->due[o->first_due] <= t + l->radau->resolution) {
+            l->network.state[k].seen = !l->network.state[k].seen;
+            o->first_due++;
+            o->n_due--;
+        }
+    }
+}
+
+/* ---- Events ------------------------------------------------------------------------------------------------ */
+
+static void read_bits(struct dalcs_logic_run *l) {
+    for (int k = 0; k < l->n_comparators; k++) {
+        const struct dalcs_radau_part *part = &l->radau->part[l->place[k].part];
+        l->bit[k] = dalcs_osnsp_is_on(&part->component->osnsp, l->place[k].pair);
+    }
+}
+
+enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed) {
+    *changed = false;
+    if (l->circuit == NULL) {
+        return DALCS_OK;
+    }
+    read_bits(l);
+    dalcs_logic_rest(&l->network);
+    l->now = 0.0;
+    for (int k = 0; k < l->network.n; k++) {
+        const struct dalcs_logic_gate *g = &l->network.gate[k];
+        struct dalcs_logic_output *o = &l->output[k];
+        o->n_due = 0;
+        if (l->network.state[k].q != l->network.state[k].seen) {
+            queue(l, k, true);
+        }
+        for (int pin = 0; pin < 2; pin++) {
+            if (g->output[pin] >= 0) {
+                DALCS_TRY(start(&l->circuit->stimulus[g->output[pin]],
+                                pin == 0 ? &o->time : &o->time_bar,
+                                pin == 0 ? &o->value : &o->value_bar, &o->capacity[2 * pin],
+                                level_of(g, pin, l->network.state[k].seen), changed));
+            }
+        }
+        o->shown = l->network.state[k].seen;
+    }
+    for (int k = 0; k < l->radau->n_parts && *changed; k++) {
+        dalcs_excitation_enter(&l->radau->part[k].excitation, 0.0);
+    }
+    return l->out_of_memory ? DALCS_E_NOMEM : DALCS_OK;
+}
+
+/* Shows what has changed at t. *acts: something has. */
+static enum dalcs_status show_changes(struct dalcs_logic_run *l, double t, bool *acts) {
+    *acts = false;
+    memset(l->changed, 0, (size_t)l->circuit->n_stimuli * sizeof(bool));
+    for (int k = 0; k < l->network.n; k++) {
+        l->network.moves[k] = l->network.state[k].seen != l->output[k].shown;
+        if (l->network.moves[k]) {
+            DALCS_TRY(show(l, k, t));
+            *acts = true;
+        }
+    }
+    return DALCS_OK;
+}
+
+/* All parts that the changes act on. */
+static enum dalcs_status disturb(struct dalcs_logic_run *l, double t) {
+    for (int k = 0; k < l->radau->n_parts; k++) {
+        struct dalcs_radau_part *part = &l->radau->part[k];
+        if (!dalcs_radau_is_disturbed(part, l->changed)) {
+            continue;
+        }
+        if (part->kind == DALCS_PART_STEPPED && part->segment.t < t) {
+            dalcs_radau_cut(part, t);
+            if (l->on_cut != NULL) {
+                l->on_cut(l->cut_user, k, t);
+            }
+        }
+        DALCS_TRY(dalcs_radau_disturb(l->radau, part, t, l->changed));
+    }
+    return DALCS_OK;
+}
+
+/* Each round moves an output. Without a loop through the circuit a change passes each comparator and each gate at most
+ * once on its way, there and, as with the positions of switches, back. */
+enum dalcs_status dalcs_logic_run_at(struct dalcs_logic_run *l, double t) {
+    const long most = 2L * (l->network.n + l->n_comparators + 1);
+    bool acts = l->circuit != NULL;
+    l->now = t;
+    for (long round = 0; acts; round++) {
+        read_bits(l);
+        release(l, t);
+        if (!dalcs_logic_settle(&l->network, l, queue)) {
+            return DALCS_NOT_CONVERGED;
+        }
+        DALCS_TRY(show_changes(l, t, &acts));
+        if (l->out_of_memory) {
+            return DALCS_E_NOMEM;
+        }
+        if (acts && round == most) {
+            return DALCS_NOT_CONVERGED;
+        }
+        if (acts) {
+            DALCS_TRY(disturb(l, t));
+        }
+    }
+    return DALCS_OK;
+}

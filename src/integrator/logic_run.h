@@ -1,0 +1,56 @@
+/* logic_run.h - logic in the course of a run: its queue, its outputs, and the parts of the circuit that these act on.
+ *
+ * After each event, and where an output is due, the session asks it. Comparators are read, the network settles
+ * (logic_network.h), outputs that change write a point into their stimulus, and the parts of the circuit that this acts
+ * on begin anew from that instant, wherever their segments ended. That may move comparators, at once; then again. */
+#ifndef DALCS_LOGIC_RUN_H
+#define DALCS_LOGIC_RUN_H
+
+#include "logic_network.h"
+#include "radau_state.h"
+
+struct dalcs_logic_run {
+    struct dalcs_circuit *circuit; /* whose stimuli are written; NULL: there is no logic */
+    struct dalcs_radau *radau;
+    struct dalcs_logic_network network;
+    bool *bit; /* [n_comparators] */
+    int n_comparators;
+
+    struct dalcs_logic_place { /* of a comparator */
+        int part, pair;
+    } * place;
+
+    struct dalcs_logic_output {
+        bool shown;           /* by the stimuli */
+        double *time, *value; /* of q, then of its complement */
+        double *time_bar, *value_bar;
+        size_t capacity[4];
+        double *due; /* [n_due] s, when q, as it was a delay before, is seen: it changes at each */
+        size_t first_due, n_due, due_capacity;
+    } * output; /* [n gates] */
+
+    void *cut_user;
+    void (*on_cut)(void *user, int part,
+                   double t); /* a segment of a part ends at t, before its time; or NULL */
+    bool *changed;            /* [n_stimuli] in the present round */
+    double now;               /* s, of the changes of q that the queue is told of */
+    bool out_of_memory;
+    struct dalcs_stimulus *as_built; /* [n_stimuli] what the circuit had */
+};
+
+/* Does nothing where the circuit has no logic. */
+enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_circuit *circuit,
+                                        struct dalcs_radau *radau) DALCS_MUST_CHECK;
+void dalcs_logic_run_finish(struct dalcs_logic_run *l);
+
+/* Bits and outputs as the operating point that the engine has solved has them. *changed: it is to be solved again. */
+enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed) DALCS_MUST_CHECK;
+
+/* s, the next change of an output that waits; INFINITY: none does. */
+double dalcs_logic_run_next(const struct dalcs_logic_run *l);
+
+/* All that happens at t, to which all parts have come. DALCS_NOT_CONVERGED: it does not settle; network.moves are the
+ * gates that go on changing. */
+enum dalcs_status dalcs_logic_run_at(struct dalcs_logic_run *l, double t) DALCS_MUST_CHECK;
+
+#endif

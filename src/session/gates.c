@@ -1,0 +1,57 @@
+/* gates.c - what is refused of logic, in words. */
+#include "gates.h"
+
+#include <string.h>
+
+/* Names on one line, the first few of them. */
+static const char *list_moving(struct dalcs_run *r, const struct dalcs_logic_run *logic) {
+    enum { MOST_NAMED = 12 };
+
+    const char *all = NULL;
+    int n = 0;
+    for (int k = 0; k < logic->network.n; k++) {
+        if (logic->network.moves[k] && n++ < MOST_NAMED) {
+            const char *name = logic->network.gate[k].name;
+            all = dalcs_arena_printf(&r->s->arena, "%s%s%s", all != NULL ? all : "",
+                                     all != NULL ? ", " : "", name);
+        }
+    }
+    return all == NULL ? "gates"
+           : n <= MOST_NAMED
+               ? all
+               : dalcs_arena_printf(&r->s->arena, "%s and %d more", all, n - MOST_NAMED);
+}
+
+enum dalcs_status dalcs_refuse_gates(struct dalcs_run *r, const struct dalcs_logic_run *logic,
+                                     double t) {
+    const char *names = list_moving(r, logic);
+    const struct dalcs_location *where = NULL;
+    for (int k = 0; k < logic->network.n && where == NULL; k++) {
+        where = logic->network.moves[k] ? &logic->network.gate[k].where : NULL;
+    }
+    dalcs_diag_add(&r->s->diag, DALCS_ERROR, where,
+                   "give one of them a delay (Td=), or a comparator in the loop a hysteresis (Vh=)",
+                   "at t = %.9g s a loop without delay does not settle: %s", t,
+                   names == NULL ? "gates" : names);
+    return DALCS_E_NETLIST;
+}
+
+enum dalcs_status dalcs_check_gates(struct dalcs_run *r, enum dalcs_analysis analysis) {
+    const struct dalcs_circuit *c = &r->s->circuit;
+    const bool is_asked = analysis == DALCS_OPERATING_POINT ? c->operating_point
+                          : analysis == DALCS_DC_SWEEP      ? c->n_dc > 0
+                          : analysis == DALCS_AC            ? c->ac.n > 0
+                          : analysis == DALCS_PERIODIC
+                              ? c->periodic.present || r->options->steady
+                              : c->transient.present && c->transient.starts_steady;
+    if (c->n_gates == 0 || (!is_asked && r->method != DALCS_METHOD_EULER)) {
+        return DALCS_OK;
+    }
+    dalcs_diag_add(&r->s->diag, DALCS_ERROR, &c->gate[0].where,
+                   is_asked ? "leave the other analyses out, or the gates"
+                            : "leave method=euler out",
+                   "gates and flip-flops ('%s') are decided by events: in .tran alone, and not by "
+                   "implicit Euler",
+                   c->gate[0].name);
+    return DALCS_E_NETLIST;
+}

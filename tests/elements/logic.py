@@ -1,0 +1,177 @@
+#!/usr/bin/env python3
+"""Gates and flip-flops: oscillators, dividers, modulators and a latched converter, each against a closed form.
+
+usage: logic.py PROGRAM
+"""
+
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker, run  # noqa: E402
+
+
+def run_cards(program, what, cards):
+    return run(program, "\n".join([what, *cards, ".end", ""]), method=None, tolerance=1e-10)
+
+
+def edges(done, name, level):
+    """Times at which a signal jumps through a level."""
+    t, v = done.time, done.column(name)
+    return [t[k] for k in range(1, len(t)) if t[k] == t[k - 1] and (v[k - 1] < level) != (v[k] < level)]
+
+
+def times(checker, got, wanted, what, digits=1e-9):
+    if checker.check(len(got) == len(wanted), f"{what}: {len(got)} edges, not {len(wanted)}: {got[:8]}"):
+        for a, b in zip(got, wanted):
+            checker.close(a, b, digits * abs(wanted[-1]), f"{what}: an edge")
+
+
+def runs(checker, done, what):
+    return checker.check(done.status == 0, f"{what}: {done.stderr}")
+
+
+def ring(checker, program):
+    """An odd number of inverters: a half period of all their delays."""
+    for n, td in ((3, 1e-8), (5, 1e-3), (7, 3.0), (201, 2e-9)):
+        what = f"a ring of {n}"
+        cards = [f"a{k} n{k} 0 0 0 0 n{(k + 1) % n} 0 0 BUF Td={td!r}" for k in range(n)]
+        done = run_cards(program, what, [*cards, "r1 n1 0 1k", f".tran {td!r} {4.5 * n * td!r}", ".save v(n1)"])
+        if runs(checker, done, what):
+            got = edges(done, "v(n1)", 0.5)
+            half = [b - a for a, b in zip(got, got[1:])]
+            checker.check(len(half) >= 3, f"{what}: {len(half)} half periods")
+            for span in half:
+                checker.close(span, n * td, 1e-9 * n * td, f"{what}: half a period")
+            checker.check("connection" not in done.stderr, f"{what}: {done.stderr}")
+
+
+def relaxation(checker, program):
+    """R and C behind a Schmitt inverter: between the two thresholds by ln((E - Vl)/(E - Vh)), up and down."""
+    for high, vt, vh, r, c in ((1, 0.5, 0.2, 1e3, 1e-6), (5, 2, 1, 1e5, 1e-12), (1e3, 400, 50, 0.1, 1)):
+        what = f"a relaxation oscillator of {high} V"
+        tau = r * c
+        up = tau * math.log((high - vt + vh) / (high - vt - vh))
+        down = tau * math.log((vt + vh) / (vt - vh))
+        first = tau * math.log(high / (high - vt - vh))
+        cards = [f"a1 c 0 0 0 0 o 0 0 SCHMITT Vhigh={high} Vt={vt} Vh={vh}", f"r1 o c {r!r}", f"c1 c 0 {c!r} ic=0",
+                 f".tran {tau / 10!r} {first + 3.5 * (up + down)!r} uic"]
+        done = run_cards(program, what, cards)
+        if runs(checker, done, what):
+            wanted = [first]
+            for k in range(7):
+                wanted.append(wanted[-1] + (down if k % 2 == 0 else up))
+            times(checker, [t for t in edges(done, "v(o)", high / 2) if t > 0], wanted[:7], what)
+
+
+def divider(checker, program):
+    """Toggling flip-flops, the second clocked by the first; and a shift register on one clock, which takes what was."""
+    for period, high in ((1e-6, 1), (2.0, 12)):
+        cards = [f"v1 clk 0 pulse(0 {high} {period / 2!r} 0 0 {period / 2!r} {period!r})"]
+        more = f"Vhigh={high}"
+        cards += [f"a1 b1 0 clk 0 0 b1 q1 0 DFLOP {more}", f"a2 b2 0 q1 0 0 b2 q2 0 DFLOP {more}",
+                  f"a3 q2 0 clk 0 0 0 s1 0 DFLOP {more}", f"a4 s1 0 clk 0 0 0 s2 0 DFLOP {more}",
+                  "r1 q1 0 1k", "r2 s2 0 1k", f".tran {period / 10!r} {12 * period!r}"]
+        what = f"a divider at {period} s"
+        done = run_cards(program, what, cards)
+        if runs(checker, done, what):
+            times(checker, edges(done, "v(q1)", high / 2), [(k + 0.5) * period for k in range(12)], f"{what}: by two")
+            by_four = [(2 * k + 0.5) * period for k in range(6)]
+            times(checker, edges(done, "v(q2)", high / 2), by_four, f"{what}: by four")
+            times(checker, edges(done, "v(s2)", high / 2), [t + 2 * period for t in by_four if t < 9.9 * period],
+                  f"{what}: two clocks later")
+
+
+def root(f, low, high):
+    for _ in range(200):
+        middle = (low + high) / 2
+        low, high = (middle, high) if (f(middle) > 0) == (f(low) > 0) else (low, middle)
+    return low
+
+
+def modulator(checker, program):
+    """Sine and triangle: each ramp is crossed once. Dead time: AND and NOR with what was a delay ago."""
+    for f, carrier, depth, dead in ((1e3, 10e3, 0.8, 1e-6), (50, 450, 0.95, 2e-5)):
+        half = 0.5 / carrier
+        what = f"a modulator at {carrier} Hz"
+        cards = [f"vs m 0 sin(0 {depth} {f})",
+                 f"vt t 0 pulse(-1 1 0 {half!r} {half!r} {1e-9 * half!r} {2 * half * (1 + 5e-10)!r})",
+                 "a1 m t 0 0 0 0 cmp 0 SCHMITT", f"a2 cmp 0 0 0 0 0 d 0 BUF Td={dead!r}",
+                 "a3 cmp d 0 0 0 0 hi 0 AND", "a4 cmp d 0 0 0 lo 0 0 OR",
+                 "v2 p 0 100", "s1 p x hi 0 sw", "s2 x 0 lo 0 sw", "d1 0 x", "d2 x p", "l1 x o 1m", "r1 o 0 10",
+                 ".model sw sw(Ron=1m)", f".tran {half / 5!r} {1 / f!r}"]
+        done = run_cards(program, what, cards)
+        if runs(checker, done, what):
+            period = 2 * half * (1 + 5e-10)
+            wanted = []
+            for k in range(round(carrier / f)):
+                def rising(t, k=k):
+                    return depth * math.sin(2 * math.pi * f * t) - (-1 + 2 * (t - k * period) / half)
+
+                def falling(t, k=k):
+                    top = k * period + half * (1 + 1e-9)
+                    return depth * math.sin(2 * math.pi * f * t) - (1 - 2 * (t - top) / half)
+                wanted += [root(rising, k * period, k * period + half),
+                           root(falling, k * period + half * (1 + 1e-9), (k + 1) * period)]
+            times(checker, edges(done, "v(cmp)", 0.5), wanted, what)
+            times(checker, edges(done, "v(hi)", 0.5), [t + (dead if k % 2 else 0) for k, t in enumerate(wanted)],
+                  f"{what}, the upper switch")
+            times(checker, edges(done, "v(lo)", 0.5), [t + (0 if k % 2 else dead) for k, t in enumerate(wanted)],
+                  f"{what}, the lower switch")
+
+
+def peak_current(checker, program):
+    """A clock closes, a comparator of the current opens; a stiff output makes straight lines of the current."""
+    for e, o, coil, period, limit in ((10, 4, 1e-5, 1e-5, 4), (400, 100, 1e-3, 2e-5, 5), (1, 0.3, 1e-3, 1e-2, 3)):
+        what = f"a peak-current buck of {e} V"
+        cards = [f"v1 in 0 {e}", "s1 in x g 0 sw", "d1 0 x", f"l1 x o {coil!r} ic=0", f"v2 o 0 {o}",
+                 f"vclk clk 0 pulse(0 1 {period!r} 0 0 {period / 100!r} {period!r})", "b1 cs 0 v=i(l1)",
+                 f"vref ref 0 {limit}", "a1 cs ref 0 0 0 0 trip 0 SCHMITT", "a2 clk trip 0 0 0 0 g 0 SRFLOP",
+                 ".model sw sw(Vt=0.5)", f".tran {period / 5!r} {8.9 * period!r} uic"]
+        wanted, i = [], 0.0
+        for k in range(1, 9):
+            opened = k * period + (limit - i) * coil / (e - o)
+            checker.check(opened < (k + 1) * period, f"{what}: the test is of times below a period")
+            wanted += [k * period, opened]
+            i = max(0.0, limit - o / coil * ((k + 1) * period - opened))
+        done = run_cards(program, what, cards)
+        if runs(checker, done, what):
+            times(checker, edges(done, "v(g)", 0.5), [w for w in wanted if w < 8.9 * period], what)
+
+
+def small(checker, program):
+    """A glitch as long as a delay, outputs that ramp, a subcircuit, and a loop that has no delay."""
+    glitch = ["v1 a 0 pulse(0 1 1u 0 0 3u 8u)", "a1 a 0 0 0 0 n 0 0 BUF Td=10n", "a2 a n 0 0 0 0 g 0 AND",
+              "r1 g 0 1k", ".tran 1u 8u"]
+    done = run_cards(program, "a glitch", glitch)
+    if runs(checker, done, "a glitch"):
+        times(checker, edges(done, "v(g)", 0.5), [1e-6, 1.01e-6], "a glitch")
+    ramp = ["v1 a 0 pulse(0 5 1u 0 0 3u 8u)", "a1 a 0 0 0 0 0 r 0 BUF Vhigh=5 Trise=200n Tfall=400n Td=100n",
+            "a2 r 0 0 0 0 0 o 0 BUF Ref=1", "r1 r 0 1k", "r2 o 0 1k", ".tran 0.1u 8u"]
+    done = run_cards(program, "a ramp", ramp)
+    if runs(checker, done, "a ramp"):
+        times(checker, edges(done, "v(o)", 0.5), [1.1e-6 + 0.2e-6 / 5, 4.1e-6 + 0.4e-6 * 4 / 5], "a ramp")
+    sub = [".subckt inv in out td=1n", "a1 in 0 0 0 0 out 0 0 BUF Td={td}", ".ends", "x1 c a inv td=2n",
+           "x2 a b inv", "x3 b c inv td=3n", "r1 a 0 1k", ".tran 1n 50n"]
+    done = run_cards(program, "a subcircuit", sub)
+    if runs(checker, done, "a subcircuit"):
+        got = edges(done, "v(a)", 0.5)
+        for span in [b - a for a, b in zip(got, got[1:])]:
+            checker.close(span, 6e-9, 1e-17, "a ring of subcircuits")
+    loop = ["a1 c 0 0 0 0 a 0 0 BUF", "a2 a 0 0 0 0 b 0 0 BUF", "a3 b 0 0 0 0 c 0 0 BUF", "r1 a 0 1k", ".tran 1n 50n"]
+    done = run_cards(program, "a loop", loop)
+    checker.check(done.status != 0 and "a loop without delay does not settle: a1, a2, a3" in done.stderr,
+                  f"a loop: {done.stderr}")
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    checker = Checker("logic")
+    for part in (ring, relaxation, divider, modulator, peak_current, small):
+        part(checker, program)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
