@@ -622,6 +622,10 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     }
     status = status == DALCS_OK && !is_euler ? dalcs_logic_run_setup(&logic, &s->circuit, &radau)
                                              : status;
+    if (status == DALCS_OK && dalcs_run_wants_losses(r)) {
+        status =
+            dalcs_losses_run_start(&losses, r, &e, is_euler, is_euler ? 0.0 : radau.resolution);
+    }
     if (status == DALCS_OK && dalcs_run_keeps_ledger(r)) {
         status = dalcs_energy_setup(&energy, &e, is_euler ? NULL : &radau);
     }
