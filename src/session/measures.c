@@ -206,6 +206,10 @@ enum dalcs_status dalcs_measures_reach(struct dalcs_measures *measures,
     return DALCS_OK;
 }
 
+void dalcs_measures_end_at(struct dalcs_measures *measures, double t) {
+    measures->next_edge = fmin(measures->next_edge, t);
+}
+
 void dalcs_measures_skip(struct dalcs_measures *measures, double t) {
     measures->t = t;
     measures->next_edge = edge_after(measures, t);

@@ -352,6 +352,9 @@ static enum dalcs_status advance(struct transient *c) {
         t = c->next_edge;
     }
     c->t = t;
+    if (c->logic->circuit != NULL) {
+        dalcs_measures_end_at(c->measures, t);
+    }
     DALCS_TRY(dalcs_measures_reach(c->measures, radau, dalcs_smaller(t, stop), near));
     bool sides = dalcs_recorder_wants_sides(c->recorder, t);
     bool is_due = c->next_row <= t + near;
@@ -371,6 +374,9 @@ static enum dalcs_status advance(struct transient *c) {
         radau->base->t = t;
         DALCS_TRY(dalcs_radau_pass(radau, t));
         DALCS_TRY(decide(c, t));
+        if (c->logic->circuit != NULL) {
+            dalcs_measures_skip(c->measures, t);
+        }
         dalcs_audit_run_enter(c->audit);
         radau->base->t = t;
         DALCS_TRY(dalcs_recorder_events(c->recorder, radau->base));

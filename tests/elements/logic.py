@@ -165,10 +165,33 @@ def small(checker, program):
                   f"a loop: {done.stderr}")
 
 
+def measured(checker, program):
+    """Averages over whole periods of what an output is, what a coil behind it carries and what its switch lets pass."""
+    for high, period, duty, delay in ((1, 1e-5, 0.4, 1e-6), (5, 1e-3, 0.25, 3e-4), (15, 2e-7, 0.7, 1e-8), (1e3, 10, 0.5, 4)):
+        what = f"measured, {high} V"
+        cards = [f"v1 a 0 pulse(0 1 0 0 0 {duty * period!r} {period!r})",
+                 f"a1 a 0 0 0 0 nq q 0 BUF Vhigh={high} Ref=0.5 Td={delay!r}", "r1 q 0 1", "r2 nq 0 1k",
+                 "vs p 0 24", "s1 p l q 0 sw", "r3 l 0 2", f".model sw sw(vt={high / 2} ron=0)",
+                 f"s2 p m q 0 sw", f"l4 m n {period!r} ic=0", "r4 n 0 1", "d4 0 m d", ".model d d(ron=0)",
+                 f".tran {period / 10!r} {40 * period!r} uic"]
+        window = f"from={30 * period!r} to={40 * period!r}"
+        cards += [f".meas tran {name} {how} {signal} {window}" for name, how, signal in (
+            ("mean", "avg", "v(q)"), ("other", "avg", "v(nq)"), ("rms", "rms", "v(q)"), ("whole", "integ", "v(q)"),
+            ("load", "avg", "v(l)"), ("coil", "avg", "i(l4)"))]
+        done = run_cards(program, what, [*cards, f".losses {window} in=vs out=r3"])
+        if runs(checker, done, what):
+            got = {m["name"]: m["value"] for m in done.report["measurements"]}
+            for name, wanted in (("mean", high * duty), ("other", high * (1 - duty)), ("rms", high * math.sqrt(duty)),
+                                 ("whole", high * duty * 10 * period), ("load", 24 * duty), ("coil", 24 * duty)):
+                checker.close(got[name], wanted, 1e-9 * wanted, f"{what}: {name}")
+            power = {e["element"]: e["power"] for e in done.report["losses"][0]["elements"]}
+            checker.close(power["r3"], 24 * 24 / 2 * duty, 1e-9 * 288, f"{what}: the power of a load")
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("logic")
-    for part in (ring, relaxation, divider, modulator, peak_current, small):
+    for part in (ring, relaxation, divider, modulator, peak_current, small, measured):
         part(checker, program)
     return checker.finish()
 
