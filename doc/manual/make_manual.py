@@ -108,7 +108,8 @@ def sentences(text):
 def option_head(left):
     option = Option(left, "")
     names = " , ".join("Fl " + roff(name[1:]) for name in option.names)
-    return names + (" Ar " + roff(option.shown) if option.shown else "")
+    joint = " Ns Ar " if (option.shown or "").startswith("[") else " Ar "
+    return names + (joint + roff(option.shown) if option.shown else "")
 
 
 def page_body(page):
