@@ -109,6 +109,11 @@ void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int in
     audit_find(audit, &audit->part[index], law, index, defect, 1.0, time);
 }
 
+void dalcs_audit_add_position(struct dalcs_audit *audit, int device, double defect, double time) {
+    audit->part[0].at.is_coarse = false;
+    audit_find(audit, &audit->part[0], DALCS_AUDIT_POSITION, device, defect, 1.0, time);
+}
+
 void dalcs_audit_earn(struct dalcs_audit *audit, double work) {
     const double left = audit->options.share * work - audit->budget.spent;
     const double least = least_share * work;

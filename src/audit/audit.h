@@ -176,6 +176,9 @@ void dalcs_audit_instant(struct dalcs_audit *audit, int part, double t, enum dal
 void dalcs_audit_add(struct dalcs_audit *audit, enum dalcs_audit_law law, int index, double defect,
                      double time);
 
+/* The same of what a device is in: its position. */
+void dalcs_audit_add_position(struct dalcs_audit *audit, int device, double defect, double time);
+
 /* May so much more be looked at, in instructions, about? It is charged where it may. */
 bool dalcs_audit_may(struct dalcs_audit *audit, double work);
 

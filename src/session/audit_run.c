@@ -102,6 +102,8 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
         a->tried = dalcs_arena_alloc(&a->arena, (size_t)(2 * n_x + 2 * n_elements), sizeof(double));
         status = a->tried != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
+    status =
+        status == DALCS_OK ? dalcs_audit_gates_start(&a->gates, &run->s->circuit, radau) : status;
     status = status == DALCS_OK ? create(a) : status;
     if (status != DALCS_OK) {
         dalcs_audit_run_finish(a);
@@ -111,6 +113,7 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
 
 void dalcs_audit_run_finish(struct dalcs_audit_run *a) {
     dalcs_audit_destroy(a->audit);
+    dalcs_audit_gates_finish(&a->gates);
     dalcs_arena_finish(&a->arena);
     *a = (struct dalcs_audit_run){0};
 }
@@ -201,4 +204,8 @@ void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side s
             dalcs_audit_instant(a->audit, k, t, side, dalcs_audit_segment_work);
         }
     }
+}
+
+enum dalcs_status dalcs_audit_run_gates(struct dalcs_audit_run *a, double t) {
+    return a->audit != NULL ? dalcs_audit_gates_look(&a->gates, a->audit, t) : DALCS_OK;
 }

@@ -5,6 +5,7 @@
 #include "session_internal.h"
 
 #include "audit.h"
+#include "audit_gates.h"
 #include "radau.h"
 
 #include <math.h>
@@ -26,6 +27,7 @@ struct dalcs_audit_run {
     bool has_passed;            /* a leap was compared, at least once */
     bool has_tried;             /* at least once */
     bool was_tried;             /* the next leap needs no trial */
+    struct dalcs_audit_gates gates;
     struct dalcs_arena arena;
 };
 
@@ -70,6 +72,9 @@ enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) DALCS_MUST_C
 
 /* Is there a defect that is more than is allowed, and does it end the run? */
 bool dalcs_audit_run_fails(const struct dalcs_audit_run *a);
+
+/* Gates have decided at t. */
+enum dalcs_status dalcs_audit_run_gates(struct dalcs_audit_run *a, double t) DALCS_MUST_CHECK;
 
 /* Between leave and enter: a part's segment ends at t, before its time. */
 void dalcs_audit_run_cut(struct dalcs_audit_run *a, int part, double t);

@@ -320,7 +320,10 @@ static void tell_cut(void *user, int part, double t) {
 /* Gates at t. */
 static enum dalcs_status decide(struct transient *c, double t) {
     const enum dalcs_status status = dalcs_logic_run_at(c->logic, t);
-    return status == DALCS_NOT_CONVERGED ? dalcs_refuse_gates(c->run, c->logic, t) : status;
+    if (status == DALCS_NOT_CONVERGED) {
+        return dalcs_refuse_gates(c->run, c->logic, t);
+    }
+    return status == DALCS_OK ? dalcs_audit_run_gates(c->audit, t) : status;
 }
 
 /* To the next time at which there is something to do, with the rows up to there. */
@@ -421,6 +424,7 @@ static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau 
     enum dalcs_status status =
         dalcs_filling_setup(&c.filling, c.recorder, &c.rows, r->fill, r->lines, &FILLING_LIMIT);
     dalcs_audit_run_begin(audit);
+    status = status == DALCS_OK ? dalcs_audit_run_gates(audit, 0.0) : status;
     while (c.t < radau->options.stop && status == DALCS_OK) {
         status = advance(&c);
         status = status == DALCS_OK ? tell_progress(&c, 1) : status;

@@ -153,6 +153,22 @@ LEAPS = BUCK.replace(".tran 5m 5m uic", ".tran 1m 20m uic")
 BEAT = BRIDGE.replace("v1 a b SIN(0 24 50)", "v1 a m SIN(0 24 50)\nv2 m b SIN(0 1 7.77)")
 
 
+GATES = """gates, a latch, a flip-flop and a delay, from sources that know nothing of each other
+va a 0 PULSE(0 1 1u 0 0 3u 7u)
+vb b 0 PULSE(0 1 2u 0 0 5u 11u)
+vc c 0 SIN(0 1 61k)
+a1 a b 0 0 0 0 and 0 AND
+a2 a 0 0 0 0 0 late 0 BUF Td=500n
+a3 c b 0 0 0 0 latch 0 SRFLOP
+a4 c 0 a 0 0 0 flop 0 DFLOP
+a5 and late latch 0 0 0 any 0 OR Vhigh=5 Ref=0.5
+r1 any x 1k
+c1 x 0 1n ic=0
+r2 flop 0 1k
+.tran 1u 400u uic
+"""
+
+
 def once(calls, good, bad):
     """In C: `bad` the so-manieth time only."""
     return f"static long calls_; if (++calls_ == {calls}) {{ {bad} }} else {{ {good} }}"
@@ -224,6 +240,18 @@ MUTATIONS = {
         "    t_end += part->guards.n_crossed > 0 && part->segment.t > 1.0 && part->segment.t < 1.01 "
         "? 1e-3 * part->segment.h : 0.0;\n"
         "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n", BEAT),
+    "an AND is an OR": (
+        "integrator/logic_network.c", "g->kind == DALCS_GATE_AND ? all", "g->kind == DALCS_GATE_AND ? any", GATES),
+    "a latch is reset by nothing": (
+        "integrator/logic_network.c", "return !reset && (set || q);", "return (reset || true) && (set || q);", GATES),
+    "a flip-flop falls through": (
+        "integrator/logic_network.c", "return rises ? read(l, &g->input[DALCS_GATE_DATA]) : state->q;",
+        "return rises || l->rests ? !read(l, &g->input[DALCS_GATE_DATA]) : state->q;", GATES),
+    "a delay is a tenth longer": (
+        "integrator/logic_run.c", "l->now + l->network.gate[gate].delay", "l->now + 1.1 * l->network.gate[gate].delay", GATES),
+    "one output of many shows the other level": (
+        "integrator/logic_run.c", "const double level = level_of(g, pin, l->network.state[k].seen);",
+        "static long calls_; const double level = level_of(g, pin, l->network.state[k].seen != (++calls_ == 37));", GATES),
     "one leap of many is nudged by 1e-6": (
         "memory/cycle.c", "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n    return n;\n",
         "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n"

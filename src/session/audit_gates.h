@@ -1,0 +1,29 @@
+/* audit_gates.h - gates and flip-flops, decided a second time: from what comparators say and what outputs show. */
+#ifndef DALCS_AUDIT_GATES_H
+#define DALCS_AUDIT_GATES_H
+
+#include "audit.h"
+#include "radau_state.h"
+
+struct dalcs_audit_gates {
+    const struct dalcs_circuit *circuit;
+    const struct dalcs_radau *radau;
+
+    struct dalcs_audit_place { /* of a comparator */
+        int part, pair;
+    } * place;
+
+    struct audit_gate *gate; /* [n_gates]; NULL: there are none */
+};
+
+/* Does nothing where the circuit has no gates. */
+enum dalcs_status dalcs_audit_gates_start(struct dalcs_audit_gates *a,
+                                          const struct dalcs_circuit *circuit,
+                                          const struct dalcs_radau *radau) DALCS_MUST_CHECK;
+void dalcs_audit_gates_finish(struct dalcs_audit_gates *a);
+
+/* All gates have decided at t, where something may have happened; findings go to audit. */
+enum dalcs_status dalcs_audit_gates_look(struct dalcs_audit_gates *a, struct dalcs_audit *audit,
+                                         double t) DALCS_MUST_CHECK;
+
+#endif
