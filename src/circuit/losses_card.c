@@ -134,6 +134,15 @@ void dalcs_losses_parse(struct dalcs_builder *builder, const struct dalcs_card *
 
 /* ---- When all elements are known ------------------------------------------------------------- */
 
+/* What a gate's input reads with: a switch and a resistor that nothing flows in, on a node of their own. */
+static bool is_of_a_comparator(const struct dalcs_circuit *circuit, const struct dalcs_device *d) {
+    bool is = false;
+    for (int k = 0; k < circuit->n_comparators && !is; k++) {
+        is = circuit->device[circuit->comparator[k]].node[0] == d->node[0];
+    }
+    return is;
+}
+
 /* What the command line wants instead. */
 static bool take_request(struct dalcs_builder *builder) {
     const struct dalcs_losses_request *request = &builder->netlist->losses;
@@ -188,7 +197,7 @@ void dalcs_losses_collect(struct dalcs_builder *builder) {
     for (int k = 0; k < circuit->n_devices && !builder->out_of_memory; k++) {
         const struct dalcs_device *d = &circuit->device[k];
         device[k] = (struct dalcs_loss_device){-1, -1, {-1, -1}};
-        if (dalcs_device_is_short(d)) {
+        if (dalcs_device_is_short(d) || is_of_a_comparator(circuit, d)) {
             continue;
         }
         device[k].voltage = measure(builder,
