@@ -140,6 +140,19 @@ Vh i 0 0
 .save v(d) i(l1) i(g1) i(d1) i(v1)
 .end
 """, 0),
+    "gates": ("""gates, a latch with a delay, what a comparator reads of an RC, and losses
+v1 a 0 PULSE(0 1 0 0 0 4u 10u)
+a1 a q2 0 0 0 0 q1 0 AND
+a2 c 0 0 0 0 q2 0 0 SCHMITT Vt=0.5 Vh=0.2
+a3 q1 q2 0 0 0 0 q3 0 SRFLOP Td=1u Rout=1
+r1 q1 c 1k
+c1 c 0 1n ic=0
+r3 q3 0 1k
+.losses
+.meas tran mean avg v(q3)
+.tran 1u 30u uic
+.end
+""", 0),
     "transistors": ("""What commands transistors, and what they become
 V1 b 0 1
 R1 b d 10
