@@ -82,6 +82,10 @@ const char *dalcs_dialect_name(size_t index);
 enum dalcs_status dalcs_session_set_dialect(struct dalcs_session *session,
                                             const char *name) DALCS_MUST_CHECK;
 
+/* Says, before a netlist is read, that a steady state will be asked for (dalcs_run_options.steady): it need not ask for
+ * any analysis itself. DALCS_E_OPTION: a netlist was read. */
+enum dalcs_status dalcs_session_ask_steady(struct dalcs_session *session) DALCS_MUST_CHECK;
+
 /* Asks, before a netlist is read, for the losses of its .tran from one time to another (s; `to` may be
  * INFINITY, the end of the run), or, where `from` is not a number, over the window of its .losses card, else
  * over all of the run. */

@@ -282,6 +282,9 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     if (arguments->losses || arguments->losses_plot != NULL) {
         status = dalcs_session_ask_losses(session, arguments->losses_from, arguments->losses_to);
     }
+    if (status == DALCS_OK && arguments->steady) {
+        status = dalcs_session_ask_steady(session);
+    }
     status = status != DALCS_OK ? status
                                 : dalcs_verb_read(session, arguments->netlist, arguments->dialect);
     dalcs_cli_write_messages(cli, session, &n_written, arguments->quiet);

@@ -74,12 +74,14 @@ struct dalcs_losses_request {
     double from, to; /* s; INFINITY: the end of the run */
 };
 
-/* Zero-initialise, set the first four if wanted, read, then finish. */
+/* Zero-initialise, set the first five if wanted, read, then finish. */
 struct dalcs_netlist {
     bool no_includes;             /* refuse .include and .lib: no other file is read */
     size_t most_cards;            /* that subcircuit calls may expand to; 0: DALCS_MOST_CARDS */
     struct dalcs_dialect dialect; /* once it is read: what it is written in */
     struct dalcs_losses_request losses;
+    bool
+        asks_steady; /* a steady state is asked for beside the netlist, which need not ask for anything */
 
     const char *name; /* the file's path, or what read_text was told */
     const char *title;

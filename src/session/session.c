@@ -137,12 +137,22 @@ enum dalcs_status dalcs_session_ask_losses(struct dalcs_session *session, double
     return DALCS_OK;
 }
 
+enum dalcs_status dalcs_session_ask_steady(struct dalcs_session *session) {
+    if (session->name != NULL) {
+        return DALCS_E_OPTION; /* it is read */
+    }
+    session->asks_steady = true;
+    return DALCS_OK;
+}
+
 enum dalcs_status dalcs_session_read_file(struct dalcs_session *session, const char *path) {
     char *text;
     size_t length;
     DALCS_TRY(take_name(session, path));
     DALCS_TRY(dalcs_text_file_read(path, INT_MAX, &text, &length, NULL, &session->diag));
-    struct dalcs_netlist netlist = {.dialect = session->dialect, .losses = session->losses};
+    struct dalcs_netlist netlist = {.dialect = session->dialect,
+                                    .losses = session->losses,
+                                    .asks_steady = session->asks_steady};
     const bool is_system = dalcs_description_is_text(text, length);
     const enum dalcs_status status =
         is_system ? read_system(session, path, text, length)
@@ -157,7 +167,9 @@ enum dalcs_status dalcs_session_read_text(struct dalcs_session *session, const c
     if (dalcs_description_is_text(text, length)) {
         return read_system(session, name, text, length);
     }
-    struct dalcs_netlist netlist = {.dialect = session->dialect, .losses = session->losses};
+    struct dalcs_netlist netlist = {.dialect = session->dialect,
+                                    .losses = session->losses,
+                                    .asks_steady = session->asks_steady};
     return build(session, &netlist,
                  dalcs_netlist_read_text(&netlist, name, text, length, &session->diag));
 }

@@ -94,6 +94,7 @@ def refused(case):
 def periods(case):
     case.finds("* plain\n" + CLOCK + BUCK + ".pss\n", 10e-6, "stable", mean=MEAN)
     case.finds("* .tran alone\n" + CLOCK + BUCK + ".tran 1u 1m uic\n", 10e-6, mean=MEAN)
+    case.finds("* nothing\n" + CLOCK + BUCK, 10e-6, mean=MEAN)
     case.finds("* .op alone\n" + CLOCK + BUCK + ".op\n", 10e-6, "audited", mean=MEAN)
     case.finds("* delayed\nVg g 0 PULSE(0 1 33u 0 0 4u 10u)\n" + BUCK + ".pss uic\n", 10e-6,
                mean=MEAN)
