@@ -613,6 +613,7 @@ enum dalcs_status dalcs_transient_run(struct dalcs_run *r) {
     struct dalcs_logic_run logic = {0};
     struct dalcs_schedule schedule = choose_schedule(r);
     warn_of_coarse_rows(r, &schedule, isinf(r->fill) ? schedule.start : INFINITY);
+    dalcs_recorder_finish(&s->recorder); /* of a .pss before */
     DALCS_TRY(dalcs_recorder_setup(&s->recorder, &s->network, r->sink, &schedule,
                                    r->options->record, r->options->max_events));
     s->recorder.n_shown = s->circuit.n_shown;
