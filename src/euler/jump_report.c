@@ -40,22 +40,15 @@ static double cost_of(const struct dalcs_system *s, const double *before,
     return cost;
 }
 
-/* What micro-steps have seen. */
-static void take_seen(struct dalcs_euler *e, const struct dalcs_system *s) {
-    memcpy(e->jump.after, e->after, (size_t)s->n_x * sizeof(double));
-    memcpy(e->jump.charge, e->charge, (size_t)s->n_pairs * sizeof(double));
-    memcpy(e->jump.flux, e->flux, (size_t)s->n_pairs * sizeof(double));
-}
-
 enum dalcs_status dalcs_euler_find_jump(struct dalcs_euler *e, int k, const double *u) {
     const struct dalcs_osnsp *p = &e->component[k].osnsp;
     const struct dalcs_system *s = p->system;
-    take_seen(e, s);
+    /* what micro-steps have seen, where nothing else is known */
+    memcpy(e->jump.after, e->after, (size_t)s->n_x * sizeof(double));
+    memcpy(e->jump.charge, e->charge, (size_t)s->n_pairs * sizeof(double));
+    memcpy(e->jump.flux, e->flux, (size_t)s->n_pairs * sizeof(double));
     DALCS_TRY(dalcs_jumps_solve(&e->jumps, e->circuit, e->network, &p->options, k, p->mode, u,
                                 u + s->n_x, &e->jump));
-    if (!e->jump.is_known && !e->jump.is_first) {
-        take_seen(e, s);
-    }
     if (!e->jump.is_known) {
         e->jump.source_work = cost_of(s, u, &e->jump);
     }

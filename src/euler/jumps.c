@@ -332,8 +332,7 @@ static void read_answer(const struct dalcs_jump_part *part, const double *inputs
 }
 
 static enum dalcs_status solve_part(struct dalcs_jump_part *part, const uint64_t *mode,
-                                    const double *x, const double *inputs,
-                                    struct dalcs_jump_answer *answer) {
+                                    const double *x, const double *inputs) {
     const struct dalcs_system *of = part->osnsp.system;
     for (int i = 0; i < of->n_x; i++) {
         part->u[i] = is_its_own(part, i) ? x[part->state[i]] : 0.0;
@@ -342,11 +341,7 @@ static enum dalcs_status solve_part(struct dalcs_jump_part *part, const uint64_t
         part->u[of->n_x + i] = inputs[part->input[i]];
     }
     command(part, mode);
-    enum dalcs_status status = dalcs_osnsp_solve(&part->osnsp, 1.0, part->u, part->y);
-    if (status == DALCS_OK) {
-        read_answer(part, inputs, answer);
-    }
-    return status;
+    return dalcs_osnsp_solve(&part->osnsp, 1.0, part->u, part->y);
 }
 
 enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *j, const struct dalcs_circuit *circuit,
@@ -367,6 +362,14 @@ enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *j, const struct dalcs_ci
     if (!answer->is_known && !answer->is_first) {
         return DALCS_OK;
     }
+    enum dalcs_status status = DALCS_OK;
+    for (int p = j->first_part[k]; p >= 0 && status == DALCS_OK; p = j->part[p].next) {
+        status = j->part[p].is_driven ? DALCS_OK : solve_part(&j->part[p], mode, x, inputs);
+    }
+    if (status != DALCS_OK) {
+        answer->is_known = answer->is_first = false;
+        return status < DALCS_OK ? status : DALCS_OK;
+    }
     for (int i = 0; i < s->n_x; i++) {
         answer->after[i] = answer->is_known || !is_driven[i] ? x[i] : answer->after[i];
     }
@@ -374,16 +377,12 @@ enum dalcs_status dalcs_jumps_solve(struct dalcs_jumps *j, const struct dalcs_ci
         memset(answer->charge, 0, (size_t)s->n_pairs * sizeof(double));
         memset(answer->flux, 0, (size_t)s->n_pairs * sizeof(double));
     }
-    enum dalcs_status status = DALCS_OK;
-    for (int p = j->first_part[k]; p >= 0 && status == DALCS_OK; p = j->part[p].next) {
+    for (int p = j->first_part[k]; p >= 0; p = j->part[p].next) {
         if (!j->part[p].is_driven) {
-            status = solve_part(&j->part[p], mode, x, inputs, answer);
+            read_answer(&j->part[p], inputs, answer);
         }
     }
-    if (status > DALCS_OK) {
-        answer->is_known = answer->is_first = false;
-    }
-    return status < DALCS_OK ? status : DALCS_OK;
+    return DALCS_OK;
 }
 
 bool dalcs_jumps_agree(const struct dalcs_system *s, const double *x, const double *limit,

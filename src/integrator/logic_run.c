@@ -10,13 +10,15 @@
 
 /* ---- Set up ------------------------------------------------------------------------------------------- */
 
-static bool find_comparator(struct dalcs_logic_run *l, int k) {
-    const char *name = l->circuit->device[l->circuit->comparator[k]].name;
-    for (int part = 0; part < l->radau->n_parts; part++) {
-        const struct dalcs_system *s = l->radau->part[part].component->system;
+bool dalcs_logic_find_comparator(const struct dalcs_circuit *circuit,
+                                 const struct dalcs_radau *radau, int k,
+                                 struct dalcs_logic_place *place) {
+    const char *name = circuit->device[circuit->comparator[k]].name;
+    for (int part = 0; part < radau->n_parts; part++) {
+        const struct dalcs_system *s = radau->part[part].component->system;
         for (int d = 0; d < s->n_pairs; d++) {
             if (s->pair[d].kind == DALCS_PAIR_SWITCH && strcmp(s->pair[d].element, name) == 0) {
-                l->place[k] = (struct dalcs_logic_place){part, d};
+                *place = (struct dalcs_logic_place){part, d};
                 return true;
             }
         }
@@ -60,7 +62,8 @@ enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_
     enum dalcs_status status = allocate(l);
     l->network.bit = l->bit;
     for (int k = 0; k < l->n_comparators && status == DALCS_OK; k++) {
-        status = find_comparator(l, k) ? DALCS_OK : DALCS_E_INTERNAL;
+        status = dalcs_logic_find_comparator(circuit, radau, k, &l->place[k]) ? DALCS_OK
+                                                                              : DALCS_E_INTERNAL;
     }
     for (int k = 0; k < l->network.n && status == DALCS_OK; k++) {
         struct dalcs_logic_state *state = &l->network.state[k];

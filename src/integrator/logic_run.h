@@ -38,6 +38,11 @@ struct dalcs_logic_run {
     struct dalcs_stimulus *as_built; /* [n_stimuli] what the circuit had */
 };
 
+/* Where the engine keeps comparator k; false: nowhere. */
+bool dalcs_logic_find_comparator(const struct dalcs_circuit *circuit,
+                                 const struct dalcs_radau *radau, int k,
+                                 struct dalcs_logic_place *place);
+
 /* Does nothing where the circuit has no logic. */
 enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_circuit *circuit,
                                         struct dalcs_radau *radau) DALCS_MUST_CHECK;

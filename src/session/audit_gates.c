@@ -6,7 +6,6 @@
  * that change with their clock, a pulse of no width that sets a latch) is taken as it is shown. */
 #include "audit_gates.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,20 +28,6 @@ static int device_named(const struct dalcs_circuit *c, const char *name) {
     return -1;
 }
 
-static enum dalcs_status find_place(struct dalcs_audit_gates *a, int comparator) {
-    const char *name = a->circuit->device[a->circuit->comparator[comparator]].name;
-    for (int k = 0; k < a->radau->n_parts; k++) {
-        const struct dalcs_system *s = a->radau->part[k].component->system;
-        for (int d = 0; d < s->n_pairs; d++) {
-            if (strcmp(s->pair[d].element, name) == 0) {
-                a->place[comparator] = (struct dalcs_audit_place){k, d};
-                return DALCS_OK;
-            }
-        }
-    }
-    return DALCS_E_INTERNAL;
-}
-
 enum dalcs_status dalcs_audit_gates_start(struct dalcs_audit_gates *a,
                                           const struct dalcs_circuit *circuit,
                                           const struct dalcs_radau *radau) {
@@ -54,7 +39,8 @@ enum dalcs_status dalcs_audit_gates_start(struct dalcs_audit_gates *a,
     a->place = dalcs_alloc((size_t)circuit->n_comparators + 1, sizeof(*a->place));
     enum dalcs_status status = a->gate != NULL && a->place != NULL ? DALCS_OK : DALCS_E_NOMEM;
     for (int k = 0; status == DALCS_OK && k < circuit->n_comparators; k++) {
-        status = find_place(a, k);
+        status = dalcs_logic_find_comparator(circuit, radau, k, &a->place[k]) ? DALCS_OK
+                                                                              : DALCS_E_INTERNAL;
     }
     for (int k = 0; status == DALCS_OK && k < circuit->n_gates; k++) {
         a->gate[k].device = device_named(circuit, circuit->gate[k].name);
@@ -83,7 +69,7 @@ static int shown_by(const struct dalcs_logic_gate *g) {
 static bool shows(const struct dalcs_audit_gates *a, int k) {
     const struct dalcs_logic_gate *g = &a->circuit->gate[k];
     const struct dalcs_stimulus *s = &a->circuit->stimulus[shown_by(g)];
-    const double last = dalcs_stimulus_value(s, INFINITY, DALCS_RIGHT);
+    const double last = s->u.pwl.v[s->u.pwl.n - 1];
     return (last > 0.5 * (g->low + g->high)) == (g->output[0] >= 0);
 }
 
@@ -92,7 +78,7 @@ static bool reads(const struct dalcs_audit_gates *a, const struct dalcs_logic_in
                   bool *is_known) {
     bool bit = false;
     if (input->from == DALCS_GATE_COMPARATOR) {
-        const struct dalcs_audit_place *p = &a->place[input->index];
+        const struct dalcs_logic_place *p = &a->place[input->index];
         bit = dalcs_osnsp_is_on(&a->radau->part[p->part].component->osnsp, p->pair);
     } else if (input->from == DALCS_GATE_GATE) {
         const bool is_shown = shown_by(&a->circuit->gate[input->index]) >= 0;

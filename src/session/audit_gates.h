@@ -3,17 +3,13 @@
 #define DALCS_AUDIT_GATES_H
 
 #include "audit.h"
-#include "radau_state.h"
+#include "logic_run.h"
 
 struct dalcs_audit_gates {
     const struct dalcs_circuit *circuit;
     const struct dalcs_radau *radau;
-
-    struct dalcs_audit_place { /* of a comparator */
-        int part, pair;
-    } * place;
-
-    struct audit_gate *gate; /* [n_gates]; NULL: there are none */
+    struct dalcs_logic_place *place; /* [n_comparators] */
+    struct audit_gate *gate;         /* [n_gates]; NULL: there are none */
 };
 
 /* Does nothing where the circuit has no gates. */

@@ -210,6 +210,10 @@ void dalcs_measures_end_at(struct dalcs_measures *measures, double t) {
     measures->next_edge = fmin(measures->next_edge, t);
 }
 
+void dalcs_measures_renew(struct dalcs_measures *measures, double t) {
+    measures->next_edge = edge_after(measures, t);
+}
+
 void dalcs_measures_skip(struct dalcs_measures *measures, double t) {
     measures->t = t;
     measures->next_edge = edge_after(measures, t);

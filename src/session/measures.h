@@ -37,6 +37,9 @@ enum dalcs_status dalcs_measures_reach(struct dalcs_measures *measures,
 /* A stretch ends at t, though no source says so: gates may write what it is from there on. */
 void dalcs_measures_end_at(struct dalcs_measures *measures, double t);
 
+/* Sources may be others from t on, which was reached. */
+void dalcs_measures_renew(struct dalcs_measures *measures, double t);
+
 /* What lies before t, which is before `begin`, is passed over. */
 void dalcs_measures_skip(struct dalcs_measures *measures, double t);
 

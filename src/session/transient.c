@@ -317,13 +317,23 @@ static void tell_cut(void *user, int part, double t) {
     dalcs_audit_run_cut(user, part, t);
 }
 
-/* Gates at t. */
-static enum dalcs_status decide(struct transient *c, double t) {
-    const enum dalcs_status status = dalcs_logic_run_at(c->logic, t);
-    if (status == DALCS_NOT_CONVERGED) {
-        return dalcs_refuse_gates(c->run, c->logic, t);
+static bool has_gates(const struct transient *c) {
+    return c->logic->circuit != NULL;
+}
+
+static enum dalcs_status decide(struct dalcs_run *r, struct dalcs_logic_run *logic, double t) {
+    const enum dalcs_status status = dalcs_logic_run_at(logic, t);
+    return status == DALCS_NOT_CONVERGED ? dalcs_refuse_gates(r, logic, t) : status;
+}
+
+/* Gates at t, to which all has come: the audit decides them again, and what they write begins there. */
+static enum dalcs_status pass_gates(struct transient *c, double t) {
+    if (!has_gates(c)) {
+        return DALCS_OK;
     }
-    return status == DALCS_OK ? dalcs_audit_run_gates(c->audit, t) : status;
+    DALCS_TRY(decide(c->run, c->logic, t));
+    dalcs_measures_renew(c->measures, t);
+    return dalcs_audit_run_gates(c->audit, t);
 }
 
 /* To the next time at which there is something to do, with the rows up to there. */
@@ -355,7 +365,7 @@ static enum dalcs_status advance(struct transient *c) {
         t = c->next_edge;
     }
     c->t = t;
-    if (c->logic->circuit != NULL) {
+    if (has_gates(c)) {
         dalcs_measures_end_at(c->measures, t);
     }
     DALCS_TRY(dalcs_measures_reach(c->measures, radau, dalcs_smaller(t, stop), near));
@@ -366,26 +376,24 @@ static enum dalcs_status advance(struct transient *c) {
         DALCS_TRY(row(c, DALCS_LEFT, is_due));
         dalcs_filling_row(&c->filling, t, edge || (ends && happens));
     }
-    if (ends || t >= stop - near || (edge && c->logic->circuit != NULL)) {
+    bool passes = ends || (edge && has_gates(c));
+    if (passes || t >= stop - near) {
         dalcs_audit_run_leave(c->audit, t >= stop - near ? stop : t);
     }
     if (t >= stop - near) {
         c->t = stop;
         return DALCS_OK;
     }
-    if (ends || (edge && c->logic->circuit != NULL)) {
+    if (passes) {
         radau->base->t = t;
         DALCS_TRY(dalcs_radau_pass(radau, t));
-        DALCS_TRY(decide(c, t));
-        if (c->logic->circuit != NULL) {
-            dalcs_measures_skip(c->measures, t);
-        }
+        DALCS_TRY(pass_gates(c, t));
         dalcs_audit_run_enter(c->audit);
         radau->base->t = t;
         DALCS_TRY(dalcs_recorder_events(c->recorder, radau->base));
     }
     bool jumps = edge && sources_jump(&c->run->s->circuit, c->t);
-    if (edge || c->logic->circuit != NULL) {
+    if (edge || has_gates(c)) {
         c->next_edge = edge_after(c, t);
     }
     if (sides && ((ends && happens) || jumps)) {
@@ -469,8 +477,7 @@ static enum dalcs_status walk(struct dalcs_run *r, struct dalcs_euler *e, struct
     struct dalcs_session *s = r->s;
     DALCS_TRY(report_methods(r, radau));
     DALCS_TRY(dalcs_transient_start(r, e, radau, logic));
-    enum dalcs_status decided = dalcs_logic_run_at(logic, 0.0);
-    DALCS_TRY(decided == DALCS_NOT_CONVERGED ? dalcs_refuse_gates(r, logic, 0.0) : decided);
+    DALCS_TRY(decide(r, logic, 0.0));
     if (radau != NULL) {
         DALCS_TRY(dalcs_radau_evaluate(radau, 0.0, DALCS_RIGHT));
     }

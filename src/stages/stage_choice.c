@@ -98,8 +98,8 @@ static void choose_in_pairs(const struct dalcs_stage_workshop *b, int k, const d
     double *chosen = b->chosen + k * b->n_rhs;
     for (int d = 0; d < s->n_pairs; d++) {
         int closed = b->place[n_equations + d];
-        if (weight[d] == 0.0 || closed >= 0) {
-            row[closed >= 0 ? closed : 0] += weight[d];
+        if (closed >= 0) {
+            row[closed] += weight[d];
             continue;
         }
         for (int e = s->C.p[d]; e < s->C.p[d + 1]; e++) {
