@@ -199,7 +199,8 @@ bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit
     part->at.past = part->at.length;
     part->at.length = stretch->to - stretch->from;
     part->watch->asked = -1.0;
-    part->at.is_drawn = audit->options.mode == DALCS_AUDIT_FULL;
+    /* a screen is linear: it knows no smooth function */
+    part->at.is_drawn = audit->options.mode == DALCS_AUDIT_FULL || part->has_smooth;
     if (part->at.is_drawn) {
         return false;
     }
@@ -292,7 +293,9 @@ void dalcs_audit_leave(struct dalcs_audit *audit, const struct dalcs_audit_stret
     part->is_open = true;
     if (is_inside) {
         integrate(audit, stretch);
-        audit_watch_learn(audit, stretch);
+        if (!part->has_smooth) {
+            audit_watch_learn(audit, stretch);
+        }
     }
 }
 

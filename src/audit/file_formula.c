@@ -91,8 +91,41 @@ static int solve_cell(struct file_audit *a, const struct file_row *row,
     return is_cell ? 2 : 1;
 }
 
+/* What an argument may be off by makes of the value: at most what the larger slope at both ends of it does. */
+static struct file_number smooth_value(const struct file_row *row,
+                                       const struct dalcs_smooth *smooth) {
+    double x[2];
+    double gradient[2];
+    struct file_number f = {.known = true};
+    for (int k = 0; k < 2; k++) {
+        const bool is_read = k < smooth->n && smooth->node[k] >= 0;
+        x[k] = is_read ? row->v[smooth->node[k]].value : smooth->number[k];
+        f.known = f.known && (!is_read || row->v[smooth->node[k]].known);
+    }
+    f.value = dalcs_smooth_value(smooth->kind, x);
+    for (int k = 0; k < smooth->n && f.known; k++) {
+        if (smooth->node[k] < 0) {
+            continue;
+        }
+        const double error = row->v[smooth->node[k]].error;
+        double steepest = 0.0;
+        for (int side = -1; side <= 1; side++) {
+            double at[2] = {x[0], x[1]};
+            at[k] += side * error;
+            dalcs_smooth_gradient(smooth->kind, at, gradient);
+            steepest = fmax(steepest, fabs(gradient[k]));
+        }
+        f.error += error > 0.0 ? steepest * error : 0.0;
+    }
+    f.known = f.known && isfinite(f.value) && isfinite(f.error);
+    return f;
+}
+
 struct file_number file_formula(struct file_audit *a, const struct file_row *row, int device) {
     const struct dalcs_behaviour *b = a->circuit->device[device].behaviour;
+    if (b->smooth != NULL) {
+        return smooth_value(row, b->smooth);
+    }
     bool is_known = true;
     for (int k = 0; k < b->n_pairs;) {
         k += solve_cell(a, row, b, k, &is_known);

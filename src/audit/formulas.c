@@ -66,13 +66,37 @@ static double rounding_read(const struct dalcs_audit *audit, const struct dalcs_
     return rounding;
 }
 
+/* The same of a smooth function: its terms are what each argument's part of the gradient makes of it. */
+static double smooth_value(const struct dalcs_audit *audit, const struct audit_part *part,
+                           const struct dalcs_audit_state *s, const struct dalcs_smooth *smooth,
+                           double *size, double *terms) {
+    double x[2];
+    double gradient[2];
+    for (int k = 0; k < 2; k++) {
+        x[k] = k < smooth->n && smooth->node[k] >= 0 ? s->v[smooth->node[k]] : smooth->number[k];
+    }
+    const double value = dalcs_smooth_value(smooth->kind, x);
+    dalcs_smooth_gradient(smooth->kind, x, gradient);
+    *size = *terms = fabs(value);
+    for (int k = 0; k < smooth->n; k++) {
+        const bool is_read = smooth->node[k] > 0;
+        const double scale = is_read ? audit_volts(audit, part, smooth->node[k], 0) : 0.0;
+        *size += is_read && isfinite(gradient[k]) ? fabs(gradient[k]) * fmax(scale, fabs(x[k])) : 0.0;
+    }
+    return value;
+}
+
 /* A formula's output, less what the device puts out; each of its pairs. */
 void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
                          const struct dalcs_audit_state *s, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
     double size;
     double terms;
-    const double f = affine_value(audit, part, s, device, &d->behaviour->output, &size, &terms);
+    const struct dalcs_smooth *smooth = d->behaviour->smooth;
+    const double f =
+        smooth != NULL
+            ? smooth_value(audit, part, s, smooth, &size, &terms)
+            : affine_value(audit, part, s, device, &d->behaviour->output, &size, &terms);
     const bool is_voltage = d->kind == DALCS_VCVS;
     double *largest = &part->floor.formula[is_voltage ? 0 : 1];
     *largest = fmax(*largest, terms);

@@ -53,6 +53,7 @@ static void list_members(struct dalcs_audit *audit, const int *part_of_node) {
             const bool is_charged = d->kind == DALCS_CAPACITOR;
             audit->net.has_charge[audit->net.node_of[d->node[e]]] |= is_charged;
         }
+        part->has_smooth |= d->behaviour != NULL && d->behaviour->smooth != NULL;
         part->has_formula |= d->behaviour != NULL && d->behaviour->n_pairs > 0;
         if (d->kind == DALCS_RESISTOR) {
             see_conductance(part, fabs(1.0 / d->value));

@@ -77,6 +77,7 @@ struct dalcs_compiler {
     size_t n_forms;                    /* room in form_of */
     int depth;                         /* of products that are parts of products */
     int n_nodes;                       /* that products made, to name them */
+    int *smooth_node; /* [n_forms] by number_of, of the whole formula: the node that a smooth function made; 0: none */
 
     const struct dalcs_potentials *potentials; /* NULL: what sources decide has pairs, too */
 
@@ -217,6 +218,24 @@ struct dalcs_affine dalcs_behaviour_freeze(struct dalcs_compiler *c, const struc
 /* Freezes the output and makes the behaviour, in the circuit's arena; NULL when out of memory. */
 struct dalcs_behaviour *dalcs_behaviour_make(struct dalcs_compiler *c,
                                              const struct dalcs_form *output);
+
+/* ---- inner_parts.c --------------------------------------------------------------------------------- */
+
+/* Room for n more devices, in pieces that double: a netlist of many products has many parts. The array moves. */
+bool dalcs_builder_reserve_devices(struct dalcs_builder *builder, size_t n);
+
+/* A compiler of a part of the formula, as the formula of a source of its own: pairs are those of one device. */
+bool dalcs_compiler_start_inner(struct dalcs_compiler *c, struct dalcs_compiler *inner,
+                                size_t n_forms);
+void dalcs_compiler_finish_inner(struct dalcs_compiler *c, struct dalcs_compiler *inner);
+
+/* ---- smooth_parts.c -------------------------------------------------------------------------------- */
+
+/* The value of a formula's part f that is a smooth function of its arguments, by a source that is added to the circuit:
+ * the array of devices moves. argument[n]: what they are. NULL: an error, or the formula is only asked what it is. */
+const struct dalcs_form *dalcs_smooth_form(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                           enum dalcs_smooth_kind kind, int n,
+                                           const struct dalcs_form **argument);
 
 /* ---- commutate.c ----------------------------------------------------------------------------------- */
 

@@ -9,6 +9,7 @@
 #include "logic.h"
 #include "losses.h"
 #include "measurement.h"
+#include "smooth.h"
 #include "stimulus.h"
 #include "sweep.h"
 
@@ -48,11 +49,13 @@ struct dalcs_affine {
 };
 
 /* What B, and E and G with VALUE or TABLE, put out: a piecewise-linear function, with
- * 0 <= lambda_k _|_ w_k >= 0 for k = 0..n_pairs-1. */
+ * 0 <= lambda_k _|_ w_k >= 0 for k = 0..n_pairs-1; or a smooth one. */
 struct dalcs_behaviour {
-    struct dalcs_affine output; /* V or A */
+    struct dalcs_affine output; /* V or A; of a smooth function what it reads, without a meaning as a sum */
     int n_pairs;
-    const struct dalcs_affine *w; /* [n_pairs] */
+    const struct dalcs_affine *w;      /* [n_pairs] */
+    const struct dalcs_smooth *smooth; /* NULL: piecewise linear */
+    bool is_part; /* of another formula: its value is no voltage that others are measured by */
 
     /* With pairs for what sources alone decide, as the formula says; NULL: this one has them. */
     const struct dalcs_behaviour *written;
@@ -166,6 +169,8 @@ struct dalcs_circuit {
     struct dalcs_coupling *coupling;
     int n_initial_conditions;
     struct dalcs_initial_condition *initial_condition;
+    int n_smooth;        /* sources of a smooth function */
+    int smooth_stimulus; /* the constant 0, which stands for what they put out; -1: there are none */
     int n_gates;
     struct dalcs_logic_gate *gate;
     int n_comparators;

@@ -13,32 +13,6 @@
 
 enum { DEEPEST = 4, MOST_NODES = 64 };
 
-/* Room for more devices, in pieces that double: a netlist of many products has many parts. */
-static bool grow(struct dalcs_builder *builder, size_t n_more) {
-    struct dalcs_circuit *circuit = builder->circuit;
-    const size_t n = (size_t)circuit->n_devices;
-    if (n + n_more <= builder->device_capacity) {
-        return true;
-    }
-    const size_t most = 2 * (n + n_more);
-    struct dalcs_device *device = dalcs_arena_alloc(&circuit->arena, most, sizeof *device);
-    const struct dalcs_token **token =
-        dalcs_arena_alloc(&builder->scratch, most, sizeof(const struct dalcs_token *));
-    int *current_of = dalcs_arena_alloc(&builder->scratch, most, sizeof *current_of);
-    if (device == NULL || token == NULL || current_of == NULL) {
-        builder->out_of_memory = true;
-        return false;
-    }
-    memcpy(device, circuit->device, n * sizeof *device);
-    memcpy(token, builder->device_token, n * sizeof(const struct dalcs_token *));
-    memcpy(current_of, builder->current_of, n * sizeof *current_of);
-    circuit->device = device;
-    builder->device_token = token;
-    builder->current_of = current_of;
-    builder->device_capacity = most;
-    return true;
-}
-
 /* One that is on below one half. */
 static int add_model(struct dalcs_builder *builder) {
     return dalcs_switch_add_model(builder, &(struct dalcs_switch_model){.name = "commutation",
@@ -47,36 +21,7 @@ static int add_model(struct dalcs_builder *builder) {
                                                                         .is_inverted = true});
 }
 
-/* ---- Formulas of the parts ---------------------------------------------------------------------- */
-
-/* A compiler of its own: pairs are those of one device. */
-static bool start(struct dalcs_compiler *c, struct dalcs_compiler *inner, size_t n_forms) {
-    *inner = (struct dalcs_compiler){.builder = c->builder,
-                                     .arena = c->arena,
-                                     .element = c->element,
-                                     .n_forms = n_forms,
-                                     .is_silent = c->is_silent,
-                                     .depth = c->depth + 1,
-                                     .n_nodes = c->n_nodes,
-                                     .stimulus = c->stimulus,
-                                     .n_stimuli = c->n_stimuli,
-                                     .stimulus_capacity = c->stimulus_capacity};
-    inner->form_of = dalcs_arena_alloc(c->arena, n_forms, sizeof(const struct dalcs_form *));
-    if (inner->form_of == NULL) {
-        c->builder->out_of_memory = c->failed = true;
-    }
-    return inner->form_of != NULL;
-}
-
-static void finish(struct dalcs_compiler *c, struct dalcs_compiler *inner) {
-    c->failed = c->failed || inner->failed;
-    c->n_nodes = inner->n_nodes;
-    c->stimulus = inner->stimulus;
-    c->n_stimuli = inner->n_stimuli;
-    c->stimulus_capacity = inner->stimulus_capacity;
-    free(inner->wave);
-    free(inner->cell);
-}
+/* ---- Steps ------------------------------------------------------------------------------------- */
 
 /* low + (high - low) u(v - their middle): of a node that has no other values. */
 static const struct dalcs_form *two_values(struct dalcs_compiler *c, const struct dalcs_form *v,
@@ -114,7 +59,7 @@ static const struct dalcs_form *formula_steps(struct dalcs_compiler *c,
                                               const struct dalcs_formula *formula,
                                               const struct dalcs_form *v) {
     struct dalcs_compiler other;
-    if (c->depth >= DEEPEST || !start(c, &other, (size_t)formula->number_of + 1)) {
+    if (c->depth >= DEEPEST || !dalcs_compiler_start_inner(c, &other, (size_t)formula->number_of + 1)) {
         return NULL;
     }
     other.is_silent = true;
@@ -122,7 +67,7 @@ static const struct dalcs_form *formula_steps(struct dalcs_compiler *c,
     const struct dalcs_levels *levels = dalcs_levels_of(&other, dalcs_compile(&other, formula));
     const bool is_one = levels != NULL && levels->n == 1 && !other.failed;
     other.failed = c->failed; /* the other source will say itself what is wrong with it */
-    finish(c, &other);
+    dalcs_compiler_finish_inner(c, &other);
     return is_one ? two_values(c, v, levels->base, levels->base + levels->level[0].height) : NULL;
 }
 
@@ -195,15 +140,15 @@ static int add_node(struct dalcs_compiler *c, const struct dalcs_commutation *wh
         node[i] = name != NULL ? dalcs_builder_inner_node(builder, name, c->element) : -1;
         c->failed = c->failed || node[i] < 0;
     }
-    if (c->failed || !start(c, &control, c->n_forms)) {
+    if (c->failed || !dalcs_compiler_start_inner(c, &control, c->n_forms)) {
         return -1;
     }
     const struct dalcs_levels *levels = steps_of(&control, what);
     if (levels != NULL && k < levels->n && !control.failed) {
         behaviour[0] = dalcs_behaviour_make(&control, levels->level[k].logic);
     }
-    finish(c, &control);
-    if (behaviour[0] == NULL || c->failed || !start(c, &source, c->n_forms)) {
+    dalcs_compiler_finish_inner(c, &control);
+    if (behaviour[0] == NULL || c->failed || !dalcs_compiler_start_inner(c, &source, c->n_forms)) {
         return -1;
     }
     const struct dalcs_form *quantity = quantity_of(&source, what);
@@ -212,8 +157,8 @@ static int add_node(struct dalcs_compiler *c, const struct dalcs_commutation *wh
     const struct dalcs_form *current =
         own != NULL && quantity != NULL ? dalcs_form_add(&source, own, -1, quantity) : NULL;
     behaviour[1] = current != NULL ? dalcs_behaviour_make(&source, current) : NULL;
-    finish(c, &source);
-    if (behaviour[1] == NULL || c->failed || !grow(builder, 3)) {
+    dalcs_compiler_finish_inner(c, &source);
+    if (behaviour[1] == NULL || c->failed || !dalcs_builder_reserve_devices(builder, 3)) {
         return -1;
     }
 

@@ -1,5 +1,5 @@
-/* compile.c - formulas to values, operation by operation, each refused where it is not piecewise
- * linear. */
+/* compile.c - formulas to values, operation by operation. What is not piecewise linear is a source of its own
+ * (smooth_parts.c), or refused. */
 #include "behaviour.h"
 
 #include <math.h>
@@ -66,25 +66,21 @@ static const struct dalcs_form *multiply(struct dalcs_compiler *c, const struct 
             return product;
         }
     }
-    switch (kind) {
-    case DALCS_PRODUCT_IS:
-        return product;
-    case DALCS_PRODUCT_HAS_JUMP:
-        return refuse(c, f, "an ideal switch S turns a voltage or a current on and off",
-                      "the height of this jump is not constant: no complementarity pairs make it");
-    default:
-        return refuse(c, f,
-                      "one factor must be a number, or have two values: a comparison, or v(a) of a "
-                      "PULSE with short edges; .meas takes products",
-                      "a product of two quantities that vary is not piecewise linear");
+    if (kind == DALCS_PRODUCT_IS_CURVED && f->code == DALCS_MULTIPLY) {
+        return dalcs_smooth_form(c, f, DALCS_SMOOTH_PRODUCT, 2,
+                                 (const struct dalcs_form *[]){a, b});
     }
+    return kind == DALCS_PRODUCT_IS
+               ? product
+               : refuse(c, f, "an ideal switch S turns a voltage or a current on and off",
+                        "the height of this jump is not constant: no complementarity pairs make it");
 }
 
 static const struct dalcs_form *divide(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                        const struct dalcs_form *a, const struct dalcs_form *b) {
     if (!dalcs_form_is_number(b)) {
-        return refuse(c, f, "the divisor must be a number",
-                      "a division by a quantity that varies is not piecewise linear");
+        return dalcs_smooth_form(c, f, DALCS_SMOOTH_QUOTIENT, 2,
+                                 (const struct dalcs_form *[]){a, b});
     }
     return b->affine.constant == 0 ? refuse(c, f, NULL, "division by 0")
                                    : dalcs_form_scale(c, 1 / b->affine.constant, a);
@@ -148,8 +144,8 @@ static const struct dalcs_form *operation(struct dalcs_compiler *c, const struct
     case DALCS_POWER:
         return dalcs_form_is_number(b) && b->affine.constant == 1
                    ? a
-                   : refuse(c, f, NULL,
-                            "a power of a quantity that varies is not piecewise linear");
+                   : dalcs_smooth_form(c, f, DALCS_SMOOTH_POWER, 2,
+                                       (const struct dalcs_form *[]){a, b});
     case DALCS_GREATER:
         return compare(c, a, b, 0);
     case DALCS_GREATER_EQUAL:
@@ -259,9 +255,6 @@ static const struct dalcs_form *table(struct dalcs_compiler *c, const struct dal
 static const struct dalcs_form *wave(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                      const struct dalcs_form *a) {
     static const double PI = 3.14159265358979323846;
-    if (a->n > 0 || !dalcs_affine_is_time(&a->affine)) {
-        return refuse_name(c, f, NULL, "%s(...) of a quantity that varies is not piecewise linear");
-    }
     const double rate = a->affine.term[0].coefficient;
     const double offset = a->affine.constant;
     if (*f->function != 'e') {
@@ -289,6 +282,13 @@ fold(struct dalcs_compiler *c, const struct dalcs_formula *f, const struct dalcs
 
 static bool is_named(const struct dalcs_formula *f, const char *name) {
     return strcmp(f->function, name) == 0;
+}
+
+/* As the table of functions has it, where dialects differ. */
+static const char *smooth_name(const struct dalcs_compiler *c, const struct dalcs_formula *f) {
+    const struct dalcs_function *function =
+        dalcs_function_find(f->function, c->builder->netlist->dialect.name);
+    return function != NULL ? function->name : f->function;
 }
 
 static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalcs_formula *f,
@@ -330,7 +330,8 @@ static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalc
     if (is_named(f, "table") || is_named(f, "pwl")) {
         return table(c, f, argument, is_named(f, "pwl"));
     }
-    if (is_named(f, "sin") || is_named(f, "cos") || is_named(f, "exp")) {
+    const bool is_of_time = a->n == 0 && dalcs_affine_is_time(&a->affine);
+    if (is_of_time && (is_named(f, "sin") || is_named(f, "cos") || is_named(f, "exp"))) {
         return wave(c, f, a);
     }
     if ((is_named(f, "pow") || is_named(f, "pwrs")) && dalcs_form_is_number(argument[1]) &&
@@ -343,7 +344,11 @@ static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalc
             "sums of u(...) make a staircase of so many steps, and PULSE(0 1 0 T 0 0 T) a sawtooth",
             "%s(...) of a quantity that varies has steps without end");
     }
-    return refuse_name(c, f, NULL, "%s(...) of a quantity that varies is not piecewise linear");
+    enum dalcs_smooth_kind kind;
+    if (dalcs_smooth_find(smooth_name(c, f), f->n, &kind)) {
+        return dalcs_smooth_form(c, f, kind, f->n, argument);
+    }
+    return refuse_name(c, f, NULL, "%s(...) of a quantity that varies is not a smooth function");
 }
 
 /* ---- Formulas -------------------------------------------------------------------------------------- */

@@ -11,8 +11,10 @@ static const struct dalcs_form *input_of(struct dalcs_compiler *c,
         const struct dalcs_formula *formula = source->token->formula;
         c->n_forms = (size_t)formula->number_of + 1;
         c->form_of = dalcs_arena_alloc(c->arena, c->n_forms, sizeof(const struct dalcs_form *));
-        c->builder->out_of_memory = c->builder->out_of_memory || c->form_of == NULL;
-        return c->form_of != NULL ? dalcs_compile(c, formula) : NULL;
+        c->smooth_node = dalcs_arena_alloc(c->arena, c->n_forms, sizeof *c->smooth_node);
+        const bool fits = c->form_of != NULL && c->smooth_node != NULL;
+        c->builder->out_of_memory = c->builder->out_of_memory || !fits;
+        return fits ? dalcs_compile(c, formula) : NULL;
     }
     struct dalcs_affine sum = dalcs_affine_constant(0);
     for (int k = 0; k < 2; k++) {
@@ -195,6 +197,14 @@ static void take_stimuli(struct dalcs_compiler *c) {
     circuit->n_stimuli += (int)c->n_stimuli;
 }
 
+/* The last of them. */
+static void add_smooth_stimulus(struct dalcs_compiler *c) {
+    struct dalcs_circuit *circuit = c->builder->circuit;
+    const struct dalcs_stimulus zero = {.kind = DALCS_STIMULUS_DC, .has_dc = true};
+    circuit->smooth_stimulus =
+        circuit->n_smooth > 0 ? dalcs_compiler_add_stimulus(c, &zero) : -1;
+}
+
 void dalcs_behavioural_resolve(struct dalcs_builder *builder) {
     struct dalcs_compiler c = {.builder = builder, .arena = &builder->scratch};
     struct dalcs_potentials potentials = {0};
@@ -210,6 +220,7 @@ void dalcs_behavioural_resolve(struct dalcs_builder *builder) {
         }
     }
     dalcs_gate_readers_finish(&readers);
+    add_smooth_stimulus(&c);
     if (c.n_stimuli > 0 && !builder->out_of_memory) {
         take_stimuli(&c);
     }

@@ -153,6 +153,7 @@ static void count(struct stamps *b, int n_devices, const int *device, int n_node
             s->n_z++;
             s->n_pairs += d->behaviour->n_pairs;
             s->n_inputs += dalcs_behaviour_n_inputs(d->behaviour);
+            b->n_smooth += d->behaviour->smooth != NULL ? 1 : 0;
             continue;
         }
         switch (d->kind) {
@@ -212,10 +213,15 @@ static enum dalcs_status allocate(struct stamps *b) {
     s->pair = dalcs_alloc((size_t)s->n_pairs, sizeof(*s->pair));
     s->stimulus = dalcs_alloc((size_t)s->n_inputs, sizeof(*s->stimulus));
     s->input_element = dalcs_alloc((size_t)s->n_inputs, sizeof(*s->input_element));
+    if (b->n_smooth > 0) {
+        s->smooth = dalcs_alloc((size_t)b->n_smooth, sizeof(*s->smooth));
+        s->is_part = dalcs_alloc((size_t)dalcs_system_n_columns(s), sizeof(*s->is_part));
+    }
     b->initial = dalcs_alloc((size_t)s->n_x, sizeof(*b->initial));
     if (s->dual == NULL || s->forest_root == NULL || s->column_is_current == NULL ||
         s->row_is_current == NULL || s->row == NULL || s->column == NULL || s->pair == NULL ||
-        s->stimulus == NULL || s->input_element == NULL || b->initial == NULL) {
+        s->stimulus == NULL || s->input_element == NULL || b->initial == NULL ||
+        (b->n_smooth > 0 && (s->smooth == NULL || s->is_part == NULL))) {
         return DALCS_E_NOMEM;
     }
     for (size_t c = 0; c < n_equations; c++) {

@@ -8,6 +8,7 @@ struct stamps {
     struct dalcs_layout *layout;
     struct dalcs_system *s;
     struct dalcs_triplets P, A, E, C, F, storage, control, direct_control, reads;
+    int n_smooth; /* sources of a smooth function */
     int n_tree;   /* capacitors in the forest: rows and columns 0..n_tree-1 of x */
     int next_x;   /* next x column (= row of I) after the forest's */
     int next_z;   /* next z column after the node voltages */

@@ -15,7 +15,7 @@ static bool is_input(const struct dalcs_behaviour *behaviour, int row, int term)
 }
 
 int dalcs_behaviour_n_inputs(const struct dalcs_behaviour *behaviour) {
-    int n = 0;
+    int n = behaviour->smooth != NULL ? 1 : 0;
     for (int row = -1; row < behaviour->n_pairs; row++) {
         const struct dalcs_affine *a = row < 0 ? &behaviour->output : &behaviour->w[row];
         for (int k = 0; k < a->n; k++) {
@@ -111,9 +111,38 @@ static enum dalcs_status stamp_affine(struct stamps *b, int device, const struct
     return DALCS_OK;
 }
 
+/* 0 = v(a) - v(b) - its input */
+static enum dalcs_status stamp_smooth(struct stamps *b, int device) {
+    struct dalcs_layout *l = b->layout;
+    struct dalcs_system *s = b->s;
+    const struct dalcs_smooth *smooth = l->circuit->device[device].behaviour->smooth;
+    const int input = b->next_input++;
+    const char *name = l->circuit->device[device].name;
+    l->input[device] = input;
+    s->stimulus[input] = l->circuit->smooth_stimulus;
+    s->input_element[input] = name;
+    struct dalcs_smooth_input *of = &s->smooth[s->n_smooth++];
+    *of = (struct dalcs_smooth_input){
+        .input = input, .row = l->branch_row[device], .kind = smooth->kind, .n = smooth->n, .element = name};
+    for (int k = 0; k < smooth->n; k++) {
+        of->column[k] =
+            smooth->node[k] > 0 ? dalcs_stamp_node_column(l, smooth->node[k]) : -1;
+        of->number[k] = smooth->number[k];
+        of->row_of[k] = smooth->source[k] >= 0 ? l->branch_row[smooth->source[k]] : -1;
+    }
+    return dalcs_triplets_add(&b->E, l->branch_row[device], input, -1.0);
+}
+
 enum dalcs_status dalcs_stamp_behaviour(struct stamps *b, int device) {
     const struct dalcs_behaviour *behaviour = b->layout->circuit->device[device].behaviour;
     int row = b->layout->branch_row[device];
+    if (behaviour->is_part) {
+        const int node = b->layout->circuit->device[device].node[0];
+        b->s->is_part[dalcs_stamp_node_column(b->layout, node)] = true;
+    }
+    if (behaviour->smooth != NULL) {
+        return stamp_smooth(b, device);
+    }
     struct target t = {&b->A, &b->E, row, device, row, -1.0};
     DALCS_TRY(stamp_affine(b, device, &t, &behaviour->output));
     for (int k = 0; k < behaviour->n_pairs; k++) {

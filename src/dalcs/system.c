@@ -20,6 +20,8 @@ void dalcs_system_finish(struct dalcs_system *system) {
     dalcs_csr_finish(&system->storage);
     dalcs_csr_finish(&system->control);
     dalcs_csr_finish(&system->direct_control);
+    free(system->smooth);
+    free(system->is_part);
     dalcs_csr_finish(&system->reads);
     free(system->dual);
     free(system->forest_root);

@@ -17,6 +17,7 @@
 #ifndef DALCS_SYSTEM_H
 #define DALCS_SYSTEM_H
 
+#include "smooth.h"
 #include "sparse.h"
 
 #include <stdint.h>
@@ -66,8 +67,23 @@ static inline bool dalcs_pair_closes(const struct dalcs_pair *p, bool is_on, dou
                                    : control > p->turn_off - slack;
 }
 
+/* A source whose voltage or current is a smooth function of columns. It stands in the equations as an input, whose
+ * value whoever solves them makes agree with what it reads. */
+struct dalcs_smooth_input {
+    int input, row;   /* the one equation that the input is in */
+    enum dalcs_smooth_kind kind;
+    int n;
+    int column[2];    /* of its arguments; -1: a number */
+    double number[2]; /* that number */
+    int row_of[2];    /* the equation that gives an argument which is not read elsewhere; -1: none */
+    const char *element;
+};
+
 struct dalcs_system {
     int n_x, n_z, n_pairs, n_inputs;
+    int n_smooth;
+    struct dalcs_smooth_input *smooth; /* [n_smooth] NULL: none */
+    bool *is_part; /* [n_columns] the value of a part of a formula, in no unit; NULL: no column is */
     struct dalcs_csr P;       /* [n_x][n_x], nonsingular */
     struct dalcs_csr A;       /* [n_x + n_z][n_columns], rows I then rows II */
     struct dalcs_csr E;       /* [n_x + n_z][n_inputs] */

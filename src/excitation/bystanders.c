@@ -34,6 +34,14 @@ static void find_blocks(const struct dalcs_system *s, int *parent) {
             dalcs_union_join(parent, c, involved); /* that it vanishes is a condition on sources */
         }
     }
+    for (int k = 0; k < s->n_smooth; k++) { /* what they read is asked for within a step */
+        dalcs_union_join(parent, n_columns + s->smooth[k].row, involved);
+        for (int j = 0; j < s->smooth[k].n; j++) {
+            if (s->smooth[k].column[j] >= 0) {
+                dalcs_union_join(parent, s->smooth[k].column[j], involved);
+            }
+        }
+    }
     for (int d = 0; d < s->n_pairs; d++) {
         dalcs_union_join(parent, n_equations + d, involved);
         join_row(parent, &s->C, d, involved);

@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 /* Does input k enter an equation or a threshold? */
 static bool acts(const struct dalcs_excitation *excitation, int k) {
@@ -35,7 +36,7 @@ static void add_wave(struct dalcs_excitation *excitation, int input,
                      const struct dalcs_stimulus *stimulus) {
     struct dalcs_excitation_wave *wave = &excitation->wave[excitation->n_waves++];
     *wave = (struct dalcs_excitation_wave){
-        .input = input, .stimulus = stimulus, .first = excitation->n_functions};
+        .input = input, .stimulus = stimulus, .first = excitation->n_functions, .smooth = -1};
     wave->piece.term = excitation->term + excitation->n_terms;
     dalcs_stimulus_piece_at(stimulus, 0.0, &wave->piece);
     excitation->n_terms += wave->piece.n_terms;
@@ -59,11 +60,33 @@ static void add_wave(struct dalcs_excitation *excitation, int input,
     }
 }
 
+/* A function of columns, which is given by its values at the nodes of a step. */
+static void add_smooth(struct dalcs_excitation *excitation, int k,
+                       const struct dalcs_collocation *method) {
+    struct dalcs_excitation_wave *wave = &excitation->wave[excitation->n_waves++];
+    *wave = (struct dalcs_excitation_wave){.input = excitation->system->smooth[k].input,
+                                           .first = excitation->n_functions,
+                                           .is_curved = true,
+                                           .smooth = k};
+    wave->n_functions = method->s + 2;
+    for (int node = 0; node <= method->s + 1; node++) {
+        excitation->function[excitation->n_functions++] = (struct dalcs_excitation_function){
+            .input = wave->input,
+            .shape = node <= method->s ? DALCS_EXCITATION_NODE : DALCS_EXCITATION_BETWEEN,
+            .node = node,
+            .method = method};
+    }
+    excitation->is_curved = true;
+}
+
 /* Room for all waves. */
 static enum dalcs_status allocate(struct dalcs_excitation *excitation,
                                   const struct dalcs_circuit *circuit,
                                   const struct dalcs_system *system) {
+    enum { FUNCTIONS_OF_SMOOTH = DALCS_MAX_NODES + 2 };
+
     size_t n = (size_t)system->n_inputs;
+    size_t n_smooth = (size_t)system->n_smooth;
     size_t n_terms = 0;
     int most = 0;
     for (int k = 1; k < system->n_inputs; k++) {
@@ -73,7 +96,10 @@ static enum dalcs_status allocate(struct dalcs_excitation *excitation,
     }
     excitation->wave = dalcs_arena_alloc(&excitation->arena, n, sizeof(*excitation->wave));
     excitation->function =
-        dalcs_arena_alloc(&excitation->arena, 2 * n + 2 * n_terms, sizeof(*excitation->function));
+        dalcs_arena_alloc(&excitation->arena, 2 * n + 2 * n_terms + n_smooth * FUNCTIONS_OF_SMOOTH,
+                          sizeof(*excitation->function));
+    excitation->smooth =
+        dalcs_arena_alloc(&excitation->arena, n_smooth * FUNCTIONS_OF_SMOOTH, sizeof(double));
     excitation->term =
         dalcs_arena_alloc(&excitation->arena, n_terms + (size_t)most, sizeof(*excitation->term));
     excitation->constant = dalcs_arena_alloc(&excitation->arena, n, sizeof(double));
@@ -87,7 +113,8 @@ static enum dalcs_status allocate(struct dalcs_excitation *excitation,
 
 enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
                                          const struct dalcs_circuit *circuit,
-                                         const struct dalcs_system *system) {
+                                         const struct dalcs_system *system,
+                                         const struct dalcs_collocation *method) {
     *excitation = (struct dalcs_excitation){.system = system, .shortest_period = INFINITY};
     enum dalcs_status status = allocate(excitation, circuit, system);
     if (status == DALCS_OK) {
@@ -106,6 +133,10 @@ enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
             add_wave(excitation, k, stimulus);
         }
     }
+    excitation->first_smooth = excitation->n_functions;
+    for (int k = 0; k < system->n_smooth; k++) {
+        add_smooth(excitation, k, method);
+    }
     dalcs_excitation_enter(excitation, 0.0);
     return DALCS_OK;
 }
@@ -120,6 +151,9 @@ void dalcs_excitation_enter(struct dalcs_excitation *excitation, double t) {
     excitation->next_edge = INFINITY;
     for (int k = 0; k < excitation->n_waves; k++) {
         struct dalcs_excitation_wave *wave = &excitation->wave[k];
+        if (wave->smooth >= 0) {
+            continue;
+        }
         dalcs_stimulus_piece_at(wave->stimulus, t, &wave->piece);
         wave->from = t;
         excitation->next_edge = fmin(excitation->next_edge, wave->piece.to);
@@ -149,6 +183,11 @@ void dalcs_excitation_coefficients(const struct dalcs_excitation *excitation, do
     for (int k = 0; k < excitation->n_waves; k++) {
         const struct dalcs_excitation_wave *wave = &excitation->wave[k];
         double *out = coefficient + wave->first;
+        if (wave->smooth >= 0) {
+            memcpy(out, excitation->smooth + wave->smooth * wave->n_functions,
+                   (size_t)wave->n_functions * sizeof(*out));
+            continue;
+        }
         if (!wave->is_curved) {
             out[0] = wave->piece.level + wave->piece.slope * (t - wave->from);
             out[1] = wave->piece.slope * h;
@@ -186,6 +225,13 @@ double dalcs_excitation_function_at(const struct dalcs_excitation_function *f, d
         return fading(f, h, theta) * cos(f->omega * h * theta);
     case DALCS_EXCITATION_SINE:
         return fading(f, h, theta) * sin(f->omega * h * theta);
+    case DALCS_EXCITATION_NODE: {
+        double weight[DALCS_MAX_NODES];
+        dalcs_collocation_weights(f->method, theta, weight);
+        return weight[f->node];
+    }
+    case DALCS_EXCITATION_BETWEEN:
+        return 0.0;
     }
     return 0.0;
 }
@@ -204,8 +250,12 @@ static double next_derivative(const struct dalcs_excitation_function *f,
 double dalcs_excitation_missed(const struct dalcs_excitation_function *f,
                                const struct dalcs_collocation *method, double h,
                                const double *value) {
-    if (f->shape == DALCS_EXCITATION_LEVEL || f->shape == DALCS_EXCITATION_RAMP) {
+    if (f->shape == DALCS_EXCITATION_LEVEL || f->shape == DALCS_EXCITATION_RAMP ||
+        f->shape == DALCS_EXCITATION_NODE) {
         return 0.0;
+    }
+    if (f->shape == DALCS_EXCITATION_BETWEEN) {
+        return 1.0;
     }
     double missed = dalcs_excitation_function_at(f, h, method->test_node);
     double size = fabs(missed);
@@ -224,7 +274,9 @@ void dalcs_excitation_inputs(const struct dalcs_excitation *excitation, double t
     for (int k = 0; k < excitation->n_waves; k++) {
         const struct dalcs_excitation_wave *wave = &excitation->wave[k];
         const struct dalcs_stimulus_piece *piece = &wave->piece;
-        if (!wave->is_curved) {
+        if (wave->smooth >= 0) { /* who solves finds it */
+            inputs[wave->input] = 0.0;
+        } else if (!wave->is_curved) {
             inputs[wave->input] = piece->level + piece->slope * ((t - wave->from) + tau);
         } else if (isinf(piece->to)) {
             inputs[wave->input] = dalcs_stimulus_value(wave->stimulus, t + tau, DALCS_RIGHT);

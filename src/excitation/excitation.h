@@ -18,10 +18,14 @@ struct dalcs_excitation_function {
         DALCS_EXCITATION_LEVEL,  /* 1 */
         DALCS_EXCITATION_RAMP,   /* theta */
         DALCS_EXCITATION_COSINE, /* exp(-decay h theta) cos(omega h theta) */
-        DALCS_EXCITATION_SINE
+        DALCS_EXCITATION_SINE,
+        DALCS_EXCITATION_NODE, /* the polynomial that is 1 at node `node` of the method, 0 at the others */
+        DALCS_EXCITATION_BETWEEN /* 0 at all nodes, 1 where polynomials are tested */
     } shape;
 
     double decay, omega; /* 1/s */
+    int node;
+    const struct dalcs_collocation *method;
 };
 
 struct dalcs_excitation_wave {
@@ -33,6 +37,7 @@ struct dalcs_excitation_wave {
     bool has_level; /* at any time */
     double from;    /* s, where `piece` was taken */
     struct dalcs_stimulus_piece piece;
+    int smooth; /* of the system's smooth sources; -1: it is a stimulus */
 };
 
 struct dalcs_excitation {
@@ -46,6 +51,9 @@ struct dalcs_excitation {
     struct dalcs_stimulus_term *term;    /* of the waves' pieces */
     struct dalcs_stimulus_term *scratch; /* of one wave, at another time */
     double *constant;                    /* [n_inputs] the inputs that never change; 0 for waves */
+    int first_smooth; /* function of these: */
+    double *smooth; /* [n_smooth][s + 2] what smooth sources are in the present step: at its nodes, and what the
+                       polynomial through these misses where it is tested */
     bool is_curved;                      /* any wave is */
     double shortest_period;              /* s, of the oscillations; INFINITY without */
     double next_edge;                    /* s, of the waves */
@@ -53,10 +61,11 @@ struct dalcs_excitation {
 };
 
 /* Inputs that only command switches are left out, for commands have their own schedule; and those that only
- * bystanders see. */
+ * bystanders see. method: of the steps; NULL where the system has no smooth sources. */
 enum dalcs_status dalcs_excitation_setup(struct dalcs_excitation *excitation,
                                          const struct dalcs_circuit *circuit,
-                                         const struct dalcs_system *system) DALCS_MUST_CHECK;
+                                         const struct dalcs_system *system,
+                                         const struct dalcs_collocation *method) DALCS_MUST_CHECK;
 
 void dalcs_excitation_finish(struct dalcs_excitation *excitation);
 

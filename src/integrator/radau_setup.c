@@ -6,6 +6,7 @@
 #include "periodic.h"
 #include "quads.h"
 #include "radau.h"
+#include "smooth_step.h"
 #include "step_length.h"
 #include "transition.h"
 
@@ -141,6 +142,11 @@ static double fit_rung(double promising) {
     return isinf(promising) ? 1.0 : floor(64.0 * frexp(paced, &exponent)) / 32.0;
 }
 
+/* What gates do is not known to recur, and steps with smooth sources are no maps of their states. */
+static bool may_recur(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
+    return r->base->circuit->n_gates == 0 && part->component->system->n_smooth == 0;
+}
+
 static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                     const struct dalcs_osnsp_options *osnsp) {
     struct dalcs_component *c = part->component;
@@ -154,11 +160,12 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->tolerance = choice.tolerance;
     part->inner_tolerance = inner_tolerance_of(choice.tolerance);
     part->because = steps ? choice.because : "no state, no diode and no switch";
-    DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system));
+    const struct dalcs_collocation *method =
+        dalcs_collocation_of(r->options.family, choice.stages);
+    DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system, method));
     DALCS_TRY(dalcs_commands_setup(&part->commands, c->circuit, c->system));
     DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation,
-                                 dalcs_collocation_of(r->options.family, choice.stages),
-                                 choice.map_limit, osnsp->rcond_min,
+                                 method, choice.map_limit, osnsp->rcond_min,
                                  osnsp->cache_bytes / (size_t)r->n_parts));
     part->stages.block_of = c->osnsp.partition.block_of;
     part->stages.unseen = r->options.fixed_step > 0.0 ? 0.0 : unseen_part * part->inner_tolerance;
@@ -180,7 +187,8 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->length.rung = fit_rung(promising);
     part->length.level = -ilogb(fmin(first, promising) / part->length.rung);
     part->length.patience = 32;
-    if (r->base->circuit->n_gates == 0) { /* what gates do is not known to recur */
+    DALCS_TRY(dalcs_smooth_step_setup(part));
+    if (may_recur(r, part)) {
         DALCS_TRY(dalcs_periodic_setup(r, part));
     }
     if (dalcs_stages_have_maps(&part->stages)) {
@@ -206,7 +214,7 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
         r->part[k].index = k;
         status = part_setup(r, &r->part[k], osnsp);
     }
-    const bool may_leap = base->circuit->n_gates == 0;
+    const bool may_leap = base->circuit->n_gates == 0 && base->circuit->n_smooth == 0;
     status = status == DALCS_OK && may_leap ? dalcs_cycle_setup(r) : status;
     if (status != DALCS_OK) {
         dalcs_radau_finish(r);

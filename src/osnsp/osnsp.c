@@ -50,7 +50,12 @@ static void list_runs(struct dalcs_osnsp *p) {
     int n_columns = dalcs_system_n_columns(s);
     for (int c = 0; c < n_columns; c++) {
         bool is_current = s->column_is_current[c];
-        if (p->n_runs == 0 || p->run[p->n_runs - 1].is_current != is_current) {
+        if (s->is_part != NULL && s->is_part[c]) {
+            continue;
+        }
+        bool goes_on = p->n_runs > 0 && p->run[p->n_runs - 1].end == c &&
+                       p->run[p->n_runs - 1].is_current == is_current;
+        if (!goes_on) {
             p->run[p->n_runs++] = (struct dalcs_unit_run){c, c, is_current};
         }
         p->run[p->n_runs - 1].end = c + 1;
@@ -180,6 +185,9 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
         }
         if (status == DALCS_OK) {
             status = list_drives(p);
+        }
+        if (status == DALCS_OK) {
+            status = dalcs_osnsp_smooth_setup(p);
         }
     }
     if (status != DALCS_OK) {
@@ -380,8 +388,8 @@ static bool is_proof(const struct dalcs_osnsp *p) {
     return p->system->monotone && p->form[0]->sigma == 0.0;
 }
 
-enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
-                                    double *y) {
+/* With given sources. */
+static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double *u, double *y) {
     p->counters.solved++;
     if (p->n_forms == 0 || p->form[0]->sigma != sigma) {
         DALCS_TRY(dalcs_forms_get(p, sigma));
@@ -410,4 +418,10 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
     }
     p->counters.singular += status == DALCS_OK && p->least_norm ? 1 : 0;
     return status;
+}
+
+enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
+                                    double *y) {
+    return p->newton == NULL ? solve(p, sigma, u, y)
+                             : dalcs_osnsp_solve_smooth(p, sigma, u, y, solve);
 }

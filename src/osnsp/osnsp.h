@@ -62,6 +62,7 @@ struct dalcs_witness {
 
 struct dalcs_mode_entry;
 struct dalcs_ordered_blocks;
+struct dalcs_smooth_newton;
 
 struct dalcs_osnsp {
     const struct dalcs_system *system;
@@ -69,6 +70,8 @@ struct dalcs_osnsp {
     struct dalcs_partition partition;
     struct dalcs_ordered_blocks
         *blocks; /* of this partition; NULL: not asked for yet, or there is one block */
+    struct dalcs_smooth_newton *newton; /* NULL: the system has no smooth sources (smooth.c) */
+    double *given;                      /* [n_x + n_inputs] inputs with their values */
     klu_common klu;
     int n_words;
     uint64_t *mode; /* [n_words] bit d: w_d = 0 */
@@ -142,7 +145,8 @@ struct dalcs_osnsp {
 enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_system *system,
                                     const struct dalcs_osnsp_options *options) DALCS_MUST_CHECK;
 
-/* Solves at sigma (1/s; 0: operating point). u[n_x + n_inputs] = (x_k, s). On DALCS_OK y[n_columns] =
+/* Solves at sigma (1/s; 0: operating point). u[n_x + n_inputs] = (x_k, s), in which those of smooth sources have no
+ * meaning: Newton's method finds them, from the last ones on. On DALCS_OK y[n_columns] =
  * (x+, z+, lambda+), with p->w, p->mode and p->certificate. DALCS_INFEASIBLE: see p->witness.
  * DALCS_NOT_CONVERGED: nothing could be certified. Switches are commanded: their bits in p->mode are
  * input. Allocates only for a (mode, sigma) not in the cache. */

@@ -74,6 +74,16 @@ void dalcs_modes_grew(struct dalcs_osnsp *p, struct dalcs_mode_entry *entry, siz
 
 void dalcs_modes_finish(struct dalcs_osnsp *p);
 
+/* ---- smooth.c ------------------------------------------------------------------------------ */
+
+enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) DALCS_MUST_CHECK;
+
+/* As dalcs_osnsp_solve(), where `solve` does with given sources. */
+enum dalcs_status dalcs_osnsp_solve_smooth(
+    struct dalcs_osnsp *p, double sigma, const double *u, double *y,
+    enum dalcs_status (*solve)(struct dalcs_osnsp *p, double sigma, const double *u,
+                               double *y)) DALCS_MUST_CHECK;
+
 /* ---- certificate.c ------------------------------------------------------------------------- */
 
 /* Recovers x+ in y from z+ and lambda+, evaluates every row of the system and every pair, fills p->w,

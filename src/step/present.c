@@ -2,6 +2,7 @@
 #include "present.h"
 
 #include "extremes.h"
+#include "smooth_step.h"
 
 double dalcs_radau_limit(const struct dalcs_radau *r, const struct dalcs_radau_part *part) {
     return dalcs_smaller(dalcs_smaller(part->excitation.next_edge, part->commands.next),
@@ -18,6 +19,9 @@ void dalcs_segment_inputs(struct dalcs_radau_part *part) {
 
 enum dalcs_status dalcs_segment_solve(struct dalcs_radau_part *part,
                                       struct dalcs_stage_entry **entry) {
+    if (part->smooth != NULL) {
+        return dalcs_smooth_step_solve(part, entry);
+    }
     dalcs_segment_inputs(part);
     DALCS_TRY(dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->segment.h,
                                 part->segment.in, part->segment.out, entry));
@@ -34,6 +38,9 @@ void dalcs_segment_accept(struct dalcs_radau *r, struct dalcs_radau_part *part, 
                           double residual) {
     part->segment.end = theta;
     part->segment.by_euler = false;
+    if (part->smooth != NULL) {
+        dalcs_smooth_step_note(part, theta);
+    }
     if (theta * part->segment.h > 4.0 * part->length.fell_back) {
         part->length.tries = 0;
     }

@@ -163,6 +163,7 @@ struct dalcs_radau_part {
     struct dalcs_part_guards guards;
     struct dalcs_part_laws laws;
     struct dalcs_part_memory memory;
+    struct dalcs_smooth_step *smooth; /* NULL: the system has no smooth sources (smooth_step.h) */
     struct dalcs_part_work work;
     struct dalcs_arena arena; /* what has the same size during the run */
 };

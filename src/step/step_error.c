@@ -82,6 +82,10 @@ enum dalcs_status dalcs_step_setup(struct dalcs_radau_part *part) {
         kinds->is_volt[c] = 1.0 - kinds->is_ampere[c];
         kinds->leans[c] = 1.0;
         kinds->counts[c] = is_pair ? 0 : UINT64_MAX;
+        if (s->is_part != NULL && s->is_part[c]) { /* what reads it is judged */
+            kinds->is_volt[c] = kinds->leans[c] = 0.0;
+            kinds->counts[c] = 0;
+        }
     }
     find_controls(part);
     return DALCS_OK;
@@ -264,6 +268,9 @@ static void compare(const struct dalcs_radau_part *part, const struct allowance 
     int n_equations = dalcs_system_n_equations(s);
     for (int c = 0; c < (curved ? n_equations : s->n_x); c++) {
         int of = s->column_is_current[c] ? 1 : 0;
+        if (part->scales.kinds->counts[c] == 0) {
+            continue;
+        }
         double allowed = a->tolerance * dalcs_step_scale(part, c, q->unit) + rounding * natural[c] +
                          a->besides[of];
         double error = c < s->n_x ? fabs(drift[c]) : 0.0;

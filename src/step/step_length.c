@@ -50,7 +50,8 @@ double dalcs_length_of_spans(const struct dalcs_radau_part *part) {
     const struct dalcs_csr *control = &c->system->direct_control;
     double shortest = INFINITY;
     for (int k = 0; k < part->excitation.n_waves; k++) {
-        shortest = dalcs_smaller(shortest, longest_span(part->excitation.wave[k].stimulus));
+        const struct dalcs_stimulus *stimulus = part->excitation.wave[k].stimulus;
+        shortest = stimulus != NULL ? dalcs_smaller(shortest, longest_span(stimulus)) : shortest;
     }
     for (int i = 0; i < part->commands.n; i++) {
         int d = part->commands.command[i].pair;

@@ -13,7 +13,7 @@ static struct dalcs_excitation x;
 static void start(const char *text) {
     build_good_network(&t, text);
     ck_assert_int_eq(t.network.n_systems, 1);
-    ck_assert_int_eq(dalcs_excitation_setup(&x, &t.circuit, &t.network.system[0]), DALCS_OK);
+    ck_assert_int_eq(dalcs_excitation_setup(&x, &t.circuit, &t.network.system[0], NULL), DALCS_OK);
 }
 
 static void finish(void) {

@@ -48,7 +48,7 @@ static void start_with(const char *netlist) {
                                      .memory.modes_before = modes_before,
                                      .guards.armed = armed,
                                      .guards.crossed = crossed};
-    ck_assert_int_eq(dalcs_excitation_setup(&x, &t.circuit, s), DALCS_OK);
+    ck_assert_int_eq(dalcs_excitation_setup(&x, &t.circuit, s, NULL), DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&part.stages, s, &x,
                                         dalcs_collocation_of(DALCS_RADAU_IIA, 5), 64, 1e-14,
                                         1 << 20),

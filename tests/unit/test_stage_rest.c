@@ -44,7 +44,7 @@ static void setup_fed(const char *feed, const char *more) {
     build_good_network(&text, netlist);
     ck_assert_int_eq(text.network.n_systems, 1);
     const struct dalcs_system *s = &text.network.system[0];
-    ck_assert_int_eq(dalcs_excitation_setup(&excitation, &text.circuit, s), DALCS_OK);
+    ck_assert_int_eq(dalcs_excitation_setup(&excitation, &text.circuit, s, NULL), DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&whole, s, &excitation,
                                         dalcs_collocation_of(DALCS_RADAU_IIA, 5), 0, 1e-14,
                                         SIZE_MAX),

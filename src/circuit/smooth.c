@@ -1,0 +1,237 @@
+/* smooth.c - values and derivatives of smooth functions of one and two arguments. */
+#include "smooth.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+/* Names that formulas have for them, the first one that is written. */
+static const struct {
+    const char *name;
+    int n;
+    enum dalcs_smooth_kind kind;
+} NAMES[] = {
+    {"*", 2, DALCS_SMOOTH_PRODUCT},
+    {"/", 2, DALCS_SMOOTH_QUOTIENT},
+    {"pow", 2, DALCS_SMOOTH_POWER},
+    {"pwr", 2, DALCS_SMOOTH_MAGNITUDE_POWER},
+    {"pwrs", 2, DALCS_SMOOTH_SIGNED_POWER},
+    {"hypot", 2, DALCS_SMOOTH_HYPOT},
+    {"atan2", 2, DALCS_SMOOTH_ATAN2},
+    {"exp", 1, DALCS_SMOOTH_EXP},
+    {"ln", 1, DALCS_SMOOTH_LOG},
+    {"log", 1, DALCS_SMOOTH_LOG},
+    {"log10", 1, DALCS_SMOOTH_LOG10},
+    {"sqrt", 1, DALCS_SMOOTH_SQRT},
+    {"cbrt", 1, DALCS_SMOOTH_CBRT},
+    {"sqr", 1, DALCS_SMOOTH_SQUARE},
+    {"square", 1, DALCS_SMOOTH_SQUARE},
+    {"sin", 1, DALCS_SMOOTH_SIN},
+    {"cos", 1, DALCS_SMOOTH_COS},
+    {"tan", 1, DALCS_SMOOTH_TAN},
+    {"asin", 1, DALCS_SMOOTH_ASIN},
+    {"arcsin", 1, DALCS_SMOOTH_ASIN},
+    {"acos", 1, DALCS_SMOOTH_ACOS},
+    {"arccos", 1, DALCS_SMOOTH_ACOS},
+    {"atan", 1, DALCS_SMOOTH_ATAN},
+    {"arctan", 1, DALCS_SMOOTH_ATAN},
+    {"sinh", 1, DALCS_SMOOTH_SINH},
+    {"cosh", 1, DALCS_SMOOTH_COSH},
+    {"tanh", 1, DALCS_SMOOTH_TANH},
+    {"asinh", 1, DALCS_SMOOTH_ASINH},
+    {"acosh", 1, DALCS_SMOOTH_ACOSH},
+    {"atanh", 1, DALCS_SMOOTH_ATANH},
+};
+
+enum { N_NAMES = sizeof NAMES / sizeof NAMES[0] };
+
+bool dalcs_smooth_find(const char *name, int n, enum dalcs_smooth_kind *kind) {
+    bool found = false;
+    for (int k = 0; k < N_NAMES && !found; k++) {
+        found = NAMES[k].n == n && strcmp(NAMES[k].name, name) == 0;
+        *kind = found ? NAMES[k].kind : *kind;
+    }
+    return found;
+}
+
+const char *dalcs_smooth_name(enum dalcs_smooth_kind kind) {
+    const char *name = NULL;
+    for (int k = 0; k < N_NAMES && name == NULL; k++) {
+        name = NAMES[k].kind == kind ? NAMES[k].name : NULL;
+    }
+    return name;
+}
+
+static double of_two(enum dalcs_smooth_kind kind, double x, double y) {
+    switch (kind) {
+    case DALCS_SMOOTH_PRODUCT:
+        return x * y;
+    case DALCS_SMOOTH_QUOTIENT:
+        return x / y;
+    case DALCS_SMOOTH_POWER:
+        return pow(x, y);
+    case DALCS_SMOOTH_MAGNITUDE_POWER:
+        return pow(fabs(x), y);
+    case DALCS_SMOOTH_SIGNED_POWER:
+        return copysign(pow(fabs(x), y), x);
+    case DALCS_SMOOTH_HYPOT:
+        return hypot(x, y);
+    default:
+        return atan2(x, y);
+    }
+}
+
+double dalcs_smooth_value(enum dalcs_smooth_kind kind, const double *x) {
+    switch (kind) {
+    case DALCS_SMOOTH_EXP:
+        return exp(x[0]);
+    case DALCS_SMOOTH_LOG:
+        return log(x[0]);
+    case DALCS_SMOOTH_LOG10:
+        return log10(x[0]);
+    case DALCS_SMOOTH_SQRT:
+        return sqrt(x[0]);
+    case DALCS_SMOOTH_CBRT:
+        return cbrt(x[0]);
+    case DALCS_SMOOTH_SQUARE:
+        return x[0] * x[0];
+    case DALCS_SMOOTH_SIN:
+        return sin(x[0]);
+    case DALCS_SMOOTH_COS:
+        return cos(x[0]);
+    case DALCS_SMOOTH_TAN:
+        return tan(x[0]);
+    case DALCS_SMOOTH_ASIN:
+        return asin(x[0]);
+    case DALCS_SMOOTH_ACOS:
+        return acos(x[0]);
+    case DALCS_SMOOTH_ATAN:
+        return atan(x[0]);
+    case DALCS_SMOOTH_SINH:
+        return sinh(x[0]);
+    case DALCS_SMOOTH_COSH:
+        return cosh(x[0]);
+    case DALCS_SMOOTH_TANH:
+        return tanh(x[0]);
+    case DALCS_SMOOTH_ASINH:
+        return asinh(x[0]);
+    case DALCS_SMOOTH_ACOSH:
+        return acosh(x[0]);
+    case DALCS_SMOOTH_ATANH:
+        return atanh(x[0]);
+    default:
+        return of_two(kind, x[0], x[1]);
+    }
+}
+
+/* x^y by y; a power whose exponent is a number has no use for it. */
+static double by_exponent(double power, double x) {
+    return power == 0.0 ? 0.0 : power * log(x);
+}
+
+static void gradient_of_two(enum dalcs_smooth_kind kind, double x, double y, double *gradient) {
+    const double length = hypot(x, y);
+    switch (kind) {
+    case DALCS_SMOOTH_PRODUCT:
+        gradient[0] = y;
+        gradient[1] = x;
+        break;
+    case DALCS_SMOOTH_QUOTIENT:
+        gradient[0] = 1.0 / y;
+        gradient[1] = -x / y / y;
+        break;
+    case DALCS_SMOOTH_POWER:
+        gradient[0] = y * pow(x, y - 1.0);
+        gradient[1] = by_exponent(pow(x, y), x);
+        break;
+    case DALCS_SMOOTH_MAGNITUDE_POWER:
+        gradient[0] = copysign(y * pow(fabs(x), y - 1.0), x * y);
+        gradient[1] = by_exponent(pow(fabs(x), y), fabs(x));
+        break;
+    case DALCS_SMOOTH_SIGNED_POWER:
+        gradient[0] = y * pow(fabs(x), y - 1.0);
+        gradient[1] = by_exponent(copysign(pow(fabs(x), y), x), fabs(x));
+        break;
+    case DALCS_SMOOTH_HYPOT:
+        gradient[0] = x / length;
+        gradient[1] = y / length;
+        break;
+    default:
+        gradient[0] = y / length / length;
+        gradient[1] = -x / length / length;
+        break;
+    }
+}
+
+static double derivative(enum dalcs_smooth_kind kind, double x) {
+    switch (kind) {
+    case DALCS_SMOOTH_EXP:
+        return exp(x);
+    case DALCS_SMOOTH_LOG:
+        return 1.0 / x;
+    case DALCS_SMOOTH_LOG10:
+        return 1.0 / (x * log(10.0));
+    case DALCS_SMOOTH_SQRT:
+        return 0.5 / sqrt(x);
+    case DALCS_SMOOTH_CBRT:
+        return 1.0 / (3.0 * cbrt(x) * cbrt(x));
+    case DALCS_SMOOTH_SQUARE:
+        return 2.0 * x;
+    case DALCS_SMOOTH_SIN:
+        return cos(x);
+    case DALCS_SMOOTH_COS:
+        return -sin(x);
+    case DALCS_SMOOTH_TAN:
+        return 1.0 + tan(x) * tan(x);
+    case DALCS_SMOOTH_ASIN:
+        return 1.0 / sqrt((1.0 - x) * (1.0 + x));
+    case DALCS_SMOOTH_ACOS:
+        return -1.0 / sqrt((1.0 - x) * (1.0 + x));
+    case DALCS_SMOOTH_ATAN:
+        return 1.0 / (1.0 + x * x);
+    case DALCS_SMOOTH_SINH:
+        return cosh(x);
+    case DALCS_SMOOTH_COSH:
+        return sinh(x);
+    case DALCS_SMOOTH_TANH:
+        return 1.0 / (cosh(x) * cosh(x));
+    case DALCS_SMOOTH_ASINH:
+        return 1.0 / hypot(1.0, x);
+    case DALCS_SMOOTH_ACOSH:
+        return 1.0 / sqrt((x - 1.0) * (x + 1.0));
+    default:
+        return 1.0 / ((1.0 - x) * (1.0 + x));
+    }
+}
+
+void dalcs_smooth_gradient(enum dalcs_smooth_kind kind, const double *x, double *gradient) {
+    if (kind < DALCS_SMOOTH_EXP) {
+        gradient_of_two(kind, x[0], x[1], gradient);
+    } else {
+        gradient[0] = derivative(kind, x[0]);
+        gradient[1] = 0.0;
+    }
+}
+
+double dalcs_smooth_tangent_point(enum dalcs_smooth_kind kind, double from, double to) {
+    const bool grows = kind == DALCS_SMOOTH_EXP && to > from + 1.0;
+    const bool swells =
+        (kind == DALCS_SMOOTH_SINH || kind == DALCS_SMOOTH_COSH) && fabs(to) > fabs(from) + 1.0;
+    if (grows) {
+        return from + log1p(to - from);
+    }
+    return swells ? copysign(fabs(from) + log1p(fabs(to) - fabs(from)), to) : to;
+}
+
+double dalcs_smooth_argument_of(enum dalcs_smooth_kind kind, double value) {
+    switch (kind) {
+    case DALCS_SMOOTH_EXP:
+        return value > 0.0 ? log(value) : 0.0;
+    case DALCS_SMOOTH_SINH:
+        return asinh(value);
+    case DALCS_SMOOTH_COSH:
+        return value > 1.0 ? acosh(value) : 0.0;
+    default:
+        return 0.0;
+    }
+}

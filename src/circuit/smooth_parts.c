@@ -1,0 +1,133 @@
+/* smooth_parts.c - products and smooth functions in a formula, each a voltage source between a node of its own and
+ * ground that reads nodes. An argument that is not the voltage of a node is put out at one by a source, too. */
+#include "behaviour.h"
+
+static int new_node(struct dalcs_compiler *c, const char *what) {
+    const char *name = dalcs_arena_printf(&c->builder->scratch, "%s%d", what, ++c->n_nodes);
+    const int node = name != NULL ? dalcs_builder_inner_node(c->builder, name, c->element) : -1;
+    c->failed = c->failed || node < 0;
+    return node;
+}
+
+/* A source from `node` to ground; -1 after an error. */
+static int add_source(struct dalcs_compiler *c, const char *what, int node,
+                      const struct dalcs_behaviour *behaviour) {
+    struct dalcs_builder *builder = c->builder;
+    const char *name = dalcs_arena_printf(&builder->scratch, "%s%d", what, c->n_nodes);
+    struct dalcs_device *device =
+        name != NULL && dalcs_builder_reserve_devices(builder, 1)
+            ? dalcs_builder_add_inner_device(builder, DALCS_VCVS, name, c->element)
+            : NULL;
+    if (device == NULL) {
+        c->failed = true;
+        return -1;
+    }
+    device->node[0] = node;
+    device->behaviour = behaviour;
+    return node;
+}
+
+/* The node that a form is the voltage of; -1: it is something else. */
+static int plain_node(const struct dalcs_form *form) {
+    const struct dalcs_affine *a = &form->affine;
+    const bool is_plain = form->n == 0 && a->n == 1 && a->constant == 0.0 &&
+                          a->term[0].kind == DALCS_QUANTITY_VOLTAGE &&
+                          a->term[0].coefficient == 1.0;
+    return is_plain ? a->term[0].index : -1;
+}
+
+/* A node at the value of a formula. */
+static int node_at(struct dalcs_compiler *c, const struct dalcs_formula *f, int *source) {
+    struct dalcs_compiler inner;
+    if (!dalcs_compiler_start_inner(c, &inner, c->n_forms)) {
+        return -1;
+    }
+    const struct dalcs_form *form = dalcs_compile(&inner, f);
+    struct dalcs_behaviour *behaviour =
+        form != NULL && !inner.failed ? dalcs_behaviour_make(&inner, form) : NULL;
+    dalcs_compiler_finish_inner(c, &inner);
+    const int node = behaviour != NULL && !c->failed ? new_node(c, "argument") : -1;
+    if (node < 0) {
+        return -1;
+    }
+    behaviour->is_part = true;
+    *source = c->builder->circuit->n_devices;
+    return add_source(c, "argument", node, behaviour);
+}
+
+/* What the source reads, for whoever asks what formulas read. */
+static bool list_arguments(struct dalcs_compiler *c, struct dalcs_behaviour *behaviour) {
+    const struct dalcs_smooth *smooth = behaviour->smooth;
+    struct dalcs_affine_term *term =
+        dalcs_arena_alloc(&c->builder->circuit->arena, (size_t)smooth->n, sizeof *term);
+    if (term == NULL) {
+        return false;
+    }
+    struct dalcs_affine *reads = &behaviour->output;
+    reads->term = term;
+    for (int k = 0; k < smooth->n; k++) {
+        const bool is_new =
+            smooth->node[k] > 0 && !(reads->n > 0 && term[0].index == smooth->node[k]);
+        if (is_new) {
+            term[reads->n++] =
+                (struct dalcs_affine_term){DALCS_QUANTITY_VOLTAGE, smooth->node[k], 1.0};
+        }
+    }
+    return true;
+}
+
+static struct dalcs_behaviour *make(struct dalcs_compiler *c, const struct dalcs_smooth *what) {
+    struct dalcs_arena *arena = &c->builder->circuit->arena;
+    struct dalcs_behaviour *behaviour = dalcs_arena_alloc(arena, 1, sizeof *behaviour);
+    struct dalcs_smooth *smooth = dalcs_arena_alloc(arena, 1, sizeof *smooth);
+    if (behaviour != NULL && smooth != NULL) {
+        *smooth = *what;
+        *behaviour = (struct dalcs_behaviour){.smooth = smooth, .is_part = true};
+    }
+    if (behaviour == NULL || smooth == NULL || !list_arguments(c, behaviour)) {
+        c->builder->out_of_memory = c->failed = true;
+        return NULL;
+    }
+    return behaviour;
+}
+
+static int add_smooth(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                      struct dalcs_smooth *smooth, const struct dalcs_form **argument) {
+    for (int k = 0; k < smooth->n && !c->failed; k++) {
+        smooth->node[k] = smooth->source[k] = -1;
+        if (dalcs_form_is_number(argument[k])) {
+            smooth->number[k] = argument[k]->affine.constant;
+            continue;
+        }
+        smooth->node[k] = plain_node(argument[k]);
+        if (smooth->node[k] < 0) {
+            smooth->node[k] = node_at(c, f->argument[k], &smooth->source[k]);
+        }
+        c->failed = c->failed || smooth->node[k] < 0;
+    }
+    const struct dalcs_behaviour *behaviour = c->failed ? NULL : make(c, smooth);
+    const int node = behaviour != NULL ? new_node(c, "function") : -1;
+    if (node < 0 || add_source(c, "function", node, behaviour) < 0) {
+        return -1;
+    }
+    c->builder->circuit->n_smooth++;
+    return node;
+}
+
+const struct dalcs_form *dalcs_smooth_form(struct dalcs_compiler *c, const struct dalcs_formula *f,
+                                           enum dalcs_smooth_kind kind, int n,
+                                           const struct dalcs_form **argument) {
+    if (c->is_silent || c->smooth_node == NULL) {
+        c->failed = true;
+        return NULL;
+    }
+    if (c->smooth_node[f->number_of] == 0) {
+        struct dalcs_smooth smooth = {.kind = kind, .n = n};
+        const int node = add_smooth(c, f, &smooth, argument);
+        c->failed = c->failed || node < 0;
+        c->smooth_node[f->number_of] = node > 0 ? node : 0;
+    }
+    const struct dalcs_affine v =
+        dalcs_affine_of(c, DALCS_QUANTITY_VOLTAGE, c->smooth_node[f->number_of]);
+    return c->failed ? NULL : dalcs_form_affine(c, &v);
+}

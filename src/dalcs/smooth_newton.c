@@ -1,0 +1,195 @@
+/* smooth_newton.c - tangents of smooth sources, and steps of Newton's method on them. */
+#include "smooth_newton.h"
+
+#include "extremes.h"
+
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+/* 2^-60 of a step is no step. */
+enum { MOST_HALVINGS = 60 };
+
+enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
+                                            const struct dalcs_system *system, int n_points,
+                                            struct dalcs_arena *arena) {
+    const size_t n = (size_t)n_points * (size_t)system->n_smooth;
+    *newton =
+        (struct dalcs_smooth_newton){.system = system, .n_points = n_points, .n = (int)n};
+    newton->phi = dalcs_arena_alloc(arena, n, sizeof(double));
+    newton->before = dalcs_arena_alloc(arena, n, sizeof(double));
+    newton->x = dalcs_arena_alloc(arena, n, sizeof(*newton->x));
+    newton->terms = dalcs_arena_alloc(arena, n, sizeof(*newton->terms));
+    newton->tangent = dalcs_arena_alloc(arena, n, sizeof(*newton->tangent));
+    newton->slope = dalcs_arena_alloc(arena, 2 * n * n, sizeof(double));
+    newton->matrix = dalcs_arena_alloc(arena, n * n, sizeof(double));
+    newton->step = dalcs_arena_alloc(arena, n, sizeof(double));
+    newton->pivot = dalcs_arena_alloc(arena, n, sizeof(int));
+    bool complete = newton->phi != NULL && newton->before != NULL && newton->x != NULL &&
+                    newton->terms != NULL && newton->tangent != NULL && newton->slope != NULL && newton->matrix != NULL &&
+                    newton->step != NULL && newton->pivot != NULL;
+    return complete ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+static const struct dalcs_smooth_input *input_of(const struct dalcs_smooth_newton *newton, int q) {
+    return &newton->system->smooth[q % newton->system->n_smooth];
+}
+
+void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton) {
+    for (int q = 0; q < newton->n; q++) {
+        newton->before[q] = newton->phi[q];
+        newton->tangent[q][0] = newton->tangent[q][1] =
+            dalcs_smooth_argument_of(input_of(newton, q)->kind, newton->phi[q]);
+    }
+    newton->halved = 0;
+    newton->limits = false;
+    newton->defect = INFINITY;
+}
+
+void dalcs_smooth_arguments(const struct dalcs_system *system, const double *y, double (*x)[2]) {
+    for (int k = 0; k < system->n_smooth; k++) {
+        const struct dalcs_smooth_input *of = &system->smooth[k];
+        for (int j = 0; j < 2; j++) {
+            x[k][j] = j < of->n && of->column[j] >= 0 ? y[of->column[j]] : of->number[j];
+        }
+    }
+}
+
+static double largest_voltage(const struct dalcs_system *s, const double *y) {
+    double volt = 0.0;
+    for (int c = 0; c < dalcs_system_n_equations(s); c++) {
+        bool counts = !s->column_is_current[c] && !s->is_part[c];
+        volt = counts ? dalcs_larger(volt, fabs(y[c])) : volt;
+    }
+    return volt;
+}
+
+static double largest_term(const struct dalcs_system *s, int row, const double *y) {
+    double most = 0.0;
+    for (int k = s->A.p[row]; k < s->A.p[row + 1]; k++) {
+        most = dalcs_larger(most, fabs(s->A.x[k] * y[s->A.j[k]]));
+    }
+    return most;
+}
+
+void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, const double *y) {
+    const struct dalcs_system *s = newton->system;
+    const int first = point * s->n_smooth;
+    const double volt = largest_voltage(s, y);
+    dalcs_smooth_arguments(s, y, newton->x + first);
+    for (int k = 0; k < s->n_smooth; k++) {
+        const struct dalcs_smooth_input *of = &s->smooth[k];
+        for (int j = 0; j < of->n; j++) {
+            const bool is_part = of->column[j] >= 0 && s->is_part[of->column[j]];
+            newton->terms[first + k][j] = of->column[j] < 0    ? 0.0
+                                          : of->row_of[j] >= 0 ? largest_term(s, of->row_of[j], y)
+                                          : is_part            ? fabs(newton->x[first + k][j])
+                                                               : volt;
+        }
+    }
+}
+
+/* Over an argument: what rounding makes of it and of the function of it, two units in the last place; and, over the terms
+ * that it is made of, what the residual of an answer may be (the certificate's 900). */
+static const double rounded = 2.0 * DBL_EPSILON, solved = 2e-13;
+
+static double over(double off, double size) {
+    return off == 0.0 ? 0.0 : isfinite(size) ? off / size : INFINITY;
+}
+
+bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double tolerance,
+                                bool *is_done) {
+    double worst = 0.0;
+    newton->defect_before = newton->defect;
+    newton->defect = 0.0;
+    for (int q = 0; q < newton->n; q++) {
+        const struct dalcs_smooth_input *of = input_of(newton, q);
+        double gradient[2];
+        double f = dalcs_smooth_value(of->kind, newton->x[q]);
+        dalcs_smooth_gradient(of->kind, newton->x[q], gradient);
+        double least = tolerance * fabs(f);
+        double most = tolerance * fabs(f);
+        for (int j = 0; j < of->n; j++) {
+            bool is_read = of->column[j] >= 0;
+            least += is_read ? rounded * fabs(gradient[j] * newton->x[q][j]) : 0.0;
+            most += is_read ? solved * fabs(gradient[j]) * newton->terms[q][j] : 0.0;
+        }
+        double off = fabs(f - newton->phi[q]);
+        double ratio = over(off, most);
+        newton->worst = ratio > worst ? q % newton->system->n_smooth : newton->worst;
+        worst = ratio <= worst ? worst : ratio; /* NAN stays */
+        double defect = over(off, least);
+        newton->defect = defect <= newton->defect ? newton->defect : defect;
+    }
+    *is_done = newton->defect <= 1.0 || !(newton->defect < 0.5 * newton->defect_before);
+    return worst <= 1.0 && !newton->limits;
+}
+
+bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *repeats) {
+    bool is = true;
+    for (int q = 0; q < newton->n && is; q++) {
+        const struct dalcs_smooth_input *of = input_of(newton, q);
+        double a[2];
+        double gradient[2];
+        for (int j = 0; j < 2; j++) {
+            a[j] = dalcs_smooth_tangent_point(of->kind, newton->tangent[q][j], newton->x[q][j]);
+        }
+        dalcs_smooth_gradient(of->kind, a, gradient);
+        is = isfinite(dalcs_smooth_value(of->kind, a)) && isfinite(gradient[0]) &&
+             (of->column[1] < 0 || isfinite(gradient[1]));
+        newton->worst = is ? newton->worst : q % newton->system->n_smooth;
+    }
+    *repeats = !is && newton->halved < MOST_HALVINGS;
+    if (*repeats) {
+        newton->halved++;
+        for (int q = 0; q < newton->n; q++) {
+            newton->phi[q] = 0.5 * (newton->phi[q] + newton->before[q]);
+        }
+    }
+    return is || *repeats;
+}
+
+/* A row of the matrix and of what stands on its right. */
+static void put_row(struct dalcs_smooth_newton *newton, int q) {
+    const struct dalcs_smooth_input *of = input_of(newton, q);
+    const int n = newton->n;
+    double *a = newton->tangent[q];
+    double gradient[2];
+    for (int j = 0; j < of->n; j++) {
+        a[j] = dalcs_smooth_tangent_point(of->kind, a[j], newton->x[q][j]);
+        newton->limits = newton->limits || a[j] != newton->x[q][j];
+    }
+    a[1] = of->n > 1 ? a[1] : 0.0;
+    dalcs_smooth_gradient(of->kind, a, gradient);
+    newton->step[q] = dalcs_smooth_value(of->kind, a) - newton->phi[q];
+    double *row = newton->matrix + (size_t)q * (size_t)n;
+    memset(row, 0, (size_t)n * sizeof(*row));
+    row[q] = 1.0;
+    for (int j = 0; j < of->n; j++) {
+        if (of->column[j] < 0) {
+            continue;
+        }
+        const double *slope = newton->slope + (size_t)(2 * q + j) * (size_t)n;
+        newton->step[q] += gradient[j] * (newton->x[q][j] - a[j]);
+        for (int p = 0; p < n; p++) {
+            row[p] -= gradient[j] * slope[p];
+        }
+    }
+}
+
+bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
+    newton->limits = false;
+    newton->halved = 0;
+    for (int q = 0; q < newton->n; q++) {
+        put_row(newton, q);
+    }
+    bool is_solved = LAPACKE_dgesv(LAPACK_ROW_MAJOR, newton->n, 1, newton->matrix, newton->n,
+                                newton->pivot, newton->step, 1) == 0;
+    memcpy(newton->before, newton->phi, (size_t)newton->n * sizeof(double));
+    for (int q = 0; q < newton->n && is_solved; q++) {
+        newton->phi[q] += newton->step[q];
+        is_solved = isfinite(newton->phi[q]);
+    }
+    return is_solved;
+}

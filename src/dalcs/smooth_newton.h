@@ -1,0 +1,57 @@
+/* smooth_newton.h - Newton's method for the sources of a system that are smooth functions of columns.
+ *
+ * At each of some points (one instant, or the nodes of a step) the answer is affine in the values phi of these sources,
+ * and phi is to be f of what they read there. With x the arguments and S their derivatives by phi, a step is
+ *     delta - f'(a) S delta = f(a) + f'(a) (x - a) - phi,
+ * a the points of the tangents, which are x but where an exponential is far from it (SPICE's limits of junctions, Nagel
+ * 1975, in the function's own unit). */
+#ifndef DALCS_SMOOTH_NEWTON_H
+#define DALCS_SMOOTH_NEWTON_H
+
+#include "system.h"
+
+struct dalcs_smooth_newton {
+    const struct dalcs_system *system;
+    int n_points;
+    int n;                /* n_points * system->n_smooth values, point by point */
+    double *phi;          /* [n] */
+    double *before;       /* [n] phi one step ago */
+    double (*x)[2];       /* [n] arguments that were read */
+    double (*terms)[2];   /* [n] V: what they are made of, or the largest voltage that was read beside them */
+    double (*tangent)[2]; /* [n] where tangents are */
+    double *slope;        /* [n][2][n] S */
+    double *matrix;       /* [n][n] work */
+    double *step;         /* [n] work */
+    int *pivot;           /* [n] work */
+    bool limits;          /* a tangent is elsewhere than its argument */
+    int halved;           /* times that the last step was halved */
+    int worst;            /* of the system's smooth inputs, the one that agrees least */
+    double defect;        /* of the last check: over the terms of each function alone, in the tolerance */
+    double defect_before; /* of the one before */
+};
+
+enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
+                                            const struct dalcs_system *system, int n_points,
+                                            struct dalcs_arena *arena) DALCS_MUST_CHECK;
+
+/* Tangents start anew, at what would have the present phi. */
+void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton);
+
+/* Arguments at a point from its columns y[n_columns]. */
+void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, const double *y);
+
+/* The same arguments as a difference of two answers: dx[n_smooth][2]. */
+void dalcs_smooth_arguments(const struct dalcs_system *system, const double *y, double (*x)[2]);
+
+/* Do all values agree with what was read, to `tolerance`, arguments being what they are to the rounding of their terms? *is_done: and another step would not make them agree any better. */
+bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double tolerance,
+                                bool *is_done);
+
+/* Can anything be done with what was read? If not, the last step was too long, and is halved: false where it has been
+ * halved too often. *repeats: it was; the arguments are to be read again. */
+bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *repeats);
+
+/* The next phi by way of newton->slope; false: there is none. */
+bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton);
+
+#endif

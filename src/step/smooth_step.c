@@ -1,0 +1,203 @@
+/* smooth_step.c - Newton's method on the values of smooth sources at the nodes of a step. */
+#include "smooth_step.h"
+
+#include "extremes.h"
+#include "present.h"
+#include "smooth_newton.h"
+
+#include <math.h>
+
+/* The part of what a step's error may be that is left to Newton's method (kappa of Hairer and Wanner, section IV.8). */
+static const double newton_part = 1e-2;
+
+/* A step in which so many are not enough is too long: near the solution each doubles the digits. */
+enum { MOST_STEPS = 12 };
+
+struct dalcs_smooth_step {
+    struct dalcs_smooth_newton newton;
+    double slope_h;    /* s, of the step that newton.slope is of; 0: none */
+    uint64_t *mode;    /* [n_words] and its mode */
+    double *in, *out;  /* a step with one value changed */
+};
+
+enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    if (s->n_smooth == 0 || part->kind == DALCS_PART_ALGEBRAIC) {
+        return DALCS_OK;
+    }
+    const struct dalcs_stages *stages = &part->stages;
+    size_t n_columns = (size_t)dalcs_system_n_columns(s);
+    size_t n_out =
+        (size_t)stages->layout.n_fixed + (size_t)stages->method->s * n_columns + 8;
+    struct dalcs_smooth_step *p = dalcs_arena_alloc(&part->arena, 1, sizeof(*p));
+    if (p == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    part->smooth = p;
+    p->mode = dalcs_arena_alloc(&part->arena, (size_t)stages->n_words, sizeof(*p->mode));
+    p->in = dalcs_arena_alloc(&part->arena, (size_t)stages->n_in, sizeof(double));
+    p->out = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
+    if (p->mode == NULL || p->in == NULL || p->out == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    return dalcs_smooth_newton_setup(&p->newton, s, stages->method->s + 1, &part->arena);
+}
+
+/* The place of a value at a node in excitation.smooth. */
+static double *value_at(const struct dalcs_radau_part *part, int source, int node) {
+    return part->excitation.smooth + source * (part->stages.method->s + 2) + node;
+}
+
+/* What goes into the step, from the present values. */
+static void put_values(struct dalcs_radau_part *part) {
+    const struct dalcs_smooth_newton *n = &part->smooth->newton;
+    const int n_smooth = n->system->n_smooth;
+    for (int q = 0; q < n->n; q++) {
+        *value_at(part, q % n_smooth, q / n_smooth) = n->phi[q];
+    }
+    dalcs_segment_inputs(part);
+}
+
+static void read(struct dalcs_smooth_newton *n, const struct dalcs_radau_part *part,
+                 const double *out) {
+    for (int node = 0; node < n->n_points; node++) {
+        dalcs_smooth_newton_read(n, node, out + node * part->stages.layout.stride);
+    }
+}
+
+static bool has_slope(const struct dalcs_radau_part *part) {
+    const struct dalcs_smooth_step *p = part->smooth;
+    const struct dalcs_osnsp *osnsp = &part->component->osnsp;
+    return p->slope_h == part->segment.h && dalcs_mode_is(p->mode, osnsp->mode, osnsp->n_words);
+}
+
+/* What a change of each value does to all arguments, by differences: the step is affine in them. */
+static enum dalcs_status find_slope(struct dalcs_radau_part *part,
+                                    struct dalcs_stage_entry *entry) {
+    struct dalcs_smooth_step *p = part->smooth;
+    struct dalcs_smooth_newton *n = &p->newton;
+    const struct dalcs_system *s = n->system;
+    const struct dalcs_osnsp *osnsp = &part->component->osnsp;
+    const int stride = part->stages.layout.stride;
+    memcpy(p->in, part->segment.in, (size_t)part->stages.n_in * sizeof(double));
+    for (int q = 0; q < n->n; q++) {
+        const int place = (int)(value_at(part, q % s->n_smooth, q / s->n_smooth) -
+                                part->excitation.smooth);
+        double *in = p->in + s->n_x + 1 + part->excitation.first_smooth + place;
+        const double before = *in;
+        const double change = 1.0 + fabs(before);
+        *in += change;
+        DALCS_TRY(dalcs_stages_apply(&part->stages, entry, p->in, p->out));
+        *in = before;
+        for (int k = 0; k < 2 * n->n; k++) {
+            const struct dalcs_smooth_input *of = &s->smooth[k / 2 % s->n_smooth];
+            const int column = k % 2 < of->n ? of->column[k % 2] : -1;
+            const int at = k / 2 / s->n_smooth * stride + column;
+            n->slope[(size_t)k * (size_t)n->n + (size_t)q] =
+                column >= 0 ? (p->out[at] - part->segment.out[at]) / change : 0.0;
+        }
+    }
+    p->slope_h = part->segment.h;
+    memcpy(p->mode, osnsp->mode, (size_t)osnsp->n_words * sizeof(*p->mode));
+    return DALCS_OK;
+}
+
+/* What the polynomials of the sources miss between the nodes; is_finite: the functions have a value there. */
+static bool find_missed(struct dalcs_radau_part *part) {
+    const struct dalcs_smooth_newton *n = &part->smooth->newton;
+    const struct dalcs_collocation *m = part->stages.method;
+    const struct dalcs_system *s = n->system;
+    bool is_finite = true;
+    for (int k = 0; k < s->n_smooth; k++) {
+        const struct dalcs_smooth_input *of = &s->smooth[k];
+        double x[2] = {of->number[0], of->number[1]};
+        double phi = 0.0;
+        for (int node = 0; node <= m->s; node++) {
+            const int q = node * s->n_smooth + k;
+            for (int j = 0; j < of->n; j++) {
+                x[j] += of->column[j] >= 0 ? m->test[node] * n->x[q][j] : 0.0;
+            }
+            phi += m->test[node] * n->phi[q];
+        }
+        const double missed = dalcs_smooth_value(of->kind, x) - phi;
+        is_finite = is_finite && isfinite(missed);
+        *value_at(part, k, m->s + 1) = missed;
+    }
+    return is_finite;
+}
+
+static enum dalcs_status apply(struct dalcs_radau_part *part, struct dalcs_stage_entry **entry) {
+    return dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->segment.h,
+                             part->segment.in, part->segment.out, entry);
+}
+
+/* From the values that are there at t. */
+static enum dalcs_status iterate(struct dalcs_radau_part *part, struct dalcs_stage_entry **entry) {
+    struct dalcs_smooth_newton *n = &part->smooth->newton;
+    const double tolerance = dalcs_larger(part->component->osnsp.options.certificate_tolerance,
+                                          newton_part * part->inner_tolerance);
+    for (int step = 0; step < MOST_STEPS; step++) {
+        bool repeats;
+        bool is_done;
+        put_values(part);
+        enum dalcs_status status = apply(part, entry);
+        if (status != DALCS_OK) {
+            return status;
+        }
+        read(n, part, part->segment.out);
+        if (!dalcs_smooth_newton_is_finite(n, &repeats)) {
+            return DALCS_NOT_CONVERGED;
+        }
+        if (!repeats && dalcs_smooth_newton_agrees(n, tolerance, &is_done) && is_done) {
+            return DALCS_OK;
+        }
+        if (!repeats && !has_slope(part)) {
+            DALCS_TRY(find_slope(part, *entry));
+        }
+        if (!repeats && !dalcs_smooth_newton_step(n)) {
+            return DALCS_NOT_CONVERGED;
+        }
+    }
+    return DALCS_NOT_CONVERGED;
+}
+
+enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
+                                          struct dalcs_stage_entry **entry) {
+    struct dalcs_smooth_newton *n = &part->smooth->newton;
+    const int n_smooth = n->system->n_smooth;
+    const double *now = part->component->osnsp.newton->phi;
+    for (int q = 0; q < n->n; q++) {
+        n->phi[q] = now[q % n_smooth];
+    }
+    dalcs_smooth_newton_begin(n);
+    for (int k = 0; k < n_smooth; k++) {
+        *value_at(part, k, part->stages.method->s + 1) = 0.0;
+    }
+    enum dalcs_status status = iterate(part, entry);
+    if (status != DALCS_OK) {
+        return status;
+    }
+    if (!find_missed(part)) {
+        return DALCS_NOT_CONVERGED;
+    }
+    dalcs_segment_inputs(part);
+    status = apply(part, entry);
+    if (status == DALCS_OK) {
+        part->segment.rounding = dalcs_stage_rounding(*entry);
+    }
+    return status;
+}
+
+void dalcs_smooth_step_note(struct dalcs_radau_part *part, double theta) {
+    const struct dalcs_smooth_newton *n = &part->smooth->newton;
+    const int n_smooth = n->system->n_smooth;
+    double *now = part->component->osnsp.newton->phi;
+    double weight[DALCS_MAX_NODES];
+    dalcs_collocation_weights(part->stages.method, theta, weight);
+    for (int k = 0; k < n_smooth; k++) {
+        now[k] = 0.0;
+        for (int node = 0; node < n->n_points; node++) {
+            now[k] += weight[node] * n->phi[node * n_smooth + k];
+        }
+    }
+}

@@ -1,0 +1,22 @@
+/* smooth_step.h - a step of a part that has smooth sources.
+ *
+ * Within a step such a source is the polynomial through its values at the nodes, for which a step is linear as for other
+ * sources. Newton's method finds values that are the functions of what they read at these nodes: with the factors or
+ * the map of the step as it is, and a small dense matrix of the slopes (Hairer and Wanner, Solving ODEs II, section
+ * IV.8; the matrix of the step itself has no part of the functions). What the polynomial misses between the nodes is in
+ * the step's error as what it misses of a sine is. */
+#ifndef DALCS_SMOOTH_STEP_H
+#define DALCS_SMOOTH_STEP_H
+
+#include "radau_state.h"
+
+enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) DALCS_MUST_CHECK;
+
+/* As dalcs_segment_solve(). DALCS_NOT_CONVERGED: a shorter step may. */
+enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
+                                          struct dalcs_stage_entry **entry) DALCS_MUST_CHECK;
+
+/* The present step up to theta is a segment: what follows starts with the values there. */
+void dalcs_smooth_step_note(struct dalcs_radau_part *part, double theta);
+
+#endif
