@@ -214,13 +214,13 @@ void dalcs_smooth_gradient(enum dalcs_smooth_kind kind, const double *x, double 
 }
 
 double dalcs_smooth_tangent_point(enum dalcs_smooth_kind kind, double from, double to) {
-    const bool grows = kind == DALCS_SMOOTH_EXP && to > from + 1.0;
-    const bool swells =
-        (kind == DALCS_SMOOTH_SINH || kind == DALCS_SMOOTH_COSH) && fabs(to) > fabs(from) + 1.0;
-    if (grows) {
-        return from + log1p(to - from);
+    const bool is_even = kind == DALCS_SMOOTH_SINH || kind == DALCS_SMOOTH_COSH;
+    const double size = is_even ? fabs(to) : to;
+    const double base = fmax(is_even ? fabs(from) : from, 0.0);
+    if ((kind != DALCS_SMOOTH_EXP && !is_even) || !(size > base + 1.0)) {
+        return to;
     }
-    return swells ? copysign(fabs(from) + log1p(fabs(to) - fabs(from)), to) : to;
+    return copysign(base + log1p(size - base), to);
 }
 
 double dalcs_smooth_argument_of(enum dalcs_smooth_kind kind, double value) {

@@ -55,8 +55,8 @@ const char *dalcs_smooth_name(enum dalcs_smooth_kind kind);
 double dalcs_smooth_value(enum dalcs_smooth_kind kind, const double *x);
 void dalcs_smooth_gradient(enum dalcs_smooth_kind kind, const double *x, double *gradient);
 
-/* Where Newton's method takes a function's tangent next, on the way from one argument to another: an exponential grows
- * e-fold with each unit, and its tangent says nothing of what is more than one above. */
+/* Where Newton's method takes a function's tangent next, on the way from one argument to another: an exponential above 1
+ * grows e-fold with each unit, and its tangent says nothing of what is more than one above. */
 double dalcs_smooth_tangent_point(enum dalcs_smooth_kind kind, double from, double to);
 
 /* Where such a function has this value; 0 for the others. */
