@@ -150,39 +150,44 @@ bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *rep
     return is || *repeats;
 }
 
-/* A row of the matrix and of what stands on its right. */
-static void put_row(struct dalcs_smooth_newton *newton, int q) {
+/* Row q of 1 - f'(a) S. */
+static void put_row(struct dalcs_smooth_newton *newton, int q, const double *gradient) {
     const struct dalcs_smooth_input *of = input_of(newton, q);
     const int n = newton->n;
-    double *a = newton->tangent[q];
-    double gradient[2];
-    for (int j = 0; j < of->n; j++) {
-        a[j] = dalcs_smooth_tangent_point(of->kind, a[j], newton->x[q][j]);
-        newton->limits = newton->limits || a[j] != newton->x[q][j];
-    }
-    a[1] = of->n > 1 ? a[1] : 0.0;
-    dalcs_smooth_gradient(of->kind, a, gradient);
-    newton->step[q] = dalcs_smooth_value(of->kind, a) - newton->phi[q];
     double *row = newton->matrix + (size_t)q * (size_t)n;
     memset(row, 0, (size_t)n * sizeof(*row));
     row[q] = 1.0;
     for (int j = 0; j < of->n; j++) {
-        if (of->column[j] < 0) {
-            continue;
-        }
         const double *slope = newton->slope + (size_t)(2 * q + j) * (size_t)n;
-        newton->step[q] += gradient[j] * (newton->x[q][j] - a[j]);
-        for (int p = 0; p < n; p++) {
+        for (int p = 0; p < n && of->column[j] >= 0; p++) {
             row[p] -= gradient[j] * slope[p];
         }
     }
+}
+
+/* A row of a step, and what stands on its right. */
+static void put_tangent(struct dalcs_smooth_newton *newton, int q) {
+    const struct dalcs_smooth_input *of = input_of(newton, q);
+    double *a = newton->tangent[q];
+    double gradient[2];
+    for (int j = 0; j < 2; j++) {
+        a[j] = dalcs_smooth_tangent_point(of->kind, a[j], newton->x[q][j]);
+        newton->limits = newton->limits || a[j] != newton->x[q][j];
+    }
+    dalcs_smooth_gradient(of->kind, a, gradient);
+    newton->step[q] = dalcs_smooth_value(of->kind, a) - newton->phi[q];
+    for (int j = 0; j < of->n; j++) {
+        newton->step[q] +=
+            of->column[j] >= 0 ? gradient[j] * (newton->x[q][j] - a[j]) : 0.0;
+    }
+    put_row(newton, q, gradient);
 }
 
 bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
     newton->limits = false;
     newton->halved = 0;
     for (int q = 0; q < newton->n; q++) {
-        put_row(newton, q);
+        put_tangent(newton, q);
     }
     bool is_solved = LAPACKE_dgesv(LAPACK_ROW_MAJOR, newton->n, 1, newton->matrix, newton->n,
                                 newton->pivot, newton->step, 1) == 0;
@@ -192,4 +197,29 @@ bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
         is_solved = isfinite(newton->phi[q]);
     }
     return is_solved;
+}
+
+bool dalcs_smooth_newton_factor(struct dalcs_smooth_newton *newton) {
+    for (int q = 0; q < newton->n; q++) {
+        double gradient[2];
+        dalcs_smooth_gradient(input_of(newton, q)->kind, newton->x[q], gradient);
+        put_row(newton, q, gradient);
+    }
+    return LAPACKE_dgetrf(LAPACK_ROW_MAJOR, newton->n, newton->n, newton->matrix, newton->n,
+                          newton->pivot) == 0;
+}
+
+void dalcs_smooth_newton_vary(const struct dalcs_smooth_newton *newton, const double (*dx)[2],
+                              double *change) {
+    for (int q = 0; q < newton->n; q++) {
+        const struct dalcs_smooth_input *of = input_of(newton, q);
+        double gradient[2];
+        dalcs_smooth_gradient(of->kind, newton->x[q], gradient);
+        change[q] = 0.0;
+        for (int j = 0; j < of->n; j++) {
+            change[q] += of->column[j] >= 0 ? gradient[j] * dx[q][j] : 0.0;
+        }
+    }
+    (void)LAPACKE_dgetrs(LAPACK_ROW_MAJOR, 'N', newton->n, 1, newton->matrix, newton->n,
+                         newton->pivot, change, 1);
 }

@@ -51,6 +51,13 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
  * halved too often. *repeats: it was; the arguments are to be read again. */
 bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *repeats);
 
+/* Factors of 1 - f'(x) S in newton->matrix, for changes of phi; false: there are none. */
+bool dalcs_smooth_newton_factor(struct dalcs_smooth_newton *newton);
+
+/* change[n] of phi, where x changes by dx[n][2] beside what phi does to it. */
+void dalcs_smooth_newton_vary(const struct dalcs_smooth_newton *newton, const double (*dx)[2],
+                              double *change);
+
 /* The next phi by way of newton->slope; false: there is none. */
 bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton);
 

@@ -85,7 +85,12 @@ enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau
     }
     dalcs_radau_swap_out(part, &part->work.out_tried);
     part->segment.h = tried;
-    dalcs_segment_inputs(part);
+    if (part->smooth != NULL && status >= DALCS_OK) { /* what it knows is of the last try */
+        struct dalcs_stage_entry *entry;
+        status = dalcs_segment_solve(part, &entry);
+    } else {
+        dalcs_segment_inputs(part);
+    }
     return status < DALCS_OK ? status : DALCS_OK;
 }
 

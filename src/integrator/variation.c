@@ -4,6 +4,7 @@
 #include "guard_values.h"
 #include "quads.h"
 #include "recurrence.h"
+#include "smooth_step.h"
 #include "step_error.h"
 
 #include <lapacke.h>
@@ -115,6 +116,19 @@ static bool project(struct dalcs_variation_part *v, double *column) {
     return size_of(v, v->in, column) > sqrt(v->part->tolerance) * size_of(v, column, NULL);
 }
 
+/* The step for v->in, which holds states alone. */
+static enum dalcs_status apply(struct dalcs_variation_part *v, struct dalcs_stage_entry *entry) {
+    struct dalcs_stages *stages = &v->part->stages;
+    const size_t n_sources = (size_t)(stages->n_in - v->n_x);
+    memset(v->in + v->n_x, 0, n_sources * sizeof(double));
+    DALCS_TRY(dalcs_stages_apply(stages, entry, v->in, v->out));
+    if (v->part->smooth == NULL) {
+        return DALCS_OK;
+    }
+    dalcs_smooth_step_vary(v->part, v->out, v->in);
+    return dalcs_stages_apply(stages, entry, v->in, v->out);
+}
+
 /* V at the end of the segment; v->guard = how the guard `row` (-1: none) moves there. */
 static enum dalcs_status pass_segment(struct dalcs_variation_part *v, int row, bool is_new) {
     struct dalcs_radau_part *part = v->part;
@@ -124,12 +138,15 @@ static enum dalcs_status pass_segment(struct dalcs_variation_part *v, int row, b
     DALCS_TRY(dalcs_stages_get(stages, part->component->osnsp.mode, part->segment.h, &entry));
     dalcs_collocation_weights(stages->method, part->segment.end, weight);
     memset(v->in, 0, (size_t)stages->n_in * sizeof(double));
+    if (part->smooth != NULL) {
+        DALCS_TRY(dalcs_smooth_step_vary_begin(part, entry));
+    }
     for (int k = 0; k < v->n_x; k++) {
         double *column = v->v + k * v->n_x;
         memcpy(v->in, column, (size_t)v->n_x * sizeof(double));
-        DALCS_TRY(dalcs_stages_apply(stages, entry, v->in, v->out));
+        DALCS_TRY(apply(v, entry));
         if (is_new && project(v, column)) {
-            DALCS_TRY(dalcs_stages_apply(stages, entry, v->in, v->out));
+            DALCS_TRY(apply(v, entry));
         }
         for (int x = 0; x < v->n_x; x++) {
             column[x] = weigh(&stages->layout, weight, v->out, x);

@@ -4,6 +4,7 @@
  * left of (2.1) is linear, so amplitudes obey
  *     (j omega P_I - A_I) y = E_I s,   -A_II y = E_II s,   C y = -F s where w = 0, else lambda = 0
  * with the AC values of the sources as s: one sparse complex system for each frequency. */
+#include "smooth_newton.h"
 #include "measures.h"
 
 #include "lu.h"
@@ -68,6 +69,16 @@ static int list_entries(const struct dalcs_component *c, struct entry *entry) {
             entry[n++] = (struct entry){i, s->A.j[k], -s->A.x[k], 0.0};
         }
     }
+    for (int k = 0; k < s->n_smooth; k++) { /* by their tangents at the operating point */
+        const struct dalcs_smooth_input *of = &s->smooth[k];
+        double gradient[2];
+        dalcs_smooth_gradient(of->kind, c->osnsp.newton->x[k], gradient);
+        for (int j = 0; j < of->n; j++) {
+            if (of->column[j] >= 0) {
+                entry[n++] = (struct entry){of->row, of->column[j], gradient[j], 0.0};
+            }
+        }
+    }
     for (int d = 0; d < s->n_pairs; d++) {
         if (!dalcs_osnsp_is_on(&c->osnsp, d)) {
             entry[n++] = (struct entry){n_equations + d, n_equations + d, 1.0, 0.0};
@@ -84,7 +95,7 @@ static enum dalcs_status compress(struct part *part) {
     const struct dalcs_system *s = part->component->system;
     const size_t most = (size_t)(s->n_x > 0 ? s->P.p[s->n_x] : 0) +
                         (size_t)s->A.p[dalcs_system_n_equations(s)] + (size_t)s->C.p[s->n_pairs] +
-                        (size_t)s->n_pairs;
+                        (size_t)s->n_pairs + 2 * (size_t)s->n_smooth;
     struct entry *entry = dalcs_alloc(most, sizeof *entry);
     part->p = dalcs_alloc((size_t)part->n + 1, sizeof(int));
     part->i = dalcs_alloc(most, sizeof(int));

@@ -5,6 +5,7 @@
 #include "present.h"
 #include "smooth_newton.h"
 
+#include <float.h>
 #include <math.h>
 
 /* The part of what a step's error may be that is left to Newton's method (kappa of Hairer and Wanner, section IV.8). */
@@ -18,6 +19,7 @@ struct dalcs_smooth_step {
     double slope_h;    /* s, of the step that newton.slope is of; 0: none */
     uint64_t *mode;    /* [n_words] and its mode */
     double *in, *out;  /* a step with one value changed */
+    double (*dx)[2];   /* [n] changes of arguments */
 };
 
 enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
@@ -37,7 +39,9 @@ enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
     p->mode = dalcs_arena_alloc(&part->arena, (size_t)stages->n_words, sizeof(*p->mode));
     p->in = dalcs_arena_alloc(&part->arena, (size_t)stages->n_in, sizeof(double));
     p->out = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
-    if (p->mode == NULL || p->in == NULL || p->out == NULL) {
+    p->dx = dalcs_arena_alloc(&part->arena,
+                              (size_t)(stages->method->s + 1) * (size_t)s->n_smooth, sizeof(*p->dx));
+    if (p->mode == NULL || p->in == NULL || p->out == NULL || p->dx == NULL) {
         return DALCS_E_NOMEM;
     }
     return dalcs_smooth_newton_setup(&p->newton, s, stages->method->s + 1, &part->arena);
@@ -46,6 +50,13 @@ enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
 /* The place of a value at a node in excitation.smooth. */
 static double *value_at(const struct dalcs_radau_part *part, int source, int node) {
     return part->excitation.smooth + source * (part->stages.method->s + 2) + node;
+}
+
+/* The place of a value in what goes into a step. */
+static int place_of(const struct dalcs_radau_part *part, int q) {
+    const struct dalcs_system *s = part->component->system;
+    const double *value = value_at(part, q % s->n_smooth, q / s->n_smooth);
+    return s->n_x + 1 + part->excitation.first_smooth + (int)(value - part->excitation.smooth);
 }
 
 /* What goes into the step, from the present values. */
@@ -81,9 +92,7 @@ static enum dalcs_status find_slope(struct dalcs_radau_part *part,
     const int stride = part->stages.layout.stride;
     memcpy(p->in, part->segment.in, (size_t)part->stages.n_in * sizeof(double));
     for (int q = 0; q < n->n; q++) {
-        const int place = (int)(value_at(part, q % s->n_smooth, q / s->n_smooth) -
-                                part->excitation.smooth);
-        double *in = p->in + s->n_x + 1 + part->excitation.first_smooth + place;
+        double *in = p->in + place_of(part, q);
         const double before = *in;
         const double change = 1.0 + fabs(before);
         *in += change;
@@ -102,12 +111,20 @@ static enum dalcs_status find_slope(struct dalcs_radau_part *part,
     return DALCS_OK;
 }
 
-/* What the polynomials of the sources miss between the nodes; is_finite: the functions have a value there. */
-static bool find_missed(struct dalcs_radau_part *part) {
+static enum dalcs_status apply(struct dalcs_radau_part *part, struct dalcs_stage_entry **entry) {
+    return dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->segment.h,
+                             part->segment.in, part->segment.out, entry);
+}
+
+/* What the polynomials of the sources miss between the nodes. What they read has ripples, too, from others. *changes:
+ * by more than rounding makes of them since the last time. */
+static bool find_missed(struct dalcs_radau_part *part, bool *changes) {
     const struct dalcs_smooth_newton *n = &part->smooth->newton;
     const struct dalcs_collocation *m = part->stages.method;
     const struct dalcs_system *s = n->system;
+    const double *ripple = part->segment.out + part->stages.layout.ripple;
     bool is_finite = true;
+    *changes = false;
     for (int k = 0; k < s->n_smooth; k++) {
         const struct dalcs_smooth_input *of = &s->smooth[k];
         double x[2] = {of->number[0], of->number[1]};
@@ -119,16 +136,36 @@ static bool find_missed(struct dalcs_radau_part *part) {
             }
             phi += m->test[node] * n->phi[q];
         }
+        for (int j = 0; j < of->n; j++) {
+            x[j] += of->column[j] >= 0 ? ripple[of->column[j]] : 0.0;
+        }
         const double missed = dalcs_smooth_value(of->kind, x) - phi;
+        double *known = value_at(part, k, m->s + 1);
         is_finite = is_finite && isfinite(missed);
-        *value_at(part, k, m->s + 1) = missed;
+        *changes = *changes || fabs(missed - *known) > 4.0 * DBL_EPSILON * fabs(phi);
+        *known = missed;
     }
     return is_finite;
 }
 
-static enum dalcs_status apply(struct dalcs_radau_part *part, struct dalcs_stage_entry **entry) {
-    return dalcs_stages_step(&part->stages, part->component->osnsp.mode, part->segment.h,
-                             part->segment.in, part->segment.out, entry);
+/* Sources that read sources: once for each that may stand between the first and the last. */
+static enum dalcs_status add_missed(struct dalcs_radau_part *part,
+                                    struct dalcs_stage_entry **entry) {
+    const struct dalcs_system *s = part->component->system;
+    bool changes = true;
+    for (int round = 0; round < s->n_smooth && changes; round++) {
+        if (!find_missed(part, &changes)) {
+            return DALCS_NOT_CONVERGED;
+        }
+        if (changes) {
+            dalcs_segment_inputs(part);
+            enum dalcs_status status = apply(part, entry);
+            if (status != DALCS_OK) {
+                return status;
+            }
+        }
+    }
+    return DALCS_OK;
 }
 
 /* From the values that are there at t. */
@@ -177,11 +214,7 @@ enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
     if (status != DALCS_OK) {
         return status;
     }
-    if (!find_missed(part)) {
-        return DALCS_NOT_CONVERGED;
-    }
-    dalcs_segment_inputs(part);
-    status = apply(part, entry);
+    status = add_missed(part, entry);
     if (status == DALCS_OK) {
         part->segment.rounding = dalcs_stage_rounding(*entry);
     }
@@ -199,5 +232,30 @@ void dalcs_smooth_step_note(struct dalcs_radau_part *part, double theta) {
         for (int node = 0; node < n->n_points; node++) {
             now[k] += weight[node] * n->phi[node * n_smooth + k];
         }
+    }
+}
+
+enum dalcs_status dalcs_smooth_step_vary_begin(struct dalcs_radau_part *part,
+                                               struct dalcs_stage_entry *entry) {
+    if (!has_slope(part)) {
+        DALCS_TRY(find_slope(part, entry));
+    }
+    return dalcs_smooth_newton_factor(&part->smooth->newton) ? DALCS_OK : DALCS_SINGULAR;
+}
+
+void dalcs_smooth_step_vary(const struct dalcs_radau_part *part, const double *out, double *in) {
+    const struct dalcs_smooth_step *p = part->smooth;
+    const struct dalcs_system *s = p->newton.system;
+    double *change = p->newton.step;
+    for (int q = 0; q < p->newton.n; q++) {
+        const struct dalcs_smooth_input *of = &s->smooth[q % s->n_smooth];
+        const double *y = out + q / s->n_smooth * part->stages.layout.stride;
+        for (int j = 0; j < 2; j++) {
+            p->dx[q][j] = j < of->n && of->column[j] >= 0 ? y[of->column[j]] : 0.0;
+        }
+    }
+    dalcs_smooth_newton_vary(&p->newton, p->dx, change);
+    for (int q = 0; q < p->newton.n; q++) {
+        in[place_of(part, q)] = change[q];
     }
 }

@@ -16,6 +16,12 @@ enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) DALCS_M
 enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
                                           struct dalcs_stage_entry **entry) DALCS_MUST_CHECK;
 
+/* How a small change of the states changes the present step: the first call is for the slopes, the others put the changes
+ * of the sources behind those of the states into in[n_in], out being the answer to in[] without them. */
+enum dalcs_status dalcs_smooth_step_vary_begin(struct dalcs_radau_part *part,
+                                               struct dalcs_stage_entry *entry) DALCS_MUST_CHECK;
+void dalcs_smooth_step_vary(const struct dalcs_radau_part *part, const double *out, double *in);
+
 /* The present step up to theta is a segment: what follows starts with the values there. */
 void dalcs_smooth_step_note(struct dalcs_radau_part *part, double theta);
 
