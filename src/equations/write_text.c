@@ -440,7 +440,7 @@ static bool put_sources(struct writer *w, bool begun) {
     for (int i = 0; i < c->n_stimuli; i++) {
         const struct dalcs_stimulus *stimulus = &c->stimulus[i];
         const char *name = input_of(w->e->network, i);
-        if (name == NULL) {
+        if (name == NULL || (c->n_smooth > 0 && i == c->smooth_stimulus)) {
             continue;
         }
         begun = begin_values(w, begun);
@@ -454,6 +454,47 @@ static bool put_sources(struct writer *w, bool begun) {
             dalcs_print(p, " = ", "$ = \\texttt{", 0.0);
             dalcs_write_stimulus(p->out, stimulus);
             dalcs_print(p, "\n", "}\n", 0.0);
+        }
+    }
+    return begun;
+}
+
+static void put_argument(struct writer *w, const struct dalcs_system *s,
+                         const struct dalcs_smooth_input *of, int k) {
+    if (of->column[k] >= 0) {
+        dalcs_print_column(&w->p, s, of->column[k], 0);
+    } else {
+        dalcs_print_number(&w->p, of->number[k]);
+    }
+}
+
+/* f(a) = v(x) * v(y), or = exp(v(x)) */
+static bool put_smooth(struct writer *w, bool begun) {
+    const struct dalcs_network *n = w->e->network;
+    struct dalcs_printer *p = &w->p;
+    for (int q = 0; q < n->n_systems; q++) {
+        for (int k = 0; k < n->system[q].n_smooth; k++) {
+            const struct dalcs_smooth_input *of = &n->system[q].smooth[k];
+            const char *name = dalcs_smooth_name(of->kind);
+            const bool is_infix = *name == '*' || *name == '/';
+            begun = begin_values(w, begun);
+            dalcs_print(p, "  ", "\\item[] $", 0.0);
+            dalcs_print_input(p, of->element);
+            dalcs_print(p, " = ", " = ", 0.0);
+            if (!is_infix) {
+                fprintf(p->out, p->latex ? "\\mathrm{%s}(" : "%s(", name);
+            }
+            put_argument(w, &n->system[q], of, 0);
+            for (int j = 1; j < of->n; j++) {
+                fputs(!is_infix                   ? ", "
+                      : p->latex && *name == '*' ? " \\cdot "
+                      : *name == '*'             ? " * "
+                                                 : " / ",
+                      p->out);
+                put_argument(w, &n->system[q], of, j);
+            }
+            fputs(is_infix ? "" : ")", p->out);
+            dalcs_print(p, "\n", "$\n", 0.0);
         }
     }
     return begun;
@@ -510,7 +551,7 @@ static bool put_elements(struct writer *w, bool begun) {
 }
 
 static void put_values(struct writer *w) {
-    bool begun = put_sources(w, false);
+    bool begun = put_smooth(w, put_sources(w, false));
     begun = put_switches(w, begun);
     begun = put_elements(w, begun);
     dalcs_print(&w->p, "", begun ? "\\end{itemize}\n" : "", 0.0);

@@ -59,6 +59,12 @@ static enum dalcs_status complete(struct whole *w, struct dalcs_session *s) {
 
 static enum dalcs_status eliminate(struct whole *w, struct dalcs_session *s) {
     const char *because;
+    if (s->circuit.n_smooth > 0) {
+        dalcs_diag_add(&s->diag, DALCS_WARNING, NULL,
+                       "the DALCS is no worse for that: --form dalcs",
+                       "z cannot be eliminated: products and functions in formulas read it");
+        return DALCS_OK;
+    }
     DALCS_TRY(dalcs_equations_reduce(&s->network, &w->reduced, &s->arena, &because));
     w->equations.network = &w->reduced;
     if (because != NULL) {
@@ -209,6 +215,14 @@ enum dalcs_status dalcs_session_equations(struct dalcs_session *session,
             return DALCS_E_OPTION;
         }
         return write_steps(session, options, &files);
+    }
+    const bool is_file = options->format == DALCS_EQUATIONS_SYSTEM ||
+                         options->format == DALCS_EQUATIONS_JSON ||
+                         options->format == DALCS_EQUATIONS_MATRIX_MARKET;
+    if (session->circuit.n_smooth > 0 && is_file) {
+        dalcs_diag_add(&session->diag, DALCS_ERROR, NULL, "--format text and latex write them",
+                       "a system file has no products and functions of columns");
+        return DALCS_E_OPTION;
     }
     struct whole w = {.equations = {.circuit = &session->circuit, .network = &session->network}};
     enum dalcs_status status = complete(&w, session);

@@ -67,9 +67,29 @@ static enum dalcs_status check_dense(struct dalcs_facts *facts) {
                : DALCS_OK;
 }
 
+/* The theorems that are checked are about matrices. Of products and functions they say nothing, and of the system with
+ * these as given sources a verdict would be one of another circuit. */
+static enum dalcs_status leave_open(struct dalcs_facts *facts) {
+    static const char *const question[] = {"passive", "exists",      "unique", "multipliers",
+                                           "jumps",   "step",        "convergence",
+                                           "stable",  "contracting", "periodic"};
+    const struct dalcs_system *s = facts->system;
+    facts->passive = DALCS_UNDECIDED;
+    for (size_t k = 0; k < sizeof question / sizeof *question; k++) {
+        DALCS_TRY(dalcs_findings_verdict(
+            facts->f, question[k], DALCS_UNDECIDED, "the theorems are about linear parts with diodes",
+            "undecided: %s%s %s not piecewise linear", s->smooth[0].element,
+            s->n_smooth > 1 ? " and others" : "", s->n_smooth > 1 ? "are" : "is"));
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status check(struct dalcs_facts *facts) {
     const struct dalcs_system *s = facts->system;
     DALCS_TRY(hold_switches(facts));
+    if (s->n_smooth > 0) {
+        return leave_open(facts);
+    }
     DALCS_TRY(dalcs_cones_find(&facts->cones, facts->f->work, s, facts->hold));
     facts->obstacle = "too large";
     if (dalcs_system_n_columns(s) <= DALCS_MOST_DENSE) {
