@@ -146,7 +146,10 @@ static void look_inside(struct dalcs_audit *audit, const struct dalcs_audit_stre
         audit_check_interval(audit, &audit->part[stretch->part], stretch->from, asked);
         return;
     }
-    const int n = audit->options.mode == DALCS_AUDIT_FULL ? FULL_INSTANTS : 1;
+    /* a polynomial may miss a smooth function anywhere in a stretch */
+    const bool is_full =
+        audit->options.mode == DALCS_AUDIT_FULL || audit->part[stretch->part].has_smooth;
+    const int n = is_full ? FULL_INSTANTS : 1;
     for (int k = 0; k < n; k++) {
         audit->now.side = DALCS_RIGHT;
         audit->now.t = stretch->from + audit_draw(audit) * (stretch->to - stretch->from);

@@ -2,6 +2,7 @@
 #include "refusal.h"
 
 #include "refute.h"
+#include "smooth_newton.h"
 #include "system_file.h"
 
 #include <errno.h>
@@ -200,6 +201,37 @@ static void explain_growth(struct dalcs_session *s, const struct dalcs_component
         c->system->column_is_current[c->overgrown] ? "A" : "V");
 }
 
+/* "v(a)", "40" */
+static const char *name_argument(struct dalcs_session *s, const struct dalcs_system *system,
+                                 const struct dalcs_smooth_input *of, int k) {
+    const char *name = of->column[k] >= 0
+                           ? dalcs_arena_printf(&s->arena, "v(%s)", system->column[of->column[k]].element)
+                           : dalcs_arena_printf(&s->arena, "%.6g", of->number[k]);
+    return name == NULL ? "" : name;
+}
+
+/* Newton's method has found no values of smooth functions that agree with what they read. */
+static void explain_smooth(struct dalcs_session *s, const struct dalcs_component *c,
+                           const char *when) {
+    const struct dalcs_smooth_newton *newton = c->osnsp.newton;
+    const struct dalcs_smooth_input *of = &c->system->smooth[newton->worst];
+    const char *name = dalcs_smooth_name(of->kind);
+    const char *first = name_argument(s, c->system, of, 0);
+    const char *second = of->n > 1 ? name_argument(s, c->system, of, 1) : "";
+    const bool is_infix = *name == '*' || *name == '/';
+    const char *text =
+        is_infix    ? dalcs_arena_printf(&s->arena, "%s %s %s", first, name, second)
+        : of->n > 1 ? dalcs_arena_printf(&s->arena, "%s(%s, %s)", name, first, second)
+                    : dalcs_arena_printf(&s->arena, "%s(%s)", name, first);
+    dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, of->element),
+                   "there may be none, as of a root of what is negative or a power that the circuit "
+                   "cannot give; limit(x, low, high) keeps an argument where the function is one",
+                   "%s no solution was found: Newton's method finds no value of %s in '%s' that "
+                   "agrees with the circuit; the last one tried was %.6g, of %.6g",
+                   when, text == NULL ? "" : text, of->element, newton->phi[newton->worst],
+                   newton->x[newton->worst][of->column[0] >= 0 ? 0 : 1]);
+}
+
 enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,
                                         enum dalcs_status status) {
     struct dalcs_session *s = r->s;
@@ -219,9 +251,14 @@ enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_
                            : dalcs_arena_printf(&s->arena, "at t = %.9g s (step %ld, h = %.6g s)",
                                                 e->failed_time, e->steps + 1, e->failed_h);
     when = when == NULL ? "" : when;
-    const char *hint = dump_problem(r, e, when);
+    const bool is_smooth = e->component[e->failed_system].osnsp.newton != NULL;
+    const char *hint = is_smooth ? NULL : dump_problem(r, e, when);
     if (status == DALCS_INFEASIBLE) {
         return explain_infeasible(r, e, is_from, when, hint);
+    }
+    if (is_smooth) {
+        explain_smooth(s, &e->component[e->failed_system], when);
+        return status;
     }
     const struct dalcs_certificate *c = &e->component[e->failed_system].osnsp.certificate;
     const char *row = dalcs_explain_row(s, e, e->failed_system, c->where);

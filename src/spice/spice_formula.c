@@ -146,6 +146,36 @@ static void write_lambda(const struct formula *f, int k) {
     }
 }
 
+static void write_argument(const struct formula *f, const struct dalcs_smooth *smooth, int k) {
+    if (smooth->node[k] >= 0) {
+        fprintf(f->stream, "v(%s)", f->names->node[f->names->node_of[smooth->node[k]]]);
+    } else {
+        dalcs_spice_write_number(f->stream, smooth->number[k]);
+    }
+}
+
+/* (a)*(b), pwr(a,b), exp(a). In ngspice pow takes the magnitude of its base, and pwr gives it the base's sign again. */
+static void write_smooth(const struct formula *f, const struct dalcs_smooth *smooth) {
+    const bool is_odd = smooth->kind == DALCS_SMOOTH_POWER && smooth->node[1] < 0 &&
+                        fabs(fmod(smooth->number[1], 2.0)) == 1.0;
+    const bool has_sign = is_odd || smooth->kind == DALCS_SMOOTH_SIGNED_POWER;
+    const char *name = has_sign ? "pwr"
+                       : smooth->kind == DALCS_SMOOTH_POWER ||
+                               smooth->kind == DALCS_SMOOTH_MAGNITUDE_POWER
+                           ? "pow"
+                       : smooth->kind == DALCS_SMOOTH_SQUARE ? "sqr"
+                                                             : dalcs_smooth_name(smooth->kind);
+    const bool is_infix = *name == '*' || *name == '/';
+    fputs(is_infix ? "" : name, f->stream);
+    fputs("(", f->stream);
+    write_argument(f, smooth, 0);
+    if (smooth->n > 1) {
+        fprintf(f->stream, is_infix ? ")%s(" : ",", name);
+        write_argument(f, smooth, 1);
+    }
+    fputs(")", f->stream);
+}
+
 void dalcs_spice_write_formula(const struct dalcs_spice_names *names,
                                const struct dalcs_spice_options *options, FILE *stream, int i,
                                const char *first_node) {
@@ -153,7 +183,11 @@ void dalcs_spice_write_formula(const struct dalcs_spice_names *names,
     const struct formula f = {names, options, stream, i, dalcs_device_written(device)};
     fprintf(stream, "%s %s %s %c=", names->device[i], first_node,
             names->node[names->node_of[device->node[1]]], device->kind == DALCS_VCVS ? 'v' : 'i');
-    write_affine(&f, &f.behaviour->output, 1.0, -1, -1);
+    if (f.behaviour->smooth != NULL) {
+        write_smooth(&f, f.behaviour->smooth);
+    } else {
+        write_affine(&f, &f.behaviour->output, 1.0, -1, -1);
+    }
     fputc('\n', stream);
     for (int k = 0; k < f.behaviour->n_pairs; k++) {
         if (has_node(&f, k)) {

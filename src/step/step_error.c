@@ -208,8 +208,10 @@ double dalcs_step_rounding(const struct dalcs_radau_part *part,
     const double *final = part->segment.out + part->stages.method->s * part->stages.layout.stride;
     const double *inverse = dalcs_stage_natural_units(entry) + n_equations;
     double balanced = 0.0;
+    const bool *is_part = part->component->system->is_part;
     for (int c = 0; c < n_equations; c++) {
-        balanced = dalcs_larger(balanced, fabs(final[c]) * inverse[c]);
+        bool counts = is_part == NULL || !is_part[c]; /* in no unit: what it adds elsewhere is there */
+        balanced = counts ? dalcs_larger(balanced, fabs(final[c]) * inverse[c]) : balanced;
     }
     return rounding_part * part->segment.rounding * balanced;
 }
