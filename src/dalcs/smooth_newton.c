@@ -42,7 +42,7 @@ void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton) {
         newton->tangent[q][0] = newton->tangent[q][1] =
             dalcs_smooth_argument_of(input_of(newton, q)->kind, newton->phi[q]);
     }
-    newton->halved = 0;
+    newton->halved = newton->n_steps = 0;
     newton->limits = false;
     newton->defect = INFINITY;
 }
@@ -140,11 +140,15 @@ bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *rep
              (of->column[1] < 0 || isfinite(gradient[1]));
         newton->worst = is ? newton->worst : q % newton->system->n_smooth;
     }
-    *repeats = !is && newton->halved < MOST_HALVINGS;
+    const bool is_first = newton->n_steps == 0;
+    *repeats = !is && newton->halved < (is_first ? newton->system->n_smooth : MOST_HALVINGS);
     if (*repeats) {
         newton->halved++;
         for (int q = 0; q < newton->n; q++) {
-            newton->phi[q] = 0.5 * (newton->phi[q] + newton->before[q]);
+            double f = dalcs_smooth_value(input_of(newton, q)->kind, newton->x[q]);
+            newton->phi[q] = !is_first    ? 0.5 * (newton->phi[q] + newton->before[q])
+                             : isfinite(f) ? f
+                                           : newton->phi[q];
         }
     }
     return is || *repeats;
@@ -186,6 +190,7 @@ static void put_tangent(struct dalcs_smooth_newton *newton, int q) {
 bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
     newton->limits = false;
     newton->halved = 0;
+    newton->n_steps++;
     for (int q = 0; q < newton->n; q++) {
         put_tangent(newton, q);
     }

@@ -24,7 +24,8 @@ struct dalcs_smooth_newton {
     double *step;         /* [n] work */
     int *pivot;           /* [n] work */
     bool limits;          /* a tangent is elsewhere than its argument */
-    int halved;           /* times that the last step was halved */
+    int n_steps;          /* since the beginning */
+    int halved;           /* times that the last step was halved, or the beginning was moved */
     int worst;            /* of the system's smooth inputs, the one that agrees least */
     double defect;        /* of the last check: over the terms of each function alone, in the tolerance */
     double defect_before; /* of the one before */
@@ -47,8 +48,9 @@ void dalcs_smooth_arguments(const struct dalcs_system *system, const double *y, 
 bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double tolerance,
                                 bool *is_done);
 
-/* Can anything be done with what was read? If not, the last step was too long, and is halved: false where it has been
- * halved too often. *repeats: it was; the arguments are to be read again. */
+/* Can anything be done with what was read? If not, the last step was too long, and is halved; before the first one,
+ * functions that have a value are given it, until those that read them have one: false where that was done too often.
+ * *repeats: it was; the arguments are to be read again. */
 bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *repeats);
 
 /* Factors of 1 - f'(x) S in newton->matrix, for changes of phi; false: there are none. */
