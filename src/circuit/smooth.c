@@ -223,15 +223,17 @@ double dalcs_smooth_tangent_point(enum dalcs_smooth_kind kind, double from, doub
     return copysign(base + log1p(size - base), to);
 }
 
-double dalcs_smooth_argument_of(enum dalcs_smooth_kind kind, double value) {
-    switch (kind) {
-    case DALCS_SMOOTH_EXP:
-        return value > 0.0 ? log(value) : 0.0;
-    case DALCS_SMOOTH_SINH:
-        return asinh(value);
-    case DALCS_SMOOTH_COSH:
-        return value > 1.0 ? acosh(value) : 0.0;
-    default:
-        return 0.0;
+void dalcs_smooth_nominal_gradient(enum dalcs_smooth_kind kind, const double *number,
+                                   const bool *is_number, double *gradient) {
+    const bool is_narrow = kind == DALCS_SMOOTH_ASIN || kind == DALCS_SMOOTH_ACOS ||
+                           kind == DALCS_SMOOTH_ATANH || kind == DALCS_SMOOTH_EXP;
+    const double usual = kind == DALCS_SMOOTH_ACOSH ? 2.0 : is_narrow ? 0.5 : 1.0;
+    double x[2];
+    for (int k = 0; k < 2; k++) {
+        x[k] = is_number[k] ? number[k] : usual;
+    }
+    dalcs_smooth_gradient(kind, x, gradient);
+    for (int k = 0; k < 2; k++) {
+        gradient[k] = is_number[k] || !isfinite(gradient[k]) ? 0.0 : gradient[k];
     }
 }

@@ -59,7 +59,8 @@ void dalcs_smooth_gradient(enum dalcs_smooth_kind kind, const double *x, double 
  * grows e-fold with each unit, and its tangent says nothing of what is more than one above. */
 double dalcs_smooth_tangent_point(enum dalcs_smooth_kind kind, double from, double to);
 
-/* Where such a function has this value; 0 for the others. */
-double dalcs_smooth_argument_of(enum dalcs_smooth_kind kind, double value);
+/* The gradient at an argument of no importance, where it is neither 0 nor infinite: as well as any before more is known. */
+void dalcs_smooth_nominal_gradient(enum dalcs_smooth_kind kind, const double *number,
+                                   const bool *is_number, double *gradient);
 
 #endif

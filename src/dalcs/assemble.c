@@ -258,6 +258,22 @@ static void number_nodes(struct stamps *b, int n_nodes, const int *node) {
     b->next_x = b->n_tree;
 }
 
+/* Where the lines of smooth sources are. Two arguments of one column have one between them. */
+static void find_tangents(struct dalcs_system *s) {
+    for (int q = 0; q < s->n_smooth; q++) {
+        struct dalcs_smooth_input *of = &s->smooth[q];
+        for (int j = 0; j < of->n; j++) {
+            bool is_new = of->column[j] >= 0 && !(j > 0 && of->column[0] == of->column[1]);
+            for (int k = s->A.p[of->row]; k < s->A.p[of->row + 1] && is_new; k++) {
+                of->entry[j] = s->A.j[k] == of->column[j] ? &s->A.x[k] : of->entry[j];
+            }
+            if (of->entry[j] != NULL) {
+                *of->entry[j] = 0.0;
+            }
+        }
+    }
+}
+
 /* Which element each entry of `reads` is of: one of them, where several read the same. */
 static enum dalcs_status name_readers(struct stamps *b) {
     const struct dalcs_csr *reads = &b->s->reads;
@@ -332,6 +348,7 @@ enum dalcs_status dalcs_assemble_component(struct dalcs_layout *layout, int n_de
             dalcs_csr_compress(part[k].matrix, part[k].n_rows, part[k].n_columns, part[k].entries);
     }
     if (status == DALCS_OK) {
+        find_tangents(system);
         status = name_readers(&b);
     }
 done:

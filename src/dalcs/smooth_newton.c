@@ -36,11 +36,100 @@ static const struct dalcs_smooth_input *input_of(const struct dalcs_smooth_newto
     return &newton->system->smooth[q % newton->system->n_smooth];
 }
 
-void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton) {
+static double line_of(const struct dalcs_smooth_input *of, int j) {
+    return of->entry[j] != NULL ? -*of->entry[j] : 0.0;
+}
+
+double dalcs_smooth_rest(const struct dalcs_smooth_input *of, const double *x) {
+    return dalcs_smooth_value(of->kind, x) - line_of(of, 0) * x[0] - line_of(of, 1) * x[1];
+}
+
+static void gradient_of_rest(const struct dalcs_smooth_input *of, const double *x,
+                             double *gradient) {
+    dalcs_smooth_gradient(of->kind, x, gradient);
+    gradient[0] -= line_of(of, 0);
+    gradient[1] -= line_of(of, 1);
+}
+
+/* What a function's lines are to be at x; an argument that both read has one line. */
+static void tangent_of(const struct dalcs_smooth_input *of, const double *gradient, double *line) {
+    const bool is_one = of->n > 1 && of->column[0] >= 0 && of->column[0] == of->column[1];
+    line[0] = gradient[0] + (is_one ? gradient[1] : 0.0);
+    line[1] = is_one ? 0.0 : gradient[1];
+}
+
+static void put_lines(const struct dalcs_smooth_input *of, const double *line) {
+    for (int j = 0; j < 2; j++) {
+        if (of->entry[j] != NULL) {
+            *of->entry[j] = -line[j];
+        }
+    }
+}
+
+bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double factor,
+                            double *phi) {
+    bool is_due = false;
+    for (int k = 0; k < system->n_smooth; k++) {
+        const struct dalcs_smooth_input *of = &system->smooth[k];
+        double gradient[2];
+        double line[2];
+        dalcs_smooth_gradient(of->kind, x[k], gradient);
+        tangent_of(of, gradient, line);
+        for (int j = 0; j < 2; j++) {
+            double is = fabs(line_of(of, j));
+            bool is_known = of->entry[j] != NULL && isfinite(line[j]) && line[j] != 0.0;
+            is_due = is_due || (is_known && !(fabs(line[j]) <= factor * is));
+        }
+    }
+    for (int k = 0; k < system->n_smooth && is_due; k++) {
+        const struct dalcs_smooth_input *of = &system->smooth[k];
+        double gradient[2];
+        double line[2];
+        dalcs_smooth_gradient(of->kind, x[k], gradient);
+        tangent_of(of, gradient, line);
+        for (int j = 0; j < 2; j++) {
+            line[j] = isfinite(line[j]) && line[j] != 0.0 ? line[j] : line_of(of, j);
+        }
+        put_lines(of, line);
+        double rest = dalcs_smooth_rest(of, x[k]);
+        phi[k] = isfinite(rest) ? rest : phi[k];
+    }
+    return is_due;
+}
+
+void dalcs_smooth_nominal_tangents(const struct dalcs_system *system) {
+    for (int k = 0; k < system->n_smooth; k++) {
+        const struct dalcs_smooth_input *of = &system->smooth[k];
+        const bool is_number[2] = {of->column[0] < 0, of->n < 2 || of->column[1] < 0};
+        double gradient[2];
+        double line[2];
+        dalcs_smooth_nominal_gradient(of->kind, of->number, is_number, gradient);
+        tangent_of(of, gradient, line);
+        put_lines(of, line);
+    }
+}
+
+void dalcs_smooth_scale_tangents(const struct dalcs_system *system, double factor,
+                                 const double (*x)[2], double *phi) {
+    for (int k = 0; k < system->n_smooth; k++) {
+        const struct dalcs_smooth_input *of = &system->smooth[k];
+        const double line[2] = {factor * line_of(of, 0), factor * line_of(of, 1)};
+        put_lines(of, line);
+        double rest = dalcs_smooth_rest(of, x[k]);
+        phi[k] = isfinite(rest) ? rest : phi[k];
+    }
+}
+
+void dalcs_smooth_drop_tangents(const struct dalcs_system *system) {
+    for (int k = 0; k < system->n_smooth; k++) {
+        put_lines(&system->smooth[k], (const double[]){0.0, 0.0});
+    }
+}
+
+void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double (*x)[2]) {
     for (int q = 0; q < newton->n; q++) {
         newton->before[q] = newton->phi[q];
-        newton->tangent[q][0] = newton->tangent[q][1] =
-            dalcs_smooth_argument_of(input_of(newton, q)->kind, newton->phi[q]);
+        memcpy(newton->tangent[q], x[q % newton->system->n_smooth], sizeof(newton->tangent[q]));
     }
     newton->halved = newton->n_steps = 0;
     newton->limits = false;
@@ -112,10 +201,11 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
         double most = tolerance * fabs(f);
         for (int j = 0; j < of->n; j++) {
             bool is_read = of->column[j] >= 0;
-            least += is_read ? rounded * fabs(gradient[j] * newton->x[q][j]) : 0.0;
-            most += is_read ? solved * fabs(gradient[j]) * newton->terms[q][j] : 0.0;
+            double slope = fabs(gradient[j]) + fabs(line_of(of, j));
+            least += is_read ? rounded * slope * fabs(newton->x[q][j]) : 0.0;
+            most += is_read ? solved * slope * newton->terms[q][j] : 0.0;
         }
-        double off = fabs(f - newton->phi[q]);
+        double off = fabs(dalcs_smooth_rest(of, newton->x[q]) - newton->phi[q]);
         double ratio = over(off, most);
         newton->worst = ratio > worst ? q % newton->system->n_smooth : newton->worst;
         worst = ratio <= worst ? worst : ratio; /* NAN stays */
@@ -145,7 +235,7 @@ bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *rep
     if (*repeats) {
         newton->halved++;
         for (int q = 0; q < newton->n; q++) {
-            double f = dalcs_smooth_value(input_of(newton, q)->kind, newton->x[q]);
+            double f = dalcs_smooth_rest(input_of(newton, q), newton->x[q]);
             newton->phi[q] = !is_first    ? 0.5 * (newton->phi[q] + newton->before[q])
                              : isfinite(f) ? f
                                            : newton->phi[q];
@@ -178,8 +268,8 @@ static void put_tangent(struct dalcs_smooth_newton *newton, int q) {
         a[j] = dalcs_smooth_tangent_point(of->kind, a[j], newton->x[q][j]);
         newton->limits = newton->limits || a[j] != newton->x[q][j];
     }
-    dalcs_smooth_gradient(of->kind, a, gradient);
-    newton->step[q] = dalcs_smooth_value(of->kind, a) - newton->phi[q];
+    gradient_of_rest(of, a, gradient);
+    newton->step[q] = dalcs_smooth_rest(of, a) - newton->phi[q];
     for (int j = 0; j < of->n; j++) {
         newton->step[q] +=
             of->column[j] >= 0 ? gradient[j] * (newton->x[q][j] - a[j]) : 0.0;
@@ -207,7 +297,7 @@ bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
 bool dalcs_smooth_newton_factor(struct dalcs_smooth_newton *newton) {
     for (int q = 0; q < newton->n; q++) {
         double gradient[2];
-        dalcs_smooth_gradient(input_of(newton, q)->kind, newton->x[q], gradient);
+        gradient_of_rest(input_of(newton, q), newton->x[q], gradient);
         put_row(newton, q, gradient);
     }
     return LAPACKE_dgetrf(LAPACK_ROW_MAJOR, newton->n, newton->n, newton->matrix, newton->n,
@@ -219,7 +309,7 @@ void dalcs_smooth_newton_vary(const struct dalcs_smooth_newton *newton, const do
     for (int q = 0; q < newton->n; q++) {
         const struct dalcs_smooth_input *of = input_of(newton, q);
         double gradient[2];
-        dalcs_smooth_gradient(of->kind, newton->x[q], gradient);
+        gradient_of_rest(of, newton->x[q], gradient);
         change[q] = 0.0;
         for (int j = 0; j < of->n; j++) {
             change[q] += of->column[j] >= 0 ? gradient[j] * dx[q][j] : 0.0;

@@ -1,8 +1,10 @@
 /* smooth_newton.h - Newton's method for the sources of a system that are smooth functions of columns.
  *
- * At each of some points (one instant, or the nodes of a step) the answer is affine in the values phi of these sources,
- * and phi is to be f of what they read there. With x the arguments and S their derivatives by phi, a step is
- *     delta - f'(a) S delta = f(a) + f'(a) (x - a) - phi,
+ * Each is f(x) = g x + phi, of which g x is in the equations: between two such sources in series a node is held by the
+ * conductances that they have, and with these as given currents by none. At each of some points (one instant, or the
+ * nodes of a step) the answer is affine in phi, which is to be f - g x of what is read there. With S the derivatives of x
+ * by phi and F = f - g x, a step is
+ *     delta - F'(a) S delta = F(a) + F'(a) (x - a) - phi,
  * a the points of the tangents, which are x but where an exponential is far from it (SPICE's limits of junctions, Nagel
  * 1975, in the function's own unit). */
 #ifndef DALCS_SMOOTH_NEWTON_H
@@ -35,13 +37,31 @@ enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
                                             const struct dalcs_system *system, int n_points,
                                             struct dalcs_arena *arena) DALCS_MUST_CHECK;
 
-/* Tangents start anew, at what would have the present phi. */
-void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton);
+/* Tangents start anew, at these arguments x[n_smooth][2] at all points. */
+void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double (*x)[2]);
+
+/* Lines g that are those of the tangents at x[n_smooth][2], as far as these are finite, where one differs from the present
+ * one by more than a factor: what was solved with the others is to be forgotten, phi[n_smooth] is those that go with x. */
+bool dalcs_smooth_retangent(const struct dalcs_system *system, const double (*x)[2], double factor,
+                            double *phi);
+
+/* Lines as good as any before anything is known. */
+void dalcs_smooth_nominal_tangents(const struct dalcs_system *system);
+
+/* All lines times a factor, and phi that go with x then. */
+void dalcs_smooth_scale_tangents(const struct dalcs_system *system, double factor,
+                                 const double (*x)[2], double *phi);
+
+/* None: the equations are as they are written. */
+void dalcs_smooth_drop_tangents(const struct dalcs_system *system);
 
 /* Arguments at a point from its columns y[n_columns]. */
 void dalcs_smooth_newton_read(struct dalcs_smooth_newton *newton, int point, const double *y);
 
-/* The same arguments as a difference of two answers: dx[n_smooth][2]. */
+/* f - g x of one source. */
+double dalcs_smooth_rest(const struct dalcs_smooth_input *of, const double *x);
+
+/* The arguments x[n_smooth][2] in columns y[n_columns]. */
 void dalcs_smooth_arguments(const struct dalcs_system *system, const double *y, double (*x)[2]);
 
 /* Do all values agree with what was read, to `tolerance`, arguments being what they are to the rounding of their terms? *is_done: and another step would not make them agree any better. */

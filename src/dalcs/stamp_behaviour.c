@@ -129,6 +129,10 @@ static enum dalcs_status stamp_smooth(struct stamps *b, int device) {
             smooth->node[k] > 0 ? dalcs_stamp_node_column(l, smooth->node[k]) : -1;
         of->number[k] = smooth->number[k];
         of->row_of[k] = smooth->source[k] >= 0 ? l->branch_row[smooth->source[k]] : -1;
+        if (of->column[k] >= 0) { /* any value but 0 holds the place */
+            DALCS_TRY(dalcs_stamp_reads(b, device, of->row, of->column[k]));
+            DALCS_TRY(dalcs_triplets_add(&b->A, of->row, of->column[k], 1.0));
+        }
     }
     return dalcs_triplets_add(&b->E, l->branch_row[device], input, -1.0);
 }

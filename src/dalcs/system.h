@@ -67,8 +67,9 @@ static inline bool dalcs_pair_closes(const struct dalcs_pair *p, bool is_on, dou
                                    : control > p->turn_off - slack;
 }
 
-/* A source whose voltage or current is a smooth function of columns. It stands in the equations as an input, whose
- * value whoever solves them makes agree with what it reads. */
+/* A source whose voltage or current is a smooth function f of columns. It stands in the equations as an input, whose
+ * value whoever solves them makes agree with what it reads, beside a line g x, for where such a source conducts the
+ * equations are to know (smooth_newton.h). */
 struct dalcs_smooth_input {
     int input, row;   /* the one equation that the input is in */
     enum dalcs_smooth_kind kind;
@@ -76,6 +77,8 @@ struct dalcs_smooth_input {
     int column[2];    /* of its arguments; -1: a number */
     double number[2]; /* that number */
     int row_of[2];    /* the equation that gives an argument which is not read elsewhere; -1: none */
+    double *entry[2]; /* in A, of -g: the equations have g x, the input is the rest of the function. 0 but while a problem
+                         is being solved. NULL: none */
     const char *element;
 };
 

@@ -368,7 +368,7 @@ enum dalcs_status dalcs_segment_begin(struct dalcs_radau *r, struct dalcs_radau_
     }
     bool guessed = part->guards.fresh && part->guards.flipped && dalcs_transition_guess(part);
     bool holds = false;
-    if (guessed && r->options.fixed_step == 0.0) {
+    if (guessed && r->options.fixed_step == 0.0 && part->smooth == NULL) {
         DALCS_TRY(dalcs_recurrence_try(r, part, limit, &holds));
     }
     if (holds) {

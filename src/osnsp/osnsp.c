@@ -201,6 +201,9 @@ void dalcs_osnsp_finish(struct dalcs_osnsp *p) {
         dalcs_modes_finish(p);
     }
     dalcs_in_order_finish(p);
+    if (p->newton != NULL) {
+        dalcs_osnsp_smooth_finish(p);
+    }
     dalcs_partition_finish(&p->partition);
     dalcs_arena_finish(&p->arena);
     free(p->witness.element);

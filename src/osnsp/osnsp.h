@@ -72,6 +72,7 @@ struct dalcs_osnsp {
         *blocks; /* of this partition; NULL: not asked for yet, or there is one block */
     struct dalcs_smooth_newton *newton; /* NULL: the system has no smooth sources (smooth.c) */
     double *given;                      /* [n_x + n_inputs] inputs with their values */
+    int n_tangents;                     /* times that their lines in the equations were changed */
     klu_common klu;
     int n_words;
     uint64_t *mode; /* [n_words] bit d: w_d = 0 */
@@ -152,6 +153,10 @@ enum dalcs_status dalcs_osnsp_setup(struct dalcs_osnsp *p, const struct dalcs_sy
  * input. Allocates only for a (mode, sigma) not in the cache. */
 enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
                                     double *y) DALCS_MUST_CHECK;
+
+/* The lines of smooth sources become those of their tangents at the arguments that newton->x holds, where one differs by
+ * more than this factor from what it is: then all that was factored is forgotten. */
+bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, double factor);
 
 /* After an answer y to u that may be one of several: p->tied becomes all diodes whose current and
  * voltage no more than rounding tells from 0, and scale the size of what rounding is measured by (V, A).

@@ -77,12 +77,13 @@ void dalcs_modes_finish(struct dalcs_osnsp *p);
 /* ---- smooth.c ------------------------------------------------------------------------------ */
 
 enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) DALCS_MUST_CHECK;
+void dalcs_osnsp_smooth_finish(const struct dalcs_osnsp *p);
 
 /* As dalcs_osnsp_solve(), where `solve` does with given sources. */
-enum dalcs_status dalcs_osnsp_solve_smooth(
-    struct dalcs_osnsp *p, double sigma, const double *u, double *y,
-    enum dalcs_status (*solve)(struct dalcs_osnsp *p, double sigma, const double *u,
-                               double *y)) DALCS_MUST_CHECK;
+typedef enum dalcs_status given_solve(struct dalcs_osnsp *p, double sigma, const double *u,
+                                      double *y);
+enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, const double *u,
+                                           double *y, given_solve *solve) DALCS_MUST_CHECK;
 
 /* ---- certificate.c ------------------------------------------------------------------------- */
 

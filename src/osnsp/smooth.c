@@ -3,6 +3,7 @@
  * For given values of these sources the problem is piecewise affine in them, and the slope of what they read is that of
  * the mode in which it was solved (a semismooth Newton method; Qi and Sun 1993). A refusal of such a problem says nothing
  * of the whole. */
+#include "in_order.h"
 #include "osnsp_internal.h"
 #include "smooth_newton.h"
 
@@ -11,6 +12,15 @@
 /* Newton's method doubles its digits with each step once it is near, and a limited exponential takes a step for each
  * e-fold that it is off: 700 of them are all that a double has. */
 enum { MOST_STEPS = 1000 };
+
+/* Lines that are flatter than the functions by this factor cost three of the 16 digits. */
+static const double much_steeper = 1e3;
+
+/* Steeper lines by that factor make a mode regular that holds a node by next to nothing: 1e24 spans all digits. */
+enum { MOST_STEEPER = 8 };
+
+/* A tangent at an argument that is still on its way is good enough if it is within this factor. */
+static const double steeper = 2.0;
 
 enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) {
     if (p->system->n_smooth == 0) {
@@ -22,6 +32,25 @@ enum dalcs_status dalcs_osnsp_smooth_setup(struct dalcs_osnsp *p) {
     return p->newton != NULL && p->given != NULL
                ? dalcs_smooth_newton_setup(p->newton, p->system, 1, &p->arena)
                : DALCS_E_NOMEM;
+}
+
+void dalcs_osnsp_smooth_finish(const struct dalcs_osnsp *p) {
+    dalcs_smooth_drop_tangents(p->system);
+}
+
+/* What was factored with other lines is of no use. */
+static void forget(struct dalcs_osnsp *p) {
+    dalcs_modes_finish(p);
+    dalcs_in_order_finish(p);
+    p->n_tangents++;
+}
+
+bool dalcs_osnsp_retangent(struct dalcs_osnsp *p, double factor) {
+    if (!dalcs_smooth_retangent(p->system, p->newton->x, factor, p->newton->phi)) {
+        return false;
+    }
+    forget(p);
+    return true;
 }
 
 static void put_sources(const struct dalcs_osnsp *p, double *u) {
@@ -51,38 +80,67 @@ static void find_slope(struct dalcs_osnsp *p, double *u, double *y) {
     }
 }
 
-enum dalcs_status dalcs_osnsp_solve_smooth(
-    struct dalcs_osnsp *p, double sigma, const double *u, double *y,
-    enum dalcs_status (*solve)(struct dalcs_osnsp *p, double sigma, const double *u, double *y)) {
+/* From the present values and lines. */
+static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
+                                 given_solve *solve) {
     const struct dalcs_system *s = p->system;
     struct dalcs_smooth_newton *n = p->newton;
-    double *given = p->given;
-    memcpy(given, u, (size_t)(s->n_x + s->n_inputs) * sizeof(*given));
-    dalcs_smooth_newton_begin(n);
-    enum dalcs_status status = DALCS_NOT_CONVERGED;
-    bool agrees = false;
-    for (int step = 0; step < MOST_STEPS && !agrees; step++) {
-        put_sources(p, given);
-        status = solve(p, sigma, given, y);
-        if (status != DALCS_OK) {
-            break;
+    int n_steeper = 0;
+    dalcs_smooth_newton_begin(n, n->x);
+    for (int step = 0; step < MOST_STEPS; step++) {
+        put_sources(p, p->given);
+        enum dalcs_status status = solve(p, sigma, p->given, y);
+        if (status > DALCS_OK && p->n_tangents > 0 && n_steeper++ < MOST_STEEPER) {
+            dalcs_smooth_scale_tangents(s, much_steeper, n->x, n->phi);
+            forget(p);
+            dalcs_smooth_newton_begin(n, n->x);
+            continue;
         }
-        status = DALCS_NOT_CONVERGED;
+        if (status != DALCS_OK) {
+            return status == DALCS_INFEASIBLE ? DALCS_NOT_CONVERGED : status;
+        }
         dalcs_smooth_newton_read(n, 0, y);
         bool repeats;
         bool is_done;
         if (!dalcs_smooth_newton_is_finite(n, &repeats)) {
-            break;
+            return DALCS_NOT_CONVERGED;
         }
-        agrees = !repeats &&
-                 dalcs_smooth_newton_agrees(n, p->options.certificate_tolerance, &is_done) &&
-                 is_done;
-        if (!repeats && !agrees) {
-            find_slope(p, given, y);
-            if (!dalcs_smooth_newton_step(n)) {
-                break;
-            }
+        if (repeats) {
+            continue;
+        }
+        bool agrees =
+            dalcs_smooth_newton_agrees(n, p->options.certificate_tolerance, &is_done);
+        if (agrees && is_done) {
+            return DALCS_OK;
+        }
+        bool stalls = step > 0 && is_done && !n->limits; /* the digits do not suffice */
+        if (stalls && dalcs_osnsp_retangent(p, steeper)) {
+            continue;
+        }
+        find_slope(p, p->given, y);
+        if (!dalcs_smooth_newton_step(n)) {
+            return DALCS_NOT_CONVERGED;
         }
     }
-    return agrees ? DALCS_OK : status == DALCS_INFEASIBLE ? DALCS_NOT_CONVERGED : status;
+    return DALCS_NOT_CONVERGED;
+}
+
+enum dalcs_status dalcs_osnsp_solve_smooth(struct dalcs_osnsp *p, double sigma, const double *u,
+                                           double *y, given_solve *solve) {
+    const struct dalcs_system *s = p->system;
+    memcpy(p->given, u, (size_t)(s->n_x + s->n_inputs) * sizeof(*p->given));
+    enum dalcs_status status = iterate(p, sigma, y, solve);
+    if (status > DALCS_OK && p->n_tangents == 0) {
+        /* without lines, as where nothing else holds a node: with some, from nothing */
+        dalcs_smooth_nominal_tangents(s);
+        forget(p);
+        memset(p->newton->phi, 0, (size_t)p->newton->n * sizeof(double));
+        memset(p->newton->x, 0, (size_t)p->newton->n * sizeof(*p->newton->x));
+        status = iterate(p, sigma, y, solve);
+    }
+    if (status == DALCS_OK && dalcs_osnsp_retangent(p, much_steeper)) {
+        put_sources(p, p->given);
+        return solve(p, sigma, p->given, y);
+    }
+    return status;
 }

@@ -75,7 +75,8 @@ static int list_entries(const struct dalcs_component *c, struct entry *entry) {
         dalcs_smooth_gradient(of->kind, c->osnsp.newton->x[k], gradient);
         for (int j = 0; j < of->n; j++) {
             if (of->column[j] >= 0) {
-                entry[n++] = (struct entry){of->row, of->column[j], gradient[j], 0.0};
+                const double line = of->entry[j] != NULL ? -*of->entry[j] : 0.0; /* that A has */
+                entry[n++] = (struct entry){of->row, of->column[j], gradient[j] - line, 0.0};
             }
         }
     }

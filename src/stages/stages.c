@@ -150,10 +150,16 @@ static void remove_all(struct dalcs_stages *stages) {
     }
 }
 
-void dalcs_stages_finish(struct dalcs_stages *stages) {
+void dalcs_stages_forget(struct dalcs_stages *stages) {
     remove_all(stages);
     dalcs_stage_plan_destroy(stages);
     dalcs_stage_workshop_destroy(stages->workshop);
+    stages->plan = NULL;
+    stages->workshop = NULL;
+}
+
+void dalcs_stages_finish(struct dalcs_stages *stages) {
+    dalcs_stages_forget(stages);
     free(stages->watched);
     free(stages->levered);
     free(stages->key);

@@ -67,6 +67,9 @@ enum dalcs_status dalcs_stages_setup(struct dalcs_stages *stages, const struct d
 
 void dalcs_stages_finish(struct dalcs_stages *stages);
 
+/* The values of the system's equations have changed: no entry is valid any more. */
+void dalcs_stages_forget(struct dalcs_stages *stages);
+
 /* The entry of (mode[n_words], h), prepared now if it is new. Older ones make room, it is valid until
  * the next call. */
 enum dalcs_status dalcs_stages_get(struct dalcs_stages *stages, const uint64_t *mode, double h,

@@ -11,11 +11,15 @@
 /* The part of what a step's error may be that is left to Newton's method (kappa of Hairer and Wanner, section IV.8). */
 static const double newton_part = 1e-2;
 
+/* See osnsp/smooth.c. */
+static const double much_steeper = 1e3, steeper = 2.0;
+
 /* A step in which so many are not enough is too long: near the solution each doubles the digits. */
 enum { MOST_STEPS = 12 };
 
 struct dalcs_smooth_step {
     struct dalcs_smooth_newton newton;
+    int n_tangents; /* of the one-step problem when the steps were factored */
     double slope_h;    /* s, of the step that newton.slope is of; 0: none */
     uint64_t *mode;    /* [n_words] and its mode */
     double *in, *out;  /* a step with one value changed */
@@ -139,7 +143,7 @@ static bool find_missed(struct dalcs_radau_part *part, bool *changes) {
         for (int j = 0; j < of->n; j++) {
             x[j] += of->column[j] >= 0 ? ripple[of->column[j]] : 0.0;
         }
-        const double missed = dalcs_smooth_value(of->kind, x) - phi;
+        const double missed = dalcs_smooth_rest(of, x) - phi;
         double *known = value_at(part, k, m->s + 1);
         is_finite = is_finite && isfinite(missed);
         *changes = *changes || fabs(missed - *known) > 4.0 * DBL_EPSILON * fabs(phi);
@@ -198,23 +202,42 @@ static enum dalcs_status iterate(struct dalcs_radau_part *part, struct dalcs_sta
     return DALCS_NOT_CONVERGED;
 }
 
-enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
-                                          struct dalcs_stage_entry **entry) {
-    struct dalcs_smooth_newton *n = &part->smooth->newton;
-    const int n_smooth = n->system->n_smooth;
-    const double *now = part->component->osnsp.newton->phi;
-    for (int q = 0; q < n->n; q++) {
-        n->phi[q] = now[q % n_smooth];
+/* Steps that were factored with other lines are forgotten. */
+static void take_tangents(struct dalcs_radau_part *part) {
+    struct dalcs_smooth_step *p = part->smooth;
+    if (p->n_tangents != part->component->osnsp.n_tangents) {
+        p->n_tangents = part->component->osnsp.n_tangents;
+        dalcs_stages_forget(&part->stages);
+        part->segment.entry = NULL;
+        part->scales.probe.entry = NULL;
+        p->slope_h = 0.0;
     }
-    dalcs_smooth_newton_begin(n);
+}
+
+/* From what was there at the end of the segment before, or of a micro-step. */
+static enum dalcs_status solve(struct dalcs_radau_part *part, struct dalcs_stage_entry **entry) {
+    struct dalcs_smooth_newton *n = &part->smooth->newton;
+    const struct dalcs_smooth_newton *now = part->component->osnsp.newton;
+    const int n_smooth = n->system->n_smooth;
+    take_tangents(part);
+    for (int q = 0; q < n->n; q++) {
+        n->phi[q] = now->phi[q % n_smooth];
+    }
+    dalcs_smooth_newton_begin(n, now->x);
     for (int k = 0; k < n_smooth; k++) {
         *value_at(part, k, part->stages.method->s + 1) = 0.0;
     }
     enum dalcs_status status = iterate(part, entry);
-    if (status != DALCS_OK) {
-        return status;
+    return status == DALCS_OK ? add_missed(part, entry) : status;
+}
+
+enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
+                                          struct dalcs_stage_entry **entry) {
+    (void)dalcs_osnsp_retangent(&part->component->osnsp, much_steeper);
+    enum dalcs_status status = solve(part, entry);
+    if (status > DALCS_OK && dalcs_osnsp_retangent(&part->component->osnsp, steeper)) {
+        status = solve(part, entry);
     }
-    status = add_missed(part, entry);
     if (status == DALCS_OK) {
         part->segment.rounding = dalcs_stage_rounding(*entry);
     }
@@ -224,13 +247,16 @@ enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
 void dalcs_smooth_step_note(struct dalcs_radau_part *part, double theta) {
     const struct dalcs_smooth_newton *n = &part->smooth->newton;
     const int n_smooth = n->system->n_smooth;
-    double *now = part->component->osnsp.newton->phi;
+    struct dalcs_smooth_newton *now = part->component->osnsp.newton;
     double weight[DALCS_MAX_NODES];
     dalcs_collocation_weights(part->stages.method, theta, weight);
     for (int k = 0; k < n_smooth; k++) {
-        now[k] = 0.0;
+        now->phi[k] = now->x[k][0] = now->x[k][1] = 0.0;
         for (int node = 0; node < n->n_points; node++) {
-            now[k] += weight[node] * n->phi[node * n_smooth + k];
+            const int q = node * n_smooth + k;
+            now->phi[k] += weight[node] * n->phi[q];
+            now->x[k][0] += weight[node] * n->x[q][0];
+            now->x[k][1] += weight[node] * n->x[q][1];
         }
     }
 }
