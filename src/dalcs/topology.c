@@ -10,23 +10,32 @@ static int controlling_nodes(const struct dalcs_device *d) {
     return d->kind == DALCS_VCVS || d->kind == DALCS_VCCS || d->kind == DALCS_SWITCH ? 2 : 0;
 }
 
-/* Does a term read the voltage of a terminal? */
+/* Does a term read the voltage of a terminal, or what a part of the formula makes of it? */
 struct self_reading {
+    const struct dalcs_circuit *circuit;
     const struct dalcs_device *device;
     bool found;
 };
 
 static void note_terminal(void *to, const struct dalcs_affine_term *term) {
     struct self_reading *r = to;
-    bool is_terminal = term->index == r->device->node[0] || term->index == r->device->node[1];
-    r->found = r->found || (term->kind == DALCS_QUANTITY_VOLTAGE && is_terminal);
+    if (r->found || term->kind != DALCS_QUANTITY_VOLTAGE) {
+        return;
+    }
+    r->found = term->index == r->device->node[0] || term->index == r->device->node[1];
+    for (int i = 0; r->circuit->n_smooth > 0 && i < r->circuit->n_devices && !r->found; i++) {
+        const struct dalcs_device *part = &r->circuit->device[i];
+        if (part->behaviour != NULL && part->behaviour->is_part && part->node[0] == term->index) {
+            dalcs_behaviour_visit(part->behaviour, note_terminal, r);
+        }
+    }
 }
 
 /* Does the device tie the voltages of its two terminals, in some mode or at some step? Current
  * sources do not: an island that hangs on them alone floats. One whose formula reads the voltage it
  * feeds is a resistance. */
-static bool conducts(const struct dalcs_device *d) {
-    struct self_reading r = {.device = d};
+static bool conducts(const struct dalcs_circuit *c, const struct dalcs_device *d) {
+    struct self_reading r = {.circuit = c, .device = d};
     dalcs_behaviour_visit(d->behaviour, note_terminal, &r);
     return (d->kind != DALCS_ISOURCE && d->kind != DALCS_CCCS && d->kind != DALCS_VCCS) || r.found;
 }
@@ -129,7 +138,7 @@ static void find_references(struct dalcs_topology *t, const struct dalcs_circuit
     dalcs_union_reset(parent, c->n_nodes);
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_device *d = &c->device[i];
-        if (t->device_component[i] >= 0 && conducts(d)) {
+        if (t->device_component[i] >= 0 && conducts(c, d)) {
             dalcs_union_join(parent, t->node_of[d->node[0]], t->node_of[d->node[1]]);
         }
     }
