@@ -93,7 +93,7 @@ struct audit_part {
     } at;
 
     double cost;         /* of one instant, in instructions, about */
-    bool has_smooth; /* a source of a smooth function */
+    bool has_smooth;     /* a source of a smooth function */
     bool has_formula;    /* one that bends or jumps: in no time it may be anything between */
     bool has_entered;    /* the state at its last event is in `before` */
     bool is_open;        /* `before` is the end of the stretch that was just left */

@@ -81,7 +81,8 @@ static double smooth_value(const struct dalcs_audit *audit, const struct audit_p
     for (int k = 0; k < smooth->n; k++) {
         const bool is_read = smooth->node[k] > 0;
         const double scale = is_read ? audit_volts(audit, part, smooth->node[k], 0) : 0.0;
-        *size += is_read && isfinite(gradient[k]) ? fabs(gradient[k]) * fmax(scale, fabs(x[k])) : 0.0;
+        *size +=
+            is_read && isfinite(gradient[k]) ? fabs(gradient[k]) * fmax(scale, fabs(x[k])) : 0.0;
     }
     return value;
 }
@@ -94,9 +95,8 @@ void audit_check_formula(struct dalcs_audit *audit, struct audit_part *part,
     double terms;
     const struct dalcs_smooth *smooth = d->behaviour->smooth;
     const double f =
-        smooth != NULL
-            ? smooth_value(audit, part, s, smooth, &size, &terms)
-            : affine_value(audit, part, s, device, &d->behaviour->output, &size, &terms);
+        smooth != NULL ? smooth_value(audit, part, s, smooth, &size, &terms)
+                       : affine_value(audit, part, s, device, &d->behaviour->output, &size, &terms);
     const bool is_voltage = d->kind == DALCS_VCVS;
     double *largest = &part->floor.formula[is_voltage ? 0 : 1];
     *largest = fmax(*largest, terms);

@@ -77,7 +77,8 @@ struct dalcs_compiler {
     size_t n_forms;                    /* room in form_of */
     int depth;                         /* of products that are parts of products */
     int n_nodes;                       /* that products made, to name them */
-    int *smooth_node; /* [n_forms] by number_of, of the whole formula: the node that a smooth function made; 0: none */
+    int *
+        smooth_node; /* [n_forms] by number_of, of the whole formula: the node that a smooth function made; 0: none */
 
     const struct dalcs_potentials *potentials; /* NULL: what sources decide has pairs, too */
 

@@ -51,7 +51,8 @@ struct dalcs_affine {
 /* What B, and E and G with VALUE or TABLE, put out: a piecewise-linear function, with
  * 0 <= lambda_k _|_ w_k >= 0 for k = 0..n_pairs-1; or a smooth one. */
 struct dalcs_behaviour {
-    struct dalcs_affine output; /* V or A; of a smooth function what it reads, without a meaning as a sum */
+    struct dalcs_affine
+        output; /* V or A; of a smooth function what it reads, without a meaning as a sum */
     int n_pairs;
     const struct dalcs_affine *w;      /* [n_pairs] */
     const struct dalcs_smooth *smooth; /* NULL: piecewise linear */

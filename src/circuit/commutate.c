@@ -59,7 +59,8 @@ static const struct dalcs_form *formula_steps(struct dalcs_compiler *c,
                                               const struct dalcs_formula *formula,
                                               const struct dalcs_form *v) {
     struct dalcs_compiler other;
-    if (c->depth >= DEEPEST || !dalcs_compiler_start_inner(c, &other, (size_t)formula->number_of + 1)) {
+    if (c->depth >= DEEPEST ||
+        !dalcs_compiler_start_inner(c, &other, (size_t)formula->number_of + 1)) {
         return NULL;
     }
     other.is_silent = true;

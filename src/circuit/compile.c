@@ -72,8 +72,9 @@ static const struct dalcs_form *multiply(struct dalcs_compiler *c, const struct 
     }
     return kind == DALCS_PRODUCT_IS
                ? product
-               : refuse(c, f, "an ideal switch S turns a voltage or a current on and off",
-                        "the height of this jump is not constant: no complementarity pairs make it");
+               : refuse(
+                     c, f, "an ideal switch S turns a voltage or a current on and off",
+                     "the height of this jump is not constant: no complementarity pairs make it");
 }
 
 static const struct dalcs_form *divide(struct dalcs_compiler *c, const struct dalcs_formula *f,
@@ -251,7 +252,7 @@ static const struct dalcs_form *table(struct dalcs_compiler *c, const struct dal
                  has_slopes ? dalcs_piecewise_slope(&inside, n - 1) : 0, argument[0]);
 }
 
-/* sin, cos and exp of a straight line in time. */
+/* sin, cos and falling exp of a straight line in time. */
 static const struct dalcs_form *wave(struct dalcs_compiler *c, const struct dalcs_formula *f,
                                      const struct dalcs_form *a) {
     static const double PI = 3.14159265358979323846;
@@ -261,9 +262,6 @@ static const struct dalcs_form *wave(struct dalcs_compiler *c, const struct dalc
         const struct dalcs_wave w = {.frequency = rate / (2 * PI),
                                      .phase = offset / (2 * PI) + (*f->function == 'c' ? 0.25 : 0)};
         return dalcs_wave_value(c, &w);
-    }
-    if (rate > 0) {
-        return refuse(c, f, "exp(-time/1m) is one", "this exponential of time grows without end");
     }
     const struct dalcs_wave w = {.decay = -rate, .phase = 0.25};
     return dalcs_form_scale(c, exp(offset), dalcs_wave_value(c, &w));
@@ -331,7 +329,9 @@ static const struct dalcs_form *call(struct dalcs_compiler *c, const struct dalc
         return table(c, f, argument, is_named(f, "pwl"));
     }
     const bool is_of_time = a->n == 0 && dalcs_affine_is_time(&a->affine);
-    if (is_of_time && (is_named(f, "sin") || is_named(f, "cos") || is_named(f, "exp"))) {
+    const bool is_exponential =
+        is_named(f, "exp") && is_of_time && a->affine.term[0].coefficient <= 0;
+    if (is_exponential || (is_of_time && (is_named(f, "sin") || is_named(f, "cos")))) {
         return wave(c, f, a);
     }
     if ((is_named(f, "pow") || is_named(f, "pwrs")) && dalcs_form_is_number(argument[1]) &&

@@ -30,7 +30,8 @@ bool dalcs_builder_reserve_devices(struct dalcs_builder *builder, size_t n_more)
     return true;
 }
 
-bool dalcs_compiler_start_inner(struct dalcs_compiler *c, struct dalcs_compiler *inner, size_t n_forms) {
+bool dalcs_compiler_start_inner(struct dalcs_compiler *c, struct dalcs_compiler *inner,
+                                size_t n_forms) {
     *inner = (struct dalcs_compiler){.builder = c->builder,
                                      .arena = c->arena,
                                      .element = c->element,

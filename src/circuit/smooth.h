@@ -42,7 +42,7 @@ struct dalcs_smooth {
     int n;            /* arguments, 1 or 2 */
     int node[2];      /* whose voltage an argument is; -1: a number */
     double number[2]; /* that number */
-    int source[2];    /* the device that puts an argument out at its node for this alone; -1: none */
+    int source[2]; /* the device that puts an argument out at its node for this alone; -1: none */
 };
 
 /* The function of this name with n arguments; false: it is no smooth one. */

@@ -15,8 +15,7 @@ enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
                                             const struct dalcs_system *system, int n_points,
                                             struct dalcs_arena *arena) {
     const size_t n = (size_t)n_points * (size_t)system->n_smooth;
-    *newton =
-        (struct dalcs_smooth_newton){.system = system, .n_points = n_points, .n = (int)n};
+    *newton = (struct dalcs_smooth_newton){.system = system, .n_points = n_points, .n = (int)n};
     newton->phi = dalcs_arena_alloc(arena, n, sizeof(double));
     newton->before = dalcs_arena_alloc(arena, n, sizeof(double));
     newton->x = dalcs_arena_alloc(arena, n, sizeof(*newton->x));
@@ -27,8 +26,8 @@ enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
     newton->step = dalcs_arena_alloc(arena, n, sizeof(double));
     newton->pivot = dalcs_arena_alloc(arena, n, sizeof(int));
     bool complete = newton->phi != NULL && newton->before != NULL && newton->x != NULL &&
-                    newton->terms != NULL && newton->tangent != NULL && newton->slope != NULL && newton->matrix != NULL &&
-                    newton->step != NULL && newton->pivot != NULL;
+                    newton->terms != NULL && newton->tangent != NULL && newton->slope != NULL &&
+                    newton->matrix != NULL && newton->step != NULL && newton->pivot != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -236,7 +235,7 @@ bool dalcs_smooth_newton_is_finite(struct dalcs_smooth_newton *newton, bool *rep
         newton->halved++;
         for (int q = 0; q < newton->n; q++) {
             double f = dalcs_smooth_rest(input_of(newton, q), newton->x[q]);
-            newton->phi[q] = !is_first    ? 0.5 * (newton->phi[q] + newton->before[q])
+            newton->phi[q] = !is_first     ? 0.5 * (newton->phi[q] + newton->before[q])
                              : isfinite(f) ? f
                                            : newton->phi[q];
         }
@@ -271,8 +270,7 @@ static void put_tangent(struct dalcs_smooth_newton *newton, int q) {
     gradient_of_rest(of, a, gradient);
     newton->step[q] = dalcs_smooth_rest(of, a) - newton->phi[q];
     for (int j = 0; j < of->n; j++) {
-        newton->step[q] +=
-            of->column[j] >= 0 ? gradient[j] * (newton->x[q][j] - a[j]) : 0.0;
+        newton->step[q] += of->column[j] >= 0 ? gradient[j] * (newton->x[q][j] - a[j]) : 0.0;
     }
     put_row(newton, q, gradient);
 }
@@ -285,7 +283,7 @@ bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
         put_tangent(newton, q);
     }
     bool is_solved = LAPACKE_dgesv(LAPACK_ROW_MAJOR, newton->n, 1, newton->matrix, newton->n,
-                                newton->pivot, newton->step, 1) == 0;
+                                   newton->pivot, newton->step, 1) == 0;
     memcpy(newton->before, newton->phi, (size_t)newton->n * sizeof(double));
     for (int q = 0; q < newton->n && is_solved; q++) {
         newton->phi[q] += newton->step[q];

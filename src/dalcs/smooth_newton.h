@@ -15,11 +15,12 @@
 struct dalcs_smooth_newton {
     const struct dalcs_system *system;
     int n_points;
-    int n;                /* n_points * system->n_smooth values, point by point */
-    double *phi;          /* [n] */
-    double *before;       /* [n] phi one step ago */
-    double (*x)[2];       /* [n] arguments that were read */
-    double (*terms)[2];   /* [n] V: what they are made of, or the largest voltage that was read beside them */
+    int n;          /* n_points * system->n_smooth values, point by point */
+    double *phi;    /* [n] */
+    double *before; /* [n] phi one step ago */
+    double (*x)[2]; /* [n] arguments that were read */
+    double (*terms)
+        [2]; /* [n] V: what they are made of, or the largest voltage that was read beside them */
     double (*tangent)[2]; /* [n] where tangents are */
     double *slope;        /* [n][2][n] S */
     double *matrix;       /* [n][n] work */
@@ -29,7 +30,7 @@ struct dalcs_smooth_newton {
     int n_steps;          /* since the beginning */
     int halved;           /* times that the last step was halved, or the beginning was moved */
     int worst;            /* of the system's smooth inputs, the one that agrees least */
-    double defect;        /* of the last check: over the terms of each function alone, in the tolerance */
+    double defect; /* of the last check: over the terms of each function alone, in the tolerance */
     double defect_before; /* of the one before */
 };
 

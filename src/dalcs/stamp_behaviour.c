@@ -122,11 +122,13 @@ static enum dalcs_status stamp_smooth(struct stamps *b, int device) {
     s->stimulus[input] = l->circuit->smooth_stimulus;
     s->input_element[input] = name;
     struct dalcs_smooth_input *of = &s->smooth[s->n_smooth++];
-    *of = (struct dalcs_smooth_input){
-        .input = input, .row = l->branch_row[device], .kind = smooth->kind, .n = smooth->n, .element = name};
+    *of = (struct dalcs_smooth_input){.input = input,
+                                      .row = l->branch_row[device],
+                                      .kind = smooth->kind,
+                                      .n = smooth->n,
+                                      .element = name};
     for (int k = 0; k < smooth->n; k++) {
-        of->column[k] =
-            smooth->node[k] > 0 ? dalcs_stamp_node_column(l, smooth->node[k]) : -1;
+        of->column[k] = smooth->node[k] > 0 ? dalcs_stamp_node_column(l, smooth->node[k]) : -1;
         of->number[k] = smooth->number[k];
         of->row_of[k] = smooth->source[k] >= 0 ? l->branch_row[smooth->source[k]] : -1;
         if (of->column[k] >= 0) { /* any value but 0 holds the place */

@@ -71,13 +71,14 @@ static inline bool dalcs_pair_closes(const struct dalcs_pair *p, bool is_on, dou
  * value whoever solves them makes agree with what it reads, beside a line g x, for where such a source conducts the
  * equations are to know (smooth_newton.h). */
 struct dalcs_smooth_input {
-    int input, row;   /* the one equation that the input is in */
+    int input, row; /* the one equation that the input is in */
     enum dalcs_smooth_kind kind;
     int n;
     int column[2];    /* of its arguments; -1: a number */
     double number[2]; /* that number */
-    int row_of[2];    /* the equation that gives an argument which is not read elsewhere; -1: none */
-    double *entry[2]; /* in A, of -g: the equations have g x, the input is the rest of the function. 0 but while a problem
+    int row_of[2]; /* the equation that gives an argument which is not read elsewhere; -1: none */
+    double *entry
+        [2]; /* in A, of -g: the equations have g x, the input is the rest of the function. 0 but while a problem
                          is being solved. NULL: none */
     const char *element;
 };
@@ -86,7 +87,8 @@ struct dalcs_system {
     int n_x, n_z, n_pairs, n_inputs;
     int n_smooth;
     struct dalcs_smooth_input *smooth; /* [n_smooth] NULL: none */
-    bool *is_part; /* [n_columns] the value of a part of a formula, in no unit; NULL: no column is */
+    bool
+        *is_part; /* [n_columns] the value of a part of a formula, in no unit; NULL: no column is */
     struct dalcs_csr P;       /* [n_x][n_x], nonsingular */
     struct dalcs_csr A;       /* [n_x + n_z][n_columns], rows I then rows II */
     struct dalcs_csr E;       /* [n_x + n_z][n_inputs] */

@@ -486,7 +486,7 @@ static bool put_smooth(struct writer *w, bool begun) {
             }
             put_argument(w, &n->system[q], of, 0);
             for (int j = 1; j < of->n; j++) {
-                fputs(!is_infix                   ? ", "
+                fputs(!is_infix                  ? ", "
                       : p->latex && *name == '*' ? " \\cdot "
                       : *name == '*'             ? " * "
                                                  : " / ",

@@ -51,13 +51,14 @@ struct dalcs_excitation {
     struct dalcs_stimulus_term *term;    /* of the waves' pieces */
     struct dalcs_stimulus_term *scratch; /* of one wave, at another time */
     double *constant;                    /* [n_inputs] the inputs that never change; 0 for waves */
-    int first_smooth; /* function of these: */
-    double *smooth; /* [n_smooth][s + 2] what smooth sources are in the present step: at its nodes, and what the
+    int first_smooth;                    /* function of these: */
+    double *
+        smooth; /* [n_smooth][s + 2] what smooth sources are in the present step: at its nodes, and what the
                        polynomial through these misses where it is tested */
-    bool is_curved;                      /* any wave is */
-    double shortest_period;              /* s, of the oscillations; INFINITY without */
-    double next_edge;                    /* s, of the waves */
-    struct dalcs_arena arena;            /* all arrays */
+    bool is_curved;           /* any wave is */
+    double shortest_period;   /* s, of the oscillations; INFINITY without */
+    double next_edge;         /* s, of the waves */
+    struct dalcs_arena arena; /* all arrays */
 };
 
 /* Inputs that only command switches are left out, for commands have their own schedule; and those that only

@@ -160,12 +160,11 @@ static enum dalcs_status part_setup(struct dalcs_radau *r, struct dalcs_radau_pa
     part->tolerance = choice.tolerance;
     part->inner_tolerance = inner_tolerance_of(choice.tolerance);
     part->because = steps ? choice.because : "no state, no diode and no switch";
-    const struct dalcs_collocation *method =
-        dalcs_collocation_of(r->options.family, choice.stages);
+    const struct dalcs_collocation *method = dalcs_collocation_of(r->options.family, choice.stages);
     DALCS_TRY(dalcs_excitation_setup(&part->excitation, c->circuit, c->system, method));
     DALCS_TRY(dalcs_commands_setup(&part->commands, c->circuit, c->system));
-    DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation,
-                                 method, choice.map_limit, osnsp->rcond_min,
+    DALCS_TRY(dalcs_stages_setup(&part->stages, c->system, &part->excitation, method,
+                                 choice.map_limit, osnsp->rcond_min,
                                  osnsp->cache_bytes / (size_t)r->n_parts));
     part->stages.block_of = c->osnsp.partition.block_of;
     part->stages.unseen = r->options.fixed_step > 0.0 ? 0.0 : unseen_part * part->inner_tolerance;

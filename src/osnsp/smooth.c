@@ -108,8 +108,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
         if (repeats) {
             continue;
         }
-        bool agrees =
-            dalcs_smooth_newton_agrees(n, p->options.certificate_tolerance, &is_done);
+        bool agrees = dalcs_smooth_newton_agrees(n, p->options.certificate_tolerance, &is_done);
         if (agrees && is_done) {
             return DALCS_OK;
         }

@@ -204,9 +204,10 @@ static void explain_growth(struct dalcs_session *s, const struct dalcs_component
 /* "v(a)", "40" */
 static const char *name_argument(struct dalcs_session *s, const struct dalcs_system *system,
                                  const struct dalcs_smooth_input *of, int k) {
-    const char *name = of->column[k] >= 0
-                           ? dalcs_arena_printf(&s->arena, "v(%s)", system->column[of->column[k]].element)
-                           : dalcs_arena_printf(&s->arena, "%.6g", of->number[k]);
+    const char *name =
+        of->column[k] >= 0
+            ? dalcs_arena_printf(&s->arena, "v(%s)", system->column[of->column[k]].element)
+            : dalcs_arena_printf(&s->arena, "%.6g", of->number[k]);
     return name == NULL ? "" : name;
 }
 
@@ -219,17 +220,18 @@ static void explain_smooth(struct dalcs_session *s, const struct dalcs_component
     const char *first = name_argument(s, c->system, of, 0);
     const char *second = of->n > 1 ? name_argument(s, c->system, of, 1) : "";
     const bool is_infix = *name == '*' || *name == '/';
-    const char *text =
-        is_infix    ? dalcs_arena_printf(&s->arena, "%s %s %s", first, name, second)
-        : of->n > 1 ? dalcs_arena_printf(&s->arena, "%s(%s, %s)", name, first, second)
-                    : dalcs_arena_printf(&s->arena, "%s(%s)", name, first);
-    dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, of->element),
-                   "there may be none, as of a root of what is negative or a power that the circuit "
-                   "cannot give; limit(x, low, high) keeps an argument where the function is one",
-                   "%s no solution was found: Newton's method finds no value of %s in '%s' that "
-                   "agrees with the circuit; the last one tried was %.6g, of %.6g",
-                   when, text == NULL ? "" : text, of->element, newton->phi[newton->worst],
-                   newton->x[newton->worst][of->column[0] >= 0 ? 0 : 1]);
+    const char *text = is_infix ? dalcs_arena_printf(&s->arena, "%s %s %s", first, name, second)
+                       : of->n > 1
+                           ? dalcs_arena_printf(&s->arena, "%s(%s, %s)", name, first, second)
+                           : dalcs_arena_printf(&s->arena, "%s(%s)", name, first);
+    dalcs_diag_add(
+        &s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, of->element),
+        "there may be none, as of a root of what is negative or a power that the circuit "
+        "cannot give; limit(x, low, high) keeps an argument where the function is one",
+        "%s no solution was found: Newton's method finds no value of %s in '%s' that "
+        "agrees with the circuit; the last one tried was %.6g, of %.6g",
+        when, text == NULL ? "" : text, of->element, newton->phi[newton->worst],
+        newton->x[newton->worst][of->column[0] >= 0 ? 0 : 1]);
 }
 
 enum dalcs_status dalcs_explain_failure(struct dalcs_run *r, const struct dalcs_euler *e,

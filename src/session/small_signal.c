@@ -4,8 +4,8 @@
  * left of (2.1) is linear, so amplitudes obey
  *     (j omega P_I - A_I) y = E_I s,   -A_II y = E_II s,   C y = -F s where w = 0, else lambda = 0
  * with the AC values of the sources as s: one sparse complex system for each frequency. */
-#include "smooth_newton.h"
 #include "measures.h"
+#include "smooth_newton.h"
 
 #include "lu.h"
 

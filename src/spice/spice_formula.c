@@ -159,12 +159,11 @@ static void write_smooth(const struct formula *f, const struct dalcs_smooth *smo
     const bool is_odd = smooth->kind == DALCS_SMOOTH_POWER && smooth->node[1] < 0 &&
                         fabs(fmod(smooth->number[1], 2.0)) == 1.0;
     const bool has_sign = is_odd || smooth->kind == DALCS_SMOOTH_SIGNED_POWER;
-    const char *name = has_sign ? "pwr"
-                       : smooth->kind == DALCS_SMOOTH_POWER ||
-                               smooth->kind == DALCS_SMOOTH_MAGNITUDE_POWER
-                           ? "pow"
-                       : smooth->kind == DALCS_SMOOTH_SQUARE ? "sqr"
-                                                             : dalcs_smooth_name(smooth->kind);
+    const char *name =
+        has_sign                                                                             ? "pwr"
+        : smooth->kind == DALCS_SMOOTH_POWER || smooth->kind == DALCS_SMOOTH_MAGNITUDE_POWER ? "pow"
+        : smooth->kind == DALCS_SMOOTH_SQUARE                                                ? "sqr"
+                                              : dalcs_smooth_name(smooth->kind);
     const bool is_infix = *name == '*' || *name == '/';
     fputs(is_infix ? "" : name, f->stream);
     fputs("(", f->stream);

@@ -19,11 +19,11 @@ enum { MOST_STEPS = 12 };
 
 struct dalcs_smooth_step {
     struct dalcs_smooth_newton newton;
-    int n_tangents; /* of the one-step problem when the steps were factored */
-    double slope_h;    /* s, of the step that newton.slope is of; 0: none */
-    uint64_t *mode;    /* [n_words] and its mode */
-    double *in, *out;  /* a step with one value changed */
-    double (*dx)[2];   /* [n] changes of arguments */
+    int n_tangents;   /* of the one-step problem when the steps were factored */
+    double slope_h;   /* s, of the step that newton.slope is of; 0: none */
+    uint64_t *mode;   /* [n_words] and its mode */
+    double *in, *out; /* a step with one value changed */
+    double (*dx)[2];  /* [n] changes of arguments */
 };
 
 enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
@@ -33,8 +33,7 @@ enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
     }
     const struct dalcs_stages *stages = &part->stages;
     size_t n_columns = (size_t)dalcs_system_n_columns(s);
-    size_t n_out =
-        (size_t)stages->layout.n_fixed + (size_t)stages->method->s * n_columns + 8;
+    size_t n_out = (size_t)stages->layout.n_fixed + (size_t)stages->method->s * n_columns + 8;
     struct dalcs_smooth_step *p = dalcs_arena_alloc(&part->arena, 1, sizeof(*p));
     if (p == NULL) {
         return DALCS_E_NOMEM;
@@ -43,8 +42,8 @@ enum dalcs_status dalcs_smooth_step_setup(struct dalcs_radau_part *part) {
     p->mode = dalcs_arena_alloc(&part->arena, (size_t)stages->n_words, sizeof(*p->mode));
     p->in = dalcs_arena_alloc(&part->arena, (size_t)stages->n_in, sizeof(double));
     p->out = dalcs_arena_alloc(&part->arena, n_out, sizeof(double));
-    p->dx = dalcs_arena_alloc(&part->arena,
-                              (size_t)(stages->method->s + 1) * (size_t)s->n_smooth, sizeof(*p->dx));
+    p->dx = dalcs_arena_alloc(&part->arena, (size_t)(stages->method->s + 1) * (size_t)s->n_smooth,
+                              sizeof(*p->dx));
     if (p->mode == NULL || p->in == NULL || p->out == NULL || p->dx == NULL) {
         return DALCS_E_NOMEM;
     }

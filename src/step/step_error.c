@@ -210,7 +210,8 @@ double dalcs_step_rounding(const struct dalcs_radau_part *part,
     double balanced = 0.0;
     const bool *is_part = part->component->system->is_part;
     for (int c = 0; c < n_equations; c++) {
-        bool counts = is_part == NULL || !is_part[c]; /* in no unit: what it adds elsewhere is there */
+        bool counts =
+            is_part == NULL || !is_part[c]; /* in no unit: what it adds elsewhere is there */
         balanced = counts ? dalcs_larger(balanced, fabs(final[c]) * inverse[c]) : balanced;
     }
     return rounding_part * part->segment.rounding * balanced;

@@ -70,16 +70,17 @@ static enum dalcs_status check_dense(struct dalcs_facts *facts) {
 /* The theorems that are checked are about matrices. Of products and functions they say nothing, and of the system with
  * these as given sources a verdict would be one of another circuit. */
 static enum dalcs_status leave_open(struct dalcs_facts *facts) {
-    static const char *const question[] = {"passive", "exists",      "unique", "multipliers",
-                                           "jumps",   "step",        "convergence",
-                                           "stable",  "contracting", "periodic"};
+    static const char *const question[] = {"passive",     "exists",  "unique",      "multipliers",
+                                           "jumps",       "step",    "convergence", "stable",
+                                           "contracting", "periodic"};
     const struct dalcs_system *s = facts->system;
     facts->passive = DALCS_UNDECIDED;
     for (size_t k = 0; k < sizeof question / sizeof *question; k++) {
-        DALCS_TRY(dalcs_findings_verdict(
-            facts->f, question[k], DALCS_UNDECIDED, "the theorems are about linear parts with diodes",
-            "undecided: %s%s %s not piecewise linear", s->smooth[0].element,
-            s->n_smooth > 1 ? " and others" : "", s->n_smooth > 1 ? "are" : "is"));
+        DALCS_TRY(dalcs_findings_verdict(facts->f, question[k], DALCS_UNDECIDED,
+                                         "the theorems are about linear parts with diodes",
+                                         "undecided: %s%s %s not piecewise linear",
+                                         s->smooth[0].element, s->n_smooth > 1 ? " and others" : "",
+                                         s->n_smooth > 1 ? "are" : "is"));
     }
     return DALCS_OK;
 }

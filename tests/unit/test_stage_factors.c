@@ -64,7 +64,8 @@ static void setup(struct both *b, const char *netlist, int s, bool general) {
     }
     ck_assert_int_eq(b->text.network.n_systems, 1);
     b->system = &b->text.network.system[0];
-    ck_assert_int_eq(dalcs_excitation_setup(&b->excitation, &b->text.circuit, b->system, NULL), DALCS_OK);
+    ck_assert_int_eq(dalcs_excitation_setup(&b->excitation, &b->text.circuit, b->system, NULL),
+                     DALCS_OK);
     ck_assert_int_eq(dalcs_stages_setup(&b->dense, b->system, &b->excitation,
                                         dalcs_collocation_of(DALCS_RADAU_IIA, s), 1000000, 1e-14,
                                         SIZE_MAX),
