@@ -18,10 +18,12 @@ struct dalcs_excitation_function {
         DALCS_EXCITATION_LEVEL,  /* 1 */
         DALCS_EXCITATION_RAMP,   /* theta */
         DALCS_EXCITATION_COSINE, /* exp(-decay h theta) cos(omega h theta) */
-        DALCS_EXCITATION_SINE
+        DALCS_EXCITATION_SINE,
+        DALCS_EXCITATION_LEGENDRE /* P_degree(2 theta - 1), of a small signal (periodic_flow.h) */
     } shape;
 
     double decay, omega; /* 1/s */
+    int degree;          /* at most that of a step's polynomials */
 };
 
 struct dalcs_excitation_wave {

@@ -259,7 +259,10 @@ static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis a
     case DALCS_DC_SWEEP:
         return circuit->n_dc > 0 ? dalcs_dc_sweep_run(r) : DALCS_OK;
     case DALCS_AC:
-        return circuit->ac.n > 0 ? dalcs_small_signal_run(r) : DALCS_OK;
+        if (circuit->ac.n == 0) {
+            return DALCS_OK;
+        }
+        return circuit->periodic.present ? dalcs_periodic_ac_run(r) : dalcs_small_signal_run(r);
     case DALCS_PERIODIC:
         return circuit->periodic.present || r->options->steady ? dalcs_steady_run(r) : DALCS_OK;
     default:
@@ -308,8 +311,8 @@ static enum dalcs_status run_analyses(struct dalcs_session *session,
     return status;
 }
 
-static const enum dalcs_analysis IN_ORDER[] = {DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_AC,
-                                               DALCS_PERIODIC, DALCS_TRANSIENT};
+static const enum dalcs_analysis IN_ORDER[] = {DALCS_OPERATING_POINT, DALCS_DC_SWEEP,
+                                               DALCS_PERIODIC, DALCS_AC, DALCS_TRANSIENT};
 
 enum { N_IN_ORDER = sizeof IN_ORDER / sizeof IN_ORDER[0] };
 

@@ -162,6 +162,9 @@ enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) DALCS_MUST
 /* Runs .pss into r->sink. */
 enum dalcs_status dalcs_steady_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
+/* Runs .ac around that orbit into r->sink. */
+enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) DALCS_MUST_CHECK;
+
 /* Runs the .tran that starts on such an orbit. */
 enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) DALCS_MUST_CHECK;
 

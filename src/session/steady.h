@@ -8,6 +8,8 @@
 
 #include "session_internal.h"
 
+struct dalcs_orbit_log;
+
 /* Where the states of the systems lie side by side. */
 struct dalcs_steady_layout {
     int n_systems;
@@ -102,6 +104,11 @@ void dalcs_steady_take(struct dalcs_steady *st);
 enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, struct dalcs_euler *e,
                                      struct dalcs_radau *radau) DALCS_MUST_CHECK;
 
+/* One period from st->at, which the log is told of. */
+enum dalcs_status dalcs_steady_log(struct dalcs_steady *st, struct dalcs_euler *e,
+                                   struct dalcs_radau *radau,
+                                   struct dalcs_orbit_log *log) DALCS_MUST_CHECK;
+
 /* Where the components are that have been evaluated. */
 void dalcs_steady_read(const struct dalcs_euler *e, struct dalcs_orbit_point *point);
 
@@ -117,6 +124,11 @@ enum dalcs_status dalcs_steady_newton(struct dalcs_steady *st) DALCS_MUST_CHECK;
  * st->drift goes on and on. */
 enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found,
                                       bool *endless) DALCS_MUST_CHECK;
+
+/* ---- periodic_ac.c ----------------------------------------------------------------------------- */
+
+/* .ac around the orbit through st->at, into the run's sink. */
+enum dalcs_status dalcs_periodic_ac_walk(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
 /* ---- steady_report.c --------------------------------------------------------------------------- */
 

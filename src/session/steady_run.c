@@ -175,6 +175,9 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     if (!found) {
         return tell_failure(st, endless);
     }
+    if (r->s->report.steady.present) { /* its .pss has told */
+        return DALCS_OK;
+    }
     DALCS_TRY(dalcs_steady_newton(st)); /* how far it may be off, and what is conserved */
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_MEANS));
     return dalcs_steady_report(st);
@@ -198,6 +201,18 @@ enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
     DALCS_TRY(keep(r, &kept));
     enum dalcs_status status = find_orbit(r, false, &st);
     status = status == DALCS_OK ? run_period(&st) : status;
+    put_back(r, &kept, true);
+    free(kept.stimulus);
+    dalcs_steady_finish(&st);
+    return status;
+}
+
+enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) {
+    struct dalcs_steady st = {0};
+    struct kept kept;
+    DALCS_TRY(keep(r, &kept));
+    enum dalcs_status status = find_orbit(r, false, &st);
+    status = status == DALCS_OK ? dalcs_periodic_ac_walk(&st) : status;
     put_back(r, &kept, true);
     free(kept.stimulus);
     dalcs_steady_finish(&st);
