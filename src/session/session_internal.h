@@ -19,7 +19,7 @@ struct dalcs_session {
     char *name;
     struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
     struct dalcs_losses_request losses;
-    bool asks_steady;
+    bool asks_steady, asks_response;
     struct dalcs_diag diag;
     struct dalcs_circuit circuit;
     bool has_circuit;

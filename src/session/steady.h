@@ -130,6 +130,11 @@ enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found,
 /* .ac around the orbit through st->at, into the run's sink. */
 enum dalcs_status dalcs_periodic_ac_walk(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
+/* ---- steady_run.c ------------------------------------------------------------------------------ */
+
+/* Is a run of a period that has just ended, in st->then, where it began? Else DALCS_NOT_CONVERGED and a message. */
+enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
 /* ---- steady_report.c --------------------------------------------------------------------------- */
 
 /* Multipliers, verdict and messages into the report. */

@@ -188,6 +188,9 @@ enum dalcs_status dalcs_steady_log(struct dalcs_steady *st, struct dalcs_euler *
     status = status == DALCS_OK ? go(radau, st->run, NULL) : status;
     status = status == DALCS_OK ? log->status : status;
     e->observer = NULL;
+    if (status == DALCS_OK) {
+        read_point(st, radau);
+    }
     return status == DALCS_OK ? dalcs_orbit_log_close(log, st->period) : status;
 }
 
