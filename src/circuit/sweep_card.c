@@ -12,8 +12,7 @@
 #include <string.h>
 
 static const char DC_USAGE[] = ".dc source start stop step [source start stop step]";
-static const char AC_USAGE[] =
-    ".ac dec|oct|lin points fstart fstop [loop=V1] [sideband=n], or .ac list frequency ...";
+static const char AC_USAGE[] = ".ac dec|oct|lin points fstart fstop, or .ac list frequency ...";
 static const char STEP_USAGE[] =
     ".step [lin|dec|oct] item start stop step; .step item list value value ...; .step item "
     "file=name; an item is an "

@@ -1,13 +1,13 @@
 /* response_json.c - the response around an orbit, for the report. */
 #include "response_json.h"
 
-static void write_margins(struct dalcs_json *json, const char *key, const char *name, size_t n,
+static void write_margins(struct dalcs_json *json, const char *key, bool of_phase, size_t n,
                           const struct dalcs_margin *margin) {
     dalcs_json_open(json, key, '[', false);
     for (size_t i = 0; i < n; i++) {
         dalcs_json_open(json, NULL, '{', true);
         dalcs_json_number(json, "frequency", margin[i].frequency);
-        dalcs_json_number(json, name, margin[i].margin);
+        dalcs_json_number(json, of_phase ? "phase_margin" : "gain_margin", margin[i].margin);
         dalcs_json_close(json, '}');
     }
     dalcs_json_close(json, ']');
@@ -24,9 +24,9 @@ void dalcs_response_json_write(struct dalcs_json *json, const struct dalcs_repor
     dalcs_json_number(json, "tail", report->response.tail);
     if (report->response.loop != NULL) {
         dalcs_json_string(json, "loop", report->response.loop);
-        write_margins(json, "crossovers", "phase_margin", report->response.n_crossovers,
+        write_margins(json, "crossovers", true, report->response.n_crossovers,
                       report->response.crossover);
-        write_margins(json, "reversals", "gain_margin", report->response.n_reversals,
+        write_margins(json, "reversals", false, report->response.n_reversals,
                       report->response.reversal);
     }
     dalcs_json_close(json, '}');

@@ -162,6 +162,9 @@ enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) DALCS_MUST
 /* Runs .pss into r->sink. */
 enum dalcs_status dalcs_steady_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
+/* DALCS_E_NETLIST and a message where a switch follows a clock, which .ac around an operating point would not see. */
+enum dalcs_status dalcs_commanded_ac_refuse(struct dalcs_run *r) DALCS_MUST_CHECK;
+
 /* Runs .ac around that orbit into r->sink. */
 enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 

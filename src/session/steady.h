@@ -75,6 +75,12 @@ void dalcs_steady_finish(struct dalcs_steady *st);
 enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bool at_start,
                                            double *period) DALCS_MUST_CHECK;
 
+/* Does it come again and again, by itself? */
+bool dalcs_steady_repeats(const struct dalcs_stimulus *s);
+
+/* The element whose stimulus that is. */
+const char *dalcs_steady_source_name(const struct dalcs_circuit *c, int stimulus);
+
 /* ---- steady_settle.c --------------------------------------------------------------------------- */
 
 /* One that repeats T-periodically becomes what it is from a multiple of T on. */
