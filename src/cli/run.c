@@ -119,17 +119,18 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
         const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
-        if (is_plot && arguments->steady) {
+        const bool is_of_steps = i < 3; /* which the search for an orbit takes, too */
+        if (is_plot && (arguments->steady || arguments->bode)) {
             fprintf(cli->err,
                     "dalcs: warning: --plot has no effect: write a file with -o, and draw "
                     "that with 'dalcs plot'\n");
-        } else if (option[i].given &&
+        } else if (option[i].given && arguments->bode && !is_of_steps) {
+            fprintf(cli->err, "dalcs: warning: %s is of waveforms: it has no effect\n",
+                    option[i].name);
+        } else if (option[i].given && !arguments->bode &&
                    (is_plot ? !request->transient
                             : main != DALCS_TRANSIENT && main != DALCS_PERIODIC)) {
-            fprintf(cli->err,
-                    arguments->bode
-                        ? "dalcs: warning: %s has no effect beside bode\n"
-                        : "dalcs: warning: the netlist has no .tran: %s has no effect\n",
+            fprintf(cli->err, "dalcs: warning: the netlist has no .tran: %s has no effect\n",
                     option[i].name);
         }
     }
