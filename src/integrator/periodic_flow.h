@@ -46,7 +46,6 @@ struct dalcs_flow_piece {
 struct dalcs_periodic_flow {
     const struct dalcs_orbit_part *orbit;
     const struct dalcs_system *system;
-    const struct dalcs_collocation *method;
     double fastest; /* rad/s */
     double period;  /* s */
     int n_x;
@@ -72,6 +71,21 @@ enum dalcs_status dalcs_periodic_flow_setup(struct dalcs_periodic_flow *flow,
                                             const double complex *source, double fastest,
                                             double period) DALCS_MUST_CHECK;
 void dalcs_periodic_flow_finish(struct dalcs_periodic_flow *flow);
+
+/* Elements of an answer at all nodes. */
+size_t dalcs_periodic_flow_size(const struct dalcs_periodic_flow *flow);
+
+/* The map of (mode, h), made now if it is new. */
+enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow, const uint64_t *mode,
+                                          double h, struct dalcs_flow_map **map) DALCS_MUST_CHECK;
+
+/* How the mode of a span begins; NULL: with the states as they are. */
+enum dalcs_status dalcs_periodic_flow_start(struct dalcs_periodic_flow *flow,
+                                            const struct dalcs_orbit_span *span,
+                                            const struct dalcs_flow_start **start) DALCS_MUST_CHECK;
+
+/* flow->piece and flow->M. */
+enum dalcs_status dalcs_periodic_pieces_make(struct dalcs_periodic_flow *flow) DALCS_MUST_CHECK;
 
 /* coefficient[n_nodes] of exp(j kappa theta), as the values at the nodes have them. */
 void dalcs_periodic_flow_drive(const struct dalcs_periodic_flow *flow, double kappa,

@@ -79,16 +79,11 @@ static void mean_weights(const struct dalcs_periodic_flow *flow, double kappa,
 
 /* ---- Maps at a frequency ------------------------------------------------------------------------- */
 
-static size_t size_of_answer(const struct dalcs_periodic_flow *flow) {
-    const struct dalcs_stage_layout *l = &flow->stages.layout;
-    return (size_t)l->n_nodes * (size_t)l->stride;
-}
-
 /* What sources make of an answer row by row, from states of 0 and at the phase 0 where a piece begins. */
 static void find_driven(const struct dalcs_periodic_response *r, struct dalcs_flow_map *map,
                         double w) {
     const struct dalcs_periodic_flow *flow = r->flow;
-    const size_t size = size_of_answer(flow);
+    const size_t size = dalcs_periodic_flow_size(flow);
     double complex coefficient[DALCS_MAX_NODES];
     dalcs_periodic_flow_drive(flow, w * map->h, coefficient);
     for (size_t i = 0; i < size; i++) {
@@ -116,7 +111,7 @@ static void find_means(const struct dalcs_periodic_response *r, struct dalcs_flo
     double complex weight[DALCS_MAX_NODES];
     mean_weights(flow, w * map->h, weight);
     for (int k = 0; k <= flow->n_x; k++) {
-        const double *state = map->state + (size_t)k * size_of_answer(flow);
+        const double *state = map->state + (size_t)k * dalcs_periodic_flow_size(flow);
         double complex *mean = map->mean + (size_t)k * (size_t)r->n_read;
         for (int m = 0; m < r->n_read; m++) {
             double complex sum = 0.0;
@@ -152,7 +147,7 @@ static double complex at_end(const struct dalcs_periodic_response *r,
     const size_t at = (size_t)(l->n_nodes - 1) * (size_t)l->stride + (size_t)row;
     double complex sum = phase * map->driven[at];
     for (int k = 0; k < flow->n_x; k++) {
-        sum += r->now[k] * map->state[(size_t)k * size_of_answer(flow) + at];
+        sum += r->now[k] * map->state[(size_t)k * dalcs_periodic_flow_size(flow) + at];
     }
     return sum;
 }

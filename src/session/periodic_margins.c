@@ -16,9 +16,11 @@ static double excess(double complex gain, bool of_phase) {
     return of_phase ? cimag(gain) : cabs(gain) - 1.0;
 }
 
-/* The crossing between a and b, by bisection of the frequency. */
-static enum dalcs_status find(struct dalcs_margins *m, bool of_phase, double a, double b,
-                              bool begins_above, double *frequency, double complex *gain) {
+/* The crossing between the last frequency and b, by bisection. */
+static enum dalcs_status find(struct dalcs_margins *m, bool of_phase, double b, double *frequency,
+                              double complex *gain) {
+    const bool begins_above = excess(m->last_gain, of_phase) > 0.0;
+    double a = m->last;
     for (int k = 0; k < MOST_HALVINGS && b > a; k++) {
         const double middle = 0.5 * (a + b);
         if (!(middle > a && middle < b)) {
@@ -43,7 +45,7 @@ static enum dalcs_status look(struct dalcs_margins *m, bool of_phase, double fre
     }
     double at = frequency;
     double complex there = gain;
-    DALCS_TRY(find(m, of_phase, m->last, frequency, began_above, &at, &there));
+    DALCS_TRY(find(m, of_phase, frequency, &at, &there));
     if (of_phase && creal(there) < 0.0) {
         DALCS_TRY(dalcs_grow(&m->reversal, &m->reversal_capacity, m->n_reversals + 1,
                              sizeof *m->reversal));
