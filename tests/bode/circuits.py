@@ -218,5 +218,37 @@ def six_pulse():
                    1 / hertz, 2 * math.pi * hertz)
 
 
-KINDS = {"ccm": lambda: open_loop(True), "dcm": lambda: open_loop(False), "closed_loop": closed_loop,
+def parasitic(jumps):
+    """Beside the switch a snubber, of time constants down to 1e-5 of the period and resonances up to 100 times the
+    clock; or a capacitor alone, which the switch empties at once."""
+    for k in range(10):
+        shape, period = POWER[k % 5], clock(k, 5e3, 1e6)
+        duty = 0.25 + 0.4 * part(k, 1)
+        volts, ohms = between(3, 400, k, 2), between(0.5, 200, k, 3)
+        coil = border(shape, duty, ohms, period) * (3.3 if k % 2 else 0.4)
+        store = between(10, 100, k, 4) * period / ohms
+        elements = power(shape, volts, ohms, coil, store, None)
+        far = "0" if shape.startswith("boost") else ("fin" if shape == "buck_filter" else "in")
+        small = between(1e-3, 3e-2, k, 5) * period / ohms
+        if jumps:
+            elements.append(("cs", "C", ("sw", far), small))
+        else:
+            tau = between(1e-5, 1e-2, k, 6) * period
+            elements += [("rs", "R", ("sw", "sn"), tau / small), ("cs", "C", ("sn", far), small)]
+            if k % 3 == 0:
+                elements = [("s1", "S", (e[2][0], "sx") if e[2][1] == "sw" else ("sx", e[2][1]), e[3])
+                            if e[0] == "s1" else e for e in elements]
+                elements += [("lp", "L", ("sx", "sw"), coil / 3e3), ("rp", "R", ("sx", "sw"), ohms * 3)]
+        ac = ("vctl", "vin")[k % 2]
+        carrier, level, opens, closes = saw(k, period, duty)
+        controls = (f"Vctl ctl 0 DC {level!r}{' AC 1' if ac == 'vctl' else ''}\n{carrier}"
+                    f"E1 cmp 0 ctl tri 1\nS1 {nodes_of_switch(elements)} cmp 0 sm\n{SWITCH}")
+        by_control = ac == "vctl"
+        ends = {("s1", "off"): ("ramp", opens) if opens and by_control else None,
+                ("s1", "on"): ("ramp", closes) if closes and by_control else None}
+        yield Case(f"{'jumping' if jumps else 'stiff'}_{k}", elements, controls, ends, ac,
+                   ("out", "sw", "l1") if jumps else ("out", "sw", "l1", "sn"), period)
+
+
+KINDS = {"stiff": lambda: parasitic(False), "jumping": lambda: parasitic(True), "ccm": lambda: open_loop(True), "dcm": lambda: open_loop(False), "closed_loop": closed_loop,
          "peak_current": peak_current, "llc": llc, "six_pulse": six_pulse}

@@ -19,7 +19,7 @@ import circuits
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import dalcs_program  # pylint: disable=wrong-import-position,import-error
 
-TOLERANCE = 1e-6
+TOLERANCE = 1e-7
 N_FREQUENCIES = 20
 # All others are 0 in a circuit whose halves, or sixths, of a period are alike.
 SIDEBANDS = {"llc": (-2, 2, 4), "six_pulse": (-6, 6, 12)}
