@@ -263,7 +263,7 @@ struct dalcs_plot {
 };
 
 /* Receives results while they are made: for each analysis begin, rows, end, in this order: .op, .dc,
- * .ac, .pss, .tran; with .step all steps of an analysis before the next analysis. Any
+ * .pss, .ac, .tran; with .step all steps of an analysis before the next analysis. Any
  * callback may be NULL, or return a status other than DALCS_OK, which ends the run with that
  * status; end is then not called. */
 struct dalcs_sink {

@@ -40,6 +40,9 @@ static enum dalcs_status refuse_frequency(const struct dalcs_periodic_ac *a, dou
 static enum dalcs_status solve(struct dalcs_periodic_ac *a, double frequency) {
     for (int k = 0; k < a->n_parts; k++) {
         struct dalcs_periodic_ac_part *p = &a->part[k];
+        if (p->rests) {
+            continue;
+        }
         const enum dalcs_status status =
             dalcs_periodic_response_at(&p->response, two_pi * frequency, a->sideband);
         if (status == DALCS_SINGULAR) {
@@ -178,10 +181,15 @@ static enum dalcs_status part_setup(struct dalcs_periodic_ac *a, int k, double f
     if (!complete) {
         return DALCS_E_NOMEM;
     }
+    p->rests = true;
     for (int i = 1; i < s->n_inputs; i++) {
         p->source[i] = dalcs_periodic_loop_source(a, s->stimulus[i]);
         p->s[0][i] = a->sideband == 0 ? creal(p->source[i]) : 0.0;
         p->s[1][i] = a->sideband == 0 ? cimag(p->source[i]) : 0.0;
+        p->rests = p->rests && p->source[i] == 0.0;
+    }
+    if (p->rests) {
+        return DALCS_OK;
     }
     mark_read(a, k, is_read);
     DALCS_TRY(

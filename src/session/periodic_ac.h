@@ -11,6 +11,7 @@ struct dalcs_periodic_ac_part {
     struct dalcs_periodic_flow flow;
     struct dalcs_periodic_response response;
     double complex *source; /* [n_inputs] */
+    bool rests;             /* no small signal reaches it, and nothing else is set up */
     double *y[2], *s[2];    /* [n_columns], [n_inputs] re and im; of sidebands sources have none */
 };
 

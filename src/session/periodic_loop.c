@@ -75,7 +75,7 @@ double complex dalcs_periodic_loop_gain(const struct dalcs_periodic_ac *ac) {
     const double complex *y = ac->part[ac->loop.system].response.y;
     double complex v[2] = {0.0, 0.0};
     for (int k = 0; k < 2; k++) {
-        v[k] = ac->loop.column[k] >= 0 ? y[ac->loop.column[k]] : 0.0;
+        v[k] = y != NULL && ac->loop.column[k] >= 0 ? y[ac->loop.column[k]] : 0.0;
     }
     return -v[0] / v[1];
 }

@@ -119,11 +119,33 @@ Iac out 0 0%s
         checker.check(off <= 1e-9 * abs(own) + 1e-13 * largest, f"output at {frequency}: {values} for {own}")
 
 
+def parts(checker, program, folder):
+    """A part that no small signal reaches is 0, though a floating charge of its own has a multiplier of 1, which at the
+    clock's frequency would have no answer."""
+    text = """Two parts
+V1 a 0 PULSE(0 1 0 0 0 4u 10u)
+R1 a b 1k
+C1 b m 1n
+C2 m 0 1n
+Vin in 0 12 AC 2 90
+R2 in out 1k
+C3 out 0 1n
+.save v(b) v(out) v(in)
+.ac list 100k 159154.943091895
+.pss uic
+"""
+    done, _, rows = response(program, folder, text)
+    checker.check(done.returncode == 0, done.stderr)
+    for frequency, values in rows:
+        own = 2j / (1 + 2j * math.pi * frequency * 1e-6)
+        checker.check(abs(values["v(out)"] - own) < 1e-12 and values["v(b)"] == 0, f"parts: {values} for {own}")
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = dalcs_program.Checker("loop")
     with tempfile.TemporaryDirectory() as name:
-        for look in (margins, rows_of_gain, compare_designs, impedances):
+        for look in (margins, rows_of_gain, compare_designs, impedances, parts):
             look(checker, program, pathlib.Path(name))
     return checker.finish()
 
