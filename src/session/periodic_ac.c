@@ -259,7 +259,7 @@ static void report(struct dalcs_periodic_ac *a) {
             "the response is not exact: the mode is not known all the time, an event only "
             "touches its threshold, or commands at one time move apart");
     }
-    if (s->report.steady.present && !s->report.steady.stable) {
+    if (s->report.steady.present && dalcs_steady_is_unstable(&s->report)) {
         dalcs_diag_add(&s->diag, DALCS_WARNING, &s->circuit.ac.where, NULL,
                        "the orbit is unstable: this is the response around it, which no run and no "
                        "analyser would show");

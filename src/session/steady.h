@@ -146,6 +146,9 @@ enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) DALCS_MUST_C
 /* Multipliers, verdict and messages into the report. */
 enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) DALCS_MUST_CHECK;
 
+/* Does a small difference grow? What no period changes does not. */
+bool dalcs_steady_is_unstable(const struct dalcs_report *report);
+
 /* "v(c1)", "i(l1)": a state by its number; NULL when out of memory. */
 const char *dalcs_steady_name(struct dalcs_steady *st, int state);
 
