@@ -86,6 +86,9 @@ enum dalcs_status dalcs_session_set_dialect(struct dalcs_session *session,
  * any analysis itself. DALCS_E_OPTION: a netlist was read. */
 enum dalcs_status dalcs_session_ask_steady(struct dalcs_session *session) DALCS_MUST_CHECK;
 
+/* The same of the response around a steady state (dalcs_run_options.bode). */
+enum dalcs_status dalcs_session_ask_response(struct dalcs_session *session) DALCS_MUST_CHECK;
+
 /* Asks, before a netlist is read, for the losses of its .tran from one time to another (s; `to` may be
  * INFINITY, the end of the run), or, where `from` is not a number, over the window of its .losses card, else
  * over all of the run. */
@@ -260,7 +263,7 @@ struct dalcs_plot {
 };
 
 /* Receives results while they are made: for each analysis begin, rows, end, in this order: .op, .dc,
- * .ac, .pss, .tran; with .step all steps of an analysis before the next analysis. Any
+ * .pss, .ac, .tran; with .step all steps of an analysis before the next analysis. Any
  * callback may be NULL, or return a status other than DALCS_OK, which ends the run with that
  * status; end is then not called. */
 struct dalcs_sink {
@@ -345,7 +348,15 @@ struct dalcs_run_options {
 
     bool steady; /* the periodic steady state and nothing else, as if .pss were the only analysis */
     double period; /* s, of it; 0: that of .pss, else it follows from the sources */
+
+    bool bode; /* .ac around the periodic steady state and nothing else, as if there were a .pss */
+    double bode_from, bode_to; /* Hz; 0: those of .ac, else 1e-4 and 1/2 of the orbit's frequency */
+    int bode_points;           /* in each decade; 0: those of .ac, else 20 */
+    const char *loop; /* the V source in a loop whose gain is asked for; NULL: .ac's, else none */
+    int sideband;     /* as dalcs_report.response; 0: .ac's, else none */
 };
+
+enum { DALCS_MOST_SIDEBAND = 1000000 };
 
 /* The values named above, all else 0. Owns nothing. */
 struct dalcs_run_options dalcs_run_options_default(void);
@@ -660,6 +671,24 @@ struct dalcs_report {
             double average, rms;
         } * signal; /* [n_signals] over the period, exact */
     } steady;
+
+    /* Of .ac around it (doc/bode.md). */
+    struct {
+        bool present;
+        double period; /* s, of the orbit */
+        int sideband;  /* rows are of the components so many orbit's frequencies higher */
+        bool
+            exact; /* no step of implicit Euler, nothing slides, no commands at one time that move apart */
+        double tail; /* what polynomials of its pieces leave out at most, over what they are of */
+        const char *loop; /* the source in the loop; NULL: none was asked for */
+        size_t n_crossovers, n_reversals;
+
+        const struct dalcs_margin {
+            double frequency; /* Hz */
+            double margin;    /* deg where the gain is 1, dB where the phase is 180 deg */
+        } * crossover,        /* [n_crossovers] */
+            *reversal;        /* [n_reversals] */
+    } response;
 };
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */

@@ -144,6 +144,12 @@ struct dalcs_transient {
     struct dalcs_location where;
 };
 
+/* What .ac asks for around a periodic orbit. */
+struct dalcs_orbit_ac_card {
+    const char *loop; /* the V source in a loop whose gain is asked for; NULL: none */
+    int sideband;     /* rows are of the components so many frequencies of the orbit higher */
+};
+
 /* What .pss asks for; times in s. */
 struct dalcs_periodic_card {
     bool present;
@@ -194,7 +200,8 @@ struct dalcs_circuit {
     int n_dc;                       /* of .dc, the innermost first; 0: there is none */
     struct dalcs_sweep dc[DALCS_MOST_DC];
     struct dalcs_sweep ac; /* frequencies of .ac in Hz; n is 0 without one */
-    int n_steps;           /* of .step, the innermost first */
+    struct dalcs_orbit_ac_card orbit_ac;
+    int n_steps; /* of .step, the innermost first */
     struct dalcs_sweep *step;
 
     struct dalcs_circuit_options {

@@ -12,7 +12,8 @@
 /* ---- Potentials --------------------------------------------------------------------------------- */
 
 static bool is_free(const struct dalcs_builder *builder) {
-    return builder->dc != NULL || builder->ac != NULL || builder->netlist->n_script_lines > 0;
+    return builder->dc != NULL || builder->ac != NULL || builder->netlist->n_script_lines > 0 ||
+           builder->netlist->asks_response;
 }
 
 /* Breadth first along V sources: end e of device i has the number 2 i + e, and 1. */

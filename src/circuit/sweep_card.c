@@ -339,6 +339,49 @@ static void read_frequencies(struct dalcs_reader *reader, struct dalcs_sweep *f)
     f->stop = f->list[f->n - 1];
 }
 
+static bool read_loop(struct dalcs_reader *reader) {
+    struct dalcs_builder *builder = reader->builder;
+    const struct dalcs_token *name;
+    if (!dalcs_reader_name(reader, "a voltage source", &name)) {
+        return false;
+    }
+    builder->circuit->orbit_ac.loop = keep_text(builder, name->text);
+    return true;
+}
+
+static bool read_sideband(struct dalcs_reader *reader) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    double value;
+    if (!dalcs_reader_list_number(reader, DALCS_PLAIN, "a number", &value)) {
+        return false;
+    }
+    if (!(value >= -DALCS_MOST_SIDEBAND && value <= DALCS_MOST_SIDEBAND) ||
+        value != (double)(int)value) {
+        dalcs_builder_error(reader->builder, token, AC_USAGE,
+                            "a sideband is a whole number, at most %d of them away",
+                            (int)DALCS_MOST_SIDEBAND);
+        return false;
+    }
+    reader->builder->circuit->orbit_ac.sideband = (int)value;
+    return true;
+}
+
+/* loop=NAME, sideband=K, or nothing more. False after a message. */
+static bool read_orbit_words(struct dalcs_reader *reader) {
+    for (bool ok = true; ok;) {
+        const bool is_loop = dalcs_reader_take_word(reader, "loop");
+        if (!is_loop && !dalcs_reader_take_word(reader, "sideband")) {
+            return true;
+        }
+        if (!dalcs_reader_take(reader, DALCS_TOKEN_EQUAL)) {
+            dalcs_reader_missing(reader, "'='");
+            return false;
+        }
+        ok = is_loop ? read_loop(reader) : read_sideband(reader);
+    }
+    return false;
+}
+
 void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card *card) {
     struct dalcs_sweep *f = &builder->circuit->ac;
     struct dalcs_reader reader = dalcs_reader_start(builder, card, AC_USAGE);
@@ -348,6 +391,9 @@ void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card
     f->where = dalcs_builder_keep_location(builder, card->token);
     f->name = f->label = "frequency";
     f->device = -1;
+    if (!read_orbit_words(&reader)) {
+        return;
+    }
     if (dalcs_reader_take_word(&reader, "list")) {
         read_frequencies(&reader, f);
         return;
@@ -367,7 +413,7 @@ void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card
     }
     const struct dalcs_token *stop = dalcs_reader_peek(&reader, 0);
     if (!dalcs_reader_list_number(&reader, DALCS_HERTZ, "a frequency", &f->stop) ||
-        !dalcs_reader_end(&reader)) {
+        !read_orbit_words(&reader) || !dalcs_reader_end(&reader)) {
         return;
     }
     if (!(n >= 1.0) || n != (double)(long)n || n > DALCS_SWEEP_MOST) {
@@ -458,7 +504,7 @@ void dalcs_sweep_check(struct dalcs_builder *builder) {
             return;
         }
     }
-    bool has_ac = circuit->ac.n == 0;
+    bool has_ac = circuit->ac.n == 0 || circuit->orbit_ac.loop != NULL;
     for (int k = 0; k < circuit->n_stimuli && !has_ac; k++) {
         has_ac = circuit->stimulus[k].ac_real != 0.0 || circuit->stimulus[k].ac_imaginary != 0.0;
     }

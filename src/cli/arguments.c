@@ -31,7 +31,12 @@ enum {
     ASCII,
     SPLIT_STEPS,
     AUDIT,
-    PERIOD
+    PERIOD,
+    FROM,
+    TO,
+    POINTS,
+    LOOP,
+    SIDEBAND
 };
 
 static const struct option option[] = {
@@ -56,6 +61,11 @@ static const struct option option[] = {
     {"ascii", no_argument, NULL, ASCII},
     {"split-steps", no_argument, NULL, SPLIT_STEPS},
     {"period", required_argument, NULL, PERIOD},
+    {"from", required_argument, NULL, FROM},
+    {"to", required_argument, NULL, TO},
+    {"points", required_argument, NULL, POINTS},
+    {"loop", required_argument, NULL, LOOP},
+    {"sideband", required_argument, NULL, SIDEBAND},
     {"quiet", no_argument, NULL, 'q'},
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
@@ -175,17 +185,59 @@ static enum dalcs_status parse_audit(struct dalcs_arguments *arguments, const st
 
 static enum dalcs_status parse_period(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *text) {
-    if (!arguments->steady) {
-        dalcs_cli_error(cli, "--period is one of 'dalcs steady'");
+    if (!arguments->steady && !arguments->bode) {
+        dalcs_cli_error(cli, "--period is one of 'dalcs steady' and 'dalcs bode'");
         return DALCS_E_OPTION;
     }
     return dalcs_verb_take_positive(cli, "--period", text, &arguments->period);
 }
 
+static enum dalcs_status parse_sideband(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli, const char *text) {
+    DALCS_TRY(parse_number(cli, "--sideband", text, &arguments->sideband));
+    if (!(fabs(arguments->sideband) <= DALCS_MOST_SIDEBAND) ||
+        arguments->sideband != rint(arguments->sideband)) {
+        dalcs_cli_error(cli, "--sideband: '%s' is no whole number, at most %d of them away", text,
+                        (int)DALCS_MOST_SIDEBAND);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+/* The options of `dalcs bode` alone. */
+static enum dalcs_status take_bode(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
+                                   int code) {
+    if (!arguments->bode) {
+        int k = 0;
+        while (option[k].val != code) {
+            k++;
+        }
+        dalcs_cli_error(cli, "--%s is one of 'dalcs bode'", option[k].name);
+        return DALCS_E_OPTION;
+    }
+    switch (code) {
+    case FROM:
+        return dalcs_verb_take_positive(cli, "--from", optarg, &arguments->bode_from);
+    case TO:
+        return dalcs_verb_take_positive(cli, "--to", optarg, &arguments->bode_to);
+    case POINTS:
+        return dalcs_verb_take_count(cli, "--points", optarg, &arguments->bode_points);
+    case LOOP:
+        arguments->loop = optarg;
+        return DALCS_OK;
+    default:
+        return parse_sideband(arguments, cli, optarg);
+    }
+}
+
+static const char *verb_of(const struct dalcs_arguments *arguments) {
+    return arguments->steady ? "steady" : arguments->bode ? "bode" : "run";
+}
+
 /* FROM:TO, either of which may be left out; NULL: the netlist's window. */
 static enum dalcs_status parse_losses(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli, const char *text) {
-    if (arguments->steady) {
+    if (arguments->steady || arguments->bode) {
         dalcs_cli_error(cli, "--losses is one of 'dalcs run'");
         return DALCS_E_OPTION;
     }
@@ -219,7 +271,7 @@ static enum dalcs_status parse_losses(struct dalcs_arguments *arguments,
 
 static enum dalcs_status parse_losses_plot(struct dalcs_arguments *arguments,
                                            const struct dalcs_cli *cli, const char *path) {
-    if (arguments->steady) {
+    if (arguments->steady || arguments->bode) {
         dalcs_cli_error(cli, "--losses-plot is one of 'dalcs run'");
         return DALCS_E_OPTION;
     }
@@ -284,6 +336,12 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return parse_audit(arguments, cli, optarg);
     case PERIOD:
         return parse_period(arguments, cli, optarg);
+    case FROM:
+    case TO:
+    case POINTS:
+    case LOOP:
+    case SIDEBAND:
+        return take_bode(arguments, cli, code);
     case ASCII:
         arguments->ascii = true;
         return DALCS_OK;
@@ -297,7 +355,7 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         arguments->help = true;
         return DALCS_OK;
     default:
-        return dalcs_verb_refuse(cli, arguments->steady ? "steady" : "run", option, code, argv);
+        return dalcs_verb_refuse(cli, verb_of(arguments), option, code, argv);
     }
 }
 
@@ -339,8 +397,10 @@ static enum dalcs_status add_defaults(struct dalcs_arguments *arguments,
 
 enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
                                         const struct dalcs_cli *cli, int argc, char **argv) {
-    *arguments = (struct dalcs_arguments){
-        .steady = strcmp(argv[0], "steady") == 0, .losses_from = NAN, .losses_to = INFINITY};
+    *arguments = (struct dalcs_arguments){.steady = strcmp(argv[0], "steady") == 0,
+                                          .bode = strcmp(argv[0], "bode") == 0,
+                                          .losses_from = NAN,
+                                          .losses_to = INFINITY};
     arguments->output = dalcs_alloc((size_t)argc, sizeof *arguments->output);
     if (!arguments->output) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
@@ -363,8 +423,7 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
         status = DALCS_E_OPTION;
     }
     if (status == DALCS_OK && !arguments->help) {
-        status = dalcs_verb_take_netlist(cli, arguments->steady ? "steady" : "run", argc, argv,
-                                         &arguments->netlist);
+        status = dalcs_verb_take_netlist(cli, verb_of(arguments), argc, argv, &arguments->netlist);
         status = status == DALCS_OK ? add_defaults(arguments, cli) : status;
     }
     if (status != DALCS_OK) {

@@ -28,11 +28,16 @@ struct dalcs_arguments {
     bool ascii; /* raw files as text */
     bool batch; /* as ngspice -b: outputs are raw files whatever their names, tables are printed
                         when there is none */
-    const char *log;  /* of -b: where what is printed goes, or NULL */
-    bool steady;      /* the verb is `steady` */
-    double period;    /* s, of it; 0: it follows from the sources */
-    bool split_steps; /* of .step into several plots of a raw file */
-    bool help;        /* asked for: nothing else is set */
+    const char *log;           /* of -b: where what is printed goes, or NULL */
+    bool steady;               /* the verb is `steady` */
+    double period;             /* s, of it; 0: it follows from the sources */
+    bool bode;                 /* the verb is `bode` */
+    double bode_from, bode_to; /* Hz; 0: the netlist's, else those that the orbit has */
+    size_t bode_points;        /* in a decade; 0: likewise */
+    const char *loop;          /* NULL: the netlist's, else none */
+    double sideband;           /* 0: likewise */
+    bool split_steps;          /* of .step into several plots of a raw file */
+    bool help;                 /* asked for: nothing else is set */
 };
 
 /* DALCS_E_OPTION when the command line makes no sense. Messages go to cli->err. */

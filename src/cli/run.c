@@ -2,6 +2,7 @@
 #include "run.h"
 
 #include "arguments.h"
+#include "bode_lines.h"
 #include "losses_chart.h"
 #include "losses_text.h"
 #include "measurements.h"
@@ -118,11 +119,15 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
 
     for (size_t i = 0; i < sizeof option / sizeof option[0]; i++) {
         const bool is_plot = arguments->plot != NULL && strcmp(option[i].name, "--plot") == 0;
-        if (is_plot && arguments->steady) {
+        const bool is_of_steps = i < 3; /* which the search for an orbit takes, too */
+        if (is_plot && (arguments->steady || arguments->bode)) {
             fprintf(cli->err,
                     "dalcs: warning: --plot has no effect: write a file with -o, and draw "
                     "that with 'dalcs plot'\n");
-        } else if (option[i].given &&
+        } else if (option[i].given && arguments->bode && !is_of_steps) {
+            fprintf(cli->err, "dalcs: warning: %s is of waveforms: it has no effect\n",
+                    option[i].name);
+        } else if (option[i].given && !arguments->bode &&
                    (is_plot ? !request->transient
                             : main != DALCS_TRANSIENT && main != DALCS_PERIODIC)) {
             fprintf(cli->err, "dalcs: warning: the netlist has no .tran: %s has no effect\n",
@@ -132,11 +137,13 @@ static void warn_unused(const struct dalcs_cli *cli, const struct dalcs_argument
 }
 
 /* The one that a file with room for one result holds. */
-static enum dalcs_analysis main_analysis(const struct dalcs_request *request, bool steady) {
-    return steady               ? DALCS_PERIODIC
+static enum dalcs_analysis main_analysis(const struct dalcs_request *request,
+                                         const struct dalcs_arguments *arguments) {
+    return arguments->steady    ? DALCS_PERIODIC
+           : arguments->bode    ? DALCS_AC
            : request->transient ? DALCS_TRANSIENT
-           : request->periodic  ? DALCS_PERIODIC
            : request->ac        ? DALCS_AC
+           : request->periodic  ? DALCS_PERIODIC
            : request->dc_sweep  ? DALCS_DC_SWEEP
                                 : DALCS_OPERATING_POINT;
 }
@@ -151,6 +158,7 @@ static void write_summary(const struct run *run, const struct dalcs_arguments *a
     }
     dalcs_summary_write_run(out, report);
     dalcs_steady_lines_write(out, report);
+    dalcs_bode_lines_write(out, report);
     if (status != DALCS_OK) {
         char text[DALCS_QUANTITY_SIZE];
         fprintf(out, "  stopped   at %s: %s\n", dalcs_quantity_write(text, run->time, "s", 6),
@@ -238,6 +246,12 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     options.audit = arguments->audit;
     options.steady = arguments->steady;
     options.period = arguments->period;
+    options.bode = arguments->bode;
+    options.bode_from = arguments->bode_from;
+    options.bode_to = arguments->bode_to;
+    options.bode_points = (int)arguments->bode_points;
+    options.loop = arguments->loop;
+    options.sideband = (int)arguments->sideband;
     options.energy = arguments->report || arguments->energy;
     const struct dalcs_sink sink = {
         .user = run, .begin = begin, .row = row, .end = end, .progress = progress, .rows = rows};
@@ -285,6 +299,9 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     if (status == DALCS_OK && arguments->steady) {
         status = dalcs_session_ask_steady(session);
     }
+    if (status == DALCS_OK && arguments->bode) {
+        status = dalcs_session_ask_response(session);
+    }
     status = status != DALCS_OK ? status
                                 : dalcs_verb_read(session, arguments->netlist, arguments->dialect);
     dalcs_cli_write_messages(cli, session, &n_written, arguments->quiet);
@@ -295,7 +312,7 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
         return status;
     }
     const struct dalcs_request request = dalcs_session_request(session);
-    enum dalcs_analysis main = main_analysis(&request, arguments->steady);
+    enum dalcs_analysis main = main_analysis(&request, arguments);
     struct run run = {.cli = cli};
     status = dalcs_script_look(session, &run.has_script, &main);
     if (status != DALCS_OK) {
@@ -349,7 +366,10 @@ enum dalcs_exit dalcs_cli_run(const struct dalcs_cli *cli, int argc, char **argv
         return dalcs_cli_exit(status);
     }
     if (arguments.help) {
-        fputs(arguments.steady ? dalcs_steady_help : help, cli->out);
+        fputs(arguments.steady ? dalcs_steady_help
+              : arguments.bode ? dalcs_bode_help
+                               : help,
+              cli->out);
     } else {
         status = dalcs_paths_check(cli, &arguments);
     }

@@ -214,6 +214,18 @@ static double fading(const struct dalcs_excitation_function *f, double h, double
     return f->decay == 0.0 ? 1.0 : exp(-f->decay * h * theta);
 }
 
+/* P_degree(2 theta - 1), by the recurrence. */
+static double legendre(int degree, double theta) {
+    double before = 0.0;
+    double now = 1.0;
+    for (int k = 0; k < degree; k++) {
+        double next = ((2 * k + 1) * (2.0 * theta - 1.0) * now - k * before) / (k + 1);
+        before = now;
+        now = next;
+    }
+    return now;
+}
+
 double dalcs_excitation_function_at(const struct dalcs_excitation_function *f, double h,
                                     double theta) {
     switch (f->shape) {
@@ -232,6 +244,8 @@ double dalcs_excitation_function_at(const struct dalcs_excitation_function *f, d
     }
     case DALCS_EXCITATION_BETWEEN:
         return 0.0;
+    case DALCS_EXCITATION_LEGENDRE:
+        return legendre(f->degree, theta);
     }
     return 0.0;
 }
@@ -251,7 +265,7 @@ double dalcs_excitation_missed(const struct dalcs_excitation_function *f,
                                const struct dalcs_collocation *method, double h,
                                const double *value) {
     if (f->shape == DALCS_EXCITATION_LEVEL || f->shape == DALCS_EXCITATION_RAMP ||
-        f->shape == DALCS_EXCITATION_NODE) {
+        f->shape == DALCS_EXCITATION_NODE || f->shape == DALCS_EXCITATION_LEGENDRE) {
         return 0.0;
     }
     if (f->shape == DALCS_EXCITATION_BETWEEN) {

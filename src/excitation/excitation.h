@@ -20,10 +20,12 @@ struct dalcs_excitation_function {
         DALCS_EXCITATION_COSINE, /* exp(-decay h theta) cos(omega h theta) */
         DALCS_EXCITATION_SINE,
         DALCS_EXCITATION_NODE, /* the polynomial that is 1 at node `node` of the method, 0 at the others */
-        DALCS_EXCITATION_BETWEEN /* 0 at all nodes, 1 where polynomials are tested */
+        DALCS_EXCITATION_BETWEEN, /* 0 at all nodes, 1 where polynomials are tested */
+        DALCS_EXCITATION_LEGENDRE /* P_degree(2 theta - 1), of a small signal (periodic_flow.h) */
     } shape;
 
     double decay, omega; /* 1/s */
+    int degree;          /* at most that of a step's polynomials */
     int node;
     const struct dalcs_collocation *method;
 };

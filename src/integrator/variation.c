@@ -1,46 +1,14 @@
 /* variation.c - V through segments and events. */
 #include "variation.h"
 
-#include "guard_values.h"
 #include "quads.h"
 #include "recurrence.h"
+#include "segments_observer.h"
 #include "smooth_step.h"
 #include "step_error.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <string.h>
-
-/* ---- Derivatives --------------------------------------------------------------------------------- */
-
-/* weight[s + 1] such that the derivative by theta of a quantity is the sum of weight * value at node. */
-static void derivative_weights(const struct dalcs_collocation *c, double theta, double *weight) {
-    for (int k = 0; k <= c->s; k++) {
-        weight[k] = 0.0;
-        for (int j = 0; j <= c->s; j++) {
-            double product = j == k ? 0.0 : 1.0 / (c->node[k] - c->node[j]);
-            for (int m = 0; m <= c->s && j != k; m++) {
-                product *=
-                    m == j || m == k ? 1.0 : (theta - c->node[m]) / (c->node[k] - c->node[m]);
-            }
-            weight[k] += product;
-        }
-    }
-}
-
-/* f[n_x] = x' of the columns y in the layout of an answer, at tau into the present segment. */
-static void find_derivative(struct dalcs_variation_part *v, double *y, double tau, double *f) {
-    const struct dalcs_system *s = v->part->component->system;
-    const struct dalcs_osnsp *p = &v->part->component->osnsp;
-    for (int d = 0; d < s->n_pairs; d++) { /* in the place of an open pair's current is its w */
-        y[dalcs_system_n_equations(s) + d] *= dalcs_osnsp_is_on(p, d) ? 1.0 : 0.0;
-    }
-    dalcs_excitation_inputs(&v->part->excitation, v->part->segment.t, tau, v->inputs);
-    for (int x = 0; x < s->n_x; x++) {
-        f[x] = dalcs_csr_row_dot(&s->A, x, y) + dalcs_csr_row_dot(&s->E, x, v->inputs);
-    }
-    (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', v->n_x, 1, v->P, v->n_x, v->pivot, f, v->n_x);
-}
 
 /* ---- Segments ------------------------------------------------------------------------------------ */
 
@@ -69,7 +37,7 @@ static void pass_event(struct dalcs_variation_part *v) {
     v->pending = false;
     const int stride = v->part->stages.layout.stride;
     memcpy(v->y, v->part->segment.out, (size_t)stride * sizeof(double));
-    find_derivative(v, v->y, 0.0, v->after);
+    dalcs_orbit_rates_of(&v->rates, v->y, 0.0, v->after);
     for (int k = 0; k < v->n_x; k++) {
         for (int x = 0; x < v->n_x; x++) {
             v->v[k * v->n_x + x] += (v->before[x] - v->after[x]) * v->guard[k];
@@ -77,26 +45,10 @@ static void pass_event(struct dalcs_variation_part *v) {
     }
 }
 
-/* The row of a guard in an answer. */
-static int row_of(const struct dalcs_radau_part *part, int guard) {
-    const struct dalcs_system *s = part->component->system;
-    return guard < s->n_pairs ? dalcs_system_n_equations(s) + guard
-                              : dalcs_system_n_columns(s) + guard - s->n_pairs;
-}
-
-static double weigh(const struct dalcs_stage_layout *l, const double *weight, const double *out,
-                    int row) {
-    double sum = 0.0;
-    for (int k = 0; k < l->n_nodes; k++) {
-        sum += weight[k] * out[k * l->stride + row];
-    }
-    return sum;
-}
-
 static double size_of(const struct dalcs_variation_part *v, const double *x, const double *less) {
     double size = 0.0;
     for (int i = 0; i < v->n_x; i++) {
-        double at = v->unit[i] * (x[i] - (less != NULL ? less[i] : 0.0));
+        double at = v->rates.unit[i] * (x[i] - (less != NULL ? less[i] : 0.0));
         size += at * at;
     }
     return sqrt(size);
@@ -149,9 +101,9 @@ static enum dalcs_status pass_segment(struct dalcs_variation_part *v, int row, b
             DALCS_TRY(apply(v, entry));
         }
         for (int x = 0; x < v->n_x; x++) {
-            column[x] = weigh(&stages->layout, weight, v->out, x);
+            column[x] = dalcs_orbit_weigh(&stages->layout, weight, v->out, x);
         }
-        v->guard[k] = row >= 0 ? weigh(&stages->layout, weight, v->out, row) : 0.0;
+        v->guard[k] = row >= 0 ? dalcs_orbit_weigh(&stages->layout, weight, v->out, row) : 0.0;
     }
     return DALCS_OK;
 }
@@ -159,9 +111,7 @@ static enum dalcs_status pass_segment(struct dalcs_variation_part *v, int row, b
 /* f- and dt of the event that ends the segment. */
 static void meet_event(struct dalcs_variation_part *v, int row) {
     const struct dalcs_radau_part *part = v->part;
-    double weight[DALCS_MAX_NODES];
-    derivative_weights(part->stages.method, part->segment.end, weight);
-    double rate = weigh(&part->stages.layout, weight, part->segment.out, row) / part->segment.h;
+    double rate = dalcs_orbit_guard_rate(part, row);
     if (rate == 0.0) {
         v->is_exact = false; /* it only touches its threshold */
         return;
@@ -170,7 +120,7 @@ static void meet_event(struct dalcs_variation_part *v, int row) {
         v->guard[k] *= -1.0 / rate;
     }
     dalcs_step_values(part, part->segment.end, v->y);
-    find_derivative(v, v->y, part->segment.end * part->segment.h, v->before);
+    dalcs_orbit_rates_of(&v->rates, v->y, part->segment.end * part->segment.h, v->before);
     v->pending = true;
 }
 
@@ -185,7 +135,7 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
     dalcs_recurrence_complete(v->part);
     const struct dalcs_part_guards *g = &present->guards;
     bool ends_at_event = !present->segment.by_euler && g->n_crossed > 0;
-    int row = ends_at_event ? row_of(present, g->crossed[0]) : -1;
+    int row = ends_at_event ? dalcs_orbit_guard_row(present, g->crossed[0]) : -1;
     v->is_exact = v->is_exact && !present->segment.by_euler;
     pass_event(v);
     enum dalcs_status status = pass_segment(v, row, is_new);
@@ -197,41 +147,7 @@ static void segment(void *user, const struct dalcs_radau_part *present, const do
     }
 }
 
-/* ---- What else is told, and is not needed -------------------------------------------------------- */
-
-static void start(void *user, int k, const double *x) {
-    (void)user;
-    (void)k;
-    (void)x;
-}
-
-static void scale(void *user, int k, const struct dalcs_certificate *certificate) {
-    (void)user;
-    (void)k;
-    (void)certificate;
-}
-
-static void step(void *user, int k, const double *x, const double *y, const double *inputs,
-                 double h) {
-    (void)user;
-    (void)k;
-    (void)x;
-    (void)y;
-    (void)inputs;
-    (void)h;
-}
-
-static void jump(void *user, const struct dalcs_euler_jump *of) {
-    (void)user;
-    (void)of;
-}
-
-static void move(void *user, int k, const double *x, const double *after) {
-    (void)user;
-    (void)k;
-    (void)x;
-    (void)after;
-}
+/* ---- What slides is not exact ----------------------------------------------------------------------- */
 
 static double sliding_step(void *user, int k, const double *x, const double *y,
                            const struct dalcs_observed_sides *sides, const double *inputs,
@@ -254,44 +170,14 @@ static void slide(void *user, int k, const double *x, const double *y, double ta
     (void)taken;
 }
 
-static void hold(void *user) {
-    (void)user;
-}
-
 struct dalcs_observer dalcs_variation_observer(struct dalcs_variation *variation) {
-    return (struct dalcs_observer){.user = variation,
-                                   .start = start,
-                                   .scale = scale,
-                                   .step = step,
-                                   .jump = jump,
-                                   .move = move,
-                                   .segment = segment,
-                                   .sliding_step = sliding_step,
-                                   .slide = slide,
-                                   .hold = hold,
-                                   .take_back = hold};
+    struct dalcs_observer observer = dalcs_segments_observer(variation, segment);
+    observer.sliding_step = sliding_step;
+    observer.slide = slide;
+    return observer;
 }
 
 /* ---- Set up -------------------------------------------------------------------------------------- */
-
-/* And in which units energies are alike. */
-static enum dalcs_status factor_P(struct dalcs_variation_part *v, const struct dalcs_system *s) {
-    for (int r = 0; r < s->n_x; r++) {
-        for (int k = s->P.p[r]; k < s->P.p[r + 1]; k++) {
-            v->P[s->P.j[k] * s->n_x + r] += s->P.x[k];
-        }
-    }
-    for (int x = 0; x < s->n_x; x++) {
-        v->unit[x] = 1.0;
-        for (int k = s->storage.p[x]; k < s->storage.p[x + 1]; k++) {
-            bool stores = s->storage.j[k] == x && s->storage.x[k] > 0.0;
-            v->unit[x] = stores ? sqrt(s->storage.x[k]) : v->unit[x];
-        }
-    }
-    int failed =
-        s->n_x == 0 ? 0 : LAPACKE_dgetrf(LAPACK_COL_MAJOR, s->n_x, s->n_x, v->P, s->n_x, v->pivot);
-    return failed == 0 ? DALCS_OK : DALCS_SINGULAR;
-}
 
 static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_variation_part *v,
                                     struct dalcs_radau_part *part) {
@@ -304,25 +190,20 @@ static enum dalcs_status part_setup(struct dalcs_arena *arena, struct dalcs_vari
     v->n_x = part->kind == DALCS_PART_STEPPED ? s->n_x : 0;
     v->is_exact = true;
     v->v = dalcs_arena_alloc(arena, n * n, sizeof(double));
-    v->P = dalcs_arena_alloc(arena, n * n, sizeof(double));
-    v->pivot = dalcs_arena_alloc(arena, n, sizeof(int));
     v->in = dalcs_arena_alloc(arena, (size_t)part->stages.n_in, sizeof(double));
     v->out = dalcs_arena_alloc(arena, n_out, sizeof(double));
-    v->unit = dalcs_arena_alloc(arena, n, sizeof(double));
     v->guard = dalcs_arena_alloc(arena, n, sizeof(double));
     v->before = dalcs_arena_alloc(arena, n, sizeof(double));
     v->after = dalcs_arena_alloc(arena, n, sizeof(double));
-    v->inputs = dalcs_arena_alloc(arena, (size_t)s->n_inputs, sizeof(double));
     v->y = dalcs_arena_alloc(arena, (size_t)dalcs_quads_of(l->stride), sizeof(double));
-    if (v->v == NULL || v->P == NULL || v->pivot == NULL || v->in == NULL || v->out == NULL ||
-        v->guard == NULL || v->unit == NULL || v->before == NULL || v->after == NULL ||
-        v->inputs == NULL || v->y == NULL) {
+    if (v->v == NULL || v->in == NULL || v->out == NULL || v->guard == NULL || v->before == NULL ||
+        v->after == NULL || v->y == NULL) {
         return DALCS_E_NOMEM;
     }
     for (size_t k = 0; k < n; k++) {
         v->v[k * n + k] = 1.0;
     }
-    return factor_P(v, s);
+    return dalcs_orbit_rates_setup(&v->rates, arena, part);
 }
 
 enum dalcs_status dalcs_variation_setup(struct dalcs_variation *variation,

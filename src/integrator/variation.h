@@ -8,18 +8,16 @@
 #ifndef DALCS_VARIATION_H
 #define DALCS_VARIATION_H
 
-#include "radau_state.h"
+#include "orbit_rates.h"
 
 struct dalcs_variation_part {
     struct dalcs_radau_part *part;
     int n_x;
     double *v;                /* [n_x][n_x] column after column */
     double *in, *out, *guard; /* of one column; [n_x] of a guard, then dt */
-    double *P;                /* [n_x][n_x] factored */
-    int *pivot;
-    double *unit;                  /* [n_x] square roots of what states store */
+    struct dalcs_orbit_rates rates;
     double *before, *after;        /* [n_x] f- and f+ */
-    double *inputs, *y;            /* work */
+    double *y;                     /* work */
     bool pending;                  /* an event has just been passed */
     bool is_exact;                 /* no step of implicit Euler, nothing that slides */
     uint64_t signature, last_mode; /* of the modes that followed each other */

@@ -82,6 +82,7 @@ struct dalcs_netlist {
     struct dalcs_losses_request losses;
     bool
         asks_steady; /* a steady state is asked for beside the netlist, which need not ask for anything */
+    bool asks_response; /* and the response around it */
 
     const char *name; /* the file's path, or what read_text was told */
     const char *title;

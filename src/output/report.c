@@ -1,6 +1,7 @@
 /* report.c - struct dalcs_report as JSON. The keys are an interface: see doc/methods.md before
  * changing one. SI units throughout. */
 #include "report.h"
+#include "response_json.h"
 
 #include "json.h"
 #include "losses_json.h"
@@ -346,6 +347,7 @@ void dalcs_report_write(FILE *stream, const struct dalcs_report *report, enum da
     write_losses(&json, report);
     write_energy(&json, report);
     write_steady(&json, report);
+    dalcs_response_json_write(&json, report);
     write_infeasible(&json, report);
     dalcs_json_close(&json, '}');
 }

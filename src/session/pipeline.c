@@ -259,7 +259,11 @@ static enum dalcs_status run_analysis(struct dalcs_run *r, enum dalcs_analysis a
     case DALCS_DC_SWEEP:
         return circuit->n_dc > 0 ? dalcs_dc_sweep_run(r) : DALCS_OK;
     case DALCS_AC:
-        return circuit->ac.n > 0 ? dalcs_small_signal_run(r) : DALCS_OK;
+        if (circuit->ac.n == 0 && !r->options->bode) {
+            return DALCS_OK;
+        }
+        return circuit->periodic.present || r->options->bode ? dalcs_periodic_ac_run(r)
+                                                             : dalcs_small_signal_run(r);
     case DALCS_PERIODIC:
         return circuit->periodic.present || r->options->steady ? dalcs_steady_run(r) : DALCS_OK;
     default:
@@ -308,15 +312,15 @@ static enum dalcs_status run_analyses(struct dalcs_session *session,
     return status;
 }
 
-static const enum dalcs_analysis IN_ORDER[] = {DALCS_OPERATING_POINT, DALCS_DC_SWEEP, DALCS_AC,
-                                               DALCS_PERIODIC, DALCS_TRANSIENT};
+static const enum dalcs_analysis IN_ORDER[] = {DALCS_OPERATING_POINT, DALCS_DC_SWEEP,
+                                               DALCS_PERIODIC, DALCS_AC, DALCS_TRANSIENT};
 
 enum { N_IN_ORDER = sizeof IN_ORDER / sizeof IN_ORDER[0] };
 
 static bool is_asked(const struct dalcs_circuit *circuit, const struct dalcs_run_options *options,
                      enum dalcs_analysis analysis) {
-    if (options->steady) {
-        return analysis == DALCS_PERIODIC;
+    if (options->steady || options->bode) {
+        return analysis == (options->steady ? DALCS_PERIODIC : DALCS_AC);
     }
     const bool asked[] = {[DALCS_OPERATING_POINT] = circuit->operating_point,
                           [DALCS_TRANSIENT] = circuit->transient.present,
@@ -492,7 +496,7 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
         return DALCS_E_NETLIST;
     }
     const struct dalcs_sink complete = completed(sink);
-    if (options->steady) {
+    if (options->steady || options->bode) {
         session->circuit.periodic.present = true; /* as if there were a .pss */
         DALCS_TRY(dalcs_steady_prepare(session));
     }
@@ -500,7 +504,8 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
         return run_steps(session, options, &complete);
     }
     DALCS_TRY(dalcs_operating_currents(session, options, &complete));
-    static const enum dalcs_analysis STEADY = DALCS_PERIODIC;
-    return options->steady ? run_analyses(session, options, &complete, NULL, &STEADY, 1)
-                           : run_analyses(session, options, &complete, NULL, IN_ORDER, N_IN_ORDER);
+    const enum dalcs_analysis alone = options->steady ? DALCS_PERIODIC : DALCS_AC;
+    return options->steady || options->bode
+               ? run_analyses(session, options, &complete, NULL, &alone, 1)
+               : run_analyses(session, options, &complete, NULL, IN_ORDER, N_IN_ORDER);
 }

@@ -145,6 +145,11 @@ enum dalcs_status dalcs_session_ask_steady(struct dalcs_session *session) {
     return DALCS_OK;
 }
 
+enum dalcs_status dalcs_session_ask_response(struct dalcs_session *session) {
+    session->asks_response = session->name == NULL;
+    return dalcs_session_ask_steady(session);
+}
+
 enum dalcs_status dalcs_session_read_file(struct dalcs_session *session, const char *path) {
     char *text;
     size_t length;
@@ -152,7 +157,8 @@ enum dalcs_status dalcs_session_read_file(struct dalcs_session *session, const c
     DALCS_TRY(dalcs_text_file_read(path, INT_MAX, &text, &length, NULL, &session->diag));
     struct dalcs_netlist netlist = {.dialect = session->dialect,
                                     .losses = session->losses,
-                                    .asks_steady = session->asks_steady};
+                                    .asks_steady = session->asks_steady,
+                                    .asks_response = session->asks_response};
     const bool is_system = dalcs_description_is_text(text, length);
     const enum dalcs_status status =
         is_system ? read_system(session, path, text, length)
@@ -169,7 +175,8 @@ enum dalcs_status dalcs_session_read_text(struct dalcs_session *session, const c
     }
     struct dalcs_netlist netlist = {.dialect = session->dialect,
                                     .losses = session->losses,
-                                    .asks_steady = session->asks_steady};
+                                    .asks_steady = session->asks_steady,
+                                    .asks_response = session->asks_response};
     return build(session, &netlist,
                  dalcs_netlist_read_text(&netlist, name, text, length, &session->diag));
 }

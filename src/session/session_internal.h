@@ -19,7 +19,7 @@ struct dalcs_session {
     char *name;
     struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
     struct dalcs_losses_request losses;
-    bool asks_steady;
+    bool asks_steady, asks_response;
     struct dalcs_diag diag;
     struct dalcs_circuit circuit;
     bool has_circuit;
@@ -161,6 +161,12 @@ enum dalcs_status dalcs_steady_prepare(struct dalcs_session *session) DALCS_MUST
 
 /* Runs .pss into r->sink. */
 enum dalcs_status dalcs_steady_run(struct dalcs_run *r) DALCS_MUST_CHECK;
+
+/* DALCS_E_NETLIST and a message where a switch follows a clock, which .ac around an operating point would not see. */
+enum dalcs_status dalcs_commanded_ac_refuse(struct dalcs_run *r) DALCS_MUST_CHECK;
+
+/* Runs .ac around that orbit into r->sink. */
+enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) DALCS_MUST_CHECK;
 
 /* Runs the .tran that starts on such an orbit. */
 enum dalcs_status dalcs_steady_leave(struct dalcs_run *r) DALCS_MUST_CHECK;

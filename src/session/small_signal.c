@@ -417,6 +417,7 @@ static enum dalcs_status setup(struct small_signal *a, const struct dalcs_euler 
 enum dalcs_status dalcs_small_signal_run(struct dalcs_run *r) {
     struct small_signal a = {.run = r};
     struct dalcs_euler e;
+    DALCS_TRY(dalcs_commanded_ac_refuse(r));
     DALCS_TRY(dalcs_euler_setup(&e, &r->s->circuit, &r->s->network, &r->osnsp, 1.0, 1.0));
     enum dalcs_status status = find_operating_point(r, &e);
     if (status == DALCS_OK) {

@@ -8,6 +8,8 @@
 
 #include "session_internal.h"
 
+struct dalcs_orbit_log;
+
 /* Where the states of the systems lie side by side. */
 struct dalcs_steady_layout {
     int n_systems;
@@ -73,6 +75,12 @@ void dalcs_steady_finish(struct dalcs_steady *st);
 enum dalcs_status dalcs_steady_find_period(struct dalcs_run *r, double asked, bool at_start,
                                            double *period) DALCS_MUST_CHECK;
 
+/* Does it come again and again, by itself? */
+bool dalcs_steady_repeats(const struct dalcs_stimulus *s);
+
+/* The element whose stimulus that is. */
+const char *dalcs_steady_source_name(const struct dalcs_circuit *c, int stimulus);
+
 /* ---- steady_settle.c --------------------------------------------------------------------------- */
 
 /* One that repeats T-periodically becomes what it is from a multiple of T on. */
@@ -102,6 +110,11 @@ void dalcs_steady_take(struct dalcs_steady *st);
 enum dalcs_status dalcs_steady_start(const struct dalcs_orbit_point *point, struct dalcs_euler *e,
                                      struct dalcs_radau *radau) DALCS_MUST_CHECK;
 
+/* One period from st->at, which the log is told of. */
+enum dalcs_status dalcs_steady_log(struct dalcs_steady *st, struct dalcs_euler *e,
+                                   struct dalcs_radau *radau,
+                                   struct dalcs_orbit_log *log) DALCS_MUST_CHECK;
+
 /* Where the components are that have been evaluated. */
 void dalcs_steady_read(const struct dalcs_euler *e, struct dalcs_orbit_point *point);
 
@@ -118,10 +131,23 @@ enum dalcs_status dalcs_steady_newton(struct dalcs_steady *st) DALCS_MUST_CHECK;
 enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found,
                                       bool *endless) DALCS_MUST_CHECK;
 
+/* ---- periodic_ac.c ----------------------------------------------------------------------------- */
+
+/* .ac around the orbit through st->at, into the run's sink. */
+enum dalcs_status dalcs_periodic_ac_walk(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
+/* ---- steady_run.c ------------------------------------------------------------------------------ */
+
+/* Is a run of a period that has just ended, in st->then, where it began? Else DALCS_NOT_CONVERGED and a message. */
+enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
 /* ---- steady_report.c --------------------------------------------------------------------------- */
 
 /* Multipliers, verdict and messages into the report. */
 enum dalcs_status dalcs_steady_report(struct dalcs_steady *st) DALCS_MUST_CHECK;
+
+/* Does a small difference grow? What no period changes does not. */
+bool dalcs_steady_is_unstable(const struct dalcs_report *report);
 
 /* "v(c1)", "i(l1)": a state by its number; NULL when out of memory. */
 const char *dalcs_steady_name(struct dalcs_steady *st, int state);

@@ -1,6 +1,7 @@
 /* steady_pass.c - a run of some periods from a given point. */
 #include "steady.h"
 
+#include "orbit_log.h"
 #include "radau.h"
 #include "steady_means.h"
 #include "variation.h"
@@ -177,6 +178,20 @@ enum dalcs_status dalcs_steady_pass(struct dalcs_steady *st, long n,
         dalcs_steady_find_residual(st);
     }
     return status;
+}
+
+enum dalcs_status dalcs_steady_log(struct dalcs_steady *st, struct dalcs_euler *e,
+                                   struct dalcs_radau *radau, struct dalcs_orbit_log *log) {
+    struct dalcs_observer observer = dalcs_orbit_log_observer(log);
+    e->observer = &observer;
+    enum dalcs_status status = dalcs_steady_start(&st->at, e, radau);
+    status = status == DALCS_OK ? go(radau, st->run, NULL) : status;
+    status = status == DALCS_OK ? log->status : status;
+    e->observer = NULL;
+    if (status == DALCS_OK) {
+        read_point(st, radau);
+    }
+    return status == DALCS_OK ? dalcs_orbit_log_close(log, st->period) : status;
 }
 
 void dalcs_steady_take(struct dalcs_steady *st) {

@@ -35,7 +35,7 @@ struct clocks {
 
 /* ---- One source ---------------------------------------------------------------------------------- */
 
-static const char *name_of(const struct dalcs_circuit *c, int stimulus) {
+const char *dalcs_steady_source_name(const struct dalcs_circuit *c, int stimulus) {
     const char *name = "a formula";
     for (int i = 0; i < c->n_devices; i++) {
         const struct dalcs_behaviour *b = c->device[i].behaviour;
@@ -78,6 +78,14 @@ static double own_period(const struct dalcs_stimulus *s) {
     default:
         return 0.0;
     }
+}
+
+bool dalcs_steady_repeats(const struct dalcs_stimulus *s) {
+    bool repeats = s->kind == DALCS_STIMULUS_TONES || (!is_level(s) && own_period(s) > 0.0);
+    for (int k = 0; s->kind == DALCS_STIMULUS_FORMULA && k < s->u.formula.argument.n; k++) {
+        repeats = repeats || dalcs_steady_repeats(s->u.formula.argument.part[k].of);
+    }
+    return repeats;
 }
 
 static double delay_of(const struct dalcs_stimulus *s) {
@@ -163,7 +171,7 @@ static int count_clocks(const struct dalcs_stimulus *s) {
 static enum dalcs_status look_at(struct clocks *c, int stimulus) {
     struct dalcs_circuit *circuit = &c->run->s->circuit;
     struct dalcs_stimulus *s = &circuit->stimulus[stimulus];
-    const char *name = name_of(circuit, stimulus);
+    const char *name = dalcs_steady_source_name(circuit, stimulus);
     if (is_level(s)) {
         return DALCS_OK;
     }

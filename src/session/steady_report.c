@@ -103,6 +103,11 @@ static size_t count_lasting(const struct dalcs_floquet *m, size_t n) {
 
 /* ---- Verdict ------------------------------------------------------------------------------------- */
 
+bool dalcs_steady_is_unstable(const struct dalcs_report *report) {
+    const struct dalcs_floquet *m = report->steady.multiplier;
+    return report->steady.n_multipliers > 0 && hypot(m[0].re, m[0].im) > 1.0 + near_one;
+}
+
 static const char *verdict_of(struct dalcs_steady *st, const struct dalcs_floquet *m, size_t n) {
     struct dalcs_arena *arena = &st->run->s->arena;
     const double size = n > 0 ? hypot(m[0].re, m[0].im) : 0.0;

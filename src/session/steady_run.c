@@ -88,7 +88,7 @@ static enum dalcs_status tell_failure(struct dalcs_steady *st, bool endless) {
 /* ---- The period ---------------------------------------------------------------------------------- */
 
 /* Is the run that has just ended, in st->then, where it began? */
-static enum dalcs_status find_defect(struct dalcs_steady *st) {
+enum dalcs_status dalcs_steady_find_defect(struct dalcs_steady *st) {
     struct dalcs_session *s = st->run->s;
     dalcs_steady_find_residual(st);
     s->report.steady.defect = st->residual;
@@ -114,7 +114,7 @@ static enum dalcs_status run_period(struct dalcs_steady *st) {
     r->orbit = NULL;
     r->orbit_end = NULL;
     r->options = options;
-    return status == DALCS_OK ? find_defect(st) : status;
+    return status == DALCS_OK ? dalcs_steady_find_defect(st) : status;
 }
 
 /* ---- What the circuit is meanwhile --------------------------------------------------------------- */
@@ -175,6 +175,9 @@ static enum dalcs_status find_orbit(struct dalcs_run *r, bool leaves, struct dal
     if (!found) {
         return tell_failure(st, endless);
     }
+    if (r->s->report.steady.present) { /* its .pss has told */
+        return DALCS_OK;
+    }
     DALCS_TRY(dalcs_steady_newton(st)); /* how far it may be off, and what is conserved */
     DALCS_TRY(dalcs_steady_pass(st, 1, DALCS_STEADY_MEANS));
     return dalcs_steady_report(st);
@@ -198,6 +201,58 @@ enum dalcs_status dalcs_steady_run(struct dalcs_run *r) {
     DALCS_TRY(keep(r, &kept));
     enum dalcs_status status = find_orbit(r, false, &st);
     status = status == DALCS_OK ? run_period(&st) : status;
+    put_back(r, &kept, true);
+    free(kept.stimulus);
+    dalcs_steady_finish(&st);
+    return status;
+}
+
+static enum dalcs_status no_plot(void *user, const struct dalcs_plot *plot) {
+    (void)user;
+    (void)plot;
+    return DALCS_OK;
+}
+
+static enum dalcs_status no_row(void *user, double time, const double *value) {
+    (void)user;
+    (void)time;
+    (void)value;
+    return DALCS_OK;
+}
+
+static enum dalcs_status no_end(void *user) {
+    (void)user;
+    return DALCS_OK;
+}
+
+/* A period whose rows nobody has asked for is checked as any other. */
+static enum dalcs_status check_period(struct dalcs_steady *st) {
+    struct dalcs_run *r = st->run;
+    const struct dalcs_sink *sink = r->sink;
+    const struct dalcs_sink silent = {.user = sink->user,
+                                      .begin = no_plot,
+                                      .row = no_row,
+                                      .end = no_end,
+                                      .progress = sink->progress};
+    r->sink = &silent;
+    const enum dalcs_status status = run_period(st);
+    r->sink = sink;
+    return status;
+}
+
+enum dalcs_status dalcs_periodic_ac_run(struct dalcs_run *r) {
+    if (r->s->circuit.n_smooth > 0) { /* its maps are linear (periodic_flow.h) */
+        return refuse(r, "inject a small sine in .tran instead",
+                      "the response around a periodic orbit is not available where formulas have "
+                      "products or functions");
+    }
+    struct dalcs_steady st = {0};
+    struct kept kept;
+    const bool is_checked = r->s->report.steady.present;
+    DALCS_TRY(keep(r, &kept));
+    enum dalcs_status status = find_orbit(r, false, &st);
+    status = status == DALCS_OK && !is_checked ? check_period(&st) : status;
+    status = status == DALCS_OK ? dalcs_periodic_ac_walk(&st) : status;
     put_back(r, &kept, true);
     free(kept.stimulus);
     dalcs_steady_finish(&st);

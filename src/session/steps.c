@@ -68,7 +68,8 @@ enum dalcs_status dalcs_session_build(struct dalcs_session *session,
         status = dalcs_source_conflicts(circuit, &diag);
         if (status == DALCS_OK) {
             const struct dalcs_network_options options = {
-                .silent = true, .with_readout = dalcs_circuit_has_waves(circuit)};
+                .silent = true,
+                .with_readout = dalcs_circuit_has_waves(circuit) || session->asks_steady};
             status = dalcs_network_build(network, circuit, &options, &diag);
         }
         if (status != DALCS_OK) {

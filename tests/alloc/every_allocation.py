@@ -278,6 +278,26 @@ C3 m 0 1u
 .pss step=1u uic
 .end
 """, 0),
+    "response": ("""The gain of a loop around an orbit in discontinuous conduction, and a part without memory
+Vin in 0 12
+Vtri tri 0 PULSE(0 1 0 10u 0 0 10u)
+E1 cmp 0 ctl tri 1
+S1 in sw cmp 0 sm
+D1 0 sw
+L1 sw out 10u
+C1 out 0 10u
+R1 out 0 50
+Vl out fb 0
+Vref ref 0 0.5
+E2 ctl 0 ref fb 0.02
+.model sm SW(Ron=0 Vt=0)
+Va x 0 1
+Ra x 0 1
+.save v(out) v(x)
+.pss step=1u uic
+.ac dec 1 1k 100k loop=vl sideband=1
+.end
+""", 0),
     "refused": ("""A diode across a source
 V1 1 0 PWL(0 -1 1m 1)
 D1 1 0

@@ -6,7 +6,7 @@ nothing to do.
 usage: against_schema.py PROGRAM SOURCE_ROOT
 
 The schema allows no key that it does not describe, and no word where a number belongs: a NaN in a
-report fails. What src/output/report.c and losses_json.c write must be all that the schema has, and nothing else.
+report fails. What src/output/report.c, losses_json.c and response_json.c write must be all that the schema has, and nothing else.
 """
 
 import json
@@ -177,7 +177,7 @@ def main():
     schema = json.loads((root / "doc" / "report.schema.json").read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
     source = "".join((root / "src" / "output" / name).read_text(encoding="utf-8")
-                     for name in ("report.c", "losses_json.c"))
+                     for name in ("report.c", "losses_json.c", "response_json.c"))
     netlists = sorted((root / "netlists").glob("**/*.cir")) + sorted(
         (root / "tests" / "reference").glob("*.cir"))
     with tempfile.TemporaryDirectory() as name:
@@ -196,6 +196,11 @@ def main():
         for netlist in sorted((root / "tests" / "steady" / "cases").glob("*.cir")):
             if netlist.stem not in ("two_clocks", "buck_hyst"):  # which are refused before a run
                 reports.run(netlist, "auto")
+        loop = reports.folder / "loop.cir"
+        text = (root / "tests" / "steady" / "cases" / "buck_vm.cir").read_text(encoding="utf-8")
+        loop.write_text(text.replace("\n.end", "\n.ac dec 5 100 500k loop=vinj\n"), encoding="utf-8")
+        report = reports.run(loop, "auto")[1].get("response", {})
+        check(report.get("crossovers"), f"no margins: {report}")
         for name, (text, status, kind) in MADE.items():
             reports.made(name, text, status, kind)
         for method in METHODS:

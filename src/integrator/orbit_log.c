@@ -1,0 +1,289 @@
+/* orbit_log.c - segments of a run joined to spans of one mode, and their ends. */
+#include "orbit_log.h"
+
+#include "quads.h"
+#include "recurrence.h"
+#include "segments_observer.h"
+#include "step_error.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A control that differs by more than this part of its terms on the two sides of a time jumps there. */
+static const double jumps = 1e-9;
+
+/* So far before a time, over it, a piece of a source is asked for that ends there. */
+static const double before = 1e-12;
+
+/* Two commands at one time move alike if they do to this part. */
+static const double alike = 1e-9;
+
+/* ---- Commands ------------------------------------------------------------------------------------ */
+
+static double slope_of(const struct dalcs_stimulus *s, double t, struct dalcs_stimulus_term *term) {
+    struct dalcs_stimulus_piece piece = {.term = term};
+    dalcs_stimulus_course_at(s, t * (1.0 - before), &piece);
+    double slope = piece.slope;
+    for (int k = 0; k < piece.n_terms; k++) {
+        slope += term[k].omega * term[k].sine - term[k].decay * term[k].cosine;
+    }
+    return slope;
+}
+
+/* dt of the command of a pair that moves at t > 0, of the AC values of its sources. */
+static void find_command(const struct dalcs_radau_part *part, int pair, double t, double *dt) {
+    const struct dalcs_control *control = &part->commands.control;
+    const struct dalcs_csr *a = &part->component->system->direct_control;
+    double left = dalcs_control_value(control, pair, t * (1.0 - before), DALCS_LEFT);
+    double right = dalcs_control_value(control, pair, t, DALCS_RIGHT);
+    double size = 0.0;
+    double slope = 0.0;
+    double moved[2] = {0.0, 0.0};
+    for (int k = a->p[pair]; k < a->p[pair + 1]; k++) {
+        const struct dalcs_stimulus *s = dalcs_control_stimulus(control, a->j[k]);
+        if (s != NULL) {
+            size += fabs(a->x[k] * dalcs_stimulus_value(s, t, DALCS_RIGHT));
+            slope += a->x[k] * slope_of(s, t, control->term);
+            moved[0] += a->x[k] * s->ac_real;
+            moved[1] += a->x[k] * s->ac_imaginary;
+        }
+    }
+    bool is_edge = fabs(left - right) > jumps * size || slope == 0.0;
+    dt[0] = is_edge ? 0.0 : -moved[0] / slope;
+    dt[1] = is_edge ? 0.0 : -moved[1] / slope;
+}
+
+static void take_command(struct dalcs_orbit_part *p, struct dalcs_orbit_span *span, int pair,
+                         double t, bool *any) {
+    double dt[2];
+    find_command(p->rates.part, pair, t, dt);
+    if (!*any) {
+        span->moved[0] = dt[0];
+        span->moved[1] = dt[1];
+        *any = true;
+        return;
+    }
+    double off = hypot(dt[0] - span->moved[0], dt[1] - span->moved[1]);
+    if (off > alike * hypot(dt[0], dt[1])) {
+        p->log->is_exact = false;
+    }
+}
+
+/* Those that are due where the segment ends. */
+static void find_commands(struct dalcs_orbit_part *p, struct dalcs_orbit_span *span) {
+    const struct dalcs_commands *c = &p->rates.part->commands;
+    bool any = false;
+    for (int k = 0; k < c->n; k++) {
+        const struct dalcs_command *m = &c->command[k];
+        if (m->moves && m->next <= span->to + p->log->radau->resolution) {
+            take_command(p, span, m->pair, span->to, &any);
+        }
+    }
+}
+
+/* ---- Spans --------------------------------------------------------------------------------------- */
+
+/* What lies before the end of the span is known. */
+static enum dalcs_status meet_end(struct dalcs_orbit_part *p, struct dalcs_orbit_span *span) {
+    const struct dalcs_radau_part *part = p->rates.part;
+    const size_t n_columns = (size_t)dalcs_system_n_columns(part->component->system);
+    span->df = dalcs_arena_alloc(&p->log->arena, (size_t)p->rates.n_x, sizeof(double));
+    span->dy = dalcs_arena_alloc(&p->log->arena, n_columns, sizeof(double));
+    if (span->df == NULL || span->dy == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    dalcs_step_values(part, part->segment.end, p->work_y);
+    dalcs_orbit_rates_of(&p->rates, p->work_y, part->segment.end * part->segment.h, span->df);
+    memcpy(span->dy, p->work_y, n_columns * sizeof(double));
+    p->pending = true;
+    return DALCS_OK;
+}
+
+/* And what lies behind it. Sources alone decide bystanders, which do not jump for an event. */
+static void pass_end(struct dalcs_orbit_part *p, const double *f, const double *y) {
+    const struct dalcs_radau_part *part = p->rates.part;
+    const struct dalcs_bystanders *b = &part->excitation.bystanders;
+    struct dalcs_orbit_span *span = &p->span[p->n - 1];
+    for (int x = 0; x < p->rates.n_x; x++) {
+        span->df[x] -= f[x];
+    }
+    for (int c = 0; c < dalcs_system_n_columns(part->component->system); c++) {
+        span->dy[c] -= y[c];
+    }
+    for (int k = 0; k < b->n; k++) {
+        span->dy[b->column[k]] = 0.0;
+    }
+    p->pending = false;
+}
+
+static enum dalcs_status find_begin(struct dalcs_orbit_part *p, double *f, double *y) {
+    const struct dalcs_radau_part *part = p->rates.part;
+    memcpy(y, part->segment.out, (size_t)part->stages.layout.stride * sizeof(double));
+    dalcs_orbit_rates_of(&p->rates, y, 0.0, f);
+    return DALCS_OK;
+}
+
+static struct dalcs_orbit_span *add_span(struct dalcs_orbit_part *p, const uint64_t *mode) {
+    const size_t words = (size_t)p->rates.part->stages.n_words;
+    if (dalcs_grow(&p->span, &p->capacity, (size_t)p->n + 1, sizeof *p->span) != DALCS_OK) {
+        return NULL;
+    }
+    struct dalcs_orbit_span *span = &p->span[p->n];
+    *span = (struct dalcs_orbit_span){.row = -1};
+    span->mode = dalcs_arena_alloc(&p->log->arena, words, sizeof(*mode));
+    if (span->mode == NULL) {
+        return NULL;
+    }
+    memcpy(span->mode, mode, words * sizeof(*mode));
+    p->n++;
+    return span;
+}
+
+static bool goes_on(const struct dalcs_orbit_part *p, const uint64_t *mode) {
+    const struct dalcs_orbit_span *last = p->n > 0 ? &p->span[p->n - 1] : NULL;
+    return last != NULL && last->df == NULL &&
+           dalcs_mode_is(last->mode, mode, p->rates.part->stages.n_words);
+}
+
+static enum dalcs_status take_segment(struct dalcs_orbit_part *p) {
+    const struct dalcs_radau_part *part = p->rates.part;
+    const uint64_t *mode = part->component->osnsp.mode;
+    if (p->n == 0) {
+        DALCS_TRY(find_begin(p, p->f, p->y));
+    } else if (p->pending) {
+        DALCS_TRY(find_begin(p, p->work_f, p->work_y));
+        pass_end(p, p->work_f, p->work_y);
+    }
+    bool goes = goes_on(p, mode);
+    struct dalcs_orbit_span *span = goes ? &p->span[p->n - 1] : add_span(p, mode);
+    if (span == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    span->from = goes ? span->from : part->segment.t;
+    span->to = part->segment.t_end;
+    p->log->is_exact = p->log->is_exact && !part->segment.by_euler;
+    if (!part->segment.by_euler && part->guards.n_crossed > 0) {
+        int row = dalcs_orbit_guard_row(part, part->guards.crossed[0]);
+        span->rate = dalcs_orbit_guard_rate(part, row);
+        span->row = span->rate != 0.0 ? row : -1;
+        p->log->is_exact = p->log->is_exact && span->row >= 0; /* it only touches its threshold */
+    } else {
+        find_commands(p, span);
+    }
+    bool moves = span->row >= 0 || span->moved[0] != 0.0 || span->moved[1] != 0.0;
+    return moves ? meet_end(p, span) : DALCS_OK;
+}
+
+static void segment(void *user, const struct dalcs_radau_part *present, const double *start) {
+    struct dalcs_orbit_log *log = user;
+    struct dalcs_orbit_part *p = &log->part[present->index];
+    (void)start;
+    if (log->status < DALCS_OK || present->kind != DALCS_PART_STEPPED) {
+        return;
+    }
+    dalcs_recurrence_complete(&log->radau->part[present->index]);
+    enum dalcs_status status = take_segment(p);
+    log->status = status < DALCS_OK ? status : log->status;
+}
+
+static double sliding_step(void *user, int k, const double *x, const double *y,
+                           const struct dalcs_observed_sides *sides, const double *inputs,
+                           double times_h) {
+    struct dalcs_orbit_log *log = user;
+    log->is_exact = false;
+    (void)k;
+    (void)x;
+    (void)y;
+    (void)sides;
+    (void)inputs;
+    (void)times_h;
+    return 0.0;
+}
+
+struct dalcs_observer dalcs_orbit_log_observer(struct dalcs_orbit_log *log) {
+    struct dalcs_observer observer = dalcs_segments_observer(log, segment);
+    observer.sliding_step = sliding_step;
+    return observer;
+}
+
+/* ---- The end ------------------------------------------------------------------------------------- */
+
+/* A command of t = 0 that comes along a ramp is one of t = T, of which the run has seen the other side. */
+static enum dalcs_status find_last_commands(struct dalcs_orbit_part *p) {
+    const struct dalcs_commands *c = &p->rates.part->commands;
+    struct dalcs_orbit_span *last = &p->span[p->n - 1];
+    bool any = false;
+    for (int k = 0; k < c->n; k++) {
+        int pair = c->command[k].pair;
+        if (dalcs_mode_has(p->span[0].mode, pair) != dalcs_mode_has(last->mode, pair)) {
+            take_command(p, last, pair, last->to, &any);
+        }
+    }
+    return last->moved[0] != 0.0 || last->moved[1] != 0.0 ? meet_end(p, last) : DALCS_OK;
+}
+
+static enum dalcs_status close_part(struct dalcs_orbit_part *p, double T) {
+    const struct dalcs_radau_part *part = p->rates.part;
+    if (p->n == 0) { /* nothing steps, nothing changes sides */
+        struct dalcs_orbit_span *span = add_span(p, part->component->osnsp.mode);
+        if (span == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        span->to = T;
+        return DALCS_OK;
+    }
+    p->span[p->n - 1].to = T;
+    if (!p->pending) {
+        DALCS_TRY(find_last_commands(p));
+    }
+    if (p->pending) {
+        pass_end(p, p->f, p->y);
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_orbit_log_close(struct dalcs_orbit_log *log, double T) {
+    for (int k = 0; k < log->n_parts && log->status == DALCS_OK; k++) {
+        log->status = close_part(&log->part[k], T);
+    }
+    return log->status;
+}
+
+/* ---- Set up -------------------------------------------------------------------------------------- */
+
+static enum dalcs_status part_setup(struct dalcs_orbit_log *log, struct dalcs_orbit_part *p,
+                                    const struct dalcs_radau_part *part) {
+    const size_t n_x = (size_t)part->component->system->n_x;
+    const size_t stride = (size_t)dalcs_quads_of(part->stages.layout.stride);
+    p->log = log;
+    p->f = dalcs_arena_alloc(&log->arena, n_x, sizeof(double));
+    p->work_f = dalcs_arena_alloc(&log->arena, n_x, sizeof(double));
+    p->y = dalcs_arena_alloc(&log->arena, stride, sizeof(double));
+    p->work_y = dalcs_arena_alloc(&log->arena, stride, sizeof(double));
+    if (p->f == NULL || p->work_f == NULL || p->y == NULL || p->work_y == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    return dalcs_orbit_rates_setup(&p->rates, &log->arena, part);
+}
+
+enum dalcs_status dalcs_orbit_log_setup(struct dalcs_orbit_log *log, struct dalcs_radau *radau) {
+    *log = (struct dalcs_orbit_log){.radau = radau, .n_parts = radau->n_parts, .is_exact = true};
+    log->part = dalcs_arena_alloc(&log->arena, (size_t)radau->n_parts, sizeof(*log->part));
+    enum dalcs_status status = log->part != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    for (int k = 0; k < radau->n_parts && status == DALCS_OK; k++) {
+        status = part_setup(log, &log->part[k], &radau->part[k]);
+    }
+    if (status != DALCS_OK) {
+        dalcs_orbit_log_finish(log);
+    }
+    return status;
+}
+
+void dalcs_orbit_log_finish(struct dalcs_orbit_log *log) {
+    for (int k = 0; log->part != NULL && k < log->n_parts; k++) {
+        free(log->part[k].span);
+    }
+    dalcs_arena_finish(&log->arena);
+    *log = (struct dalcs_orbit_log){0};
+}

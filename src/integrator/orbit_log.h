@@ -1,0 +1,55 @@
+/* orbit_log.h - a period of a run as what small signals around it need: the modes that follow each other, and what the
+ * events between them do to a perturbation.
+ *
+ * An event whose time moves by dt moves the states behind it by (f- - f+) dt, with the derivatives of the states on
+ * both sides, and gives each signal that jumps there an impulse of (y- - y+) dt. That of the circuit's own, a guard's,
+ * moves by dt = -dg / g'; a command's, where it comes along a ramp of sources, by the same of a small signal on these. */
+#ifndef DALCS_ORBIT_LOG_H
+#define DALCS_ORBIT_LOG_H
+
+#include "orbit_rates.h"
+
+/* One mode, from one change of it to the next. */
+struct dalcs_orbit_span {
+    double from, to; /* s */
+    uint64_t *mode;  /* [n_words] */
+    int row;         /* of the guard in an answer that ends it; -1: none does */
+    double rate;     /* of it, by time */
+    double moved
+        [2]; /* s, re and im: how a command that ends it moves with the AC values of its sources */
+    double *df; /* [n_x] f- - f+; NULL: nothing moves where it ends */
+    double *dy; /* [n_columns] y- - y+ */
+};
+
+struct dalcs_orbit_part {
+    struct dalcs_orbit_log *log;
+    struct dalcs_orbit_rates rates;
+    int n;
+    size_t capacity;
+    struct dalcs_orbit_span *span; /* [n] */
+    bool pending;                  /* what lies behind the last one is not known yet */
+    double *f, *y; /* [n_x], [n_columns] where the period begins; y NULL: nothing was told */
+    double *work_f, *work_y;
+};
+
+struct dalcs_orbit_log {
+    struct dalcs_radau *radau;
+    enum dalcs_status status; /* of what could not be told while the run went on */
+    bool
+        is_exact; /* no step of implicit Euler, no event that only touches, no two commands that move apart */
+    int n_parts;
+    struct dalcs_orbit_part *part; /* [n_parts] */
+    struct dalcs_arena arena;
+};
+
+enum dalcs_status dalcs_orbit_log_setup(struct dalcs_orbit_log *log,
+                                        struct dalcs_radau *radau) DALCS_MUST_CHECK;
+void dalcs_orbit_log_finish(struct dalcs_orbit_log *log);
+
+/* For radau->base->observer. */
+struct dalcs_observer dalcs_orbit_log_observer(struct dalcs_orbit_log *log);
+
+/* After the run of a period of length T: what happens at its end. */
+enum dalcs_status dalcs_orbit_log_close(struct dalcs_orbit_log *log, double T) DALCS_MUST_CHECK;
+
+#endif

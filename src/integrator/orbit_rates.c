@@ -1,0 +1,93 @@
+/* orbit_rates.c - derivatives by time along a run. */
+#include "orbit_rates.h"
+
+#include <lapacke.h>
+#include <math.h>
+
+/* weight[s + 1] such that the derivative by theta of a quantity is the sum of weight * value at node. */
+static void derivative_weights(const struct dalcs_collocation *c, double theta, double *weight) {
+    for (int k = 0; k <= c->s; k++) {
+        weight[k] = 0.0;
+        for (int j = 0; j <= c->s; j++) {
+            double product = j == k ? 0.0 : 1.0 / (c->node[k] - c->node[j]);
+            for (int m = 0; m <= c->s && j != k; m++) {
+                product *=
+                    m == j || m == k ? 1.0 : (theta - c->node[m]) / (c->node[k] - c->node[m]);
+            }
+            weight[k] += product;
+        }
+    }
+}
+
+void dalcs_orbit_rates_of(const struct dalcs_orbit_rates *rates, double *y, double tau, double *f) {
+    const struct dalcs_radau_part *part = rates->part;
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    for (int d = 0; d < s->n_pairs; d++) {
+        y[dalcs_system_n_equations(s) + d] *= dalcs_osnsp_is_on(p, d) ? 1.0 : 0.0;
+    }
+    dalcs_excitation_inputs(&part->excitation, part->segment.t, tau, rates->inputs);
+    for (int x = 0; x < s->n_x; x++) {
+        f[x] = dalcs_csr_row_dot(&s->A, x, y) + dalcs_csr_row_dot(&s->E, x, rates->inputs);
+    }
+    (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', rates->n_x, 1, rates->P, rates->n_x, rates->pivot,
+                         f, rates->n_x);
+}
+
+int dalcs_orbit_guard_row(const struct dalcs_radau_part *part, int guard) {
+    const struct dalcs_system *s = part->component->system;
+    return guard < s->n_pairs ? dalcs_system_n_equations(s) + guard
+                              : dalcs_system_n_columns(s) + guard - s->n_pairs;
+}
+
+double dalcs_orbit_weigh(const struct dalcs_stage_layout *l, const double *weight,
+                         const double *out, int row) {
+    double sum = 0.0;
+    for (int k = 0; k < l->n_nodes; k++) {
+        sum += weight[k] * out[k * l->stride + row];
+    }
+    return sum;
+}
+
+double dalcs_orbit_guard_rate(const struct dalcs_radau_part *part, int row) {
+    double weight[DALCS_MAX_NODES];
+    derivative_weights(part->stages.method, part->segment.end, weight);
+    return dalcs_orbit_weigh(&part->stages.layout, weight, part->segment.out, row) /
+           part->segment.h;
+}
+
+/* And in which units energies are alike. */
+static enum dalcs_status factor_P(struct dalcs_orbit_rates *rates, const struct dalcs_system *s) {
+    for (int r = 0; r < s->n_x; r++) {
+        for (int k = s->P.p[r]; k < s->P.p[r + 1]; k++) {
+            rates->P[s->P.j[k] * s->n_x + r] += s->P.x[k];
+        }
+    }
+    for (int x = 0; x < s->n_x; x++) {
+        rates->unit[x] = 1.0;
+        for (int k = s->storage.p[x]; k < s->storage.p[x + 1]; k++) {
+            bool stores = s->storage.j[k] == x && s->storage.x[k] > 0.0;
+            rates->unit[x] = stores ? sqrt(s->storage.x[k]) : rates->unit[x];
+        }
+    }
+    int failed = s->n_x == 0 ? 0
+                             : LAPACKE_dgetrf(LAPACK_COL_MAJOR, s->n_x, s->n_x, rates->P, s->n_x,
+                                              rates->pivot);
+    return failed == 0 ? DALCS_OK : DALCS_SINGULAR;
+}
+
+enum dalcs_status dalcs_orbit_rates_setup(struct dalcs_orbit_rates *rates,
+                                          struct dalcs_arena *arena,
+                                          const struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    const size_t n = (size_t)s->n_x;
+    *rates = (struct dalcs_orbit_rates){.part = part, .n_x = s->n_x};
+    rates->P = dalcs_arena_alloc(arena, n * n, sizeof(double));
+    rates->pivot = dalcs_arena_alloc(arena, n, sizeof(int));
+    rates->unit = dalcs_arena_alloc(arena, n, sizeof(double));
+    rates->inputs = dalcs_arena_alloc(arena, (size_t)s->n_inputs, sizeof(double));
+    if (rates->P == NULL || rates->pivot == NULL || rates->unit == NULL || rates->inputs == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    return factor_P(rates, s);
+}

@@ -1,0 +1,288 @@
+/* periodic_flow.c - a period cut into pieces with a map each. */
+#include "periodic_flow.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* So much of a span, again and again, until what a mode projects away no longer depends on it. */
+static const double briefer = 0x1p-8;
+
+enum { MOST_BRIEFER = 5 };
+
+/* Two projections are the same, or one leaves what it is of, to this part. */
+static const double same_projection = 1e-9;
+
+/* ---- Maps ---------------------------------------------------------------------------------------- */
+
+void dalcs_periodic_flow_drive(const struct dalcs_periodic_flow *flow, double kappa,
+                               double complex *coefficient) {
+    const int n = flow->stages.layout.n_nodes;
+    double complex value[DALCS_MAX_NODES];
+    for (int i = 0; i < n; i++) {
+        value[i] = cexp(I * kappa * flow->stages.method->node[i]);
+    }
+    for (int k = 0; k < n; k++) {
+        coefficient[k] = 0.0;
+        for (int i = 0; i < n; i++) {
+            coefficient[k] += flow->legendre[k][i] * value[i];
+        }
+    }
+}
+
+size_t dalcs_periodic_flow_size(const struct dalcs_periodic_flow *flow) {
+    const struct dalcs_stage_layout *l = &flow->stages.layout;
+    return (size_t)l->n_nodes * (size_t)l->stride;
+}
+
+/* The answer to in[column] = 1 into flow->out. */
+static enum dalcs_status ask(struct dalcs_periodic_flow *flow, struct dalcs_stage_entry *entry,
+                             int column) {
+    memset(flow->in, 0, (size_t)flow->stages.n_in * sizeof(double));
+    flow->in[column] = 1.0;
+    return dalcs_stages_apply(&flow->stages, entry, flow->in, flow->out);
+}
+
+static enum dalcs_status fill_map(struct dalcs_periodic_flow *flow, struct dalcs_flow_map *map) {
+    const size_t size = dalcs_periodic_flow_size(flow);
+    struct dalcs_stage_entry *entry;
+    DALCS_TRY(dalcs_stages_get(&flow->stages, map->mode, map->h, &entry));
+    for (int x = 0; x < flow->n_x; x++) {
+        DALCS_TRY(ask(flow, entry, x));
+        memcpy(map->state + (size_t)x * size, flow->out, size * sizeof(double));
+    }
+    for (int f = 0; f < flow->excitation.n_functions; f++) {
+        const struct dalcs_excitation_function *function = &flow->excitation.function[f];
+        const double complex source = flow->source[function->input];
+        double complex *drive = map->drive + (size_t)function->degree * size;
+        DALCS_TRY(ask(flow, entry, flow->n_x + 1 + f));
+        for (size_t i = 0; i < size; i++) {
+            drive[i] += source * flow->out[i];
+        }
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow, const uint64_t *mode,
+                                          double h, struct dalcs_flow_map **found) {
+    const size_t size = dalcs_periodic_flow_size(flow);
+    const size_t n_x = (size_t)flow->n_x;
+    const size_t n_nodes = (size_t)flow->stages.layout.n_nodes;
+    for (struct dalcs_flow_map *m = flow->map; m != NULL; m = m->next) {
+        if (m->h == h && dalcs_mode_is(m->mode, mode, flow->stages.n_words)) {
+            *found = m;
+            return DALCS_OK;
+        }
+    }
+    struct dalcs_flow_map *map = dalcs_arena_alloc(&flow->arena, 1, sizeof *map);
+    if (map == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    *map = (struct dalcs_flow_map){.mode = mode, .h = h, .next = flow->map, .stamp = -1};
+    map->state = dalcs_arena_alloc(&flow->arena, n_x * size, sizeof(double));
+    map->drive = dalcs_arena_alloc(&flow->arena, n_nodes * size, sizeof(double complex));
+    map->driven = dalcs_arena_alloc(&flow->arena, size, sizeof(double complex));
+    if (map->state == NULL || map->drive == NULL || map->driven == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    DALCS_TRY(fill_map(flow, map));
+    flow->map = map;
+    *found = map;
+    return DALCS_OK;
+}
+
+/* ---- How a mode begins --------------------------------------------------------------------------- */
+
+/* What the polynomial through the stages, which do not see what the mode does not allow, is at the start. */
+static void extrapolate(const struct dalcs_periodic_flow *flow, const struct dalcs_flow_map *map,
+                        struct dalcs_flow_start *start) {
+    const struct dalcs_collocation *c = flow->stages.method;
+    const int stride = flow->stages.layout.stride;
+    const size_t size = dalcs_periodic_flow_size(flow);
+    for (int x = 0; x < flow->n_x; x++) {
+        start->by_source[x] = 0.0;
+        for (int i = 0; i < c->s; i++) {
+            start->by_source[x] += c->back[i] * map->drive[(i + 1) * stride + x];
+        }
+        for (int k = 0; k < flow->n_x; k++) {
+            double sum = 0.0;
+            for (int i = 0; i < c->s; i++) {
+                sum += c->back[i] * map->state[(size_t)k * size + (size_t)((i + 1) * stride + x)];
+            }
+            start->P[k * flow->n_x + x] = sum;
+        }
+    }
+}
+
+/* The largest difference, in units in which energies are alike. */
+static double differ(const struct dalcs_periodic_flow *flow, const double *a, const double *b) {
+    double most = 0.0;
+    for (int k = 0; k < flow->n_x; k++) {
+        for (int x = 0; x < flow->n_x; x++) {
+            double other = b != NULL ? b[k * flow->n_x + x] : (x == k ? 1.0 : 0.0);
+            double off = fabs(a[k * flow->n_x + x] - other) * flow->unit[x] / flow->unit[k];
+            most = fmax(most, off);
+        }
+    }
+    return most;
+}
+
+static enum dalcs_status make_start(struct dalcs_periodic_flow *flow,
+                                    const struct dalcs_orbit_span *span,
+                                    struct dalcs_flow_start *start) {
+    const size_t n = (size_t)flow->n_x;
+    double *before = dalcs_arena_alloc(&flow->arena, n * n, sizeof(double));
+    start->mode = span->mode;
+    start->P = dalcs_arena_alloc(&flow->arena, n * n, sizeof(double));
+    start->by_source = dalcs_arena_alloc(&flow->arena, n, sizeof(double complex));
+    if (before == NULL || start->P == NULL || start->by_source == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    double h = (span->to - span->from) * briefer;
+    for (int k = 0; k < MOST_BRIEFER; k++, h *= briefer) {
+        struct dalcs_flow_map *map;
+        DALCS_TRY(dalcs_periodic_flow_map(flow, span->mode, h, &map));
+        extrapolate(flow, map, start);
+        if (k > 0 && differ(flow, start->P, before) <= same_projection) {
+            break;
+        }
+        memcpy(before, start->P, n * n * sizeof(double));
+    }
+    start->changes_nothing = differ(flow, start->P, NULL) <= same_projection;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_periodic_flow_start(struct dalcs_periodic_flow *flow,
+                                            const struct dalcs_orbit_span *span,
+                                            const struct dalcs_flow_start **found) {
+    struct dalcs_flow_start *start = flow->start;
+    while (start != NULL && !dalcs_mode_is(start->mode, span->mode, flow->stages.n_words)) {
+        start = start->next;
+    }
+    if (start == NULL) {
+        start = dalcs_arena_alloc(&flow->arena, 1, sizeof *start);
+        if (start == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        DALCS_TRY(make_start(flow, span, start));
+        start->next = flow->start;
+        flow->start = start;
+    }
+    *found = start->changes_nothing ? NULL : start;
+    return DALCS_OK;
+}
+
+/* ---- Set up -------------------------------------------------------------------------------------- */
+
+/* Waves of the sources with a small signal, along Legendre polynomials; all else is no small signal. */
+static enum dalcs_status drive_setup(struct dalcs_periodic_flow *flow, int n_nodes) {
+    struct dalcs_excitation *e = &flow->excitation;
+    const size_t n = (size_t)flow->system->n_inputs;
+    *e = (struct dalcs_excitation){
+        .system = flow->system, .shortest_period = INFINITY, .next_edge = INFINITY};
+    e->wave = dalcs_arena_alloc(&e->arena, n, sizeof *e->wave);
+    e->function = dalcs_arena_alloc(&e->arena, n * (size_t)n_nodes, sizeof *e->function);
+    e->constant = dalcs_arena_alloc(&e->arena, n, sizeof(double));
+    if (e->wave == NULL || e->function == NULL || e->constant == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 1; k < flow->system->n_inputs; k++) {
+        if (flow->source[k] == 0.0) {
+            continue;
+        }
+        e->wave[e->n_waves++] = (struct dalcs_excitation_wave){
+            .input = k, .first = e->n_functions, .n_functions = n_nodes, .has_level = true};
+        for (int degree = 0; degree < n_nodes; degree++) {
+            e->function[e->n_functions++] = (struct dalcs_excitation_function){
+                .input = k, .shape = DALCS_EXCITATION_LEGENDRE, .degree = degree};
+        }
+    }
+    return DALCS_OK;
+}
+
+/* flow->legendre: the inverse of the polynomials at the nodes. */
+static enum dalcs_status legendre_setup(struct dalcs_periodic_flow *flow) {
+    const int n = flow->stages.method->s + 1;
+    double a[DALCS_MAX_NODES * DALCS_MAX_NODES];
+    double inverse[DALCS_MAX_NODES * DALCS_MAX_NODES] = {0.0};
+    int pivot[DALCS_MAX_NODES];
+    for (int k = 0; k < n; k++) {
+        const struct dalcs_excitation_function p = {.shape = DALCS_EXCITATION_LEGENDRE,
+                                                    .degree = k};
+        for (int i = 0; i < n; i++) {
+            a[k * n + i] = dalcs_excitation_function_at(&p, 1.0, flow->stages.method->node[i]);
+        }
+        inverse[k * n + k] = 1.0;
+    }
+    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, n, a, n, pivot, inverse, n) != 0) {
+        return DALCS_SINGULAR;
+    }
+    for (int k = 0; k < n; k++) {
+        for (int i = 0; i < n; i++) {
+            flow->legendre[k][i] = inverse[i * n + k];
+        }
+    }
+    return DALCS_OK;
+}
+
+/* Stages of its own: those of the run have columns for the sources themselves. */
+static enum dalcs_status stages_setup(struct dalcs_periodic_flow *flow) {
+    const struct dalcs_stages *of = &flow->orbit->rates.part->stages;
+    const struct dalcs_collocation *method =
+        dalcs_collocation_of(DALCS_RADAU_IIA, DALCS_MAX_STAGES);
+    DALCS_TRY(drive_setup(flow, method->s + 1));
+    DALCS_TRY(dalcs_stages_setup(&flow->stages, flow->system, &flow->excitation, method,
+                                 of->dense_limit, of->rcond_min, of->most_bytes));
+    flow->stages.block_of = of->block_of;
+    return legendre_setup(flow);
+}
+
+static enum dalcs_status setup(struct dalcs_periodic_flow *flow, const double complex *source) {
+    const size_t n_x = (size_t)flow->n_x;
+    const size_t n_inputs = (size_t)flow->system->n_inputs;
+    flow->source = dalcs_arena_alloc(&flow->arena, n_inputs, sizeof *flow->source);
+    if (flow->source == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    memcpy(flow->source, source, n_inputs * sizeof *source);
+    DALCS_TRY(stages_setup(flow));
+    const size_t n_columns = (size_t)dalcs_system_n_columns(flow->system);
+    const size_t n_out =
+        (size_t)flow->stages.layout.n_fixed + (size_t)flow->stages.method->s * n_columns + 8;
+    flow->M = dalcs_arena_alloc(&flow->arena, n_x * n_x, sizeof(double));
+    flow->in = dalcs_arena_alloc(&flow->arena, (size_t)flow->stages.n_in, sizeof(double));
+    flow->out = dalcs_arena_alloc(&flow->arena, n_out, sizeof(double));
+    if (flow->M == NULL || flow->in == NULL || flow->out == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    return dalcs_periodic_pieces_make(flow);
+}
+
+enum dalcs_status dalcs_periodic_flow_setup(struct dalcs_periodic_flow *flow,
+                                            const struct dalcs_orbit_part *orbit,
+                                            const double complex *source, double fastest,
+                                            double period) {
+    const struct dalcs_system *system = orbit->rates.part->component->system;
+    *flow = (struct dalcs_periodic_flow){.orbit = orbit,
+                                         .system = system,
+                                         .fastest = fastest,
+                                         .period = period,
+                                         .n_x = system->n_x,
+                                         .unit = orbit->rates.unit};
+    enum dalcs_status status = setup(flow, source);
+    if (status != DALCS_OK) {
+        dalcs_periodic_flow_finish(flow);
+    }
+    return status;
+}
+
+void dalcs_periodic_flow_finish(struct dalcs_periodic_flow *flow) {
+    if (flow->stages.system != NULL) {
+        dalcs_stages_finish(&flow->stages);
+    }
+    dalcs_arena_finish(&flow->excitation.arena);
+    dalcs_arena_finish(&flow->arena);
+    free(flow->piece);
+    *flow = (struct dalcs_periodic_flow){0};
+}

@@ -1,0 +1,94 @@
+/* periodic_flow.h - one part of a circuit around its periodic orbit, as what takes a small perturbation through a period.
+ *
+ * In a mode a perturbation obeys the stage equations that the states obey (stages.h), driven by the small signals of
+ * sources instead of the sources themselves. A span of one mode is cut into pieces that are short enough for the
+ * polynomials of a step to carry what starts from any state at the beginning of the period, and the answer to the
+ * fastest of the signals: their last Legendre coefficients tell. So a small signal of any lower frequency goes through
+ * a piece as one real map of the states and of the s + 1 Legendre polynomials of the sources. */
+#ifndef DALCS_PERIODIC_FLOW_H
+#define DALCS_PERIODIC_FLOW_H
+
+#include "orbit_log.h"
+
+#include <complex.h>
+
+/* A step of length h in one mode. Answers are laid out as those of the stages, their open pairs 0. */
+struct dalcs_flow_map {
+    const uint64_t *mode;
+    double h;
+    double *state; /* [n_x][n_nodes * stride] of unit states */
+    double complex
+        *drive; /* [n_nodes][n_nodes * stride] of the sources along a Legendre polynomial each */
+    struct dalcs_flow_map *next;
+    /* at one frequency, periodic_response.c: */
+    long stamp;
+    double complex *driven; /* [n_nodes * stride] by the sources as they go, from 0 */
+    double complex *mean;   /* [n_x + 1][n_read] */
+};
+
+/* What a new mode makes of states as it begins: x+ = P x- + by_source. */
+struct dalcs_flow_start {
+    const uint64_t *mode;
+    double *P;                 /* [n_x][n_x] column after column */
+    double complex *by_source; /* [n_x] */
+    bool changes_nothing;
+    struct dalcs_flow_start *next;
+};
+
+struct dalcs_flow_piece {
+    struct dalcs_flow_map *map;
+    double t;                             /* s, where it begins */
+    const struct dalcs_flow_start *start; /* NULL: the mode was there before */
+    const struct dalcs_orbit_span
+        *end; /* that ends with it, and something moves there; else NULL */
+};
+
+struct dalcs_periodic_flow {
+    const struct dalcs_orbit_part *orbit;
+    const struct dalcs_system *system;
+    double fastest; /* rad/s */
+    double period;  /* s */
+    int n_x;
+    const double *unit;                                /* [n_x] */
+    double complex *source;                            /* [n_inputs] AC values */
+    double legendre[DALCS_MAX_NODES][DALCS_MAX_NODES]; /* coefficient k of the values at nodes */
+    struct dalcs_excitation excitation;
+    struct dalcs_stages stages;
+    struct dalcs_flow_map *map;     /* all of them */
+    struct dalcs_flow_start *start; /* likewise */
+    int n;
+    size_t capacity;
+    struct dalcs_flow_piece *piece; /* [n] */
+    double *M;                      /* [n_x][n_x] of the period, column after column */
+    double worst; /* last coefficients that were let through, over the size of what they are of */
+    double *in, *out; /* work */
+    struct dalcs_arena arena;
+};
+
+/* source[n_inputs]: of the small signals; none is faster than `fastest` (rad/s). */
+enum dalcs_status dalcs_periodic_flow_setup(struct dalcs_periodic_flow *flow,
+                                            const struct dalcs_orbit_part *orbit,
+                                            const double complex *source, double fastest,
+                                            double period) DALCS_MUST_CHECK;
+void dalcs_periodic_flow_finish(struct dalcs_periodic_flow *flow);
+
+/* Elements of an answer at all nodes. */
+size_t dalcs_periodic_flow_size(const struct dalcs_periodic_flow *flow);
+
+/* The map of (mode, h), made now if it is new. */
+enum dalcs_status dalcs_periodic_flow_map(struct dalcs_periodic_flow *flow, const uint64_t *mode,
+                                          double h, struct dalcs_flow_map **map) DALCS_MUST_CHECK;
+
+/* How the mode of a span begins; NULL: with the states as they are. */
+enum dalcs_status dalcs_periodic_flow_start(struct dalcs_periodic_flow *flow,
+                                            const struct dalcs_orbit_span *span,
+                                            const struct dalcs_flow_start **start) DALCS_MUST_CHECK;
+
+/* flow->piece and flow->M. */
+enum dalcs_status dalcs_periodic_pieces_make(struct dalcs_periodic_flow *flow) DALCS_MUST_CHECK;
+
+/* coefficient[n_nodes] of exp(j kappa theta), as the values at the nodes have them. */
+void dalcs_periodic_flow_drive(const struct dalcs_periodic_flow *flow, double kappa,
+                               double complex *coefficient);
+
+#endif

@@ -1,0 +1,226 @@
+/* periodic_pieces.c - spans of one mode cut into pieces that polynomials of a step can carry. */
+#include "periodic_flow.h"
+
+#include <math.h>
+
+/* Last Legendre coefficients, over the size of what they are of. Integrals of products of two such polynomials, which
+ * means over a period are, see the square of what is missing. */
+static const double resolved = 1e-10;
+
+/* A piece is at least this part of its span: what is still rough there is rounding. */
+enum { MOST_HALVINGS = 40 };
+
+/* What goes through the pieces as they are made: what starts from unit states, and with the fastest signal. */
+struct probe {
+    struct dalcs_periodic_flow *flow;
+    double complex *column;  /* [n_x + 1][n_x] */
+    double complex *after;   /* likewise, behind a piece that is tried */
+    double *size;            /* [n_x + 1] the largest so far, in the units of energies */
+    double complex *dt;      /* [n_x + 1] s */
+    double complex *at_node; /* [n_nodes] of one state */
+    double complex drive[DALCS_MAX_NODES];
+};
+
+static double complex driven(const struct probe *p, const struct dalcs_flow_map *map, double t,
+                             size_t at) {
+    const struct dalcs_periodic_flow *flow = p->flow;
+    const size_t size = dalcs_periodic_flow_size(flow);
+    double complex sum = 0.0;
+    for (int k = 0; k < flow->stages.layout.n_nodes; k++) {
+        sum += p->drive[k] * map->drive[(size_t)k * size + at];
+    }
+    return sum * cexp(I * flow->fastest * t);
+}
+
+/* Row `row` at node i of probe k through a piece that begins at t. */
+static double complex row_at(const struct probe *p, const struct dalcs_flow_map *map, double t,
+                             int k, int node, int row) {
+    const struct dalcs_periodic_flow *flow = p->flow;
+    const size_t size = dalcs_periodic_flow_size(flow);
+    const size_t at = (size_t)node * (size_t)flow->stages.layout.stride + (size_t)row;
+    double complex sum = k == flow->n_x ? driven(p, map, t, at) : 0.0;
+    for (int x = 0; x < flow->n_x; x++) {
+        sum += p->column[k * flow->n_x + x] * map->state[(size_t)x * size + at];
+    }
+    return sum;
+}
+
+/* The last two coefficients of all states of probe k, in the units of energies; its end into p->after. */
+static double find_tail(struct probe *p, const struct dalcs_flow_map *map, double t, int k,
+                        double *size) {
+    const struct dalcs_periodic_flow *flow = p->flow;
+    const int n = flow->stages.layout.n_nodes;
+    double tail = 0.0;
+    double most = 0.0;
+    for (int x = 0; x < flow->n_x; x++) {
+        double complex last[2] = {0.0, 0.0};
+        double largest = 0.0;
+        for (int i = 0; i < n; i++) {
+            p->at_node[i] = row_at(p, map, t, k, i, x);
+            largest = fmax(largest, cabs(p->at_node[i]));
+            last[0] += flow->legendre[n - 1][i] * p->at_node[i];
+            last[1] += flow->legendre[n - 2][i] * p->at_node[i];
+        }
+        p->after[k * flow->n_x + x] = p->at_node[n - 1];
+        double unit = flow->unit[x];
+        tail = fmax(tail, unit * fmax(cabs(last[0]), cabs(last[1])));
+        most = fmax(most, unit * largest);
+    }
+    *size = fmax(p->size[k], most);
+    return tail;
+}
+
+/* Does the piece carry all of them? *tail: the worst, over their sizes. */
+static void try_piece(struct probe *p, const struct dalcs_flow_map *map, double t, double *tail) {
+    const struct dalcs_periodic_flow *flow = p->flow;
+    const int n = flow->stages.layout.n_nodes;
+    dalcs_periodic_flow_drive(flow, flow->fastest * map->h, p->drive);
+    *tail = fmax(cabs(p->drive[n - 1]), cabs(p->drive[n - 2]));
+    for (int k = 0; k <= flow->n_x; k++) {
+        double size;
+        double of = find_tail(p, map, t, k, &size);
+        *tail = of > 0.0 ? fmax(*tail, of / size) : *tail;
+    }
+}
+
+static void accept(struct probe *p) {
+    const struct dalcs_periodic_flow *flow = p->flow;
+    const int n_x = flow->n_x;
+    for (int k = 0; k <= n_x; k++) {
+        for (int x = 0; x < n_x; x++) {
+            p->column[k * n_x + x] = p->after[k * n_x + x];
+            p->size[k] = fmax(p->size[k], flow->unit[x] * cabs(p->after[k * n_x + x]));
+        }
+    }
+}
+
+static enum dalcs_status add_piece(struct dalcs_periodic_flow *flow, struct dalcs_flow_map *map,
+                                   double t) {
+    DALCS_TRY(dalcs_grow(&flow->piece, &flow->capacity, (size_t)flow->n + 1, sizeof *flow->piece));
+    flow->piece[flow->n++] = (struct dalcs_flow_piece){.map = map, .t = t};
+    return DALCS_OK;
+}
+
+/* How the time of what happens at the end of the piece moves. */
+static void find_dt(struct probe *p, const struct dalcs_orbit_span *span,
+                    const struct dalcs_flow_map *map, double t) {
+    const int end = p->flow->stages.layout.n_nodes - 1;
+    const double complex moved =
+        (span->moved[0] + I * span->moved[1]) * cexp(I * p->flow->fastest * span->to);
+    for (int k = 0; k <= p->flow->n_x; k++) {
+        p->dt[k] = k == p->flow->n_x ? moved : 0.0;
+        if (span->row >= 0) {
+            p->dt[k] = -row_at(p, map, t, k, end, span->row) / span->rate;
+        }
+    }
+}
+
+static void end_span(struct probe *p, const struct dalcs_orbit_span *span) {
+    const int n_x = p->flow->n_x;
+    for (int k = 0; k <= n_x; k++) {
+        for (int x = 0; x < n_x; x++) {
+            p->column[k * n_x + x] += p->dt[k] * span->df[x];
+        }
+    }
+}
+
+/* Halves and doubles of the span, each at a multiple of its own length. */
+static enum dalcs_status cut_span(struct probe *p, const struct dalcs_orbit_span *span) {
+    struct dalcs_periodic_flow *flow = p->flow;
+    const double length = span->to - span->from;
+    int level = 0;
+    uint64_t at = 0; /* of 2^MOST_HALVINGS */
+    while (at < (uint64_t)1 << MOST_HALVINGS) {
+        struct dalcs_flow_map *map;
+        double t = span->from + ldexp((double)at, -MOST_HALVINGS) * length;
+        double tail;
+        DALCS_TRY(dalcs_periodic_flow_map(flow, span->mode, ldexp(length, -level), &map));
+        try_piece(p, map, t, &tail);
+        if (tail > resolved && level < MOST_HALVINGS) {
+            level++;
+            continue;
+        }
+        flow->worst = fmax(flow->worst, tail);
+        DALCS_TRY(add_piece(flow, map, t));
+        find_dt(p, span, map, t);
+        accept(p);
+        at += (uint64_t)1 << (MOST_HALVINGS - level);
+        /* twice the length takes 2^s times the coefficients, and is tried where it can begin */
+        bool aligned = level > 0 && (at & ((uint64_t)1 << (MOST_HALVINGS - level))) == 0;
+        level -= aligned && ldexp(tail, flow->stages.method->s - 1) <= resolved ? 1 : 0;
+    }
+    return DALCS_OK;
+}
+
+static void begin_span(struct probe *p, const struct dalcs_flow_start *start, double t) {
+    const struct dalcs_periodic_flow *flow = p->flow;
+    const int n_x = flow->n_x;
+    for (int k = 0; k <= n_x && start != NULL; k++) {
+        for (int x = 0; x < n_x; x++) {
+            double complex sum = k == n_x ? start->by_source[x] * cexp(I * flow->fastest * t) : 0.0;
+            for (int i = 0; i < n_x; i++) {
+                sum += start->P[i * n_x + x] * p->column[k * n_x + i];
+            }
+            p->after[k * n_x + x] = sum;
+        }
+    }
+    if (start != NULL) {
+        accept(p);
+    }
+}
+
+static enum dalcs_status cut_period(struct probe *p) {
+    struct dalcs_periodic_flow *flow = p->flow;
+    const struct dalcs_orbit_part *orbit = flow->orbit;
+    for (int k = 0; k < orbit->n; k++) {
+        const struct dalcs_orbit_span *span = &orbit->span[k];
+        const struct dalcs_flow_start *start = NULL;
+        if (!(span->to > span->from)) {
+            continue;
+        }
+        DALCS_TRY(dalcs_periodic_flow_start(flow, span, &start));
+        begin_span(p, start, span->from);
+        const int first = flow->n;
+        DALCS_TRY(cut_span(p, span));
+        flow->piece[first].start = start;
+        if (span->df != NULL) {
+            flow->piece[flow->n - 1].end = span;
+            end_span(p, span);
+        }
+    }
+    return DALCS_OK;
+}
+
+/* ---- Set up -------------------------------------------------------------------------------------- */
+
+static enum dalcs_status probe_setup(struct probe *p, struct dalcs_periodic_flow *flow,
+                                     struct dalcs_arena *arena) {
+    const size_t n_x = (size_t)flow->n_x;
+    *p = (struct probe){.flow = flow};
+    p->column = dalcs_arena_alloc(arena, (n_x + 1) * n_x, sizeof(double complex));
+    p->after = dalcs_arena_alloc(arena, (n_x + 1) * n_x, sizeof(double complex));
+    p->size = dalcs_arena_alloc(arena, n_x + 1, sizeof(double));
+    p->dt = dalcs_arena_alloc(arena, n_x + 1, sizeof(double complex));
+    p->at_node = dalcs_arena_alloc(arena, DALCS_MAX_NODES, sizeof(double complex));
+    if (p->column == NULL || p->after == NULL || p->size == NULL || p->dt == NULL ||
+        p->at_node == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k < n_x; k++) {
+        p->column[k * n_x + k] = 1.0;
+        p->size[k] = flow->unit[k];
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_periodic_pieces_make(struct dalcs_periodic_flow *flow) {
+    struct dalcs_arena arena = {0};
+    struct probe p;
+    enum dalcs_status status = probe_setup(&p, flow, &arena);
+    status = status == DALCS_OK ? cut_period(&p) : status;
+    for (int k = 0; k < flow->n_x * flow->n_x && status == DALCS_OK; k++) {
+        flow->M[k] = creal(p.column[k]);
+    }
+    dalcs_arena_finish(&arena);
+    return status;
+}

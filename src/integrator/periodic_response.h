@@ -1,0 +1,35 @@
+/* periodic_response.h - the response of one part of a circuit around its periodic orbit at one frequency.
+ *
+ * With small signals exp(j w t) on the sources, the perturbation of each quantity y of the circuit is exp(j w t) p(t) with
+ * p of the period T. The response is the component at w, or at w + sideband 2 pi / T,
+ *     (1/T) int_0^T exp(-j (w + sideband 2 pi / T) t) dy dt,
+ * in which a jump of y at an event whose time moves by dt counts as an impulse of (y- - y+) dt. The perturbation d of
+ * the states at the start follows from the one period later, exp(j w T) d = M d + r. */
+#ifndef DALCS_PERIODIC_RESPONSE_H
+#define DALCS_PERIODIC_RESPONSE_H
+
+#include "periodic_flow.h"
+
+struct dalcs_periodic_response {
+    struct dalcs_periodic_flow *flow;
+    int n_read, *read; /* [n_read] columns that are asked for */
+    double complex *y; /* [n_columns] those of the last frequency */
+    double complex *d; /* [n_x] the states, at the start of the period */
+    double complex *now, *next;
+    double complex *A; /* [n_x][n_x] */
+    int *pivot;
+    long stamp;
+    struct dalcs_arena arena;
+};
+
+/* is_read[n_columns]: columns of the flow's system. */
+enum dalcs_status dalcs_periodic_response_setup(struct dalcs_periodic_response *response,
+                                                struct dalcs_periodic_flow *flow,
+                                                const bool *is_read) DALCS_MUST_CHECK;
+void dalcs_periodic_response_finish(struct dalcs_periodic_response *response);
+
+/* response->y at w (rad/s). DALCS_SINGULAR: a multiplier is exp(j w T), there is no single answer. */
+enum dalcs_status dalcs_periodic_response_at(struct dalcs_periodic_response *response, double w,
+                                             int sideband) DALCS_MUST_CHECK;
+
+#endif

@@ -1,0 +1,304 @@
+/* periodic_ac.c - .ac behind .pss: small sinusoids around the periodic orbit. */
+#include "periodic_ac.h"
+
+#include "radau.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double two_pi = 6.28318530717958647692;
+
+/* The orbit is known to rounding whatever the tolerance. How events move follows from what is on both sides of them,
+ * which is as good as this. */
+static const double tolerance_of_log = 1e-10;
+
+/* Frequencies where nobody asks for any, over that of the orbit: half of it, without the point itself, is as far as
+ * a controller sees. */
+static const double usual_from = 1e-4, usual_to = 0.5;
+
+enum { USUAL_POINTS = 20 };
+
+/* ---- One frequency ------------------------------------------------------------------------------- */
+
+static double probe(const struct dalcs_periodic_ac *a, const struct dalcs_probe *probe, int which) {
+    if (probe->system < 0) {
+        return 0.0;
+    }
+    const struct dalcs_periodic_ac_part *part = &a->part[probe->system];
+    return dalcs_probe_value(probe, part->y[which], part->s[which]);
+}
+
+static enum dalcs_status refuse_frequency(const struct dalcs_periodic_ac *a, double frequency) {
+    struct dalcs_run *r = a->run;
+    dalcs_diag_add(&r->s->diag, DALCS_ERROR, &r->s->circuit.ac.where,
+                   "a quantity that no period changes, as the charge of a floating node, answers "
+                   "without bound there: give it a way out, or begin at another frequency",
+                   "at %.9g Hz there is no single answer", frequency);
+    return DALCS_SINGULAR;
+}
+
+static enum dalcs_status solve(struct dalcs_periodic_ac *a, double frequency) {
+    for (int k = 0; k < a->n_parts; k++) {
+        struct dalcs_periodic_ac_part *p = &a->part[k];
+        if (p->rests) {
+            continue;
+        }
+        const enum dalcs_status status =
+            dalcs_periodic_response_at(&p->response, two_pi * frequency, a->sideband);
+        if (status == DALCS_SINGULAR) {
+            return refuse_frequency(a, frequency);
+        }
+        DALCS_TRY(status);
+        for (int m = 0; m < p->response.n_read; m++) {
+            const int column = p->response.read[m];
+            p->y[0][column] = creal(p->response.y[column]);
+            p->y[1][column] = cimag(p->response.y[column]);
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status gain_at(void *user, double frequency, double complex *gain) {
+    struct dalcs_periodic_ac *a = user;
+    DALCS_TRY(solve(a, frequency));
+    *gain = dalcs_periodic_loop_gain(a);
+    return DALCS_OK;
+}
+
+static enum dalcs_status put_row(struct dalcs_periodic_ac *a, double frequency) {
+    struct dalcs_run *r = a->run;
+    const struct dalcs_network *network = &r->s->network;
+    const size_t n_shown = (size_t)r->s->circuit.n_shown;
+    DALCS_TRY(solve(a, frequency));
+    for (int i = 0; i < network->n_outputs; i++) {
+        const struct dalcs_output *out = &network->output[i];
+        for (int which = 0; which < 2; which++) {
+            a->row[2 * i + which] = probe(a, &out->plus, which) - probe(a, &out->minus, which);
+        }
+    }
+    dalcs_measures_complex_row(&a->measures, frequency, a->row);
+    memcpy(a->shown, a->row, 2 * n_shown * sizeof *a->shown);
+    if (a->loop.device >= 0) {
+        const double complex gain = dalcs_periodic_loop_gain(a);
+        a->shown[2 * n_shown] = creal(gain);
+        a->shown[2 * n_shown + 1] = cimag(gain);
+        DALCS_TRY(dalcs_margins_reach(&a->margins, frequency, gain));
+    }
+    return r->sink->row(r->sink->user, frequency, a->shown);
+}
+
+/* ---- All of them --------------------------------------------------------------------------------- */
+
+/* The gain of the loop is a signal behind the others. */
+static enum dalcs_status announce(struct dalcs_periodic_ac *a) {
+    struct dalcs_run *r = a->run;
+    struct dalcs_arena *arena = &r->s->arena;
+    const size_t n_shown = (size_t)r->s->circuit.n_shown;
+    const size_t n = n_shown + (a->loop.device >= 0 ? 1 : 0);
+    a->name = dalcs_arena_alloc(arena, n_shown + 1, sizeof *a->name);
+    a->unit = dalcs_arena_alloc(arena, n_shown + 1, sizeof *a->unit);
+    if (a->name == NULL || a->unit == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (size_t k = 0; k < n_shown; k++) {
+        a->name[k] = r->name[k];
+        a->unit[k] = r->unit[k];
+    }
+    a->unit[n_shown] = DALCS_UNIT_NONE;
+    if (a->loop.device >= 0) {
+        a->name[n_shown] =
+            dalcs_arena_printf(arena, "loop(%s)", r->s->circuit.device[a->loop.device].name);
+        DALCS_TRY(a->name[n_shown] != NULL ? DALCS_OK : DALCS_E_NOMEM);
+    }
+    return dalcs_run_announce(r, &(struct dalcs_plot){.analysis = DALCS_AC,
+                                                      .scale = "frequency",
+                                                      .scale_unit = DALCS_UNIT_HERTZ,
+                                                      .n_signals = n,
+                                                      .name = a->name,
+                                                      .unit = a->unit,
+                                                      .is_complex = true});
+}
+
+static enum dalcs_status walk(struct dalcs_periodic_ac *a) {
+    struct dalcs_run *r = a->run;
+    const struct dalcs_sweep *f = a->sweep;
+    DALCS_TRY(announce(a));
+    DALCS_TRY(dalcs_measures_start_rows(&a->measures, r, DALCS_MEASURED_AC, dalcs_sweep_value(f, 0),
+                                        dalcs_sweep_value(f, f->n - 1)));
+    a->margins = (struct dalcs_margins){.user = a, .at = gain_at};
+    for (int k = 0; k < f->n; k++) {
+        DALCS_TRY(put_row(a, dalcs_sweep_value(f, k)));
+        DALCS_TRY(r->sink->progress(r->sink->user, k + 1, f->n));
+    }
+    DALCS_TRY(dalcs_measures_report(&a->measures, r, DALCS_OK));
+    DALCS_TRY(dalcs_periodic_loop_report(a));
+    return r->sink->end(r->sink->user);
+}
+
+/* ---- Set up -------------------------------------------------------------------------------------- */
+
+static void mark_probe(const struct dalcs_probe *probe, int system, bool *is_read) {
+    for (int m = 0; probe->system == system && m < probe->n_terms; m++) {
+        is_read[probe->term[m].index] = true;
+    }
+}
+
+/* Columns of a system that outputs read, or the loop. */
+static void mark_read(const struct dalcs_periodic_ac *a, int system, bool *is_read) {
+    const struct dalcs_network *network = &a->run->s->network;
+    for (int i = 0; i < network->n_outputs; i++) {
+        mark_probe(&network->output[i].plus, system, is_read);
+        mark_probe(&network->output[i].minus, system, is_read);
+    }
+    for (int k = 0; k < 2 && a->loop.device >= 0 && a->loop.system == system; k++) {
+        if (a->loop.column[k] >= 0) {
+            is_read[a->loop.column[k]] = true;
+        }
+    }
+}
+
+static double fastest_of(const struct dalcs_sweep *f) {
+    double fastest = 0.0;
+    for (int k = 0; k < f->n; k++) {
+        fastest = fmax(fastest, dalcs_sweep_value(f, k));
+    }
+    return two_pi * fastest;
+}
+
+static enum dalcs_status part_setup(struct dalcs_periodic_ac *a, int k, double fastest) {
+    struct dalcs_periodic_ac_part *p = &a->part[k];
+    const struct dalcs_system *s = &a->run->s->network.system[k];
+    const size_t n_columns = (size_t)dalcs_system_n_columns(s);
+    const size_t n_inputs = (size_t)s->n_inputs;
+    bool *is_read = dalcs_arena_alloc(&a->arena, n_columns, sizeof(bool));
+    p->source = dalcs_arena_alloc(&a->arena, n_inputs, sizeof *p->source);
+    bool complete = is_read != NULL && p->source != NULL;
+    for (int which = 0; which < 2; which++) {
+        p->y[which] = dalcs_arena_alloc(&a->arena, n_columns, sizeof(double));
+        p->s[which] = dalcs_arena_alloc(&a->arena, n_inputs, sizeof(double));
+        complete = complete && p->y[which] != NULL && p->s[which] != NULL;
+    }
+    if (!complete) {
+        return DALCS_E_NOMEM;
+    }
+    p->rests = true;
+    for (int i = 1; i < s->n_inputs; i++) {
+        p->source[i] = dalcs_periodic_loop_source(a, s->stimulus[i]);
+        p->s[0][i] = a->sideband == 0 ? creal(p->source[i]) : 0.0;
+        p->s[1][i] = a->sideband == 0 ? cimag(p->source[i]) : 0.0;
+        p->rests = p->rests && p->source[i] == 0.0;
+    }
+    if (p->rests) {
+        return DALCS_OK;
+    }
+    mark_read(a, k, is_read);
+    DALCS_TRY(
+        dalcs_periodic_flow_setup(&p->flow, &a->log.part[k], p->source, fastest, a->st->period));
+    return dalcs_periodic_response_setup(&p->response, &p->flow, is_read);
+}
+
+static enum dalcs_status setup(struct dalcs_periodic_ac *a) {
+    const double fastest = fastest_of(a->sweep);
+    const size_t n_outputs = (size_t)a->run->s->network.n_outputs;
+    a->part = dalcs_arena_alloc(&a->arena, (size_t)a->log.n_parts, sizeof *a->part);
+    a->row = dalcs_arena_alloc(&a->arena, 2 * n_outputs, sizeof(double));
+    a->shown = dalcs_arena_alloc(&a->arena, 2 * n_outputs + 2, sizeof(double));
+    if (a->part == NULL || a->row == NULL || a->shown == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < a->log.n_parts; k++) {
+        a->n_parts = k + 1;
+        DALCS_TRY(part_setup(a, k, fastest));
+    }
+    return DALCS_OK;
+}
+
+/* The netlist's frequencies, or others that are asked for. */
+static enum dalcs_status choose_sweep(struct dalcs_periodic_ac *a) {
+    const struct dalcs_run_options *o = a->run->options;
+    struct dalcs_sweep *f = &a->own_sweep;
+    a->sweep = &a->run->s->circuit.ac;
+    if (a->sweep->n > 0 && o->bode_from == 0.0 && o->bode_to == 0.0 && o->bode_points == 0) {
+        return DALCS_OK;
+    }
+    const bool has = a->sweep->n > 0;
+    *f = (struct dalcs_sweep){.name = "frequency", .label = "frequency", .device = -1};
+    f->where = a->sweep->where;
+    f->spacing = DALCS_DECADES;
+    f->start = o->bode_from > 0.0 ? o->bode_from
+               : has              ? a->sweep->start
+                                  : usual_from / a->st->period;
+    f->stop = o->bode_to > 0.0 ? o->bode_to : has ? a->sweep->stop : usual_to / a->st->period;
+    f->step = o->bode_points > 0                          ? o->bode_points
+              : has && a->sweep->spacing == DALCS_DECADES ? a->sweep->step
+                                                          : USUAL_POINTS;
+    f->n = f->start > 0.0 && f->stop >= f->start
+               ? dalcs_sweep_count(f->spacing, f->start, f->stop, f->step)
+               : 0;
+    a->sweep = f;
+    if (f->n <= 0) {
+        dalcs_diag_add(&a->run->s->diag, DALCS_ERROR, NULL, NULL,
+                       "from %.9g Hz to %.9g Hz there are no frequencies", f->start, f->stop);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+static void report(struct dalcs_periodic_ac *a) {
+    struct dalcs_session *s = a->run->s;
+    s->report.response.present = true;
+    s->report.response.period = a->st->period;
+    s->report.response.sideband = a->sideband;
+    s->report.response.exact = a->log.is_exact && a->st->is_exact;
+    for (int k = 0; k < a->n_parts; k++) {
+        s->report.response.tail = fmax(s->report.response.tail, a->part[k].flow.worst);
+    }
+    if (!s->report.response.exact) {
+        dalcs_diag_add(
+            &s->diag, DALCS_WARNING, &s->circuit.ac.where, NULL,
+            "the response is not exact: the mode is not known all the time, an event only "
+            "touches its threshold, or commands at one time move apart");
+    }
+    if (s->report.steady.present && dalcs_steady_is_unstable(&s->report)) {
+        dalcs_diag_add(&s->diag, DALCS_WARNING, &s->circuit.ac.where, NULL,
+                       "the orbit is unstable: this is the response around it, which no run and no "
+                       "analyser would show");
+    }
+}
+
+static enum dalcs_status look_around(struct dalcs_periodic_ac *a) {
+    struct dalcs_run *r = a->run;
+    struct dalcs_radau_options options = dalcs_transient_options(r, a->st->period);
+    options.tolerance = fmin(options.tolerance, tolerance_of_log);
+    a->sideband =
+        r->options->sideband != 0 ? r->options->sideband : r->s->circuit.orbit_ac.sideband;
+    DALCS_TRY(choose_sweep(a));
+    DALCS_TRY(dalcs_periodic_loop_find(a));
+    DALCS_TRY(dalcs_radau_setup(&a->radau, &a->euler, &options, &r->osnsp));
+    DALCS_TRY(dalcs_orbit_log_setup(&a->log, &a->radau));
+    DALCS_TRY(dalcs_explain_failure(r, &a->euler,
+                                    dalcs_steady_log(a->st, &a->euler, &a->radau, &a->log)));
+    DALCS_TRY(dalcs_steady_find_defect(a->st));
+    DALCS_TRY(setup(a));
+    report(a);
+    return walk(a);
+}
+
+enum dalcs_status dalcs_periodic_ac_walk(struct dalcs_steady *st) {
+    struct dalcs_run *r = st->run;
+    struct dalcs_periodic_ac a = {.st = st, .run = r};
+    DALCS_TRY(
+        dalcs_euler_setup(&a.euler, &r->s->circuit, &r->s->network, &r->osnsp, r->h, st->period));
+    enum dalcs_status status = look_around(&a);
+    for (int k = 0; k < a.n_parts; k++) {
+        dalcs_periodic_response_finish(&a.part[k].response);
+        dalcs_periodic_flow_finish(&a.part[k].flow);
+    }
+    dalcs_margins_finish(&a.margins);
+    dalcs_measures_finish(&a.measures);
+    dalcs_orbit_log_finish(&a.log);
+    dalcs_radau_finish(&a.radau);
+    dalcs_euler_finish(&a.euler);
+    dalcs_arena_finish(&a.arena);
+    return status;
+}
