@@ -48,6 +48,7 @@ void dalcs_session_destroy(struct dalcs_session *session) {
         dalcs_netlist_finish(&session->netlist);
     }
     free(session->override);
+    free(session->document);
     dalcs_spice_names_finish(&session->spice);
     dalcs_diag_finish(&session->diag);
     dalcs_arena_finish(&session->arena);
@@ -59,9 +60,9 @@ void dalcs_session_destroy(struct dalcs_session *session) {
 /* ---- Reading ------------------------------------------------------------------------------- */
 
 /* Steps, sweeps of what is no source, and scripts want other circuits of the same netlist. */
-static bool is_built_again(const struct dalcs_circuit *circuit,
-                           const struct dalcs_netlist *netlist) {
-    bool again = circuit->n_steps > 0 || netlist->n_script_lines > 0;
+static bool is_built_again(const struct dalcs_circuit *circuit, const struct dalcs_netlist *netlist,
+                           bool is_kept) {
+    bool again = circuit->n_steps > 0 || netlist->n_script_lines > 0 || is_kept;
     for (int k = 0; k < circuit->n_dc; k++) {
         const int device = circuit->dc[k].device;
         again = again || device < 0 || circuit->device[device].stimulus < 0;
@@ -96,7 +97,7 @@ static enum dalcs_status build(struct dalcs_session *s, struct dalcs_netlist *ne
         status = dalcs_circuit_build(&s->circuit, netlist, &s->diag);
         s->has_circuit = status == DALCS_OK;
     }
-    if (status == DALCS_OK && is_built_again(&s->circuit, netlist)) {
+    if (status == DALCS_OK && is_built_again(&s->circuit, netlist, s->keeps_netlist)) {
         s->netlist = *netlist;
         s->has_netlist = true;
     } else {
@@ -142,6 +143,14 @@ enum dalcs_status dalcs_session_ask_steady(struct dalcs_session *session) {
         return DALCS_E_OPTION; /* it is read */
     }
     session->asks_steady = true;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_session_keep_netlist(struct dalcs_session *session) {
+    if (session->name != NULL) {
+        return DALCS_E_OPTION; /* it is read */
+    }
+    session->keeps_netlist = true;
     return DALCS_OK;
 }
 

@@ -6,7 +6,7 @@ nothing to do.
 usage: against_schema.py PROGRAM SOURCE_ROOT
 
 The schema allows no key that it does not describe, and no word where a number belongs: a NaN in a
-report fails. What src/output/report.c and losses_json.c write must be all that the schema has, and nothing else.
+report fails. What src/report/report.c and losses_json.c write must be all that the schema has, and nothing else.
 """
 
 import json
