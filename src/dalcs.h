@@ -725,6 +725,11 @@ struct dalcs_report {
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */
 const struct dalcs_report *dalcs_session_report(const struct dalcs_session *session);
 
+/* One measurement of the last run's report, for languages that do not read this header; NULL when index is
+ * too large. */
+const struct dalcs_measurement *dalcs_session_measurement(const struct dalcs_session *session,
+                                                          size_t index);
+
 /* ---- As JSON ---------------------------------------------------------------------------------- */
 
 /* Texts that belong to the session and live until the next of them. The report of the last run, by

@@ -251,6 +251,12 @@ const struct dalcs_report *dalcs_session_report(const struct dalcs_session *sess
     return session->has_report ? &session->report : NULL;
 }
 
+const struct dalcs_measurement *dalcs_session_measurement(const struct dalcs_session *session,
+                                                          size_t index) {
+    const bool has = session->has_report && index < session->report.n_measurements;
+    return has ? &session->report.measurement[index] : NULL;
+}
+
 enum dalcs_status dalcs_parse_number(const char *text, double *value) {
     struct dalcs_number number;
     if (dalcs_number_parse(text, &number) != DALCS_NUMBER_OK) {

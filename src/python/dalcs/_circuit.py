@@ -46,8 +46,7 @@ class Circuit:
         session.set_values({**(values or {}), **{name: value for name, value in more.items()
                                                  if name not in c.OPTIONS}})
         chosen = Options(options, at if rows or at is not None else ())
-        tables, report = session.run(chosen, progress, rows)
-        return Result(tables, report, session.messages())
+        return Result(session, session.run(chosen, progress, rows))
 
     def steady(self, values: Optional[Mapping[str, float]] = None, *,
                period: Optional[float] = None, **more: Any) -> Result:

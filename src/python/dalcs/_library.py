@@ -51,6 +51,33 @@ class RowTable(ctypes.Structure):
     ]
 
 
+class Measurement(ctypes.Structure):
+    """struct dalcs_measurement; its details are read from the report"""
+
+    _fields_ = [
+        ("name", c_char_p),
+        ("step", c_char_p),
+        ("found", c_bool),
+        ("value", c_double),
+        ("failure", c_char_p),
+        ("n_details", c_int),
+        ("detail", c_double * 4),
+    ]
+
+
+class Sink(ctypes.Structure):
+    """struct dalcs_sink"""
+
+    _fields_ = [
+        ("user", c_void_p),
+        ("begin", c_void_p),
+        ("row", c_void_p),
+        ("end", c_void_p),
+        ("progress", c_void_p),
+        ("rows", c_void_p),
+    ]
+
+
 Progress = CFUNCTYPE(c_int, c_void_p, c_double, c_double)
 
 # name: (result, arguments)
@@ -77,6 +104,7 @@ CALLS = {
     "dalcs_run_options_set": (c_int, (c_void_p, c_char_p, c_char_p)),
     "dalcs_run_options_set_times": (None, (c_void_p, c_void_p, c_size_t)),
     "dalcs_session_run": (c_int, (c_void_p, c_void_p, c_void_p)),
+    "dalcs_session_measurement": (POINTER(Measurement), (c_void_p, c_size_t)),
     "dalcs_session_run_tables": (c_int, (c_void_p, c_void_p, Progress, c_void_p,
                                          POINTER(c_void_p))),
     "dalcs_session_cancel": (None, (c_void_p,)),

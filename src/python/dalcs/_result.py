@@ -5,12 +5,12 @@ from __future__ import annotations
 import difflib
 import functools
 import json
-from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 
 from . import _library as c
-from ._session import Tables
+from ._session import Session, Tables
 
 
 class _Memory:
@@ -125,15 +125,18 @@ class Result(Table):
 
     tables    all tables, in the order in which they were made
     report    dict, as `dalcs run --report` writes it (doc/report.schema.json)
-    messages  notes and warnings
     """
 
-    def __init__(self, tables: Optional[Tables], report: str, messages: Sequence[str]) -> None:
+    def __init__(self, session: Session, tables: Optional[Tables]) -> None:
         found = [] if tables is None else list(tables)
         super().__init__(tables, found[-1] if found else None)
         self._others = [(tables, item) for item in found[:-1]]
-        self._report = report
-        self.messages = tuple(messages)
+        self._session = session  # which keeps what is asked for later
+
+    @functools.cached_property
+    def messages(self) -> Tuple[str, ...]:
+        """Notes and warnings, each with its place."""
+        return tuple(self._session.messages())
 
     @functools.cached_property
     def tables(self) -> List[Table]:
@@ -143,7 +146,7 @@ class Result(Table):
     @functools.cached_property
     def report(self) -> Dict[str, Any]:
         """What the run did: work, certificate, audit, states, energies. SI units."""
-        return json.loads(self._report)
+        return json.loads(self._session.report())
 
     @functools.cached_property
     def events(self) -> np.ndarray:
@@ -167,11 +170,10 @@ class Result(Table):
     def measures(self) -> Dict[str, Any]:
         """What each .meas gave, NaN where it found nothing; of .step an array with one for each step."""
         found: Dict[str, List[float]] = {}
-        entries = self.report["measurements"]
-        for entry in entries:
-            value = entry["value"]
-            found.setdefault(entry["name"], []).append(np.nan if value is None else float(value))
-        if any("step" in entry for entry in entries):
+        entries = self._session.measurements()
+        for name, _, value in entries:
+            found.setdefault(name, []).append(value)
+        if any(is_step for _, is_step, _ in entries):
             return {name: np.array(values) for name, values in found.items()}
         return {name: values[-1] for name, values in found.items()}
 

@@ -94,8 +94,8 @@ class Session:
         return (text.value or b"").decode()
 
     def run(self, options: "Options", progress: Optional[Callable[[float, float], Any]],
-            keeps_rows: bool) -> Tuple[Optional[Tables], str]:
-        """The rows, if they are kept, and the report."""
+            keeps_rows: bool) -> Optional[Tables]:
+        """The rows, if they are kept."""
         failure: list[BaseException] = []
         tell = _pulse if progress is None else _told(progress, failure)
         handle = ctypes.c_void_p()
@@ -110,22 +110,25 @@ class Session:
         tables = Tables(handle) if handle else None
         if failure:
             raise failure[0]
-        report = None
-        if status == c.OK or status > 0:
-            report = self.document(c.lib.dalcs_session_report_json)
-        if status != c.OK or report is None:
-            raise error_of(status, self.messages(), report)
-        return tables, report
+        if status != c.OK:
+            raise error_of(status, self.messages(), self.report() if status > 0 else None)
+        return tables
+
+    def report(self) -> str:
+        """JSON by doc/report.schema.json."""
+        return self.document(c.lib.dalcs_session_report_json)
+
+    def measurements(self) -> list[Tuple[str, bool, float]]:
+        """Name, whether it is one of .step, and the value of each; NaN where nothing was found."""
+        found = []
+        while entry := c.lib.dalcs_session_measurement(self.handle, len(found)):
+            m = entry.contents
+            found.append((m.name.decode("utf-8", "replace"), m.step is not None,
+                          m.value if m.found else math.nan))
+        return found
 
 
-class Sink(ctypes.Structure):
-    """struct dalcs_sink"""
-
-    _fields_ = [("user", ctypes.c_void_p), ("begin", ctypes.c_void_p), ("row", ctypes.c_void_p),
-                ("end", ctypes.c_void_p), ("progress", c.Progress), ("rows", ctypes.c_void_p)]
-
-
-_SINK = Sink(progress=_pulse)
+_SINK = c.Sink(progress=ctypes.cast(_pulse, ctypes.c_void_p))
 _SILENT = ctypes.addressof(_SINK)
 
 
@@ -148,21 +151,18 @@ def _interruptibly(session: Session, call: Callable[[], int]) -> int:
     """
     if threading.current_thread() is not threading.main_thread():
         return call()
-    usual = signal.getsignal(signal.SIGINT)
-    if not callable(usual):
-        return call()
     caught: list[Tuple[int, Any]] = []
 
     def on_signal(number: int, frame: Any) -> None:
         caught.append((number, frame))
         session.cancel()
 
-    signal.signal(signal.SIGINT, on_signal)
+    usual = signal.signal(signal.SIGINT, on_signal)
     try:
         status = call()
     finally:
         signal.signal(signal.SIGINT, usual)
-    if caught:
+    if caught and callable(usual):
         usual(*caught[0])
     return status
 
