@@ -9,7 +9,8 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Seque
 
 import numpy as np
 
-from ._errors import Error
+from . import _library as c
+from ._errors import Cancelled, Error
 from ._result import Result
 
 Grid = Union[Mapping[str, Sequence[float]], Sequence[Mapping[str, float]]]
@@ -32,13 +33,13 @@ class Sweep:
 
     def __init__(self, points: Sequence[Mapping[str, float]], kept: Sequence[Any]) -> None:
         self.points = list(points)
-        self.errors = {k: value for k, value in enumerate(kept) if isinstance(value, Error)}
+        self.errors = {k: value for k, value in enumerate(kept) if isinstance(value, Exception)}
         given = [value if isinstance(value, Mapping) else {} for value in kept]
         self.columns: Dict[str, np.ndarray] = {}
         for rows in (self.points, given):
             for name in dict.fromkeys(name for row in rows for name in row):
                 self.columns[name] = _column_of([row.get(name, np.nan) for row in rows])
-        self.columns["error"] = np.array([self.errors[k].message if k in self.errors else ""
+        self.columns["error"] = np.array([_message_of(self.errors.get(k))
                                           for k in range(len(self.points))], dtype=object)
 
     def __len__(self) -> int:
@@ -59,6 +60,12 @@ class Sweep:
         return f"<sweep of {len(self)} runs, {len(self.errors)} failed: {', '.join(self.columns)}>"
 
 
+def _message_of(error: Optional[Exception]) -> str:
+    if isinstance(error, Error):
+        return error.message
+    return "" if error is None else f"{type(error).__name__}: {error}"
+
+
 def _column_of(values: List[Any]) -> np.ndarray:
     if all(isinstance(value, (int, float, np.number)) for value in values):
         return np.array(values)
@@ -70,10 +77,11 @@ def _column_of(values: List[Any]) -> np.ndarray:
 class _Workers:
     """Threads that take the next run until there is none, or until they are stopped."""
 
-    def __init__(self, task: Callable[[int], Any], count: int) -> None:
-        self.task, self.kept = task, [None] * count
+    def __init__(self, task: Callable[[int], Any], count: int, stopped: threading.Event) -> None:
+        self.task, self.stopped = task, stopped
+        self.kept: List[Any] = [None] * count
         self.failure: Optional[BaseException] = None
-        self.next, self.stopped = itertools.count(), threading.Event()
+        self.next = itertools.count()
 
     def work(self) -> None:
         while not self.stopped.is_set():
@@ -82,8 +90,8 @@ class _Workers:
                 return
             try:
                 self.kept[index] = self.task(index)
-            except Error as error:
-                self.kept[index] = error  # type: ignore[call-overload]
+            except Exception as error:  # pylint: disable=broad-except
+                self.kept[index] = error
             except BaseException as error:  # pylint: disable=broad-except
                 self.failure = self.failure or error
                 self.stopped.set()
@@ -92,13 +100,15 @@ class _Workers:
         """With one worker in this thread, which Ctrl-C interrupts by itself."""
         if workers > 1:
             threads = [threading.Thread(target=self.work, daemon=True) for _ in range(workers)]
+            for thread in threads:
+                thread.start()
             try:
-                for thread in threads:
-                    thread.start()
                 for thread in threads:
                     thread.join()
             finally:
                 self.stopped.set()
+                for thread in threads:
+                    thread.join()
         else:
             self.work()
         if self.failure is not None:
@@ -115,11 +125,20 @@ def sweep_of(run: Callable[..., Result], grid: Grid, workers: Optional[int],
         asked = {"rows": False, "record": False, **asked}
     fixed = dict(asked.pop("values", None) or {})
 
+    told = asked.pop("progress", None)
+    stopped = threading.Event()
+
+    def progress(time: float, stop: float) -> None:
+        if stopped.is_set():
+            raise Cancelled(c.E_CANCELLED, ())
+        if told is not None:
+            told(time, stop)
+
     def task(index: int) -> Any:
-        result = run({**fixed, **points[index]}, **asked)
+        result = run({**fixed, **points[index]}, progress=progress, **asked)
         kept = result.measures if each is None else each(result)
         return kept if isinstance(kept, Mapping) else {"value": kept}
 
     if workers is None:
         workers = len(os.sched_getaffinity(0))
-    return Sweep(points, _Workers(task, len(points)).run(min(workers, len(points))))
+    return Sweep(points, _Workers(task, len(points), stopped).run(min(workers, len(points))))
