@@ -13,9 +13,11 @@
 >>> result.t.shape == result["v(out)"].shape
 True
 >>> print(f"{result['v(out)'].max():.6f} V, {result.measures['vavg']:.4f} V on average")
-10.000000 V, 8.0910 V on average
+10.000000 V, 8.0519 V on average
 >>> for event in result.events[:2]:
 ...     print(f"{event['time'] * 1e3:.9f} ms {event['element']} {'on' if event['on'] else 'off'}")
+5.252770295 ms d1 off
+22.259049507 ms d1 on
 
 Arrays of rows are views of the run's memory. All units are SI.
 """

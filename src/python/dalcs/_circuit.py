@@ -54,8 +54,9 @@ class Circuit:
 
         period    s; None: that of .pss, else it follows from the sources
         """
-        asked = {} if period is None else {"period": float(period)}
-        return self.run(values, steady=True, **asked, **more)
+        if period is not None:
+            more["period"] = float(period)
+        return self.run(values, steady=True, **more)
 
     def sweep(self, grid: Grid, *, workers: Optional[int] = None,
               each: Optional[Callable[[Result], Any]] = None, **options: Any) -> Sweep:
@@ -78,7 +79,7 @@ class Circuit:
         step    s, of the conditions on one step; 0: the netlist's
         """
         session = self._read()
-        return json.loads(session.document(c.lib.dalcs_session_check_json, float(step)))
+        return dict(json.loads(session.document(c.lib.dalcs_session_check_json, float(step))))
 
     def equations(self, form: str = "dalcs") -> List[System]:
         """The complementarity system of each connected part; form "lcs": z eliminated where it can be."""

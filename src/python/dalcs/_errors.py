@@ -28,7 +28,7 @@ class Error(Exception):
         self.messages = tuple(messages)
         self.elements = tuple(elements)
         self.element: Optional[str] = self.elements[0] if self.elements else None
-        self.message = c.lib.dalcs_status_text(status).decode()
+        self.message: str = c.lib.dalcs_status_text(status).decode()
         self.file: Optional[str] = None
         self.line: Optional[int] = None
         self.column: Optional[int] = None

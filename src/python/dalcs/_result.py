@@ -8,6 +8,7 @@ import json
 from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _library as c
 from ._session import Session, Tables
@@ -22,7 +23,7 @@ class _Memory:
                                     "typestr": kind}
 
 
-def _array(owner: Tables, address: Optional[int], shape: Tuple[int, ...], kind: str) -> np.ndarray:
+def _array(owner: Tables, address: Optional[int], shape: Tuple[int, ...], kind: str) -> NDArray[Any]:
     if not address or 0 in shape:
         return np.empty(shape, dtype=kind)
     return np.asarray(_Memory(owner, address, shape, kind))
@@ -84,7 +85,7 @@ class Table:
     def _column(self) -> Dict[str, int]:
         return {name.lower(): k for k, name in enumerate(self.names)}
 
-    def __getitem__(self, name: str) -> np.ndarray:
+    def __getitem__(self, name: str) -> NDArray[Any]:
         """One signal, [n]; the name in any case, and the scale by its own."""
         column = self._column.get(name.lower())
         if column is not None:
@@ -146,10 +147,10 @@ class Result(Table):
     @functools.cached_property
     def report(self) -> Dict[str, Any]:
         """What the run did: work, certificate, audit, states, energies. SI units."""
-        return json.loads(self._session.report())
+        return dict(json.loads(self._session.report()))
 
     @functools.cached_property
-    def events(self) -> np.ndarray:
+    def events(self) -> NDArray[Any]:
         """Diodes and switches that changed sides: fields time (s), element, on. [n_events]"""
         rows = [(e["time"], e["element"], e["state"] == "on") for e in self.report["events"]]
         width = max((len(row[1]) for row in rows), default=1)
@@ -158,7 +159,7 @@ class Result(Table):
     @property
     def jumps(self) -> List[Dict[str, Any]]:
         """States that changed at once: time (s), states (V, A), impulses (C, Wb), energy_lost (J)."""
-        return self.report["jumps"]
+        return list(self.report["jumps"])
 
     @property
     def losses(self) -> Optional[Dict[str, Any]]:

@@ -74,7 +74,7 @@ class Session:
 
     def names(self, call: Callable[[Any, int], Optional[bytes]]) -> list[str]:
         """All names that a call gives by index."""
-        found = []
+        found: list[str] = []
         while (name := call(self.handle, len(found))) is not None:
             found.append(name.decode("utf-8", "replace"))
         return found
@@ -102,9 +102,9 @@ class Session:
 
         def call() -> int:
             if not keeps_rows and progress is None:
-                return c.lib.dalcs_session_run(self.handle, options.handle, _SILENT)
-            return c.lib.dalcs_session_run_tables(self.handle, options.handle, tell, None,
-                                                  ctypes.byref(handle))
+                return int(c.lib.dalcs_session_run(self.handle, options.handle, _SILENT))
+            return int(c.lib.dalcs_session_run_tables(self.handle, options.handle, tell, None,
+                                                      ctypes.byref(handle)))
 
         status = _interruptibly(self, call)
         tables = Tables(handle) if handle else None
@@ -120,7 +120,7 @@ class Session:
 
     def measurements(self) -> list[Tuple[str, bool, float]]:
         """Name, whether it is one of .step, and the value of each; NaN where nothing was found."""
-        found = []
+        found: list[Tuple[str, bool, float]] = []
         while entry := c.lib.dalcs_session_measurement(self.handle, len(found)):
             m = entry.contents
             found.append((m.name.decode("utf-8", "replace"), m.step is not None,

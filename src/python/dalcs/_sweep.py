@@ -8,6 +8,7 @@ import threading
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _library as c
 from ._errors import Cancelled, Error
@@ -35,7 +36,7 @@ class Sweep:
         self.points = list(points)
         self.errors = {k: value for k, value in enumerate(kept) if isinstance(value, Exception)}
         given = [value if isinstance(value, Mapping) else {} for value in kept]
-        self.columns: Dict[str, np.ndarray] = {}
+        self.columns: Dict[str, NDArray[Any]] = {}
         for rows in (self.points, given):
             for name in dict.fromkeys(name for row in rows for name in row):
                 self.columns[name] = _column_of([row.get(name, np.nan) for row in rows])
@@ -48,7 +49,7 @@ class Sweep:
     def __iter__(self) -> Iterator[str]:
         return iter(self.columns)
 
-    def __getitem__(self, name: str) -> np.ndarray:
+    def __getitem__(self, name: str) -> NDArray[Any]:
         return self.columns[name]
 
     def to_pandas(self) -> Any:
@@ -66,7 +67,7 @@ def _message_of(error: Optional[Exception]) -> str:
     return "" if error is None else f"{type(error).__name__}: {error}"
 
 
-def _column_of(values: List[Any]) -> np.ndarray:
+def _column_of(values: List[Any]) -> NDArray[Any]:
     if all(isinstance(value, (int, float, np.number)) for value in values):
         return np.array(values)
     column = np.empty(len(values), dtype=object)
