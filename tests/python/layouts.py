@@ -16,7 +16,7 @@ import unittest
 import dalcs
 from dalcs import _library as library
 
-SOURCE = pathlib.Path(sys.argv.pop(1))
+SOURCE = pathlib.Path(sys.argv[1])
 HEADER = SOURCE / "src" / "dalcs.h"
 STRUCTS = {"dalcs_plot": library.Plot, "dalcs_row_table": library.RowTable,
            "dalcs_measurement": library.Measurement, "dalcs_sink": library.Sink}
@@ -85,4 +85,4 @@ class Layouts(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(argv=sys.argv[:1])

@@ -20,7 +20,7 @@ import numpy as np
 import dalcs
 from half_wave import NETLIST, closes, opens, output
 
-SOURCE = pathlib.Path(sys.argv.pop(1))
+SOURCE = pathlib.Path(sys.argv[1])
 ENDLESS = SOURCE / "netlists" / "converters" / "buck_closed_loop.cir"
 
 
@@ -249,4 +249,4 @@ class Ended(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(argv=sys.argv[:1])

@@ -16,7 +16,7 @@ import numpy as np
 import dalcs
 from half_wave import NETLIST, closes, opens, output
 
-SOURCE = pathlib.Path(sys.argv.pop(1))
+SOURCE = pathlib.Path(sys.argv[1])
 LOADS = np.geomspace(50.0, 20e3, 60)
 
 
@@ -115,4 +115,4 @@ class Failures(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(argv=sys.argv[:1])
