@@ -45,7 +45,28 @@ static char *cut_field(char *name) {
     return open + 1;
 }
 
-static void tell_unknown(struct dalcs_session *s, const char *name, const char *nearest) {
+/* What a subcircuit calls so is another value in each of its instances, and nothing outside. */
+static bool is_parameter(const struct dalcs_session *s, const char *name) {
+    bool is = false;
+    const char *known;
+    for (size_t k = 0; !is && (known = dalcs_session_parameter_name(s, k)) != NULL; k++) {
+        is = strcmp(known, name) == 0;
+    }
+    return is;
+}
+
+static const char *nearest_parameter(const struct dalcs_session *s, const char *name) {
+    const char *nearest = NULL, *known;
+    for (size_t k = 0; nearest == NULL && (known = dalcs_session_parameter_name(s, k)) != NULL;
+         k++) {
+        nearest = dalcs_names_nearest_of(&known, 1, name);
+    }
+    return nearest;
+}
+
+static void tell_unknown(struct dalcs_session *s, const char *name, const char *parameter,
+                         const char *element) {
+    const char *nearest = parameter != NULL ? parameter : element;
     char *hint =
         nearest != NULL ? dalcs_arena_printf(&s->arena, "did you mean '%s'?", nearest) : NULL;
     dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, hint,
@@ -67,16 +88,13 @@ enum dalcs_status dalcs_session_set_value(struct dalcs_session *session, const c
     if (low == NULL) {
         return DALCS_E_NOMEM;
     }
-    const char *field = cut_field(dalcs_lower_text(low)), *nearest = NULL, *like = NULL;
-    enum dalcs_status status = DALCS_E_OPTION;
-    if (field == NULL) {
-        status = dalcs_session_alter(session, true, low, NULL, value, &nearest);
+    const char *field = cut_field(dalcs_lower_text(low)), *like = NULL;
+    if (field == NULL && is_parameter(session, low)) {
+        return dalcs_session_alter(session, true, low, NULL, value, NULL);
     }
+    const enum dalcs_status status = dalcs_session_alter(session, false, low, field, value, &like);
     if (status == DALCS_E_OPTION) {
-        status = dalcs_session_alter(session, false, low, field, value, &like);
-    }
-    if (status == DALCS_E_OPTION) {
-        tell_unknown(session, name, nearest != NULL ? nearest : like);
+        tell_unknown(session, name, field == NULL ? nearest_parameter(session, low) : NULL, like);
     }
     return status;
 }
