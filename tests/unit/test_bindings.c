@@ -66,11 +66,17 @@ START_TEST(test_wrong_values) {
         const char *name;
         double value;
         const char *says;
-    } wrong[] = {
-        {"uper", 1.0, "did you mean 'upper'?"}, {"r9", 1.0, "no parameter or element 'r9'"},
-        {"inner", 1.0, "element 'inner'"},      {"steep(", 1.0, "no parameter or element"},
-        {"flat(vfwd)", 1.0, "no parameter"},    {"upper", NAN, "'upper' cannot be nan"},
-        {"upper", -INFINITY, "cannot be -inf"}, {"", 1.0, "no parameter or element ''"}};
+    } wrong[] = {{"uper", 1.0, "did you mean 'upper'?"},
+                 {"r9", 1.0, "no parameter or element 'r9'"},
+                 {"inner", 1.0, "element 'inner'"},
+                 {"steep(", 1.0, "no parameter or element"},
+                 {"flat(vfwd)", 1.0, "no parameter"},
+                 {"upper", NAN, "'upper' cannot be nan"},
+                 {"upper", -INFINITY, "cannot be -inf"},
+                 {"", 1.0, "no parameter or element ''"},
+                 {"x1", 1.0, "element 'x1'"},
+                 {".op", 1.0, "element '.op'"},
+                 {"d1", 1.0, "element 'd1'"}};
 
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
         struct dalcs_session *s = read_kept(DIVIDER);
