@@ -458,6 +458,10 @@ enum dalcs_status dalcs_session_parameter(const struct dalcs_session *session, c
 enum dalcs_status dalcs_session_set_value(struct dalcs_session *session, const char *name,
                                           double value) DALCS_MUST_CHECK;
 
+/* Builds the circuit with the values that were set, as the next run or check does by itself: what
+ * the netlist then asks for may be another. DALCS_E_NETLIST: it is none; the messages say why. */
+enum dalcs_status dalcs_session_apply_values(struct dalcs_session *session) DALCS_MUST_CHECK;
+
 /* The names that may be set: the parameters outside of subcircuits of a netlist with a script, or that is
  * kept; the elements, those of subcircuits too. NULL when index is too large. */
 const char *dalcs_session_parameter_name(const struct dalcs_session *session, size_t index);
@@ -510,7 +514,9 @@ struct dalcs_nonunique {
 /* What a .meas gave. */
 struct dalcs_measurement {
     const char *name;
-    const char *step; /* of .step, "r = 500, c = 1e-06"; NULL without */
+    const char
+        *step; /* of .step, "r = 500, c = 1e-06", one text for all of a step of an analysis; NULL
+                         without */
     bool found;
     double value;        /* in the unit of what was measured; 0 unless found */
     const char *failure; /* why not; NULL when found */

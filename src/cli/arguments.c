@@ -3,6 +3,7 @@
 
 #include "figure.h"
 #include "memory.h"
+#include "settings.h"
 #include "table.h"
 #include "verb.h"
 
@@ -31,7 +32,9 @@ enum {
     ASCII,
     SPLIT_STEPS,
     AUDIT,
-    PERIOD
+    PERIOD,
+    SET,
+    MEASURES
 };
 
 static const struct option option[] = {
@@ -56,6 +59,8 @@ static const struct option option[] = {
     {"ascii", no_argument, NULL, ASCII},
     {"split-steps", no_argument, NULL, SPLIT_STEPS},
     {"period", required_argument, NULL, PERIOD},
+    {"set", required_argument, NULL, SET},
+    {"measures", required_argument, NULL, MEASURES},
     {"quiet", no_argument, NULL, 'q'},
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
@@ -63,6 +68,10 @@ static const struct option option[] = {
 
 static enum dalcs_status add_output(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                                     const char *path) {
+    if (strcmp(path, "none") == 0) {
+        arguments->no_waveforms = true;
+        return DALCS_OK;
+    }
     if (!dalcs_table_find_format(path)) {
         dalcs_cli_error(cli, "cannot tell the format of '%s': name it .csv or .raw", path);
         return DALCS_E_OPTION;
@@ -232,6 +241,14 @@ static enum dalcs_status parse_losses_plot(struct dalcs_arguments *arguments,
     return DALCS_OK;
 }
 
+static enum dalcs_status check_measures(const struct dalcs_cli *cli, const char *path) {
+    if (dalcs_table_find_format(path) != &dalcs_csv_format) {
+        dalcs_cli_error(cli, "--measures: '%s' is no name of a table: name it .csv", path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status take(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
                               int code, char **argv) {
     switch (code) {
@@ -282,6 +299,12 @@ static enum dalcs_status take(struct dalcs_arguments *arguments, const struct da
         return parse_losses_plot(arguments, cli, optarg);
     case AUDIT:
         return parse_audit(arguments, cli, optarg);
+    case SET:
+        arguments->set[arguments->n_set++] = optarg;
+        return dalcs_settings_check(cli, optarg);
+    case MEASURES:
+        arguments->measures = optarg;
+        return check_measures(cli, optarg);
     case PERIOD:
         return parse_period(arguments, cli, optarg);
     case ASCII:
@@ -322,15 +345,19 @@ static char *change_ending(const char *path, const char *ending) {
 /* The raw file goes to the current folder, a failed step beside the first output. */
 static enum dalcs_status add_defaults(struct dalcs_arguments *arguments,
                                       const struct dalcs_cli *cli) {
-    if (arguments->n_outputs == 0) {
-        arguments->default_output = change_ending(base_of(arguments->netlist), ".raw");
+    const bool is_input = strcmp(arguments->netlist, "-") == 0;
+    const char *base = is_input ? "stdin" : base_of(arguments->netlist);
+    const bool has_default = arguments->n_outputs == 0 && !arguments->no_waveforms;
+    if (has_default) {
+        arguments->default_output = change_ending(base, ".raw");
         arguments->output[arguments->n_outputs++] = arguments->default_output;
     }
-    if (!arguments->dump && arguments->output[0]) {
-        arguments->default_dump = change_ending(arguments->output[0], ".failed.dalcs");
+    const char *beside = arguments->n_outputs > 0 ? arguments->output[0] : base;
+    if (!arguments->dump && beside) {
+        arguments->default_dump = change_ending(beside, ".failed.dalcs");
         arguments->dump = arguments->default_dump;
     }
-    if (!arguments->output[0] || !arguments->dump) {
+    if ((has_default && !arguments->default_output) || !arguments->dump) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
         return DALCS_E_NOMEM;
     }
@@ -342,8 +369,10 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
     *arguments = (struct dalcs_arguments){
         .steady = strcmp(argv[0], "steady") == 0, .losses_from = NAN, .losses_to = INFINITY};
     arguments->output = dalcs_alloc((size_t)argc, sizeof *arguments->output);
-    if (!arguments->output) {
+    arguments->set = dalcs_alloc((size_t)argc, sizeof *arguments->set);
+    if (!arguments->output || !arguments->set) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(DALCS_E_NOMEM));
+        dalcs_arguments_finish(arguments);
         return DALCS_E_NOMEM;
     }
     enum dalcs_status status = DALCS_OK;
@@ -375,6 +404,7 @@ enum dalcs_status dalcs_arguments_parse(struct dalcs_arguments *arguments,
 
 void dalcs_arguments_finish(struct dalcs_arguments *arguments) {
     free(arguments->output);
+    free(arguments->set);
     free(arguments->default_output);
     free(arguments->default_dump);
     *arguments = (struct dalcs_arguments){0};

@@ -485,13 +485,7 @@ enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,
 static enum dalcs_status run_all(struct dalcs_session *session,
                                  const struct dalcs_run_options *options,
                                  const struct dalcs_sink *sink) {
-    if (session->is_altered) {
-        session->is_altered = false;
-        DALCS_TRY(dalcs_session_rebuild(session, NULL, 0));
-    }
-    if (!session->has_network) {
-        return DALCS_E_NETLIST;
-    }
+    DALCS_TRY(dalcs_session_apply_values(session));
     const struct dalcs_sink complete = completed(sink);
     if (options->steady) {
         session->circuit.periodic.present = true; /* as if there were a .pss */

@@ -121,9 +121,11 @@ class Values(unittest.TestCase):
         # v(c1) decays with 1/RC where the diode carries nothing: z from the second row, put into the first
         rate = matrix["A_I"] - matrix["B_I"] @ np.linalg.solve(matrix["B_II"], matrix["A_II"])
         self.assertAlmostEqual((rate / matrix["P"])[0, 0], -1.0 / (1e3 * 20e-6), delta=1e-9)
-        (reduced,) = dalcs.equations(NETLIST, "lcs")
+        (reduced,) = dalcs.equations(NETLIST, form="lcs")
         self.assertEqual(reduced.unknowns, ())
-        self.assertRaises(ValueError, dalcs.equations, NETLIST, "text")
+        self.assertRaises(ValueError, dalcs.equations, NETLIST, form="text")
+        (other,) = dalcs.equations(NETLIST, {"C1": 3e-6})
+        self.assertEqual(other["P"][0, 0], 3e-6)
 
 
 class Rows(unittest.TestCase):

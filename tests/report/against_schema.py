@@ -176,7 +176,7 @@ def main():
     program, root = (pathlib.Path(name).resolve() for name in sys.argv[1:])
     schema = json.loads((root / "doc" / "report.schema.json").read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
-    source = "".join((root / "src" / "output" / name).read_text(encoding="utf-8")
+    source = "".join((root / "src" / "report" / name).read_text(encoding="utf-8")
                      for name in ("report.c", "losses_json.c"))
     netlists = sorted((root / "netlists").glob("**/*.cir")) + sorted(
         (root / "tests" / "reference").glob("*.cir"))

@@ -58,12 +58,13 @@ def sweep(netlist: Netlist, grid: Grid, *, workers: Optional[int] = None,
     return Circuit(netlist, dialect).sweep(grid, workers=workers, each=each, **options)
 
 
-def check(netlist: Netlist, step: float = 0.0, *, dialect: Optional[str] = None) -> Dict[str, Any]:
-    """Circuit(netlist, dialect).check(step)"""
-    return Circuit(netlist, dialect).check(step)
+def check(netlist: Netlist, values: Optional[Mapping[str, float]] = None, *, step: float = 0.0,
+          dialect: Optional[str] = None) -> Dict[str, Any]:
+    """Circuit(netlist, dialect).check(values, step=step)"""
+    return Circuit(netlist, dialect).check(values, step=step)
 
 
-def equations(netlist: Netlist, form: str = "dalcs", *,
-              dialect: Optional[str] = None) -> List[System]:
-    """Circuit(netlist, dialect).equations(form)"""
-    return Circuit(netlist, dialect).equations(form)
+def equations(netlist: Netlist, values: Optional[Mapping[str, float]] = None, *,
+              form: str = "dalcs", dialect: Optional[str] = None) -> List[System]:
+    """Circuit(netlist, dialect).equations(values, form=form)"""
+    return Circuit(netlist, dialect).equations(values, form=form)

@@ -22,8 +22,11 @@ class Circuit:
         self.netlist = netlist
         self.dialect = dialect
 
-    def _read(self, losses: Window = False, steady: bool = False) -> Session:
-        return Session(self.netlist, self.dialect, losses, steady)
+    def _read(self, losses: Window = False, steady: bool = False,
+              values: Optional[Mapping[str, float]] = None) -> Session:
+        session = Session(self.netlist, self.dialect, losses, steady)
+        session.set_values(values or {})
+        return session
 
     def run(self, values: Optional[Mapping[str, float]] = None, *,
             at: Optional[Sequence[float]] = None, losses: Window = False, rows: bool = True,
@@ -42,9 +45,8 @@ class Circuit:
         """
         options: Dict[str, Any] = {"record": True}
         options.update((name, value) for name, value in more.items() if name in c.OPTIONS)
-        session = self._read(losses, bool(options.get("steady")))
-        session.set_values({**(values or {}), **{name: value for name, value in more.items()
-                                                 if name not in c.OPTIONS}})
+        own = {name: value for name, value in more.items() if name not in c.OPTIONS}
+        session = self._read(losses, bool(options.get("steady")), {**(values or {}), **own})
         chosen = Options(options, at if rows or at is not None else ())
         return Result(session, session.run(chosen, progress, rows))
 
@@ -73,19 +75,21 @@ class Circuit:
         """
         return sweep_of(self.run, grid, workers, each, options)
 
-    def check(self, step: float = 0.0) -> Dict[str, Any]:
+    def check(self, values: Optional[Mapping[str, float]] = None, *,
+              step: float = 0.0) -> Dict[str, Any]:
         """What theory says without a run, as `dalcs check --format json` (doc/check.schema.json).
 
         step    s, of the conditions on one step; 0: the netlist's
         """
-        session = self._read()
+        session = self._read(values=values)
         return dict(json.loads(session.document(c.lib.dalcs_session_check_json, float(step))))
 
-    def equations(self, form: str = "dalcs") -> List[System]:
+    def equations(self, values: Optional[Mapping[str, float]] = None, *,
+                  form: str = "dalcs") -> List[System]:
         """The complementarity system of each connected part; form "lcs": z eliminated where it can be."""
         if form not in ("dalcs", "lcs"):
             raise ValueError(f"form is 'dalcs' or 'lcs', not {form!r}")
-        session = self._read()
+        session = self._read(values=values)
         return systems_of(session.document(c.lib.dalcs_session_equations_json, c.FORMS[form], 0.0))
 
     @property

@@ -95,6 +95,7 @@ CALLS = {
     "dalcs_session_n_messages": (c_size_t, (c_void_p,)),
     "dalcs_session_message": (c_char_p, (c_void_p, c_size_t, POINTER(c_int))),
     "dalcs_session_set_value": (c_int, (c_void_p, c_char_p, c_double)),
+    "dalcs_session_apply_values": (c_int, (c_void_p,)),
     "dalcs_session_parameter": (c_int, (c_void_p, c_char_p, POINTER(c_double))),
     "dalcs_session_parameter_name": (c_char_p, (c_void_p, c_size_t)),
     "dalcs_session_element_name": (c_char_p, (c_void_p, c_size_t)),
