@@ -223,10 +223,8 @@ static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
     return status;
 }
 
-/* Runs a session that has read its netlist and ends all files. */
-static enum dalcs_status run_session(struct run *run, struct dalcs_session *session,
-                                     const struct dalcs_arguments *arguments,
-                                     const struct dalcs_times *times, size_t *n_written) {
+static struct dalcs_run_options options_of(const struct dalcs_arguments *arguments,
+                                           const struct dalcs_times *times) {
     struct dalcs_run_options options = dalcs_run_options_default();
     options.method = arguments->method;
     options.tolerance = arguments->tolerance;
@@ -246,6 +244,14 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     options.steady = arguments->steady;
     options.period = arguments->period;
     options.energy = arguments->report || arguments->energy;
+    return options;
+}
+
+/* Runs a session that has read its netlist and ends all files. */
+static enum dalcs_status run_session(struct run *run, struct dalcs_session *session,
+                                     const struct dalcs_arguments *arguments,
+                                     const struct dalcs_times *times, size_t *n_written) {
+    const struct dalcs_run_options options = options_of(arguments, times);
     const struct dalcs_sink sink = {
         .user = run, .begin = begin, .row = row, .end = end, .progress = progress, .rows = rows};
     run->session = session;

@@ -45,9 +45,13 @@ class Circuit:
         """
         options: Dict[str, Any] = {"record": True}
         options.update((name, value) for name, value in more.items() if name in c.OPTIONS)
+        if not rows and at is None:
+            at = ()  # and nothing that is about rows
+            options = {name: value for name, value in options.items()
+                       if name not in ("fill", "curve", "compress")}
         own = {name: value for name, value in more.items() if name not in c.OPTIONS}
         session = self._read(losses, bool(options.get("steady")), {**(values or {}), **own})
-        chosen = Options(options, at if rows or at is not None else ())
+        chosen = Options(options, at)
         return Result(session, session.run(chosen, progress, rows))
 
     def steady(self, values: Optional[Mapping[str, float]] = None, *,
