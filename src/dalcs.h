@@ -95,6 +95,10 @@ enum dalcs_status dalcs_session_ask_response(struct dalcs_session *session) DALC
 enum dalcs_status dalcs_session_ask_losses(struct dalcs_session *session, double from,
                                            double to) DALCS_MUST_CHECK;
 
+/* Says, before a netlist is read, that it will be run with other values: dalcs_session_set_value, _alter
+ * and _parameter then do without a script. DALCS_E_OPTION: a netlist was read. */
+enum dalcs_status dalcs_session_keep_netlist(struct dalcs_session *session) DALCS_MUST_CHECK;
+
 /* Reads a netlist from a file, or from text[0..length-1] that messages call `name`. A session reads
  * one netlist, once: a second call is DALCS_E_OPTION. Files that it includes are read too, relative to
  * the folder of `path` or `name`. Errors in the netlist: DALCS_E_NETLIST, all
@@ -361,6 +365,21 @@ enum { DALCS_MOST_SIDEBAND = 1000000 };
 /* The values named above, all else 0. Owns nothing. */
 struct dalcs_run_options dalcs_run_options_default(void);
 
+/* The same for languages that do not read this header: made, set by name, destroyed by the caller. */
+enum dalcs_status dalcs_run_options_create(struct dalcs_run_options **options) DALCS_MUST_CHECK;
+void dalcs_run_options_destroy(struct dalcs_run_options *options);
+
+/* Their names, "tol" and so on as on the command line; NULL when index is too large. */
+const char *dalcs_run_option_name(size_t index);
+
+/* Text is a number ("1u", "inf"), a word of the field's ("radau", "lines", "full"), or "yes" or "no".
+ * DALCS_E_OPTION: there is no such option, or that is no value of it; nothing is changed. */
+enum dalcs_status dalcs_run_options_set(struct dalcs_run_options *options, const char *name,
+                                        const char *text) DALCS_MUST_CHECK;
+
+/* Output times, which are borrowed until the run is over. None at all, n = 0: no rows of .tran. */
+void dalcs_run_options_set_times(struct dalcs_run_options *options, const double *at, size_t n);
+
 /* Runs .op, .dc, .ac and .tran, whichever the netlist has, for each .step, with options and a sink that
  * are read during the call only. DALCS_E_NETLIST: no netlist was read. DALCS_E_OPTION: a message says
  * which. What a callback returned, where that ended the run. DALCS_NOT_CONVERGED, DALCS_INFEASIBLE: the
@@ -370,6 +389,36 @@ struct dalcs_run_options dalcs_run_options_default(void);
 enum dalcs_status dalcs_session_run(struct dalcs_session *session,
                                     const struct dalcs_run_options *options,
                                     const struct dalcs_sink *sink) DALCS_MUST_CHECK;
+
+/* Ends the run at hand with DALCS_E_CANCELLED, or where none is, the next one as it begins. The one call
+ * that another thread, or a signal handler, may make while the session runs. */
+void dalcs_session_cancel(struct dalcs_session *session);
+
+/* ---- Rows in memory --------------------------------------------------------------------------- */
+
+/* What a run gave a sink, kept: for languages in which a callback for each row costs more than the row. */
+struct dalcs_tables;
+
+struct dalcs_row_table {
+    struct dalcs_plot plot; /* all of it lives as long as the tables */
+    size_t n_rows;
+    const double *scale; /* [n_rows] NULL without rows */
+    const double *value; /* [n_rows * n_signals], of complex signals twice as many: row after row */
+};
+
+/* Like dalcs_session_run. *tables is made, whatever the status but DALCS_E_NOMEM, with the rows up to where
+ * the run ended, and is NULL or the caller's to destroy; it may outlive the session. progress is that of a sink; it may be NULL. */
+enum dalcs_status
+dalcs_session_run_tables(struct dalcs_session *session, const struct dalcs_run_options *options,
+                         enum dalcs_status (*progress)(void *user, double time, double stop),
+                         void *user, struct dalcs_tables **tables) DALCS_MUST_CHECK;
+
+/* In the order in which a sink gets them. NULL when index is too large. */
+size_t dalcs_tables_count(const struct dalcs_tables *tables);
+const struct dalcs_row_table *dalcs_tables_get(const struct dalcs_tables *tables, size_t index);
+
+/* Accepts NULL. */
+void dalcs_tables_destroy(struct dalcs_tables *tables);
 
 /* Events of diodes and switches since the run at hand began, or of the last one; 0 where the options
  * say not to record them. May be asked for in a callback. */
@@ -413,6 +462,21 @@ enum dalcs_status dalcs_session_alter(struct dalcs_session *session, bool is_par
  * DALCS_E_OPTION: there is none of that name. Only for a netlist with a script. */
 enum dalcs_status dalcs_session_parameter(const struct dalcs_session *session, const char *name,
                                           double *value) DALCS_MUST_CHECK;
+
+/* Gives a value by its name as a person writes it, in any case: a parameter of .param, else an element, or
+ * "dmod(vfwd)", a parameter of a model. For a netlist with a script, or that is kept. DALCS_E_OPTION: a
+ * message says why. */
+enum dalcs_status dalcs_session_set_value(struct dalcs_session *session, const char *name,
+                                          double value) DALCS_MUST_CHECK;
+
+/* Builds the circuit with the values that were set, as the next run or check does by itself: what
+ * the netlist then asks for may be another. DALCS_E_NETLIST: it is none; the messages say why. */
+enum dalcs_status dalcs_session_apply_values(struct dalcs_session *session) DALCS_MUST_CHECK;
+
+/* The names that may be set: the parameters outside of subcircuits of a netlist with a script, or that is
+ * kept; the elements, those of subcircuits too. NULL when index is too large. */
+const char *dalcs_session_parameter_name(const struct dalcs_session *session, size_t index);
+const char *dalcs_session_element_name(const struct dalcs_session *session, size_t index);
 
 /* Forgets what dalcs_session_alter said of elements and models; parameters stay. */
 void dalcs_session_reset(struct dalcs_session *session);
@@ -461,7 +525,9 @@ struct dalcs_nonunique {
 /* What a .meas gave. */
 struct dalcs_measurement {
     const char *name;
-    const char *step; /* of .step, "r = 500, c = 1e-06"; NULL without */
+    const char
+        *step; /* of .step, "r = 500, c = 1e-06", one text for all of a step of an analysis; NULL
+                         without */
     bool found;
     double value;        /* in the unit of what was measured; 0 unless found */
     const char *failure; /* why not; NULL when found */
@@ -693,6 +759,27 @@ struct dalcs_report {
 
 /* Valid after dalcs_session_run, whatever its status but DALCS_E_NOMEM; NULL before. */
 const struct dalcs_report *dalcs_session_report(const struct dalcs_session *session);
+
+/* One measurement of the last run's report, for languages that do not read this header; NULL when index is
+ * too large. */
+const struct dalcs_measurement *dalcs_session_measurement(const struct dalcs_session *session,
+                                                          size_t index);
+
+/* ---- As JSON ---------------------------------------------------------------------------------- */
+
+/* Texts that belong to the session and live until the next of them. The report of the last run, by
+ * doc/report.schema.json; DALCS_E_OPTION: there is none. */
+enum dalcs_status dalcs_session_report_json(struct dalcs_session *session,
+                                            const char **json) DALCS_MUST_CHECK;
+
+/* What dalcs_session_check says, by doc/check.schema.json. */
+enum dalcs_status dalcs_session_check_json(struct dalcs_session *session, double step,
+                                           const char **json) DALCS_MUST_CHECK;
+
+/* What dalcs_session_equations writes as DALCS_EQUATIONS_JSON. */
+enum dalcs_status dalcs_session_equations_json(struct dalcs_session *session,
+                                               enum dalcs_equations_form form, double step,
+                                               const char **json) DALCS_MUST_CHECK;
 
 /* ---- Checking ------------------------------------------------------------------------------ */
 

@@ -9,6 +9,8 @@ struct dalcs_arguments {
     const char *netlist;
     const char **output; /* [n_outputs], at least one; owned array */
     size_t n_outputs;
+    const char **set; /* [n_set] "NAME=VALUE"; owned array */
+    size_t n_set;
     const char *dialect; /* NULL: what the netlist shows */
     const char *method;  /* NULL: the netlist's */
     double tolerance;    /* 0: the netlist's; so with the next three */
@@ -17,7 +19,8 @@ struct dalcs_arguments {
     double compress;
     double fill;       /* INFINITY: none */
     const char *curve; /* NULL: the netlist's */
-    const char *at, *report, *plot;
+    const char *at, *report, *plot, *measures;
+    bool no_waveforms; /* -o none */
     const char *dump;
     char *default_output, *default_dump; /* NULL: not needed */
     bool quiet, all_signals, energy;

@@ -1,6 +1,7 @@
 /* check.c - `dalcs check`: what theory says of a netlist before it runs. */
 #include "cli.h"
 
+#include "check_json.h"
 #include "check_text.h"
 #include "memory.h"
 #include "verb.h"

@@ -52,7 +52,7 @@ void dalcs_cli_error(const struct dalcs_cli *cli, const char *format, ...) {
 static void write_help(FILE *stream) {
     fputs("dalcs simulates circuits with ideal diodes and switches.\n"
           "\n"
-          "usage: dalcs VERB [options]\n"
+          "usage: dalcs VERB [options], or dalcs FILE [options], which is dalcs run FILE\n"
           "\n",
           stream);
     for (int i = 0; i < N_VERBS; i++) {
@@ -82,8 +82,6 @@ static enum dalcs_exit refuse_verb(const struct dalcs_cli *cli, const char *word
         const char *nearest = dalcs_names_nearest_of(option, 2, word);
         dalcs_cli_error(cli, "unknown option '%s'%s%s%s", word, nearest ? "; did you mean '" : "",
                         nearest ? nearest : "", nearest ? "'?" : "");
-    } else if (access(word, F_OK) == 0) {
-        dalcs_cli_error(cli, "'%s' is not a verb; did you mean 'dalcs run %s'?", word, word);
     } else {
         const char *nearest = dalcs_names_nearest_of(name, N_VERBS, word);
         dalcs_cli_error(cli, "unknown verb '%s'%s%s%s", word, nearest ? "; did you mean '" : "",
@@ -113,6 +111,9 @@ enum dalcs_exit dalcs_cli_eval(const struct dalcs_cli *cli, int argc, char **arg
     }
     if (dalcs_cli_is_batch(argc, argv)) {
         return dalcs_cli_batch(cli, argc, argv);
+    }
+    if (argv[1][0] != '-' && access(argv[1], F_OK) == 0) {
+        return dalcs_cli_run(cli, argc, argv);
     }
     return refuse_verb(cli, argv[1]);
 }

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { N_INPUTS = 2, N_OTHER_RESULTS = 4 };
+enum { N_INPUTS = 2, N_OTHER_RESULTS = 5 };
 
 /* A file that exists, or a name in a folder. */
 struct place {
@@ -68,7 +68,7 @@ static enum dalcs_status check_readable(const struct dalcs_cli *cli, const char 
 
 static const char *result_path(const struct dalcs_arguments *arguments, size_t i) {
     const char *const other[N_OTHER_RESULTS] = {arguments->report, arguments->plot, arguments->dump,
-                                                arguments->log};
+                                                arguments->log, arguments->measures};
     return i < arguments->n_outputs ? arguments->output[i] : other[i - arguments->n_outputs];
 }
 
@@ -106,7 +106,8 @@ enum dalcs_status dalcs_paths_check(const struct dalcs_cli *cli,
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
     }
     for (size_t i = 0; status == DALCS_OK && i < N_INPUTS; i++) {
-        status = path[i] ? check_readable(cli, path[i], &input[i]) : DALCS_OK;
+        status = path[i] && strcmp(path[i], "-") != 0 ? check_readable(cli, path[i], &input[i])
+                                                      : DALCS_OK;
     }
     for (size_t i = 0; status == DALCS_OK && i < n_results; i++) {
         status =

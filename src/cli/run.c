@@ -6,6 +6,7 @@
 #include "losses_chart.h"
 #include "losses_text.h"
 #include "measurements.h"
+#include "measures_file.h"
 #include "outputs.h"
 #include "paths.h"
 #include "print_table.h"
@@ -13,6 +14,7 @@
 #include "quantity.h"
 #include "run_help.h"
 #include "script.h"
+#include "settings.h"
 #include "steady_lines.h"
 #include "summary.h"
 #include "times.h"
@@ -29,6 +31,7 @@ struct run {
     const struct dalcs_cli *cli;
     const struct dalcs_session *session; /* which runs */
     struct dalcs_outputs outputs;
+    struct dalcs_measures_file measures;
     struct dalcs_print_table printed;
     struct dalcs_progress progress;
     double time;     /* s, how far the run has come */
@@ -41,7 +44,7 @@ static const char help[] =
     "Runs the .op, .dc, .ac and .tran of a SPICE netlist, for each .step. Diodes and switches are\n"
     "ideal unless the netlist says otherwise. FILE may also be a system given by its matrices: "
     "'dalcs\n"
-    "equations --help'.\n"
+    "equations --help', or -, the standard input.\n"
     "\n" DALCS_RUN_OPTIONS "      --losses[=FROM:TO]\n"
     "                      print what each element takes on average from one time to another, "
     "the\n"
@@ -59,6 +62,7 @@ static const char help[] =
     "  dalcs run bridge.cir -o bridge.csv --plot bridge.svg\n"
     "  dalcs run bridge.cir --tol 1e-9 --report bridge.json -q\n"
     "  dalcs run bridge.cir --method euler --step 1u\n"
+    "  dalcs run bridge.cir --set r1=220 -o none --measures r220.csv\n"
     "\n"
     "exit status: 0 ok, 1 the run failed, 2 usage, 3 error in the netlist, 4 input/output\n";
 
@@ -71,7 +75,10 @@ static enum dalcs_status check_interrupt(const struct run *run) {
 static enum dalcs_status begin(void *user, const struct dalcs_plot *plot) {
     struct run *run = user;
     run->progress.counts = plot->analysis != DALCS_TRANSIENT && plot->analysis != DALCS_PERIODIC;
-    enum dalcs_status status = dalcs_print_table_begin(&run->printed, run->session, plot);
+    enum dalcs_status status = dalcs_measures_file_plot(&run->measures, plot);
+    if (status == DALCS_OK) {
+        status = dalcs_print_table_begin(&run->printed, run->session, plot);
+    }
     return status != DALCS_OK ? status : dalcs_outputs_begin(&run->outputs, plot);
 }
 
@@ -224,10 +231,8 @@ static enum dalcs_status draw_losses(const struct dalcs_cli *cli,
     return status;
 }
 
-/* Runs a session that has read its netlist and ends all files. */
-static enum dalcs_status run_session(struct run *run, struct dalcs_session *session,
-                                     const struct dalcs_arguments *arguments,
-                                     const struct dalcs_times *times, size_t *n_written) {
+static struct dalcs_run_options options_of(const struct dalcs_arguments *arguments,
+                                           const struct dalcs_times *times) {
     struct dalcs_run_options options = dalcs_run_options_default();
     options.method = arguments->method;
     options.tolerance = arguments->tolerance;
@@ -253,6 +258,14 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     options.loop = arguments->loop;
     options.sideband = (int)arguments->sideband;
     options.energy = arguments->report || arguments->energy;
+    return options;
+}
+
+/* Runs a session that has read its netlist and ends all files. */
+static enum dalcs_status run_session(struct run *run, struct dalcs_session *session,
+                                     const struct dalcs_arguments *arguments,
+                                     const struct dalcs_times *times, size_t *n_written) {
+    const struct dalcs_run_options options = options_of(arguments, times);
     const struct dalcs_sink sink = {
         .user = run, .begin = begin, .row = row, .end = end, .progress = progress, .rows = rows};
     run->session = session;
@@ -285,6 +298,9 @@ static enum dalcs_status run_session(struct run *run, struct dalcs_session *sess
     if (status == DALCS_OK && arguments->losses_plot != NULL) {
         status = draw_losses(run->cli, arguments, report);
     }
+    const enum dalcs_status measures =
+        dalcs_measures_file_close(&run->measures, run->cli, arguments, report, status);
+    files = files == DALCS_OK ? measures : files;
     return status == DALCS_OK ? files : status;
 }
 
@@ -302,8 +318,12 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
     if (status == DALCS_OK && arguments->bode) {
         status = dalcs_session_ask_response(session);
     }
+    if (status == DALCS_OK && arguments->n_set > 0) {
+        status = dalcs_session_keep_netlist(session);
+    }
     status = status != DALCS_OK ? status
                                 : dalcs_verb_read(session, arguments->netlist, arguments->dialect);
+    status = status != DALCS_OK ? status : dalcs_settings_apply(session, arguments);
     dalcs_cli_write_messages(cli, session, &n_written, arguments->quiet);
     if (status != DALCS_OK) {
         if (n_written == 0) {
@@ -337,11 +357,14 @@ static enum dalcs_status run_netlist(const struct dalcs_cli *cli,
                                 at ? times.time[0] : request.start,
                                 at ? times.time[times.n - 1] : request.stop);
     if (status == DALCS_OK) {
+        status = dalcs_measures_file_open(&run.measures, cli, arguments->measures);
+    }
+    if (status == DALCS_OK) {
         status = run_session(&run, session, arguments, &times, &n_written);
-        dalcs_outputs_finish(&run.outputs);
-    } else {
+    } else if (status != DALCS_E_IO) {
         dalcs_cli_error(cli, "%s", dalcs_status_text(status));
     }
+    dalcs_outputs_finish(&run.outputs);
     dalcs_times_finish(&times);
     return status;
 }

@@ -30,6 +30,10 @@
     "times\n"                                                                                      \
     "                      a signal's largest value\n"                                             \
     "      --at FILE       print at exactly the times in FILE, one a line\n"                       \
+    "      --set NAME=X    another value: of a parameter, an element or \"dmod(vfwd)\"; may be "   \
+    "repeated\n"                                                                                   \
+    "      --measures FILE write the results of .meas as a table, .csv: a row for each step of\n"  \
+    "                      .step, or one; with -o none no waveforms are written\n"                 \
     "      --report FILE   write what the run did as JSON\n"                                       \
     "      --plot FILE     draw the waveforms with gnuplot, .svg, .png or .pdf\n"                  \
     "      --dump FILE     where to leave a one-step problem that could not be solved (default:\n" \

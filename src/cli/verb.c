@@ -89,10 +89,29 @@ enum dalcs_status dalcs_verb_take_dialect(const struct dalcs_cli *cli, const cha
     return DALCS_E_OPTION;
 }
 
+/* Files that it includes are found from the current folder. */
+static enum dalcs_status read_standard_input(struct dalcs_session *session) {
+    char *text = NULL;
+    size_t length = 0, capacity = 0, n = 0;
+    enum dalcs_status status = DALCS_OK;
+    do {
+        length += n;
+        status = dalcs_grow(&text, &capacity, length + BUFSIZ, 1);
+        n = status == DALCS_OK ? fread(text + length, 1, BUFSIZ, stdin) : 0;
+    } while (n > 0);
+    if (status == DALCS_OK) {
+        status =
+            ferror(stdin) ? DALCS_E_IO : dalcs_session_read_text(session, "stdin", text, length);
+    }
+    free(text);
+    return status;
+}
+
 enum dalcs_status dalcs_verb_read(struct dalcs_session *session, const char *netlist,
                                   const char *dialect) {
     DALCS_TRY(dalcs_session_set_dialect(session, dialect));
-    return dalcs_session_read_file(session, netlist);
+    return strcmp(netlist, "-") == 0 ? read_standard_input(session)
+                                     : dalcs_session_read_file(session, netlist);
 }
 
 static bool is_same_file(const char *a, const char *b) {

@@ -1,4 +1,4 @@
-/* check_text.h - what theory says of a netlist, for a person and for a program. */
+/* check_text.h - what theory says of a netlist, for a person. */
 #ifndef DALCS_CHECK_TEXT_H
 #define DALCS_CHECK_TEXT_H
 
@@ -9,8 +9,5 @@
 /* The summary in plain words, then the verdicts with their sources; with `all` every condition and
  * every witness too. Errors stay in the stream. */
 void dalcs_check_write_text(FILE *stream, const struct dalcs_check *check, bool all);
-
-/* The whole as JSON, by doc/check.schema.json. */
-void dalcs_check_write_json(FILE *stream, const struct dalcs_check *check);
 
 #endif

@@ -1,4 +1,4 @@
-/* csv.c - comma-separated values: one header line, then 17 significant digits, the decimal point a
+/* csv.c - comma-separated values: one header line, then numbers that are read back exactly, the decimal point a
  * point whatever the locale. An operating point alone is one row at time 0. The values of a .step come
  * first, then the scale; of complex signals the real and the imaginary part. */
 #include "decimal.h"

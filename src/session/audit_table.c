@@ -27,9 +27,7 @@ enum dalcs_status dalcs_session_audit_table(struct dalcs_session *s,
                                             const struct dalcs_table_audit_options *options,
                                             const struct dalcs_table_audit **result) {
     *result = NULL;
-    if (!s->has_network) {
-        return DALCS_E_NETLIST;
-    }
+    DALCS_TRY(dalcs_session_apply_values(s));
     if (s->circuit.n_devices == 0) {
         return refuse(s,
                       "a system given by its matrices has no elements whose laws could be asked");

@@ -138,9 +138,7 @@ static enum dalcs_status check_parts(struct dalcs_session *s, struct dalcs_check
 enum dalcs_status dalcs_session_check(struct dalcs_session *s, double step,
                                       const struct dalcs_check **result) {
     *result = NULL;
-    if (!s->has_network) {
-        return DALCS_E_NETLIST;
-    }
+    DALCS_TRY(dalcs_session_apply_values(s));
     if (!(step >= 0.0) || !isfinite(step)) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, NULL, NULL, "the step must be positive");
         return DALCS_E_OPTION;

@@ -107,7 +107,7 @@ static enum dalcs_status solve_point(struct sweep *s, struct dalcs_euler *e,
     dalcs_measures_row(&s->measures, s->value[0], s->row + n_outer);
     DALCS_TRY(r->sink->row(r->sink->user, s->value[0], s->row));
     if ((s->k + 1) % PROGRESS_POINTS == 0) {
-        DALCS_TRY(r->sink->progress(r->sink->user, (double)(s->k + 1), (double)s->n));
+        DALCS_TRY(dalcs_run_progress(r, (double)(s->k + 1), (double)s->n));
     }
     return DALCS_OK;
 }

@@ -202,9 +202,7 @@ static enum dalcs_status write_equations(struct whole *w, const struct dalcs_equ
 
 enum dalcs_status dalcs_session_equations(struct dalcs_session *session,
                                           const struct dalcs_equations_options *options) {
-    if (!session->has_network) {
-        return DALCS_E_NETLIST;
-    }
+    DALCS_TRY(dalcs_session_apply_values(session));
     const struct dalcs_equations_files files = {.user = options->user,
                                                 .file = options->file,
                                                 .stem = options->stem == NULL ? "" : options->stem};

@@ -23,7 +23,8 @@ struct charge {
 };
 
 struct collector {
-    const struct dalcs_sink *to; /* asked whether to go on */
+    const struct dalcs_sink *to;         /* asked whether to go on */
+    const struct dalcs_session *session; /* likewise */
     int n;
     struct charge *charge;  /* [n] */
     double *last;           /* [n] */
@@ -69,6 +70,9 @@ static enum dalcs_status take_row(void *user, double time, const double *value) 
 
 static enum dalcs_status ask(void *user, double time, double stop) {
     const struct collector *c = user;
+    if (atomic_load(&c->session->is_cancelled)) {
+        return DALCS_E_CANCELLED;
+    }
     return c->to->progress != NULL ? c->to->progress(c->to->user, time, stop) : DALCS_OK;
 }
 
@@ -328,6 +332,7 @@ enum dalcs_status dalcs_operating_currents(struct dalcs_session *s,
     take_all(c, true);
     struct dalcs_arena arena = {0};
     struct collector collector = {.to = sink,
+                                  .session = s,
                                   .n = n,
                                   .charge =
                                       dalcs_arena_alloc(&arena, (size_t)n, sizeof(struct charge)),

@@ -293,7 +293,8 @@ static enum dalcs_status run_analyses(struct dalcs_session *session,
         status = dalcs_run_name_signals(&r, session->has_netlist);
     }
     for (size_t k = 0; k < n && status == DALCS_OK; k++) {
-        status = run_analysis(&r, analysis[k]);
+        status =
+            atomic_load(&session->is_cancelled) ? DALCS_E_CANCELLED : run_analysis(&r, analysis[k]);
     }
     dalcs_names_finish(&r.interrupting);
     dalcs_undetermined_finish(&r.undetermined);
@@ -485,16 +486,10 @@ enum dalcs_status dalcs_session_run_analysis(struct dalcs_session *session,
     return run_analyses(session, options, &complete, NULL, &analysis, 1);
 }
 
-enum dalcs_status dalcs_session_run(struct dalcs_session *session,
-                                    const struct dalcs_run_options *options,
-                                    const struct dalcs_sink *sink) {
-    if (session->is_altered) {
-        session->is_altered = false;
-        DALCS_TRY(dalcs_session_rebuild(session, NULL, 0));
-    }
-    if (!session->has_network) {
-        return DALCS_E_NETLIST;
-    }
+static enum dalcs_status run_all(struct dalcs_session *session,
+                                 const struct dalcs_run_options *options,
+                                 const struct dalcs_sink *sink) {
+    DALCS_TRY(dalcs_session_apply_values(session));
     const struct dalcs_sink complete = completed(sink);
     if (options->steady || options->bode) {
         session->circuit.periodic.present = true; /* as if there were a .pss */
@@ -508,4 +503,21 @@ enum dalcs_status dalcs_session_run(struct dalcs_session *session,
     return options->steady || options->bode
                ? run_analyses(session, options, &complete, NULL, &alone, 1)
                : run_analyses(session, options, &complete, NULL, IN_ORDER, N_IN_ORDER);
+}
+
+enum dalcs_status dalcs_session_run(struct dalcs_session *session,
+                                    const struct dalcs_run_options *options,
+                                    const struct dalcs_sink *sink) {
+    session->ended = run_all(session, options, sink);
+    atomic_store(&session->is_cancelled, false);
+    return session->ended;
+}
+
+void dalcs_session_cancel(struct dalcs_session *session) {
+    atomic_store(&session->is_cancelled, true);
+}
+
+enum dalcs_status dalcs_run_progress(const struct dalcs_run *r, double time, double stop) {
+    return atomic_load(&r->s->is_cancelled) ? DALCS_E_CANCELLED
+                                            : r->sink->progress(r->sink->user, time, stop);
 }

@@ -64,6 +64,11 @@ enum dalcs_status dalcs_session_run_cards(struct dalcs_session *session,
                                           const struct dalcs_extra_card *card, size_t n_cards,
                                           const struct dalcs_run_options *options,
                                           const struct dalcs_sink *sink) {
+    for (size_t k = 0; k < n_cards; k++) {
+        if (card[k].line >= dalcs_session_n_script_lines(session)) {
+            return DALCS_E_OPTION;
+        }
+    }
     if (!session->has_netlist) {
         return DALCS_E_OPTION;
     }

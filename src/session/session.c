@@ -48,6 +48,7 @@ void dalcs_session_destroy(struct dalcs_session *session) {
         dalcs_netlist_finish(&session->netlist);
     }
     free(session->override);
+    free(session->document);
     dalcs_spice_names_finish(&session->spice);
     dalcs_diag_finish(&session->diag);
     dalcs_arena_finish(&session->arena);
@@ -59,9 +60,9 @@ void dalcs_session_destroy(struct dalcs_session *session) {
 /* ---- Reading ------------------------------------------------------------------------------- */
 
 /* Steps, sweeps of what is no source, and scripts want other circuits of the same netlist. */
-static bool is_built_again(const struct dalcs_circuit *circuit,
-                           const struct dalcs_netlist *netlist) {
-    bool again = circuit->n_steps > 0 || netlist->n_script_lines > 0;
+static bool is_built_again(const struct dalcs_circuit *circuit, const struct dalcs_netlist *netlist,
+                           bool is_kept) {
+    bool again = circuit->n_steps > 0 || netlist->n_script_lines > 0 || is_kept;
     for (int k = 0; k < circuit->n_dc; k++) {
         const int device = circuit->dc[k].device;
         again = again || device < 0 || circuit->device[device].stimulus < 0;
@@ -96,7 +97,7 @@ static enum dalcs_status build(struct dalcs_session *s, struct dalcs_netlist *ne
         status = dalcs_circuit_build(&s->circuit, netlist, &s->diag);
         s->has_circuit = status == DALCS_OK;
     }
-    if (status == DALCS_OK && is_built_again(&s->circuit, netlist)) {
+    if (status == DALCS_OK && is_built_again(&s->circuit, netlist, s->keeps_netlist)) {
         s->netlist = *netlist;
         s->has_netlist = true;
     } else {
@@ -148,6 +149,14 @@ enum dalcs_status dalcs_session_ask_steady(struct dalcs_session *session) {
 enum dalcs_status dalcs_session_ask_response(struct dalcs_session *session) {
     session->asks_response = session->name == NULL;
     return dalcs_session_ask_steady(session);
+}
+
+enum dalcs_status dalcs_session_keep_netlist(struct dalcs_session *session) {
+    if (session->name != NULL) {
+        return DALCS_E_OPTION; /* it is read */
+    }
+    session->keeps_netlist = true;
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_session_read_file(struct dalcs_session *session, const char *path) {
@@ -247,6 +256,12 @@ bool dalcs_session_print(const struct dalcs_session *session, size_t card, int a
 
 const struct dalcs_report *dalcs_session_report(const struct dalcs_session *session) {
     return session->has_report ? &session->report : NULL;
+}
+
+const struct dalcs_measurement *dalcs_session_measurement(const struct dalcs_session *session,
+                                                          size_t index) {
+    const bool has = session->has_report && index < session->report.n_measurements;
+    return has ? &session->report.measurement[index] : NULL;
 }
 
 enum dalcs_status dalcs_parse_number(const char *text, double *value) {

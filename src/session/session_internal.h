@@ -9,6 +9,8 @@
 #include "spice.h"
 #include "undetermined.h"
 
+#include <stdatomic.h>
+
 struct dalcs_logic_run;
 struct dalcs_losses_run;
 struct dalcs_orbit_point;
@@ -20,6 +22,7 @@ struct dalcs_session {
     struct dalcs_dialect dialect; /* that the netlist will be read in, if it is told */
     struct dalcs_losses_request losses;
     bool asks_steady, asks_response;
+    bool keeps_netlist; /* it may be run with other values */
     struct dalcs_diag diag;
     struct dalcs_circuit circuit;
     bool has_circuit;
@@ -33,6 +36,10 @@ struct dalcs_session {
     struct dalcs_recorder recorder; /* owns the report's events and jumps */
     struct dalcs_report report;
     bool has_report;
+    enum dalcs_status ended; /* how the last run did */
+    atomic_bool
+        is_cancelled; /* by another thread or a signal handler, which may do nothing else here */
+    char *document;   /* the last one handed out as text; heap */
     double *start, *final;
     struct dalcs_nonunique *nonunique; /* of the report */
     size_t n_nonunique, nonunique_capacity;
@@ -91,6 +98,10 @@ struct dalcs_run {
 static inline bool dalcs_run_keeps_ledger(const struct dalcs_run *r) {
     return r->options->energy && r->s->circuit.n_devices > 0;
 }
+
+/* Asks the sink, and dalcs_session_cancel, whether to go on. */
+enum dalcs_status dalcs_run_progress(const struct dalcs_run *r, double time,
+                                     double stop) DALCS_MUST_CHECK;
 
 /* Settles what the options of the run and of the netlist leave open; checks them. */
 enum dalcs_status dalcs_run_choose(struct dalcs_run *r) DALCS_MUST_CHECK;

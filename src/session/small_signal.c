@@ -389,7 +389,7 @@ static enum dalcs_status walk(struct small_signal *a) {
                                         dalcs_sweep_value(f, f->n - 1)));
     for (int k = 0; k < f->n; k++) {
         DALCS_TRY(solve_frequency(a, dalcs_sweep_value(f, k)));
-        DALCS_TRY(r->sink->progress(r->sink->user, k + 1, f->n));
+        DALCS_TRY(dalcs_run_progress(r, k + 1, f->n));
     }
     DALCS_TRY(dalcs_measures_report(&a->measures, r, DALCS_OK));
     return r->sink->end(r->sink->user);

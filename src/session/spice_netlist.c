@@ -4,9 +4,7 @@
 #include <string.h>
 
 static enum dalcs_status choose_names(struct dalcs_session *s) {
-    if (!s->has_network) {
-        return DALCS_E_NETLIST;
-    }
+    DALCS_TRY(dalcs_session_apply_values(s));
     return s->spice.circuit != NULL ? DALCS_OK : dalcs_spice_names_build(&s->spice, &s->circuit);
 }
 

@@ -64,7 +64,7 @@ static enum dalcs_status go(struct dalcs_radau *radau, const struct dalcs_run *r
         }
         DALCS_TRY(dalcs_radau_pass(radau, t));
         if (++n % 4096 == 0) {
-            DALCS_TRY(r->sink->progress(r->sink->user, t, radau->options.stop));
+            DALCS_TRY(dalcs_run_progress(r, t, radau->options.stop));
         }
     }
     return DALCS_OK;

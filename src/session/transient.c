@@ -207,7 +207,7 @@ static enum dalcs_status step_to_the_end(struct dalcs_run *r, struct dalcs_euler
             dalcs_measures_cross(measures, e);
         }
         if (e->steps % interval == 0) {
-            DALCS_TRY(r->sink->progress(r->sink->user, e->t, e->grid.stop));
+            DALCS_TRY(dalcs_run_progress(r, e->t, e->grid.stop));
         }
     }
     return DALCS_OK;
@@ -251,7 +251,7 @@ static enum dalcs_status tell_progress(struct transient *c, long n) {
         return DALCS_OK;
     }
     c->to_go = c->interval;
-    return c->run->sink->progress(c->run->sink->user, c->t, c->radau->options.stop);
+    return dalcs_run_progress(c->run, c->t, c->radau->options.stop);
 }
 
 static enum dalcs_status row(struct transient *c, enum dalcs_side side, bool is_due) {

@@ -100,7 +100,8 @@ class Usage(Case):
     def test_every_option_is_in_the_help(self):
         text = self.dalcs("run", "--help").stdout
         for option in ["--output", "--method", "--tol", "--stages", "--step", "--compress", "--at", "--fill",
-                       "--curve", "--report", "--plot", "--dump", "--all-signals", "--energy", "--audit", "--quiet"]:
+                       "--curve", "--report", "--plot", "--dump", "--all-signals", "--energy", "--audit", "--quiet", "--set",
+                       "--measures"]:
             self.assertIn(option, text)
 
     def test_version(self):
@@ -116,9 +117,8 @@ class Usage(Case):
     def test_slips(self):
         self.write(RECTIFIER)
         self.assertIn("did you mean 'run'?", self.refused("rnu", "a.cir"))
-        self.assertIn("did you mean 'dalcs run a.cir'?", self.refused("a.cir"))
         self.assertIn("did you mean '--version'?", self.refused("--versoin"))
-        self.assertIn("did you mean '--step'?", self.refused("run", "a.cir", "--setp", "1u"))
+        self.assertIn("did you mean '--step'?", self.refused("run", "a.cir", "--stepp", "1u"))
         self.assertIn("did you mean '--report'?", self.refused("run", "--repotr=r.json", "a.cir"))
         self.assertIn("'-x'", self.refused("run", "a.cir", "-x"))
 
@@ -148,6 +148,10 @@ class Usage(Case):
         self.assertIn("--curve: 'spline' is neither cubics nor lines",
                       self.refused("run", "a.cir", "--curve", "spline"))
         self.assertIn("choose one", self.refused("run", "a.cir", "--compress", "1m", "--at", "x"))
+        for value in "r1", "=1", "r1=", "r1=many", "r1=nan":
+            self.assertIn(f"--set: '{value}' is not NAME=NUMBER", self.refused("run", "a.cir", "--set", value))
+        self.assertIn("no parameter or element 'r9'", self.refused("run", "a.cir", "--set", "r9=1"))
+        self.assertIn("name it .csv", self.refused("run", "a.cir", "--measures", "m.raw"))
         self.assertIn("choose one", self.refused("run", "a.cir", "--fill", "1m", "--at", "x"))
         self.assertIn(".csv or .raw", self.refused("run", "a.cir", "-o", "out.txt"))
         self.assertIn(".svg, .png or .pdf", self.refused("run", "a.cir", "--plot", "p.gif"))
@@ -365,6 +369,60 @@ class Results(Case):
         for kind in "csv", "raw":
             self.assertEqual(self.path(f"one.{kind}").read_bytes(),
                              self.path(f"two.{kind}").read_bytes())
+
+    def test_a_file_alone_is_run(self):
+        self.write(RECTIFIER)
+        self.dalcs("a.cir", "-q", "-o", "one.csv")
+        self.dalcs("run", "a.cir", "-q", "-o", "two.csv")
+        self.assertEqual(self.path("one.csv").read_bytes(), self.path("two.csv").read_bytes())
+
+    def test_standard_input(self):
+        self.path("part.inc").write_text("R1 out 0 1k\n")
+        text = RECTIFIER.replace("R1 out 0 1k\n", ".include part.inc\n")
+        self.write(text)
+        self.dalcs("run", "a.cir", "-q", "-o", "file.csv")
+        for outputs, name in ([], "stdin.raw"), (["-o", "piped.csv"], "piped.csv"):
+            done = subprocess.run([DALCS, "run", "-", "-q", *outputs], input=text, text=True, cwd=self.path("."),
+                                  capture_output=True, check=False)
+            self.assertEqual((done.returncode, done.stderr), (OK, ""))
+            self.assertIn(name, self.files())
+        self.assertEqual(self.path("file.csv").read_bytes(), self.path("piped.csv").read_bytes())
+        done = subprocess.run([DALCS, "run", "-"], input=MISTAKE, text=True, cwd=self.path("."),
+                              capture_output=True, check=False)
+        self.assertEqual(done.returncode, NETLIST)
+        self.assertIn("stdin:5:10: error:", done.stderr)
+
+    def test_set(self):
+        """To the bit what the netlist with that value in its text gives."""
+        self.write(RECTIFIER.replace("1k", "{load}").replace(".end", ".param load=1k\n.end"))
+        self.write(RECTIFIER.replace("1k", "220").replace("100u\n", "47u\n"), "b.cir")
+        self.dalcs("run", "a.cir", "-q", "-o", "a.csv", "--set", "LOAD=220", "--set", "c1=47u")
+        self.dalcs("run", "b.cir", "-q", "-o", "b.csv")
+        self.assertEqual(self.path("a.csv").read_bytes(), self.path("b.csv").read_bytes())
+        done = self.dalcs("run", "a.cir", "-o", "none", "--set", "c1=-1u", expect=NETLIST)
+        self.assertIn("cannot be negative", done.stderr)
+
+    def test_measures(self):
+        cards = ".meas tran peak max v(out)\n.meas tran low min v(out) from=20m\n.meas tran x find v(out) when v(out)=99\n"
+        self.write(RECTIFIER.replace(".end", cards + ".step param load list 500 2k\n.param load=1\n.end")
+                   .replace("1k", "{load}"))
+        self.dalcs("run", "a.cir", "-q", "-o", "none", "--set", "c1=47u", "--measures", "m.csv")
+        self.assertEqual(self.files(), ["a.cir", "m.csv"])
+        rows = list(csv.reader(self.path("m.csv").read_text().splitlines()))
+        self.assertEqual(rows[0], ["c1", "load", "peak", "low", "x"])
+        self.assertEqual([row[:2] for row in rows[1:]], [["4.7e-05", "500"], ["4.7e-05", "2000"]])
+        for row in rows[1:]:
+            self.dalcs("run", "a.cir", "-q", "-o", "none", "--set", "c1=47u", "--report", "r.json")
+            found = json.loads(self.path("r.json").read_text())["measurements"]
+            wanted = [entry["value"] for entry in found if entry["step"] == f"load = {row[1]}"]
+            self.assertEqual([float(row[2]), float(row[3]), row[4]], [wanted[0], wanted[1], "nan"])
+
+    def test_measures_of_a_failed_run(self):
+        self.write(IMPOSSIBLE.replace(".end", ".meas tran x max v(b)\n.end"))
+        self.path("m.csv").write_text("old")
+        self.dalcs("run", "a.cir", "-q", "-o", "none", "--measures", "m.csv", expect=RUN_FAILED)
+        self.assertEqual(self.path("m.csv").read_text(), "old")
+        self.dalcs("run", "a.cir", "-q", "-o", "none", "--measures", "nowhere/m.csv", expect=INPUT_OUTPUT)
 
 
 class Summary(Case):

@@ -6,7 +6,7 @@ nothing to do.
 usage: against_schema.py PROGRAM SOURCE_ROOT
 
 The schema allows no key that it does not describe, and no word where a number belongs: a NaN in a
-report fails. What src/output/report.c, losses_json.c and response_json.c write must be all that the schema has, and nothing else.
+report fails. What src/report/report.c, losses_json.c and response_json.c write must be all that the schema has, and nothing else.
 """
 
 import json
@@ -176,7 +176,7 @@ def main():
     program, root = (pathlib.Path(name).resolve() for name in sys.argv[1:])
     schema = json.loads((root / "doc" / "report.schema.json").read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
-    source = "".join((root / "src" / "output" / name).read_text(encoding="utf-8")
+    source = "".join((root / "src" / "report" / name).read_text(encoding="utf-8")
                      for name in ("report.c", "losses_json.c", "response_json.c"))
     netlists = sorted((root / "netlists").glob("**/*.cir")) + sorted(
         (root / "tests" / "reference").glob("*.cir"))

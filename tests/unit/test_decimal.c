@@ -1,4 +1,4 @@
-/* test_decimal.c - 17 digits are printf's, whatever the locale. */
+/* test_decimal.c - the fewest of printf's digits that are read back exactly, whatever the locale. */
 #include "decimal.h"
 #include "sample_plot.h"
 
@@ -20,13 +20,15 @@ START_TEST(test_known_values) {
     check_text(-0.0, "-0");
     check_text(1.0, "1");
     check_text(-1234.5, "-1234.5");
-    check_text(0.1, "0.10000000000000001");
+    check_text(0.1, "0.1");
+    check_text(0.30000000000000004, "0.30000000000000004");
+    check_text(2e-5, "2e-05");
     check_text(1e-4, "0.0001");
-    check_text(1e-5, "1.0000000000000001e-05");
+    check_text(1e-5, "1e-05");
     check_text(1e16, "10000000000000000");
     check_text(1e17, "1e+17");
-    check_text(0.99999999999999994, "0.99999999999999989");
-    check_text(5e-324, "4.9406564584124654e-324");
+    check_text(0.99999999999999994, "0.9999999999999999");
+    check_text(5e-324, "4.94065645841247e-324");
     check_text(1.7976931348623157e308, "1.7976931348623157e+308");
     check_text(INFINITY, "inf");
     check_text(-INFINITY, "-inf");
@@ -36,8 +38,36 @@ START_TEST(test_known_values) {
 
 END_TEST
 
+/* The digits of a number's text, without zeros at either end. */
+static void take_digits(const char *text, char digit[64]) {
+    size_t n = 0;
+    for (; *text != '\0' && *text != 'e'; text++) {
+        if (*text >= '0' && *text <= '9' && (n > 0 || *text != '0')) {
+            digit[n++] = *text;
+        }
+    }
+    while (n > 0 && digit[n - 1] == '0') {
+        n--;
+    }
+    digit[n] = '\0';
+}
+
+/* The digits that printf gives with the least precision from 15 on that is read back as the value. */
+static void check_shortest(double value) {
+    char text[64], wanted[64], found[64];
+    int n = 15;
+    do {
+        snprintf(text, sizeof text, "%.*e", n - 1, value);
+    } while (n++ < 17 && strtod(text, NULL) != value);
+    take_digits(text, wanted);
+    dalcs_decimal_write(&decimal, value, text);
+    take_digits(text, found);
+    ck_assert_str_eq(found, wanted);
+    ck_assert(memcmp(&(double){strtod(text, NULL)}, &value, sizeof value) == 0);
+}
+
 /* 2^-k has ties and long runs of nines and zeros; the random bits have everything else. */
-START_TEST(test_equals_printf) {
+START_TEST(test_digits_are_those_of_printf) {
     dalcs_decimal_init(&decimal);
     uint64_t state = 20240229;
     for (long i = 0; i < 300000; i++) {
@@ -48,9 +78,9 @@ START_TEST(test_equals_printf) {
         value = i % 3 == 1   ? ldexp((double)(bits % 1000), -(int)(bits >> 60) * 4)
                 : i % 3 == 2 ? (double)(bits % 2000000) / 1000.0
                              : value;
-        char expected[64];
-        snprintf(expected, sizeof expected, isnan(value) ? "nan" : "%.17g", value);
-        check_text(value, expected);
+        if (isfinite(value)) {
+            check_shortest(value);
+        }
     }
 }
 
@@ -65,8 +95,7 @@ START_TEST(test_powers_of_ten) {
         double value = strtod(text, NULL);
         for (int side = -1; side <= 1; side++) {
             double near = side == 0 ? value : nextafter(value, side * INFINITY);
-            snprintf(text, sizeof text, "%.17g", near);
-            check_text(near, text);
+            check_shortest(near);
         }
     }
 }
@@ -90,5 +119,5 @@ START_TEST(test_ignores_the_locale) {
 
 END_TEST
 
-RUN_SUITE("decimal", test_known_values, test_equals_printf, test_powers_of_ten,
+RUN_SUITE("decimal", test_known_values, test_digits_are_those_of_printf, test_powers_of_ten,
           test_ignores_the_locale)

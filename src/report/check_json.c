@@ -1,5 +1,5 @@
 /* check_json.c - struct dalcs_check as JSON. The keys are an interface: doc/check.schema.json. */
-#include "check_text.h"
+#include "check_json.h"
 
 #include "json.h"
 

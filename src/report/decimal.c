@@ -1,11 +1,14 @@
-/* decimal.c - doubles to 17 significant digits.
+/* decimal.c - doubles as the shortest decimals that are read back as the same double.
  *
  * value * 10^k is formed as one 64 x 64 -> 128 bit product with a truncated power of ten; its top
  * bits are the 17 digits, the rest decides the rounding. The error of the power is below one unit
  * of the upper word, so all but about 1 % of the values are decided there; the others go through
- * printf, which is exact. The answer is printf's in every case. */
+ * printf, which is exact. Of a double 17 digits are always enough, and 15 wherever fewer are: the nearest
+ * decimal of 15 digits, then that of 16, is taken where it lies within half a unit of the double's last place,
+ * from which all is rounded to it. */
 #include "decimal.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -85,6 +88,35 @@ static uint64_t multiply_high(uint64_t a, uint64_t b) {
     return a_high * b_high + (middle >> 32) + (cross >> 32);
 }
 
+enum rounding { KEEPS, LOSES, UNDECIDED };
+
+/* high / 2^shift, which is up to two units of high too small, and half the distance to the next double, above and
+ * below: of a power of two they differ. */
+struct scaled {
+    uint64_t high, above, below;
+    int shift;
+};
+
+/* Rounds to the nearest multiple of `unit`. KEEPS: what is there is read back as the same double. UNDECIDED: two
+ * multiples may be as near, or two doubles. */
+static enum rounding round_to(uint64_t unit, const struct scaled *s, uint64_t *digits) {
+    const uint64_t high = s->high;
+    const int shift = s->shift;
+    const uint64_t mask = (UINT64_C(1) << shift) - 1, fraction = high & mask;
+    const uint64_t whole = high >> shift, rest = whole % unit;
+    const uint64_t nearest = whole - rest + (2 * rest >= unit ? unit : 0);
+    const uint64_t scaled = nearest << shift;
+    const uint64_t distance = scaled > high ? scaled - high : high - scaled;
+    const uint64_t half = scaled > high ? s->above : s->below;
+    if (distance > half + 4) {
+        return LOSES;
+    }
+    *digits = nearest;
+    const bool is_tie =
+        (2 * rest == unit && fraction == 0) || (2 * (rest + 1) == unit && fraction + 2 > mask);
+    return is_tie || distance + 4 > half ? UNDECIDED : KEEPS;
+}
+
 /* value = digits * 10^(power - 16) rounded; false when the product cannot tell. value > 0. */
 static bool find_digits_fast(const struct dalcs_decimal *decimal, double value, uint64_t *digits,
                              int *power) {
@@ -100,29 +132,45 @@ static bool find_digits_fast(const struct dalcs_decimal *decimal, double value, 
         if (whole >= TEN_17) {
             continue; /* the logarithm was one too low */
         }
-        uint64_t fraction = high & ((UINT64_C(1) << shift) - 1), half = UINT64_C(1) << (shift - 1);
-        /* the true fraction lies in [fraction, fraction + 2) */
-        if (fraction + 2 > half && fraction <= half) {
-            return false;
+        const uint64_t half = decimal->significand[slot] >> 54; /* of the last of 53 bits */
+        const bool is_power = mantissa == UINT64_C(1) << 63;
+        const struct scaled scaled = {high, half, is_power ? half / 2 : half, shift};
+        enum rounding rounding = round_to(100, &scaled, digits);
+        if (rounding == LOSES) {
+            rounding = round_to(10, &scaled, digits);
         }
-        *digits = whole + (fraction > half ? 1 : 0);
+        if (rounding == LOSES) {
+            const uint64_t fraction = high & ((UINT64_C(1) << shift) - 1);
+            const uint64_t middle = UINT64_C(1) << (shift - 1);
+            /* the true fraction lies in [fraction, fraction + 2) */
+            rounding = fraction + 2 > middle && fraction <= middle ? UNDECIDED : KEEPS;
+            *digits = whole + (fraction > middle ? 1 : 0);
+        }
         if (*digits == TEN_17) {
             *digits = TEN_16;
             ++*power;
         }
-        return true;
+        return rounding == KEEPS;
     }
 }
 
 static void find_digits_exactly(double value, uint64_t *digits, int *power) {
     char text[64];
-    snprintf(text, sizeof text, "%.*e", N_DIGITS - 1, value);
+    int n = N_DIGITS - 2;
+    do {
+        snprintf(text, sizeof text, "%.*e", n - 1, value);
+    } while (n++ < N_DIGITS && strtod(text, NULL) != value);
     *digits = 0;
     const char *c = text;
+    int n_read = 0;
     for (; *c != 'e'; c++) {
         if (*c >= '0' && *c <= '9') { /* skips the decimal point, however it is spelt */
             *digits = *digits * 10 + (uint64_t)(*c - '0');
+            n_read++;
         }
+    }
+    for (; n_read < N_DIGITS; n_read++) {
+        *digits *= 10;
     }
     *power = atoi(c + 1);
 }
@@ -174,7 +222,7 @@ size_t dalcs_decimal_write(const struct dalcs_decimal *decimal, double value,
     }
     uint64_t digits = 0;
     int power = 0;
-    if (!find_digits_fast(decimal, value, &digits, &power)) {
+    if (value < DBL_MIN || !find_digits_fast(decimal, value, &digits, &power)) {
         find_digits_exactly(value, &digits, &power);
     }
     char digit[N_DIGITS];

@@ -1,4 +1,4 @@
-/* decimal.h - doubles as text with 17 significant digits, fast and whatever the locale. */
+/* decimal.h - doubles as the shortest text that is read back as the same double, fast and whatever the locale. */
 #ifndef DALCS_DECIMAL_H
 #define DALCS_DECIMAL_H
 
@@ -15,7 +15,7 @@ struct dalcs_decimal {
 
 void dalcs_decimal_init(struct dalcs_decimal *decimal);
 
-/* Writes what printf("%.17g") gives in the C locale (a nan has no sign), returns the length. */
+/* Writes what printf("%.Ng") gives in the C locale with N = 15, 16 or 17, the first that is read back exactly; a nan has no sign. Returns the length. */
 size_t dalcs_decimal_write(const struct dalcs_decimal *decimal, double value,
                            char text[DALCS_DECIMAL_SIZE]);
 

@@ -1,4 +1,4 @@
-/* json.h - a small JSON writer: numbers with 17 digits, indented, always valid. */
+/* json.h - a small JSON writer: numbers in the fewest digits that give back the same bits, indented, always valid. */
 #ifndef DALCS_JSON_H
 #define DALCS_JSON_H
 

@@ -1,0 +1,217 @@
+/* argument_values.c - what stands behind the options of `dalcs run`, checked without a file. */
+#include "argument_values.h"
+
+#include "figure.h"
+#include "settings.h"
+#include "table.h"
+#include "verb.h"
+
+#include <math.h>
+#include <string.h>
+
+enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli, const char *path) {
+    if (strcmp(path, "none") == 0) {
+        arguments->no_waveforms = true;
+        return DALCS_OK;
+    }
+    if (!dalcs_table_find_format(path)) {
+        dalcs_cli_error(cli, "cannot tell the format of '%s': name it .csv or .raw", path);
+        return DALCS_E_OPTION;
+    }
+    arguments->output[arguments->n_outputs++] = path;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_method(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli, const char *text) {
+    size_t n = 0;
+    for (; dalcs_method_name(n); n++) {
+        if (strcmp(dalcs_method_name(n), text) == 0) {
+            arguments->method = text;
+            return DALCS_OK;
+        }
+    }
+    fprintf(cli->err, "dalcs: error: --method: unknown method '%s'; the methods are:", text);
+    for (size_t i = 0; i < n; i++) {
+        fprintf(cli->err, " %s", dalcs_method_name(i));
+    }
+    fputc('\n', cli->err);
+    return DALCS_E_OPTION;
+}
+
+static enum dalcs_status parse_number(const struct dalcs_cli *cli, const char *name,
+                                      const char *text, double *value) {
+    if (dalcs_parse_number(text, value) != DALCS_OK) {
+        dalcs_cli_error(cli, "%s: '%s' is not a number; write 1u or 1e-6", name, text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_tolerance(struct dalcs_arguments *arguments,
+                                           const struct dalcs_cli *cli, const char *text) {
+    DALCS_TRY(parse_number(cli, "--tol", text, &arguments->tolerance));
+    if (arguments->tolerance < DALCS_TOLERANCE_MIN || arguments->tolerance > DALCS_TOLERANCE_MAX) {
+        dalcs_cli_error(cli, "--tol: '%s' does not lie between %g and %g", text,
+                        DALCS_TOLERANCE_MIN, DALCS_TOLERANCE_MAX);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_stages(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli, const char *text) {
+    double value = 0.0;
+    if (dalcs_parse_number(text, &value) != DALCS_OK || !DALCS_HAS_STAGES(value)) {
+        dalcs_cli_error(cli, "--stages: '%s' is none of 1, 3, 5, 7, 9", text);
+        return DALCS_E_OPTION;
+    }
+    arguments->stages = (int)value;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_step(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *text) {
+    DALCS_TRY(parse_number(cli, "--step", text, &arguments->step));
+    if (!(arguments->step > 0.0)) {
+        dalcs_cli_error(cli, "--step: '%s' must be greater than 0", text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+/* Of a largest value; or_none: what else there is, "" or ", or none". */
+static enum dalcs_status parse_part(const struct dalcs_cli *cli, const char *name, const char *text,
+                                    const char *or_none, double *value) {
+    DALCS_TRY(parse_number(cli, name, text, value));
+    if (!(*value > 0.0 && *value < 1.0)) {
+        dalcs_cli_error(cli, "%s: '%s' must be greater than 0 and less than 1%s", name, text,
+                        or_none);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_fill(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *text) {
+    if (strcmp(text, "none") == 0) {
+        arguments->fill = INFINITY;
+        return DALCS_OK;
+    }
+    return parse_part(cli, "--fill", text, ", or none", &arguments->fill);
+}
+
+enum dalcs_status dalcs_argument_curve(struct dalcs_arguments *arguments,
+                                       const struct dalcs_cli *cli, const char *text) {
+    if (strcmp(text, "cubics") != 0 && strcmp(text, "lines") != 0) {
+        dalcs_cli_error(cli, "--curve: '%s' is neither cubics nor lines", text);
+        return DALCS_E_OPTION;
+    }
+    arguments->curve = text;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_audit(struct dalcs_arguments *arguments,
+                                       const struct dalcs_cli *cli, const char *text) {
+    static const char *const name[] = {"sample", "full", "off"};
+    for (int k = 0; k < 3; k++) {
+        if (strcmp(text, name[k]) == 0) {
+            arguments->audit = (enum dalcs_audit_mode)k;
+            return DALCS_OK;
+        }
+    }
+    dalcs_cli_error(cli, "--audit: '%s' is none of sample, full and off", text);
+    return DALCS_E_OPTION;
+}
+
+enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli, const char *text) {
+    if (!arguments->steady && !arguments->bode) {
+        dalcs_cli_error(cli, "--period is one of 'dalcs steady' and 'dalcs bode'");
+        return DALCS_E_OPTION;
+    }
+    return dalcs_verb_take_positive(cli, "--period", text, &arguments->period);
+}
+
+/* FROM:TO, either of which may be left out; NULL: the netlist's window. */
+enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli, const char *text) {
+    if (arguments->steady || arguments->bode) {
+        dalcs_cli_error(cli, "--losses is one of 'dalcs run'");
+        return DALCS_E_OPTION;
+    }
+    arguments->losses = true;
+    arguments->losses_from = text == NULL ? (double)NAN : 0.0;
+    arguments->losses_to = INFINITY;
+    if (text == NULL) {
+        return DALCS_OK;
+    }
+    const char *colon = strchr(text, ':');
+    char from[64];
+    if (colon == NULL || (size_t)(colon - text) >= sizeof from) {
+        dalcs_cli_error(cli, "--losses: '%s' is not FROM:TO; write 10m:20m", text);
+        return DALCS_E_OPTION;
+    }
+    memcpy(from, text, (size_t)(colon - text));
+    from[colon - text] = '\0';
+    if (from[0] != '\0') {
+        DALCS_TRY(parse_number(cli, "--losses", from, &arguments->losses_from));
+    }
+    if (colon[1] != '\0') {
+        DALCS_TRY(parse_number(cli, "--losses", colon + 1, &arguments->losses_to));
+    }
+    if (!(arguments->losses_from >= 0.0 && arguments->losses_from < arguments->losses_to)) {
+        dalcs_cli_error(cli, "--losses: '%s' does not begin at 0 or later and before it ends",
+                        text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_losses_plot(struct dalcs_arguments *arguments,
+                                             const struct dalcs_cli *cli, const char *path) {
+    if (arguments->steady || arguments->bode) {
+        dalcs_cli_error(cli, "--losses-plot is one of 'dalcs run'");
+        return DALCS_E_OPTION;
+    }
+    arguments->losses_plot = path;
+    if (!dalcs_figure_can_write(path)) {
+        dalcs_cli_error(
+            cli, "--losses-plot: cannot tell the format of '%s': name it .svg, .png or .pdf", path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_compress(struct dalcs_arguments *arguments,
+                                          const struct dalcs_cli *cli, const char *text) {
+    return parse_part(cli, "--compress", text, "", &arguments->compress);
+}
+
+enum dalcs_status dalcs_argument_set(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
+                                     const char *text) {
+    arguments->set[arguments->n_set++] = text;
+    return dalcs_settings_check(cli, text);
+}
+
+enum dalcs_status dalcs_argument_plot(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli, const char *path) {
+    arguments->plot = path;
+    if (!dalcs_figure_can_write(path)) {
+        dalcs_cli_error(cli, "--plot: cannot tell the format of '%s': name it .svg, .png or .pdf",
+                        path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_argument_measures(struct dalcs_arguments *arguments,
+                                          const struct dalcs_cli *cli, const char *path) {
+    arguments->measures = path;
+    if (dalcs_table_find_format(path) != &dalcs_csv_format) {
+        dalcs_cli_error(cli, "--measures: '%s' is no name of a table: name it .csv", path);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}

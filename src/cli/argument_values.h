@@ -1,0 +1,54 @@
+/* argument_values.h - the value of each option of `dalcs run`, into *arguments or a message and DALCS_E_OPTION. Text
+ * is borrowed. */
+#ifndef DALCS_ARGUMENT_VALUES_H
+#define DALCS_ARGUMENT_VALUES_H
+
+#include "arguments.h"
+
+enum dalcs_status dalcs_argument_output(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli,
+                                        const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_method(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli,
+                                        const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_tolerance(struct dalcs_arguments *arguments,
+                                           const struct dalcs_cli *cli,
+                                           const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_stages(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli,
+                                        const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_step(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli,
+                                      const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_fill(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli,
+                                      const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_curve(struct dalcs_arguments *arguments,
+                                       const struct dalcs_cli *cli,
+                                       const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_compress(struct dalcs_arguments *arguments,
+                                          const struct dalcs_cli *cli,
+                                          const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_audit(struct dalcs_arguments *arguments,
+                                       const struct dalcs_cli *cli,
+                                       const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_period(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli,
+                                        const char *text) DALCS_MUST_CHECK;
+/* FROM:TO, either of which may be left out; NULL: the netlist's window. */
+enum dalcs_status dalcs_argument_losses(struct dalcs_arguments *arguments,
+                                        const struct dalcs_cli *cli,
+                                        const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_losses_plot(struct dalcs_arguments *arguments,
+                                             const struct dalcs_cli *cli,
+                                             const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_plot(struct dalcs_arguments *arguments,
+                                      const struct dalcs_cli *cli,
+                                      const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_measures(struct dalcs_arguments *arguments,
+                                          const struct dalcs_cli *cli,
+                                          const char *text) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_argument_set(struct dalcs_arguments *arguments, const struct dalcs_cli *cli,
+                                     const char *text) DALCS_MUST_CHECK;
+
+#endif

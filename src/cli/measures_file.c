@@ -1,0 +1,150 @@
+/* measures_file.c - of the list that a report has, all steps of an analysis before the next, to rows. */
+#include "measures_file.h"
+
+#include "decimal.h"
+#include "memory.h"
+#include "settings.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static enum dalcs_status tell_failure(const struct dalcs_measures_file *m,
+                                      const struct dalcs_cli *cli) {
+    dalcs_cli_error(cli, "cannot write '%s': %s", m->path, strerror(m->file.error));
+    return DALCS_E_IO;
+}
+
+enum dalcs_status dalcs_measures_file_open(struct dalcs_measures_file *m,
+                                           const struct dalcs_cli *cli, const char *path) {
+    *m = (struct dalcs_measures_file){.path = path, .n_steps = 1};
+    if (path == NULL || dalcs_atomic_file_open(&m->file, path) == DALCS_OK) {
+        return DALCS_OK;
+    }
+    return tell_failure(m, cli);
+}
+
+enum dalcs_status dalcs_measures_file_plot(struct dalcs_measures_file *m,
+                                           const struct dalcs_plot *plot) {
+    if (m->path == NULL || plot->n_parameters == 0) {
+        return DALCS_OK;
+    }
+    if (m->value == NULL) {
+        m->n_steps = plot->n_steps;
+        m->n_parameters = plot->n_parameters;
+        m->value = dalcs_alloc(plot->n_steps * plot->n_parameters, sizeof *m->value);
+    }
+    if (m->value == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    m->parameter = plot->parameter;
+    memcpy(m->value + plot->step * m->n_parameters, plot->parameter_value,
+           m->n_parameters * sizeof *m->value);
+    return DALCS_OK;
+}
+
+/* ---- Writing --------------------------------------------------------------------------------- */
+
+struct columns {
+    FILE *out;
+    struct dalcs_decimal decimal;
+    size_t n; /* in this line so far */
+};
+
+static void write_text(struct columns *c, const char *text, size_t length) {
+    fputs(c->n++ > 0 ? "," : "", c->out);
+    const bool quotes = memchr(text, ',', length) != NULL || memchr(text, '"', length) != NULL;
+    fputs(quotes ? "\"" : "", c->out);
+    for (size_t k = 0; k < length; k++) {
+        fputs(text[k] == '"' ? "\"" : "", c->out);
+        fputc(text[k], c->out);
+    }
+    fputs(quotes ? "\"" : "", c->out);
+}
+
+static void write_number(struct columns *c, double value) {
+    char text[DALCS_DECIMAL_SIZE];
+    write_text(c, text, dalcs_decimal_write(&c->decimal, value, text));
+}
+
+static void end_line(struct columns *c) {
+    fputc('\n', c->out);
+    c->n = 0;
+}
+
+/* How many measurements from `at` on are of one step of one analysis: they share the step's text. */
+static size_t block_at(const struct dalcs_report *report, size_t at) {
+    size_t n = 1;
+    while (at + n < report->n_measurements &&
+           report->measurement[at + n].step == report->measurement[at].step) {
+        n++;
+    }
+    return n;
+}
+
+static void write_header(struct columns *c, const struct dalcs_measures_file *m,
+                         const struct dalcs_arguments *arguments,
+                         const struct dalcs_report *report) {
+    for (size_t k = 0; k < arguments->n_set; k++) {
+        size_t length;
+        dalcs_settings_value(arguments->set[k], &length);
+        write_text(c, arguments->set[k], length);
+    }
+    for (size_t k = 0; k < m->n_parameters; k++) {
+        write_text(c, m->parameter[k], strlen(m->parameter[k]));
+    }
+    for (size_t at = 0; at < report->n_measurements;) {
+        const size_t n = block_at(report, at);
+        for (size_t k = at; k < at + n; k++) {
+            write_text(c, report->measurement[k].name, strlen(report->measurement[k].name));
+        }
+        at += n * m->n_steps;
+    }
+    end_line(c);
+}
+
+static void write_step(struct columns *c, const struct dalcs_measures_file *m,
+                       const struct dalcs_arguments *arguments, const struct dalcs_report *report,
+                       size_t step) {
+    for (size_t k = 0; k < arguments->n_set; k++) {
+        size_t length;
+        write_number(c, dalcs_settings_value(arguments->set[k], &length));
+    }
+    for (size_t k = 0; k < m->n_parameters; k++) {
+        write_number(c, m->value[step * m->n_parameters + k]);
+    }
+    for (size_t at = 0; at < report->n_measurements;) {
+        const size_t n = block_at(report, at);
+        for (size_t k = at + step * n; k < at + (step + 1) * n && k < report->n_measurements; k++) {
+            const struct dalcs_measurement *found = &report->measurement[k];
+            write_number(c, found->found ? found->value : NAN);
+        }
+        at += n * m->n_steps;
+    }
+    end_line(c);
+}
+
+enum dalcs_status dalcs_measures_file_close(struct dalcs_measures_file *m,
+                                            const struct dalcs_cli *cli,
+                                            const struct dalcs_arguments *arguments,
+                                            const struct dalcs_report *report,
+                                            enum dalcs_status run) {
+    enum dalcs_status status = DALCS_OK;
+    if (m->path != NULL && run == DALCS_OK && report != NULL) {
+        struct columns c = {.out = m->file.stream};
+        dalcs_decimal_init(&c.decimal);
+        write_header(&c, m, arguments, report);
+        for (size_t step = 0; step < m->n_steps; step++) {
+            write_step(&c, m, arguments, report, step);
+        }
+        if (dalcs_atomic_file_commit(&m->file) != DALCS_OK) {
+            status = tell_failure(m, cli);
+        } else if (!arguments->quiet) {
+            fprintf(cli->out, "  wrote     %s\n", m->path);
+        }
+    }
+    dalcs_atomic_file_discard(&m->file);
+    free(m->value);
+    m->value = NULL;
+    return status;
+}

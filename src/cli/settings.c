@@ -1,0 +1,43 @@
+/* settings.c - values from the command line in place of the netlist's. */
+#include "settings.h"
+
+#include "memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+double dalcs_settings_value(const char *text, size_t *name_length) {
+    const char *equal = strchr(text, '=');
+    double value = NAN;
+    *name_length = equal != NULL ? (size_t)(equal - text) : 0;
+    if (equal == NULL || dalcs_parse_number(equal + 1, &value) != DALCS_OK) {
+        return NAN;
+    }
+    return value;
+}
+
+enum dalcs_status dalcs_settings_check(const struct dalcs_cli *cli, const char *text) {
+    size_t length;
+    if (!isfinite(dalcs_settings_value(text, &length)) || length == 0) {
+        dalcs_cli_error(cli, "--set: '%s' is not NAME=NUMBER; write rload=10 or c1=2.2u", text);
+        return DALCS_E_OPTION;
+    }
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_settings_apply(struct dalcs_session *session,
+                                       const struct dalcs_arguments *arguments) {
+    for (size_t k = 0; k < arguments->n_set; k++) {
+        size_t length;
+        const double value = dalcs_settings_value(arguments->set[k], &length);
+        char *name = strndup(arguments->set[k], length);
+        if (name == NULL) {
+            return DALCS_E_NOMEM;
+        }
+        const enum dalcs_status status = dalcs_session_set_value(session, name, value);
+        free(name);
+        DALCS_TRY(status);
+    }
+    return dalcs_session_apply_values(session);
+}

@@ -1,0 +1,18 @@
+/* settings.h - --set NAME=VALUE. */
+#ifndef DALCS_SETTINGS_H
+#define DALCS_SETTINGS_H
+
+#include "arguments.h"
+
+/* One of them: a name, and a number in the spelling of netlists; or a message. */
+enum dalcs_status dalcs_settings_check(const struct dalcs_cli *cli,
+                                       const char *text) DALCS_MUST_CHECK;
+
+/* What a checked one says; the name's length is how much of `text` it is. */
+double dalcs_settings_value(const char *text, size_t *name_length);
+
+/* All of them for a netlist that was read and is kept; the session's messages say what is wrong. */
+enum dalcs_status dalcs_settings_apply(struct dalcs_session *session,
+                                       const struct dalcs_arguments *arguments) DALCS_MUST_CHECK;
+
+#endif

@@ -1,0 +1,117 @@
+"""A netlist and all that can be asked of it."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence
+
+import ctypes
+
+from . import _library as c
+from ._equations import System, systems_of
+from ._result import Result
+from ._session import Netlist, Options, Session, Window
+from ._sweep import Grid, Sweep, sweep_of
+
+
+class Circuit:
+    """A netlist: a path, or its text, which has a newline in it. `dialect`: "ngspice", "ltspice", "xyce"."""
+
+    def __init__(self, netlist: Netlist, dialect: Optional[str] = None) -> None:
+        self.netlist = netlist
+        self.dialect = dialect
+
+    def _read(self, losses: Window = False, steady: bool = False,
+              values: Optional[Mapping[str, float]] = None) -> Session:
+        session = Session(self.netlist, self.dialect, losses, steady)
+        session.set_values(values or {})
+        return session
+
+    def run(self, values: Optional[Mapping[str, float]] = None, *,
+            at: Optional[Sequence[float]] = None, losses: Window = False, rows: bool = True,
+            progress: Optional[Callable[[float, float], Any]] = None, **more: Any) -> Result:
+        """Runs its .op, .dc, .ac, .pss and .tran.
+
+        values    other values, by name: a parameter of .param, an element ("r1"), "dmod(vfwd)"
+        at        times of rows in s, ascending, in place of those of .tran
+        losses    True: also where the power went; (from, to): in this window, s
+        rows      False: events and measurements only
+        progress  called as progress(time, stop) now and then; what it raises ends the run
+        more      options as on the command line: tol, method, stages, step (s), fill, curve, compress,
+                  audit, energy, record; any other name is one of `values`
+
+        Raises NetlistError, OptionError, NoSolution. Ctrl-C ends the run.
+        """
+        options: Dict[str, Any] = {"record": True}
+        options.update((name, value) for name, value in more.items() if name in c.OPTIONS)
+        if not rows and at is None:
+            at = ()  # and nothing that is about rows
+            options = {name: value for name, value in options.items()
+                       if name not in ("fill", "curve", "compress")}
+        own = {name: value for name, value in more.items() if name not in c.OPTIONS}
+        session = self._read(losses, bool(options.get("steady")), {**(values or {}), **own})
+        chosen = Options(options, at)
+        return Result(session, session.run(chosen, progress, rows))
+
+    def steady(self, values: Optional[Mapping[str, float]] = None, *,
+               period: Optional[float] = None, **more: Any) -> Result:
+        """The periodic steady state: rows of one period, `.steady` says whether it is stable.
+
+        period    s; None: that of .pss, else it follows from the sources
+        """
+        if period is not None:
+            more["period"] = float(period)
+        return self.run(values, steady=True, **more)
+
+    def sweep(self, grid: Grid, *, workers: Optional[int] = None,
+              each: Optional[Callable[[Result], Any]] = None, **options: Any) -> Sweep:
+        """Runs of all combinations of values, in several threads.
+
+        grid     {"rload": [5, 10], "c1": [10e-6, 20e-6]}: all combinations, the last name fastest;
+                 or a list of dicts, one a run
+        workers  threads; None: as many as there are cores. Results do not depend on it
+        each     each(result) gives the values to keep: a dict, or one value, which is called "value".
+                 None: the measurements, and no rows are made, which is fastest
+        options  those of run()
+
+        A run that fails loses none of the others: its row has its message in the column "error".
+        """
+        return sweep_of(self.run, grid, workers, each, options)
+
+    def check(self, values: Optional[Mapping[str, float]] = None, *,
+              step: float = 0.0) -> Dict[str, Any]:
+        """What theory says without a run, as `dalcs check --format json` (doc/check.schema.json).
+
+        step    s, of the conditions on one step; 0: the netlist's
+        """
+        session = self._read(values=values)
+        return dict(json.loads(session.document(c.lib.dalcs_session_check_json, float(step))))
+
+    def equations(self, values: Optional[Mapping[str, float]] = None, *,
+                  form: str = "dalcs") -> List[System]:
+        """The complementarity system of each connected part; form "lcs": z eliminated where it can be."""
+        if form not in ("dalcs", "lcs"):
+            raise ValueError(f"form is 'dalcs' or 'lcs', not {form!r}")
+        session = self._read(values=values)
+        return systems_of(session.document(c.lib.dalcs_session_equations_json, c.FORMS[form], 0.0))
+
+    @property
+    def parameters(self) -> Dict[str, float]:
+        """The parameters of .param outside of subcircuits, with their values."""
+        session, found = self._read(), {}
+        value = ctypes.c_double(math.nan)
+        for name in session.names(c.lib.dalcs_session_parameter_name):
+            if c.lib.dalcs_session_parameter(session.handle, name.encode(),
+                                             ctypes.byref(value)) == c.OK:
+                found[name] = value.value
+        return found
+
+    @property
+    def elements(self) -> List[str]:
+        """The names of the elements, those in subcircuits as "x1.r1"."""
+        return self._read().names(c.lib.dalcs_session_element_name)
+
+    def __repr__(self) -> str:
+        text = str(self.netlist)
+        return f"Circuit({text.splitlines()[0] if text else ''!r})"

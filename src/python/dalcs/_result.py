@@ -1,0 +1,184 @@
+"""What a run gave: rows as NumPy arrays, events, measurements, the report."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import json
+from typing import Any, Dict, Iterator, List, Optional, Tuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _library as c
+from ._session import Session, Tables
+
+
+class _Memory:
+    """C's memory as NumPy takes it; keeps its owner."""
+
+    def __init__(self, owner: Tables, address: int, shape: Tuple[int, ...], kind: str) -> None:
+        self.owner = owner
+        self.__array_interface__ = {"version": 3, "data": (address, False), "shape": shape,
+                                    "typestr": kind}
+
+
+def _array(owner: Tables, address: Optional[int], shape: Tuple[int, ...], kind: str) -> NDArray[Any]:
+    if not address or 0 in shape:
+        return np.empty(shape, dtype=kind)
+    return np.asarray(_Memory(owner, address, shape, kind))
+
+
+def _texts(pointer: Any, count: int) -> Tuple[str, ...]:
+    return tuple(pointer[k].decode("utf-8", "replace") for k in range(count))
+
+
+class Table:
+    """The rows of one analysis, n of them, m signals.
+
+    analysis    "op", "tran", "dc", "ac" or "pss"
+    t           [n] the scale: times in s, or what `scale` says
+    scale       "time", "frequency" (Hz), or the source that .dc sweeps
+    names       m names in the order of the columns, "v(out)", "i(d1)"
+    units       unit of each name: "V", "A", "" ...
+    values      [n, m] V and A; complex after .ac
+    parameters  what .step set, by name
+
+    table["v(out)"] is one column, [n]. Times ascend; two rows of the same time are the two sides of a
+    discontinuity. Arrays are views of the memory of the run, not copies.
+    """
+
+    def __init__(self, owner: Optional[Tables], row_table: Any) -> None:
+        if owner is None or row_table is None:
+            self.analysis, self.title, self.scale = "", "", "time"
+            self.names: Tuple[str, ...] = ()
+            self.units: Dict[str, str] = {}
+            self.parameters: Dict[str, float] = {}
+            self.t, self.values = np.empty(0), np.empty((0, 0))
+            return
+        plot, n_rows = row_table.plot, row_table.n_rows
+        self.analysis = c.ANALYSES[plot.analysis]
+        self.title = plot.title.decode("utf-8", "replace")
+        self.scale = plot.scale.decode("utf-8", "replace")
+        self.names = _texts(plot.name, plot.n_signals)
+        self.units = {name: c.UNITS[plot.unit[k]] for k, name in enumerate(self.names)}
+        self.parameters = dict(zip(_texts(plot.parameter, plot.n_parameters),
+                                   plot.parameter_value[:plot.n_parameters]))
+        self.t = _array(owner, row_table.scale, (n_rows,), "<f8")
+        self.values = _array(owner, row_table.value, (n_rows, plot.n_signals),
+                             "<c16" if plot.is_complex else "<f8")
+
+    def keys(self) -> Tuple[str, ...]:
+        """The names of the signals."""
+        return self.names
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and name.lower() in self._column
+
+    @functools.cached_property
+    def _column(self) -> Dict[str, int]:
+        return {name.lower(): k for k, name in enumerate(self.names)}
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """One signal, [n]; the name in any case, and the scale by its own."""
+        column = self._column.get(name.lower())
+        if column is not None:
+            return self.values[:, column]
+        if name.lower() == self.scale:
+            return self.t
+        near = difflib.get_close_matches(name.lower(), self.names, 1, 0.5)
+        raise KeyError(f"no signal {name!r}" + (f"; did you mean {near[0]!r}?" if near else
+                                                f" among {', '.join(self.names)}"))
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame, one column a signal; its index is the scale."""
+        import pandas  # pylint: disable=import-outside-toplevel
+        index = pandas.Index(self.t, name=self.scale)
+        return pandas.DataFrame(np.array(self.values), index=index, columns=list(self.names))
+
+    def plot(self, *names: str, ax: Any = None) -> Any:
+        """Draws signals, all without names, with matplotlib; returns the axes."""
+        import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
+        axes = plt.subplots()[1] if ax is None else ax
+        chosen = names or self.names
+        for name in chosen:
+            value = self[name]
+            axes.plot(self.t, abs(value) if np.iscomplexobj(value) else value, label=name)
+        units = sorted({self.units.get(name.lower(), "") for name in chosen} - {""})
+        axes.set_xlabel({"time": "time (s)", "frequency": "frequency (Hz)"}.get(self.scale,
+                                                                             self.scale))
+        axes.set_ylabel(", ".join(units))
+        axes.legend()
+        return axes
+
+    def __repr__(self) -> str:
+        return f"<{self.analysis or 'no'} rows: {len(self)} of {', '.join(self.names)}>"
+
+
+class Result(Table):
+    """A run. Itself it is the table of the last analysis, of .step the last step.
+
+    tables    all tables, in the order in which they were made
+    report    dict, as `dalcs run --report` writes it (doc/report.schema.json)
+    """
+
+    def __init__(self, session: Session, tables: Optional[Tables]) -> None:
+        found = [] if tables is None else list(tables)
+        super().__init__(tables, found[-1] if found else None)
+        self._others = [(tables, item) for item in found[:-1]]
+        self._session = session  # which keeps what is asked for later
+
+    @functools.cached_property
+    def messages(self) -> Tuple[str, ...]:
+        """Notes and warnings, each with its place."""
+        return tuple(self._session.messages())
+
+    @functools.cached_property
+    def tables(self) -> List[Table]:
+        """All tables, this one last."""
+        return [Table(owner, item) for owner, item in self._others] + [self]
+
+    @functools.cached_property
+    def report(self) -> Dict[str, Any]:
+        """What the run did: work, certificate, audit, states, energies. SI units."""
+        return dict(json.loads(self._session.report()))
+
+    @functools.cached_property
+    def events(self) -> NDArray[Any]:
+        """Diodes and switches that changed sides: fields time (s), element, on. [n_events]"""
+        rows = [(e["time"], e["element"], e["state"] == "on") for e in self.report["events"]]
+        width = max((len(row[1]) for row in rows), default=1)
+        return np.array(rows, dtype=[("time", "f8"), ("element", f"U{width}"), ("on", "?")])
+
+    @property
+    def jumps(self) -> List[Dict[str, Any]]:
+        """States that changed at once: time (s), states (V, A), impulses (C, Wb), energy_lost (J)."""
+        return list(self.report["jumps"])
+
+    @property
+    def losses(self) -> Optional[Dict[str, Any]]:
+        """Where the power went (W, J), if the run was asked: run(..., losses=True) or .losses."""
+        found = self.report.get("losses")
+        return found[-1] if found else None
+
+    @functools.cached_property
+    def measures(self) -> Dict[str, Any]:
+        """What each .meas gave, NaN where it found nothing; of .step an array with one for each step."""
+        found: Dict[str, List[float]] = {}
+        entries = self._session.measurements()
+        for name, _, value in entries:
+            found.setdefault(name, []).append(value)
+        if any(is_step for _, is_step, _ in entries):
+            return {name: np.array(values) for name, values in found.items()}
+        return {name: values[-1] for name, values in found.items()}
+
+    @property
+    def steady(self) -> Optional[Dict[str, Any]]:
+        """Of a steady state: period (s), multipliers, averages and rms values of the signals."""
+        return self.report.get("steady")

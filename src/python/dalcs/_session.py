@@ -1,0 +1,189 @@
+"""One netlist read and run once by libdalcs: handles, options, Ctrl-C."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import os
+import signal
+import threading
+from typing import Any, Callable, Mapping, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from . import _library as c
+from ._errors import OptionError, error_of
+
+Netlist = Union[str, "os.PathLike[str]"]
+Window = Union[bool, Tuple[float, float]]
+
+
+@c.Progress
+def _pulse(_user, _time, _stop):  # type: ignore[no-untyped-def]
+    """Lets Python run now and then, and with it the handlers of signals."""
+    return c.OK
+
+
+class Tables:
+    """The rows of a run in C's memory, freed with the last array that looks at them."""
+
+    def __init__(self, handle: ctypes.c_void_p) -> None:
+        self.handle = handle
+
+    def __del__(self) -> None:
+        c.lib.dalcs_tables_destroy(self.handle)
+
+    def __iter__(self):  # type: ignore[no-untyped-def]
+        for index in range(c.lib.dalcs_tables_count(self.handle)):
+            yield c.lib.dalcs_tables_get(self.handle, index).contents
+
+
+class Session:
+    """A netlist, read; raises what is wrong with it."""
+
+    def __init__(self, netlist: Netlist, dialect: Optional[str] = None, losses: Window = False,
+                 steady: bool = False) -> None:
+        self.handle = ctypes.c_void_p()
+        self._check(c.lib.dalcs_session_create(ctypes.byref(self.handle)))
+        self._check(c.lib.dalcs_session_keep_netlist(self.handle))
+        if dialect is not None:
+            self._check(c.lib.dalcs_session_set_dialect(self.handle, dialect.encode()))
+        if steady:
+            self._check(c.lib.dalcs_session_ask_steady(self.handle))
+        if losses is not False:
+            begin, end = (math.nan, math.nan) if losses is True else losses
+            self._check(c.lib.dalcs_session_ask_losses(self.handle, begin, end))
+        if isinstance(netlist, str) and "\n" in netlist:
+            text = netlist.encode()
+            self._check(c.lib.dalcs_session_read_text(self.handle, b"netlist", text, len(text)))
+        else:
+            self._check(c.lib.dalcs_session_read_file(self.handle, os.fsencode(netlist)))
+
+    def __del__(self) -> None:
+        c.lib.dalcs_session_destroy(self.handle)
+
+    def _check(self, status: int) -> None:
+        if status != c.OK:
+            raise error_of(status, self.messages())
+
+    def messages(self) -> list[str]:
+        """All so far, oldest first, each with its level, as the program prints them."""
+        count = c.lib.dalcs_session_n_messages(self.handle)
+        return [c.lib.dalcs_session_message(self.handle, index, None).decode("utf-8", "replace")
+                for index in range(count)]
+
+    def names(self, call: Callable[[Any, int], Optional[bytes]]) -> list[str]:
+        """All names that a call gives by index."""
+        found: list[str] = []
+        while (name := call(self.handle, len(found))) is not None:
+            found.append(name.decode("utf-8", "replace"))
+        return found
+
+    def set_values(self, values: Mapping[str, float]) -> None:
+        for name, value in values.items():
+            self._check(c.lib.dalcs_session_set_value(self.handle, name.encode(), float(value)))
+
+    def cancel(self) -> None:
+        """May be called in any thread, and in a handler of a signal."""
+        c.lib.dalcs_session_cancel(self.handle)
+
+    def document(self, call: Callable[..., int], *arguments: Any) -> str:
+        """The JSON that a call writes."""
+        text = ctypes.c_char_p()
+        self._check(call(self.handle, *arguments, ctypes.byref(text)))
+        return (text.value or b"").decode()
+
+    def run(self, options: "Options", progress: Optional[Callable[[float, float], Any]],
+            keeps_rows: bool) -> Optional[Tables]:
+        """The rows, if they are kept."""
+        failure: list[BaseException] = []
+        tell = _pulse if progress is None else _told(progress, failure)
+        handle = ctypes.c_void_p()
+
+        def call() -> int:
+            if not keeps_rows and progress is None:
+                return int(c.lib.dalcs_session_run(self.handle, options.handle, _SILENT))
+            return int(c.lib.dalcs_session_run_tables(self.handle, options.handle, tell, None,
+                                                      ctypes.byref(handle)))
+
+        status = _interruptibly(self, call)
+        tables = Tables(handle) if handle else None
+        if failure:
+            raise failure[0]
+        if status != c.OK:
+            raise error_of(status, self.messages(), self.report() if status > 0 else None)
+        return tables
+
+    def report(self) -> str:
+        """JSON by doc/report.schema.json."""
+        return self.document(c.lib.dalcs_session_report_json)
+
+    def measurements(self) -> list[Tuple[str, bool, float]]:
+        """Name, whether it is one of .step, and the value of each; NaN where nothing was found."""
+        found: list[Tuple[str, bool, float]] = []
+        while entry := c.lib.dalcs_session_measurement(self.handle, len(found)):
+            m = entry.contents
+            found.append((m.name.decode("utf-8", "replace"), m.step is not None,
+                          m.value if m.found else math.nan))
+        return found
+
+
+_SINK = c.Sink(progress=ctypes.cast(_pulse, ctypes.c_void_p))
+_SILENT = ctypes.addressof(_SINK)
+
+
+def _told(progress: Callable[[float, float], Any], failure: list[BaseException]) -> Any:
+    @c.Progress
+    def tell(_user, time, stop):  # type: ignore[no-untyped-def]
+        try:
+            progress(time, stop)
+        except BaseException as error:  # pylint: disable=broad-except
+            failure.append(error)
+            return c.E_CANCELLED
+        return c.OK
+    return tell
+
+
+def _interruptibly(session: Session, call: Callable[[], int]) -> int:
+    """Ctrl-C while C runs: the run ends, then comes what Ctrl-C would have done.
+
+    A handler that raised inside a callback of ctypes would be printed and forgotten.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        return call()
+    caught: list[Tuple[int, Any]] = []
+
+    def on_signal(number: int, frame: Any) -> None:
+        caught.append((number, frame))
+        session.cancel()
+
+    usual = signal.signal(signal.SIGINT, on_signal)
+    try:
+        status = call()
+    finally:
+        signal.signal(signal.SIGINT, usual)
+    if caught and callable(usual):
+        usual(*caught[0])
+    return status
+
+
+class Options:
+    """Options of a run by their names; `at` are times in s, ascending."""
+
+    def __init__(self, given: Mapping[str, Any], at: Optional[Sequence[float]] = None) -> None:
+        self.handle = ctypes.c_void_p()
+        if c.lib.dalcs_run_options_create(ctypes.byref(self.handle)) != c.OK:
+            raise MemoryError
+        for name, value in given.items():
+            text = ("yes" if value else "no") if isinstance(value, bool) else str(value)
+            if isinstance(value, (float, np.floating)):
+                text = repr(float(value))
+            if c.lib.dalcs_run_options_set(self.handle, name.encode(), text.encode()) != c.OK:
+                raise OptionError(c.E_OPTION, [f"error: {text!r} is no value of the option {name}"])
+        if at is not None:
+            self.times = np.ascontiguousarray(at, dtype=float)
+            address = self.times.ctypes.data if self.times.size else None
+            c.lib.dalcs_run_options_set_times(self.handle, address, self.times.size)
+
+    def __del__(self) -> None:
+        c.lib.dalcs_run_options_destroy(self.handle)

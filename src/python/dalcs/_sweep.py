@@ -1,0 +1,145 @@
+"""Many runs of one netlist, in threads: the library runs outside of the interpreter's lock."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import threading
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _library as c
+from ._errors import Cancelled, Error
+from ._result import Result
+
+Grid = Union[Mapping[str, Sequence[float]], Sequence[Mapping[str, float]]]
+
+
+def _points_of(grid: Grid) -> List[Dict[str, float]]:
+    if isinstance(grid, Mapping):
+        names = list(grid)
+        return [dict(zip(names, values)) for values in itertools.product(*grid.values())]
+    return [dict(point) for point in grid]
+
+
+class Sweep:
+    """A table with one row a run: parameters, what was kept, and "error", which is "" where all is well.
+
+    points    the values of each run
+    errors    the exceptions, by the number of their run
+    sweep["rload"], sweep["vavg"]   columns, [n]; NaN where a run failed
+    """
+
+    def __init__(self, points: Sequence[Mapping[str, float]], kept: Sequence[Any]) -> None:
+        self.points = list(points)
+        self.errors = {k: value for k, value in enumerate(kept) if isinstance(value, Exception)}
+        given = [value if isinstance(value, Mapping) else {} for value in kept]
+        self.columns: Dict[str, NDArray[Any]] = {}
+        for rows in (self.points, given):
+            for name in dict.fromkeys(name for row in rows for name in row):
+                self.columns[name] = _column_of([row.get(name, np.nan) for row in rows])
+        self.columns["error"] = np.array([_message_of(self.errors.get(k))
+                                          for k in range(len(self.points))], dtype=object)
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.columns)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return self.columns[name]
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame, one row a run."""
+        import pandas  # pylint: disable=import-outside-toplevel
+        return pandas.DataFrame(self.columns)
+
+    def __repr__(self) -> str:
+        return f"<sweep of {len(self)} runs, {len(self.errors)} failed: {', '.join(self.columns)}>"
+
+
+def _message_of(error: Optional[Exception]) -> str:
+    if isinstance(error, Error):
+        return error.message
+    return "" if error is None else f"{type(error).__name__}: {error}"
+
+
+def _column_of(values: List[Any]) -> NDArray[Any]:
+    if all(isinstance(value, (int, float, np.number)) for value in values):
+        return np.array(values)
+    column = np.empty(len(values), dtype=object)
+    column[:] = values
+    return column
+
+
+class _Workers:
+    """Threads that take the next run until there is none, or until they are stopped."""
+
+    def __init__(self, task: Callable[[int], Any], count: int, stopped: threading.Event) -> None:
+        self.task, self.stopped = task, stopped
+        self.kept: List[Any] = [None] * count
+        self.failure: Optional[BaseException] = None
+        self.next = itertools.count()
+
+    def work(self) -> None:
+        while not self.stopped.is_set():
+            index = next(self.next)
+            if index >= len(self.kept):
+                return
+            try:
+                self.kept[index] = self.task(index)
+            except Exception as error:  # pylint: disable=broad-except
+                self.kept[index] = error
+            except BaseException as error:  # pylint: disable=broad-except
+                self.failure = self.failure or error
+                self.stopped.set()
+
+    def run(self, workers: int) -> List[Any]:
+        """With one worker in this thread, which Ctrl-C interrupts by itself."""
+        if workers > 1:
+            threads = [threading.Thread(target=self.work, daemon=True) for _ in range(workers)]
+            for thread in threads:
+                thread.start()
+            try:
+                for thread in threads:
+                    thread.join()
+            finally:
+                self.stopped.set()
+                for thread in threads:
+                    thread.join()
+        else:
+            self.work()
+        if self.failure is not None:
+            raise self.failure
+        return self.kept
+
+
+def sweep_of(run: Callable[..., Result], grid: Grid, workers: Optional[int],
+             each: Optional[Callable[[Result], Any]], options: Mapping[str, Any]) -> Sweep:
+    """What Circuit.sweep does, by this function that runs one point."""
+    points = _points_of(grid)
+    asked = dict(options)
+    if each is None:
+        asked = {"rows": False, "record": False, **asked}
+    fixed = dict(asked.pop("values", None) or {})
+
+    told = asked.pop("progress", None)
+    stopped = threading.Event()
+
+    def progress(time: float, stop: float) -> None:
+        if stopped.is_set():
+            raise Cancelled(c.E_CANCELLED, ())
+        if told is not None:
+            told(time, stop)
+
+    def task(index: int) -> Any:
+        result = run({**fixed, **points[index]}, progress=progress, **asked)
+        kept = result.measures if each is None else each(result)
+        return kept if isinstance(kept, Mapping) else {"value": kept}
+
+    if workers is None:
+        workers = len(os.sched_getaffinity(0))
+    return Sweep(points, _Workers(task, len(points), stopped).run(min(workers, len(points))))

@@ -1,0 +1,254 @@
+#!/usr/bin/env python3
+"""Runs from Python: values against closed forms, what errors carry, what a result gives.
+
+usage: runs.py SOURCE_FOLDER, with PYTHONPATH=build/src/python
+"""
+
+import gc
+import math
+import os
+import pathlib
+import pickle
+import signal
+import sys
+import tempfile
+import threading
+import unittest
+
+import numpy as np
+
+import dalcs
+from half_wave import NETLIST, closes, opens, output
+
+SOURCE = pathlib.Path(sys.argv[1])
+ENDLESS = SOURCE / "netlists" / "converters" / "buck_closed_loop.cir"
+
+
+def has(module):
+    try:
+        __import__(module)
+    except ImportError:
+        return False
+    return True
+
+
+class Values(unittest.TestCase):
+    def test_half_wave(self):
+        for ohm in 50.0, 1e3, 20e3:
+            result = dalcs.run(NETLIST, rload=ohm)
+            end = closes(ohm)
+            exact = [output(ohm, t) for t in result.t[result.t < end]]
+            np.testing.assert_allclose(result["v(out)"][:len(exact)], exact, atol=1e-8)
+            np.testing.assert_allclose(result.events["time"][:2], [opens(ohm), end], atol=1e-11)
+            self.assertEqual(result.events["on"][:2].tolist(), [False, True])
+            self.assertEqual(result.events["element"].tolist(), ["d1"] * len(result.events))
+            self.assertAlmostEqual(result.measures["vlow"], output(ohm, end), delta=1e-7)
+            self.assertTrue(math.isnan(result.measures["none"]))
+
+    def test_a_thousand_runs(self):
+        loads = np.linspace(100.0, 10e3, 1000)
+        results = [dalcs.run(NETLIST, rload=ohm) for ohm in loads]
+        self.assertEqual(len(results), 1000)
+        for ohm, result in zip(loads, results):
+            self.assertAlmostEqual(result.events["time"][0], opens(ohm), delta=1e-11)
+
+    def test_other_values(self):
+        text = NETLIST.replace("D1 in out", "D1 in out ideal\n.model ideal D(vfwd=0)")
+        for name in "real(vfwd)", "ideal", "ideal(", "x1.r1":
+            self.assertRaises(dalcs.OptionError, dalcs.run, text, {name: 1.0})
+        for values, drop in ({}, 0.0), ({"ideal(vfwd)": 0.5}, 0.5), ({"Ideal(VFWD)": 2}, 2.0):
+            result = dalcs.run(text, values, R1=500.0)
+            self.assertAlmostEqual(result["V(OUT)"].max(), 10.0 - drop, delta=1e-5)
+            self.assertTrue(drop or abs(result.events["time"][0] - opens(500.0)) < 1e-11)
+
+    def test_operating_point_and_sweep(self):
+        result = dalcs.run("divider\nV1 in 0 1\nR1 in out 1\nR2 out 0 3\n.op\n.dc v1 0 4 1\n")
+        self.assertEqual([table.analysis for table in result.tables], ["op", "dc"])
+        self.assertEqual(result.tables[0]["v(out)"].tolist(), [0.75])
+        np.testing.assert_allclose(result["v(out)"], 0.75 * np.arange(5.0))
+        self.assertIs(result["v1"], result.t)
+
+    def test_complex_rows(self):
+        result = dalcs.run("low pass\nV1 in 0 AC 1\nR1 in out 1k\nC1 out 0 1u\n.ac dec 5 1 1meg\n")
+        exact = 1.0 / (1.0 + 2j * np.pi * result.t * 1e-3)
+        self.assertEqual((result.scale, result.values.dtype.kind), ("frequency", "c"))
+        np.testing.assert_allclose(result["v(out)"], exact, rtol=1e-9)
+
+    def test_steps(self):
+        result = dalcs.run(NETLIST + ".step param rload list 500 1k 2k\n")
+        self.assertEqual([table.parameters["rload"] for table in result.tables], [500, 1e3, 2e3])
+        self.assertEqual(result.parameters, {"rload": 2e3})
+        np.testing.assert_allclose(result.measures["vlow"],
+                                   [output(ohm, closes(ohm)) for ohm in (500, 1e3, 2e3)], atol=1e-7)
+
+    def test_options(self):
+        at = [0.0, 1e-3, 4e-3]
+        result = dalcs.run(NETLIST, at=at, tol=1e-10, method="radau", stages=5, audit="full")
+        self.assertEqual(result.t.tolist(), at)
+        np.testing.assert_allclose(result["v(out)"], [output(1e3, t) for t in at], atol=1e-8)
+        self.assertEqual((result.report["tolerance"], result.report["audit"]["mode"]), (1e-10, "full"))
+        whole = dalcs.run(NETLIST)
+        bare = dalcs.run(NETLIST, rows=False, fill=1e-3, compress=1e-3)
+        self.assertEqual((len(bare), bare.measures["vlow"]), (0, whole.measures["vlow"]))
+        self.assertEqual(bare.events.tolist(), whole.events.tolist())
+        self.assertTrue(dalcs.run(NETLIST, energy=True).report["energy"]["resistors"] > 0.0)
+        for name, value in ("tol", "much"), ("audit", "maybe"), ("stages", 2.5), ("curve", "splines"):
+            with self.assertRaisesRegex(dalcs.OptionError, name):
+                dalcs.run(NETLIST, **{name: value})
+
+    def test_losses_jumps_steady_check(self):
+        losses = dalcs.run(NETLIST, losses=(20e-3, 40e-3)).losses
+        self.assertEqual((losses["from"], losses["to"]), (0.02, 0.04))
+        self.assertIsNone(dalcs.run(NETLIST).losses)
+        (jump,) = dalcs.run(SOURCE / "netlists" / "tanks" / "charge_sharing.cir").jumps
+        self.assertAlmostEqual(jump["states"]["c1"]["after"], 4.0, delta=1e-12)
+        steady = dalcs.steady(SOURCE / "netlists" / "converters" / "buck.cir")
+        self.assertEqual((steady.analysis, steady.steady["stable"]), ("pss", True))
+        self.assertEqual(dalcs.check(NETLIST)["parts"][0]["verdicts"]["unique"]["answer"], "yes")
+
+    def test_names(self):
+        circuit = dalcs.Circuit(NETLIST)
+        self.assertEqual(circuit.parameters, {"rload": 1e3})
+        self.assertEqual(circuit.elements, ["v1", "d1", "c1", "r1"])
+
+    def test_equations(self):
+        (system,) = dalcs.equations(NETLIST)
+        self.assertEqual((system.states, system.pairs), (("c1",), ("d1",)))
+        matrix = {name: value.toarray() if hasattr(value, "toarray") else value
+                  for name, value in system.matrices.items()}
+        self.assertEqual(matrix["P"].tolist(), [[20e-6]])
+        self.assertEqual(matrix["A_I"].shape, (1, 1))
+        # v(c1) decays with 1/RC where the diode carries nothing: z from the second row, put into the first
+        rate = matrix["A_I"] - matrix["B_I"] @ np.linalg.solve(matrix["B_II"], matrix["A_II"])
+        self.assertAlmostEqual((rate / matrix["P"])[0, 0], -1.0 / (1e3 * 20e-6), delta=1e-9)
+        (reduced,) = dalcs.equations(NETLIST, form="lcs")
+        self.assertEqual(reduced.unknowns, ())
+        self.assertRaises(ValueError, dalcs.equations, NETLIST, form="text")
+        (other,) = dalcs.equations(NETLIST, {"C1": 3e-6})
+        self.assertEqual(other["P"][0, 0], 3e-6)
+
+
+class Rows(unittest.TestCase):
+    def test_arrays_outlive_the_result(self):
+        v = dalcs.run(NETLIST)["v(out)"]
+        before = v.copy()
+        gc.collect()
+        for _ in range(20):
+            dalcs.run(NETLIST)
+        self.assertEqual(v.tobytes(), before.tobytes())
+
+    def test_names_are_looked_up(self):
+        result = dalcs.run(NETLIST)
+        self.assertEqual(tuple(result), result.keys())
+        self.assertTrue("V(OUT)" in result and "v(nowhere)" not in result)
+        self.assertEqual(result.units["i(d1)"], "A")
+        with self.assertRaisesRegex(KeyError, r"v\(out\)"):
+            result["v(ou)"]  # pylint: disable=pointless-statement
+
+    @unittest.skipUnless(has("pandas"), "no pandas")
+    def test_pandas(self):
+        result = dalcs.run(NETLIST)
+        frame = result.to_pandas()
+        self.assertEqual(frame["v(out)"].to_numpy().tobytes(), result["v(out)"].tobytes())
+        self.assertEqual(frame.index.name, "time")
+
+    @unittest.skipUnless(has("matplotlib"), "no matplotlib")
+    def test_plot(self):
+        axes = dalcs.run(NETLIST).plot("v(in)", "v(out)")
+        self.assertEqual([line.get_label() for line in axes.get_lines()], ["v(in)", "v(out)"])
+        self.assertEqual(axes.get_ylabel(), "V")
+
+
+class Errors(unittest.TestCase):
+    def failure(self, kind, *arguments, **more):
+        with self.assertRaises(kind) as caught:
+            dalcs.run(*arguments, **more)
+        return caught.exception
+
+    def test_a_mistake_in_a_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "mistake.cir"
+            path.write_text(NETLIST.replace("20u\nR1", "abc\nR1"))
+            error = self.failure(dalcs.NetlistError, path)
+        self.assertEqual((error.file, error.line, error.element), (str(path), 5, "c1"))
+        self.assertEqual(error.message, "expected a capacitance, not 'abc'")
+        self.assertIn("C1 out 0 abc", str(error))
+
+    def test_a_mistake_in_an_included_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            part, path = pathlib.Path(folder) / "part.inc", pathlib.Path(folder) / "whole.cir"
+            part.write_text("R1 in out ohm\n")
+            path.write_text("V\nV1 in 0 1\n.include part.inc\nR2 out 0 1\n.op\n")
+            error = self.failure(dalcs.NetlistError, path)
+        self.assertEqual((error.file, error.line, error.element), (str(part), 1, "r1"))
+
+    def test_several_mistakes(self):
+        error = self.failure(dalcs.NetlistError, "V\nV1 in 0 x\nR1 in 0 y\n.op\n")
+        self.assertEqual((len(error.messages), error.line, error.element), (2, 2, "v1"))
+
+    def test_no_solution(self):
+        error = self.failure(dalcs.NoSolution, SOURCE / "netlists" / "hard" / "hc11b.cir")
+        self.assertEqual((error.line, error.element, error.elements), (3, "v1", ("v1", "d1")))
+        self.assertIn("drives d1 forward", error.message)
+
+    def test_no_solution_later(self):
+        error = self.failure(dalcs.NoSolution, NETLIST, rload=0)
+        self.assertEqual((error.file, error.line, error.element), ("netlist", 3, "v1"))
+
+    def test_names_and_values(self):
+        error = self.failure(dalcs.OptionError, NETLIST, rlaod=3)
+        self.assertIn("did you mean 'rload'?", str(error))
+        self.assertIsInstance(error, ValueError)
+        self.assertIn("nan", self.failure(dalcs.OptionError, NETLIST, rload=math.nan).message)
+        error = self.failure(dalcs.NetlistError, NETLIST, c1=-1)
+        self.assertEqual((error.element, error.line), ("c1", 5))
+
+    def test_a_file_that_is_not_there(self):
+        self.assertIn("cannot read", self.failure(dalcs.Error, "nowhere.cir").message)
+
+    def test_they_can_be_sent(self):
+        error = self.failure(dalcs.NetlistError, NETLIST, c1=-1)
+        again = pickle.loads(pickle.dumps(error))
+        self.assertEqual((type(again), str(again), again.line), (type(error), str(error), error.line))
+
+
+class Ended(unittest.TestCase):
+    """Early: each ends long before the 1000 s of its .tran, at the first call of progress."""
+
+    def run_long(self, progress):
+        text = ENDLESS.read_text().rstrip()
+        self.assertIn(".tran", text)
+        cards = [card for card in text.splitlines()
+                 if not card.lower().startswith((".tran", ".meas", ".end"))]
+        dalcs.run("\n".join([*cards, ".tran 1 1000", ""]), rows=False, progress=progress)
+
+    def test_by_ctrl_c(self):
+        usual = signal.getsignal(signal.SIGINT)
+        with self.assertRaises(KeyboardInterrupt):
+            self.run_long(lambda time, stop: os.kill(os.getpid(), signal.SIGINT))
+        self.assertIs(signal.getsignal(signal.SIGINT), usual)
+
+    def test_by_an_exception(self):
+        def give_up(time, stop):
+            raise LookupError(f"{time} of {stop}")
+
+        with self.assertRaisesRegex(LookupError, "of 1000"):
+            self.run_long(give_up)
+
+    def test_in_a_thread(self):
+        found = []
+
+        def work():
+            try:
+                self.run_long(lambda time, stop: 1 / 0)
+            except ZeroDivisionError as error:
+                found.append(error)
+
+        thread = threading.Thread(target=work)
+        thread.start()
+        thread.join()
+        self.assertEqual(len(found), 1)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Sweeps from Python: the same bytes whatever the number of threads, failures in the table, Ctrl-C.
+
+usage: sweeps.py SOURCE_FOLDER, with PYTHONPATH=build/src/python
+"""
+
+import os
+import pathlib
+import pickle
+import signal
+import sys
+import unittest
+
+import numpy as np
+
+import dalcs
+from half_wave import NETLIST, closes, opens, output
+
+SOURCE = pathlib.Path(sys.argv[1])
+LOADS = np.geomspace(50.0, 20e3, 60)
+
+
+def bytes_of(sweep):
+    return {name: pickle.dumps(column.tolist()) for name, column in sweep.columns.items()}
+
+
+class Sweeps(unittest.TestCase):
+    def test_closed_form(self):
+        sweep = dalcs.sweep(NETLIST, {"rload": LOADS}, workers=2)
+        self.assertEqual(sweep["rload"].tobytes(), LOADS.tobytes())
+        np.testing.assert_allclose(sweep["vlow"], [output(ohm, closes(ohm)) for ohm in LOADS], atol=1e-7)
+        self.assertEqual((set(sweep["error"]), sweep.errors), ({""}, {}))
+
+    def test_workers_change_no_byte(self):
+        grid = {"rload": LOADS[::6], "c1": [5e-6, 20e-6, 80e-6]}
+
+        def each(result):
+            return {"rows": result.values.tobytes(), "events": result.events.tobytes(), **result.measures}
+
+        one, two, five = (dalcs.sweep(NETLIST, grid, workers=n, each=each) for n in (1, 2, 5))
+        self.assertEqual(len(one), 30)
+        self.assertEqual(bytes_of(one), bytes_of(two))
+        self.assertEqual(bytes_of(one), bytes_of(five))
+        alone = dalcs.run(NETLIST, one.points[17])
+        self.assertEqual(one["rows"][17], alone.values.tobytes())
+
+    def test_workers_change_no_byte_of_converters(self):
+        for name in "buck", "flyback_rcd", "buck_closed_loop":
+            path = SOURCE / "netlists" / "converters" / f"{name}.cir"
+            element = next(e for e in dalcs.Circuit(path).elements if e.startswith("r"))
+            grid = {element: [1.0, 2.0, 5.0, 11.0]}
+            one, two = (dalcs.sweep(path, grid, workers=n, each=lambda r: r.values.tobytes())
+                        for n in (1, 2))
+            self.assertEqual(bytes_of(one), bytes_of(two), name)
+
+    def test_order_of_points(self):
+        sweep = dalcs.sweep(NETLIST, {"rload": [1e3, 2e3], "c1": [1e-6, 2e-6, 3e-6]}, workers=2)
+        self.assertEqual(sweep["rload"].tolist(), [1e3] * 3 + [2e3] * 3)
+        self.assertEqual(sweep["c1"].tolist(), [1e-6, 2e-6, 3e-6] * 2)
+        self.assertEqual(len(dalcs.sweep(NETLIST, {"rload": []})), 0)
+
+    def test_one_value_each(self):
+        sweep = dalcs.sweep(NETLIST, {"rload": LOADS[:5]}, each=lambda r: r.events["time"][0])
+        np.testing.assert_allclose(sweep["value"], [opens(ohm) for ohm in LOADS[:5]], atol=1e-11)
+
+
+class Failures(unittest.TestCase):
+    def test_a_bad_variant(self):
+        for workers in 1, 2:
+            points = [{"rload": ohm} for ohm in LOADS]
+            points[7] = {"rload": 0.0}  # the source drives the diode around a loop
+            points[23] = {"rload": 1e3, "c1": -1.0}
+            points[41] = {"rlaod": 1e3}
+            points[42] = {"rload": float("nan")}
+            sweep = dalcs.sweep(NETLIST, points, workers=workers)
+            self.assertEqual(sorted(sweep.errors), [7, 23, 41, 42])
+            kinds = [type(sweep.errors[k]) for k in (7, 23, 41, 42)]
+            self.assertEqual(kinds, [dalcs.NoSolution, dalcs.NetlistError, dalcs.OptionError,
+                                     dalcs.OptionError])
+            self.assertEqual((sweep.errors[23].element, sweep.errors[23].line), ("c1", 5))
+            self.assertIn("no solution exists", sweep["error"][7])
+            good = [k for k in range(60) if k not in sweep.errors]
+            self.assertEqual(set(sweep["error"][good]), {""})
+            self.assertTrue(np.isnan(sweep["vlow"][[7, 23, 41, 42]]).all())
+            np.testing.assert_allclose(sweep["vlow"][good],
+                                       [output(LOADS[k], closes(LOADS[k])) for k in good], atol=1e-7)
+
+    def test_a_bad_reduction(self):
+        sweep = dalcs.sweep(NETLIST, {"rload": [1e3, 2e3]}, each=lambda r: r["v(nowhere)"])
+        self.assertEqual(sorted(sweep.errors), [0, 1])
+        self.assertRegex(sweep["error"][1], "KeyError.*v.nowhere")
+
+    def test_a_mistake_in_the_netlist(self):
+        sweep = dalcs.sweep(NETLIST.replace("20u\nR1", "abc\nR1"), {"rload": [1.0, 2.0]})
+        self.assertEqual(set(sweep["error"]), {"expected a capacitance, not 'abc'"})
+
+    def test_ctrl_c(self):
+        """While two threads run for 1000 s of simulated time each."""
+        text = (SOURCE / "netlists" / "converters" / "buck_closed_loop.cir").read_text()
+        cards = [card for card in text.splitlines()
+                 if not card.lower().startswith((".tran", ".meas", ".end"))]
+        for workers in 1, 2:
+            pressed = []
+
+            def press(time, stop, pressed=pressed):
+                if not pressed:
+                    pressed.append((time, stop))
+                    os.kill(os.getpid(), signal.SIGINT)
+
+            with self.assertRaises(KeyboardInterrupt):
+                dalcs.sweep("\n".join([*cards, ".tran 1 1000", ""]), [{}, {}, {}], workers=workers,
+                            progress=press)
+            self.assertEqual(len(pressed), 1)
+        self.assertIs(signal.getsignal(signal.SIGINT), signal.default_int_handler)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
