@@ -92,8 +92,9 @@ struct dalcs_builder {
     struct dalcs_names models; /* name -> index of model */
     struct dalcs_model *model;
     int n_models, model_capacity;
-    size_t gate_capacity;
-    bool *read_by_gates; /* [n_nodes_of_gates] nodes whose bit another gate reads */
+    size_t gate_capacity, comparator_capacity;
+    struct dalcs_names comparators; /* "3 0" and thresholds -> place among the circuit's */
+    bool *read_by_gates;            /* [n_nodes_of_gates] nodes whose bit another gate reads */
     size_t n_nodes_of_gates;
     const struct dalcs_logic_card *gate_card; /* the last of all, each points to the one before */
 

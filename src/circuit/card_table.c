@@ -196,6 +196,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         table->n_inner += is_load(card) ? 2 : 0;
         if (dalcs_card_is_logic(card)) {
             table->n_gates++;
+            table->n_gate_inputs += DALCS_GATE_PINS;
             table->n_stimuli += 2;
             table->n_inner += DALCS_GATE_DEVICES;
         } else {

@@ -34,6 +34,7 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     const size_t n_cards = count[DALCS_CARD_MODEL];
     /* and those that diodes name and the table knows, of which there are fewer than this */
     builder->gate_capacity = table.n_gates;
+    builder->comparator_capacity = table.n_gate_inputs;
     const size_t n_models = n_cards + (table.n_diodes < 512 ? table.n_diodes : 512);
     builder->n_device_cards = (int)n_devices;
     builder->device_capacity = n_devices;
@@ -313,6 +314,7 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
     dalcs_names_finish(&builder.nodes);
     dalcs_names_finish(&builder.devices);
     dalcs_names_finish(&builder.models);
+    dalcs_names_finish(&builder.comparators);
     dalcs_names_finish(&builder.pairs);
     dalcs_names_finish(&builder.initial_pairs);
     dalcs_names_finish(&builder.signals);

@@ -1,4 +1,4 @@
-/* logic_network.h - gates and flip-flops at one instant: from bits to bits, by rounds in which all decide at once. */
+/* logic_network.h - gates, flip-flops and samples at one instant: from bits to bits, by rounds in which all decide at once. */
 #ifndef DALCS_LOGIC_NETWORK_H
 #define DALCS_LOGIC_NETWORK_H
 
@@ -7,7 +7,9 @@
 struct dalcs_logic_state {
     bool q;     /* what the inputs make of it */
     bool seen;  /* q a delay ago: what others read and the output shows */
-    bool clock; /* the level of a flip-flop's clock */
+    bool clock; /* its level */
+    int count;  /* of clocks, from 1 to those of a cycle; 0: none yet */
+    bool takes; /* a sample takes what stood before this instant */
 };
 
 struct dalcs_logic_network {

@@ -85,8 +85,9 @@ static void poly_roles(const struct dalcs_card *card, int poly, unsigned char *r
 
 bool dalcs_card_is_logic(const struct dalcs_card *card) {
     static const char *const words[] = {
-        "and",      "or",    "xor",         "inv",          "buf",          "schmitt", "schmtbuf",
-        "schmtinv", "dflop", "diffschmitt", "diffschmtbuf", "diffschmtinv", "srflop"};
+        "and",        "or",    "xor",         "inv",          "buf",          "schmitt", "schmtbuf",
+        "schmtinv",   "dflop", "diffschmitt", "diffschmtbuf", "diffschmtinv", "srflop",  "counter",
+        "samplehold", "ota",   "varistor",    "modulator",    "modulate",     "phasedet"};
     bool is = false;
     for (size_t k = 0; k < sizeof words / sizeof words[0] && card->n > DALCS_LOGIC_MODEL; k++) {
         is = is || is_word(&card->token[DALCS_LOGIC_MODEL], words[k]);
