@@ -175,6 +175,17 @@ static bool is_load(const struct dalcs_card *card) {
     return found;
 }
 
+/* A triac becomes 6 devices, of a code model each port is a gate at most, with an input. */
+static void count_block(struct dalcs_card_table *table, const struct dalcs_card *card) {
+    if (card->letter == 'a') {
+        const size_t n = (size_t)card->n;
+        table->n_inner += 6 + 5 * n;
+        table->n_stimuli += 2 * n;
+        table->n_gates += n;
+        table->n_gate_inputs += n;
+    }
+}
+
 static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
                                               const struct dalcs_card *card) {
     struct dalcs_builder *builder = table->builder;
@@ -200,7 +211,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             table->n_stimuli += 2;
             table->n_inner += DALCS_GATE_DEVICES;
         } else {
-            table->n_inner += letter == 'a' ? 6 : 0; /* what a triac becomes */
+            count_block(table, card);
         }
         table->n_inner += letter == 'l' &&
                           dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_LTSPICE);

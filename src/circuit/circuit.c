@@ -9,8 +9,7 @@
  *     checks     of the whole
  *
  * Every pass goes on after an error, so that a person sees all of them. */
-#include "builder.h"
-
+#include "block.h"
 #include "card_table.h"
 
 #include <stdlib.h>
@@ -66,6 +65,13 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     return ok ? DALCS_OK : DALCS_E_NOMEM;
 }
 
+/* XSPICE's, by the model that the last word names; NULL: it is none of them. */
+static const struct dalcs_block *block_of(const struct dalcs_builder *builder,
+                                          const struct dalcs_card *card) {
+    const int index = dalcs_names_find(&builder->models, card->token[card->n - 1].text);
+    return index >= 0 ? builder->model[index].block : NULL;
+}
+
 static void read_element(struct dalcs_builder *builder, const struct dalcs_card *card) {
     if (card->parallel > 0 && dalcs_parallel_is_refused(builder, card)) {
         return;
@@ -104,6 +110,8 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
     case 'a':
         if (dalcs_card_is_logic(card)) {
             dalcs_logic_parse(builder, card);
+        } else if (block_of(builder, card) != NULL) {
+            dalcs_block_parse(builder, card, block_of(builder, card));
         } else if (dalcs_thyristor_is(builder, card)) {
             dalcs_thyristor_parse(builder, card);
         } else {

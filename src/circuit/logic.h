@@ -47,8 +47,9 @@ struct dalcs_logic_gate {
         [2]; /* the stimuli of q and of its complement, -1: not wired; of a sample what is held, and whether
                          it is shown */
     double low, high; /* V */
-    double delay
-        [2]; /* s, of q that falls, that rises: each change is seen so much later, however short it was */
+    /* s, of q that falls, that rises: each change is seen so much later, however short it was; forced: by preset and
+     * clear */
+    double delay[2], forced_delay[2];
     double rise, fall; /* s */
     bool initial;      /* of what remembers */
     int cycles;        /* of a counter: clocks until it begins anew; */

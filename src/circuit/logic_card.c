@@ -123,9 +123,9 @@ static bool read_parameters(struct dalcs_reader *reader, struct card *c) {
                 }
                 continue;
             }
-            dalcs_builder_error(builder, name, USAGE, "%s has no parameter '%s' here",
-                                c->function->name[0] != '\0' ? c->function->name : "a buffer",
-                                name->text);
+            dalcs_builder_error(
+                builder, name, USAGE, "%s has no parameter '%s' here",
+                c->function->kind >= DALCS_GATE_COUNTER ? c->function->name : "a gate", name->text);
             return false;
         }
         c->p[k].place = name;
@@ -172,7 +172,7 @@ static void take_parameters(struct card *c) {
     g->kind = c->function->kind;
     g->low = p[VLOW].value;
     g->high = p[VHIGH].value;
-    g->delay[0] = g->delay[1] = p[TD].value;
+    g->delay[0] = g->delay[1] = g->forced_delay[0] = g->forced_delay[1] = p[TD].value;
     g->rise = p[TRISE].value;
     g->fall = p[TFALL].place != NULL ? p[TFALL].value : p[TRISE].value;
     if (g->kind == DALCS_GATE_SAMPLE) {

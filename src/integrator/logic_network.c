@@ -55,10 +55,10 @@ static bool next(const struct dalcs_logic_network *l, const struct dalcs_logic_g
 static void go_flip_flop(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g,
                          struct dalcs_logic_state *state) {
     const bool clock = read(l, &g->input[DALCS_GATE_CLOCK]);
-    if (read(l, &g->input[DALCS_GATE_CLEAR])) {
-        state->q = false;
-    } else if (read(l, &g->input[DALCS_GATE_PRESET])) {
-        state->q = true;
+    const bool clears = read(l, &g->input[DALCS_GATE_CLEAR]);
+    state->is_forced = clears || read(l, &g->input[DALCS_GATE_PRESET]);
+    if (state->is_forced) {
+        state->q = !clears;
     } else if (rises(l, clock, state)) {
         state->q = next(l, g, state->q);
     }
@@ -112,14 +112,14 @@ static bool is_same(const struct dalcs_logic_state *a, const struct dalcs_logic_
 
 /* One round; does anything change? */
 static bool change(struct dalcs_logic_network *l, void *user,
-                   void (*on_q)(void *user, int gate, bool q)) {
+                   void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
     bool any = false;
     for (int k = 0; k < l->n; k++) {
         l->next[k] = decide(l, k);
     }
     for (int k = 0; k < l->n; k++) {
         if (l->next[k].q != l->state[k].q) {
-            on_q(user, k, l->next[k].q);
+            on_q(user, k, &l->next[k]);
         }
         any = any || !is_same(&l->next[k], &l->state[k]);
     }
@@ -155,10 +155,10 @@ static bool is_at_mark(const struct dalcs_logic_network *l) {
     return is;
 }
 
-static void ignore(void *user, int gate, bool q) {
+static void ignore(void *user, int gate, const struct dalcs_logic_state *next) {
     (void)user;
     (void)gate;
-    (void)q;
+    (void)next;
 }
 
 /* Once round. */
@@ -173,7 +173,7 @@ static void find_loop(struct dalcs_logic_network *l) {
 }
 
 bool dalcs_logic_settle(struct dalcs_logic_network *l, void *user,
-                        void (*on_q)(void *user, int gate, bool q)) {
+                        void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
     const size_t bytes = (size_t)l->n * sizeof(*l->state);
     memcpy(l->mark, l->state, bytes);
     for (long round = 1; change(l, user, on_q); round++) {

@@ -125,11 +125,11 @@ void dalcs_logic_run_finish(struct dalcs_logic_run *l) {
 
 /* ---- The queue -------------------------------------------------------------------------------------------- */
 
-static void queue(void *user, int gate, bool q) {
+static void queue(void *user, int gate, const struct dalcs_logic_state *next) {
     struct dalcs_logic_run *l = user;
     struct dalcs_logic_output *o = &l->output[gate];
     const struct dalcs_logic_gate *g = &l->network.gate[gate];
-    const double due = l->now + g->delay[q];
+    const double due = l->now + (next->is_forced ? g->forced_delay : g->delay)[next->q];
     if (!dalcs_gate_has_delay(g)) {
         return;
     }
@@ -194,7 +194,7 @@ enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed)
     for (int k = 0; k < l->network.n; k++) {
         l->output[k].n_due = 0;
         if (l->network.state[k].q != l->network.state[k].seen) {
-            queue(l, k, l->network.state[k].q);
+            queue(l, k, &l->network.state[k]);
         }
         l->network.state[k].takes = false;
         DALCS_TRY(dalcs_logic_output_start(l, k, changed));

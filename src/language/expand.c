@@ -139,9 +139,27 @@ static bool is_flat(struct dalcs_scope *scope, const struct dalcs_card *card) {
     return true;
 }
 
+/* [~a and a], as XSPICE writes lists of nodes. */
+static const char *port_name(struct dalcs_language *language, const struct dalcs_scope *scope,
+                             const char *text) {
+    const size_t before = strspn(text, "[~");
+    size_t end = strlen(text);
+    while (end > before && text[end - 1] == ']') {
+        end--;
+    }
+    const char *name = dalcs_language_text(language, "%.*s", (int)(end - before), text + before);
+    const char *flat = end == before || name == NULL || strcmp(name, "null") == 0
+                           ? name
+                           : node_name(language, scope, name);
+    return flat == NULL
+               ? NULL
+               : dalcs_language_text(language, "%.*s%s%s", (int)before, text, flat, text + end);
+}
+
 static void rename_token(struct dalcs_language *language, struct dalcs_scope *scope,
                          enum dalcs_role role, struct dalcs_token *token) {
     const char *name = role == DALCS_ROLE_NODE     ? node_name(language, scope, token->text)
+                       : role == DALCS_ROLE_PORT   ? port_name(language, scope, token->text)
                        : role == DALCS_ROLE_DEVICE ? flat_name(language, scope, token->text)
                                                    : model_name(language, scope, token->text);
     token->text = name != NULL ? name : token->text;

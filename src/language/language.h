@@ -259,6 +259,7 @@ const char *dalcs_scope_flat_name(struct dalcs_language *language, const struct 
 enum dalcs_role {
     DALCS_ROLE_VALUE,
     DALCS_ROLE_NODE,
+    DALCS_ROLE_PORT, /* a node of XSPICE, perhaps with a bracket or a ~ */
     DALCS_ROLE_DEVICE,
     DALCS_ROLE_MODEL,
     DALCS_ROLE_RAW,

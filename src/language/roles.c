@@ -105,7 +105,9 @@ static void block_roles(const struct dalcs_card *card, unsigned char *role) {
     int last = 0;
     for (int k = 1; k < card->n; k++) {
         if (card->token[k].kind == DALCS_TOKEN_WORD && card->token[k].text[0] != '%') {
-            role[k] = DALCS_ROLE_NODE;
+            const char *text = card->token[k].text;
+            const bool is_list = strchr("[~", text[0]) != NULL || text[strlen(text) - 1] == ']';
+            role[k] = is_list || strcmp(text, "null") == 0 ? DALCS_ROLE_PORT : DALCS_ROLE_NODE;
             last = k;
         }
     }

@@ -18,8 +18,10 @@ struct audit_gate {
     bool shown;              /* what it has to show by now */
     int count;               /* of clocks; -1: it is not known */
     double held;             /* V, by a sample */
-    double before;           /* V, what it may take at this instant */
-    double *due;             /* [n_due] s: what it has to show changes */
+    bool was_seen;
+    double free_at; /* s: what was decided when it was lost is shown from then on */
+    double before;  /* V, what it may take at this instant */
+    double *due;    /* [n_due] s: what it has to show changes */
     size_t first_due, n_due, capacity;
 };
 
@@ -107,7 +109,7 @@ static bool reads(const struct dalcs_audit_gates *a, const struct dalcs_logic_in
 
 /* What the inputs say; held: they leave it as it was, as far as can be told. */
 struct verdict {
-    bool q, is_held, is_known;
+    bool q, is_held, is_known, is_forced;
 };
 
 static struct verdict of_inputs(const struct dalcs_audit_gates *a,
@@ -154,10 +156,11 @@ static struct verdict of_memory(const struct dalcs_audit_gates *a, const struct 
     const bool data = !is_latch && reads(a, &g->input[DALCS_GATE_DATA], &v.is_known);
     const bool has_reset = g->kind == DALCS_GATE_JK || g->kind == DALCS_GATE_SR;
     const bool reset = has_reset && reads(a, &g->input[DALCS_GATE_RESET], &v.is_known);
-    const bool rises = clock && !s->clock;
+    const bool rises = clock && !s->clock && s->was_seen;
     const bool next = !is_latch && after_clock(g->kind, s->q, data, reset);
     v.q = !clears && (sets || next);
     v.is_held = !clears && !sets && !rises;
+    v.is_forced = clears || sets;
     if (rises && !sets && !clears && (data != s->data || reset != s->reset)) {
         v.is_known = false; /* did they change before the clock? */
     }
@@ -172,7 +175,7 @@ static struct verdict of_counter(const struct dalcs_audit_gates *a,
                                  const struct dalcs_logic_gate *g, struct audit_gate *s, bool now) {
     struct verdict v = {.is_known = true};
     const bool clock = reads(a, &g->input[0], &v.is_known);
-    const bool rises = clock && !s->clock;
+    const bool rises = clock && !s->clock && s->was_seen;
     if (reads(a, &g->input[1], &v.is_known)) {
         s->count = 0;
     } else if (rises && s->count >= 0) {
@@ -186,13 +189,14 @@ static struct verdict of_counter(const struct dalcs_audit_gates *a,
     return v;
 }
 
-/* May a pulse of no width have set it? */
-static bool reads_gates(const struct dalcs_logic_gate *g) {
-    bool does = false;
+/* May a pulse of no width have set it? What has a delay shows none. */
+static bool may_have_missed(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g) {
+    bool may = false;
     for (int i = 0; i < g->n_inputs; i++) {
-        does = does || g->input[i].from == DALCS_GATE_GATE;
+        may = may || (g->input[i].from == DALCS_GATE_GATE &&
+                      !dalcs_gate_has_delay(&a->circuit->gate[g->input[i].index]));
     }
-    return does;
+    return may;
 }
 
 static enum dalcs_status expect(struct audit_gate *s, bool q, double due) {
@@ -230,22 +234,29 @@ static struct verdict decide(const struct dalcs_audit_gates *a, int k, bool now)
                                                                     : of_inputs(a, g);
 }
 
+static double longest_delay(const struct dalcs_logic_gate *g) {
+    return fmax(fmax(g->delay[0], g->delay[1]), fmax(g->forced_delay[0], g->forced_delay[1]));
+}
+
 /* Gate k at t; is_wrong: it does not show what it has to. */
 static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, bool *is_wrong) {
     const struct dalcs_logic_gate *g = &a->circuit->gate[k];
     struct audit_gate *s = &a->gate[k];
     const bool has_memory = g->kind == DALCS_GATE_LATCH || dalcs_gate_has_clock(g);
     const bool now = shows(a, k);
+    if (has_memory && s->is_lost && t >= s->free_at) {
+        s->is_lost = false;
+        s->q = s->shown = now;
+        s->first_due = s->n_due = 0;
+    }
     const struct verdict v = decide(a, k, now);
-    const bool is_open = !v.is_known || (v.is_held && reads_gates(g));
+    s->was_seen = true;
+    const bool is_open = !v.is_known || (v.is_held && may_have_missed(a, g));
     *is_wrong = false;
     if (s->is_lost && !has_memory && v.is_known) { /* what it showed stands until it decides else */
         s->is_lost = false;
         s->q = s->shown = now;
         s->first_due = s->n_due = 0;
-    } else if (s->is_lost && has_memory && !dalcs_gate_has_delay(g)) {
-        s->is_lost = false;
-        s->q = s->shown = now;
     }
     if (s->is_lost) {
         return DALCS_OK;
@@ -257,8 +268,10 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
         return DALCS_OK;
     }
     s->is_lost = is_open;
+    s->free_at = t + longest_delay(g) + 4.0 * a->radau->resolution;
+    const bool q = v.is_held ? s->q : v.q;
     bool is_near;
-    DALCS_TRY(expect(s, v.is_held ? s->q : v.q, t + g->delay[v.is_held ? s->q : v.q]));
+    DALCS_TRY(expect(s, q, t + (v.is_forced ? g->forced_delay : g->delay)[q]));
     go_to(s, t, 4.0 * a->radau->resolution, &is_near);
     *is_wrong = !is_open && !is_near && s->shown != now;
     return DALCS_OK;
@@ -309,7 +322,7 @@ static bool is_sample_wrong(struct dalcs_audit_gates *a, int k) {
     const bool tracks = reads(a, &g->input[DALCS_GATE_PRESET], &is_known);
     if (!s->is_lost && ((clock && !s->clock) || (s->q && !tracks))) {
         s->held = s->before;
-    } else if (!is_known || reads_gates(g)) {
+    } else if (!is_known || may_have_missed(a, g)) {
         s->held = value; /* a pulse of no width may have been there */
     }
     s->is_lost = false;

@@ -293,7 +293,7 @@ def refused(checker, program):
              ("a1 a 0 0 0 0 0 o 0 COUNTER cycles=2.5", "a whole number of clocks"),
              ("a1 a 0 0 0 0 0 o 0 COUNTER duty=1", "duty= of a counter is above 0 and below 1"),
              ("a1 a 0 0 0 0 0 o 0 COUNTER vt=1", "counter has no parameter 'vt'"),
-             ("a1 a 0 0 0 0 0 o 0 AND cycles=3", "and has no parameter 'cycles'"))
+             ("a1 a 0 0 0 0 0 o 0 AND cycles=3", "a gate has no parameter 'cycles'"))
     for card, text in cases:
         done = run_cards(program, card, ["v1 a 0 1", "v2 b 0 1", card, "r1 o 0 1", ".tran 1 2"])
         checker.check(done.status != 0 and text in done.stderr, f"{card}: {done.stderr}")

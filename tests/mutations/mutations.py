@@ -165,6 +165,13 @@ a5 and late latch 0 0 0 any 0 OR Vhigh=5 Ref=0.5
 a6 a 0 0 0 0 0 third 0 COUNTER cycles=3 duty=0.3
 a7 c 0 a 0 0 0 held 0 SAMPLEHOLD
 a8 x 0 0 b 0 0 let 0 SAMPLEHOLD
+aadc [a b c] [da db dc] adc
+.model adc adc_bridge(in_low=0.2 in_high=0.8)
+aflip da db dc null q nq flip
+.model flip d_jkff(clk_delay=20n)
+adac q slow dac
+.model dac dac_bridge(out_high=3)
+r6 slow 0 1k
 r1 any x 1k
 c1 x 0 1n ic=0
 r2 flop 0 1k
@@ -260,7 +267,9 @@ MUTATIONS = {
     "a sample forgets what it let through": (
         "integrator/logic_network.c", "(state->q && !tracks && !l->rests)", "false", GATES),
     "a delay is a tenth longer": (
-        "integrator/logic_run.c", "l->now + g->delay[q]", "l->now + 1.1 * g->delay[q]", GATES),
+        "integrator/logic_run.c", "l->now + (next->is", "l->now + 1.1 * (next->is", GATES),
+    "a JK flip-flop turns over too often": (
+        "integrator/logic_network.c", "(q ? !reset : data)", "(q ? !reset && !data : data)", GATES),
     "one output of many shows the other level": (
         "integrator/logic_outputs.c", "const double level = level_of(g, pin, l->network.state[k].seen);",
         "static long calls_; const double level = level_of(g, pin, l->network.state[k].seen != (++calls_ == 37));", GATES),
