@@ -164,6 +164,9 @@ static struct verdict of_memory(const struct dalcs_audit_gates *a, const struct 
     if (rises && !sets && !clears && (data != s->data || reset != s->reset)) {
         v.is_known = false; /* did they change before the clock? */
     }
+    if (clock && !s->was_seen) {
+        v.is_known = false; /* has it risen at the start, or was it high before? */
+    }
     s->clock = clock;
     s->data = data;
     s->reset = reset;
@@ -182,6 +185,9 @@ static struct verdict of_counter(const struct dalcs_audit_gates *a,
         s->count = s->count % g->cycles + 1;
     } else if (rises && g->delay[1] == 0.0 && now && !s->q && !s->is_lost) {
         s->count = 1;
+    }
+    if (clock && !s->was_seen) {
+        s->count = -1; /* has it risen at the start, or was it high before? */
     }
     v.is_known = v.is_known && s->count >= 0;
     v.q = s->count > 0 && s->count <= g->n_high;
@@ -258,6 +264,9 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
         s->q = s->shown = now;
         s->first_due = s->n_due = 0;
     }
+    if (is_open || !v.is_held) {
+        s->free_at = t + longest_delay(g) + 4.0 * a->radau->resolution;
+    }
     if (s->is_lost) {
         return DALCS_OK;
     }
@@ -268,7 +277,6 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
         return DALCS_OK;
     }
     s->is_lost = is_open;
-    s->free_at = t + longest_delay(g) + 4.0 * a->radau->resolution;
     const bool q = v.is_held ? s->q : v.q;
     bool is_near;
     DALCS_TRY(expect(s, q, t + (v.is_forced ? g->forced_delay : g->delay)[q]));
