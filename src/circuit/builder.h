@@ -389,6 +389,9 @@ bool dalcs_modulation_set_am(struct dalcs_builder *builder, const double *value,
                              struct dalcs_stimulus *s);
 bool dalcs_modulation_set_fm(struct dalcs_builder *builder, const struct dalcs_token *place,
                              const double *value, struct dalcs_stimulus *s);
+/* LAPLACE, which comes next: of the controlling nodes, or of a formula that follows. */
+void dalcs_transfer_parse(struct dalcs_reader *reader, struct dalcs_device *device,
+                          bool has_control);
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                             enum dalcs_device_kind kind);
 /* After the word POLY, on a device that has its own nodes. */
