@@ -136,6 +136,15 @@ int dalcs_behavioural_add_readout(struct dalcs_builder *builder, const struct da
     return node;
 }
 
+void dalcs_behavioural_add_table(struct dalcs_builder *builder, const struct dalcs_device *device,
+                                 const struct dalcs_piecewise *table) {
+    struct dalcs_formula_source *source = add_source(builder, device);
+    if (source != NULL) {
+        source->has_table = true;
+        source->table = *table;
+    }
+}
+
 bool dalcs_behavioural_is_form(const struct dalcs_token *token) {
     static const char *const forms[] = {"value", "vol", "cur", "table"};
     return token != NULL && token->kind == DALCS_TOKEN_WORD &&

@@ -17,6 +17,7 @@ enum dalcs_model_kind {
     DALCS_MODEL_CURRENT_SWITCH,
     DALCS_MODEL_THYRISTOR,
     DALCS_MODEL_TRANSISTOR,
+    DALCS_MODEL_BLOCK,   /* XSPICE's */
     DALCS_MODEL_PASSIVE, /* of R, L or C, whose card has the value */
     DALCS_MODEL_OTHER,   /* of a device that does not exist here */
     DALCS_MODEL_WRONG    /* had errors: a use of it is no second error */
@@ -38,6 +39,7 @@ struct dalcs_model {
     const struct dalcs_token *type;
     struct dalcs_diode_card diode;
     const struct dalcs_thyristor *thyristor;
+    const struct dalcs_block *block;
     struct dalcs_transistor *transistor;
     const struct dalcs_token *beyond; /* of R, L or C: what would change values; else NULL */
 };
@@ -92,8 +94,9 @@ struct dalcs_builder {
     struct dalcs_names models; /* name -> index of model */
     struct dalcs_model *model;
     int n_models, model_capacity;
-    size_t gate_capacity;
-    bool *read_by_gates; /* [n_nodes_of_gates] nodes whose bit another gate reads */
+    size_t gate_capacity, comparator_capacity;
+    struct dalcs_names comparators; /* "3 0" and thresholds -> place among the circuit's */
+    bool *read_by_gates;            /* [n_nodes_of_gates] nodes whose bit another gate reads */
     size_t n_nodes_of_gates;
     const struct dalcs_logic_card *gate_card; /* the last of all, each points to the one before */
 
@@ -386,6 +389,9 @@ bool dalcs_modulation_set_am(struct dalcs_builder *builder, const double *value,
                              struct dalcs_stimulus *s);
 bool dalcs_modulation_set_fm(struct dalcs_builder *builder, const struct dalcs_token *place,
                              const double *value, struct dalcs_stimulus *s);
+/* LAPLACE, which comes next: of the controlling nodes, or of a formula that follows. */
+void dalcs_transfer_parse(struct dalcs_reader *reader, struct dalcs_device *device,
+                          bool has_control);
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
                             enum dalcs_device_kind kind);
 /* After the word POLY, on a device that has its own nodes. */
@@ -401,6 +407,9 @@ int dalcs_behavioural_parse_control(struct dalcs_reader *reader, const struct da
 /* The node whose voltage is a formula, of a source what(name). -1: out of memory. */
 int dalcs_behavioural_add_readout(struct dalcs_builder *builder, const struct dalcs_token *formula,
                                   const char *what, const struct dalcs_token *name);
+/* The output of a device with controlling nodes: a function of their voltage. */
+void dalcs_behavioural_add_table(struct dalcs_builder *builder, const struct dalcs_device *device,
+                                 const struct dalcs_piecewise *table);
 bool dalcs_behavioural_is_form(const struct dalcs_token *token);
 void dalcs_behavioural_parse_form(struct dalcs_reader *reader, struct dalcs_device *device);
 /* Compiles all formulas, when all elements are known. */
@@ -484,6 +493,9 @@ void dalcs_sweep_parse_ac(struct dalcs_builder *builder, const struct dalcs_card
 void dalcs_sweep_parse_step(struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_sweep_check(struct dalcs_builder *builder);
 void dalcs_options_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
+/* v(node) at the start of a .tran, as by .ic. */
+void dalcs_initial_hold(struct dalcs_builder *builder, const struct dalcs_token *place, int node,
+                        double value);
 void dalcs_initial_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* .nodeset: the same form, without an effect */
 void dalcs_initial_parse_nodeset(struct dalcs_builder *builder, const struct dalcs_card *card);

@@ -5,6 +5,8 @@
  * conditions and included files are gone before: language/ has expanded them. */
 #include "card_table.h"
 
+#include "rational.h"
+
 #include "formula.h"
 #include "number.h"
 
@@ -175,6 +177,25 @@ static bool is_load(const struct dalcs_card *card) {
     return found;
 }
 
+static bool is_transfer(const struct dalcs_card *card) {
+    bool is = false;
+    for (int k = 3; k < card->n; k++) {
+        is = is || strcmp(card->token[k].text, "laplace") == 0;
+    }
+    return is;
+}
+
+/* A triac becomes 6 devices, of a code model each port is a gate at most, with an input. */
+static void count_block(struct dalcs_card_table *table, const struct dalcs_card *card) {
+    if (card->letter == 'a') {
+        const size_t n = (size_t)card->n;
+        table->n_inner += 6 + 5 * n;
+        table->n_stimuli += 2 * n;
+        table->n_gates += n;
+        table->n_gate_inputs += n;
+    }
+}
+
 static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
                                               const struct dalcs_card *card) {
     struct dalcs_builder *builder = table->builder;
@@ -196,10 +217,11 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
         table->n_inner += is_load(card) ? 2 : 0;
         if (dalcs_card_is_logic(card)) {
             table->n_gates++;
+            table->n_gate_inputs += DALCS_GATE_PINS;
             table->n_stimuli += 2;
             table->n_inner += DALCS_GATE_DEVICES;
         } else {
-            table->n_inner += letter == 'a' ? 6 : 0; /* what a triac becomes */
+            count_block(table, card);
         }
         table->n_inner += letter == 'l' &&
                           dalcs_dialect_is_told(builder->netlist->dialect, DALCS_DIALECT_LTSPICE);
@@ -207,6 +229,7 @@ static enum dalcs_card_class classify_element(struct dalcs_card_table *table,
             const size_t n = dalcs_poly_count(card);
             table->n_inner += n;
             table->n_stimuli += n > 0;
+            table->n_inner += is_transfer(card) ? 2 * DALCS_RATIONAL_DEGREE + 1 : 0;
         }
         table->n_inner += letter == 's' && dalcs_formula_find_control(card) < card->n;
         table->n_switches += letter == 's' || letter == 'w';

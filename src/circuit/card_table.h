@@ -34,7 +34,7 @@ struct dalcs_card_table {
     int block_depth;
     size_t n_stimuli; /* V and I, and C, which may turn into one */
     size_t n_pairs;   /* of coupled coils */
-    size_t n_gates;
+    size_t n_gates, n_gate_inputs;
     size_t n_inner; /* devices that parts of cards may become */
     size_t n_diodes;
     size_t n_scaled; /* diodes that may want a model of their own */

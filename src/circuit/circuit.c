@@ -9,8 +9,7 @@
  *     checks     of the whole
  *
  * Every pass goes on after an error, so that a person sees all of them. */
-#include "builder.h"
-
+#include "block.h"
 #include "card_table.h"
 
 #include <stdlib.h>
@@ -34,6 +33,7 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
     const size_t n_cards = count[DALCS_CARD_MODEL];
     /* and those that diodes name and the table knows, of which there are fewer than this */
     builder->gate_capacity = table.n_gates;
+    builder->comparator_capacity = table.n_gate_inputs;
     const size_t n_models = n_cards + (table.n_diodes < 512 ? table.n_diodes : 512);
     builder->n_device_cards = (int)n_devices;
     builder->device_capacity = n_devices;
@@ -63,6 +63,13 @@ static enum dalcs_status classify_cards(struct dalcs_builder *builder, unsigned 
         return ok && builder->default_rser != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
     return ok ? DALCS_OK : DALCS_E_NOMEM;
+}
+
+/* XSPICE's, by the model that the last word names; NULL: it is none of them. */
+static const struct dalcs_block *block_of(const struct dalcs_builder *builder,
+                                          const struct dalcs_card *card) {
+    const int index = dalcs_names_find(&builder->models, card->token[card->n - 1].text);
+    return index >= 0 ? builder->model[index].block : NULL;
 }
 
 static void read_element(struct dalcs_builder *builder, const struct dalcs_card *card) {
@@ -103,6 +110,8 @@ static void read_element(struct dalcs_builder *builder, const struct dalcs_card 
     case 'a':
         if (dalcs_card_is_logic(card)) {
             dalcs_logic_parse(builder, card);
+        } else if (block_of(builder, card) != NULL) {
+            dalcs_block_parse(builder, card, block_of(builder, card));
         } else if (dalcs_thyristor_is(builder, card)) {
             dalcs_thyristor_parse(builder, card);
         } else {
@@ -313,6 +322,7 @@ enum dalcs_status dalcs_circuit_build_with(struct dalcs_circuit *circuit,
     dalcs_names_finish(&builder.nodes);
     dalcs_names_finish(&builder.devices);
     dalcs_names_finish(&builder.models);
+    dalcs_names_finish(&builder.comparators);
     dalcs_names_finish(&builder.pairs);
     dalcs_names_finish(&builder.initial_pairs);
     dalcs_names_finish(&builder.signals);

@@ -1,6 +1,8 @@
 /* controlled.c - linear controlled sources: E and G by a voltage, F and H by the current of a V. */
 #include "builder.h"
 
+#include <string.h>
+
 static bool is_voltage_controlled(enum dalcs_device_kind kind) {
     return kind == DALCS_VCVS || kind == DALCS_VCCS;
 }
@@ -18,23 +20,22 @@ static const char *usage_of(enum dalcs_device_kind kind) {
     }
 }
 
-/* LAPLACE and its like stand where the control should be; in LTspice LAPLACE= behind two nodes. */
+/* A response stands where the control should be. */
 static bool is_refused(struct dalcs_reader *reader) {
-    static const char *const forms[] = {"laplace", "freq", "chebyshev"};
+    static const char *const forms[] = {"freq", "chebyshev"};
     const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
     if (token == NULL ||
         !dalcs_builder_is_one_of(token->text, forms, sizeof forms / sizeof forms[0])) {
         return false;
     }
-    if (token->text[0] == 'l') {
-        dalcs_builder_error(reader->builder, token,
-                            "build the filter of R, L and C, with sources E or G",
-                            "a transfer function of s is not supported yet");
-    } else {
-        dalcs_builder_error(reader->builder, token, "a circuit of R, L and C can have it",
-                            "a response over frequency (%s) has no equations in time", token->text);
-    }
+    dalcs_builder_error(reader->builder, token, "a circuit of R, L and C can have it",
+                        "a response over frequency (%s) has no equations in time", token->text);
     return true;
+}
+
+static bool is_transfer(const struct dalcs_reader *reader) {
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    return token != NULL && token->kind == DALCS_TOKEN_WORD && strcmp(token->text, "laplace") == 0;
 }
 
 void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
@@ -52,8 +53,16 @@ void dalcs_controlled_parse(struct dalcs_builder *builder, const struct dalcs_ca
         dalcs_behavioural_parse_form(&reader, device);
         return;
     }
+    if (is_voltage_controlled(kind) && is_transfer(&reader)) {
+        dalcs_transfer_parse(&reader, device, false);
+        return;
+    }
     if (is_voltage_controlled(kind)) {
         if (!dalcs_reader_nodes(&reader, 2, device->node + 2) || is_refused(&reader)) {
+            return;
+        }
+        if (is_transfer(&reader)) {
+            dalcs_transfer_parse(&reader, device, true);
             return;
         }
         if (dalcs_behavioural_is_form(dalcs_reader_peek(&reader, 0))) {

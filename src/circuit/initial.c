@@ -45,6 +45,11 @@ static void add_voltage(struct dalcs_builder *builder, const struct dalcs_token 
         {node[0], node[1]}, value, dalcs_builder_keep_location(builder, place)};
 }
 
+void dalcs_initial_hold(struct dalcs_builder *builder, const struct dalcs_token *place, int node,
+                        double value) {
+    add_voltage(builder, place, (int[]){node, 0}, value);
+}
+
 static bool read_value(struct dalcs_reader *reader, enum dalcs_quantity quantity, double *value) {
     dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
     return dalcs_reader_number(reader, quantity, "an initial value", value);

@@ -1,4 +1,4 @@
-/* logic.h - gates and flip-flops: what decides by events, outside all equations.
+/* logic.h - gates, flip-flops and what samples: what decides by events, outside all equations.
  *
  * An input is 0 or 1: the output of another gate, or a comparator, which is a switch that nothing flows in, and whose
  * position is located as that of any other. An output is a voltage source whose stimulus is written while a run goes
@@ -8,39 +8,64 @@
 
 #include "diag.h"
 
-enum { DALCS_GATE_INPUTS = 5 };
+enum { DALCS_GATE_PINS = 5 };
 
-/* What a gate may become: the other output, a resistor at each, a comparator and its resistor at each input. */
-enum { DALCS_GATE_DEVICES = 3 + 2 * DALCS_GATE_INPUTS };
+/* What a gate may become: a source, the other output, a resistor at each, a comparator and its resistor at each
+ * input. */
+enum { DALCS_GATE_DEVICES = 4 + 2 * DALCS_GATE_PINS };
 
 enum dalcs_logic_kind {
     DALCS_GATE_AND,
     DALCS_GATE_OR,
     DALCS_GATE_XOR,
     DALCS_GATE_BUFFER,
-    DALCS_GATE_LATCH,    /* set, reset: which wins */
-    DALCS_GATE_FLIP_FLOP /* data, -, clock, preset, clear: which wins */
+    DALCS_GATE_LATCH,     /* set, reset: which wins */
+    DALCS_GATE_FLIP_FLOP, /* data, -, clock, preset, clear: which wins */
+    DALCS_GATE_TOGGLE,    /* the same: data turns q over */
+    DALCS_GATE_JK,        /* set, reset, clock, preset, clear: both turn q over */
+    DALCS_GATE_SR,        /* the same: reset wins */
+    DALCS_GATE_COUNTER,   /* clock, reset: which wins */
+    DALCS_GATE_SAMPLE     /* -, -, clock, track */
 };
 
-enum { DALCS_GATE_DATA, DALCS_GATE_CLOCK = 2, DALCS_GATE_PRESET, DALCS_GATE_CLEAR };
+enum { DALCS_GATE_DATA, DALCS_GATE_RESET, DALCS_GATE_CLOCK, DALCS_GATE_PRESET, DALCS_GATE_CLEAR };
 
 struct dalcs_logic_gate {
     enum dalcs_logic_kind kind;
     const char *name;
+    int n_inputs;
 
     struct dalcs_logic_input {
         enum dalcs_logic_source { DALCS_GATE_OPEN, DALCS_GATE_COMPARATOR, DALCS_GATE_GATE } from;
 
         int index;
         bool is_inverted;
-    } input[DALCS_GATE_INPUTS];
+    } * input; /* [n_inputs] */
 
-    int output[2];    /* the stimuli of q and of its complement, -1: not wired */
+    int device; /* the source that shows q, or its complement where q is not wired */
+    int output
+        [2]; /* the stimuli of q and of its complement, -1: not wired; of a sample what is held, and whether
+                         it is shown */
     double low, high; /* V */
-    double delay, rise,
-        fall;     /* s; each change of q is seen after the delay, however short it was */
-    bool initial; /* of latch and flip-flop */
+    /* s, of q that falls, that rises: each change is seen so much later, however short it was; forced: by preset and
+     * clear */
+    double delay[2], forced_delay[2];
+    double rise, fall; /* s */
+    bool initial;      /* of what remembers */
+    int cycles;        /* of a counter: clocks until it begins anew; */
+    int n_high;        /* q is high in so many of them */
+    int first;         /* of the clocks that have been, at the start */
+    int sampled;       /* the place of what a sample takes among the circuit's measured signals */
+    double held;       /* V, by a sample at the start */
     struct dalcs_location where;
 };
+
+static inline bool dalcs_gate_has_delay(const struct dalcs_logic_gate *g) {
+    return g->delay[0] > 0 || g->delay[1] > 0;
+}
+
+static inline bool dalcs_gate_has_clock(const struct dalcs_logic_gate *g) {
+    return g->kind >= DALCS_GATE_FLIP_FLOP;
+}
 
 #endif

@@ -30,7 +30,8 @@ static const struct {
              {"find", DALCS_MEASURE_FIND},
              {"when", DALCS_MEASURE_WHEN},
              {"trig", DALCS_MEASURE_DELAY},
-             {"param", DALCS_MEASURE_PARAM}};
+             {"param", DALCS_MEASURE_PARAM},
+             {"eqn", DALCS_MEASURE_PARAM}};
 
 enum { N_KINDS = sizeof KINDS / sizeof KINDS[0] };
 
@@ -364,6 +365,11 @@ static bool read_kind(struct reading *r) {
     if (k == N_KINDS && is_found(r)) {
         m->kind = DALCS_MEASURE_FIND;
         return true;
+    }
+    if (k == N_KINDS && strncmp(token->text, "err", 3) == 0) {
+        dalcs_builder_error(r->builder, token, "write RMS of a difference, or run `dalcs compare`",
+                            "an error against data ('%s') is not measured", token->text);
+        return false;
     }
     if (k == N_KINDS) {
         const char *name[N_KINDS];

@@ -1,7 +1,7 @@
 /* model.c - .model cards, and finding the model that an element names.
  *
  * Models are read before the elements, so they may stand anywhere in the netlist. */
-#include "builder.h"
+#include "block.h"
 #include "number.h"
 
 #include <math.h>
@@ -23,7 +23,6 @@ static const struct type *find_type(const char *name) {
         {"csw", DALCS_MODEL_CURRENT_SWITCH, "current controlled switch"},
         {"iswitch", DALCS_MODEL_CURRENT_SWITCH, "current controlled switch"},
         {"switch", DALCS_MODEL_SWITCH, "switch"},
-        {"aswitch", DALCS_MODEL_OTHER, "smooth switch"},
         {"sidiode", DALCS_MODEL_DIODE, "diode"},
         {"thyristor", DALCS_MODEL_THYRISTOR, "thyristor"},
         {"scr", DALCS_MODEL_THYRISTOR, "thyristor"},
@@ -50,12 +49,13 @@ static const struct type *find_type(const char *name) {
         {"ltra", DALCS_MODEL_OTHER, "transmission line"},
         {"urc", DALCS_MODEL_OTHER, "transmission line"},
     };
+    static const struct type block = {"", DALCS_MODEL_BLOCK, "code model"};
     for (size_t k = 0; k < sizeof types / sizeof types[0]; k++) {
         if (strcmp(types[k].name, name) == 0) {
             return &types[k];
         }
     }
-    return NULL;
+    return dalcs_block_is_type(name) ? &block : NULL;
 }
 
 static bool read_known(struct dalcs_reader *reader, struct dalcs_parameter *parameter,
@@ -160,6 +160,9 @@ static bool read_parameters(struct dalcs_reader *reader, struct dalcs_model *mod
         model->thyristor =
             dalcs_thyristor_parse_model(reader, model->type, &circuit->diode_model[model->index]);
         ok = model->thyristor != NULL;
+    } else if (model->kind == DALCS_MODEL_BLOCK) {
+        model->block = dalcs_block_parse_model(reader, model->name, model->type);
+        ok = model->block != NULL;
     } else if (model->kind == DALCS_MODEL_TRANSISTOR) {
         model->transistor = dalcs_transistor_parse_model(reader, model->name, model->type);
         ok = model->transistor != NULL;

@@ -4,6 +4,8 @@
  * netlist can have, so that all places stay what they are. */
 #include "signal_formula_card.h"
 
+#include "signal_names.h"
+
 #include <string.h>
 
 static const char USAGE[] = "signals are: v(node) v(a,b) i(element)";
@@ -32,32 +34,6 @@ static void report(struct dalcs_signal_compilation *c, int begin, int length, co
 }
 
 /* ---- Signals --------------------------------------------------------------------------------- */
-
-/* "v(", "im(", ...: the bytes before the parenthesis, 0 when no signal starts here. */
-static int signal_prefix(const char *t, enum dalcs_signal_part *part) {
-    static const struct {
-        const char *letters;
-        enum dalcs_signal_part part;
-    } parts[] = {{"", DALCS_PART_PLAIN},     {"m", DALCS_PART_MAGNITUDE},
-                 {"db", DALCS_PART_DECIBEL}, {"p", DALCS_PART_PHASE},
-                 {"ph", DALCS_PART_PHASE},   {"r", DALCS_PART_REAL},
-                 {"i", DALCS_PART_IMAGINARY}};
-
-    for (size_t k = 0; (*t == 'v' || *t == 'i') && k < sizeof parts / sizeof parts[0]; k++) {
-        const size_t n = strlen(parts[k].letters);
-        const size_t blanks = strncmp(t + 1, parts[k].letters, n) == 0 ? strspn(t + 1 + n, " ") : 0;
-        if (strncmp(t + 1, parts[k].letters, n) == 0 && t[1 + n + blanks] == '(') {
-            *part = parts[k].part;
-            return (int)(1 + n + blanks);
-        }
-    }
-    return 0;
-}
-
-static bool is_name_byte(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '.' || c == '#' ||
-           c == '$' || c == '@' || (unsigned char)c >= 0x80;
-}
 
 /* The word text[begin..end-1] as a token of its line. */
 static bool make_token(struct dalcs_signal_compilation *c, int begin, int end,
@@ -160,56 +136,40 @@ static int previous_byte(const char *text, int k) {
     return k > 0 ? (unsigned char)text[k - 1] : 0;
 }
 
-/* @r1[i] or @d1[id] at t: how long it is; 0: something else. */
-static int device_current(const char *t) {
-    int n = 1;
-    while (t[0] == '@' && (is_name_byte(t[n]) || t[n] == ':')) {
-        n++;
-    }
-    if (n > 1 && strncmp(t + n, "[id]", 4) == 0) {
-        return n + 4;
-    }
-    return n > 1 && strncmp(t + n, "[i]", 3) == 0 ? n + 3 : 0;
-}
-
-/* mag(v(out)) and the like of .ac: the bytes before the signal, 0 when no such function starts at t. */
-static int part_function(const char *t, enum dalcs_signal_part *part) {
-    static const struct {
-        const char *name;
-        enum dalcs_signal_part part;
-    } functions[] = {{"mag", DALCS_PART_MAGNITUDE}, {"abs", DALCS_PART_MAGNITUDE},
-                     {"db", DALCS_PART_DECIBEL},    {"ph", DALCS_PART_PHASE},
-                     {"phase", DALCS_PART_PHASE},   {"re", DALCS_PART_REAL},
-                     {"real", DALCS_PART_REAL},     {"im", DALCS_PART_IMAGINARY},
-                     {"imag", DALCS_PART_IMAGINARY}};
-
-    for (size_t k = 0; k < sizeof functions / sizeof functions[0]; k++) {
-        const size_t n = strlen(functions[k].name);
-        if (strncmp(t, functions[k].name, n) == 0 && t[n + strspn(t + n, " ")] == '(') {
-            const size_t open = n + strspn(t + n, " ") + 1;
-            *part = functions[k].part;
-            return (int)(open + strspn(t + open, " "));
-        }
-    }
-    return 0;
-}
-
 /* A signal in the text. */
 struct found {
     int begin, end;     /* what stands for it, a function around it included */
     int name, name_end; /* what its parentheses or its @...[i] hold */
     int open;           /* the parenthesis, -1: none */
-    bool is_current;
+    bool is_current, is_power;
     enum dalcs_signal_part part;
 };
+
+/* w(r1) and p(r1) in time: the bytes before the parenthesis, 0 when none starts at t, or a function of the netlist. */
+static int power_prefix(const struct dalcs_signal_compilation *c, const char *t) {
+    const size_t blanks = *t == 'w' || *t == 'p' ? strspn(t + 1, " ") : 0;
+    const char name[2] = {*t, '\0'};
+    const struct dalcs_expression *body;
+    int n;
+    if ((*t != 'w' && *t != 'p') || t[1 + blanks] != '(' ||
+        strcmp(c->rules->variable, "time") != 0 ||
+        dalcs_deck_function(c->builder->deck, name, &n, &body, &c->builder->out_of_memory)) {
+        return 0;
+    }
+    return (int)(1 + blanks);
+}
 
 /* Does a signal start at k? Of one whose parenthesis is never closed `end` is behind the text. */
 static bool find_at(const struct dalcs_signal_compilation *c, int k, struct found *found) {
     const char *text = c->text.text;
-    const bool starts = k == 0 || !is_name_byte(text[k - 1]);
+    const bool starts = k == 0 || !dalcs_signal_is_name_byte(text[k - 1]);
     *found = (struct found){.begin = k, .part = DALCS_PART_PLAIN};
-    const int prefix = starts ? signal_prefix(text + k, &found->part) : 0;
-    const int device = starts ? device_current(text + k) : 0;
+    int prefix = starts ? dalcs_signal_prefix(text + k, &found->part) : 0;
+    if (starts && prefix == 0) {
+        prefix = power_prefix(c, text + k);
+        found->is_power = prefix > 0;
+    }
+    const int device = starts ? dalcs_signal_device_current(text + k) : 0;
     if (device > 0) {
         found->is_current = true;
         found->open = -1;
@@ -235,10 +195,10 @@ static bool find_at(const struct dalcs_signal_compilation *c, int k, struct foun
 static bool find_with_function(const struct dalcs_signal_compilation *c, int k,
                                struct found *found) {
     const char *text = c->text.text;
-    const bool may =
-        strcmp(c->rules->variable, "frequency") == 0 && (k == 0 || !is_name_byte(text[k - 1]));
+    const bool may = strcmp(c->rules->variable, "frequency") == 0 &&
+                     (k == 0 || !dalcs_signal_is_name_byte(text[k - 1]));
     enum dalcs_signal_part part;
-    const int n = may ? part_function(text + k, &part) : 0;
+    const int n = may ? dalcs_signal_part_function(text + k, &part) : 0;
     if (n == 0 || !find_at(c, k + n, found) || found->end > c->text.length ||
         found->part != DALCS_PART_PLAIN) {
         return find_at(c, k, found);
@@ -253,6 +213,37 @@ static bool find_with_function(const struct dalcs_signal_compilation *c, int k,
     return true;
 }
 
+/* The voltage across an element and the current through it; -1 when an error was reported. */
+static int find_power(struct dalcs_signal_compilation *c, const struct found *found, int *current) {
+    struct dalcs_builder *builder = c->builder;
+    struct dalcs_token name;
+    if (!make_token(c, found->name, found->name_end, &name)) {
+        return -1;
+    }
+    const int k = dalcs_builder_find_device(builder, &name);
+    if (k < 0) {
+        return -1;
+    }
+    const struct dalcs_device *device = &builder->circuit->device[k];
+    bool has_two = strchr("rlcvidsw", device->letter) != NULL && builder->current_of[k] == k;
+    for (int end = 0; end < 2; end++) { /* other parts of the element are behind an inner node */
+        const int node = device->node[end];
+        has_two = has_two && (node == 0 || !dalcs_builder_is_inner(builder->node_name[node]));
+    }
+    if (!has_two) {
+        report(c, found->begin, found->end - found->begin,
+               "write the voltages and currents of its terminals, such as v(a,b)*i(x)",
+               "'%s' has more to it than one voltage and one current", name.text);
+        return -1;
+    }
+    *current = dalcs_signal_compilation_find(c, true, &name, NULL);
+    return dalcs_signals_measure(builder,
+                                 (struct dalcs_signal){.name = device->name,
+                                                       .kind = DALCS_SIGNAL_VOLTAGE,
+                                                       .device = -1,
+                                                       .node = {device->node[0], device->node[1]}});
+}
+
 static void mask_signal(struct dalcs_signal_compilation *c, const struct found *found) {
     const char *text = c->text.text;
     const int begin = found->begin;
@@ -261,7 +252,8 @@ static void mask_signal(struct dalcs_signal_compilation *c, const struct found *
         report(c, found->open, 1, NULL, "this parenthesis is never closed");
         return;
     }
-    if (is_name_byte((char)previous_byte(text, begin)) || previous_byte(text, begin) == ')') {
+    if (dalcs_signal_is_name_byte((char)previous_byte(text, begin)) ||
+        previous_byte(text, begin) == ')') {
         report(c, begin, length, NULL, "an operator is missing before '%.*s'", length,
                text + begin);
         return;
@@ -274,13 +266,17 @@ static void mask_signal(struct dalcs_signal_compilation *c, const struct found *
         report(c, begin, length, NULL, "more than %d signals in one formula", MOST_SIGNALS);
         return;
     }
-    const int signal = find_signal(c, found->is_current, found->name, found->name_end);
+    int factor = -1;
+    const int signal = found->is_power
+                           ? find_power(c, found, &factor)
+                           : find_signal(c, found->is_current, found->name, found->name_end);
     if (signal < 0) {
         c->failed = true;
         return;
     }
     mask(c, begin, found->end);
     c->signal[c->n_signals] = signal;
+    c->factor[c->n_signals] = factor;
     c->part[c->n_signals++] = found->part;
 }
 
@@ -308,8 +304,10 @@ bool dalcs_signal_formula_compile(struct dalcs_builder *builder, const struct da
     c.masked = dalcs_arena_copy(scratch, c.text.text, length);
     c.signal = dalcs_arena_alloc(scratch, length / 4 + 1, sizeof *c.signal);
     c.part = dalcs_arena_alloc(scratch, length / 4 + 1, sizeof *c.part);
+    c.factor = dalcs_arena_alloc(scratch, length / 4 + 1, sizeof *c.factor);
     formula->text = dalcs_arena_copy(&builder->circuit->arena, c.text.text, length);
-    if (c.masked == NULL || c.signal == NULL || c.part == NULL || formula->text == NULL) {
+    if (c.masked == NULL || c.signal == NULL || c.part == NULL || c.factor == NULL ||
+        formula->text == NULL) {
         builder->out_of_memory = true;
         return false;
     }

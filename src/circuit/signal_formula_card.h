@@ -15,6 +15,7 @@ struct dalcs_signal_compilation {
     int n_signals; /* masked so far */
     int *signal;   /* [n_signals] of the builder's measured ones */
     enum dalcs_signal_part *part;
+    int *factor; /* [n_signals] of a power, its current, as in `signal`; else -1 */
     bool failed;
 
     struct dalcs_signal_formula_step *step; /* heap */

@@ -76,6 +76,11 @@ static void add_name(struct dalcs_signal_compilation *c, const struct dalcs_expr
         return;
     }
     add(c, step, 1);
+    if (signal >= 0 && c->factor[signal] >= 0) {
+        step.index = c->factor[signal];
+        add(c, step, 1);
+        add(c, (struct dalcs_signal_formula_step){.code = DALCS_MULTIPLY}, -1);
+    }
 }
 
 /* v(...) or i(...) in a function of the netlist; its names follow. */

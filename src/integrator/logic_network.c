@@ -1,4 +1,4 @@
-/* logic_network.c - what gates and flip-flops decide.
+/* logic_network.c - what gates, flip-flops and samples decide.
  *
  * In a round each one decides from what all showed before it, as in the delta cycles of hardware languages: flip-flops
  * of one clock take what stood before the edge. What a round makes is a function of the state alone, so that a network
@@ -19,7 +19,7 @@ static bool of_inputs(const struct dalcs_logic_network *l, const struct dalcs_lo
     bool all = true;
     bool any = false;
     bool odd = false;
-    for (int k = 0; k < DALCS_GATE_INPUTS; k++) {
+    for (int k = 0; k < g->n_inputs; k++) {
         if (g->input[k].from != DALCS_GATE_OPEN) {
             const bool bit = read(l, &g->input[k]);
             all = all && bit;
@@ -37,16 +37,54 @@ static bool of_latch(const struct dalcs_logic_network *l, const struct dalcs_log
     return !reset && (set || q);
 }
 
-static bool of_flip_flop(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g,
-                         const struct dalcs_logic_state *state) {
-    if (read(l, &g->input[DALCS_GATE_CLEAR])) {
-        return false;
+static bool rises(const struct dalcs_logic_network *l, bool clock,
+                  const struct dalcs_logic_state *before) {
+    return clock && !before->clock && !l->rests;
+}
+
+/* What q becomes where the clock rises. */
+static bool next(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g, bool q) {
+    const bool data = read(l, &g->input[DALCS_GATE_DATA]);
+    const bool reset = read(l, &g->input[DALCS_GATE_RESET]);
+    return g->kind == DALCS_GATE_TOGGLE ? q != data
+           : g->kind == DALCS_GATE_JK   ? (q ? !reset : data)
+           : g->kind == DALCS_GATE_SR   ? !reset && (data || q)
+                                        : data;
+}
+
+static void go_flip_flop(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g,
+                         struct dalcs_logic_state *state) {
+    const bool clock = read(l, &g->input[DALCS_GATE_CLOCK]);
+    const bool clears = read(l, &g->input[DALCS_GATE_CLEAR]);
+    state->is_forced = clears || read(l, &g->input[DALCS_GATE_PRESET]);
+    if (state->is_forced) {
+        state->q = !clears;
+    } else if (rises(l, clock, state)) {
+        state->q = next(l, g, state->q);
     }
-    if (read(l, &g->input[DALCS_GATE_PRESET])) {
-        return true;
+    state->clock = clock;
+}
+
+static void go_counter(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g,
+                       struct dalcs_logic_state *state) {
+    const bool clock = read(l, &g->input[0]);
+    if (read(l, &g->input[1])) {
+        state->count = 0;
+    } else if (rises(l, clock, state)) {
+        state->count = state->count % g->cycles + 1;
     }
-    const bool rises = read(l, &g->input[DALCS_GATE_CLOCK]) && !state->clock && !l->rests;
-    return rises ? read(l, &g->input[DALCS_GATE_DATA]) : state->q;
+    state->q = state->count > 0 && state->count <= g->n_high;
+    state->clock = clock;
+}
+
+/* q: its input is shown, not what is held. What is held is taken where the clock rises, and where that ends. */
+static void go_sample(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g,
+                      struct dalcs_logic_state *state) {
+    const bool clock = read(l, &g->input[DALCS_GATE_CLOCK]);
+    const bool tracks = read(l, &g->input[DALCS_GATE_PRESET]);
+    state->takes = state->takes || rises(l, clock, state) || (state->q && !tracks && !l->rests);
+    state->q = tracks;
+    state->clock = clock;
 }
 
 static struct dalcs_logic_state decide(const struct dalcs_logic_network *l, int k) {
@@ -54,30 +92,34 @@ static struct dalcs_logic_state decide(const struct dalcs_logic_network *l, int 
     struct dalcs_logic_state state = l->state[k];
     if (g->kind == DALCS_GATE_LATCH) {
         state.q = of_latch(l, g, state.q);
-    } else if (g->kind == DALCS_GATE_FLIP_FLOP) {
-        state.q = of_flip_flop(l, g, &state);
-        state.clock = read(l, &g->input[DALCS_GATE_CLOCK]);
+    } else if (g->kind == DALCS_GATE_COUNTER) {
+        go_counter(l, g, &state);
+    } else if (g->kind == DALCS_GATE_SAMPLE) {
+        go_sample(l, g, &state);
+    } else if (dalcs_gate_has_clock(g)) {
+        go_flip_flop(l, g, &state);
     } else {
         state.q = of_inputs(l, g);
     }
-    state.seen = g->delay > 0 ? state.seen : state.q;
+    state.seen = dalcs_gate_has_delay(g) ? state.seen : state.q;
     return state;
 }
 
 static bool is_same(const struct dalcs_logic_state *a, const struct dalcs_logic_state *b) {
-    return a->q == b->q && a->seen == b->seen && a->clock == b->clock;
+    return a->q == b->q && a->seen == b->seen && a->clock == b->clock && a->count == b->count &&
+           a->takes == b->takes;
 }
 
 /* One round; does anything change? */
 static bool change(struct dalcs_logic_network *l, void *user,
-                   void (*on_q)(void *user, int gate, bool q)) {
+                   void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
     bool any = false;
     for (int k = 0; k < l->n; k++) {
         l->next[k] = decide(l, k);
     }
     for (int k = 0; k < l->n; k++) {
         if (l->next[k].q != l->state[k].q) {
-            on_q(user, k, l->next[k].q);
+            on_q(user, k, &l->next[k]);
         }
         any = any || !is_same(&l->next[k], &l->state[k]);
     }
@@ -100,7 +142,7 @@ void dalcs_logic_rest(struct dalcs_logic_network *l) {
         }
     }
     for (int k = 0; k < l->n; k++) { /* what is still to come, for those with a delay */
-        l->state[k].q = l->gate[k].delay > 0 ? decide(l, k).q : l->state[k].q;
+        l->state[k].q = dalcs_gate_has_delay(&l->gate[k]) ? decide(l, k).q : l->state[k].q;
     }
     l->rests = false;
 }
@@ -113,10 +155,10 @@ static bool is_at_mark(const struct dalcs_logic_network *l) {
     return is;
 }
 
-static void ignore(void *user, int gate, bool q) {
+static void ignore(void *user, int gate, const struct dalcs_logic_state *next) {
     (void)user;
     (void)gate;
-    (void)q;
+    (void)next;
 }
 
 /* Once round. */
@@ -131,7 +173,7 @@ static void find_loop(struct dalcs_logic_network *l) {
 }
 
 bool dalcs_logic_settle(struct dalcs_logic_network *l, void *user,
-                        void (*on_q)(void *user, int gate, bool q)) {
+                        void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
     const size_t bytes = (size_t)l->n * sizeof(*l->state);
     memcpy(l->mark, l->state, bytes);
     for (long round = 1; change(l, user, on_q); round++) {

@@ -1,13 +1,16 @@
-/* logic_network.h - gates and flip-flops at one instant: from bits to bits, by rounds in which all decide at once. */
+/* logic_network.h - gates, flip-flops and samples at one instant: from bits to bits, by rounds in which all decide at once. */
 #ifndef DALCS_LOGIC_NETWORK_H
 #define DALCS_LOGIC_NETWORK_H
 
 #include "circuit.h"
 
 struct dalcs_logic_state {
-    bool q;     /* what the inputs make of it */
-    bool seen;  /* q a delay ago: what others read and the output shows */
-    bool clock; /* the level of a flip-flop's clock */
+    bool q;         /* what the inputs make of it */
+    bool seen;      /* q a delay ago: what others read and the output shows */
+    bool clock;     /* its level */
+    int count;      /* of clocks, from 1 to those of a cycle; 0: none yet */
+    bool is_forced; /* q, by preset or clear */
+    bool takes;     /* a sample takes what stood before this instant */
 };
 
 struct dalcs_logic_network {
@@ -25,8 +28,8 @@ struct dalcs_logic_network {
 void dalcs_logic_rest(struct dalcs_logic_network *network);
 
 /* Until nothing changes, without time passing: gates with a delay change q alone. False: it goes round for ever, for a
- * state comes back. on_q is told of each change of a q. */
+ * state comes back. on_q is told of each change of a q, and of the state that it is part of. */
 bool dalcs_logic_settle(struct dalcs_logic_network *network, void *user,
-                        void (*on_q)(void *user, int gate, bool q));
+                        void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next));
 
 #endif

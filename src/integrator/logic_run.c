@@ -1,5 +1,5 @@
 /* logic_run.c - the queue of logic, what its outputs show, and where that acts. */
-#include "logic_run.h"
+#include "logic_outputs.h"
 
 #include "radau.h"
 
@@ -10,20 +10,38 @@
 
 /* ---- Set up ------------------------------------------------------------------------------------------- */
 
-bool dalcs_logic_find_comparator(const struct dalcs_circuit *circuit,
-                                 const struct dalcs_radau *radau, int k,
-                                 struct dalcs_logic_place *place) {
-    const char *name = circuit->device[circuit->comparator[k]].name;
+/* All switches by their names. */
+static enum dalcs_status list_switches(const struct dalcs_radau *radau, struct dalcs_names *names,
+                                       struct dalcs_logic_place **place) {
+    size_t capacity = 0;
     for (int part = 0; part < radau->n_parts; part++) {
         const struct dalcs_system *s = radau->part[part].component->system;
         for (int d = 0; d < s->n_pairs; d++) {
-            if (s->pair[d].kind == DALCS_PAIR_SWITCH && strcmp(s->pair[d].element, name) == 0) {
-                *place = (struct dalcs_logic_place){part, d};
-                return true;
+            if (s->pair[d].kind == DALCS_PAIR_SWITCH) {
+                const size_t n = names->n;
+                DALCS_TRY(dalcs_grow(place, &capacity, n + 1, sizeof(**place)));
+                (*place)[n] = (struct dalcs_logic_place){part, d};
+                DALCS_TRY(dalcs_names_set(names, s->pair[d].element, (int)n));
             }
         }
     }
-    return false;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_logic_find_comparators(const struct dalcs_circuit *circuit,
+                                               const struct dalcs_radau *radau,
+                                               struct dalcs_logic_place *place) {
+    struct dalcs_names names = {0};
+    struct dalcs_logic_place *all = NULL;
+    enum dalcs_status status = list_switches(radau, &names, &all);
+    for (int k = 0; k < circuit->n_comparators && status == DALCS_OK; k++) {
+        const int at = dalcs_names_find(&names, circuit->device[circuit->comparator[k]].name);
+        status = at >= 0 ? DALCS_OK : DALCS_E_INTERNAL;
+        place[k] = at >= 0 ? all[at] : (struct dalcs_logic_place){0};
+    }
+    dalcs_names_finish(&names);
+    free(all);
+    return status;
 }
 
 static enum dalcs_status allocate(struct dalcs_logic_run *l) {
@@ -34,15 +52,17 @@ static enum dalcs_status allocate(struct dalcs_logic_run *l) {
     l->bit = dalcs_alloc(n_comparators + 1, sizeof(*l->bit));
     l->place = dalcs_alloc(n_comparators + 1, sizeof(*l->place));
     l->output = dalcs_alloc(n, sizeof(*l->output));
+    l->sample = dalcs_alloc(n, sizeof(*l->sample));
+    l->taken = dalcs_alloc(n, sizeof(*l->taken));
     l->changed = dalcs_alloc(n_stimuli, sizeof(*l->changed));
     l->as_built = dalcs_alloc(n_stimuli, sizeof(*l->as_built));
     w->state = dalcs_alloc(n, sizeof(*w->state));
     w->next = dalcs_alloc(n, sizeof(*w->next));
     w->mark = dalcs_alloc(n, sizeof(*w->mark));
     w->moves = dalcs_alloc(n, sizeof(*w->moves));
-    bool complete = l->bit != NULL && l->place != NULL && l->output != NULL && l->changed != NULL &&
-                    l->as_built != NULL && w->state != NULL && w->next != NULL && w->mark != NULL &&
-                    w->moves != NULL;
+    bool complete = l->bit != NULL && l->place != NULL && l->output != NULL && l->sample != NULL &&
+                    l->taken != NULL && l->changed != NULL && l->as_built != NULL &&
+                    w->state != NULL && w->next != NULL && w->mark != NULL && w->moves != NULL;
     if (complete) {
         memcpy(l->as_built, l->circuit->stimulus, n_stimuli * sizeof(*l->as_built));
     }
@@ -61,13 +81,14 @@ enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_
     l->network.gate = circuit->gate;
     enum dalcs_status status = allocate(l);
     l->network.bit = l->bit;
-    for (int k = 0; k < l->n_comparators && status == DALCS_OK; k++) {
-        status = dalcs_logic_find_comparator(circuit, radau, k, &l->place[k]) ? DALCS_OK
-                                                                              : DALCS_E_INTERNAL;
-    }
+    status = status == DALCS_OK ? dalcs_logic_find_comparators(circuit, radau, l->place) : status;
     for (int k = 0; k < l->network.n && status == DALCS_OK; k++) {
         struct dalcs_logic_state *state = &l->network.state[k];
         state->q = state->seen = circuit->gate[k].initial;
+        state->count = circuit->gate[k].first;
+        if (circuit->gate[k].kind == DALCS_GATE_SAMPLE) {
+            l->sample[l->n_samples++] = k;
+        }
     }
     if (status != DALCS_OK) {
         dalcs_logic_run_finish(l);
@@ -91,6 +112,8 @@ void dalcs_logic_run_finish(struct dalcs_logic_run *l) {
     free(l->bit);
     free(l->place);
     free(l->output);
+    free(l->sample);
+    free(l->taken);
     free(l->changed);
     free(l->as_built);
     free(l->network.state);
@@ -100,84 +123,18 @@ void dalcs_logic_run_finish(struct dalcs_logic_run *l) {
     *l = (struct dalcs_logic_run){0};
 }
 
-/* ---- What outputs show ---------------------------------------------------------------------------------- */
-
-/* A pin goes to a level from t on. What was to come, of a ramp not yet over, does not. */
-static enum dalcs_status write(struct dalcs_stimulus *s, double **time, double **value,
-                               size_t *capacity, double t, double level, double duration,
-                               double swing) {
-    int n = s->u.pwl.n;
-    const double now = dalcs_stimulus_value(s, t, DALCS_RIGHT);
-    DALCS_TRY(dalcs_grow(time, &capacity[0], (size_t)n + 2, sizeof(**time)));
-    DALCS_TRY(dalcs_grow(value, &capacity[1], (size_t)n + 2, sizeof(**value)));
-    const double near = 4.0 * DBL_EPSILON * t;
-    while (n > 1 && (*time)[n - 1] > t + near) {
-        n--;
-    }
-    const bool is_twice = n > 1 && (*time)[n - 1] >= t - near && (*time)[n - 2] >= t - near;
-    if (is_twice && duration == 0.0) {
-        (*value)[n - 1] = level; /* nothing in between has lasted */
-    } else {
-        if ((*time)[n - 1] < t - near || (*value)[n - 1] != now) {
-            (*time)[n] = t;
-            (*value)[n++] = now;
-        }
-        (*time)[n] = duration > 0.0 ? t + duration * fabs(level - now) / swing : t;
-        (*value)[n++] = level;
-    }
-    s->u.pwl.n = n;
-    s->u.pwl.t = *time;
-    s->u.pwl.v = *value;
-    return DALCS_OK;
-}
-
-/* A pin is at a level at the start. *changed: it was at another one before. */
-static enum dalcs_status start(struct dalcs_stimulus *s, double **time, double **value,
-                               size_t *capacity, double level, bool *changed) {
-    *changed = *changed || s->u.pwl.v[0] != level;
-    DALCS_TRY(dalcs_grow(time, &capacity[0], 1, sizeof(**time)));
-    DALCS_TRY(dalcs_grow(value, &capacity[1], 1, sizeof(**value)));
-    (*time)[0] = 0.0;
-    (*value)[0] = level;
-    s->u.pwl.n = 1;
-    s->u.pwl.t = *time;
-    s->u.pwl.v = *value;
-    return DALCS_OK;
-}
-
-static double level_of(const struct dalcs_logic_gate *g, int pin, bool q) {
-    return q == (pin == 0) ? g->high : g->low;
-}
-
-static enum dalcs_status show(struct dalcs_logic_run *l, int k, double t) {
-    const struct dalcs_logic_gate *g = &l->network.gate[k];
-    struct dalcs_logic_output *o = &l->output[k];
-    for (int pin = 0; pin < 2; pin++) {
-        if (g->output[pin] >= 0) {
-            const double level = level_of(g, pin, l->network.state[k].seen);
-            l->changed[g->output[pin]] = true;
-            DALCS_TRY(write(&l->circuit->stimulus[g->output[pin]],
-                            pin == 0 ? &o->time : &o->time_bar,
-                            pin == 0 ? &o->value : &o->value_bar, &o->capacity[2 * pin], t, level,
-                            level == g->high ? g->rise : g->fall, g->high - g->low));
-        }
-    }
-    o->shown = l->network.state[k].seen;
-    return DALCS_OK;
-}
-
 /* ---- The queue -------------------------------------------------------------------------------------------- */
 
-static void queue(void *user, int gate, bool q) {
-    (void)q;
+static void queue(void *user, int gate, const struct dalcs_logic_state *next) {
     struct dalcs_logic_run *l = user;
     struct dalcs_logic_output *o = &l->output[gate];
-    const double due = l->now + l->network.gate[gate].delay;
-    if (l->network.gate[gate].delay <= 0.0) {
+    const struct dalcs_logic_gate *g = &l->network.gate[gate];
+    const double due = l->now + (next->is_forced ? g->forced_delay : g->delay)[next->q];
+    if (!dalcs_gate_has_delay(g)) {
         return;
     }
-    if (o->n_due > 0 && o->due[o->first_due + o->n_due - 1] == due) {
-        o->n_due--; /* there and back in no time */
+    if (o->n_due > 0 && o->due[o->first_due + o->n_due - 1] >= due) {
+        o->n_due--; /* there and back in no time, or back before it is there */
         return;
     }
     if (o->first_due > 0 && o->first_due >= o->n_due) {
@@ -202,15 +159,19 @@ double dalcs_logic_run_next(const struct dalcs_logic_run *l) {
     return next;
 }
 
-static void release(struct dalcs_logic_run *l, double t) {
+/* Has anything come due? */
+static bool release(struct dalcs_logic_run *l, double t) {
+    bool any = false;
     for (int k = 0; k < l->network.n; k++) {
         struct dalcs_logic_output *o = &l->output[k];
         while (o->n_due > 0 && o->due[o->first_due] <= t + l->radau->resolution) {
             l->network.state[k].seen = !l->network.state[k].seen;
             o->first_due++;
             o->n_due--;
+            any = true;
         }
     }
+    return any;
 }
 
 /* ---- Events ------------------------------------------------------------------------------------------------ */
@@ -231,21 +192,12 @@ enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed)
     dalcs_logic_rest(&l->network);
     l->now = 0.0;
     for (int k = 0; k < l->network.n; k++) {
-        const struct dalcs_logic_gate *g = &l->network.gate[k];
-        struct dalcs_logic_output *o = &l->output[k];
-        o->n_due = 0;
+        l->output[k].n_due = 0;
         if (l->network.state[k].q != l->network.state[k].seen) {
-            queue(l, k, true);
+            queue(l, k, &l->network.state[k]);
         }
-        for (int pin = 0; pin < 2; pin++) {
-            if (g->output[pin] >= 0) {
-                DALCS_TRY(start(&l->circuit->stimulus[g->output[pin]],
-                                pin == 0 ? &o->time : &o->time_bar,
-                                pin == 0 ? &o->value : &o->value_bar, &o->capacity[2 * pin],
-                                level_of(g, pin, l->network.state[k].seen), changed));
-            }
-        }
-        o->shown = l->network.state[k].seen;
+        l->network.state[k].takes = false;
+        DALCS_TRY(dalcs_logic_output_start(l, k, changed));
     }
     for (int k = 0; k < l->radau->n_parts && *changed; k++) {
         dalcs_excitation_enter(&l->radau->part[k].excitation, 0.0);
@@ -258,9 +210,10 @@ static enum dalcs_status show_changes(struct dalcs_logic_run *l, double t, bool 
     *acts = false;
     memset(l->changed, 0, (size_t)l->circuit->n_stimuli * sizeof(bool));
     for (int k = 0; k < l->network.n; k++) {
-        l->network.moves[k] = l->network.state[k].seen != l->output[k].shown;
+        l->network.moves[k] =
+            l->network.state[k].seen != l->output[k].shown || l->network.state[k].takes;
         if (l->network.moves[k]) {
-            DALCS_TRY(show(l, k, t));
+            DALCS_TRY(dalcs_logic_output_show(l, k, t));
             *acts = true;
         }
     }
@@ -285,6 +238,16 @@ static enum dalcs_status disturb(struct dalcs_logic_run *l, double t) {
     return DALCS_OK;
 }
 
+/* Until nothing changes, what comes due at once included. */
+static bool settle(struct dalcs_logic_run *l, double t, long most) {
+    bool settles;
+    do {
+        (void)release(l, t);
+        settles = dalcs_logic_settle(&l->network, l, queue);
+    } while (settles && release(l, t) && most-- > 0);
+    return settles && most >= 0;
+}
+
 /* Each round moves an output. Without a loop through the circuit a change passes each comparator and each gate at most
  * once on its way, there and, as with the positions of switches, back. */
 enum dalcs_status dalcs_logic_run_at(struct dalcs_logic_run *l, double t) {
@@ -293,8 +256,7 @@ enum dalcs_status dalcs_logic_run_at(struct dalcs_logic_run *l, double t) {
     l->now = t;
     for (long round = 0; acts; round++) {
         read_bits(l);
-        release(l, t);
-        if (!dalcs_logic_settle(&l->network, l, queue)) {
+        if (!settle(l, t, most)) {
             return DALCS_NOT_CONVERGED;
         }
         DALCS_TRY(show_changes(l, t, &acts));

@@ -32,16 +32,20 @@ struct dalcs_logic_run {
     void *cut_user;
     void (*on_cut)(void *user, int part,
                    double t); /* a segment of a part ends at t, before its time; or NULL */
-    bool *changed;            /* [n_stimuli] in the present round */
-    double now;               /* s, of the changes of q that the queue is told of */
+    int n_samples;
+    int *sample; /* [n_samples] gates */
+    double *
+        taken; /* [n gates] V: what samples may take at t, as it was before anything happened there */
+    bool *changed; /* [n_stimuli] in the present round */
+    double now;    /* s, of the changes of q that the queue is told of */
     bool out_of_memory;
     struct dalcs_stimulus *as_built; /* [n_stimuli] what the circuit had */
 };
 
-/* Where the engine keeps comparator k; false: nowhere. */
-bool dalcs_logic_find_comparator(const struct dalcs_circuit *circuit,
-                                 const struct dalcs_radau *radau, int k,
-                                 struct dalcs_logic_place *place);
+/* Where the engine keeps comparators, place[circuit->n_comparators]. */
+enum dalcs_status dalcs_logic_find_comparators(const struct dalcs_circuit *circuit,
+                                               const struct dalcs_radau *radau,
+                                               struct dalcs_logic_place *place) DALCS_MUST_CHECK;
 
 /* Does nothing where the circuit has no logic. */
 enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_circuit *circuit,

@@ -128,7 +128,8 @@ static bool has_parameters(const struct dalcs_scope *scope) {
 static bool is_flat(struct dalcs_scope *scope, const struct dalcs_card *card) {
     int first;
     int n;
-    if (scope->caller != NULL || has_parameters(scope) || dalcs_formula_find(card, &first, &n)) {
+    if (scope->caller != NULL || has_parameters(scope) || dalcs_formula_find(card, &first, &n) ||
+        dalcs_transfer_find(card, &first, &n)) {
         return false;
     }
     for (int k = 1; k < card->n; k++) {
@@ -139,9 +140,27 @@ static bool is_flat(struct dalcs_scope *scope, const struct dalcs_card *card) {
     return true;
 }
 
+/* [~a and a], as XSPICE writes lists of nodes. */
+static const char *port_name(struct dalcs_language *language, const struct dalcs_scope *scope,
+                             const char *text) {
+    const size_t before = strspn(text, "[~");
+    size_t end = strlen(text);
+    while (end > before && text[end - 1] == ']') {
+        end--;
+    }
+    const char *name = dalcs_language_text(language, "%.*s", (int)(end - before), text + before);
+    const char *flat = end == before || name == NULL || strcmp(name, "null") == 0
+                           ? name
+                           : node_name(language, scope, name);
+    return flat == NULL
+               ? NULL
+               : dalcs_language_text(language, "%.*s%s%s", (int)before, text, flat, text + end);
+}
+
 static void rename_token(struct dalcs_language *language, struct dalcs_scope *scope,
                          enum dalcs_role role, struct dalcs_token *token) {
     const char *name = role == DALCS_ROLE_NODE     ? node_name(language, scope, token->text)
+                       : role == DALCS_ROLE_PORT   ? port_name(language, scope, token->text)
                        : role == DALCS_ROLE_DEVICE ? flat_name(language, scope, token->text)
                                                    : model_name(language, scope, token->text);
     token->text = name != NULL ? name : token->text;
@@ -152,7 +171,11 @@ static int put_formula(struct dalcs_language *language, struct dalcs_scope *scop
                        const struct dalcs_card *card, struct dalcs_token *token, int first, int n) {
     struct dalcs_token *place = &token[first];
     const struct dalcs_token *last = &token[first + n - 1];
-    place->formula = dalcs_formula_make(language, scope, &card->token[first], n);
+    int transfer;
+    int n_transfer;
+    const bool is_transfer = dalcs_transfer_find(card, &transfer, &n_transfer) && transfer == first;
+    place->formula = (is_transfer ? dalcs_formula_make_transfer
+                                  : dalcs_formula_make)(language, scope, &card->token[first], n);
     place->kind = place->formula != NULL ? DALCS_TOKEN_FORMULA : DALCS_TOKEN_BAD;
     if (last->line == place->line) {
         place->length = last->offset + last->length - place->offset;
@@ -214,9 +237,15 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
     if (!dalcs_formula_find(card, &formula, &n_formula)) {
         formula = card->n;
     }
+    int transfer = card->n;
+    int n_transfer = 0;
+    if (!dalcs_transfer_find(card, &transfer, &n_transfer)) {
+        transfer = card->n;
+    }
     for (int k = 0; k < card->n; k++) {
         token[k].line = line_of(language, scope, token[k].line);
-        if (k >= formula && k < formula + n_formula) {
+        if ((k >= formula && k < formula + n_formula) ||
+            (k >= transfer && k < transfer + n_transfer)) {
             continue;
         }
         if (k == 0) {
@@ -238,8 +267,12 @@ static enum dalcs_status copy_card(struct dalcs_language *language, struct dalcs
             evaluate_token(language, scope, item, k, &token[k]);
         }
     }
+    struct dalcs_card left = *card; /* what is behind a formula moves */
+    if (transfer < left.n) {
+        left.n = put_formula(language, scope, &left, token, transfer, n_transfer);
+    }
     const int n =
-        formula < card->n ? put_formula(language, scope, card, token, formula, n_formula) : card->n;
+        formula < left.n ? put_formula(language, scope, &left, token, formula, n_formula) : left.n;
     const struct dalcs_card copy = {token, n, card->letter, 0};
     return language->out_of_memory ? DALCS_E_NOMEM : emit(language, &copy);
 }

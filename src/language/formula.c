@@ -20,6 +20,7 @@ struct work {
     size_t n, capacity;
     int n_parts;
     int depth;
+    bool is_transfer; /* s is a variable */
     bool failed;
 };
 
@@ -202,7 +203,13 @@ static void apply(struct work *w, const struct frame *f, const struct dalcs_oper
 /* ---- Names and signals ----------------------------------------------------------------------- */
 
 static void push_name(struct work *w, const struct frame *f, const struct dalcs_operation *o) {
-    if (strcmp(o->u.name, "time") == 0 && dalcs_scope_find_value(w->scope, "time") == NULL) {
+    if (w->is_transfer) {
+        if (strcmp(o->u.name, "s") == 0) {
+            push(w, make(w, f, o, DALCS_FORMULA_TIME));
+        } else {
+            fold(w, f, o, 0);
+        }
+    } else if (strcmp(o->u.name, "time") == 0 && dalcs_scope_find_value(w->scope, "time") == NULL) {
         push(w, make(w, f, o, DALCS_FORMULA_TIME));
     } else {
         fold(w, f, o, 0);
@@ -395,9 +402,10 @@ static void run(struct work *w, const struct frame *f, int begin, int end) {
 
 /* ---- Of a card --------------------------------------------------------------------------------- */
 
-const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
-                                               struct dalcs_scope *scope,
-                                               const struct dalcs_token *token, int n) {
+static const struct dalcs_formula *make_formula(struct dalcs_language *language,
+                                                struct dalcs_scope *scope,
+                                                const struct dalcs_token *token, int n,
+                                                bool is_transfer) {
     const struct dalcs_expression_context context = {.arena = language->arena,
                                                      .diag = language->diag,
                                                      .instance = scope->origin,
@@ -414,13 +422,28 @@ const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
         language->out_of_memory = true;
         return NULL;
     }
-    struct work w = {.language = language, .scope = scope, .failed = expression->is_wrong};
+    struct work w = {.language = language,
+                     .scope = scope,
+                     .is_transfer = is_transfer,
+                     .failed = expression->is_wrong};
     const struct frame f = {expression, 0};
     run(&w, &f, 0, expression->n);
     const struct dalcs_formula *formula = w.failed ? NULL : w.stack[0];
     free(w.stack);
     language->deck->has_errors = language->deck->has_errors || formula == NULL;
     return formula;
+}
+
+const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
+                                               struct dalcs_scope *scope,
+                                               const struct dalcs_token *token, int n) {
+    return make_formula(language, scope, token, n, false);
+}
+
+const struct dalcs_formula *dalcs_formula_make_transfer(struct dalcs_language *language,
+                                                        struct dalcs_scope *scope,
+                                                        const struct dalcs_token *token, int n) {
+    return make_formula(language, scope, token, n, true);
 }
 
 static bool is_word(const struct dalcs_token *token, const char *const *list, size_t n) {
@@ -449,7 +472,7 @@ static int start_of_source(const struct dalcs_card *card) {
 
 /* E p n VALUE={formula}, E p n TABLE {formula} = points: the same. */
 static int start_of_controlled(const struct dalcs_card *card, bool *is_table) {
-    static const char *const forms[] = {"value", "vol", "cur", "table"};
+    static const char *const forms[] = {"value", "vol", "cur", "table", "laplace"};
     int k = 1;
     for (int n_nodes = 0; n_nodes < 2 && k < card->n; k++) {
         n_nodes += card->token[k].kind == DALCS_TOKEN_WORD;
@@ -458,7 +481,8 @@ static int start_of_controlled(const struct dalcs_card *card, bool *is_table) {
     if (k >= card->n || !is_word(&card->token[k], forms, sizeof forms / sizeof forms[0])) {
         return card->n;
     }
-    *is_table = k < card->n && strcmp(card->token[k].text, "table") == 0;
+    const bool is_transfer = strcmp(card->token[k].text, "laplace") == 0;
+    *is_table = is_transfer || strcmp(card->token[k].text, "table") == 0;
     k++;
     return is_kind(card, k, DALCS_TOKEN_EQUAL) ? k + 1 : k;
 }
@@ -471,6 +495,31 @@ int dalcs_formula_find_control(const struct dalcs_card *card) {
         k++;
     }
     return k;
+}
+
+/* LAPLACE {formula} = {expression}, LAPLACE=expression. */
+bool dalcs_transfer_find(const struct dalcs_card *card, int *first, int *n) {
+    static const char *const word[] = {"laplace"};
+    bool is_table;
+    int k = 3;
+    while (k < card->n && !is_word(&card->token[k], word, 1)) {
+        k++;
+    }
+    if ((card->letter != 'e' && card->letter != 'g') || k >= card->n) {
+        return false;
+    }
+    const int formula = start_of_controlled(card, &is_table);
+    k = formula < card->n ? formula + 1 : k + 1;
+    k += is_kind(card, k, DALCS_TOKEN_EQUAL);
+    *first = k;
+    while (k < card->n && !(k > *first && dalcs_assignment_starts(card, k))) {
+        if (card->token[k].kind == DALCS_TOKEN_BAD) {
+            return false;
+        }
+        k++;
+    }
+    *n = k - *first;
+    return *n > 0;
 }
 
 bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n) {

@@ -242,10 +242,16 @@ enum dalcs_outcome dalcs_evaluate(struct dalcs_language *language, struct dalcs_
 /* Where the card has a formula: token[*first..*first+*n-1]; false when nowhere. */
 bool dalcs_formula_find(const struct dalcs_card *card, int *first, int *n);
 
-/* The formula of token[0..n-1]; NULL when an error was reported or out of memory. */
+/* The same of LAPLACE: what is an expression of s. */
+bool dalcs_transfer_find(const struct dalcs_card *card, int *first, int *n);
+
+/* The formula of token[0..n-1]; of a transfer s is a variable, which the formula calls time; NULL when an error was reported or out of memory. */
 const struct dalcs_formula *dalcs_formula_make(struct dalcs_language *language,
                                                struct dalcs_scope *scope,
                                                const struct dalcs_token *token, int n);
+const struct dalcs_formula *dalcs_formula_make_transfer(struct dalcs_language *language,
+                                                        struct dalcs_scope *scope,
+                                                        const struct dalcs_token *token, int n);
 
 /* ---- expand.c ---------------------------------------------------------------------------------- */
 
@@ -259,6 +265,7 @@ const char *dalcs_scope_flat_name(struct dalcs_language *language, const struct 
 enum dalcs_role {
     DALCS_ROLE_VALUE,
     DALCS_ROLE_NODE,
+    DALCS_ROLE_PORT, /* a node of XSPICE, perhaps with a bracket or a ~ */
     DALCS_ROLE_DEVICE,
     DALCS_ROLE_MODEL,
     DALCS_ROLE_RAW,

@@ -85,8 +85,9 @@ static void poly_roles(const struct dalcs_card *card, int poly, unsigned char *r
 
 bool dalcs_card_is_logic(const struct dalcs_card *card) {
     static const char *const words[] = {
-        "and",      "or",    "xor",         "inv",          "buf",          "schmitt", "schmtbuf",
-        "schmtinv", "dflop", "diffschmitt", "diffschmtbuf", "diffschmtinv", "srflop"};
+        "and",        "or",    "xor",         "inv",          "buf",          "schmitt", "schmtbuf",
+        "schmtinv",   "dflop", "diffschmitt", "diffschmtbuf", "diffschmtinv", "srflop",  "counter",
+        "samplehold", "ota",   "varistor",    "modulator",    "modulate",     "phasedet"};
     bool is = false;
     for (size_t k = 0; k < sizeof words / sizeof words[0] && card->n > DALCS_LOGIC_MODEL; k++) {
         is = is || is_word(&card->token[DALCS_LOGIC_MODEL], words[k]);
@@ -104,7 +105,9 @@ static void block_roles(const struct dalcs_card *card, unsigned char *role) {
     int last = 0;
     for (int k = 1; k < card->n; k++) {
         if (card->token[k].kind == DALCS_TOKEN_WORD && card->token[k].text[0] != '%') {
-            role[k] = DALCS_ROLE_NODE;
+            const char *text = card->token[k].text;
+            const bool is_list = strchr("[~", text[0]) != NULL || text[strlen(text) - 1] == ']';
+            role[k] = is_list || strcmp(text, "null") == 0 ? DALCS_ROLE_PORT : DALCS_ROLE_NODE;
             last = k;
         }
     }

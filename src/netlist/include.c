@@ -3,7 +3,8 @@
  *     .include "file"       all of the file (also .inc, .incl, .lib file)
  *     .lib "file" section   what stands there between .lib section and .endl
  *
- * A name is relative to the file that includes. `.lib name` with one word begins a section when an
+ * A name is relative to the file that includes; one without a folder that is not there may be a library's that is
+ * installed. `.lib name` with one word begins a section when an
  * .endl follows before the next .lib; a section that nobody asks for is skipped. */
 #include "lexer.h"
 #include "lower_case.h"
@@ -34,6 +35,18 @@ static const char *file_name(struct dalcs_lexer *lexer, const struct dalcs_token
     const int quotes = token->kind == DALCS_TOKEN_WORD ? 0 : 1;
     return dalcs_arena_copy(&lexer->netlist->arena, text + quotes,
                             (size_t)(token->length - 2 * quotes));
+}
+
+/* A file of that name among the libraries that are installed with dalcs, or in the folder DALCS_LIBRARIES of the
+ * environment; else, or where the netlist has such a file itself, `path`. */
+static const char *installed(struct dalcs_lexer *lexer, const char *name, const char *path) {
+    const char *folder = getenv("DALCS_LIBRARIES");
+    if (path == NULL || strchr(name, '/') != NULL || access(path, R_OK) == 0) {
+        return path;
+    }
+    const char *found = dalcs_arena_printf(&lexer->netlist->arena, "%s/%s",
+                                           folder != NULL ? folder : DALCS_LIBRARIES, name);
+    return found == NULL || access(found, R_OK) == 0 ? found : path;
 }
 
 /* `name` in the folder of the file that includes it. */
@@ -121,7 +134,7 @@ static enum dalcs_status include(struct dalcs_lexer *lexer, const struct dalcs_t
         return DALCS_OK;
     }
     const char *name = file_name(lexer, token);
-    const char *path = name != NULL ? path_of(lexer, name) : NULL;
+    const char *path = name != NULL ? installed(lexer, name, path_of(lexer, name)) : NULL;
     struct dalcs_source *source;
     if (path == NULL) {
         return DALCS_E_NOMEM;

@@ -6,45 +6,63 @@
  * that change with their clock, a pulse of no width that sets a latch) is taken as it is shown. */
 #include "audit_gates.h"
 
+#include "radau.h"
+
+#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 struct audit_gate {
-    bool q;           /* decided */
-    bool clock, data; /* when it was looked at last */
-    bool is_lost;     /* behind a delay something depended on an order within an instant */
-    bool shown;       /* what it has to show by now */
-    int device;       /* the source that shows q, or its complement; -1: neither is wired */
-    double *due;      /* [n_due] s: what it has to show changes */
+    bool q;                  /* decided */
+    bool clock, data, reset; /* when it was looked at last */
+    bool is_lost;            /* behind a delay something depended on an order within an instant */
+    bool shown;              /* what it has to show by now */
+    int count;               /* of clocks; -1: it is not known */
+    double held;             /* V, by a sample */
+    bool was_seen;
+    double free_at; /* s: what was decided when it was lost is shown from then on */
+    double before;  /* V, what it may take at this instant */
+    double *due;    /* [n_due] s: what it has to show changes */
     size_t first_due, n_due, capacity;
 };
 
-static int device_named(const struct dalcs_circuit *c, const char *name) {
+static enum dalcs_status find_systems(struct dalcs_audit_gates *a) {
+    const struct dalcs_circuit *c = a->circuit;
+    a->node_system = dalcs_alloc((size_t)c->n_nodes, sizeof(*a->node_system));
+    if (a->node_system == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < c->n_nodes; k++) {
+        a->node_system[k] = -1;
+    }
     for (int d = 0; d < c->n_devices; d++) {
-        if (strcmp(c->device[d].name, name) == 0) {
-            return d;
+        for (int k = 0; k < 2 && a->readout->device_system[d] >= 0; k++) {
+            a->node_system[c->device[d].node[k]] = a->readout->device_system[d];
         }
     }
-    return -1;
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_audit_gates_start(struct dalcs_audit_gates *a,
                                           const struct dalcs_circuit *circuit,
-                                          const struct dalcs_radau *radau) {
-    *a = (struct dalcs_audit_gates){.circuit = circuit, .radau = radau};
+                                          struct dalcs_radau *radau,
+                                          const struct dalcs_readout *readout) {
+    bool has_samples = false;
+    *a = (struct dalcs_audit_gates){.circuit = circuit, .radau = radau, .readout = readout};
     if (circuit->n_gates == 0) {
         return DALCS_OK;
     }
     a->gate = dalcs_alloc((size_t)circuit->n_gates, sizeof(*a->gate));
     a->place = dalcs_alloc((size_t)circuit->n_comparators + 1, sizeof(*a->place));
     enum dalcs_status status = a->gate != NULL && a->place != NULL ? DALCS_OK : DALCS_E_NOMEM;
-    for (int k = 0; status == DALCS_OK && k < circuit->n_comparators; k++) {
-        status = dalcs_logic_find_comparator(circuit, radau, k, &a->place[k]) ? DALCS_OK
-                                                                              : DALCS_E_INTERNAL;
-    }
+    status = status == DALCS_OK ? dalcs_logic_find_comparators(circuit, radau, a->place) : status;
     for (int k = 0; status == DALCS_OK && k < circuit->n_gates; k++) {
-        a->gate[k].device = device_named(circuit, circuit->gate[k].name);
         a->gate[k].is_lost = true; /* until it is looked at for the first time */
+        a->gate[k].count = circuit->gate[k].first;
+        a->gate[k].held = circuit->gate[k].held;
+        has_samples = has_samples || circuit->gate[k].kind == DALCS_GATE_SAMPLE;
+    }
+    if (has_samples && status == DALCS_OK) {
+        status = find_systems(a);
     }
     if (status != DALCS_OK) {
         dalcs_audit_gates_finish(a);
@@ -58,6 +76,7 @@ void dalcs_audit_gates_finish(struct dalcs_audit_gates *a) {
     }
     free(a->gate);
     free(a->place);
+    free(a->node_system);
     *a = (struct dalcs_audit_gates){0};
 }
 
@@ -90,7 +109,7 @@ static bool reads(const struct dalcs_audit_gates *a, const struct dalcs_logic_in
 
 /* What the inputs say; held: they leave it as it was, as far as can be told. */
 struct verdict {
-    bool q, is_held, is_known;
+    bool q, is_held, is_known, is_forced;
 };
 
 static struct verdict of_inputs(const struct dalcs_audit_gates *a,
@@ -98,7 +117,7 @@ static struct verdict of_inputs(const struct dalcs_audit_gates *a,
     struct verdict v = {.is_known = true};
     int n = 0;
     int n_high = 0;
-    for (int i = 0; i < DALCS_GATE_INPUTS; i++) {
+    for (int i = 0; i < g->n_inputs; i++) {
         if (g->input[i].from != DALCS_GATE_OPEN) {
             n++;
             n_high += reads(a, &g->input[i], &v.is_known) ? 1 : 0;
@@ -110,6 +129,23 @@ static struct verdict of_inputs(const struct dalcs_audit_gates *a,
     return v;
 }
 
+/* After a clock, from a table: data and reset, 0 0, 1 0, 0 1, 1 1. */
+static bool after_clock(enum dalcs_logic_kind kind, bool q, bool data, bool reset) {
+    const bool jk[] = {q, true, false, !q};
+    const bool sr[] = {q, true, false, false};
+    const int at = (data ? 1 : 0) + (reset ? 2 : 0);
+    switch (kind) {
+    case DALCS_GATE_TOGGLE:
+        return data ? !q : q;
+    case DALCS_GATE_JK:
+        return jk[at];
+    case DALCS_GATE_SR:
+        return sr[at];
+    default:
+        return data;
+    }
+}
+
 static struct verdict of_memory(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g,
                                 struct audit_gate *s) {
     const bool is_latch = g->kind == DALCS_GATE_LATCH;
@@ -118,24 +154,55 @@ static struct verdict of_memory(const struct dalcs_audit_gates *a, const struct 
     const bool sets = reads(a, &g->input[is_latch ? 0 : DALCS_GATE_PRESET], &v.is_known);
     const bool clock = !is_latch && reads(a, &g->input[DALCS_GATE_CLOCK], &v.is_known);
     const bool data = !is_latch && reads(a, &g->input[DALCS_GATE_DATA], &v.is_known);
-    const bool rises = clock && !s->clock;
-    v.q = !clears && (sets || data);
+    const bool has_reset = g->kind == DALCS_GATE_JK || g->kind == DALCS_GATE_SR;
+    const bool reset = has_reset && reads(a, &g->input[DALCS_GATE_RESET], &v.is_known);
+    const bool rises = clock && !s->clock && s->was_seen;
+    const bool next = !is_latch && after_clock(g->kind, s->q, data, reset);
+    v.q = !clears && (sets || next);
     v.is_held = !clears && !sets && !rises;
-    if (rises && !sets && !clears && data != s->data) {
-        v.is_known = false; /* did the data change before the clock? */
+    v.is_forced = clears || sets;
+    if (rises && !sets && !clears && (data != s->data || reset != s->reset)) {
+        v.is_known = false; /* did they change before the clock? */
+    }
+    if (clock && !s->was_seen) {
+        v.is_known = false; /* has it risen at the start, or was it high before? */
     }
     s->clock = clock;
     s->data = data;
+    s->reset = reset;
     return v;
 }
 
-/* May a pulse of no width have set it? */
-static bool reads_gates(const struct dalcs_logic_gate *g) {
-    bool does = false;
-    for (int i = 0; i < DALCS_GATE_INPUTS; i++) {
-        does = does || g->input[i].from == DALCS_GATE_GATE;
+/* Where it lost count, q that rises with the clock is the first of a cycle. */
+static struct verdict of_counter(const struct dalcs_audit_gates *a,
+                                 const struct dalcs_logic_gate *g, struct audit_gate *s, bool now) {
+    struct verdict v = {.is_known = true};
+    const bool clock = reads(a, &g->input[0], &v.is_known);
+    const bool rises = clock && !s->clock && s->was_seen;
+    if (reads(a, &g->input[1], &v.is_known)) {
+        s->count = 0;
+    } else if (rises && s->count >= 0) {
+        s->count = s->count % g->cycles + 1;
+    } else if (rises && g->delay[1] == 0.0 && now && !s->q && !s->is_lost) {
+        s->count = 1;
     }
-    return does;
+    if (clock && !s->was_seen) {
+        s->count = -1; /* has it risen at the start, or was it high before? */
+    }
+    v.is_known = v.is_known && s->count >= 0;
+    v.q = s->count > 0 && s->count <= g->n_high;
+    s->clock = clock;
+    return v;
+}
+
+/* May a pulse of no width have set it? What has a delay shows none. */
+static bool may_have_missed(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g) {
+    bool may = false;
+    for (int i = 0; i < g->n_inputs; i++) {
+        may = may || (g->input[i].from == DALCS_GATE_GATE &&
+                      !dalcs_gate_has_delay(&a->circuit->gate[g->input[i].index]));
+    }
+    return may;
 }
 
 static enum dalcs_status expect(struct audit_gate *s, bool q, double due) {
@@ -143,6 +210,10 @@ static enum dalcs_status expect(struct audit_gate *s, bool q, double due) {
         return DALCS_OK;
     }
     s->q = q;
+    if (s->n_due > s->first_due && s->due[s->n_due - 1] >= due) {
+        s->n_due--; /* back before it is there */
+        return DALCS_OK;
+    }
     DALCS_TRY(dalcs_grow(&s->due, &s->capacity, s->n_due + 1, sizeof(*s->due)));
     s->due[s->n_due++] = due;
     return DALCS_OK;
@@ -161,38 +232,113 @@ static void go_to(struct audit_gate *s, double t, double near, bool *is_near) {
     }
 }
 
+static struct verdict decide(const struct dalcs_audit_gates *a, int k, bool now) {
+    const struct dalcs_logic_gate *g = &a->circuit->gate[k];
+    struct audit_gate *s = &a->gate[k];
+    return g->kind == DALCS_GATE_COUNTER                            ? of_counter(a, g, s, now)
+           : g->kind == DALCS_GATE_LATCH || dalcs_gate_has_clock(g) ? of_memory(a, g, s)
+                                                                    : of_inputs(a, g);
+}
+
+static double longest_delay(const struct dalcs_logic_gate *g) {
+    return fmax(fmax(g->delay[0], g->delay[1]), fmax(g->forced_delay[0], g->forced_delay[1]));
+}
+
 /* Gate k at t; is_wrong: it does not show what it has to. */
 static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, bool *is_wrong) {
     const struct dalcs_logic_gate *g = &a->circuit->gate[k];
     struct audit_gate *s = &a->gate[k];
-    const bool has_memory = g->kind == DALCS_GATE_LATCH || g->kind == DALCS_GATE_FLIP_FLOP;
+    const bool has_memory = g->kind == DALCS_GATE_LATCH || dalcs_gate_has_clock(g);
     const bool now = shows(a, k);
-    struct verdict v = has_memory ? of_memory(a, g, s) : of_inputs(a, g);
-    const bool is_open = !v.is_known || (v.is_held && reads_gates(g));
+    if (has_memory && s->is_lost && t >= s->free_at) {
+        s->is_lost = false;
+        s->q = s->shown = now;
+        s->first_due = s->n_due = 0;
+    }
+    const struct verdict v = decide(a, k, now);
+    s->was_seen = true;
+    const bool is_open = !v.is_known || (v.is_held && may_have_missed(a, g));
     *is_wrong = false;
     if (s->is_lost && !has_memory && v.is_known) { /* what it showed stands until it decides else */
         s->is_lost = false;
         s->q = s->shown = now;
         s->first_due = s->n_due = 0;
-    } else if (s->is_lost && has_memory && g->delay == 0.0) {
-        s->is_lost = false;
-        s->q = s->shown = now;
+    }
+    if (is_open || !v.is_held) {
+        s->free_at = t + longest_delay(g) + 4.0 * a->radau->resolution;
     }
     if (s->is_lost) {
         return DALCS_OK;
     }
-    if (g->delay == 0.0) {
+    if (!dalcs_gate_has_delay(g)) {
         const bool q = is_open ? now : v.is_held ? s->q : v.q;
         s->q = s->shown = q;
         *is_wrong = q != now;
         return DALCS_OK;
     }
     s->is_lost = is_open;
+    const bool q = v.is_held ? s->q : v.q;
     bool is_near;
-    DALCS_TRY(expect(s, v.is_held ? s->q : v.q, t + g->delay));
+    DALCS_TRY(expect(s, q, t + (v.is_forced ? g->forced_delay : g->delay)[q]));
     go_to(s, t, 4.0 * a->radau->resolution, &is_near);
     *is_wrong = !is_open && !is_near && s->shown != now;
     return DALCS_OK;
+}
+
+static double potential(const struct dalcs_audit_gates *a, int node) {
+    const int column = a->readout->node_column[node];
+    const int system = column >= 0 ? a->node_system[node] : -1;
+    return system >= 0 ? a->radau->part[system].component->y[column] : 0.0;
+}
+
+enum dalcs_status dalcs_audit_gates_sample(struct dalcs_audit_gates *a, double t) {
+    const struct dalcs_circuit *c = a->circuit;
+    if (a->node_system == NULL) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_radau_evaluate(a->radau, t, DALCS_LEFT));
+    for (int k = 0; k < c->n_gates; k++) {
+        if (c->gate[k].kind == DALCS_GATE_SAMPLE) {
+            const struct dalcs_signal *s = &c->signal[c->measured[c->gate[k].sampled]];
+            a->gate[k].before = potential(a, s->node[0]) - potential(a, s->node[1]);
+        }
+    }
+    return DALCS_OK;
+}
+
+/* V, the errors that waveforms of these nodes may have. */
+static double doubt_of(const struct dalcs_audit_gates *a, const struct dalcs_signal *s) {
+    double doubt = 0.0;
+    for (int k = 0; k < 2; k++) {
+        const int system = a->node_system[s->node[k]];
+        const struct dalcs_radau_part *part = system >= 0 ? &a->radau->part[system] : NULL;
+        doubt += part != NULL ? part->tolerance * part->scales.unit[0] : 0.0;
+    }
+    return doubt;
+}
+
+/* A sample at t; does it hold and show what it has to? */
+static bool is_sample_wrong(struct dalcs_audit_gates *a, int k) {
+    const struct dalcs_circuit *c = a->circuit;
+    const struct dalcs_logic_gate *g = &c->gate[k];
+    struct audit_gate *s = &a->gate[k];
+    const struct dalcs_stimulus *held = &c->stimulus[g->output[0]];
+    const struct dalcs_stimulus *mode = g->output[1] >= 0 ? &c->stimulus[g->output[1]] : NULL;
+    const double value = held->u.pwl.v[held->u.pwl.n - 1];
+    bool is_known = true;
+    const bool clock = reads(a, &g->input[DALCS_GATE_CLOCK], &is_known);
+    const bool tracks = reads(a, &g->input[DALCS_GATE_PRESET], &is_known);
+    if (!s->is_lost && ((clock && !s->clock) || (s->q && !tracks))) {
+        s->held = s->before;
+    } else if (!is_known || may_have_missed(a, g)) {
+        s->held = value; /* a pulse of no width may have been there */
+    }
+    s->is_lost = false;
+    s->clock = clock;
+    s->q = tracks;
+    const double doubt = doubt_of(a, &c->signal[c->measured[g->sampled]]);
+    return fabs(value - s->held) > doubt ||
+           (mode != NULL && is_known && (mode->u.pwl.v[mode->u.pwl.n - 1] != 0.0) != tracks);
 }
 
 enum dalcs_status dalcs_audit_gates_look(struct dalcs_audit_gates *a, struct dalcs_audit *audit,
@@ -200,9 +346,13 @@ enum dalcs_status dalcs_audit_gates_look(struct dalcs_audit_gates *a, struct dal
     for (int k = 0; a->gate != NULL && k < a->circuit->n_gates; k++) {
         if (shown_by(&a->circuit->gate[k]) >= 0) {
             bool is_wrong;
-            DALCS_TRY(look_at(a, k, t, &is_wrong));
-            if (is_wrong && a->gate[k].device >= 0) {
-                dalcs_audit_add_position(audit, a->gate[k].device, 1.0, t);
+            if (a->circuit->gate[k].kind == DALCS_GATE_SAMPLE) {
+                is_wrong = is_sample_wrong(a, k);
+            } else {
+                DALCS_TRY(look_at(a, k, t, &is_wrong));
+            }
+            if (is_wrong && a->circuit->gate[k].device >= 0) {
+                dalcs_audit_add_position(audit, a->circuit->gate[k].device, 1.0, t);
             }
         }
     }

@@ -1,4 +1,4 @@
-/* audit_gates.h - gates and flip-flops, decided a second time: from what comparators say and what outputs show. */
+/* audit_gates.h - gates, flip-flops and samples, decided a second time: from what comparators say and what outputs show. */
 #ifndef DALCS_AUDIT_GATES_H
 #define DALCS_AUDIT_GATES_H
 
@@ -7,16 +7,22 @@
 
 struct dalcs_audit_gates {
     const struct dalcs_circuit *circuit;
-    const struct dalcs_radau *radau;
+    struct dalcs_radau *radau;
+    const struct dalcs_readout *readout;
     struct dalcs_logic_place *place; /* [n_comparators] */
     struct audit_gate *gate;         /* [n_gates]; NULL: there are none */
+    int *node_system;                /* [n_nodes] -1: none; NULL: there are no samples */
 };
 
 /* Does nothing where the circuit has no gates. */
 enum dalcs_status dalcs_audit_gates_start(struct dalcs_audit_gates *a,
                                           const struct dalcs_circuit *circuit,
-                                          const struct dalcs_radau *radau) DALCS_MUST_CHECK;
+                                          struct dalcs_radau *radau,
+                                          const struct dalcs_readout *readout) DALCS_MUST_CHECK;
 void dalcs_audit_gates_finish(struct dalcs_audit_gates *a);
+
+/* Nothing has happened at t yet: what samples may take. */
+enum dalcs_status dalcs_audit_gates_sample(struct dalcs_audit_gates *a, double t) DALCS_MUST_CHECK;
 
 /* All gates have decided at t, where something may have happened; findings go to audit. */
 enum dalcs_status dalcs_audit_gates_look(struct dalcs_audit_gates *a, struct dalcs_audit *audit,

@@ -102,8 +102,9 @@ enum dalcs_status dalcs_audit_run_start(struct dalcs_audit_run *a, struct dalcs_
         a->tried = dalcs_arena_alloc(&a->arena, (size_t)(2 * n_x + 2 * n_elements), sizeof(double));
         status = a->tried != NULL ? DALCS_OK : DALCS_E_NOMEM;
     }
-    status =
-        status == DALCS_OK ? dalcs_audit_gates_start(&a->gates, &run->s->circuit, radau) : status;
+    status = status == DALCS_OK ? dalcs_audit_gates_start(&a->gates, &run->s->circuit, radau,
+                                                          run->s->network.readout)
+                                : status;
     status = status == DALCS_OK ? create(a) : status;
     if (status != DALCS_OK) {
         dalcs_audit_run_finish(a);
@@ -208,4 +209,8 @@ void dalcs_audit_run_rows(struct dalcs_audit_run *a, double t, enum dalcs_side s
 
 enum dalcs_status dalcs_audit_run_gates(struct dalcs_audit_run *a, double t) {
     return a->audit != NULL ? dalcs_audit_gates_look(&a->gates, a->audit, t) : DALCS_OK;
+}
+
+enum dalcs_status dalcs_audit_run_sample(struct dalcs_audit_run *a, double t) {
+    return a->audit != NULL ? dalcs_audit_gates_sample(&a->gates, t) : DALCS_OK;
 }

@@ -73,6 +73,9 @@ enum dalcs_status dalcs_audit_run_report(struct dalcs_audit_run *a) DALCS_MUST_C
 /* Is there a defect that is more than is allowed, and does it end the run? */
 bool dalcs_audit_run_fails(const struct dalcs_audit_run *a);
 
+/* Nothing has happened at t yet: what samples may take. */
+enum dalcs_status dalcs_audit_run_sample(struct dalcs_audit_run *a, double t) DALCS_MUST_CHECK;
+
 /* Gates have decided at t. */
 enum dalcs_status dalcs_audit_run_gates(struct dalcs_audit_run *a, double t) DALCS_MUST_CHECK;
 

@@ -1,6 +1,7 @@
-/* gates.c - what is refused of logic, in words. */
+/* gates.c - what is refused of logic, in words; and what samples read. */
 #include "gates.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Names on one line, the first few of them. */
@@ -54,4 +55,44 @@ enum dalcs_status dalcs_check_gates(struct dalcs_run *r, enum dalcs_analysis ana
                    "implicit Euler",
                    c->gate[0].name);
     return DALCS_E_NETLIST;
+}
+
+enum dalcs_status dalcs_gate_samples_setup(struct dalcs_gate_samples *s,
+                                           const struct dalcs_logic_run *logic) {
+    *s = (struct dalcs_gate_samples){0};
+    if (logic->n_samples == 0) {
+        return DALCS_OK;
+    }
+    const struct dalcs_circuit *circuit = logic->circuit;
+    int *output = dalcs_alloc((size_t)logic->n_samples, sizeof(*output));
+    if (output == NULL) {
+        return DALCS_E_NOMEM;
+    }
+    for (int k = 0; k < logic->n_samples; k++) {
+        output[k] = circuit->measured[circuit->gate[logic->sample[k]].sampled];
+    }
+    const enum dalcs_status status =
+        dalcs_rows_setup(&s->rows, logic->radau, output, logic->n_samples);
+    s->are_there = status == DALCS_OK;
+    free(output);
+    return status;
+}
+
+enum dalcs_status dalcs_gate_samples_read(struct dalcs_gate_samples *s,
+                                          struct dalcs_logic_run *logic, double t) {
+    int n_done;
+    if (!s->are_there) {
+        return DALCS_OK;
+    }
+    DALCS_TRY(dalcs_rows_fill(&s->rows, &t, 1, DALCS_LEFT, &n_done));
+    for (int k = 0; k < logic->n_samples; k++) {
+        logic->taken[logic->sample[k]] = s->rows.value[k].at[0];
+    }
+    return DALCS_OK;
+}
+
+void dalcs_gate_samples_finish(struct dalcs_gate_samples *s) {
+    if (s->are_there) {
+        dalcs_rows_finish(&s->rows);
+    }
 }

@@ -1,8 +1,9 @@
-/* gates.h - what is refused of logic, in words. */
+/* gates.h - what is refused of logic, in words; and what samples read. */
 #ifndef DALCS_SESSION_GATES_H
 #define DALCS_SESSION_GATES_H
 
 #include "logic_run.h"
+#include "rows.h"
 #include "session_internal.h"
 
 /* A loop of gates at t that does not settle. */
@@ -12,5 +13,20 @@ enum dalcs_status dalcs_refuse_gates(struct dalcs_run *r, const struct dalcs_log
 /* Analyses and methods that have no events. */
 enum dalcs_status dalcs_check_gates(struct dalcs_run *r,
                                     enum dalcs_analysis analysis) DALCS_MUST_CHECK;
+
+/* The rows of what samples take. Does nothing where there are none. */
+struct dalcs_gate_samples {
+    bool are_there;
+    struct dalcs_rows rows; /* of logic->sample */
+};
+
+enum dalcs_status dalcs_gate_samples_setup(struct dalcs_gate_samples *s,
+                                           const struct dalcs_logic_run *logic) DALCS_MUST_CHECK;
+
+/* At t, before anything happens there. */
+enum dalcs_status dalcs_gate_samples_read(struct dalcs_gate_samples *s,
+                                          struct dalcs_logic_run *logic, double t) DALCS_MUST_CHECK;
+
+void dalcs_gate_samples_finish(struct dalcs_gate_samples *s);
 
 #endif

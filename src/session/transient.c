@@ -224,6 +224,7 @@ struct transient {
     struct dalcs_audit_run *audit;
     struct dalcs_logic_run *logic;
     struct dalcs_rows rows;
+    struct dalcs_gate_samples samples;
     struct dalcs_filling filling;
     double t;
     double next_row;  /* s, that is due */
@@ -336,6 +337,12 @@ static enum dalcs_status pass_gates(struct transient *c, double t) {
     return dalcs_audit_run_gates(c->audit, t);
 }
 
+/* What samples may take, before anything happens at t. */
+static enum dalcs_status sample(struct transient *c, double t) {
+    DALCS_TRY(dalcs_gate_samples_read(&c->samples, c->logic, t));
+    return dalcs_audit_run_sample(c->audit, t);
+}
+
 /* To the next time at which there is something to do, with the rows up to there. */
 static enum dalcs_status advance(struct transient *c) {
     struct dalcs_radau *radau = c->radau;
@@ -385,6 +392,7 @@ static enum dalcs_status advance(struct transient *c) {
         return DALCS_OK;
     }
     if (passes) {
+        DALCS_TRY(sample(c, t));
         radau->base->t = t;
         DALCS_TRY(dalcs_radau_pass(radau, t));
         DALCS_TRY(pass_gates(c, t));
@@ -431,6 +439,7 @@ static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau 
     DALCS_TRY(dalcs_rows_setup(&c.rows, radau, NULL, r->s->network.n_outputs));
     enum dalcs_status status =
         dalcs_filling_setup(&c.filling, c.recorder, &c.rows, r->fill, r->lines, &FILLING_LIMIT);
+    status = status == DALCS_OK ? dalcs_gate_samples_setup(&c.samples, logic) : status;
     dalcs_audit_run_begin(audit);
     status = status == DALCS_OK ? dalcs_audit_run_gates(audit, 0.0) : status;
     while (c.t < radau->options.stop && status == DALCS_OK) {
@@ -443,6 +452,7 @@ static enum dalcs_status run_to_the_end(struct dalcs_run *r, struct dalcs_radau 
     note_end_of_filling(r, &c.filling);
     dalcs_filling_finish(&c.filling);
     dalcs_rows_finish(&c.rows);
+    dalcs_gate_samples_finish(&c.samples);
     return status;
 }
 

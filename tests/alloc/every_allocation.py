@@ -145,6 +145,15 @@ v1 a 0 PULSE(0 1 0 0 0 4u 10u)
 a1 a q2 0 0 0 0 q1 0 AND
 a2 c 0 0 0 0 q2 0 0 SCHMITT Vt=0.5 Vh=0.2
 a3 q1 q2 0 0 0 0 q3 0 SRFLOP Td=1u Rout=1
+a4 c 0 a q3 0 0 held 0 SAMPLEHOLD
+a5 a 0 0 0 0 0 q5 0 COUNTER
+a6 [a ~c] [da dc] adc
+.model adc adc_bridge(in_low=0.2 in_high=0.8)
+a7 da dc null null q7 nq7 flip
+.model flip d_dff(clk_delay=0.1u)
+a8 c x8 lim
+.model lim int(gain=1meg out_upper_limit=1)
+r8 x8 held 1k
 r1 q1 c 1k
 c1 c 0 1n ic=0
 r3 q3 0 1k

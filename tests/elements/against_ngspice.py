@@ -117,6 +117,62 @@ R1 x 0 4
 """
 
 
+DIGITAL = """flip-flops and gates between bridges
+V1 clk 0 PULSE(0 5 10n 1p 1p 20n 50n)
+V2 d 0 PULSE(0 5 0 1p 1p 80n 160n)
+V3 s 0 PULSE(0 5 123n 1p 1p 5n 1)
+aadc [clk d s] [dclk dd ds] adc
+.model adc adc_bridge(in_low=1 in_high=4 rise_delay=2n fall_delay=3n)
+aff dd dclk ds null q nq ff
+.model ff d_dff(clk_delay=4n set_delay=7n rise_delay=1n fall_delay=2n)
+ajk dd ~dd dclk null ds j nj jk
+.model jk d_jkff(clk_delay=3n reset_delay=5n)
+atff q dclk null null t nt tf
+.model tf d_tff(clk_delay=6n)
+ag1 [q ~dd dclk] g1 nand
+.model nand d_nand(rise_delay=2n fall_delay=4n)
+ag2 [q dd] g2 xor
+.model xor d_xor(rise_delay=2n fall_delay=1n)
+adac [q nq j t g1 g2] [aq anq aj at ag ax] dac
+.model dac dac_bridge(out_low=-1 out_high=3 t_rise=1n t_fall=2n)
+r1 aq 0 1k
+r2 anq 0 1k
+r3 aj 0 1k
+r4 at 0 1k
+r5 ag 0 1k
+r6 ax 0 1k
+.tran 0.1n 800n 0 0.1n
+.end
+"""
+
+BLOCKS = """blocks of straight lines
+v1 in 0 sin(0 2 1k)
+v2 b 0 pulse(-1 1 0.1m 1u 1u 0.4m 1m)
+a1 in g1 mg
+.model mg gain(in_offset=0.1 gain=-3 out_offset=0.5)
+a2 [in b] s1 ms
+.model ms summer(in_offset=[0.1 -0.2] in_gain=[2 -1] out_gain=3 out_offset=-0.5)
+a3 in l1 ml
+.model ml limit(in_offset=0.1 gain=-2.5 out_lower_limit=-1 out_upper_limit=2 limit_range=1e-9 fraction=false)
+a4 b i1 mi
+.model mi int(in_offset=0.05 gain=1000 out_lower_limit=-0.15 out_upper_limit=0.2 limit_range=1e-9 out_ic=0.1)
+a5 b w1 mw
+.model mw slew(rise_slope=10k fall_slope=20k)
+a6 in p1 mp
+.model mp pwl(x_array=[-1 0 1] y_array=[-2 0 1] input_domain=1e-9 fraction=false)
+a7 %vd(in b) %v(g2) mg
+r1 g1 0 1k
+r2 s1 0 1k
+r3 l1 0 1k
+r4 i1 0 1k
+r5 w1 0 1k
+r6 p1 0 1k
+r7 g2 0 1k
+.tran 1u 4m 0 1u
+.end
+"""
+
+
 def at(times, values, t):
     """Between two points."""
     k = min(max(bisect.bisect_left(times, t), 1), len(times) - 1)
@@ -158,6 +214,8 @@ def main():
         compare(checker, program, LOW_SIDE, ["v(d)", "i(l1)"], 100e-6, 0.03)
         compare(checker, program, HIGH_SIDE, ["v(out)", "i(l1)"], 1e-3, 0.03)
         compare(checker, program, HALF_BRIDGE, ["v(x)", "i(l1)"], 100e-6, 0.03)
+        compare(checker, program, DIGITAL, [f"v(a{x})" for x in ("q", "nq", "j", "t", "g", "x")], 800e-9, 2e-2)
+        compare(checker, program, BLOCKS, ["v(g1)", "v(s1)", "v(l1)", "v(i1)", "v(w1)", "v(p1)", "v(g2)"], 4e-3, 4e-3)
     except ngspice_batch.NoNgspice:
         print("ngspice is not installed")
         return SKIPPED

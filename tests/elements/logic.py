@@ -188,10 +188,122 @@ def measured(checker, program):
             checker.close(power["r3"], 24 * 24 / 2 * duty, 1e-9 * 288, f"{what}: the power of a load")
 
 
+def held(times, values, level, t):
+    """Of what is taken at certain times: the value at t."""
+    for at, value in zip(times, values):
+        level = value if t >= at else level
+    return level
+
+
+def samples(checker, program):
+    """What a clock takes of a sine, of itself one clock before, of a difference; and what a gate lets through."""
+    for f, period, high, offset in ((1e3, 1.3e-4, 1, 0), (50, 7e-3, 5, 3), (2e6, 1e-7, 12, -400), (0.01, 11, 0.5, 1e-3)):
+        what = f"samples of {f} Hz"
+        amplitude = 2 * high
+        more = f"ref={high / 2}"
+        cards = [f"v1 in 0 sin({offset} {amplitude} {f!r})", f"v2 clk 0 pulse(0 {high} {period / 2!r} 0 0 {period / 3!r} {period!r})",
+                 f"a1 in 0 clk 0 0 0 s1 0 SAMPLEHOLD {more} ic=-1", f"a2 s1 0 clk 0 0 0 s2 0 SAMPLEHOLD {more}",
+                 f"a3 in s1 clk 0 0 0 s3 0 SAMPLEHOLD {more} rout=1k", f"a4 in 0 0 clk 0 0 s4 0 SAMPLEHOLD {more}",
+                 "r1 s1 0 1k", "r2 s2 0 2k", "r3 s3 0 3k", "r4 s4 0 1k", f".tran {period / 7!r} {9.8 * period!r}"]
+        done = run_cards(program, what, cards)
+        if not runs(checker, done, what):
+            continue
+
+        def sine(t, f=f, offset=offset, amplitude=amplitude):
+            return offset + amplitude * math.sin(2 * math.pi * f * t)
+        clocks = [(k + 0.5) * period for k in range(10)]
+        taken = [sine(t) for t in clocks]
+        first = [-1, *taken]
+        scale = abs(offset) + amplitude
+        for t in [k * period / 7 for k in range(1, 68) if k % 7 not in (3, 4, 5, 6)] + [period * 5.58, period * 4.78]:
+            row = min(done.time, key=lambda x, t=t: abs(x - t))
+            before = [k for k in range(10) if clocks[k] <= row]
+            wanted = {"v(s1)": held(clocks, taken, -1, row), "v(s2)": held(clocks, first, 0, row),
+                      "v(s3)": 0.75 * held(clocks, [a - b for a, b in zip(taken, first)], 0, row)}
+            last = clocks[before[-1]] if before else 0.0
+            wanted["v(s4)"] = 0.0 if not before else sine(min(row, last + period / 3))
+            for name, value in wanted.items():
+                checker.close(done.at(name, row), value, 3e-9 * scale, f"{what}: {name} at {row!r}")
+
+
+def sampled_control(checker, program):
+    """A sampled PI loop on R and C: its values at the clocks are those of the difference equation. The sampling of an
+    integrator by itself: 1 + T/C of growth each clock."""
+    for r, c, period, kp in ((1e3, 1e-6, 1e-4, 0.5), (10, 1e-3, 1e-2, 0.9), (1e6, 1e-12, 5e-7, 0.2)):
+        what = f"a sampled loop of {period} s"
+        tau = r * c
+        cards = [f"v1 clk 0 pulse(0 1 {period!r} 0 0 {period / 2!r} {period!r})", "vr ref 0 2",
+                 f"b1 u 0 v={kp}*(v(ref)-v(y))", "a1 u 0 clk 0 0 0 h 0 SAMPLEHOLD", f"r1 h y {r!r}", f"c1 y 0 {c!r} ic=0",
+                 f".tran {period / 3!r} {12.5 * period!r} uic"]
+        done = run_cards(program, what, cards)
+        if runs(checker, done, what):
+            y, h, decay = 0.0, 0.0, math.exp(-period / tau)
+            for k in range(1, 13):
+                y = h + (y - h) * decay
+                h = kp * (2 - y)
+                checker.close(done.at("v(h)", k * period), h, 1e-8, f"{what}: clock {k}")
+    what = "an integrator that samples itself"
+    cards = ["v1 clk 0 pulse(0 1 1 0 0 0.5 1)", "a1 x 0 clk 0 0 0 h 0 SAMPLEHOLD ic=1", "g1 0 x h 0 0.25", "c1 x 0 1 ic=1",
+             ".tran 0.3 20.5 uic"]
+    done = run_cards(program, what, cards)
+    if runs(checker, done, what):
+        x, h = 1.0, 1.0
+        for k in range(1, 21):
+            x += 0.25 * h
+            h = x
+            checker.close(done.at("v(h)", k), h, 1e-8 * h, f"{what}: clock {k}")
+
+
+def counters(checker, program):
+    """Cycles and duty, a reset that holds, a chain, and a clock that is a gate's."""
+    for cycles, duty, high, period in ((2, 0.5, 1, 1e-6), (3, 0.34, 5, 1e-3), (10, 0.3, 12, 2.0), (7, 0.01, 1, 1e-9),
+                                       (5, 0.99, 3, 1e-5)):
+        what = f"a counter of {cycles}"
+        n_high = min(max(round(duty * cycles), 1), cycles - 1)
+        cards = [f"v1 clk 0 pulse(0 {high} {period / 2!r} 0 0 {period / 2!r} {period!r})",
+                 f"v2 rst 0 pulse(0 {high} {20.25 * period!r} 0 0 {3 * period!r} {100 * period!r})",
+                 f"a1 clk 0 0 0 0 qb q 0 COUNTER cycles={cycles} duty={duty} Vhigh={high}",
+                 f"a2 clk rst 0 0 0 0 r 0 COUNTER cycles={cycles} duty={duty} Vhigh={high} td={period / 10!r}",
+                 f"a3 q 0 0 0 0 0 c 0 COUNTER Vhigh={high}", "r1 q 0 1k", "r2 qb 0 1k", "r3 r 0 1k", "r4 c 0 1k",
+                 f".tran {period / 3!r} {40 * period!r}"]
+        done = run_cards(program, what, cards)
+        if runs(checker, done, what):
+            clocks = [(k + 0.5) * period for k in range(40)]
+            wanted = [t for k, t in enumerate(clocks) if k % cycles in (0, n_high)]
+            times(checker, edges(done, "v(q)", high / 2), wanted, what)
+            times(checker, edges(done, "v(qb)", high / 2), wanted, f"{what}, its complement")
+            times(checker, edges(done, "v(c)", high / 2), clocks[::cycles], f"{what}, chained")
+            delayed = [t for k, t in enumerate(clocks) if t < 20.25 * period and k % cycles in (0, n_high)]
+            if len(delayed) % 2 == 1:
+                delayed.append(20.25 * period)
+            again = [t for t in clocks if t > 23.25 * period]
+            delayed += [t for k, t in enumerate(again) if k % cycles in (0, n_high)]
+            delayed = [t + period / 10 for t in delayed]
+            times(checker, edges(done, "v(r)", high / 2), [t for t in delayed if t < 40 * period], f"{what}, reset")
+
+
+def refused(checker, program):
+    """Words for what is not there."""
+    cases = (("a1 a b 0 0 0 0 o 0 OTA G=1m", "ota is not supported: its output is a limited product"),
+             ("a1 a 0 0 0 0 0 o 0 VARISTOR Rclamp=1", "varistor is not supported"),
+             ("a1 a 0 0 0 0 0 o 0 MODULATOR mark=2k space=1k", "modulator is not supported"),
+             ("a1 a b 0 0 0 0 o 0 PHASEDET", "phasedet is not supported: it has three states"),
+             ("a1 a 0 b 0 0 0 o 0 SAMPLEHOLD td=1n", "samplehold has no parameter 'td'"),
+             ("a1 a 0 b 0 0 o 0 0 SAMPLEHOLD", "pin 6 of 'a1' means nothing"),
+             ("a1 a 0 0 0 0 0 o 0 COUNTER cycles=2.5", "a whole number of clocks"),
+             ("a1 a 0 0 0 0 0 o 0 COUNTER duty=1", "duty= of a counter is above 0 and below 1"),
+             ("a1 a 0 0 0 0 0 o 0 COUNTER vt=1", "counter has no parameter 'vt'"),
+             ("a1 a 0 0 0 0 0 o 0 AND cycles=3", "a gate has no parameter 'cycles'"))
+    for card, text in cases:
+        done = run_cards(program, card, ["v1 a 0 1", "v2 b 0 1", card, "r1 o 0 1", ".tran 1 2"])
+        checker.check(done.status != 0 and text in done.stderr, f"{card}: {done.stderr}")
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("logic")
-    for part in (ring, relaxation, divider, modulator, peak_current, small, measured):
+    for part in (ring, relaxation, divider, modulator, peak_current, small, measured, samples, sampled_control, counters,
+                 refused):
         part(checker, program)
     return checker.finish()
 

@@ -462,6 +462,60 @@ def decibels(program, checker):
                   "the largest of vdb")
 
 
+def powers(program, checker):
+    """w(x) and p(x): a resistor, a coil, a source, a diode and a switch; of a subcircuit's element; in a function, and
+    where the netlist has a function of that name."""
+    for volts, ohms, henry, f in ((10, 10, 10e-3, 50), (1e-3, 1e6, 1, 1e6), (400, 0.02, 1e-6, 1e4)):
+        z = math.hypot(ohms, 2 * PI * f * henry)
+        mean = ohms * (volts / z) ** 2 / 2
+        r = Results(program, checker, f"""powers at {volts} V
+V1 in 0 SIN(0 {volts} {f!r} 0 0 {math.degrees(math.atan2(2 * PI * f * henry, ohms))!r})
+R1 in a {ohms!r}
+L1 a 0 {henry!r} ic=0
+.tran {0.1 / f!r} {4 / f!r} uic
+.func twice(x) {{2*x}}
+.meas tran pr avg w(r1) from={1 / f!r}
+.meas tran pv avg P( v1 ) from={1 / f!r}
+.meas tran pl avg p(l1) from={1 / f!r}
+.meas tran both avg twice(w(r1)+p(l1)) from={1 / f!r}
+.meas tran half EQN='pr/2'
+.meas tran top max w(r1) from={1 / f!r}
+.meas tran as_product max v(in,a)*i(r1) from={1 / f!r}
+.end
+""")
+        r.close("pr", mean)
+        r.close("pv", -mean)
+        r.close("pl", 0, scale=mean)
+        r.close("both", 2 * mean)
+        r.close("half", mean / 2)
+        r.close("top", 2 * mean)
+        r.close("as_product", r.of["top"]["value"], tolerance=0)
+    r = Results(program, checker, """powers of what conducts
+V1 p 0 12
+I1 0 q PULSE(0 2 0 0 0 1 2)
+D1 q p half
+.model half D(Vfwd=0.5 Ron=0.25)
+S1 p s 0 0 on
+.model on SW(Ron=2 Vt=-1)
+X1 s load
+.subckt load a
+R1 a 0 4
+.ends
+.tran 0.1 4
+.meas tran d avg w(d1)
+.meas tran s avg w(s1)
+.meas tran x avg w(x1.r1)
+.end
+""")
+    r.close("d", 1.0)
+    r.close("s", 8.0)
+    r.close("x", 16.0)
+    r = Results(program, checker, "a function p\nV1 a 0 3\nR1 a 0 1\n.func p(x) {x+1}\n.param r1=5\n.tran 1 2\n"
+                ".meas tran m avg p(r1)\n.meas tran w avg w(r1)\n.end\n")
+    r.close("m", 6)
+    r.close("w", 9)
+
+
 def windows(program, checker):
     """What lies before the first row and the first measurement is leapt over, if no ledger is kept."""
     duty, tau, period, mean = 0.4, 2e-3, 1e-4, 0.4 * 24 - 5
@@ -521,7 +575,7 @@ def main():
     program = sys.argv[1]
     checker = dalcs_program.Checker("measurements")
     for test in (sines, charging, rectifier, pulses, ledger, euler, others, late, fourier, decibels,
-                 windows, rounding):
+                 powers, windows, rounding):
         test(program, checker)
     return checker.finish()
 

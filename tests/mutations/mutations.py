@@ -153,7 +153,7 @@ LEAPS = BUCK.replace(".tran 5m 5m uic", ".tran 1m 20m uic")
 BEAT = BRIDGE.replace("v1 a b SIN(0 24 50)", "v1 a m SIN(0 24 50)\nv2 m b SIN(0 1 7.77)")
 
 
-GATES = """gates, a latch, a flip-flop and a delay, from sources that know nothing of each other
+GATES = """gates, a latch, a flip-flop, a delay, a counter and two samples, from sources that know nothing of each other
 va a 0 PULSE(0 1 1u 0 0 3u 7u)
 vb b 0 PULSE(0 1 2u 0 0 5u 11u)
 vc c 0 SIN(0 1 61k)
@@ -162,9 +162,22 @@ a2 a 0 0 0 0 0 late 0 BUF Td=500n
 a3 c b 0 0 0 0 latch 0 SRFLOP
 a4 c 0 a 0 0 0 flop 0 DFLOP
 a5 and late latch 0 0 0 any 0 OR Vhigh=5 Ref=0.5
+a6 a 0 0 0 0 0 third 0 COUNTER cycles=3 duty=0.3
+a7 c 0 a 0 0 0 held 0 SAMPLEHOLD
+a8 x 0 0 b 0 0 let 0 SAMPLEHOLD
+aadc [a b c] [da db dc] adc
+.model adc adc_bridge(in_low=0.2 in_high=0.8)
+aflip da db dc null q nq flip
+.model flip d_jkff(clk_delay=20n)
+adac q slow dac
+.model dac dac_bridge(out_high=3)
+r6 slow 0 1k
 r1 any x 1k
 c1 x 0 1n ic=0
 r2 flop 0 1k
+r3 third 0 1k
+r4 held 0 1k
+r5 let 0 1k
 .tran 1u 400u uic
 """
 
@@ -245,12 +258,20 @@ MUTATIONS = {
     "a latch is reset by nothing": (
         "integrator/logic_network.c", "return !reset && (set || q);", "return (reset || true) && (set || q);", GATES),
     "a flip-flop falls through": (
-        "integrator/logic_network.c", "return rises ? read(l, &g->input[DALCS_GATE_DATA]) : state->q;",
-        "return rises || l->rests ? !read(l, &g->input[DALCS_GATE_DATA]) : state->q;", GATES),
+        "integrator/logic_network.c", "        state->q = next(l, g, state->q);", "        state->q = !next(l, g, state->q);", GATES),
+    "a counter counts one too many": (
+        "integrator/logic_network.c", "state->count % g->cycles + 1", "state->count % (g->cycles + 1) + 1", GATES),
+    "one sample of many takes a hundredth more": (
+        "integrator/logic_outputs.c", "        l->changed[g->output[0]] = true;\n",
+        "        l->changed[g->output[0]] = true;\n        " + once(17, "", "l->taken[k] *= 1.01;") + "\n", GATES),
+    "a sample forgets what it let through": (
+        "integrator/logic_network.c", "(state->q && !tracks && !l->rests)", "false", GATES),
     "a delay is a tenth longer": (
-        "integrator/logic_run.c", "l->now + l->network.gate[gate].delay", "l->now + 1.1 * l->network.gate[gate].delay", GATES),
+        "integrator/logic_run.c", "l->now + (next->is", "l->now + 1.1 * (next->is", GATES),
+    "a JK flip-flop turns over too often": (
+        "integrator/logic_network.c", "(q ? !reset : data)", "(q ? !reset && !data : data)", GATES),
     "one output of many shows the other level": (
-        "integrator/logic_run.c", "const double level = level_of(g, pin, l->network.state[k].seen);",
+        "integrator/logic_outputs.c", "const double level = level_of(g, pin, l->network.state[k].seen);",
         "static long calls_; const double level = level_of(g, pin, l->network.state[k].seen != (++calls_ == 37));", GATES),
     "one leap of many is nudged by 1e-6": (
         "memory/cycle.c", "    memcpy(part->x, states[0], (size_t)n_x * sizeof(double));\n    return n;\n",

@@ -1,0 +1,71 @@
+/* block.h - XSPICE's code models: an A card of ports and a model whose type says what it does. */
+#ifndef DALCS_BLOCK_H
+#define DALCS_BLOCK_H
+
+#include "builder.h"
+
+/* What a .model card says: names and lists of numbers, which the type has a meaning for. */
+struct dalcs_block {
+    const struct dalcs_token *name, *type;
+    int n;
+
+    struct dalcs_block_value {
+        const struct dalcs_token *name;
+        int n;
+        const double *number;
+    } * value; /* [n] */
+};
+
+/* A list of nodes, or one. */
+struct dalcs_block_port {
+    bool is_list;
+    int n;
+
+    struct dalcs_block_end {
+        const struct dalcs_token *token;
+        bool is_null, is_inverted;
+        int node, reference;
+    } * end; /* [n] */
+};
+
+enum { DALCS_BLOCK_PORTS = 8 };
+
+struct dalcs_block_card {
+    struct dalcs_builder *builder;
+    const struct dalcs_card *card;
+    const struct dalcs_block *block;
+    int n_ports;
+    struct dalcs_block_port port[DALCS_BLOCK_PORTS];
+};
+
+/* A type that XSPICE has, though it may be refused. */
+bool dalcs_block_is_type(const char *type);
+
+/* What follows the type on a .model card; NULL when an error was reported. */
+const struct dalcs_block *dalcs_block_parse_model(struct dalcs_reader *reader,
+                                                  const struct dalcs_token *name,
+                                                  const struct dalcs_token *type);
+
+/* An A card whose model is one. */
+void dalcs_block_parse(struct dalcs_builder *builder, const struct dalcs_card *card,
+                       const struct dalcs_block *block);
+
+/* A parameter of the model, a number; its default where the card does not have it. */
+double dalcs_block_number(const struct dalcs_block *block, const char *name, double otherwise);
+/* Number k of a list; beyond its end, or without it, its default. */
+double dalcs_block_element(const struct dalcs_block *block, const char *name, int k,
+                           double otherwise);
+const struct dalcs_block_value *dalcs_block_find(const struct dalcs_block *block, const char *name);
+
+/* Reports parameters that are none of list[n]; false where there are any. */
+bool dalcs_block_has_only(const struct dalcs_block_card *c, const char *const *list, size_t n);
+/* Reports another number of ports than that; optional ones may be left out. */
+bool dalcs_block_has_ports(const struct dalcs_block_card *c, int n, int n_optional,
+                           const char *usage);
+
+/* Gates, flip-flops, bridges: false where the type is none of them. */
+bool dalcs_block_parse_logic(struct dalcs_block_card *c);
+/* gain, summer, limit, int, slew, pwl, aswitch: likewise. */
+bool dalcs_block_parse_analog(struct dalcs_block_card *c);
+
+#endif

@@ -1,0 +1,339 @@
+/* block_analog.c - XSPICE's analog code models of straight lines, as sources, capacitors and ideal diodes.
+ *
+ * int is a capacitor that a source charges, between two ideal diodes where it has limits: at a limit it stays, and it
+ * leaves as soon as its input turns. slew is a source whose current is limited, into a capacitor. */
+#include "behaviour.h"
+#include "block.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The conductance that capacitors of states are charged through, S: it is in no waveform, for their currents are
+ * nobody's. Of volts it makes milliamperes, as circuits have. */
+static const double charging = 1e-3;
+
+/* A device from a to b; what NULL: it has the element's name. */
+static struct dalcs_device *add(const struct dalcs_block_card *c, enum dalcs_device_kind kind,
+                                const char *what, int a, int b) {
+    const struct dalcs_token *name = c->card->token;
+    struct dalcs_device *device =
+        what == NULL ? dalcs_builder_add_device(c->builder, kind, name)
+                     : dalcs_builder_add_inner_device(c->builder, kind, what, name);
+    if (device != NULL) {
+        device->node[0] = a;
+        device->node[1] = b;
+    }
+    return device;
+}
+
+static bool add_constant(const struct dalcs_block_card *c, enum dalcs_device_kind kind,
+                         const char *what, const int *node, double value) {
+    struct dalcs_circuit *circuit = c->builder->circuit;
+    struct dalcs_device *device = add(c, kind, what, node[0], node[1]);
+    if (device == NULL) {
+        return false;
+    }
+    device->stimulus = circuit->n_stimuli++;
+    circuit->stimulus[device->stimulus] =
+        (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC, .has_dc = true, .dc = value};
+    return true;
+}
+
+static void control(struct dalcs_device *device, const struct dalcs_block_end *by, double gain) {
+    device->node[2] = by->node;
+    device->node[3] = by->reference;
+    device->value = gain;
+}
+
+static bool check(const struct dalcs_block_card *c, const char *const *names, size_t n, int ports,
+                  const char *usage) {
+    if (!dalcs_block_has_only(c, names, n) || !dalcs_block_has_ports(c, ports, 0, usage)) {
+        return false;
+    }
+    for (int k = 0; k < c->n_ports; k++) {
+        for (int i = 0; i < c->port[k].n; i++) {
+            if (c->port[k].end[i].is_null || c->port[k].end[i].is_inverted) {
+                dalcs_builder_error(c->builder, c->card->token, usage,
+                                    "a port of '%s' must be a node", c->card->token->text);
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* ---- Without memory ------------------------------------------------------------------------------------------- */
+
+/* gain and summer: sources in series, and one of what does not depend on the inputs. */
+static bool add_sum(const struct dalcs_block_card *c, const double *gain, double constant) {
+    const struct dalcs_block_end *out = &c->port[1].end[0];
+    int from = out->node;
+    for (int k = 0; k < c->port[0].n; k++) {
+        const bool is_last = k == c->port[0].n - 1 && constant == 0;
+        const char *what = dalcs_builder_hint(c->builder, "term%d", k + 1);
+        const int to =
+            is_last ? out->reference : dalcs_builder_inner_node(c->builder, what, c->card->token);
+        struct dalcs_device *e = add(c, DALCS_VCVS, k == 0 ? NULL : what, from, to);
+        if (e == NULL || to < 0) {
+            return false;
+        }
+        control(e, &c->port[0].end[k], gain[k]);
+        from = to;
+    }
+    return constant == 0 ||
+           add_constant(c, DALCS_VSOURCE, "constant", (int[]){from, out->reference}, constant);
+}
+
+static void parse_sum(const struct dalcs_block_card *c, bool is_gain) {
+    static const char *const names[] = {"in_offset", "in_gain", "out_gain", "out_offset"};
+    static const char *const gain_names[] = {"in_offset", "gain", "out_offset"};
+    if (!(is_gain ? check(c, gain_names, 3, 2, "a gain is: Aname in out model")
+                  : check(c, names, 4, 2, "a summer is: Aname [in in ...] out model"))) {
+        return;
+    }
+    double *gain = dalcs_arena_alloc(&c->builder->scratch, (size_t)c->port[0].n, sizeof *gain);
+    if (gain == NULL) {
+        c->builder->out_of_memory = true;
+        return;
+    }
+    double constant = dalcs_block_number(c->block, "out_offset", 0);
+    for (int k = 0; k < c->port[0].n; k++) {
+        gain[k] = is_gain ? dalcs_block_number(c->block, "gain", 1)
+                          : dalcs_block_element(c->block, "in_gain", k, 1) *
+                                dalcs_block_number(c->block, "out_gain", 1);
+        constant += gain[k] * dalcs_block_element(c->block, "in_offset", k, 0);
+    }
+    (void)add_sum(c, gain, constant);
+}
+
+static void add_table(const struct dalcs_block_card *c, const struct dalcs_piecewise *table) {
+    const struct dalcs_block_end *out = &c->port[1].end[0];
+    struct dalcs_device *e = add(c, DALCS_VCVS, NULL, out->node, out->reference);
+    if (e != NULL) {
+        control(e, &c->port[0].end[0], 1);
+        dalcs_behavioural_add_table(c->builder, e, table);
+    }
+}
+
+static struct dalcs_piecewise make_table(const struct dalcs_block_card *c, int n) {
+    struct dalcs_piecewise table = {.n = n};
+    table.knot = dalcs_arena_alloc(&c->builder->scratch, (size_t)n, sizeof *table.knot);
+    c->builder->out_of_memory = c->builder->out_of_memory || table.knot == NULL;
+    return table;
+}
+
+static void set_knot(struct dalcs_piecewise *table, int k, double x, double y) {
+    table->knot[k] = (struct dalcs_knot){x, y, y, y};
+}
+
+/* Reads both limits; those that are not given are none. */
+static bool read_limits(const struct dalcs_block_card *c, double *low, double *high) {
+    *low = dalcs_block_number(c->block, "out_lower_limit", -(double)INFINITY);
+    *high = dalcs_block_number(c->block, "out_upper_limit", (double)INFINITY);
+    if (!(*low < *high)) {
+        dalcs_builder_error(c->builder, c->block->type, NULL,
+                            "out_lower_limit must be below out_upper_limit");
+    }
+    return *low < *high;
+}
+
+static void parse_limit(const struct dalcs_block_card *c) {
+    static const char *const names[] = {"in_offset",       "gain",        "out_lower_limit",
+                                        "out_upper_limit", "limit_range", "fraction"};
+    double y[2];
+    if (!check(c, names, 6, 2, "a limit is: Aname in out model") || !read_limits(c, &y[0], &y[1])) {
+        return;
+    }
+    const double gain = dalcs_block_number(c->block, "gain", 1);
+    const double offset = dalcs_block_number(c->block, "in_offset", 0);
+    if (gain == 0 || (!isfinite(y[0]) && !isfinite(y[1]))) {
+        dalcs_builder_error(c->builder, c->block->type, "write gain",
+                            "a limit has a gain other than 0, and a limit");
+        return;
+    }
+    const int n = (isfinite(y[0]) ? 1 : 0) + (isfinite(y[1]) ? 1 : 0);
+    struct dalcs_piecewise table = make_table(c, n);
+    if (table.knot == NULL) {
+        return;
+    }
+    table.before = isfinite(gain > 0 ? y[0] : y[1]) ? 0 : gain;
+    table.after = isfinite(gain > 0 ? y[1] : y[0]) ? 0 : gain;
+    for (int k = 0, at = 0; k < 2; k++) {
+        const double limit = y[gain > 0 ? k : 1 - k];
+        if (isfinite(limit)) {
+            set_knot(&table, at++, limit / gain - offset, limit);
+        }
+    }
+    add_table(c, &table);
+}
+
+static void parse_pwl(const struct dalcs_block_card *c) {
+    static const char *const names[] = {"x_array", "y_array", "input_domain", "fraction", "limit"};
+    const struct dalcs_block_value *x = dalcs_block_find(c->block, "x_array");
+    const struct dalcs_block_value *y = dalcs_block_find(c->block, "y_array");
+    if (!check(c, names, 5, 2, "a table is: Aname in out model")) {
+        return;
+    }
+    bool ascends = x != NULL && y != NULL && x->n == y->n && x->n >= 2;
+    for (int k = 1; ascends && k < x->n; k++) {
+        ascends = x->number[k] > x->number[k - 1];
+    }
+    if (!ascends) {
+        dalcs_builder_error(c->builder, c->block->type, NULL,
+                            "x_array and y_array have as many numbers, two at least, and those of "
+                            "x_array ascend");
+        return;
+    }
+    const int n = x->n;
+    struct dalcs_piecewise table = make_table(c, n);
+    if (table.knot == NULL) {
+        return;
+    }
+    for (int k = 0; k < n; k++) {
+        set_knot(&table, k, x->number[k], y->number[k]);
+    }
+    if (dalcs_block_number(c->block, "limit", 0) == 0) {
+        table.before = (y->number[1] - y->number[0]) / (x->number[1] - x->number[0]);
+        table.after = (y->number[n - 1] - y->number[n - 2]) / (x->number[n - 1] - x->number[n - 2]);
+    }
+    add_table(c, &table);
+}
+
+static void parse_switch(const struct dalcs_block_card *c) {
+    static const char *const names[] = {"cntl_off", "cntl_on", "log", "r_off", "r_on"};
+    if (!check(c, names, 5, 2, "a switch is: Aname control %gd(node node) model")) {
+        return;
+    }
+    const double off = dalcs_block_number(c->block, "cntl_off", 0);
+    const double on = dalcs_block_number(c->block, "cntl_on", 1);
+    struct dalcs_switch_model model = {.name = c->block->name->text,
+                                       .ron = dalcs_block_number(c->block, "r_on", 1),
+                                       .roff = dalcs_block_number(c->block, "r_off", 1e12),
+                                       .vt = 0.5 * (off + on),
+                                       .is_inverted = on < off};
+    if (!(model.ron >= 0 && model.roff > model.ron)) {
+        dalcs_builder_error(c->builder, c->block->type, NULL,
+                            "r_on cannot be negative, and r_off is above it");
+        return;
+    }
+    model.vt = model.is_inverted ? -model.vt : model.vt;
+    dalcs_builder_warn(c->builder, c->card->token, NULL,
+                       "'%s' changes over at once, half way between cntl_off and cntl_on",
+                       c->card->token->text);
+    struct dalcs_device *s =
+        add(c, DALCS_SWITCH, NULL, c->port[1].end[0].node, c->port[1].end[0].reference);
+    if (s != NULL) {
+        s->node[2] = c->port[0].end[0].node;
+        s->node[3] = c->port[0].end[0].reference;
+        s->model = dalcs_switch_add_model(c->builder, &model);
+    }
+}
+
+/* ---- With a capacitor -------------------------------------------------------------------------------------------- */
+
+/* A node of a capacitor, and the source of its voltage that is the output. -1: out of memory. */
+static int add_state(const struct dalcs_block_card *c, double farad) {
+    const struct dalcs_block_end *out = &c->port[1].end[0];
+    const int node = dalcs_builder_inner_node(c->builder, "state", c->card->token);
+    struct dalcs_device *e = add(c, DALCS_VCVS, NULL, out->node, out->reference);
+    struct dalcs_device *capacitor = add(c, DALCS_CAPACITOR, "state", node, 0);
+    if (node < 0 || e == NULL || capacitor == NULL) {
+        return -1;
+    }
+    e->node[2] = node;
+    e->value = 1;
+    capacitor->value = farad;
+    return node;
+}
+
+/* It goes no further than a limit. */
+static bool add_bound(const struct dalcs_block_card *c, int state, bool is_upper, double limit) {
+    const char *what = is_upper ? "upper" : "lower";
+    if (!isfinite(limit)) {
+        return true;
+    }
+    const int node = dalcs_builder_inner_node(c->builder, what, c->card->token);
+    struct dalcs_device *d =
+        add(c, DALCS_DIODE, what, is_upper ? state : node, is_upper ? node : state);
+    if (node < 0 || d == NULL) {
+        return false;
+    }
+    d->model = dalcs_diode_ideal_model(c->builder);
+    return add_constant(c, DALCS_VSOURCE, is_upper ? "at_upper" : "at_lower", (int[]){node, 0},
+                        limit);
+}
+
+static void parse_integrator(const struct dalcs_block_card *c) {
+    static const char *const names[] = {"in_offset",       "gain",        "out_lower_limit",
+                                        "out_upper_limit", "limit_range", "out_ic"};
+    double low;
+    double high;
+    if (!check(c, names, 6, 2, "an integrator is: Aname in out model") ||
+        !read_limits(c, &low, &high)) {
+        return;
+    }
+    const double gain = dalcs_block_number(c->block, "gain", 1);
+    const double first = fmin(fmax(dalcs_block_number(c->block, "out_ic", 0), low), high);
+    const double offset = dalcs_block_number(c->block, "in_offset", 0);
+    if (gain == 0) {
+        dalcs_builder_error(c->builder, c->block->type, NULL, "the gain of an integrator is not 0");
+        return;
+    }
+    const double farad = charging / fabs(gain);
+    const double by = gain > 0 ? charging : -charging;
+    const int state = add_state(c, farad);
+    struct dalcs_device *g = state >= 0 ? add(c, DALCS_VCCS, "charge", 0, state) : NULL;
+    if (g == NULL) {
+        return;
+    }
+    control(g, &c->port[0].end[0], by);
+    if (offset != 0 &&
+        !add_constant(c, DALCS_ISOURCE, "constant", (int[]){0, state}, by * offset)) {
+        return;
+    }
+    if (add_bound(c, state, true, high) && add_bound(c, state, false, low)) {
+        dalcs_initial_hold(c->builder, c->card->token, state, first);
+    }
+}
+
+static void parse_slew(const struct dalcs_block_card *c) {
+    static const char *const names[] = {"rise_slope", "fall_slope", "range"};
+    if (!check(c, names, 3, 2, "a slew is: Aname in out model")) {
+        return;
+    }
+    const double up = dalcs_block_number(c->block, "rise_slope", 1e9);
+    const double down = dalcs_block_number(c->block, "fall_slope", 1e9);
+    if (!(up > 0 && down > 0)) {
+        dalcs_builder_error(c->builder, c->block->type, NULL, "both slopes are above 0");
+        return;
+    }
+    const double farad = charging / fmax(up, down); /* a current of `charging` at most */
+    const int state = add_state(c, farad);
+    struct dalcs_device *e = state >= 0 ? add(c, DALCS_VCVS, "follow", state, 0) : NULL;
+    if (e == NULL) {
+        return;
+    }
+    control(e, &c->port[0].end[0], 1);
+    const struct dalcs_current_limits limits = {.forward = farad * down, .reverse = farad * up};
+    dalcs_current_limit_expand(c->builder, c->card->token, e, &limits);
+}
+
+bool dalcs_block_parse_analog(struct dalcs_block_card *c) {
+    const char *type = c->block->type->text;
+    if (strcmp(type, "gain") == 0 || strcmp(type, "summer") == 0) {
+        parse_sum(c, type[0] == 'g');
+    } else if (strcmp(type, "limit") == 0) {
+        parse_limit(c);
+    } else if (strcmp(type, "pwl") == 0) {
+        parse_pwl(c);
+    } else if (strcmp(type, "aswitch") == 0) {
+        parse_switch(c);
+    } else if (strcmp(type, "int") == 0) {
+        parse_integrator(c);
+    } else if (strcmp(type, "slew") == 0) {
+        parse_slew(c);
+    } else {
+        return false;
+    }
+    return true;
+}

@@ -1,0 +1,313 @@
+/* logic_parts.c - what becomes of a gate: sources, comparators, and who reads whom.
+ *
+ * An input that another gate's output drives reads its bit; any other is a comparator: a switch that nothing flows in,
+ * from an inner node with a resistor to ground, so that its control, its threshold and its events are those of all
+ * switches. Gates that read the same against the same threshold have one comparator, for their inputs change together. */
+#include "logic_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+struct dalcs_logic_card *dalcs_logic_start(struct dalcs_builder *builder,
+                                           const struct dalcs_token *name, int n_inputs) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    struct dalcs_arena *arena = &circuit->arena;
+    if (circuit->gate == NULL) {
+        circuit->gate = dalcs_arena_alloc(arena, builder->gate_capacity, sizeof *circuit->gate);
+        circuit->comparator =
+            dalcs_arena_alloc(arena, builder->comparator_capacity, sizeof *circuit->comparator);
+    }
+    struct dalcs_logic_card *of = dalcs_arena_alloc(&builder->scratch, 1, sizeof *of);
+    struct dalcs_logic_pin *pin =
+        dalcs_arena_alloc(&builder->scratch, (size_t)n_inputs, sizeof *pin);
+    struct dalcs_logic_input *input = dalcs_arena_alloc(arena, (size_t)n_inputs, sizeof *input);
+    const char *text = dalcs_arena_copy(arena, name->text, strlen(name->text));
+    if (circuit->gate == NULL || circuit->comparator == NULL || of == NULL || pin == NULL ||
+        input == NULL || text == NULL) {
+        builder->out_of_memory = true;
+        return NULL;
+    }
+    *of = (struct dalcs_logic_card){.name = name,
+                                    .is_element = true,
+                                    .gate = &circuit->gate[circuit->n_gates],
+                                    .pin = pin,
+                                    .node = {-1, -1}};
+    *of->gate = (struct dalcs_logic_gate){.name = text,
+                                          .n_inputs = n_inputs,
+                                          .input = input,
+                                          .output = {-1, -1},
+                                          .where = dalcs_builder_keep_location(builder, name)};
+    return of;
+}
+
+/* ---- Outputs ---------------------------------------------------------------------------------------------- */
+
+/* Of one point, which is all there is before a run. */
+static int add_stimulus(struct dalcs_builder *builder, double value) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    double *point = dalcs_arena_alloc(&circuit->arena, 2, sizeof *point);
+    if (point == NULL) {
+        builder->out_of_memory = true;
+        return -1;
+    }
+    point[1] = value;
+    circuit->stimulus[circuit->n_stimuli] = (struct dalcs_stimulus){
+        .kind = DALCS_STIMULUS_PWL, .u.pwl = {.n = 1, .t = point, .v = point + 1}};
+    return circuit->n_stimuli++;
+}
+
+/* Puts a resistor between a source of an output and its pin. */
+static bool add_resistance(struct dalcs_builder *builder, const struct dalcs_logic_card *of,
+                           const char *what, struct dalcs_device *source) {
+    struct dalcs_device *r =
+        dalcs_builder_add_inner_device(builder, DALCS_RESISTOR, what, of->name);
+    const int node = dalcs_builder_inner_node(builder, what, of->name);
+    if (r == NULL || node < 0) {
+        return false;
+    }
+    r->node[0] = node;
+    r->node[1] = source->node[0];
+    r->value = of->ohms;
+    source->node[0] = node;
+    return true;
+}
+
+static struct dalcs_device *add_source(struct dalcs_builder *builder,
+                                       const struct dalcs_logic_card *of, bool is_first,
+                                       const char *what) {
+    return is_first && of->is_element
+               ? dalcs_builder_add_device(builder, DALCS_VSOURCE, of->name)
+               : dalcs_builder_add_inner_device(builder, DALCS_VSOURCE, what, of->name);
+}
+
+/* A source from the k-th output pin to the common one, whose stimulus is the gate's. */
+static bool add_output(struct dalcs_builder *builder, const struct dalcs_logic_card *of, int k,
+                       struct dalcs_device *source) {
+    const int stimulus = add_stimulus(builder, k == 0 ? of->gate->low : of->gate->high);
+    if (source == NULL || stimulus < 0) {
+        return false;
+    }
+    source->node[0] = of->node[k];
+    source->node[1] = of->common;
+    source->stimulus = of->gate->output[k] = stimulus;
+    return !(of->ohms > 0) || add_resistance(builder, of, k == 0 ? "rout" : "routbar", source);
+}
+
+/* One of both that a sample shows: a wire while the mode is on, or off. */
+static bool add_choice(struct dalcs_builder *builder, const struct dalcs_logic_card *of,
+                       const char *what, const int *node, int mode, bool is_on) {
+    struct dalcs_device *s = dalcs_builder_add_inner_device(builder, DALCS_SWITCH, what, of->name);
+    const struct dalcs_switch_model model = {
+        .name = "choice", .roff = (double)INFINITY, .vt = is_on ? 0.5 : -0.5};
+    const int index = dalcs_switch_add_model(builder, &model);
+    if (s == NULL || index < 0) {
+        return false;
+    }
+    s->node[0] = node[0];
+    s->node[1] = node[1];
+    s->node[is_on ? 2 : 3] = mode;
+    s->model = index;
+    return true;
+}
+
+/* What is held behind one switch and the input behind another, and a source of what both lead to. */
+static struct dalcs_device *add_tracking(struct dalcs_builder *builder,
+                                         const struct dalcs_logic_card *of,
+                                         struct dalcs_device *hold) {
+    static const char *const names[] = {"hold", "track", "mode", "either"};
+    int node[4];
+    for (int k = 0; k < 4; k++) {
+        node[k] = dalcs_builder_inner_node(builder, names[k], of->name);
+    }
+    struct dalcs_device *track =
+        dalcs_builder_add_inner_device(builder, DALCS_VCVS, "track", of->name);
+    struct dalcs_device *mode =
+        dalcs_builder_add_inner_device(builder, DALCS_VSOURCE, "mode", of->name);
+    struct dalcs_device *out = dalcs_builder_add_device(builder, DALCS_VCVS, of->name);
+    if (builder->out_of_memory || track == NULL || mode == NULL || out == NULL ||
+        !add_choice(builder, of, "held", (int[]){node[0], node[3]}, node[2], false) ||
+        !add_choice(builder, of, "tracked", (int[]){node[1], node[3]}, node[2], true)) {
+        return NULL;
+    }
+    hold->node[0] = node[0];
+    track->node[0] = node[1];
+    track->node[2] = of->sampled.node;
+    track->node[3] = of->sampled.reference;
+    mode->node[0] = node[2];
+    mode->stimulus = of->gate->output[1] = add_stimulus(builder, 0);
+    out->node[2] = node[3];
+    track->value = out->value = 1;
+    return out;
+}
+
+static bool add_sample(struct dalcs_builder *builder, const struct dalcs_logic_card *of) {
+    const bool tracks = of->pin[DALCS_GATE_PRESET].is_wired;
+    struct dalcs_device *hold = add_source(builder, of, !tracks, "hold");
+    const int stimulus = add_stimulus(builder, of->gate->held);
+    if (hold == NULL || stimulus < 0) {
+        return false;
+    }
+    hold->stimulus = of->gate->output[0] = stimulus;
+    of->gate->device = (int)(hold - builder->circuit->device);
+    struct dalcs_device *out = tracks ? add_tracking(builder, of, hold) : hold;
+    if (out == NULL) {
+        return false;
+    }
+    out->node[0] = of->node[0];
+    out->node[1] = of->common;
+    return !(of->ohms > 0) || add_resistance(builder, of, "rout", out);
+}
+
+static bool add_outputs(struct dalcs_builder *builder, const struct dalcs_logic_card *of) {
+    if (of->gate->kind == DALCS_GATE_SAMPLE) {
+        return add_sample(builder, of);
+    }
+    const int first = of->node[0] >= 0 ? 0 : 1;
+    struct dalcs_device *source = add_source(builder, of, true, "q");
+    if (source == NULL || !add_output(builder, of, first, source)) {
+        return false;
+    }
+    of->gate->device = (int)(source - builder->circuit->device);
+    return first == 1 || of->node[1] < 0 ||
+           add_output(builder, of, 1, add_source(builder, of, false, "qbar"));
+}
+
+void dalcs_logic_add(struct dalcs_builder *builder, struct dalcs_logic_card *of) {
+    if (add_outputs(builder, of)) {
+        builder->circuit->n_gates++;
+        of->before = builder->gate_card;
+        builder->gate_card = of;
+    }
+}
+
+/* ---- Inputs ------------------------------------------------------------------------------------------------ */
+
+/* A switch that closes there. */
+static struct dalcs_device *add_comparator(struct dalcs_builder *builder,
+                                           const struct dalcs_logic_card *of, int k) {
+    const struct dalcs_logic_pin *pin = &of->pin[k];
+    const char *what = dalcs_builder_hint(builder, "in%d", k + 1);
+    struct dalcs_device *s = dalcs_builder_add_inner_device(builder, DALCS_SWITCH, what, of->name);
+    struct dalcs_device *r =
+        dalcs_builder_add_inner_device(builder, DALCS_RESISTOR, what, of->name);
+    const int node = dalcs_builder_inner_node(builder, what, of->name);
+    const struct dalcs_switch_model model = {.name = "comparator",
+                                             .ron = 1,
+                                             .roff = (double)INFINITY,
+                                             .vt = 0.5 * (of->on + of->off),
+                                             .vh = 0.5 * (of->on - of->off)};
+    const int index = dalcs_switch_add_model(builder, &model);
+    if (s == NULL || r == NULL || node < 0 || index < 0) {
+        return NULL;
+    }
+    s->node[0] = r->node[0] = node;
+    s->node[1] = r->node[1] = 0;
+    s->node[2] = pin->node;
+    s->node[3] = pin->reference;
+    s->model = index;
+    r->value = 1;
+    return s;
+}
+
+/* The place among comparators of one that closes there; -1: out of memory. */
+static int find_comparator(struct dalcs_builder *builder, const struct dalcs_logic_card *of,
+                           int k) {
+    struct dalcs_circuit *circuit = builder->circuit;
+    const struct dalcs_logic_pin *pin = &of->pin[k];
+    const char *key =
+        dalcs_builder_hint(builder, "%d %d %a %a", pin->node, pin->reference, of->on, of->off);
+    int place;
+    if (key == NULL || dalcs_names_find_or_add(&builder->comparators, key, circuit->n_comparators,
+                                               &place) != DALCS_OK) {
+        builder->out_of_memory = true;
+        return -1;
+    }
+    if (place == circuit->n_comparators) {
+        const struct dalcs_device *s = add_comparator(builder, of, k);
+        if (s == NULL) {
+            return -1;
+        }
+        circuit->comparator[circuit->n_comparators++] = (int)(s - circuit->device);
+    }
+    return place;
+}
+
+/* Its outputs jump from one level to the other, and nothing pulls at them. */
+static bool is_exact(const struct dalcs_logic_card *of) {
+    return of->gate->kind != DALCS_GATE_SAMPLE && of->gate->rise == 0 && of->gate->fall == 0 &&
+           of->ohms == 0;
+}
+
+/* A gate that drives a pin: twice its number, and one more where by its complement; -1: none, or not as this input
+ * reads it: against another node, in the course of a ramp, or on one side of the threshold alone. */
+static int driver_of(const struct dalcs_builder *builder,
+                     const struct dalcs_logic_card *const *driver,
+                     const struct dalcs_logic_card *of, const struct dalcs_logic_pin *pin) {
+    const struct dalcs_logic_card *by = driver[pin->node];
+    if (by == NULL || !is_exact(by) || by->common != pin->reference || by->gate->low >= of->off ||
+        by->gate->high <= of->on) {
+        return -1;
+    }
+    return 2 * (int)(by->gate - builder->circuit->gate) + (by->node[0] != pin->node);
+}
+
+static void resolve_input(struct dalcs_builder *builder,
+                          const struct dalcs_logic_card *const *driver,
+                          const struct dalcs_logic_card *of, int k) {
+    const struct dalcs_logic_pin *pin = &of->pin[k];
+    struct dalcs_logic_input *input = &of->gate->input[k];
+    if (!pin->is_wired) {
+        return;
+    }
+    const int by = driver_of(builder, driver, of, pin);
+    if (by >= 0) {
+        builder->read_by_gates[pin->node] = true;
+        *input =
+            (struct dalcs_logic_input){DALCS_GATE_GATE, by / 2, (by % 2 != 0) != pin->is_inverted};
+        return;
+    }
+    const int index = find_comparator(builder, of, k);
+    if (index >= 0) {
+        *input = (struct dalcs_logic_input){DALCS_GATE_COMPARATOR, index, pin->is_inverted};
+    }
+}
+
+static void measure_sample(struct dalcs_builder *builder, const struct dalcs_logic_card *of) {
+    builder->read_by_gates[of->sampled.node] = true;
+    builder->read_by_gates[of->sampled.reference] = true;
+    of->gate->sampled = dalcs_signals_measure(
+        builder, (struct dalcs_signal){.name = of->gate->name,
+                                       .kind = DALCS_SIGNAL_VOLTAGE,
+                                       .device = -1,
+                                       .node = {of->sampled.node, of->sampled.reference}});
+}
+
+void dalcs_logic_resolve(struct dalcs_builder *builder) {
+    if (builder->gate_card == NULL) {
+        return;
+    }
+    const size_t n_nodes = (size_t)builder->circuit->n_nodes;
+    const struct dalcs_logic_card **driver =
+        dalcs_arena_alloc(&builder->scratch, n_nodes, sizeof(const struct dalcs_logic_card *));
+    builder->read_by_gates = dalcs_arena_alloc(&builder->scratch, n_nodes, sizeof(bool));
+    if (driver == NULL || builder->read_by_gates == NULL) {
+        builder->out_of_memory = true;
+        return;
+    }
+    builder->n_nodes_of_gates = n_nodes;
+    for (const struct dalcs_logic_card *of = builder->gate_card; of != NULL; of = of->before) {
+        for (int k = 0; k < 2; k++) {
+            if (of->node[k] >= 0) {
+                driver[of->node[k]] = of;
+            }
+        }
+    }
+    for (const struct dalcs_logic_card *of = builder->gate_card; of != NULL; of = of->before) {
+        for (int k = 0; k < of->gate->n_inputs; k++) {
+            resolve_input(builder, driver, of, k);
+        }
+        if (of->gate->kind == DALCS_GATE_SAMPLE) {
+            measure_sample(builder, of);
+        }
+    }
+}

@@ -1,0 +1,34 @@
+/* logic_parts.h - a gate on its nodes, whatever dialect its card is of, until the outputs of all are known. */
+#ifndef DALCS_LOGIC_PARTS_H
+#define DALCS_LOGIC_PARTS_H
+
+#include "builder.h"
+
+struct dalcs_logic_card {
+    const struct dalcs_logic_card *before;
+    const struct dalcs_token *name; /* of the element; of one that is several its own */
+    bool is_element; /* its source has that name: what the element's current is asked of */
+    struct dalcs_logic_gate *gate;
+
+    struct dalcs_logic_pin {
+        bool is_wired, is_inverted;
+        int node, reference;
+    } * pin; /* [gate->n_inputs] */
+
+    int node[2], common; /* of q and its complement, -1: not wired */
+    double ohms;         /* at each output */
+    double on, off;      /* V: where an input rises and falls */
+
+    struct dalcs_logic_sampled {
+        int node, reference;
+    } sampled; /* of a sample */
+};
+
+/* A gate with so many inputs, none of which is wired; NULL: out of memory. */
+struct dalcs_logic_card *dalcs_logic_start(struct dalcs_builder *builder,
+                                           const struct dalcs_token *name, int n_inputs);
+
+/* Its sources, once all of it is known; then it is one of the circuit's. */
+void dalcs_logic_add(struct dalcs_builder *builder, struct dalcs_logic_card *of);
+
+#endif

@@ -1,0 +1,22 @@
+/* rational.h - a formula of s as a ratio of two polynomials. */
+#ifndef DALCS_RATIONAL_H
+#define DALCS_RATIONAL_H
+
+#include "builder.h"
+
+enum { DALCS_RATIONAL_DEGREE = 20 };
+
+struct dalcs_polynomial {
+    int degree;
+    double c[DALCS_RATIONAL_DEGREE + 1]; /* of s^k; c[degree] is not 0, unless the degree is 0 */
+};
+
+struct dalcs_rational {
+    struct dalcs_polynomial above, below;
+};
+
+/* s is what a formula calls time; false when an error was reported: it is no such ratio. */
+bool dalcs_rational_make(struct dalcs_builder *builder, const struct dalcs_formula *formula,
+                         struct dalcs_rational *r);
+
+#endif

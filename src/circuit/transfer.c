@@ -1,0 +1,209 @@
+/* transfer.c - LAPLACE: a transfer function of s as states, each a capacitor that a source charges.
+ *
+ *     Ename a b LAPLACE {formula} = {expression of s}
+ *     Ename a b control control Laplace=expression of s
+ *
+ * Of (b_n s^n + ... + b_0)/(s^n + a_(n-1) s^(n-1) + ... + a_0) the states x_1, ..., x_n go with x_k' = r_k x_(k+1) and
+ * x_n' = r_n (u - A_0 x_1 - ... - A_(n-1) x_n), the output is B_n u + (B_0 - B_n A_0) x_1 + ..., where A_k and B_k are
+ * a_k and b_k over r_(k+1) ... r_n: the controllable canonical form, each state in its own unit. The rates r are the
+ * slopes of the Newton polygon of the denominator, which are the magnitudes of its roots where those lie far apart, and
+ * of their size anyhow (Householder 1970, ch. 3): so no A_k is above 1, whatever the units and the spread of poles. */
+#include "rational.h"
+
+#include <math.h>
+
+/* S: it is in no waveform, for the currents of states are nobody's. */
+static const double charging = 1e-3;
+
+struct transfer {
+    struct dalcs_builder *builder;
+    const struct dalcs_token *name;
+    int n;
+    double rate[DALCS_RATIONAL_DEGREE]; /* 1/s, of each state */
+    double a[DALCS_RATIONAL_DEGREE + 1], b[DALCS_RATIONAL_DEGREE + 1];
+    int input[2];
+    int state[DALCS_RATIONAL_DEGREE];
+};
+
+/* height[k] of the least concave function that is not below log |a_k|, from the first that is not 0 on. */
+static void find_polygon(const struct dalcs_polynomial *p, int first, double *height) {
+    for (int k = first; k < p->degree;) {
+        int next = k + 1;
+        double steepest = -(double)INFINITY;
+        for (int i = k + 1; i <= p->degree; i++) {
+            const double slope = (log(fabs(p->c[i])) - log(fabs(p->c[k]))) / (double)(i - k);
+            if (slope >= steepest) {
+                steepest = slope;
+                next = i;
+            }
+        }
+        for (int i = k; i <= next; i++) {
+            height[i] = log(fabs(p->c[k])) + steepest * (double)(i - k);
+        }
+        k = next;
+    }
+}
+
+static void normalize(const struct dalcs_rational *r, struct transfer *t) {
+    const struct dalcs_polynomial *below = &r->below;
+    double height[DALCS_RATIONAL_DEGREE + 1] = {0};
+    int first = 0; /* as many poles are at 0, and go with the slowest other one, or with 1/s */
+    while (below->c[first] == 0) {
+        first++;
+    }
+    t->n = below->degree;
+    height[t->n] = log(fabs(below->c[t->n]));
+    find_polygon(below, first, height);
+    for (int k = first - 1; k >= 0; k--) {
+        height[k] = height[k + 1] + (first < t->n ? height[first] - height[first + 1] : 0);
+    }
+    for (int k = 0; k <= t->n; k++) {
+        const double unit = below->c[t->n] < 0 ? -exp(-height[k]) : exp(-height[k]);
+        t->a[k] = below->c[k] * unit;
+        t->b[k] = k <= r->above.degree ? r->above.c[k] * unit : 0;
+        if (k > 0) {
+            t->rate[k - 1] = exp(height[k - 1] - height[k]);
+        }
+    }
+}
+
+/* constant (v(input[0]) - v(input[1])) + of[k] x_(k+1), as what a source puts out. */
+static bool put(struct transfer *t, struct dalcs_device *device, double of_input,
+                const double *of_state) {
+    struct dalcs_arena *arena = &t->builder->circuit->arena;
+    struct dalcs_behaviour *behaviour = dalcs_arena_alloc(arena, 1, sizeof *behaviour);
+    struct dalcs_affine_term *term = dalcs_arena_alloc(arena, (size_t)(t->n + 2), sizeof *term);
+    if (behaviour == NULL || term == NULL) {
+        t->builder->out_of_memory = true;
+        return false;
+    }
+    int n = 0;
+    const bool is_turned = t->input[0] > t->input[1];
+    for (int k = 0; k < 2; k++) {
+        const int node = t->input[is_turned ? 1 - k : k];
+        const double sign = (k == 0) != is_turned ? 1 : -1;
+        if (node != 0 && of_input != 0 && t->input[0] != t->input[1]) {
+            term[n++] = (struct dalcs_affine_term){DALCS_QUANTITY_VOLTAGE, node, sign * of_input};
+        }
+    }
+    for (int k = 0; k < t->n; k++) {
+        if (of_state[k] != 0) {
+            term[n++] =
+                (struct dalcs_affine_term){DALCS_QUANTITY_VOLTAGE, t->state[k], of_state[k]};
+        }
+    }
+    behaviour->output = (struct dalcs_affine){0, n, term};
+    device->behaviour = behaviour;
+    return true;
+}
+
+static bool add_state(struct transfer *t, int k) {
+    const char *what = dalcs_builder_hint(t->builder, "x%d", k + 1);
+    struct dalcs_device *c =
+        what != NULL ? dalcs_builder_add_inner_device(t->builder, DALCS_CAPACITOR, what, t->name)
+                     : NULL;
+    if (c == NULL) {
+        return false;
+    }
+    c->node[0] = t->state[k];
+    c->value = charging / t->rate[k];
+    return true;
+}
+
+static bool add_charging(struct transfer *t, int k) {
+    const char *what = dalcs_builder_hint(t->builder, "dx%d", k + 1);
+    struct dalcs_device *g =
+        what != NULL ? dalcs_builder_add_inner_device(t->builder, DALCS_VCCS, what, t->name) : NULL;
+    if (g == NULL) {
+        return false;
+    }
+    g->node[1] = t->state[k];
+    double of_state[DALCS_RATIONAL_DEGREE] = {0};
+    if (k + 1 < t->n) {
+        of_state[k + 1] = charging;
+        return put(t, g, 0, of_state);
+    }
+    for (int i = 0; i < t->n; i++) {
+        of_state[i] = -charging * t->a[i];
+    }
+    return put(t, g, charging, of_state);
+}
+
+static bool expand(struct transfer *t, struct dalcs_device *device, double m) {
+    for (int k = 0; k < t->n; k++) {
+        const char *what = dalcs_builder_hint(t->builder, "x%d", k + 1);
+        t->state[k] = what != NULL ? dalcs_builder_inner_node(t->builder, what, t->name) : -1;
+        if (t->state[k] < 0) {
+            return false;
+        }
+    }
+    double of_state[DALCS_RATIONAL_DEGREE] = {0};
+    for (int k = 0; k < t->n; k++) {
+        of_state[k] = m * (t->b[k] - t->b[t->n] * t->a[k]);
+    }
+    if (!put(t, device, m * t->b[t->n], of_state)) {
+        return false;
+    }
+    bool ok = true;
+    for (int k = 0; k < t->n && ok; k++) {
+        ok = add_state(t, k) && add_charging(t, k);
+    }
+    return ok;
+}
+
+/* The formula of a card that comes next; NULL when an error was reported. */
+static const struct dalcs_token *take_formula(struct dalcs_reader *reader, const char *what) {
+    (void)dalcs_reader_take(reader, DALCS_TOKEN_EQUAL);
+    const struct dalcs_token *token = dalcs_reader_peek(reader, 0);
+    if (token == NULL) {
+        dalcs_reader_missing(reader, what);
+        return NULL;
+    }
+    if (token->kind == DALCS_TOKEN_BAD) {
+        reader->builder->failed = true;
+        return NULL;
+    }
+    if (token->kind != DALCS_TOKEN_FORMULA) {
+        dalcs_reader_unexpected(reader);
+        return NULL;
+    }
+    reader->at++;
+    return token;
+}
+
+void dalcs_transfer_parse(struct dalcs_reader *reader, struct dalcs_device *device,
+                          bool has_control) {
+    struct dalcs_builder *builder = reader->builder;
+    struct transfer t = {.builder = builder, .name = reader->card->token};
+    struct dalcs_rational r;
+    reader->usage = has_control ? "a transfer function is: LAPLACE=ratio of polynomials in s"
+                                : "a transfer function is: LAPLACE {formula} = {ratio of "
+                                  "polynomials in s}";
+    reader->at++;
+    const struct dalcs_token *input = has_control ? NULL : take_formula(reader, "a formula");
+    const struct dalcs_token *ratio =
+        has_control || input != NULL ? take_formula(reader, "an expression of s") : NULL;
+    if (ratio == NULL || !dalcs_reader_end(reader) ||
+        !dalcs_rational_make(builder, ratio->formula, &r)) {
+        return;
+    }
+    if (r.above.degree > r.below.degree) {
+        dalcs_builder_error(builder, ratio, "add poles: s/(1 + s*t) for s, with a short time t",
+                            "the transfer function is improper: of degree %d over %d, it "
+                            "differentiates",
+                            r.above.degree, r.below.degree);
+        return;
+    }
+    normalize(&r, &t);
+    if (has_control) {
+        t.input[0] = device->node[2];
+        t.input[1] = device->node[3];
+        device->node[2] = device->node[3] = 0;
+    } else {
+        t.input[0] = dalcs_behavioural_add_readout(builder, input, "input", t.name);
+    }
+    const double m = device->kind == DALCS_VCCS ? dalcs_parallel_of(reader->card) : 1;
+    if (t.input[0] >= 0) {
+        (void)expand(&t, device, m);
+    }
+}

@@ -1,0 +1,110 @@
+/* logic_outputs.c - what outputs show: points at the end of a stimulus, for what is past stands. */
+#include "logic_outputs.h"
+
+#include <float.h>
+#include <math.h>
+
+/* A pin goes to a level from t on. What was to come, of a ramp not yet over, does not. */
+static enum dalcs_status write(struct dalcs_stimulus *s, double **time, double **value,
+                               size_t *capacity, double t, double level, double duration,
+                               double swing) {
+    int n = s->u.pwl.n;
+    const double now = dalcs_stimulus_value(s, t, DALCS_RIGHT);
+    DALCS_TRY(dalcs_grow(time, &capacity[0], (size_t)n + 2, sizeof(**time)));
+    DALCS_TRY(dalcs_grow(value, &capacity[1], (size_t)n + 2, sizeof(**value)));
+    const double near = 4.0 * DBL_EPSILON * t;
+    while (n > 1 && (*time)[n - 1] > t + near) {
+        n--;
+    }
+    const bool is_twice = n > 1 && (*time)[n - 1] >= t - near && (*time)[n - 2] >= t - near;
+    if (is_twice && duration == 0.0) {
+        (*value)[n - 1] = level; /* nothing in between has lasted */
+    } else {
+        if ((*time)[n - 1] < t - near || (*value)[n - 1] != now) {
+            (*time)[n] = t;
+            (*value)[n++] = now;
+        }
+        (*time)[n] = duration > 0.0 ? t + duration * fabs(level - now) / swing : t;
+        (*value)[n++] = level;
+    }
+    s->u.pwl.n = n;
+    s->u.pwl.t = *time;
+    s->u.pwl.v = *value;
+    return DALCS_OK;
+}
+
+/* A pin is at a level at the start. *changed: it was at another one before. */
+static enum dalcs_status start(struct dalcs_stimulus *s, double **time, double **value,
+                               size_t *capacity, double level, bool *changed) {
+    *changed = *changed || s->u.pwl.v[0] != level;
+    DALCS_TRY(dalcs_grow(time, &capacity[0], 1, sizeof(**time)));
+    DALCS_TRY(dalcs_grow(value, &capacity[1], 1, sizeof(**value)));
+    (*time)[0] = 0.0;
+    (*value)[0] = level;
+    s->u.pwl.n = 1;
+    s->u.pwl.t = *time;
+    s->u.pwl.v = *value;
+    return DALCS_OK;
+}
+
+static double level_of(const struct dalcs_logic_gate *g, int pin, bool q) {
+    if (g->kind == DALCS_GATE_SAMPLE) {
+        return pin == 0 ? g->held : q;
+    }
+    return q == (pin == 0) ? g->high : g->low;
+}
+
+/* What is held changes at once, and which of both is shown. */
+static enum dalcs_status show_sample(struct dalcs_logic_run *l, int k, double t) {
+    const struct dalcs_logic_gate *g = &l->network.gate[k];
+    struct dalcs_logic_state *state = &l->network.state[k];
+    struct dalcs_logic_output *o = &l->output[k];
+    if (state->takes) {
+        l->changed[g->output[0]] = true;
+        DALCS_TRY(write(&l->circuit->stimulus[g->output[0]], &o->time, &o->value, o->capacity, t,
+                        l->taken[k], 0.0, 1.0));
+    }
+    if (g->output[1] >= 0 && o->shown != state->seen) {
+        l->changed[g->output[1]] = true;
+        DALCS_TRY(write(&l->circuit->stimulus[g->output[1]], &o->time_bar, &o->value_bar,
+                        &o->capacity[2], t, state->seen, 0.0, 1.0));
+    }
+    state->takes = false;
+    o->shown = state->seen;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_logic_output_show(struct dalcs_logic_run *l, int k, double t) {
+    const struct dalcs_logic_gate *g = &l->network.gate[k];
+    struct dalcs_logic_output *o = &l->output[k];
+    if (g->kind == DALCS_GATE_SAMPLE) {
+        return show_sample(l, k, t);
+    }
+    for (int pin = 0; pin < 2; pin++) {
+        if (g->output[pin] >= 0) {
+            const double level = level_of(g, pin, l->network.state[k].seen);
+            l->changed[g->output[pin]] = true;
+            DALCS_TRY(write(&l->circuit->stimulus[g->output[pin]],
+                            pin == 0 ? &o->time : &o->time_bar,
+                            pin == 0 ? &o->value : &o->value_bar, &o->capacity[2 * pin], t, level,
+                            level == g->high ? g->rise : g->fall, g->high - g->low));
+        }
+    }
+    o->shown = l->network.state[k].seen;
+    return DALCS_OK;
+}
+
+enum dalcs_status dalcs_logic_output_start(struct dalcs_logic_run *l, int k, bool *changed) {
+    const struct dalcs_logic_gate *g = &l->network.gate[k];
+    struct dalcs_logic_output *o = &l->output[k];
+    for (int pin = 0; pin < 2; pin++) {
+        if (g->output[pin] >= 0) {
+            DALCS_TRY(start(&l->circuit->stimulus[g->output[pin]],
+                            pin == 0 ? &o->time : &o->time_bar,
+                            pin == 0 ? &o->value : &o->value_bar, &o->capacity[2 * pin],
+                            level_of(g, pin, l->network.state[k].seen), changed));
+        }
+    }
+    o->shown = l->network.state[k].seen;
+    return DALCS_OK;
+}

@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Subcircuits that are installed with dalcs: control.lib and UniversalOpamps2.sub, against closed forms.
+
+usage: libraries.py PROGRAM FOLDER
+"""
+
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import dalcs_program  # noqa: E402
+from dalcs_program import Checker  # noqa: E402
+from logic import edges, root, runs, times  # noqa: E402
+
+
+def run(program, what, cards):
+    return dalcs_program.run(program, "\n".join([what, *cards, ".end", ""]), method=None, tolerance=1e-10,
+                             environment={"DALCS_LIBRARIES": sys.argv[2]})
+
+
+def modulators(checker, program):
+    """Both edges of each period, and the dead time of each gate."""
+    for f, carrier, depth, dead, high in ((50, 450, 0.9, 2e-5, 15), (1e3, 2e4, 0.5, 0, 1), (1, 10, 0.99, 1e-3, 5)):
+        what = f"pwm at {carrier} Hz"
+        cards = [".lib control.lib", f"v1 m 0 sin(0 {depth} {f})", f"x1 m hi lo pwm f={carrier} dead={dead!r} vhigh={high}",
+                 "r1 hi 0 1k", "r2 lo 0 1k", f".tran {0.3 / carrier!r} {1 / f!r}"]
+        done = run(program, what, cards)
+        if not runs(checker, done, what):
+            continue
+        wanted = []
+        for k in range(round(carrier / f)):
+            def up(t, k=k):
+                return depth * math.sin(2 * math.pi * f * t) - (4 * (t * carrier - k) - 1)
+
+            def down(t, k=k):
+                return depth * math.sin(2 * math.pi * f * t) - (3 - 4 * (t * carrier - k))
+            wanted += [root(up, k / carrier, (k + 0.5) / carrier), root(down, (k + 0.5) / carrier, (k + 1) / carrier)]
+        upper = [t for a, b in zip(wanted[1::2], wanted[2::2] + [1 / f]) if b - a > dead for t in (a + dead, b)]
+        lower = [t for a, b in zip(wanted[::2], wanted[1::2]) if b - a > dead for t in (a + dead, b)]
+        times(checker, edges(done, "v(hi)", high / 2), [wanted[0], *upper][:len(upper)], f"{what}, upper", 1e-8)
+        times(checker, edges(done, "v(lo)", high / 2), lower, f"{what}, lower", 1e-8)
+
+
+def controllers(checker, program):
+    """PI: no windup, so it leaves its limit when its error turns. PID of a jump. An integrator that is reset."""
+    for kp, ki, limit, unit in ((0.5, 1e3, 1, 1e-3), (2, 0.1, 24, 100), (0, 1e6, 0.5, 1e-6)):
+        what = f"a PI of {kp}, {ki}"
+        # the error is +1 for 5 units, then -0.5: the integral is at its limit by then
+        cards = [".include control.lib", f"v1 e 0 pulse({limit} {-limit / 2} {5 * unit!r} 0 0 1 2)" if unit < 0.1 else
+                 f"v1 e 0 pulse({limit} {-limit / 2} {5 * unit!r} 0 0 10000 20000)",
+                 f"x1 e u pi kp={kp} ki={ki} low={-limit} high={limit}", "r1 u 0 1k", f".tran {unit / 7!r} {9 * unit!r}"]
+        done = run(program, what, cards)
+        if not runs(checker, done, what):
+            continue
+        for t, u in zip(done.time, done.column("v(u)")):
+            if abs(t - 5 * unit) < 1e-6 * unit:
+                continue
+            e = limit if t < 5 * unit else -limit / 2
+            x = min(limit, ki * limit * t) if t < 5 * unit else max(-limit, min(limit, 5 * ki * limit * unit) - ki * limit / 2 * (t - 5 * unit))
+            checker.close(u, min(max(kp * e + x, -limit), limit), 1e-8 * limit, f"{what} at {t}")
+    what = "a PID"
+    cards = [".lib control.lib", "v1 e 0 pulse(0 0.1 1m 0 0 1 2)", "x1 e u pid kp=2 ki=50 kd=1m tf=0.5m low=-10 high=10",
+             "r1 u 0 1k", ".tran 0.1m 6m"]
+    done = run(program, what, cards)
+    if runs(checker, done, what):
+        for t, u in zip(done.time, done.column("v(u)")):
+            if abs(t - 1e-3) > 1e-9:
+                after = t - 1e-3
+                checker.close(u, 0 if after < 0 else 0.1 * (2 + 50 * after + 2 * math.exp(-after / 0.5e-3)), 1e-8, f"{what} at {t}")
+    for k in (1e3, -2e3):
+        what = f"an integrator of {k}"
+        cards = [".lib control.lib", "v1 a 0 2", "v2 r 0 pulse(1 0 1m 0 0 2m 3m)", f"x1 a r o integrator k={k}", "r1 o 0 1k",
+                 ".tran 0.1m 8m uic"]
+        done = run(program, what, cards)
+        if runs(checker, done, what):
+            for t, o in zip(done.time, done.column("v(o)")):
+                phase = math.fmod(t, 3e-3)
+                if min(abs(phase - 1e-3), abs(phase), abs(phase - 3e-3)) > 1e-9:
+                    checker.close(o, 2 * k * max(0, phase - 1e-3), 1e-7, f"{what} at {t}")
+    what = "a comparator"
+    cards = [".lib control.lib", "v1 a 0 sin(0 1 1k)", "x1 a 0 o comparator vhigh=5 vlow=-5 vh=0.5", "r1 o 0 1k", ".tran 10u 2m"]
+    done = run(program, what, cards)
+    if runs(checker, done, what):
+        times(checker, edges(done, "v(o)", 0), [x * 1e-3 / 12 for x in (1, 7, 13, 19)], what)
+
+
+def amplifiers(checker, program):
+    """A follower's pole; rails; slew, up and down; a short of the output; offset; level 1 knows no limits."""
+    for gbw, level in ((1e6, "level.1"), (10e6, "level.2"), (1e4, "level.3a")):
+        what = f"a follower of {gbw} Hz, {level}"
+        w = 2 * math.pi * gbw
+        cards = [".lib UniversalOpamps2.sub", "vp p 0 15", "vn n 0 -15", f"v1 in 0 pulse(0 1m {1 / w!r} 0 0 1 2)",
+                 f"x1 in o p n o {level} Avol=1Meg GBW={gbw} Slew=1T Vos=0", "r1 o 0 1k", f".tran {0.2 / w!r} {9 / w!r}"]
+        done = run(program, what, cards)
+        if runs(checker, done, what):
+            pole = w * (1 + 1e-6)
+            for t, o in zip(done.time, done.column("v(o)")):
+                if abs(t - 1 / w) > 1e-6 / w:
+                    checker.close(o, 0 if t < 1 / w else 1e-3 / (1 + 1e-6) * (1 - math.exp(-pole * (t - 1 / w))), 5e-9, f"{what} at {t}")
+    what = "an inverting amplifier at its rails"
+    cards = [".lib UniversalOpamps2.sub", "vp p 0 12", "vn n 0 -5", "v1 in 0 sin(0 2 10)", "r1 in m 1k", "r2 m o 10k",
+             "x1 0 m p n o level.2 Avol=1G GBW=1G Slew=1T Rail=1 Rin=1T", "r3 o 0 10k", ".tran 1m 0.1"]
+    done = run(program, what, cards)
+    if runs(checker, done, what):
+        for v, o in zip(done.column("v(in)"), done.column("v(o)")):
+            checker.close(o, min(max(-10 * v, -4), 11), 1e-4, what)
+    what = "a slewing follower"
+    cards = [".lib UniversalOpamps2.sub", "vp p 0 15", "vn n 0 -15", "v1 in 0 pulse(-5 5 1u 0 0 20u 40u)",
+             "x1 in o p n o level.2 GBW=1G Slew=1Meg", "r1 o 0 1k", ".tran 1u 40u"]
+    done = run(program, what, cards)
+    if runs(checker, done, what):
+        for t, o in zip(done.time, done.column("v(o)")):
+            wanted = -5 if t < 1e-6 else min(5, -5 + 1e6 * (t - 1e-6)) if t < 21e-6 else max(-5, 5 - 1e6 * (t - 21e-6))
+            checker.close(o, wanted, 2e-3, f"{what} at {t}")
+    what = "a shorted output"
+    cards = [".lib UniversalOpamps2.sub", "vp p 0 15", "vn n 0 -15", "v1 in 0 sin(0 5 1k)",
+             "x1 in f p n o level.2 GBW=10G Slew=1T ilimit=20m", "ef f 0 o 0 1", "r1 o 0 100", ".tran 10u 1m"]
+    done = run(program, what, cards)
+    if runs(checker, done, what):
+        for v, o in zip(done.column("v(in)"), done.column("v(o)")):
+            checker.close(o, min(max(v, -2), 2), 5e-3, what)  # what is inside winds up to the rails
+
+
+def own_file_first(checker, program):
+    """A file of that name beside the netlist comes first; one that is nowhere is an error."""
+    done = run(program, "nowhere", [".lib nowhere.lib", "v1 a 0 1", "r1 a 0 1", ".tran 1 2"])
+    checker.check(done.status != 0 and "nowhere.lib" in done.stderr, f"nowhere: {done.stderr}")
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    checker = Checker("libraries")
+    for part in (modulators, controllers, amplifiers, own_file_first):
+        part(checker, program)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""LAPLACE on E and G: step responses against the sum of residues, in 11 unlike sets of poles; loops, responses over
+frequency, forms of writing, and what is refused.
+
+usage: transfer.py PROGRAM
+"""
+
+import cmath
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from dalcs_program import Checker, run  # noqa: E402
+from logic import run_cards, runs  # noqa: E402
+
+
+def from_roots(roots, leading=1.0):
+    c = [complex(leading)]
+    for root in roots:
+        c = [a - root * b for a, b in zip([0, *c], [*c, 0])]
+    return [x.real for x in c]
+
+
+def value(c, s):
+    total = 0
+    for x in reversed(c):
+        total = total * s + x
+    return total
+
+
+def text(c):
+    return " + ".join(f"{x!r}*s^{k}" if k else repr(x) for k, x in enumerate(c) if x != 0)
+
+
+def butterworth(n, w):
+    return [w * cmath.exp(1j * math.pi * (2 * k + n + 1) / (2 * n)) for k in range(n)]
+
+
+POLES = (
+    # poles, zeros, gain at 0 (of a pole at 0: of what is left)
+    ([-1e3], [], 1), ([-5], [3], -2), ([-1e6, -1], [], 7), ([-3 + 4j, -3 - 4j], [-1], 0.5),
+    (butterworth(4, 2e4), [], 1), (butterworth(7, 1.0), [], 1), (butterworth(10, 6e5), [], 3),
+    ([-1e-3, -1e3, -1e5], [-10, -20, -3e4], 1), ([-1e9, -2e9 + 5e9j, -2e9 - 5e9j], [1e9j, -1e9j], 1),
+    ([-2, -3, -5, -7, -11, -13], [1, 2, 4, 6, 8, 10], 1e-3), ([2, -10], [], 1))
+
+
+def steps(checker, program):
+    for poles, zeros, gain in POLES:
+        below, above = from_roots(poles), from_roots(zeros)
+        unit = gain * below[0] / above[0]
+        above = [unit * x for x in above]
+        slow = 1 / min(abs(p) for p in poles)
+        stop = (3 if max(p.real for p in map(complex, poles)) > 0 else 6) * slow
+        what = f"poles {[complex(round(p.real, 3), round(p.imag, 3)) for p in map(complex, poles)][:4]}"
+        cards = [f"v1 in 0 pulse(0 2 {stop / 10!r} 0 0 {10 * stop!r} {20 * stop!r})",
+                 f"e1 a 0 in 0 Laplace=({text(above)})/({text(below)})", "r1 a 0 1k",
+                 f"g1 b 0 LAPLACE {{v(in)*3}} = {{({text(above)})/({text(below)})}}", "r2 b 0 10",
+                 f".tran {stop / 50!r} {stop!r} uic"]
+        done = run_cards(program, what, cards)
+        if not runs(checker, done, what):
+            continue
+        derivative = [k * x for k, x in enumerate(below)][1:]
+        residues = [value(above, p) / value(derivative, p) for p in poles]
+        direct = above[-1] / below[-1] if len(above) == len(below) else 0.0
+
+        def step(t, poles=poles, residues=residues, direct=direct):
+            return direct + sum(r / p * (cmath.exp(p * t) - 1) for r, p in zip(residues, poles)).real if t >= 0 else 0.0
+        size = max(abs(v) for v in done.column("v(a)")) or 1.0
+        later = [k for k, t in enumerate(done.time) if abs(t - stop / 10) > 1e-9 * stop and t > 0]
+        worst = max(abs(done.column("v(a)")[k] - 2 * step(done.time[k] - stop / 10)) for k in later)
+        checker.check(worst <= 3e-8 * size, f"{what}: e is off by {worst / size:.1e}")
+        size = max(abs(v) for v in done.column("v(b)")) or 1.0
+        worst = max(abs(done.column("v(b)")[k] + 60 * step(done.time[k] - stop / 10))
+                    for k in later)
+        checker.check(worst <= 3e-8 * size, f"{what}: g is off by {worst / size:.1e}")
+
+
+def rest(checker, program):
+    """At the operating point a transfer function is its gain at s = 0; around it a loop that settles; a PI with its pole
+    at 0; parameters in a subcircuit; sums and powers; over frequency."""
+    cards = ["v1 in 0 3", ".subckt lag a b tau=1 k=1", "e1 b 0 a 0 Laplace={k}/(1+s*{tau})**2", ".ends",
+             "x1 in p lag tau=1m k=-4", "r1 p 0 1k", ".tran 1m 20m"]
+    done = run_cards(program, "at rest", cards)
+    if runs(checker, done, "at rest"):
+        for v in done.column("v(p)"):
+            checker.close(v, -12, 1e-9, "at rest")
+    for kp, ki, tau in ((2, 100, 0.01), (0.5, 3e5, 1e-5), (10, 1, 5)):
+        what = f"a PI of {kp}, {ki}"
+        zeta, w = (1 + kp) / (2 * math.sqrt(ki * tau)), math.sqrt(ki / tau)
+        root = cmath.sqrt(zeta * zeta - 1)
+        p = [w * (-zeta + root), w * (-zeta - root)]
+        cards = ["v1 r 0 1", f".param kp={kp} ki={ki!r}", "e1 u 0 LAPLACE {v(r)-v(y)} = {kp + ki/s}",
+                 f"r1 u y 1", f"c1 y 0 {tau!r}", f".tran {tau / 10!r} {5 / min(abs(x) for x in p)!r} uic"]
+        done = run_cards(program, what, cards)
+        if runs(checker, done, what):
+            above = [ki / tau, kp / tau]
+            for t, y in zip(done.time[1:], done.column("v(y)")[1:]):
+                wanted = sum(value(above, x) / x / (x - q) * (cmath.exp(x * t) - 1) for x, q in (p, p[::-1])).real
+                checker.close(y, wanted, 1e-8, f"{what} at {t}")
+    cards = ["v1 in 0 ac 1", "e1 a 0 LAPLACE {v(in)} = {1/(1+s/(2*pi*1k)) + (s/100k)^2/(1+s/100k)^2}", "r1 a 0 1",
+             ".ac dec 5 10 1meg"]
+    done = run_cards(program, "over frequency", cards)
+    if runs(checker, done, "over frequency"):
+        names = [n for n in done.names if n != "frequency"]
+        for k, f in enumerate(done.column("frequency")):
+            s = 2j * math.pi * f
+            wanted = 1 / (1 + f * 1j / 1e3) + (s / 1e5) ** 2 / (1 + s / 1e5) ** 2
+            row = dict(zip(done.names, done.rows[k]))
+            got = [row[n] for n in names if "v(a)" in n]
+            checker.check(any(abs(g - wanted.real) < 1e-9 for g in got) or any(abs(g - abs(wanted)) < 1e-9 for g in got),
+                          f"over frequency: {f}: {got}, not {wanted}")
+
+
+def refused(checker, program):
+    cases = (("e1 o 0 a 0 Laplace=s", "improper: of degree 1 over 0, it differentiates"),
+             ("e1 o 0 a 0 Laplace=s^3/(1+s)^2", "improper: of degree 3 over 2"),
+             ("e1 o 0 a 0 Laplace=exp(-s*1u)", "exp() of s, which is a delay, is not supported"),
+             ("e1 o 0 a 0 Laplace=1/sqrt(1+s)", "a function of s is not supported"),
+             ("e1 o 0 a 0 Laplace=1/(1+s)^0.5", "no small whole number"),
+             ("e1 o 0 a 0 Laplace=1/(1+s)^21", "a power that is no small whole number"),
+             ("e1 o 0 a 0 Laplace=1/(1+s)^11/(1+2*s)^10", "a degree above 20"),
+             ("e1 o 0 LAPLACE {v(a)} = {1/(1+s*v(a))}", "a voltage or a current is not supported"),
+             ("e1 o 0 LAPLACE {v(a)}", "an expression of s is missing"),
+             ("e1 o 0 a 0 Laplace=1/(1+s*tau)", "tau"))
+    for card, words in cases:
+        done = run_cards(program, card, ["v1 a 0 1", card, "r1 o 0 1", ".tran 1 2"])
+        checker.check(done.status != 0 and words in done.stderr, f"{card}: {done.stderr}")
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    checker = Checker("transfer")
+    for part in (steps, rest, refused):
+        part(checker, program)
+    return checker.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
